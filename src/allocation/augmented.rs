@@ -134,10 +134,11 @@ pub(super) fn augmented(problem: &Separable<'_>, start: &[f64]) -> (Vec<f64>, Ve
     const NEAR: Near = Near { by: 1e-3, updates: 12 };
     let bounds: Vec<[f64; 2]> =
         problem.priced.iter().map(|group| [libm::log(group.offers[0].min), libm::log(group.offers[0].max)]).collect();
-    let scale = with_losses(problem, start).0.abs().max(f64::MIN_POSITIVE);
+    let x: Vec<f64> = start.iter().map(|t| libm::log(*t)).collect();
+    let scale = with_losses(problem, start, &x).0.abs().max(f64::MIN_POSITIVE);
     let tolerances = |x: &[f64]| x.iter().map(|x| libm::exp(*x)).collect::<Vec<f64>>();
     let objective = |x: &[f64]| {
-        let (value, slopes) = with_losses(problem, &tolerances(x));
+        let (value, slopes) = with_losses(problem, &tolerances(x), x);
         (value / scale, slopes.into_iter().map(|slope| slope / scale).collect())
     };
     let rows = |x: &[f64]| {
@@ -149,7 +150,6 @@ pub(super) fn augmented(problem: &Separable<'_>, start: &[f64]) -> (Vec<f64>, Ve
         Some(problem.rows.iter().map(of).collect())
     };
     let smooth = Smooth { objective: &objective, rows: &rows, bounds: &bounds };
-    let x: Vec<f64> = start.iter().map(|t| libm::log(*t)).collect();
     match smooth.minimised(&x, NEAR) {
         Some(Ended { x, multipliers, .. }) => {
             (tolerances(&x), multipliers.into_iter().map(|multiplier| multiplier * scale).collect())
@@ -158,9 +158,9 @@ pub(super) fn augmented(problem: &Separable<'_>, start: &[f64]) -> (Vec<f64>, Ve
     }
 }
 
-/// Cost of all groups and losses, with the derivatives by `ln T`.
-fn with_losses(problem: &Separable<'_>, at: &[f64]) -> Slope {
-    let (mut value, mut slopes) = cost(problem.priced, at);
+/// Cost of all groups and losses at tolerances and their logarithms, with the derivatives by `ln T`.
+fn with_losses(problem: &Separable<'_>, at: &[f64], x: &[f64]) -> Slope {
+    let (mut value, mut slopes) = cost(problem.priced, at, x);
     for row in problem.losses {
         value += row.value(at);
         let terms = row.terms.iter().zip(at).map(|(term, &t)| term.power * term.value(t));
@@ -169,10 +169,10 @@ fn with_losses(problem: &Separable<'_>, at: &[f64]) -> Slope {
     (value, slopes)
 }
 
-/// Cost of all groups, by the first offer of each, and its derivatives by `ln T`.
-pub(super) fn cost(priced: &[Priced], at: &[f64]) -> Slope {
-    let of = priced.iter().zip(at).map(|(group, &t)| {
-        let [cost, slope] = group.offers[0].curve.with_slope(t);
+/// Cost of all groups at tolerances and their logarithms, by the first offer of each, and its derivatives by `ln T`.
+pub(super) fn cost(priced: &[Priced], at: &[f64], x: &[f64]) -> Slope {
+    let of = priced.iter().zip(at.iter().zip(x)).map(|(group, (&t, &ln))| {
+        let [cost, slope] = group.offers[0].curve.with_slope(t, ln);
         (group.parts * cost, group.parts * slope)
     });
     let (costs, slopes): (Vec<f64>, Vec<f64>) = of.unzip();

@@ -25,7 +25,7 @@ pub(super) fn closed_form(problem: &Separable<'_>) -> Option<(Vec<f64>, Vec<f64>
         let mut multipliers = vec![0.0; problem.rows.len()];
         // The same for every group: what a wider tolerance saves by what it uses.
         let (group, term) = (&problem.priced[0], &problem.rows[k].terms[0]);
-        let saved = -group.parts * group.offers[0].curve.log_derivatives(at[0])[0];
+        let saved = -group.parts * group.offers[0].curve.log_derivatives(at[0], libm::log(at[0]))[0];
         multipliers[k] = saved / (term.power * term.value(at[0]));
         (inside && problem.rows.iter().enumerate().all(kept)).then_some((at, multipliers))
     })

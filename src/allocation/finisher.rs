@@ -29,7 +29,7 @@ impl Setting<'_> {
         let scale = self.cost(start).abs().max(f64::MIN_POSITIVE);
         let objective = |x: &[f64]| {
             let t = tolerances(x);
-            let (mut value, mut slopes) = cost(self.priced, &t);
+            let (mut value, mut slopes) = cost(self.priced, &t, x);
             for loss in self.losses {
                 match loss.linearised(self.responses, self.priced, &t) {
                     Some(of) => {

@@ -94,8 +94,8 @@ impl Separable<'_> {
 
     fn of_offer(&self, g: usize, offer: &Offer, index: usize, multipliers: &[f64], near: Option<f64>) -> Best {
         let parts = self.priced[g].parts;
-        let slope = |t: f64| {
-            let [first, second] = offer.curve.log_derivatives(t);
+        let slope = |t: f64, ln: f64| {
+            let [first, second] = offer.curve.log_derivatives(t, ln);
             let (mut first, mut second) = (parts * first, parts * second);
             for (row, multiplier) in self.weighted(multipliers) {
                 let term = &row.terms[g];
@@ -107,10 +107,11 @@ impl Separable<'_> {
             }
             (first, second)
         };
-        let (t, curvature) =
-            if offer.min == offer.max { (offer.min, 0.0) } else { least(&slope, offer.min, offer.max, near) };
+        let bounds = [offer.min, offer.max].map(|t| (t, libm::log(t)));
+        let (t, ln, curvature) =
+            if offer.min == offer.max { (bounds[0].0, bounds[0].1, 0.0) } else { least(&slope, bounds, near) };
         let used: f64 = self.weighted(multipliers).map(|(row, multiplier)| multiplier * row.terms[g].value(t)).sum();
-        Best { offer: index, t, value: parts * offer.curve.cost(t) + used, curvature }
+        Best { offer: index, t, value: parts * offer.curve.cost_by(t, ln) + used, curvature }
     }
 
     /// The rows that count, each with its price: 1 of a loss.
@@ -322,25 +323,25 @@ impl Separable<'_> {
     }
 }
 
-/// Where a convex function of `T` is least between two bounds, from its first and second derivative by `ln T`; with the second
-/// one there, 0 at a bound. From a place near it, where there is one, by Newton's method alone.
-fn least(slope: &impl Fn(f64) -> (f64, f64), min: f64, max: f64, near: Option<f64>) -> (f64, f64) {
-    if let Some(found) = near.and_then(|near| least_near(slope, min, max, near)) {
+/// Where a convex function of `T` is least between two bounds, each with its logarithm, from its first and second derivative by `ln T`:
+/// `T`, its logarithm, and the second derivative there, 0 at a bound. From a place near it, where there is one, by Newton's method alone.
+fn least(slope: &impl Fn(f64, f64) -> (f64, f64), bounds: [(f64, f64); 2], near: Option<f64>) -> (f64, f64, f64) {
+    if let Some(found) = near.and_then(|near| least_near(slope, bounds, near)) {
         return found;
     }
-    if slope(min).0 >= 0.0 {
-        return (min, 0.0);
+    let [(min, mut low), (max, mut high)] = bounds;
+    if slope(min, low).0 >= 0.0 {
+        return (min, low, 0.0);
     }
-    if slope(max).0 <= 0.0 {
-        return (max, 0.0);
+    if slope(max, high).0 <= 0.0 {
+        return (max, high, 0.0);
     }
-    let (mut low, mut high) = (libm::log(min), libm::log(max));
     let mut x = 0.5 * (low + high);
     let mut last = f64::INFINITY;
     for _ in 0..200 {
-        let (first, second) = slope(libm::exp(x));
+        let (first, second) = slope(libm::exp(x), x);
         if first == 0.0 {
-            return (libm::exp(x), second.max(f64::MIN_POSITIVE));
+            return (libm::exp(x), x, second.max(f64::MIN_POSITIVE));
         }
         if first > 0.0 {
             high = x
@@ -357,22 +358,25 @@ fn least(slope: &impl Fn(f64) -> (f64, f64), min: f64, max: f64, near: Option<f6
         }
     }
     let t = libm::exp(x).clamp(min, max);
-    (t, slope(t).1.max(f64::MIN_POSITIVE))
+    (t, x, slope(t, x).1.max(f64::MIN_POSITIVE))
 }
 
 /// The same where Newton's method stays between the bounds and ends soon: a convex function has no other such place.
-fn least_near(slope: &impl Fn(f64) -> (f64, f64), min: f64, max: f64, near: f64) -> Option<(f64, f64)> {
+fn least_near(
+    slope: &impl Fn(f64, f64) -> (f64, f64),
+    [(min, low), (max, high)]: [(f64, f64); 2],
+    near: f64,
+) -> Option<(f64, f64, f64)> {
     const STEPS: usize = 8;
-    let (low, high) = (libm::log(min), libm::log(max));
     let mut x = libm::log(near);
     for _ in 0..STEPS {
-        let (first, second) = slope(libm::exp(x));
+        let (first, second) = slope(libm::exp(x), x);
         let next = x - first / second;
         if !(second > 0.0 && next > low && next < high) {
             return None;
         }
         if (next - x).abs() <= 4.0 * f64::EPSILON * next.abs().max(1.0) {
-            return Some((libm::exp(next).clamp(min, max), second));
+            return Some((libm::exp(next).clamp(min, max), next, second));
         }
         x = next;
     }

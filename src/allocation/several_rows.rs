@@ -35,8 +35,69 @@ struct Bounded {
     multipliers: Vec<f64>,
     /// The choice of the best multipliers.
     picks: Vec<usize>,
-    /// How much of every option left is in the averages.
+    /// How much of every option is in the averages.
     weights: Vec<Vec<f64>>,
+}
+
+/// The options that a node leaves, list after list: the cost of each, then its use of every row. What steps of the multipliers read again and
+/// again stands together.
+struct Left {
+    rows: usize,
+    numbers: Vec<f64>,
+    /// Where each list begins among the options, and where the last one ends.
+    starts: Vec<usize>,
+}
+
+impl Left {
+    fn of(problem: &Lists, left: &[Vec<usize>]) -> Self {
+        let (mut numbers, mut starts) = (Vec::new(), vec![0]);
+        for (list, left) in problem.lists.iter().zip(left) {
+            for &i in left {
+                numbers.push(list[i].cost);
+                numbers.extend_from_slice(&list[i].uses);
+            }
+            starts.push(starts[starts.len() - 1] + left.len());
+        }
+        Self { rows: problem.rows, numbers, starts }
+    }
+
+    /// The cheapest option of every list at these prices of the rows, as its place among all options, and the bound.
+    fn choose(&self, multipliers: &[f64], picks: &mut [usize]) -> f64 {
+        // Two and three rows as numbers in registers.
+        match *multipliers {
+            [a, b] => self.choose_by(multipliers, picks, |uses| uses[0] * a + uses[1] * b),
+            [a, b, c] => self.choose_by(multipliers, picks, |uses| uses[0] * a + uses[1] * b + uses[2] * c),
+            _ => self
+                .choose_by(multipliers, picks, |uses| uses.iter().zip(multipliers).map(|(use_, by)| use_ * by).sum()),
+        }
+    }
+
+    #[inline(always)]
+    fn choose_by(&self, multipliers: &[f64], picks: &mut [usize], used: impl Fn(&[f64]) -> f64) -> f64 {
+        let mut value = -multipliers.iter().sum::<f64>();
+        let mut options = self.numbers.chunks_exact(1 + self.rows);
+        for (pick, ends) in picks.iter_mut().zip(self.starts.windows(2)) {
+            let mut least = f64::INFINITY;
+            for (place, option) in (ends[0]..ends[1]).zip(&mut options) {
+                let own = option[0] + used(&option[1..]);
+                if own < least {
+                    (least, *pick) = (own, place);
+                }
+            }
+            value += least;
+        }
+        value
+    }
+
+    /// How far a choice exceeds every row.
+    fn over(&self, picks: &[usize], over: &mut [f64]) {
+        over.fill(0.0);
+        for &pick in picks {
+            let uses = &self.numbers[pick * (1 + self.rows) + 1..][..self.rows];
+            over.iter_mut().zip(uses).for_each(|(all, own)| *all += own);
+        }
+        over.iter_mut().for_each(|over| *over -= 1.0);
+    }
 }
 
 struct Search<'p> {
@@ -148,59 +209,44 @@ impl Search<'_> {
 
     /// Steps of the multipliers from those of the node.
     fn bounded(&self, node: &Node, steps: usize) -> Bounded {
-        let (rows, lists) = (self.problem.rows, &self.problem.lists);
-        let choose = |multipliers: &[f64], picks: &mut [usize]| -> f64 {
-            let mut value = -multipliers.iter().sum::<f64>();
-            for (j, left) in node.left.iter().enumerate() {
-                let mut least = f64::INFINITY;
-                for &i in left {
-                    let own = priced(&lists[j][i], multipliers);
-                    if own < least {
-                        (least, picks[j]) = (own, i);
-                    }
-                }
-                value += least;
-            }
-            value
-        };
-        let mut picks = vec![0; lists.len()];
+        let rows = self.problem.rows;
+        let left = Left::of(self.problem, &node.left);
+        let mut picks: Vec<usize> = left.starts[..left.starts.len() - 1].to_vec();
         let mut at = node.multipliers.clone();
-        let bound = choose(&at, &mut picks);
-        let mut weights: Vec<Vec<f64>> = lists.iter().map(|list| vec![0.0; list.len()]).collect();
-        picks.iter().enumerate().for_each(|(j, &i)| weights[j][i] = 1.0);
-        // The averages' use of every row beyond it.
-        let mut over: Vec<f64> = self.problem.uses(&picks).iter().map(|use_| use_ - 1.0).collect();
-        let mut best = Bounded { bound, multipliers: at.clone(), picks: picks.clone(), weights: Vec::new() };
+        let bound = left.choose(&at, &mut picks);
+        let mut weights = vec![0.0; left.starts[left.starts.len() - 1]];
+        picks.iter().for_each(|&pick| weights[pick] = 1.0);
+        // The averages' use of every row beyond it, and that of a choice.
+        let (mut over, mut own) = (vec![0.0; rows], vec![0.0; rows]);
+        left.over(&picks, &mut over);
+        let (mut best, mut best_at, mut best_picks) = (bound, at.clone(), picks.clone());
         let (mut length, mut in_vain) = (1.0, 0);
         for step in 0..steps {
-            if best.bound >= self.known * (1.0 - SAME) {
+            if best >= self.known * (1.0 - SAME) {
                 break;
             }
-            let useful = |r: usize| over[r] > 0.0 || best.multipliers[r] > 0.0;
+            let useful = |r: usize| over[r] > 0.0 || best_at[r] > 0.0;
             let square: f64 = (0..rows).filter(|&r| useful(r)).map(|r| over[r] * over[r]).sum();
             if square <= 1e-24 {
                 break;
             }
             // Polyak's step towards the cost that is known.
-            let target =
-                if self.known.is_finite() { self.known } else { best.bound + 0.05 * best.bound.abs().max(1e-9) };
-            let by = length * (target - best.bound).max(1e-6 * target.abs()) / square;
+            let target = if self.known.is_finite() { self.known } else { best + 0.05 * best.abs().max(1e-9) };
+            let by = length * (target - best).max(1e-6 * target.abs()) / square;
             for r in 0..rows {
-                at[r] = (best.multipliers[r] + by * over[r]).max(0.0);
+                at[r] = (best_at[r] + by * over[r]).max(0.0);
             }
-            let bound = choose(&at, &mut picks);
+            let bound = left.choose(&at, &mut picks);
             let newest = if step < 8 { 0.5 } else { NEWEST };
-            for (j, &i) in picks.iter().enumerate() {
-                weights[j].iter_mut().for_each(|weight| *weight *= 1.0 - newest);
-                weights[j][i] += newest;
-            }
-            let uses = self.problem.uses(&picks);
-            over.iter_mut().zip(&uses).for_each(|(over, use_)| *over = (1.0 - newest) * *over + newest * (use_ - 1.0));
-            if bound > best.bound {
-                let rise = bound - best.bound;
-                (best.bound, in_vain) = (bound, 0);
-                best.multipliers.clone_from(&at);
-                best.picks.clone_from(&picks);
+            weights.iter_mut().for_each(|weight| *weight *= 1.0 - newest);
+            picks.iter().for_each(|&pick| weights[pick] += newest);
+            left.over(&picks, &mut own);
+            over.iter_mut().zip(&own).for_each(|(over, own)| *over = (1.0 - newest) * *over + newest * own);
+            if bound > best {
+                let rise = bound - best;
+                (best, in_vain) = (bound, 0);
+                best_at.clone_from(&at);
+                best_picks.clone_from(&picks);
                 if rise > 1e-4 * bound.abs() {
                     length = f64::min(1.2 * length, 2.0);
                 }
@@ -209,16 +255,24 @@ impl Search<'_> {
                 if in_vain >= 4 {
                     (length, in_vain) = (0.6 * length, 0);
                     // From the choice of the best multipliers anew.
-                    let uses = self.problem.uses(&best.picks);
-                    over.iter_mut().zip(&uses).for_each(|(over, use_)| *over = 0.5 * *over + 0.5 * (use_ - 1.0));
+                    left.over(&best_picks, &mut own);
+                    over.iter_mut().zip(&own).for_each(|(over, own)| *over = 0.5 * *over + 0.5 * own);
                 }
                 if length < 1e-4 {
                     break;
                 }
             }
         }
-        best.weights = weights;
-        best
+        let mut found = Bounded { bound: best, multipliers: best_at, picks: best_picks, weights: Vec::new() };
+        for ((list, options), (first, pick)) in
+            self.problem.lists.iter().zip(&node.left).zip(left.starts.iter().zip(&mut found.picks))
+        {
+            let mut of_list = vec![0.0; list.len()];
+            options.iter().zip(&weights[*first..]).for_each(|(&option, weight)| of_list[option] = *weight);
+            found.weights.push(of_list);
+            *pick = options[*pick - first];
+        }
+        found
     }
 
     /// Takes the choice of the best multipliers where it is better than the one known: made to keep the rows by the exchanges that cost least

@@ -359,7 +359,7 @@ impl Setting<'_> {
     /// How far these tolerances are from an optimum, with these multipliers.
     pub(super) fn judged(&self, at: &[f64], linearised: &[Linearised], multipliers: &[f64], closed: bool) -> Solved {
         let mut slopes: Vec<f64> = (self.priced.iter().zip(at))
-            .map(|(group, &t)| group.parts * group.offers[0].curve.log_derivatives(t)[0])
+            .map(|(group, &t)| group.parts * group.offers[0].curve.log_derivatives(t, libm::log(t))[0])
             .collect();
         let scale = slopes.iter().fold(f64::MIN_POSITIVE, |scale, slope| scale.max(slope.abs()));
         for loss in self.losses {
@@ -417,7 +417,7 @@ impl Setting<'_> {
             let [offer] = &self.priced[g].offers[..] else { return None };
             let t = at[g];
             let lost: f64 = losses.iter().map(|row| row.terms[g].power * row.terms[g].value(t)).sum();
-            let slope = self.priced[g].parts * offer.curve.log_derivatives(t)[0] + lost;
+            let slope = self.priced[g].parts * offer.curve.log_derivatives(t, libm::log(t))[0] + lost;
             let price = (slope + uses_of(&linearised, multipliers, g)) / t;
             match (t <= offer.min * (1.0 + AT_BOUND), t >= offer.max * (1.0 - AT_BOUND)) {
                 (true, false) => Some(price.max(0.0)),

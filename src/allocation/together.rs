@@ -86,7 +86,7 @@ pub(super) fn together(setting: &Setting<'_>, of: &[usize], bounds: &[[f64; 2]],
     };
     let objective = |x: &[f64]| {
         let t: Vec<f64> = x[..groups].iter().map(|x| libm::exp(*x)).collect();
-        let (value, mut slopes) = cost(setting.priced, &t);
+        let (value, mut slopes) = cost(setting.priced, &t, x);
         slopes.resize(x.len(), 0.0);
         slopes.iter_mut().for_each(|slope| *slope /= scale);
         if setting.losses.is_empty() {

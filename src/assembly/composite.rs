@@ -6,7 +6,7 @@ mod exact;
 mod switches;
 
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use super::formula::{Formula, FormulaError, FormulaSet, Meaning};
 #[cfg(feature = "study")]
@@ -88,6 +88,8 @@ struct Inner {
     inputs: Vec<Source>,
     /// Factors of its inputs, and of its outputs; empty where there are none.
     factors: [Vec<f64>; 2],
+    /// A block of each fixed input's value, one after the other.
+    fixed: OnceLock<Vec<f64>>,
     /// Where a costly model that formulas drive was sent for which point, by the bits of what it was sent.
     sent: Mutex<HashMap<Vec<u64>, Vec<f64>>>,
 }
@@ -106,6 +108,23 @@ struct Needs {
     /// Outputs of the model.
     answers: Vec<usize>,
     unknowns: bool,
+}
+
+impl Needs {
+    /// Of several outputs together.
+    fn all(needs: &[Self]) -> Self {
+        let mut all = Self::default();
+        for needs in needs {
+            all.dimensions.extend(&needs.dimensions);
+            all.answers.extend(&needs.answers);
+            all.unknowns |= needs.unknowns;
+        }
+        for part in [&mut all.dimensions, &mut all.answers] {
+            part.sort_unstable();
+            part.dedup();
+        }
+        all
+    }
 }
 
 /// The parts of a [`Composite`].
@@ -142,6 +161,7 @@ impl Composite {
             function,
             inputs,
             factors: Default::default(),
+            fixed: OnceLock::new(),
             sent: Mutex::default(),
         });
         let offers = model.as_ref().map_or(&[][..], |model| &model.function.signature().outputs);
@@ -254,7 +274,7 @@ impl Composite {
     /// The needs of an output: what stands in it, and for an unknown all that the conditions depend on.
     fn needs(&self, origin: Origin) -> Needs {
         let mut needs = match origin {
-            Origin::Formula(formula) => self.split(&self.formulas.variables(formula)),
+            Origin::Formula(formula) => self.split(self.formulas.variables(formula)),
             Origin::Model(output) => Needs { answers: vec![output], ..Needs::default() },
             Origin::Unknown(_) => Needs { unknowns: true, ..Needs::default() },
         };
@@ -288,17 +308,7 @@ impl Composite {
 
     /// The needs of all these outputs together.
     fn all_needs(&self, origins: &[Origin]) -> Needs {
-        let mut all = Needs::default();
-        for needs in origins.iter().map(|&origin| self.needs(origin)) {
-            all.dimensions.extend(needs.dimensions);
-            all.answers.extend(needs.answers);
-            all.unknowns |= needs.unknowns;
-        }
-        for part in [&mut all.dimensions, &mut all.answers] {
-            part.sort_unstable();
-            part.dedup();
-        }
-        all
+        Needs::all(&origins.iter().map(|&origin| self.needs(origin)).collect::<Vec<_>>())
     }
 
     fn origins(&self, outputs: &[usize]) -> Vec<Origin> {
@@ -401,23 +411,21 @@ impl AssemblyFunction for Composite {
     fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
         let origins = self.origins(request.outputs);
         let needs: Vec<Needs> = origins.iter().map(|&origin| self.needs(origin)).collect();
-        let Needs { answers: needed, unknowns, .. } = self.all_needs(&origins);
-        let (anchor, spent) = if unknowns { self.anchor(run) } else { (None, 0) };
-        let answers = self.ask_model(request.points, &run.quiet(), &needed);
+        let Needs { answers: needed, unknowns, .. } = Needs::all(&needs);
         let own = |(origin, output): (&Origin, &usize)| matches!(origin, Origin::Model(of) if of == output);
         let alone = origins.len() == needed.len() && origins.iter().zip(&needed).all(own);
         // A factor can make a value infinite, which is then an error.
-        let as_it_is = |model: &Inner| model.factors[1].iter().all(|factor| *factor == 1.0);
-        if alone
-            && self.model.as_ref().is_some_and(as_it_is)
-            && !self.signature.costly
+        let as_it_is = |model: &&Inner| model.factors[1].iter().all(|factor| *factor == 1.0);
+        if let Some(model) = self.model.as_ref().filter(as_it_is)
+            && alone
             && !run.tells()
-            && !answers.has_gradients()
+            && self.ask_in_place(model, request.points, &run.quiet(), &needed, out)
         {
             // The outputs of a built-in model, in its order.
-            *out = answers;
             return;
         }
+        let (anchor, spent) = if unknowns { self.anchor(run) } else { (None, 0) };
+        let answers = self.ask_model(request.points, &run.quiet(), &needed);
         let answer = |output: usize| needed.binary_search(&output).expect("the model was asked for it");
         // Which formulas fill which columns of `out`.
         let (columns, formulas): (Vec<usize>, Vec<usize>) = (origins.iter().enumerate())

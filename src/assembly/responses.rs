@@ -59,6 +59,14 @@ impl Responses {
         }
     }
 
+    /// As if new, in the place of what was answered.
+    pub(crate) fn reopen(&mut self, rows: usize, outputs: usize) {
+        let mut values = std::mem::take(&mut self.values);
+        values.clear();
+        values.resize(rows * outputs, f64::NAN);
+        *self = Self { rows, outputs, values, ..Self::open(0, 0) };
+    }
+
     /// Whether nothing is answered or noted yet. Answers from the first row on are seen at once.
     pub(crate) fn is_untouched(&self) -> bool {
         self.errors.is_empty()
@@ -100,11 +108,6 @@ impl Responses {
     /// The derivatives of one entry by every input, where the model sent them.
     pub fn gradient(&self, row: usize, output: usize) -> Option<&[f64]> {
         self.gradients.get(&(row, output)).map(Vec::as_slice)
-    }
-
-    /// Whether the model sent derivatives.
-    pub(crate) fn has_gradients(&self) -> bool {
-        !self.gradients.is_empty()
     }
 
     /// Answers the entries from a row on, as [`set`](Self::set) does one by one.

@@ -96,8 +96,7 @@ impl Probability for Normal {
     }
 
     fn quantiles(&self, tails: &mut [f64]) {
-        standard_normal::quantiles(tails);
-        tails.iter_mut().for_each(|value| *value = self.mean + self.sigma * *value);
+        standard_normal::quantiles_about((self.mean, self.sigma), tails);
     }
 
     fn fill(&self, rng: &mut dyn Rng, out: &mut [f64]) {

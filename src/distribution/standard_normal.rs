@@ -30,8 +30,13 @@ pub(crate) fn quantile(p: f64) -> f64 {
 
 /// Puts quantiles in the place of probabilities, as [`Probability::quantiles`](super::Probability::quantiles).
 pub(crate) fn quantiles(tails: &mut [f64]) {
+    quantiles_about((0.0, 1.0), tails);
+}
+
+/// The same of the normal distribution of a mean and sigma.
+pub(super) fn quantiles_about(place: (f64, f64), tails: &mut [f64]) {
     for tails in tails.chunks_mut(LANES) {
-        on_this_processor(Quantiles(tails));
+        on_this_processor(Quantiles { place, values: tails });
     }
 }
 
@@ -47,31 +52,42 @@ fn central(q: f64) -> f64 {
 /// Probabilities that are taken together.
 const LANES: usize = 256;
 
-struct Quantiles<'a>(&'a mut [f64]);
+struct Quantiles<'a> {
+    place: (f64, f64),
+    values: &'a mut [f64],
+}
 
 impl Work for Quantiles<'_> {
     type Output = ();
 
-    /// The centre's for all, then those of the tails, picked out and side by side: the same as one by one.
+    /// Those of the tails, picked out and side by side, and the centre's for all: the same as one by one.
     #[inline(always)]
     fn work(self) {
-        let (mut places, mut outer, mut found) = ([0; LANES], [0.0; LANES], [0.0; LANES]);
+        let Self { place: (mean, sigma), values } = self;
+        let (mut places, mut outer) = ([0; LANES], [0.0; LANES]);
         let mut count = 0;
-        for (place, value) in self.0.iter().enumerate() {
-            (places[count], outer[count]) = (place, *value);
+        for (place, value) in values.iter().enumerate() {
+            (places[count], outer[count]) = (place as u8, *value);
             count += usize::from((value.abs() - 0.5).abs() > CENTRAL);
         }
-        for value in self.0.iter_mut() {
-            *value = from_end(*value, central(value.abs() - 0.5));
-        }
+        let (places, outer) = (&places[..count], &mut outer[..count]);
         let mut far = false;
-        for (z, tail) in found[..count].iter_mut().zip(&outer) {
+        for tail in outer.iter_mut() {
             let (value, beyond) = near_tail(tail.abs());
             far |= beyond | (tail.abs() > 0.5);
-            *z = from_end(*tail, value);
+            *tail = mean + sigma * from_end(*tail, value);
         }
-        for ((&place, z), &tail) in places[..count].iter().zip(&found).zip(&outer) {
-            self.0[place] = if far { from_end(tail, quantile(tail.abs())) } else { *z };
+        if far {
+            for (&place, out) in places.iter().zip(outer.iter_mut()) {
+                let tail = values[usize::from(place)];
+                *out = mean + sigma * from_end(tail, quantile(tail.abs()));
+            }
+        }
+        for value in values.iter_mut() {
+            *value = mean + sigma * from_end(*value, central(value.abs() - 0.5));
+        }
+        for (&place, z) in places.iter().zip(outer.iter()) {
+            values[usize::from(place)] = *z;
         }
     }
 }

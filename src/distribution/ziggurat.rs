@@ -47,37 +47,46 @@ static NORMAL: LazyLock<Layers> = LazyLock::new(|| {
 /// and a comparison, and comes after the block.
 pub(crate) fn normals(rng: &mut dyn Rng, (mean, sigma): (f64, f64), out: &mut [f64]) {
     let layers = &*NORMAL;
-    let placed = |z: f64| mean + sigma * z;
     if out.len() < FEW {
-        return out.iter_mut().for_each(|value| *value = placed(layers.draw(rng)));
+        return out.iter_mut().for_each(|value| *value = mean + sigma * layers.draw(rng));
     }
-    let (mut words, mut widths) = ([[0; 8]; WORDS], [[0.0; WORDS]; 2]);
-    let mut doubtful = [false; WORDS / LOOK];
-    for out in out.chunks_mut(WORDS) {
-        // All of them, so that the loops have a length that is known; what is not drawn is not read.
-        let drawn = out.len();
-        rng.fill_bytes(words[..drawn].as_flattened_mut());
-        let mut rest = [0.0; WORDS];
-        let whole = if drawn == WORDS { out.as_mut_array() } else { None };
-        let values = whole.unwrap_or(&mut rest);
-        on_this_processor(Inner {
-            layers,
-            words: &words,
-            widths: &mut widths,
-            place: (mean, sigma),
-            out: &mut *values,
-            doubtful: &mut doubtful,
-        });
-        for (chunk, _) in doubtful.iter().enumerate().filter(|(_, doubtful)| **doubtful) {
-            for place in (LOOK * chunk..LOOK * (chunk + 1)).take_while(|&place| place < drawn) {
-                let word = u64::from_le_bytes(words[place]);
-                if !layers.holds(word) {
-                    values[place] = placed(layers.settled(word, rng).unwrap_or_else(|| layers.draw(rng)));
+    let mut room = Room { words: [[0; 8]; WORDS], widths: [[0.0; 2]; WORDS], doubtful: [0; WORDS / LOOK] };
+    let (whole, rest) = out.as_chunks_mut::<WORDS>();
+    whole.iter_mut().for_each(|out| room.fill(rng, (mean, sigma), WORDS, out));
+    if !rest.is_empty() {
+        let mut out = [0.0; WORDS];
+        room.fill(rng, (mean, sigma), rest.len(), &mut out);
+        rest.copy_from_slice(&out[..rest.len()]);
+    }
+}
+
+/// What a block of values is made in.
+struct Room {
+    words: [[u8; 8]; WORDS],
+    /// The outer and the inner width of every word's layer, side by side as in the table: one load and one store for both.
+    widths: [[f64; 2]; WORDS],
+    /// Of every look, which of its words lie in no layer's inner part.
+    doubtful: [u32; WORDS / LOOK],
+}
+
+impl Room {
+    /// Draws so many values of a mean and sigma; what stands behind them is of no use.
+    fn fill(&mut self, rng: &mut dyn Rng, place: (f64, f64), drawn: usize, out: &mut [f64; WORDS]) {
+        let layers = &*NORMAL;
+        rng.fill_bytes(self.words[..drawn].as_flattened_mut());
+        // All of them, so that the loops have a length that is known.
+        on_this_processor(Inner { layers, room: &mut *self, place, out: &mut *out });
+        for (look, &doubtful) in self.doubtful.iter().enumerate() {
+            let mut left = doubtful;
+            while left != 0 {
+                let index = LOOK * look + left.trailing_zeros() as usize;
+                left &= left - 1;
+                if index < drawn {
+                    let word = u64::from_le_bytes(self.words[index]);
+                    let value = layers.settled(word, rng).unwrap_or_else(|| layers.draw(rng));
+                    out[index] = place.0 + place.1 * value;
                 }
             }
-        }
-        if drawn < WORDS {
-            out.copy_from_slice(&rest[..drawn]);
         }
     }
 }
@@ -85,12 +94,9 @@ pub(crate) fn normals(rng: &mut dyn Rng, (mean, sigma): (f64, f64), out: &mut [f
 /// The values of words that lie in the inner part of their layer, and where some do not.
 struct Inner<'a> {
     layers: &'a Layers,
-    words: &'a [[u8; 8]; WORDS],
-    /// Room for the outer and the inner width of every word's layer.
-    widths: &'a mut [[f64; WORDS]; 2],
+    room: &'a mut Room,
     place: (f64, f64),
     out: &'a mut [f64; WORDS],
-    doubtful: &'a mut [bool; WORDS / LOOK],
 }
 
 impl Work for Inner<'_> {
@@ -99,22 +105,28 @@ impl Work for Inner<'_> {
     /// Tables first, one by one; then what goes side by side.
     #[inline(always)]
     fn work(self) {
-        let Self { layers, words, widths: [outer, inner], place: (mean, sigma), out, doubtful } = self;
-        for ((outer, inner), word) in outer.iter_mut().zip(inner.iter_mut()).zip(words) {
+        let Self { layers, room: Room { words, widths, doubtful }, place: (mean, sigma), out } = self;
+        for (widths, word) in widths.iter_mut().zip(words.iter()) {
             let layer = (u64::from_le_bytes(*word) & (LAYERS as u64 - 1)) as usize;
-            (*outer, *inner) = (layers.width[layer], layers.width[layer + 1]);
+            *widths = [layers.width[layer], layers.width[layer + 1]];
         }
         let looks = (words.as_chunks::<LOOK>().0.iter())
-            .zip(outer.as_chunks::<LOOK>().0.iter().zip(inner.as_chunks::<LOOK>().0))
+            .zip(widths.as_chunks::<LOOK>().0)
             .zip(out.as_chunks_mut::<LOOK>().0.iter_mut().zip(doubtful));
-        for ((words, (outer, inner)), (out, doubtful)) in looks {
+        for ((words, widths), (out, doubtful)) in looks {
+            let place = |lane: usize| symmetric(u64::from_le_bytes(words[lane])) * widths[lane][0];
+            let beyond = |x: f64, lane: usize| x.abs() >= widths[lane][1];
             let mut any = 0;
-            for lane in 0..LOOK {
-                let x = symmetric(u64::from_le_bytes(words[lane])) * outer[lane];
-                any |= u64::from(x.abs() >= inner[lane]);
-                out[lane] = mean + sigma * x;
+            for (lane, value) in out.iter_mut().enumerate() {
+                let x = place(lane);
+                any |= u64::from(beyond(x, lane));
+                *value = mean + sigma * x;
             }
-            *doubtful = any != 0;
+            // One look in ten has some.
+            *doubtful = 0;
+            if any != 0 {
+                *doubtful = (0..LOOK).fold(0, |all, lane| all | u32::from(beyond(place(lane), lane)) << lane);
+            }
         }
     }
 }
@@ -124,13 +136,6 @@ impl Layers {
     fn place(&self, word: u64) -> (usize, f64) {
         let layer = (word & (LAYERS as u64 - 1)) as usize;
         (layer, symmetric(word) * self.width[layer])
-    }
-
-    /// Whether a word lies in the inner part of its layer.
-    #[inline(always)]
-    fn holds(&self, word: u64) -> bool {
-        let (layer, x) = self.place(word);
-        x.abs() < self.width[layer + 1]
     }
 
     fn draw(&self, rng: &mut dyn Rng) -> f64 {
@@ -173,16 +178,12 @@ fn symmetric(word: u64) -> f64 {
 
 /// Fills `out` with independent numbers evenly spread about a mean.
 pub(crate) fn uniforms(rng: &mut dyn Rng, (mean, half): (f64, f64), out: &mut [f64]) {
-    let mut words = [[0; 8]; WORDS];
-    for out in out.chunks_mut(WORDS) {
-        let words = &mut words[..out.len()];
-        rng.fill_bytes(words.as_flattened_mut());
-        on_this_processor(Even { words, place: (mean, half), out });
-    }
+    // The words stand where the numbers will.
+    rng.fill_bytes(bytemuck::cast_slice_mut(out));
+    on_this_processor(Even { place: (mean, half), out });
 }
 
 struct Even<'a> {
-    words: &'a [[u8; 8]],
     place: (f64, f64),
     out: &'a mut [f64],
 }
@@ -195,28 +196,8 @@ impl Work for Even<'_> {
         /// Half a step, so that -1 is as far as 1.
         const MIDDLE: f64 = 1.0 / (1u64 << 52) as f64;
         let (mean, half) = self.place;
-        for (value, word) in self.out.iter_mut().zip(self.words) {
-            *value = mean + half * (symmetric(u64::from_le_bytes(*word)) + MIDDLE);
+        for value in self.out {
+            *value = mean + half * (symmetric(u64::from_le(value.to_bits())) + MIDDLE);
         }
-    }
-}
-
-/// Makes of every value `origin + scale * value`.
-pub(crate) fn place(origin: f64, scale: f64, values: &mut [f64]) {
-    on_this_processor(Placed { origin, scale, values });
-}
-
-struct Placed<'a> {
-    origin: f64,
-    scale: f64,
-    values: &'a mut [f64],
-}
-
-impl Work for Placed<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn work(self) {
-        self.values.iter_mut().for_each(|value| *value = self.origin + self.scale * *value);
     }
 }

@@ -1,8 +1,8 @@
 //! Elementary functions on blocks of numbers.
 //!
 //! A library's `sin` takes one number after the other. Here every number of a block goes through the same operations without
-//! a branch, so that the compiler puts two, four or eight of them into one instruction; which, is decided by the processor
-//! that the program runs on. Numbers that want another way (too large to be reduced, next to a multiple of pi/2, not finite)
+//! a branch, so that the compiler puts two, four or eight of them into one instruction (SSE2, AVX2, AVX-512); which, is decided by
+//! the processor that the program runs on. Numbers that want another way (too large to be reduced, next to a multiple of pi/2, not finite)
 //! are noticed in passing and computed one by one by the crate `libm`.
 //!
 //! **The same everywhere.** A value belongs to its argument alone: not to its place in a block, the number of threads, the

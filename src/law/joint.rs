@@ -165,7 +165,9 @@ impl Inputs {
             match sobol {
                 Some(sobol) if dimension < SOBOL_DIMENSIONS => sobol.digits(dimension, 0, &mut digits),
                 // Random digits, scrambled like the others.
-                _ => digits.iter_mut().enumerate().for_each(|(i, digits)| *digits = mixed(key ^ i as u64)),
+                _ => {
+                    digits.iter_mut().enumerate().for_each(|(i, digits)| *digits = mixed(key ^ i as u64).reverse_bits())
+                }
             }
             let mut column = vec![0.0; POINTS];
             tails(&digits, key, &mut column);

@@ -70,7 +70,7 @@ const LANES: usize = 256;
 
 fn evaluate(block: &Block<'_>, out: &mut Responses) {
     let (force, moment) = (block.column(0), block.column(1));
-    let (mut sums, mut room) = ([[0.0; LANES]; 2], [[0.0; LANES]; 2]);
+    let (mut sums, mut room) = ([[0.0; LANES]; 2], [[0.0; LANES]; 3]);
     for first in (0..block.rows()).step_by(LANES) {
         let rows = first..(first + LANES).min(block.rows());
         let inputs = std::array::from_fn(|input| &block.input(input)[rows.clone()]);
@@ -89,8 +89,8 @@ struct Balance<'a> {
     inputs: [&'a [f64]; 13],
     forces: &'a mut [f64],
     moments: &'a mut [f64],
-    /// For an angle and its cosine.
-    room: &'a mut [[f64; LANES]; 2],
+    /// For an angle, its cosine, and the ratio of crank to rod.
+    room: &'a mut [[f64; LANES]; 3],
 }
 
 impl Work for Balance<'_> {
@@ -98,10 +98,13 @@ impl Work for Balance<'_> {
 
     #[inline(always)]
     fn work(self) {
-        let Self { inputs, forces, moments, room: [angles, shares] } = self;
+        let Self { inputs, forces, moments, room: [angles, shares, ratios] } = self;
         let rows = forces.len();
-        let (angles, shares) = (&mut angles[..rows], &mut shares[..rows]);
+        let (angles, shares, ratios) = (&mut angles[..rows], &mut shares[..rows], &mut ratios[..rows]);
         let (r, l) = (&inputs[input::R][..rows], &inputs[input::L][..rows]);
+        for row in 0..rows {
+            ratios[row] = r[row] / l[row];
+        }
         forces.fill(0.0);
         moments.fill(0.0);
         for (phi, lever) in input::PHI.into_iter().zip([0.0, 1.0, 2.0, 3.0]) {
@@ -114,7 +117,7 @@ impl Work for Balance<'_> {
                 // cos t cos phi - sin t sin phi = cos(t + phi): each cylinder's share, first and second order, the latter by
                 // cos 2x = 2 cos^2 x - 1, which is off by as much as cos x.
                 let c = shares[row];
-                let share = c + r[row] / l[row] * (2.0 * c * c - 1.0);
+                let share = c + ratios[row] * (2.0 * c * c - 1.0);
                 forces[row] += share;
                 moments[row] += lever * share;
             }

@@ -102,6 +102,15 @@ pub struct Draws<'a> {
     seed: u64,
 }
 
+/// What portions are drawn in, one after the other.
+#[derive(Default)]
+pub(crate) struct Room {
+    stream: Stream,
+    digits: Vec<u64>,
+    /// Columns of the correlated dimensions.
+    normals: Vec<Vec<f64>>,
+}
+
 /// The correlated dimensions: their places among the varying ones, and the factor of their normal variables.
 struct Correlated<'a> {
     correlation: &'a Correlation,
@@ -148,24 +157,28 @@ impl<'a> Draws<'a> {
     /// The points of a portion; dimensions that do not vary have their nominal value.
     pub fn points(&self, portion: Portion) -> Points {
         let mut points = Points::repeated(&[], 0);
-        self.write(portion, &mut points);
+        self.write(portion, &mut Room::default(), &mut points);
         points
     }
 
-    /// The same in the room of other points.
-    pub(crate) fn write(&self, portion: Portion, points: &mut Points) {
+    /// The same in the place of other points.
+    pub(crate) fn write(&self, portion: Portion, room: &mut Room, points: &mut Points) {
         points.resize(portion.rows, self.dimensions.len());
         for (d, dimension) in self.dimensions.iter().enumerate().filter(|(_, one)| one.distribution().is_none()) {
             points.column_mut(d).fill(dimension.nominal());
         }
-        let mut digits = vec![0; if self.sobol.is_some() { portion.rows } else { 0 }];
-        for (place, &(d, law)) in self.varying.iter().enumerate() {
-            if !self.is_correlated(place) {
-                self.own(place, law, portion, &mut digits, points.column_mut(d));
+        for (place, &(d, law)) in self.varying.iter().enumerate().filter(|(place, _)| !self.is_correlated(*place)) {
+            let column = points.column_mut(d);
+            match &self.sobol {
+                None => law.fill(self.generator(portion, place, &mut room.stream), column),
+                Some(sobol) => {
+                    self.tails(sobol, portion, place, &mut room.digits, column);
+                    law.quantiles(column);
+                }
             }
         }
         if let Some(correlated) = &self.correlated {
-            self.together(correlated, portion, &mut digits, points);
+            self.together(correlated, portion, room, points);
         }
     }
 
@@ -178,36 +191,33 @@ impl<'a> Draws<'a> {
         mixed(mixed(mixed(self.seed).wrapping_add(stream)).wrapping_add(place as u64))
     }
 
-    fn generator(&self, portion: Portion, place: usize) -> Stream {
-        Stream::new(self.key(mixed(portion.replicate) ^ portion.first, place))
+    /// The stream of a dimension in a portion.
+    fn generator<'s>(&self, portion: Portion, place: usize, stream: &'s mut Stream) -> &'s mut Stream {
+        stream.begin(self.key(mixed(portion.replicate) ^ portion.first, place));
+        stream
     }
 
-    fn own(&self, place: usize, law: &dyn Probability, portion: Portion, digits: &mut [u64], out: &mut [f64]) {
-        let Some(sobol) = &self.sobol else { return law.fill(&mut self.generator(portion, place), out) };
+    /// Scrambled Sobol' points of a dimension as probabilities, counted from the nearer end.
+    fn tails(&self, sobol: &Sobol, portion: Portion, place: usize, digits: &mut Vec<u64>, out: &mut [f64]) {
+        digits.resize(portion.rows, 0);
         sobol.digits(place, portion.first, digits);
         tails(digits, self.key(portion.replicate, place), out);
-        law.quantiles(out);
     }
 
     /// Normal variables, made to vary together, and the inputs that they stand for.
-    fn together(&self, correlated: &Correlated<'_>, portion: Portion, digits: &mut [u64], points: &mut Points) {
-        let mut normals: Vec<Vec<f64>> = (correlated.places.iter())
-            .map(|&place| match &self.sobol {
-                None => {
-                    let mut normals = vec![0.0; portion.rows];
-                    ziggurat::normals(&mut self.generator(portion, place), ziggurat::STANDARD, &mut normals);
-                    normals
-                }
+    fn together(&self, correlated: &Correlated<'_>, portion: Portion, room: &mut Room, points: &mut Points) {
+        let Room { stream, digits, normals } = room;
+        normals.resize_with(correlated.places.len(), Vec::new);
+        for (normals, &place) in normals.iter_mut().zip(&correlated.places) {
+            normals.resize(portion.rows, 0.0);
+            match &self.sobol {
+                None => ziggurat::normals(self.generator(portion, place, stream), ziggurat::STANDARD, normals),
                 Some(sobol) => {
-                    sobol.digits(place, portion.first, digits);
-                    let key = self.key(portion.replicate, place);
-                    let mut normals = vec![0.0; portion.rows];
-                    tails(digits, key, &mut normals);
-                    standard_normal::quantiles(&mut normals);
-                    normals
+                    self.tails(sobol, portion, place, digits, normals);
+                    standard_normal::quantiles(normals);
                 }
-            })
-            .collect();
+            }
+        }
         let correlation = correlated.correlation;
         let members = correlation.members();
         for block in correlation.blocks() {
@@ -234,20 +244,22 @@ impl<'a> Draws<'a> {
             let (d, law) = self.varying[place];
             let (mean, sigma) = (self.dimensions[d].mean(), self.dimensions[d].sigma());
             let column = points.column_mut(d);
-            let factors: Vec<f64> = (0..normals.len()).map(|k| correlated.factor[(j, k)]).collect();
-            on_this_processor(Combined { factors: &factors, normals: &normals, out: &mut *column });
-            match transform.is_normal() || in_zone {
-                true => ziggurat::place(mean, sigma, column),
-                false => column.iter_mut().for_each(|value| *value = behind_normal(law, *value)),
+            let terms = normals.iter().enumerate().map(|(k, normals)| (correlated.factor[(j, k)], &normals[..]));
+            let terms: Vec<(f64, &[f64])> = terms.filter(|(factor, _)| *factor != 0.0).collect();
+            let normal = transform.is_normal() || in_zone;
+            let place = if normal { (mean, sigma) } else { ziggurat::STANDARD };
+            on_this_processor(Combined { terms: &terms, place, out: &mut *column });
+            if !normal {
+                column.iter_mut().for_each(|value| *value = behind_normal(law, *value));
             }
         }
     }
 }
 
-/// Columns times factors, added up in their order.
+/// Columns times factors, added up in their order, about a mean in units of a sigma.
 struct Combined<'a> {
-    factors: &'a [f64],
-    normals: &'a [Vec<f64>],
+    terms: &'a [(f64, &'a [f64])],
+    place: (f64, f64),
     out: &'a mut [f64],
 }
 
@@ -256,16 +268,28 @@ impl Work for Combined<'_> {
 
     #[inline(always)]
     fn work(self) {
-        self.out.fill(0.0);
-        for (&factor, normals) in self.factors.iter().zip(self.normals).filter(|(factor, _)| **factor != 0.0) {
-            for (value, normal) in self.out.iter_mut().zip(normals) {
-                *value += factor * normal;
+        /// Rows whose sums stay in the nearest cache.
+        const LANES: usize = 256;
+        let Self { terms, place: (mean, sigma), out } = self;
+        for (block, out) in out.chunks_mut(LANES).enumerate() {
+            let rows = LANES * block..LANES * block + out.len();
+            out.fill(0.0);
+            // Three at a time; where there are no more, nothing is added.
+            for terms in terms.chunks(3) {
+                let [a, b, c] = std::array::from_fn(|term| terms.get(term).map_or((0.0, terms[0].1), |term| *term));
+                let columns = a.1[rows.clone()].iter().zip(&b.1[rows.clone()]).zip(&c.1[rows.clone()]);
+                for (sum, ((x, y), z)) in out.iter_mut().zip(columns) {
+                    *sum = *sum + a.0 * x + b.0 * y + c.0 * z;
+                }
+            }
+            for sum in out {
+                *sum = mean + sigma * *sum;
             }
         }
     }
 }
 
-/// Scrambled digits as probabilities, each the middle of its cell, counted from the nearer end and negative from above.
+/// Digits from the bottom up, scrambled, as probabilities, each the middle of its cell, counted from the nearer end and negative from above.
 pub(crate) fn tails(digits: &[u64], key: u64, out: &mut [f64]) {
     on_this_processor(Tails { digits, key, out });
 }

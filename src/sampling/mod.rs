@@ -11,8 +11,8 @@ mod sobol;
 mod stream;
 mod summary;
 
-pub(crate) use draws::tails;
 pub use draws::{Draws, Portion, Sampler, SamplingError};
+pub(crate) use draws::{Room, tails};
 pub use estimate::{Estimate, wilson};
 pub(crate) use estimate::{FEWEST, of_moments, one_error};
 pub use fine::{Fine, Scale};

@@ -47,21 +47,37 @@ impl Sobol {
         on_this_processor(Coordinates { digits: &digits, key, out });
     }
 
-    /// The same as words, digits from the top down, not scrambled.
+    /// The same as words, digits from the bottom up as scrambling wants them, not scrambled.
     pub(crate) fn digits(&self, dimension: usize, first: u64, out: &mut [u64]) {
         let directions = &self.directions[dimension];
         let block = out.len().next_power_of_two() as u64;
         assert_eq!(first % block, 0, "a block starts at a multiple of its size");
-        let Some(start) = out.first_mut() else { return };
-        *start = (0..DIGITS).filter(|digit| first >> digit & 1 == 1).fold(0, |x, digit| x ^ directions[digit as usize]);
-        // Twice as many points with every digit: those before, and their images.
+        let digits = (0..DIGITS).filter(|digit| first >> digit & 1 == 1);
+        let start = digits.fold(0, |x, digit| x ^ directions[digit as usize]).reverse_bits();
+        on_this_processor(Images { directions, start, out });
+    }
+}
+
+/// Points of a block: twice as many with every digit, those before and their images.
+struct Images<'a> {
+    directions: &'a Directions,
+    start: u64,
+    out: &'a mut [u64],
+}
+
+impl Work for Images<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn work(self) {
+        let Some(start) = self.out.first_mut() else { return };
+        *start = self.start;
         let mut known = 1;
-        for direction in directions {
-            if known >= out.len() {
-                break;
-            }
-            for i in known..out.len().min(2 * known) {
-                out[i] = out[i - known] ^ direction;
+        for direction in self.directions {
+            let Some((before, images)) = self.out.split_at_mut_checked(known) else { break };
+            let direction = direction.reverse_bits();
+            for (image, before) in images.iter_mut().zip(before) {
+                *image = *before ^ direction;
             }
             known *= 2;
         }
@@ -85,12 +101,12 @@ impl Work for Coordinates<'_> {
         match self.key {
             Some(key) => {
                 for (value, &digits) in points {
-                    *value = of(nested(digits, key));
+                    *value = of(nested(digits.reverse_bits(), key));
                 }
             }
             None => {
                 for (value, &digits) in points {
-                    *value = of(digits);
+                    *value = of(digits.reverse_bits());
                 }
             }
         }
@@ -144,7 +160,8 @@ fn hashed(digits: u64, depth: u32, key: u64) -> u64 {
     mixed(above ^ 1 << (63 - depth) ^ key)
 }
 
-/// Scrambles digits of large samples: each is flipped by a bit that belongs to those above it.
+/// Scrambles digits of large samples, which come from the bottom up and leave from the top down: each is flipped by a bit that belongs
+/// to those above it.
 ///
 /// Sums and products carry from a bit to higher ones only, so that in the reversed word a digit changes with those above it alone
 /// (Laine and Karras 2011; Burley 2020, in 32 bits). Two rounds with random summands and factors: whether two points agree in a
@@ -155,7 +172,7 @@ pub(crate) fn scrambled(digits: u64, key: u64) -> u64 {
     /// Any even numbers without a pattern.
     const EVEN: [u64; 4] = [0x9e37_79b9_7f4a_7c16, 0xbf58_476d_1ce4_e5b8, 0x94d0_49bb_1331_11ea, 0xd6e8_feb8_6659_fd92];
     let (first, factors, second) = (mixed(key ^ 1), mixed(key ^ 2), mixed(key ^ 3));
-    let mut x = digits.reverse_bits().wrapping_add(first);
+    let mut x = digits.wrapping_add(first);
     x ^= x.wrapping_mul(EVEN[0]);
     x = x.wrapping_mul(factors | 1);
     x ^= x.wrapping_mul(EVEN[1]);
@@ -189,14 +206,14 @@ mod tests {
     #[test]
     fn digits_after_the_first_difference_are_independent() {
         const KEYS: u64 = 20_000;
+        let of = |digits: u64, key: u64| scrambled(digits.reverse_bits(), key);
         let tops = [0, 1 << 63, 3 << 62, 0x5555 << 48, 0x1234_5678_9abc_def0, u64::MAX];
         for (case, top) in tops.into_iter().enumerate() {
             for i in [0, 1, 2, 5, 11, 23, 40] {
                 let other = top ^ 1 << (63 - i);
                 let (mut agree, mut both) = ([0u32; 52], [[0u32; 52]; 52]);
                 for key in 0..KEYS {
-                    let apart =
-                        scrambled(top, mixed(key << 8 | case as u64)) ^ scrambled(other, mixed(key << 8 | case as u64));
+                    let apart = of(top, mixed(key << 8 | case as u64)) ^ of(other, mixed(key << 8 | case as u64));
                     assert_eq!(apart.leading_zeros(), i, "the digits in common");
                     let same: Vec<usize> =
                         (i as usize + 1..52).filter(|digit| apart >> (63 - digit) & 1 == 0).collect();

@@ -28,9 +28,15 @@ type State = [[u64; LANES]; 4];
 impl Stream {
     /// Different keys give streams that have nothing in common.
     pub(crate) fn new(key: u64) -> Self {
-        let mut state = [[0; LANES]; 4];
-        on_this_processor(Seeded { key, state: &mut state });
-        Self { state, row: [[0; 8]; LANES], taken: LANES }
+        let mut stream = Self { state: [[0; LANES]; 4], row: [[0; 8]; LANES], taken: LANES };
+        stream.begin(key);
+        stream
+    }
+
+    /// Becomes the stream of another key.
+    pub(crate) fn begin(&mut self, key: u64) {
+        on_this_processor(Seeded { key, state: &mut self.state });
+        self.taken = LANES;
     }
 
     fn next(&mut self) -> u64 {
@@ -73,6 +79,12 @@ fn step(state: &mut State, words: &mut [[u8; 8]; LANES]) {
         b[lane] = of[1] ^ third;
         c[lane] = third ^ of[1] << 17;
         d[lane] = fourth.rotate_left(45);
+    }
+}
+
+impl Default for Stream {
+    fn default() -> Self {
+        Self::new(0)
     }
 }
 

@@ -29,7 +29,27 @@ pub struct Summary {
 impl Summary {
     /// Of these values, in two passes.
     pub fn of(values: &[f64]) -> Self {
-        if values.is_empty() { Self::default() } else { on_this_processor(Sums(values)) }
+        let Some(&first) = values.first() else { return Self::default() };
+        let mean = first + on_this_processor(Apart(values)) / values.len() as f64;
+        let (blocks, rest) = values.as_chunks::<LANES>();
+        let mut lanes = Lanes { sums: [[0.0; LANES]; ORDER - 1], least: [first; LANES], greatest: [first; LANES] };
+        on_this_processor(Powers { blocks, mean, lanes: &mut lanes });
+        let mut sums = lanes.sums.map(|lanes| lanes.iter().sum::<f64>());
+        for value in rest {
+            let deviation = value - mean;
+            let mut power = deviation;
+            for sum in &mut sums {
+                power *= deviation;
+                *sum += power;
+            }
+        }
+        Self {
+            count: values.len() as u64,
+            mean,
+            sums,
+            least: lanes.least.iter().chain(rest).copied().fold(first, f64::min),
+            greatest: lanes.greatest.iter().chain(rest).copied().fold(first, f64::max),
+        }
     }
 
     /// Takes in another sample.
@@ -114,32 +134,48 @@ impl Summary {
 /// Sums that run beside each other, on any processor as many: a sum belongs to the order in which it is taken.
 const LANES: usize = 4;
 
-/// Values to be summed, at least one.
-struct Sums<'a>(&'a [f64]);
+/// Sums of values, at least one, about the first of them, so that the sum of large values does not round.
+struct Apart<'a>(&'a [f64]);
 
-impl Work for Sums<'_> {
-    type Output = Summary;
+impl Work for Apart<'_> {
+    type Output = f64;
 
     #[inline(always)]
-    fn work(self) -> Summary {
-        let (blocks, rest) = self.0.as_chunks::<LANES>();
+    fn work(self) -> f64 {
+        let (pairs, rest) = self.0.as_chunks::<{ 2 * LANES }>();
         let first = self.0[0];
-        // About the first value, so that the sum of large values does not round.
-        let mut total = [[0.0; LANES]; 2];
-        let (pairs, single) = blocks.as_chunks::<2>();
+        let mut total = [0.0; 2 * LANES];
         for pair in pairs {
-            for half in 0..2 {
-                for lane in 0..LANES {
-                    total[half][lane] += pair[half][lane] - first;
-                }
+            for lane in 0..2 * LANES {
+                total[lane] += pair[lane] - first;
             }
         }
-        let left = single.as_flattened().iter().chain(rest).map(|value| value - first);
-        let total = total.as_flattened().iter().sum::<f64>() + left.sum::<f64>();
-        let mean = first + total / self.0.len() as f64;
+        total.iter().sum::<f64>() + rest.iter().map(|value| value - first).sum::<f64>()
+    }
+}
 
+/// Powers of deviations from the mean, and the ends, of every lane.
+struct Powers<'a> {
+    blocks: &'a [[f64; LANES]],
+    mean: f64,
+    lanes: &'a mut Lanes,
+}
+
+/// Sums of powers from the second on, and the ends. Written where they stand: added up within the work, the compiler would turn
+/// rows into columns at every block.
+struct Lanes {
+    sums: [[f64; LANES]; ORDER - 1],
+    least: [f64; LANES],
+    greatest: [f64; LANES],
+}
+
+impl Work for Powers<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn work(self) {
+        let Self { blocks, mean, lanes } = self;
         let mut sums = [[0.0; LANES]; ORDER - 1];
-        let (mut least, mut greatest) = ([first; LANES], [first; LANES]);
         for block in blocks {
             let deviation: [f64; LANES] = std::array::from_fn(|lane| block[lane] - mean);
             let mut power = deviation;
@@ -149,26 +185,15 @@ impl Work for Sums<'_> {
                     sum[lane] += power[lane];
                 }
             }
+        }
+        lanes.sums = sums;
+        let (mut least, mut greatest) = (lanes.least, lanes.greatest);
+        for block in blocks {
             for lane in 0..LANES {
                 least[lane] = if block[lane] < least[lane] { block[lane] } else { least[lane] };
                 greatest[lane] = if block[lane] > greatest[lane] { block[lane] } else { greatest[lane] };
             }
         }
-        let mut sums = sums.map(|lanes| lanes.iter().sum::<f64>());
-        for value in rest {
-            let deviation = value - mean;
-            let mut power = deviation;
-            for sum in &mut sums {
-                power *= deviation;
-                *sum += power;
-            }
-        }
-        Summary {
-            count: self.0.len() as u64,
-            mean,
-            sums,
-            least: least.iter().chain(rest).copied().fold(first, f64::min),
-            greatest: greatest.iter().chain(rest).copied().fold(first, f64::max),
-        }
+        (lanes.least, lanes.greatest) = (least, greatest);
     }
 }

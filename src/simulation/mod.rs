@@ -29,7 +29,7 @@ use crate::assembly::{EvaluationError, NonRepeatable, Points, Request, Responses
 use crate::method::{Method, MethodError, Options, Outcome};
 use crate::parallel::prelude::*;
 use crate::problem::Problem;
-use crate::sampling::{Draws, Portion};
+use crate::sampling::{Draws, Portion, Room};
 use crate::shape::through;
 use crate::summary::RunSummary;
 use crate::time::Instant;
@@ -404,11 +404,11 @@ fn drawn(
         if batch.is_empty() {
             break;
         }
-        let one = |points: &mut Points, portion: &Portion| {
-            draws.write(*portion, points);
-            block(problem, points, *portion, run, (tally.lenses(), control, options.sampler))
+        let one = |(room, points, out): &mut (Room, Points, Responses), portion: &Portion| {
+            draws.write(*portion, room, points);
+            block(problem, (points, out), *portion, run, (tally.lenses(), control, options.sampler))
         };
-        let room = || Points::repeated(&[], 0);
+        let room = || (Room::default(), Points::repeated(&[], 0), Responses::open(0, 0));
         let blocks: Vec<Block> = match portions.costly {
             true => batch.iter().map(|portion| one(&mut room(), portion)).collect(),
             false => batch.par_iter().map_init(room, one).collect(),
@@ -436,17 +436,17 @@ fn drawn(
 /// Evaluates one portion.
 fn block(
     problem: &Problem,
-    points: &Points,
+    (points, out): (&Points, &mut Responses),
     portion: Portion,
     run: &Run<'_>,
     (lenses, control, sampler): (&[Lens], Option<&Control<'_>>, Sampler),
 ) -> Block {
-    let mut out = Responses::open(portion.rows, problem.outputs().len());
+    out.reopen(portion.rows, problem.outputs().len());
     let begun = Instant::now();
-    problem.function().evaluate(&Request::values(points, problem.outputs()), run, &mut out);
+    problem.function().evaluate(&Request::values(points, problem.outputs()), run, out);
     let took = begun.elapsed();
     let beside = control.map_or_else(Vec::new, |control| control.beside(points));
-    Block::of(&out, took, (lenses, sampler, portion.replicate), &beside)
+    Block::of(out, took, (lenses, sampler, portion.replicate), &beside)
 }
 
 /// Points whose values stay in a cache near by: a power of two.

@@ -121,10 +121,8 @@ impl Work for Groups<'_> {
         for column in &columns {
             // About the first value, so that the sum of large values does not round.
             let at = column[first];
-            let mut apart = vec![0.0; out.rows()];
-            for ((apart, value), &full) in apart.iter_mut().zip(*column).zip(&full) {
-                *apart = if full > 0.0 { value - at } else { 0.0 };
-            }
+            let apart = column.iter().zip(&full).map(|(value, &full)| if full > 0.0 { value - at } else { 0.0 });
+            let mut apart: Vec<f64> = apart.collect();
             let mut means = by_group(&apart);
             for (mean, count) in means.iter_mut().zip(counts) {
                 *mean = if count > 0.0 { *mean / count } else { 0.0 };
@@ -138,13 +136,10 @@ impl Work for Groups<'_> {
             deviations.push(apart);
         }
         groups.iter_mut().zip(counts).for_each(|(together, count)| together.count = count);
-        let mut products = vec![0.0; out.rows()];
         for (a, first) in deviations.iter().enumerate() {
             for second in &deviations[a..] {
-                for ((product, first), second) in products.iter_mut().zip(first).zip(second) {
-                    *product = first * second;
-                }
-                groups.iter_mut().zip(by_group(&products)).for_each(|(together, sum)| together.products.push(sum));
+                let sums = products_by_group(first, second);
+                groups.iter_mut().zip(sums).for_each(|(together, sum)| together.products.push(sum));
             }
         }
         groups
@@ -162,6 +157,21 @@ fn by_group(values: &[f64]) -> [f64; REPLICATES] {
         }
     }
     sums.iter_mut().zip(rest).for_each(|(sum, value)| *sum += value);
+    sums
+}
+
+/// The same of products.
+#[inline(always)]
+fn products_by_group(first: &[f64], second: &[f64]) -> [f64; REPLICATES] {
+    let (rows, rest) = first.as_chunks::<REPLICATES>();
+    let (others, other_rest) = second.as_chunks::<REPLICATES>();
+    let mut sums = [0.0; REPLICATES];
+    for (row, other) in rows.iter().zip(others) {
+        for group in 0..REPLICATES {
+            sums[group] += row[group] * other[group];
+        }
+    }
+    sums.iter_mut().zip(rest.iter().zip(other_rest)).for_each(|(sum, (a, b))| *sum += a * b);
     sums
 }
 

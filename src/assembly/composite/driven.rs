@@ -3,9 +3,10 @@
 //! With dimensions `x` and formulas `z(x)` a characteristic is `y(x) = F(z(x))`. By the chain rule `dy/dx = F_z z_x`, where `z_x` is exact.
 
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use super::{Composite, CompositeError, Inner, Origin, SolvedRows, Source};
+use crate::assembly::blocks::BLOCK;
 use crate::assembly::formula::Jet;
 use crate::assembly::request::bits;
 use crate::assembly::{
@@ -31,13 +32,13 @@ impl Composite {
 
     /// Whether a formula needs the unknowns.
     pub(super) fn drives_by_unknowns(&self, formula: usize) -> bool {
-        self.split(&self.formulas.variables(formula)).unknowns
+        self.split(self.formulas.variables(formula)).unknowns
     }
 
     /// The formulas that drive the model do not need its answers.
     pub(super) fn drives_without_circle(&self, names: &[String]) -> Result<(), CompositeError> {
         for index in self.driving() {
-            let mut needs = self.split(&self.formulas.variables(index));
+            let mut needs = self.split(self.formulas.variables(index));
             if let (true, Some(assembler)) = (needs.unknowns, &self.assembler) {
                 needs.answers.extend(self.split(assembler.uses()).answers);
             }
@@ -145,6 +146,7 @@ impl Composite {
             function,
             inputs: model.inputs.clone(),
             factors: model.factors.clone(),
+            fixed: OnceLock::new(),
             sent: Mutex::default(),
         };
         Self {
@@ -239,7 +241,7 @@ impl Composite {
     }
 
     /// Asks a model that takes columns as they stand, where no formula drives it and no unit differs; false where that is not so.
-    fn ask_in_place(
+    pub(super) fn ask_in_place(
         &self,
         model: &Inner,
         points: &Points,
@@ -252,16 +254,15 @@ impl Composite {
             return false;
         }
         let rows = points.rows();
-        let mut fixed = Vec::new();
-        for source in &model.inputs {
-            if let Source::Fixed(value) = *source {
-                fixed.resize(fixed.len() + rows, value);
-            }
-        }
-        let mut fixed = fixed.chunks(rows.max(1));
+        let of_more = if rows > BLOCK { model.fixed(rows) } else { Vec::new() };
+        let (fixed, each) = match rows > BLOCK {
+            true => (&of_more, rows),
+            false => (model.fixed.get_or_init(|| model.fixed(BLOCK)), BLOCK),
+        };
+        let mut fixed = fixed.chunks(each);
         let mut column = |source: &Source| match *source {
             Source::Dimension(dimension) => points.column(dimension),
-            _ => fixed.next().unwrap_or_default(),
+            _ => &fixed.next().unwrap_or_default()[..rows],
         };
         let columns: Vec<&[f64]> = model.inputs.iter().map(&mut column).collect();
         model.function.evaluate_columns(rows, &columns, needed, run, answers)
@@ -324,6 +325,15 @@ impl Composite {
 }
 
 impl Inner {
+    /// A column of so many rows for every fixed input, one after the other.
+    fn fixed(&self, rows: usize) -> Vec<f64> {
+        let values = self.inputs.iter().filter_map(|source| match source {
+            Source::Fixed(value) => Some(*value),
+            _ => None,
+        });
+        values.flat_map(|value| std::iter::repeat_n(value, rows)).collect()
+    }
+
     /// The formulas that drive it.
     fn driving(&self) -> impl Iterator<Item = usize> + '_ {
         self.inputs.iter().filter_map(|source| match source {

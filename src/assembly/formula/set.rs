@@ -1,7 +1,7 @@
 //! Named formulas that use each other, variables and constants.
 
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use super::batch::{LANES, Machine};
 use super::cancel::cancelled;
@@ -60,6 +60,8 @@ pub struct FormulaSet {
     pub(super) order: Vec<usize>,
     pub(super) graph: Graph,
     pub(super) roots: Vec<NodeId>,
+    /// The variables of every formula, once they were asked for.
+    variables: Vec<OnceLock<Vec<usize>>>,
     /// For every formula the node of the graph that each of its own nodes became.
     pub(super) places: Vec<Vec<NodeId>>,
     /// Where some formulas change their form, kept for the same reason as the program.
@@ -130,7 +132,8 @@ impl FormulaSet {
             roots[index] = *places[index].last().expect("a formula is never empty");
         }
         let (margins, program, bounding) = (Mutex::new(None), Mutex::new(None), Mutex::new(None));
-        Ok(Self { formulas: entries, order, graph, roots, places, margins, program, bounding })
+        let variables = vec![OnceLock::new(); roots.len()];
+        Ok(Self { formulas: entries, order, graph, roots, variables, places, margins, program, bounding })
     }
 
     /// Number of formulas.
@@ -149,8 +152,8 @@ impl FormulaSet {
     }
 
     /// The variables that a formula can depend on, through other formulas too, ascending.
-    pub fn variables(&self, formula: usize) -> Vec<usize> {
-        self.graph.variables(self.roots[formula])
+    pub fn variables(&self, formula: usize) -> &[usize] {
+        self.variables[formula].get_or_init(|| self.graph.variables(self.roots[formula]))
     }
 
     /// The formulas that these formulas use, themselves included, as a flag per formula.

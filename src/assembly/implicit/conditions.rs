@@ -224,7 +224,7 @@ impl Conditions {
         for condition in &self.conditions {
             let count = condition.formulas().len();
             let of_condition: Vec<usize> = (next..next + count)
-                .flat_map(|formula| set.variables(formula))
+                .flat_map(|formula| set.variables(formula).iter().copied())
                 .filter_map(|variable| variable.checked_sub(given))
                 .collect();
             if of_condition.is_empty() {

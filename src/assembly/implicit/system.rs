@@ -44,7 +44,8 @@ impl System {
             Condition::Loop { links, .. } => Kind::Loop { links: links.len() },
         });
         let formulas: Vec<usize> = (first..set.len()).collect();
-        let mut uses: Vec<usize> = formulas.iter().flat_map(|&formula| set.variables(formula)).collect();
+        let mut uses: Vec<usize> =
+            formulas.iter().flat_map(|&formula| set.variables(formula).iter().copied()).collect();
         uses.retain(|&variable| variable < given);
         uses.sort_unstable();
         uses.dedup();
