@@ -22,9 +22,24 @@ const PAIRS: usize = 512;
 /// Nodes between two looks whether to stop.
 const LOOK: usize = 64;
 
+/// All options, list after list: the cost of each, then its use of every row. What steps of the multipliers read again and again stands
+/// together.
+struct Table {
+    rows: usize,
+    numbers: Vec<f64>,
+    /// Where each list begins among the options, and where the last one ends.
+    starts: Vec<usize>,
+}
+
+/// Some options of every list, by their places among all.
+#[derive(Clone)]
+struct Options {
+    places: Vec<usize>,
+    starts: Vec<usize>,
+}
+
 struct Node {
-    /// Options left of every list, the cheapest first.
-    left: Vec<Vec<usize>>,
+    left: Options,
     multipliers: Vec<f64>,
     bound: f64,
 }
@@ -36,79 +51,20 @@ struct Bounded {
     /// The choice of the best multipliers.
     picks: Vec<usize>,
     /// How much of every option is in the averages.
-    weights: Vec<Vec<f64>>,
-}
-
-/// The options that a node leaves, list after list: the cost of each, then its use of every row. What steps of the multipliers read again and
-/// again stands together.
-struct Left {
-    rows: usize,
-    numbers: Vec<f64>,
-    /// Where each list begins among the options, and where the last one ends.
-    starts: Vec<usize>,
-}
-
-impl Left {
-    fn of(problem: &Lists, left: &[Vec<usize>]) -> Self {
-        let (mut numbers, mut starts) = (Vec::new(), vec![0]);
-        for (list, left) in problem.lists.iter().zip(left) {
-            for &i in left {
-                numbers.push(list[i].cost);
-                numbers.extend_from_slice(&list[i].uses);
-            }
-            starts.push(starts[starts.len() - 1] + left.len());
-        }
-        Self { rows: problem.rows, numbers, starts }
-    }
-
-    /// The cheapest option of every list at these prices of the rows, as its place among all options, and the bound.
-    fn choose(&self, multipliers: &[f64], picks: &mut [usize]) -> f64 {
-        // Two and three rows as numbers in registers.
-        match *multipliers {
-            [a, b] => self.choose_by(multipliers, picks, |uses| uses[0] * a + uses[1] * b),
-            [a, b, c] => self.choose_by(multipliers, picks, |uses| uses[0] * a + uses[1] * b + uses[2] * c),
-            _ => self
-                .choose_by(multipliers, picks, |uses| uses.iter().zip(multipliers).map(|(use_, by)| use_ * by).sum()),
-        }
-    }
-
-    #[inline(always)]
-    fn choose_by(&self, multipliers: &[f64], picks: &mut [usize], used: impl Fn(&[f64]) -> f64) -> f64 {
-        let mut value = -multipliers.iter().sum::<f64>();
-        let mut options = self.numbers.chunks_exact(1 + self.rows);
-        for (pick, ends) in picks.iter_mut().zip(self.starts.windows(2)) {
-            let mut least = f64::INFINITY;
-            for (place, option) in (ends[0]..ends[1]).zip(&mut options) {
-                let own = option[0] + used(&option[1..]);
-                if own < least {
-                    (least, *pick) = (own, place);
-                }
-            }
-            value += least;
-        }
-        value
-    }
-
-    /// How far a choice exceeds every row.
-    fn over(&self, picks: &[usize], over: &mut [f64]) {
-        over.fill(0.0);
-        for &pick in picks {
-            let uses = &self.numbers[pick * (1 + self.rows) + 1..][..self.rows];
-            over.iter_mut().zip(uses).for_each(|(all, own)| *all += own);
-        }
-        over.iter_mut().for_each(|over| *over -= 1.0);
-    }
+    weights: Vec<f64>,
 }
 
 struct Search<'p> {
     problem: &'p Lists,
+    table: Table,
     best: Option<Vec<usize>>,
     known: f64,
 }
 
 pub(super) fn several_rows(problem: &Lists, stopped: &dyn Fn() -> bool) -> Option<ListChoice> {
-    let mut search = Search { problem, best: None, known: f64::INFINITY };
-    let left: Vec<Vec<usize>> = problem.lists.iter().map(|list| (0..list.len()).collect()).collect();
+    let table = Table::of(problem);
+    let left = Options { places: (0..table.starts[problem.lists.len()]).collect(), starts: table.starts.clone() };
+    let mut search = Search { problem, table, best: None, known: f64::INFINITY };
     let root = Node { left, multipliers: vec![0.0; problem.rows], bound: f64::NEG_INFINITY };
     let (mut open, mut nodes, mut left_over) = (vec![root], 0usize, f64::INFINITY);
     while let Some(mut node) = open.pop() {
@@ -124,7 +80,7 @@ pub(super) fn several_rows(problem: &Lists, stopped: &dyn Fn() -> bool) -> Optio
             continue;
         }
         let bounded = search.bounded(&node, STEPS[usize::from(nodes > 0)]);
-        if nodes.is_multiple_of(REPAIR) || problem.is_kept(&bounded.picks) {
+        if nodes.is_multiple_of(REPAIR) || search.table.is_kept(&bounded.picks) {
             search.repair(&bounded, nodes.is_multiple_of(PAIRS));
         }
         nodes += 1;
@@ -144,55 +100,155 @@ pub(super) fn several_rows(problem: &Lists, stopped: &dyn Fn() -> bool) -> Optio
 /// The two halves of a node: the list of which the averages hold the most different options, split at their mean. The half with the choice
 /// of the best multipliers comes last, to be looked at first. None where every list has one option.
 fn split(node: Node, bounded: &Bounded) -> Option<[Node; 2]> {
-    let wide = (0..node.left.len()).filter(|&j| node.left[j].len() > 1);
+    let lists = node.left.starts.len() - 1;
     // Options may have been ruled out since: the averages are of the node before.
-    let fraction = |j: usize| 1.0 - bounded.weights[j].iter().copied().fold(0.0, f64::max);
-    let most =
-        wide.max_by(|&a, &b| fraction(a).total_cmp(&fraction(b)).then(node.left[a].len().cmp(&node.left[b].len())))?;
-    let options = &node.left[most];
-    let weighed =
-        options.iter().enumerate().map(|(at, &i)| (at as f64, bounded.weights[most].get(i).copied().unwrap_or(0.0)));
+    let fraction = |j: usize| 1.0 - node.left.list(j).iter().map(|&place| bounded.weights[place]).fold(0.0, f64::max);
+    let wide = (0..lists).filter(|&j| node.left.list(j).len() > 1).map(|j| (j, fraction(j)));
+    let longer = |a: usize, b: usize| node.left.list(a).len().cmp(&node.left.list(b).len());
+    let (most, _) = wide.max_by(|a, b| a.1.total_cmp(&b.1).then(longer(a.0, b.0)))?;
+    let options = node.left.list(most);
+    let weighed = options.iter().enumerate().map(|(at, &place)| (at as f64, bounded.weights[place]));
     let (sum, weight) = weighed.fold((0.0, 0.0), |(sum, all), (at, weight)| (sum + at * weight, all + weight));
     let mean = if weight > 0.0 { sum / weight } else { 0.5 * (options.len() - 1) as f64 };
-    let cut = (mean.floor() as usize + 1).clamp(1, options.len() - 1);
-    let (low, high) = options.split_at(cut);
-    let picked_low = low.contains(&bounded.picks[most]);
-    let half = |part: &[usize]| {
+    let cut = options[(mean.floor() as usize + 1).clamp(1, options.len() - 1)];
+    let picked_low = bounded.picks[most] < cut;
+    let half = |low: bool| {
         let mut left = node.left.clone();
-        left[most] = part.to_vec();
+        left.retain(|j, place| j != most || low == (place < cut));
         Node { left, multipliers: node.multipliers.clone(), bound: node.bound }
     };
-    let halves = [half(high), half(low)];
-    Some(if picked_low {
-        halves
-    } else {
-        let [high, low] = halves;
-        [low, high]
-    })
+    Some([half(!picked_low), half(picked_low)])
+}
+
+impl Table {
+    fn of(problem: &Lists) -> Self {
+        let (mut numbers, mut starts) = (Vec::new(), vec![0]);
+        for list in &problem.lists {
+            for one in list {
+                numbers.push(one.cost);
+                numbers.extend_from_slice(&one.uses);
+            }
+            starts.push(starts[starts.len() - 1] + list.len());
+        }
+        Self { rows: problem.rows, numbers, starts }
+    }
+
+    /// Those that are left of it.
+    fn left(&self, left: &Options) -> Self {
+        let each = 1 + self.rows;
+        let mut numbers = Vec::with_capacity(each * left.places.len());
+        left.places.iter().for_each(|place| numbers.extend_from_slice(&self.numbers[each * place..each * (place + 1)]));
+        Self { rows: self.rows, numbers, starts: left.starts.clone() }
+    }
+
+    fn option(&self, place: usize) -> &[f64] {
+        &self.numbers[place * (1 + self.rows)..(place + 1) * (1 + self.rows)]
+    }
+
+    /// The cost of an option with what it uses at these prices of the rows.
+    fn priced(&self, place: usize, multipliers: &[f64]) -> f64 {
+        let option = self.option(place);
+        option[0] + option[1..].iter().zip(multipliers).map(|(use_, price)| use_ * price).sum::<f64>()
+    }
+
+    /// The cheapest option of every list at these prices of the rows, and the bound.
+    fn choose(&self, multipliers: &[f64], picks: &mut [usize]) -> f64 {
+        // Two and three rows by numbers in registers.
+        match *multipliers {
+            [a, b] => self.choose_by::<3>(multipliers, picks, |[cost, x, y]| cost + (x * a + y * b)),
+            [a, b, c] => self.choose_by::<4>(multipliers, picks, |[cost, x, y, z]| cost + (x * a + y * b + z * c)),
+            _ => self.choose_by::<1>(multipliers, picks, |_| f64::NAN),
+        }
+    }
+
+    /// The same by a price of `1 + rows` numbers; of any number of rows where there is one number only.
+    #[inline(always)]
+    fn choose_by<const EACH: usize>(
+        &self,
+        multipliers: &[f64],
+        picks: &mut [usize],
+        price: impl Fn([f64; EACH]) -> f64,
+    ) -> f64 {
+        let mut value = -multipliers.iter().sum::<f64>();
+        let options = self.numbers.as_chunks::<EACH>().0;
+        for (pick, ends) in picks.iter_mut().zip(self.starts.windows(2)) {
+            let mut least = f64::INFINITY;
+            for place in ends[0]..ends[1] {
+                let own = if EACH == 1 { self.priced(place, multipliers) } else { price(options[place]) };
+                if own < least {
+                    (least, *pick) = (own, place);
+                }
+            }
+            value += least;
+        }
+        value
+    }
+
+    /// How far a choice exceeds every row.
+    fn over(&self, picks: &[usize], over: &mut [f64]) {
+        match over {
+            [a, b] => {
+                let options = self.numbers.as_chunks::<3>().0;
+                let sum = picks.iter().map(|&pick| options[pick]).fold([0.0; 2], |[a, b], [_, x, y]| [a + x, b + y]);
+                (*a, *b) = (sum[0] - 1.0, sum[1] - 1.0);
+            }
+            _ => {
+                over.fill(0.0);
+                for &pick in picks {
+                    over.iter_mut().zip(&self.option(pick)[1..]).for_each(|(all, own)| *all += own);
+                }
+                over.iter_mut().for_each(|over| *over -= 1.0);
+            }
+        }
+    }
+
+    fn is_kept(&self, picks: &[usize]) -> bool {
+        (1..=self.rows).all(|r| fits(picks.iter().map(|&pick| self.option(pick)[r]).sum()))
+    }
+}
+
+impl Options {
+    fn list(&self, j: usize) -> &[usize] {
+        &self.places[self.starts[j]..self.starts[j + 1]]
+    }
+
+    /// Keeps some options, by list and place; whether any was taken out.
+    fn retain(&mut self, keep: impl Fn(usize, usize) -> bool) -> bool {
+        let (mut kept, mut from) = (0, 0);
+        for j in 0..self.starts.len() - 1 {
+            let to = self.starts[j + 1];
+            for at in from..to {
+                let place = self.places[at];
+                self.places[kept] = place;
+                kept += usize::from(keep(j, place));
+            }
+            (from, self.starts[j + 1]) = (to, kept);
+        }
+        let changed = kept < self.places.len();
+        self.places.truncate(kept);
+        changed
+    }
 }
 
 impl Search<'_> {
     /// Takes out options that leave the others of a row too little; false where nothing is left.
     fn tightened(&self, node: &mut Node) -> bool {
-        let lists = &self.problem.lists;
+        let mut least = vec![0.0; self.problem.lists.len()];
         loop {
             let mut changed = false;
-            for r in 0..self.problem.rows {
-                let least =
-                    |j: usize, left: &[usize]| left.iter().map(|&i| lists[j][i].uses[r]).fold(f64::INFINITY, f64::min);
-                let all: Vec<f64> = node.left.iter().enumerate().map(|(j, left)| least(j, left)).collect();
-                let sum: f64 = all.iter().sum();
+            for r in 1..=self.table.rows {
+                let of = |&place: &usize| self.table.option(place)[r];
+                for (j, least) in least.iter_mut().enumerate() {
+                    *least = node.left.list(j).iter().map(of).fold(f64::INFINITY, f64::min);
+                }
+                let sum: f64 = least.iter().sum();
                 if !fits(sum) {
                     return false;
                 }
-                for (j, left) in node.left.iter_mut().enumerate() {
-                    let before = left.len();
-                    left.retain(|&i| fits(sum - all[j] + lists[j][i].uses[r]));
-                    changed |= left.len() < before;
-                }
+                changed |= node.left.retain(|j, place| fits(sum - least[j] + of(&place)));
             }
             if !changed {
-                return node.left.iter().all(|left| !left.is_empty());
+                return (0..least.len()).all(|j| !node.left.list(j).is_empty());
             }
         }
     }
@@ -200,17 +256,15 @@ impl Search<'_> {
     /// Takes out options that what they add to the bound rules out.
     fn reduce(&self, node: &mut Node, bounded: &Bounded) {
         let slack = 1e-9 * self.known.abs();
-        for (j, left) in node.left.iter_mut().enumerate() {
-            let list = &self.problem.lists[j];
-            let least = priced(&list[bounded.picks[j]], &bounded.multipliers);
-            left.retain(|&i| bounded.bound + priced(&list[i], &bounded.multipliers) - least <= self.known + slack);
-        }
+        let price = |place: usize| self.table.priced(place, &bounded.multipliers);
+        let least: Vec<f64> = bounded.picks.iter().map(|&pick| price(pick)).collect();
+        node.left.retain(|j, place| bounded.bound + price(place) - least[j] <= self.known + slack);
     }
 
     /// Steps of the multipliers from those of the node.
     fn bounded(&self, node: &Node, steps: usize) -> Bounded {
-        let rows = self.problem.rows;
-        let left = Left::of(self.problem, &node.left);
+        let rows = self.table.rows;
+        let left = self.table.left(&node.left);
         let mut picks: Vec<usize> = left.starts[..left.starts.len() - 1].to_vec();
         let mut at = node.multipliers.clone();
         let bound = left.choose(&at, &mut picks);
@@ -263,23 +317,18 @@ impl Search<'_> {
                 }
             }
         }
-        let mut found = Bounded { bound: best, multipliers: best_at, picks: best_picks, weights: Vec::new() };
-        for ((list, options), (first, pick)) in
-            self.problem.lists.iter().zip(&node.left).zip(left.starts.iter().zip(&mut found.picks))
-        {
-            let mut of_list = vec![0.0; list.len()];
-            options.iter().zip(&weights[*first..]).for_each(|(&option, weight)| of_list[option] = *weight);
-            found.weights.push(of_list);
-            *pick = options[*pick - first];
-        }
-        found
+        let mut of_all = vec![0.0; self.table.starts[self.problem.lists.len()]];
+        node.left.places.iter().zip(&weights).for_each(|(&place, weight)| of_all[place] = *weight);
+        best_picks.iter_mut().for_each(|pick| *pick = node.left.places[*pick]);
+        Bounded { bound: best, multipliers: best_at, picks: best_picks, weights: of_all }
     }
 
     /// Takes the choice of the best multipliers where it is better than the one known: made to keep the rows by the exchanges that cost least
     /// for what they free, then exchanged for the better.
     fn repair(&mut self, bounded: &Bounded, two: bool) {
         let problem = self.problem;
-        let mut picks = bounded.picks.clone();
+        let mut picks: Vec<usize> =
+            bounded.picks.iter().zip(&self.table.starts).map(|(place, start)| place - start).collect();
         let mut uses = problem.uses(&picks);
         let over = |uses: &[f64]| uses.iter().map(|use_| (use_ - 1.0).max(0.0)).sum::<f64>();
         while !uses.iter().all(|&use_| fits(use_)) {
