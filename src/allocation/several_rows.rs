@@ -22,8 +22,8 @@ const PAIRS: usize = 512;
 /// Nodes between two looks whether to stop.
 const LOOK: usize = 64;
 
-/// All options, list after list: the cost of each, then its use of every row. What steps of the multipliers read again and again stands
-/// together.
+/// All options, list after list: the cost of each, then its use of every row. Steps of the multipliers read them again and again, so that they
+/// stand in one piece.
 struct Table {
     rows: usize,
     numbers: Vec<f64>,
@@ -154,27 +154,27 @@ impl Table {
     /// The cheapest option of every list at these prices of the rows, and the bound.
     fn choose(&self, multipliers: &[f64], picks: &mut [usize]) -> f64 {
         // Two and three rows by numbers in registers.
+        let (two, three) = (self.numbers.as_chunks::<3>().0, self.numbers.as_chunks::<4>().0);
         match *multipliers {
-            [a, b] => self.choose_by::<3>(multipliers, picks, |[cost, x, y]| cost + (x * a + y * b)),
-            [a, b, c] => self.choose_by::<4>(multipliers, picks, |[cost, x, y, z]| cost + (x * a + y * b + z * c)),
-            _ => self.choose_by::<1>(multipliers, picks, |_| f64::NAN),
+            [a, b] => self.choose_by(multipliers, picks, |place| {
+                let [cost, x, y] = two[place];
+                cost + (x * a + y * b)
+            }),
+            [a, b, c] => self.choose_by(multipliers, picks, |place| {
+                let [cost, x, y, z] = three[place];
+                cost + (x * a + y * b + z * c)
+            }),
+            _ => self.choose_by(multipliers, picks, |place| self.priced(place, multipliers)),
         }
     }
 
-    /// The same by a price of `1 + rows` numbers; of any number of rows where there is one number only.
     #[inline(always)]
-    fn choose_by<const EACH: usize>(
-        &self,
-        multipliers: &[f64],
-        picks: &mut [usize],
-        price: impl Fn([f64; EACH]) -> f64,
-    ) -> f64 {
+    fn choose_by(&self, multipliers: &[f64], picks: &mut [usize], price: impl Fn(usize) -> f64) -> f64 {
         let mut value = -multipliers.iter().sum::<f64>();
-        let options = self.numbers.as_chunks::<EACH>().0;
         for (pick, ends) in picks.iter_mut().zip(self.starts.windows(2)) {
             let mut least = f64::INFINITY;
             for place in ends[0]..ends[1] {
-                let own = if EACH == 1 { self.priced(place, multipliers) } else { price(options[place]) };
+                let own = price(place);
                 if own < least {
                     (least, *pick) = (own, place);
                 }

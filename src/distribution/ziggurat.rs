@@ -1,5 +1,6 @@
 //! Random normal and uniform values, a block at a time.
 
+use std::cell::RefCell;
 use std::sync::LazyLock;
 
 use rand::{Rng, RngExt};
@@ -50,17 +51,24 @@ pub(crate) fn normals(rng: &mut dyn Rng, (mean, sigma): (f64, f64), out: &mut [f
     if out.len() < FEW {
         return out.iter_mut().for_each(|value| *value = mean + sigma * layers.draw(rng));
     }
-    let mut room = Room { words: [[0; 8]; WORDS], widths: [[0.0; 2]; WORDS], doubtful: [0; WORDS / LOOK] };
-    let (whole, rest) = out.as_chunks_mut::<WORDS>();
-    whole.iter_mut().for_each(|out| room.fill(rng, (mean, sigma), WORDS, out));
-    if !rest.is_empty() {
-        let mut out = [0.0; WORDS];
-        room.fill(rng, (mean, sigma), rest.len(), &mut out);
-        rest.copy_from_slice(&out[..rest.len()]);
-    }
+    ROOM.with_borrow_mut(|room| {
+        let (whole, rest) = out.as_chunks_mut::<WORDS>();
+        whole.iter_mut().for_each(|out| room.fill(rng, (mean, sigma), WORDS, out));
+        if !rest.is_empty() {
+            let mut out = [0.0; WORDS];
+            room.fill(rng, (mean, sigma), rest.len(), &mut out);
+            rest.copy_from_slice(&out[..rest.len()]);
+        }
+    });
 }
 
-/// What a block of values is made in.
+thread_local! {
+    /// One a thread: made anew for every call, it would be cleared every time.
+    static ROOM: RefCell<Room> =
+        const { RefCell::new(Room { words: [[0; 8]; WORDS], widths: [[0.0; 2]; WORDS], doubtful: [0; WORDS / LOOK] }) };
+}
+
+/// Room in which a block of values is made.
 struct Room {
     words: [[u8; 8]; WORDS],
     /// The outer and the inner width of every word's layer, side by side as in the table: one load and one store for both.

@@ -1,12 +1,13 @@
 //! A design: points that are all known beforehand and are evaluated in one stage.
 
-use std::collections::{HashMap, HashSet};
 use std::ops::Deref;
+
+use hashbrown::HashTable;
 
 use super::axis::Axis;
 use super::geometry::Geometry;
 use super::nodes::Spread;
-use super::point::{AtNode, Point};
+use super::point::{AtNode, Point, folded};
 use super::stage::{Purpose, Stage};
 use super::{KnownAnswers, Plan};
 use crate::correlation::Correlation;
@@ -20,10 +21,11 @@ use crate::surrogate::{Inputs, shapes};
 #[derive(Debug, Clone)]
 pub struct Design {
     geometry: Geometry,
-    /// For every dimension and value its node.
-    nodes: HashMap<(usize, u64), u32>,
+    /// Nodes of dimensions, by the hashes of their values.
+    nodes: HashTable<AtNode>,
     points: Vec<(Point, Purpose)>,
-    wanted: HashSet<Point>,
+    /// Places among the points, by their hashes.
+    wanted: HashTable<u32>,
 }
 
 impl Design {
@@ -48,9 +50,9 @@ impl Design {
         fixed.iter().for_each(|&d| axes[d] = Axis::fixed(&dimensions[d], Spread::Pair));
         let mut design = Self {
             geometry: Geometry { axes, nominal: Point::Centre, varying, fixed, inputs, depends },
-            nodes: HashMap::new(),
+            nodes: HashTable::new(),
             points: Vec::new(),
-            wanted: HashSet::new(),
+            wanted: HashTable::new(),
         };
         let nominal: Vec<(usize, f64)> = dimensions.iter().map(Dimension::nominal).enumerate().collect();
         design.geometry.nominal = design.point(&nominal);
@@ -77,8 +79,12 @@ impl Design {
 
     /// Wants a point.
     pub(crate) fn want(&mut self, point: Point, purpose: Purpose) {
-        if self.wanted.insert(point.clone()) {
-            self.points.push((point, purpose));
+        let Self { points, wanted, .. } = self;
+        let hash = point.mixed();
+        if wanted.find(hash, |&place| points[place as usize].0 == point).is_none() {
+            let place = u32::try_from(points.len()).expect("fewer than four billion points");
+            wanted.insert_unique(hash, place, |&place| points[place as usize].0.mixed());
+            points.push((point, purpose));
         }
     }
 
@@ -110,7 +116,20 @@ impl Design {
         if x == axis.mean {
             return None;
         }
-        Some(*self.nodes.entry((dimension, x.to_bits())).or_insert_with(|| axis.open_node(x)))
+        let hash = |dimension: usize, x: f64| folded(folded(x.to_bits()) ^ dimension as u64);
+        let known =
+            |at: &AtNode| at.dimension as usize == dimension && axis.nodes[at.node as usize].x.to_bits() == x.to_bits();
+        if let Some(at) = self.nodes.find(hash(dimension, x), known) {
+            return Some(at.node);
+        }
+        let at = AtNode { dimension: dimension as u32, node: axis.open_node(x) };
+        let axes = &self.geometry.axes;
+        let again = |at: &AtNode| {
+            let dimension = at.dimension as usize;
+            hash(dimension, axes[dimension].nodes[at.node as usize].x)
+        };
+        self.nodes.insert_unique(hash(dimension, x), at, again);
+        Some(at.node)
     }
 }
 

@@ -50,14 +50,16 @@ impl Point {
         }
     }
 
-    /// Both halves of a product of 128 bits for every dimension that is elsewhere: no pattern of places is left in any bit.
+    /// A hash: no pattern of places is left in any bit.
     pub(crate) fn mixed(&self) -> u64 {
-        const ODD: u128 = 0x9e37_79b9_7f4a_7c15;
-        self.at().iter().fold(1 << 63, |hash, at| {
-            let product = u128::from(hash ^ u64::from(at.dimension) << 32 ^ u64::from(at.node)) * ODD;
-            product as u64 ^ (product >> 64) as u64
-        })
+        self.at().iter().fold(1 << 63, |hash, at| folded(hash ^ u64::from(at.dimension) << 32 ^ u64::from(at.node)))
     }
+}
+
+/// Both halves of a product of 128 bits.
+pub(super) fn folded(word: u64) -> u64 {
+    let product = u128::from(word) * 0x9e37_79b9_7f4a_7c15;
+    product as u64 ^ (product >> 64) as u64
 }
 
 impl std::hash::Hash for Point {

@@ -102,7 +102,7 @@ pub struct Draws<'a> {
     seed: u64,
 }
 
-/// What portions are drawn in, one after the other.
+/// Room in which portions are drawn, one after the other.
 #[derive(Default)]
 pub(crate) struct Room {
     stream: Stream,
@@ -273,13 +273,21 @@ impl Work for Combined<'_> {
         let Self { terms, place: (mean, sigma), out } = self;
         for (block, out) in out.chunks_mut(LANES).enumerate() {
             let rows = LANES * block..LANES * block + out.len();
-            out.fill(0.0);
+            if terms.is_empty() {
+                out.fill(0.0);
+            }
             // Three at a time; where there are no more, nothing is added.
-            for terms in terms.chunks(3) {
+            for (group, terms) in terms.chunks(3).enumerate() {
                 let [a, b, c] = std::array::from_fn(|term| terms.get(term).map_or((0.0, terms[0].1), |term| *term));
                 let columns = a.1[rows.clone()].iter().zip(&b.1[rows.clone()]).zip(&c.1[rows.clone()]);
-                for (sum, ((x, y), z)) in out.iter_mut().zip(columns) {
-                    *sum = *sum + a.0 * x + b.0 * y + c.0 * z;
+                if group == 0 {
+                    for (sum, ((x, y), z)) in out.iter_mut().zip(columns) {
+                        *sum = a.0 * x + b.0 * y + c.0 * z;
+                    }
+                } else {
+                    for (sum, ((x, y), z)) in out.iter_mut().zip(columns) {
+                        *sum = *sum + a.0 * x + b.0 * y + c.0 * z;
+                    }
                 }
             }
             for sum in out {
