@@ -278,7 +278,12 @@ impl Work for Combined<'_> {
             }
             // Three at a time; where there are no more, nothing is added.
             for (group, terms) in terms.chunks(3).enumerate() {
-                let [a, b, c] = std::array::from_fn(|term| terms.get(term).map_or((0.0, terms[0].1), |term| *term));
+                let nothing = (0.0, terms[0].1);
+                let [a, b, c] = match *terms {
+                    [a] => [a, nothing, nothing],
+                    [a, b] => [a, b, nothing],
+                    _ => [terms[0], terms[1], terms[2]],
+                };
                 let columns = a.1[rows.clone()].iter().zip(&b.1[rows.clone()]).zip(&c.1[rows.clone()]);
                 if group == 0 {
                     for (sum, ((x, y), z)) in out.iter_mut().zip(columns) {
