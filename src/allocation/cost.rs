@@ -174,21 +174,25 @@ impl Curve {
 
     /// Cost of one part at the half band `t`.
     pub fn cost(&self, t: f64) -> f64 {
-        let power = matches!(self.kind, CurveKind::ReciprocalPower);
-        self.a + if power { self.b * libm::pow(t, -self.shape) } else { self.varying(t, f64::NAN) }
+        self.a + self.varying(t, || libm::pow(t, -self.shape))
     }
 
     /// The same where `ln t` is known, for searches by it: off by a few roundings more, of `k ln t`.
     pub(super) fn cost_by(&self, t: f64, ln: f64) -> f64 {
-        self.a + self.varying(t, ln)
+        self.a + self.varying_by(t, ln)
     }
 
-    fn varying(&self, t: f64, ln: f64) -> f64 {
+    fn varying_by(&self, t: f64, ln: f64) -> f64 {
+        // A fifth of the time of a power.
+        self.varying(t, || libm::exp(-self.shape * ln))
+    }
+
+    /// The part of the cost that varies; `power` is `t^-k`.
+    fn varying(&self, t: f64, power: impl Fn() -> f64) -> f64 {
         match self.kind {
             CurveKind::Fixed => 0.0,
             CurveKind::Reciprocal => self.b / t,
-            // A fifth of the time of a power.
-            CurveKind::ReciprocalPower => self.b * libm::exp(-self.shape * ln),
+            CurveKind::ReciprocalPower => self.b * power(),
             CurveKind::Exponential => self.b * libm::exp(-t / self.shape),
             CurveKind::Written => self.written.as_ref().map_or(f64::NAN, |written| written.cost(t)),
         }
@@ -197,13 +201,13 @@ impl Curve {
     /// First and second derivative of the cost by `ln t`, at the half band `t` and its logarithm.
     pub(crate) fn log_derivatives(&self, t: f64, ln: f64) -> [f64; 2] {
         // A written cost does without.
-        let varying = if self.written.is_some() { f64::NAN } else { self.varying(t, ln) };
+        let varying = if self.written.is_some() { f64::NAN } else { self.varying_by(t, ln) };
         self.derivatives_of(varying, t)
     }
 
     /// Cost of one part at the half band `t` and its logarithm, and its derivative by `ln t`.
     pub(super) fn with_slope(&self, t: f64, ln: f64) -> [f64; 2] {
-        let varying = self.varying(t, ln);
+        let varying = self.varying_by(t, ln);
         [self.a + varying, self.derivatives_of(varying, t)[0]]
     }
 

@@ -107,11 +107,15 @@ impl Separable<'_> {
             }
             (first, second)
         };
-        let bounds = [offer.min, offer.max].map(|t| (t, libm::log(t)));
-        let (t, ln, curvature) =
-            if offer.min == offer.max { (bounds[0].0, bounds[0].1, 0.0) } else { least(&slope, bounds, near) };
+        let (t, cost, curvature) = if offer.min == offer.max {
+            (offer.min, offer.curve.cost(offer.min), 0.0)
+        } else {
+            let bounds = [offer.min, offer.max].map(|t| (t, libm::log(t)));
+            let (t, ln, curvature) = least(&slope, bounds, near);
+            (t, offer.curve.cost_by(t, ln), curvature)
+        };
         let used: f64 = self.weighted(multipliers).map(|(row, multiplier)| multiplier * row.terms[g].value(t)).sum();
-        Best { offer: index, t, value: parts * offer.curve.cost_by(t, ln) + used, curvature }
+        Best { offer: index, t, value: parts * cost + used, curvature }
     }
 
     /// The rows that count, each with its price: 1 of a loss.

@@ -9,7 +9,7 @@
 //! Programming 87 (2000). The averages come near the fractional solution: the list that they split most is split in two. The
 //! contribution of an option to the bound rules it out at every node, and so does what it leaves to the others of a row.
 
-use super::lists::{ListChoice, ListOption, Lists, SAME, fits, least_use};
+use super::lists::{ListChoice, Lists, SAME, fits, least_use};
 
 /// Steps of the multipliers at the root and at every other node.
 const STEPS: [usize; 2] = [400, 24];
@@ -135,9 +135,8 @@ impl Table {
 
     /// Those that are left of it.
     fn left(&self, left: &Options) -> Self {
-        let each = 1 + self.rows;
-        let mut numbers = Vec::with_capacity(each * left.places.len());
-        left.places.iter().for_each(|place| numbers.extend_from_slice(&self.numbers[each * place..each * (place + 1)]));
+        let mut numbers = Vec::with_capacity((1 + self.rows) * left.places.len());
+        left.places.iter().for_each(|&place| numbers.extend_from_slice(self.option(place)));
         Self { rows: self.rows, numbers, starts: left.starts.clone() }
     }
 
@@ -340,7 +339,9 @@ impl Search<'_> {
                     let after: f64 =
                         (0..problem.rows).map(|r| (uses[r] - own.uses[r] + one.uses[r] - 1.0).max(0.0)).sum();
                     if after < now {
-                        let price = priced(one, &bounded.multipliers) - priced(own, &bounded.multipliers);
+                        let [new, old] = [i, picks[j]]
+                            .map(|place| self.table.priced(self.table.starts[j] + place, &bounded.multipliers));
+                        let price = new - old;
                         let ratio = price.max(1e-12) / (now - after);
                         if cheapest.is_none_or(|(least, ..)| ratio < least) {
                             cheapest = Some((ratio, j, i));
@@ -368,9 +369,4 @@ impl Search<'_> {
             }
         }
     }
-}
-
-/// The cost of an option with what it uses at these prices.
-fn priced(one: &ListOption, multipliers: &[f64]) -> f64 {
-    one.cost + one.uses.iter().zip(multipliers).map(|(use_, price)| use_ * price).sum::<f64>()
 }

@@ -38,7 +38,7 @@ pub(crate) fn in_ranges(
     if rows <= BLOCK {
         // Rows without an answer are as good as new.
         if !out.is_untouched() || (out.rows(), out.outputs()) != (rows, outputs) {
-            *out = Responses::open(rows, outputs);
+            out.reopen(rows, outputs);
         }
         if !run.stopped() {
             block(0..rows, out);

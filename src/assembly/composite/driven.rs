@@ -254,12 +254,14 @@ impl Composite {
             return false;
         }
         let rows = points.rows();
-        let of_more = if rows > BLOCK { model.fixed(rows) } else { Vec::new() };
-        let (fixed, each) = match rows > BLOCK {
-            true => (&of_more, rows),
-            false => (model.fixed.get_or_init(|| model.fixed(BLOCK)), BLOCK),
+        let of_more;
+        let fixed = if rows > BLOCK {
+            of_more = model.fixed(rows);
+            &of_more
+        } else {
+            model.fixed.get_or_init(|| model.fixed(BLOCK))
         };
-        let mut fixed = fixed.chunks(each);
+        let mut fixed = fixed.chunks(rows.max(BLOCK));
         let mut column = |source: &Source| match *source {
             Source::Dimension(dimension) => points.column(dimension),
             _ => &fixed.next().unwrap_or_default()[..rows],
