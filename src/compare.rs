@@ -8,6 +8,7 @@ use serde::{Serialize, Serializer};
 use crate::analysis::{Analysis, CharacteristicAnalysis, analyze_with};
 use crate::assembly::Run;
 use crate::method::{self, Method, Options, Procedure};
+use crate::parallel::threads;
 use crate::problem::Problem;
 use crate::sampling::{Estimate, Sampler, one_error};
 use crate::shape::seconds;
@@ -405,7 +406,10 @@ impl Comparer<'_> {
                 self.lost = self.lost.and(&found.run);
                 self.refuse(contender, Some(samples), NotRunReason::Stopped);
             }
-            Ok(found) => self.ran.push(of_simulation(contender, &found, begun.elapsed())),
+            Ok(found) => {
+                let costly = self.problem.function().signature().costly;
+                self.ran.push(of_simulation(contender, &found, begun.elapsed(), costly));
+            }
             Err(error) => self.refuse(contender, Some(samples), impossible(&error)),
         }
     }
@@ -467,14 +471,16 @@ fn of_analysis(contender: Contender, analysis: &Analysis, took: Duration) -> Ran
     }
 }
 
-fn of_simulation(contender: Contender, found: &Simulation, took: Duration) -> Ran {
+fn of_simulation(contender: Contender, found: &Simulation, took: Duration, costly: bool) -> Ran {
+    // A sample of a model that is not costly counts the time of every thread.
+    let evaluation = if costly { found.run.in_model } else { found.run.in_model / threads() };
     Ran {
         contender,
         run: found.run,
         evaluations: found.run.evaluations + found.run.cached,
         verdicts: found.characteristics.iter().map(SimulatedCharacteristic::verdict).collect(),
-        evaluation: found.run.in_model,
-        engine: took.saturating_sub(found.run.in_model),
+        evaluation,
+        engine: took.saturating_sub(evaluation),
         figures: found.characteristics.iter().map(figures).collect(),
         errors: Vec::new(),
         pareto: Vec::new(),

@@ -7,8 +7,10 @@ pub(crate) use history::history;
 use std::collections::HashMap;
 use std::time::Duration;
 
-use crate::assembly::{NonRepeatable, Points, Request, Responses, Run};
-use crate::plan::{KnownAnswers, Plan, Point, Stage};
+use crate::assembly::{NonRepeatable, Points, Request, Responses, Run, near_rows};
+use crate::parallel::prelude::*;
+use crate::parallel::{Rooms, join};
+use crate::plan::{KnownAnswers, Plan, Point, Purpose, Stage};
 use crate::problem::Problem;
 use crate::summary::{RunSummary, StopReason};
 use crate::time::Instant;
@@ -87,43 +89,69 @@ impl Evaluated {
     pub(crate) fn add(&mut self, problem: &Problem, plan: &dyn Plan, stage: &Stage, run: &Run<'_>) {
         self.stages += 1;
         self.known.reserve(stage.points.len());
-        let centre = plan.centre();
-        let rows = (BATCH / centre.len()).max(1);
-        // All batches have one buffer, in which only a few values of each point are not those of the centre.
-        let mut points = Points::repeated(&centre, 0);
-        for batch in stage.points.chunks(rows) {
-            if points.rows() != batch.len() {
-                // Two buffers would stand beside each other at the last batch, which is shorter.
-                drop(points);
-                points = Points::repeated(&centre, batch.len());
-            }
-            for (row, (point, _)) in batch.iter().enumerate() {
-                for at in point.at() {
-                    let dimension = at.dimension as usize;
-                    points.set(row, dimension, plan.axis(dimension).nodes[at.node as usize].x);
-                }
-            }
-            let mut out = Responses::open(batch.len(), problem.outputs().len());
+        let desk = Desk { problem, plan, centre: plan.centre(), run };
+        let many = stage.points.len() > near_rows(desk.centre.len());
+        match many && problem.function().signature().cheap && !run.tells() {
+            true => self.add_side_by_side(&desk, &stage.points),
+            false => self.add_in_batches(&desk, &stage.points),
+        }
+    }
+
+    /// The same, with as many points in a batch as a model can want.
+    fn add_in_batches(&mut self, desk: &Desk<'_>, points: &[(Point, Purpose)]) {
+        let rows = (BATCH / desk.centre.len()).max(1);
+        let mut room = Points::repeated(&[], 0);
+        for batch in points.chunks(rows) {
             let begun = Instant::now();
-            problem.function().evaluate(&Request::values(&points, problem.outputs()), run, &mut out);
+            let out = desk.answers(&mut room, batch);
             self.in_model += begun.elapsed();
-            for (row, (point, _)) in batch.iter().enumerate() {
-                point.at().iter().for_each(|at| points.set(row, at.dimension as usize, centre[at.dimension as usize]));
-                self.learn(point, row, &out, run);
-                for characteristic in 0..out.outputs() {
-                    if let Some(gradient) = out.gradient(row, characteristic) {
-                        self.gradients.insert((point.clone(), characteristic), gradient.to_vec());
-                    }
-                }
-            }
-            self.evaluations = self.evaluations.saturating_add_signed(out.extra() as isize);
-            self.reused += out.count_reused();
-            self.retried += out.count_retried();
-            self.non_repeatable.extend(out.non_repeatable().iter().cloned());
+            self.take_in(batch, &out, desk.run);
             if self.stopped.is_some() {
                 return;
             }
         }
+    }
+
+    /// The same for a function that is cheap: small batches beside each other, and what they answered is taken in beside the next ones.
+    fn add_side_by_side(&mut self, desk: &Desk<'_>, points: &[(Point, Purpose)]) {
+        /// Batches between two looks at whether the run is stopped.
+        const TASKS: usize = 64;
+        let rows = near_rows(desk.centre.len());
+        let rooms = Rooms::none();
+        let mut waiting: (&[(Point, Purpose)], Vec<Responses>) = (&[], Vec::new());
+        for tasks in points.chunks(rows * TASKS).chain([&points[..0]]) {
+            let tasks = if self.stopped.is_some() { &points[..0] } else { tasks };
+            let answers = || {
+                let begun = Instant::now();
+                let one =
+                    |batch| rooms.within(|| Points::repeated(&[], 0), |room: &mut Points| desk.answers(room, batch));
+                let answers: Vec<Responses> = tasks.par_chunks(rows).map(one).collect();
+                (answers, begun.elapsed())
+            };
+            let (before, answered) = std::mem::take(&mut waiting);
+            let take_in = || {
+                before.chunks(rows).zip(answered).for_each(|(batch, out)| self.take_in(batch, &out, desk.run));
+            };
+            let ((), (answers, took)) = join(take_in, answers);
+            self.in_model += took;
+            waiting = (tasks, answers);
+        }
+    }
+
+    /// Keeps the answers of a batch.
+    fn take_in(&mut self, batch: &[(Point, Purpose)], out: &Responses, run: &Run<'_>) {
+        for (row, (point, _)) in batch.iter().enumerate() {
+            self.learn(point, row, out, run);
+            for characteristic in 0..out.outputs() {
+                if let Some(gradient) = out.gradient(row, characteristic) {
+                    self.gradients.insert((point.clone(), characteristic), gradient.to_vec());
+                }
+            }
+        }
+        self.evaluations = self.evaluations.saturating_add_signed(out.extra() as isize);
+        self.reused += out.count_reused();
+        self.retried += out.count_retried();
+        self.non_repeatable.extend(out.non_repeatable().iter().cloned());
     }
 
     /// Counts what was evaluated before for another plan, whose answers are of no use here.
@@ -150,20 +178,51 @@ impl Evaluated {
     }
 
     /// A row that is still open was not finished: it was sent only if some of it was answered.
-    fn learn(&mut self, point: &crate::plan::Point, row: usize, out: &Responses, run: &Run<'_>) {
-        let mut answered = false;
+    fn learn(&mut self, point: &Point, row: usize, out: &Responses, run: &Run<'_>) {
+        let mut place = None;
         for characteristic in 0..out.outputs() {
-            let answer = match (out.value(row, characteristic), out.error(row, characteristic)) {
-                (Some(value), _) => Ok(value),
-                (None, Some(error)) => Err(error.clone()),
-                (None, None) => {
-                    self.stopped.get_or_insert_with(|| run.why_open());
-                    continue;
-                }
-            };
-            answered = true;
-            self.known.learn(point, characteristic, answer);
+            if let Some(value) = out.value(row, characteristic) {
+                let place = *place.get_or_insert_with(|| self.known.place(point));
+                self.known.set(place, characteristic, value);
+            } else if let Some(error) = out.error(row, characteristic) {
+                let place = *place.get_or_insert_with(|| self.known.place(point));
+                self.known.fail(place, characteristic, error.clone());
+            } else {
+                self.stopped.get_or_insert_with(|| run.why_open());
+            }
         }
-        self.evaluations += usize::from(answered);
+        self.evaluations += usize::from(place.is_some());
+    }
+}
+
+/// What the points of a stage are evaluated with.
+struct Desk<'a> {
+    problem: &'a Problem,
+    plan: &'a dyn Plan,
+    centre: Vec<f64>,
+    run: &'a Run<'a>,
+}
+
+impl Desk<'_> {
+    /// The answers at some points. `room` holds copies of the centre, before and after.
+    fn answers(&self, room: &mut Points, batch: &[(Point, Purpose)]) -> Responses {
+        let Self { problem, plan, centre, run } = self;
+        if room.rows() != batch.len() {
+            // Two rooms would stand beside each other.
+            *room = Points::repeated(&[], 0);
+            *room = Points::repeated(centre, batch.len());
+        }
+        for (row, (point, _)) in batch.iter().enumerate() {
+            for at in point.at() {
+                let dimension = at.dimension as usize;
+                room.set(row, dimension, plan.axis(dimension).nodes[at.node as usize].x);
+            }
+        }
+        let mut out = Responses::open(batch.len(), problem.outputs().len());
+        problem.function().evaluate(&Request::values(room, problem.outputs()), run, &mut out);
+        for (row, (point, _)) in batch.iter().enumerate() {
+            point.at().iter().for_each(|at| room.set(row, at.dimension as usize, centre[at.dimension as usize]));
+        }
+        out
     }
 }

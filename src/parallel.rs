@@ -2,6 +2,45 @@
 //!
 //! Results are collected in the order of the items, so both give the same bits.
 
+use std::sync::{Mutex, PoisonError};
+
+#[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
+pub(crate) use rayon::join;
+
+/// Two pieces of work, one after the other here.
+#[cfg(all(target_family = "wasm", target_os = "unknown"))]
+pub(crate) fn join<A, B>(first: impl FnOnce() -> A, second: impl FnOnce() -> B) -> (A, B) {
+    (first(), second())
+}
+
+/// How many threads work side by side.
+pub(crate) fn threads() -> u32 {
+    #[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
+    return rayon::current_num_threads() as u32;
+    #[cfg(all(target_family = "wasm", target_os = "unknown"))]
+    1
+}
+
+/// Rooms to work in, as many as tasks run at once: a task takes one that another has left.
+pub(crate) struct Rooms<T>(Mutex<Vec<T>>);
+
+impl<T> Rooms<T> {
+    /// None yet.
+    pub(crate) fn none() -> Self {
+        Self(Mutex::new(Vec::new()))
+    }
+
+    /// Works in a room that is free, or in a new one.
+    pub(crate) fn within<R>(&self, new: impl FnOnce() -> T, work: impl FnOnce(&mut T) -> R) -> R {
+        let free = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let left = free().pop();
+        let mut room = left.unwrap_or_else(new);
+        let result = work(&mut room);
+        free().push(room);
+        result
+    }
+}
+
 #[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
 pub(crate) mod prelude {
     pub(crate) use rayon::prelude::*;
@@ -20,6 +59,7 @@ pub(crate) mod prelude {
 
     pub(crate) trait ParallelSlice<T> {
         fn par_iter(&self) -> std::slice::Iter<'_, T>;
+        fn par_iter_mut(&mut self) -> std::slice::IterMut<'_, T>;
         fn par_chunks(&self, size: usize) -> std::slice::Chunks<'_, T>;
         fn par_chunks_mut(&mut self, size: usize) -> std::slice::ChunksMut<'_, T>;
     }
@@ -27,6 +67,11 @@ pub(crate) mod prelude {
     impl<T> ParallelSlice<T> for [T] {
         fn par_iter(&self) -> std::slice::Iter<'_, T> {
             self.iter()
+        }
+
+        fn par_iter_mut(&mut self) -> std::slice::IterMut<'_, T>;
+        fn par_iter_mut(&mut self) -> std::slice::IterMut<'_, T> {
+            self.iter_mut()
         }
 
         fn par_chunks(&self, size: usize) -> std::slice::Chunks<'_, T> {

@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 use super::correction::Correction;
 use super::cost::Priced;
-use super::rejects::of_scores;
+use super::rejects::{of_scores, of_scores_with_slope};
 use super::response::Responses;
 use super::separable::{Row, Term};
 use super::unknown::Unknown;
@@ -174,8 +174,20 @@ impl Constraint {
         Some(by.iter().zip(priced).map(|(by, group)| of(by) - corrected(group)).collect())
     }
 
-    /// The same of a joint yield, with slopes by differences.
+    /// The same of a joint yield.
     fn joint_linearised(&self, responses: &Responses, priced: &[Priced], at: &[f64]) -> Option<Linearised> {
+        let rejects = responses.rejects(&responses.limited());
+        let Some((share, by)) = rejects.with_slopes(responses, priced, &responses.factors(priced, at)) else {
+            return self.joint_by_differences(responses, priced, at);
+        };
+        let [ratio, by_share] = of_scores_with_slope(share, 1.0 - self.target(responses));
+        let slopes: Vec<f64> = by.iter().map(|slope| 2.0 * ratio * by_share * slope).collect();
+        let known = ratio.is_finite() && slopes.iter().all(|slope| slope.is_finite());
+        known.then(|| Linearised::of_squares(ratio * ratio, slopes))
+    }
+
+    /// The same where the density of a fit ends too abruptly for formulas.
+    fn joint_by_differences(&self, responses: &Responses, priced: &[Priced], at: &[f64]) -> Option<Linearised> {
         /// Half a difference in `ln T`: truncation and rounding both near 1e-9.
         const STEP: f64 = 3e-5;
         let value = self.ratio(responses, priced, at).filter(|ratio| ratio.is_finite())?.powi(2);

@@ -297,6 +297,11 @@ pub struct Priced {
 }
 
 impl Priced {
+    /// A dimension by itself, that costs nothing.
+    pub(crate) fn without_cost(dimension: usize) -> Self {
+        Self { members: vec![dimension], parts: 1.0, offers: Vec::new(), rounded: None }
+    }
+
     /// One cost for these dimensions; each part costs.
     ///
     /// # Errors

@@ -7,16 +7,24 @@
 //! `R_c` is what the Pearson fit of the four moments at `T` rejects, and a little of what a normal distribution would. `kappa` makes value and slopes at the station those of the surface laws,
 //! less what breaks several limits at once, so that what the rounds come to rest at is by the laws. Source: N. M. Alexandrov, R. M. Lewis,
 //! Optimization and Engineering 2 (2001).
+//!
+//! Slopes go by the moments. With `z` the limits in sigmas off the mean and `p` the density of the fit at them:
+//!
+//! ```text
+//! dR/d mean = p_above - p_below     dR/d ln sigma = sigma (z_above p_above - z_below p_below)     by skewness and excess: Pearson's equation
+//! ```
 
 use std::sync::{Arc, PoisonError};
 
+use super::cost::Priced;
 use super::reject_fit::RejectFit;
 use super::response::Responses;
-use crate::capability::{Capability, Law};
+use crate::capability::Law;
 use crate::characteristic::SpecLimits;
 use crate::distribution::standard_normal;
 use crate::law::{HeldTail, LawTail, SurfaceLaw, rejected};
 use crate::moments::Moments;
+use crate::parallel::prelude::*;
 
 /// Farther than this from the station, in `ln T`, a slope is not followed.
 const FAR: f64 = 0.7;
@@ -57,20 +65,28 @@ impl RejectFit {
             let of = responses.tail_slopes(c, limits)?;
             by.iter_mut().zip(of).for_each(|(by, of)| *by += of);
         }
-        if twice > FEW * truth && responses.varying().len() <= MANY {
-            for &d in responses.varying() {
-                let step = if of_twice.error <= EXACT { NARROW } else { WIDE };
-                by[d] -= self.slope_of_twice(responses, d, step).unwrap_or(0.0);
-            }
+        let varying = responses.varying();
+        if twice > FEW * truth && varying.len() <= MANY {
+            let step = if of_twice.error <= EXACT { NARROW } else { WIDE };
+            let of_twice = varying.par_iter().map(|&d| self.slope_of_twice(responses, d, step).unwrap_or(0.0));
+            varying.iter().zip(of_twice.collect::<Vec<f64>>()).for_each(|(&d, of)| by[d] -= of);
         }
+        let each: Vec<Priced> = varying.iter().map(|&d| Priced::without_cost(d)).collect();
+        let of_fit = self
+            .with_slopes(responses, &each, &ones)
+            .map(|(share, slopes)| slopes.into_iter().map(|slope| slope / share.max(LEAST)).collect::<Vec<f64>>());
         let mut slopes = vec![0.0; n];
-        for &d in responses.varying() {
+        for (place, &d) in varying.iter().enumerate() {
             let mut factors = ones.clone();
             let mut ln = |step: f64| {
                 factors[d] = libm::exp(step);
                 Some(libm::log(self.share(responses, &factors, None)?.max(LEAST)))
             };
-            slopes[d] = by[d] / truth - (ln(STEP)? - ln(-STEP)?) / (2.0 * STEP);
+            let own = match &of_fit {
+                Some(of_fit) => of_fit[place],
+                None => (ln(STEP)? - ln(-STEP)?) / (2.0 * STEP),
+            };
+            slopes[d] = by[d] / truth - own;
         }
         let ln = libm::log(truth / fit);
         (ln.is_finite() && slopes.iter().all(|slope| slope.is_finite())).then(|| Self { ln, slopes, ..self.clone() })
@@ -92,30 +108,70 @@ impl RejectFit {
         Some((twice(half)? - twice(-half)?) / (2.0 * half))
     }
 
+    /// The share at factors of all tolerances, and how it grows with `ln T` of every group; None where that takes differences.
+    pub(super) fn with_slopes(
+        &self,
+        responses: &Responses,
+        priced: &[Priced],
+        factors: &[f64],
+    ) -> Option<(f64, Vec<f64>)> {
+        if self.nothing && factors.iter().all(|&factor| factor == 1.0) {
+            return None;
+        }
+        let (mut all, mut slopes) = (0.0, vec![0.0; priced.len()]);
+        for &(c, limits) in &self.of {
+            let (share, partial) = fitted_with_slopes(&responses.moments(c, factors)?, limits)?;
+            all += share;
+            let by_group = responses.moment_slopes(c, priced, factors)?;
+            for (slope, by) in slopes.iter_mut().zip(by_group) {
+                *slope += partial.iter().zip(by).map(|(partial, by)| partial * by).sum::<f64>();
+            }
+        }
+        let correction = libm::exp(self.ln_correction(factors));
+        let share = all * correction;
+        for (slope, group) in slopes.iter_mut().zip(priced) {
+            let own = group.members.iter().filter(|&&d| libm::log(factors[d]).abs() < FAR).map(|&d| self.slopes[d]);
+            *slope = correction * *slope + share * own.sum::<f64>();
+        }
+        (share < 1.0 && slopes.iter().all(|slope| slope.is_finite())).then_some((share, slopes))
+    }
+
+    /// `ln kappa`.
+    fn ln_correction(&self, factors: &[f64]) -> f64 {
+        let along = |(slope, factor): (&f64, &f64)| match *slope {
+            0.0 => 0.0,
+            slope => slope * libm::log(*factor).clamp(-FAR, FAR),
+        };
+        self.ln + self.slopes.iter().zip(factors).map(along).sum::<f64>()
+    }
+
     /// The share at factors of all tolerances, with nominals moved by `shifts`, in sigmas.
     pub(super) fn share(&self, responses: &Responses, factors: &[f64], shifts: Option<&[f64]>) -> Option<f64> {
         if self.nothing && shifts.is_none() && factors.iter().all(|&factor| factor == 1.0) {
             return Some(0.0);
         }
-        let along = |(slope, factor): (&f64, &f64)| match *slope {
-            0.0 => 0.0,
-            slope => slope * libm::log(*factor).clamp(-FAR, FAR),
-        };
-        let ln = self.ln + self.slopes.iter().zip(factors).map(along).sum::<f64>();
         let mut all = 0.0;
         for &(c, limits) in &self.of {
             all += fitted(&responses.moments_shifted(c, factors, shifts)?, limits)?;
         }
-        Some((all * libm::exp(ln)).min(1.0))
+        Some((all * libm::exp(self.ln_correction(factors))).min(1.0))
     }
 }
 
-/// The rejects by the Pearson fit, and a little of those by a normal distribution: a fit with ends may reject nothing, and have
-/// no slope.
+/// A normal distribution has a little part in the rejects: a fit with ends may reject nothing, and have no slope.
+const LITTLE: f64 = 1e-4;
+
+/// The rejects by the Pearson fit, and a little of those by a normal distribution.
 fn fitted(moments: &Moments, limits: SpecLimits) -> Option<f64> {
-    const LITTLE: f64 = 1e-4;
-    let law = Law::fit(moments).ok()?;
-    let fit = Capability::of(&law, moments.mean(), moments.sigma(), limits).rejected()?;
+    rejected_by(&Law::fit(moments).ok()?, moments, limits)
+}
+
+fn rejected_by(law: &Law, moments: &Moments, limits: SpecLimits) -> Option<f64> {
+    if !limits.exist() {
+        return None;
+    }
+    let below = limits.lower().map_or(0.0, |lower| law.below(lower));
+    let fit = (below + limits.upper().map_or(0.0, |upper| law.above(upper))).min(1.0);
     let score = |distance: f64| standard_normal::sf(distance / moments.sigma());
     let sides =
         [limits.lower().map(|lower| moments.mean() - lower), limits.upper().map(|upper| upper - moments.mean())];
@@ -123,20 +179,47 @@ fn fitted(moments: &Moments, limits: SpecLimits) -> Option<f64> {
     Some(fit + LITTLE * normal)
 }
 
+/// The same with its derivatives by mean, `ln sigma`, skewness and excess; None where the density ends too abruptly for formulas.
+fn fitted_with_slopes(moments: &Moments, limits: SpecLimits) -> Option<(f64, [f64; 4])> {
+    let Ok(Law::Pearson(law)) = Law::fit(moments) else { return None };
+    let (mean, sigma) = (moments.mean(), moments.sigma());
+    let [by_skewness, by_excess] = law.outside_by_shape(limits.lower(), limits.upper())?;
+    let mut slopes = [0.0, 0.0, by_skewness, by_excess];
+    let sides = [(limits.lower(), -1.0), (limits.upper(), 1.0)];
+    for (limit, sign) in sides.into_iter().filter_map(|(limit, sign)| Some((limit?, sign))) {
+        let z = (limit - mean) / sigma;
+        let density = sign * (law.pdf(limit) + LITTLE * standard_normal::density(z) / sigma);
+        slopes[0] += density;
+        slopes[1] += density * (limit - mean);
+    }
+    let share = rejected_by(&Law::Pearson(law), moments, limits)?;
+    (share < 1.0 && slopes.iter().all(|slope| slope.is_finite())).then_some((share, slopes))
+}
+
 /// How far the share is from what may be rejected, as the ratio of the normal scores `b = -Phi^-1(R)`: kept where it is at most 1, and nearly
 /// in proportion to the tolerances. Below a score of a half its tangent goes on.
 pub(super) fn of_scores(share: f64, allowed: f64) -> f64 {
+    of_scores_with_slope(share, allowed)[0]
+}
+
+/// The same with its derivative by the share.
+pub(super) fn of_scores_with_slope(share: f64, allowed: f64) -> [f64; 2] {
     const LOW: f64 = 0.5;
     let wanted = standard_normal::upper_quantile(allowed);
     if wanted <= LOW {
         // More than a third may be rejected: the shares themselves.
-        return share / allowed;
+        return [share / allowed, 1.0 / allowed];
     }
     if share <= LEAST {
-        return 0.0;
+        return [0.0, 0.0];
     }
     let score = standard_normal::upper_quantile(share.min(1.0 - f64::EPSILON));
-    if score >= LOW { wanted / score } else { wanted / LOW * (1.0 + (LOW - score) / LOW) }
+    // By the share a score falls by one over the density.
+    let density = standard_normal::density(score);
+    match score >= LOW {
+        true => [wanted / score, wanted / (score * score * density)],
+        false => [wanted / LOW * (1.0 + (LOW - score) / LOW), wanted / (LOW * LOW * density)],
+    }
 }
 
 impl Responses {
@@ -176,5 +259,51 @@ impl Responses {
             }
         }
         Some(slopes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Differences of the share itself. A tail of a law is known to 1e-12, by whose part of the share the differences, of 1e-4, are off by 1e-8; their truncation is as much.
+    #[test]
+    fn slopes_are_the_differences_of_the_share() {
+        let share = |[mean, ln, skewness, excess]: [f64; 4], limits: SpecLimits| {
+            fitted_with_slopes(&Moments::new(mean, libm::exp(ln), skewness, excess), limits).unwrap()
+        };
+        let both = [[Some(-3.0), Some(3.5)], [Some(-3.0), None], [None, Some(3.5)], [Some(-1.0), Some(0.5)]];
+        for place in [[0.1, 0.1, 0.2, 0.3], [-0.2, -0.2, -0.4, 0.5], [0.0, 0.0, 0.1, -0.3], [0.05, 0.2, 0.6, 0.55]] {
+            for [lower, upper] in both {
+                let limits = SpecLimits::new(lower, upper).unwrap();
+                let (value, slopes) = share(place, limits);
+                for (index, found) in slopes.into_iter().enumerate() {
+                    let at = |step: f64| {
+                        let mut place = place;
+                        place[index] += step;
+                        share(place, limits).0
+                    };
+                    let expected = (at(1e-4) - at(-1e-4)) / 2e-4;
+                    assert!(
+                        (found - expected).abs() <= 1e-6 * value.max(0.01),
+                        "{place:?}, {limits:?}, {index}: {found}, {expected}"
+                    );
+                }
+            }
+        }
+    }
+
+    /// Differences again, on either side of the score below which the tangent goes on, and where shares themselves are compared.
+    #[test]
+    fn scores_have_the_slopes_of_their_differences() {
+        for (share, allowed) in [(1e-6, 0.0027), (0.0027, 0.0027), (0.1, 0.01), (0.45, 0.01), (0.2, 0.4)] {
+            let [value, found] = of_scores_with_slope(share, allowed);
+            let step = 1e-5 * share;
+            let expected = (of_scores(share + step, allowed) - of_scores(share - step, allowed)) / (2.0 * step);
+            assert!(
+                (found - expected).abs() <= 1e-8 * (value / share).abs(),
+                "{share}, {allowed}: {found}, {expected}"
+            );
+        }
     }
 }

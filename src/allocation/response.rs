@@ -592,7 +592,7 @@ impl Responses {
                 groups.iter_mut().find(|group| zone.is_some() && self.dimensions[group.members[0]].zone() == zone);
             match known {
                 Some(group) => group.members.push(d),
-                None => groups.push(Priced { members: vec![d], parts: 1.0, offers: Vec::new(), rounded: None }),
+                None => groups.push(Priced::without_cost(d)),
             }
         }
         groups

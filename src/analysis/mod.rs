@@ -68,6 +68,8 @@ use crate::law::SurfaceLaw;
 use crate::method::{
     Basis, ClimbEnd, DerivativeSource, Method, MethodError, Narrow, Narrowed, Options, Outcome, climb_until,
 };
+use crate::parallel::join;
+use crate::parallel::prelude::*;
 use crate::problem::Problem;
 use crate::requirement::Requirement;
 use crate::shape::through;
@@ -189,10 +191,11 @@ pub(crate) fn analyze_keeping(
     let left = left.map(|left| left.saturating_sub(jumps.run.evaluations as usize));
     let (verified, doubted) = verification::verify(problem, &outcome, options, left, &mut characteristics, run);
     outcome.evaluated.non_repeatable.extend(doubted);
-    if options.verification(signature) > 0 && !run.stopped() {
-        enclose_all(problem, &outcome, &mut characteristics, run);
-    }
-    let laws = settle::settle(problem, &outcome, options, &mut characteristics);
+    let bounded = options.verification(signature) > 0 && !run.stopped();
+    let bounds = || if bounded { bounds(problem, &outcome, &characteristics, run) } else { Vec::new() };
+    let (bounds, laws) = join(bounds, || settle::laws(problem, &outcome, options, &characteristics));
+    characteristics.iter_mut().zip(bounds).for_each(|(one, bounds)| one.bounds = bounds);
+    let laws = settle::settle(problem, &outcome, options, &mut characteristics, laws);
     let joint = options.target_joint_yield.and_then(|_| settle::joint(&characteristics, &laws));
     let spent = spent(&outcome, options).and(&fallback.run).and(&jumps.run).and(&verified);
     // The extremes say nothing of a share.
@@ -254,13 +257,19 @@ fn joint_requirement(
 }
 
 /// The bounds of interval arithmetic, where a formula has them and the extremes were not searched.
-fn enclose_all(problem: &Problem, outcome: &Outcome, characteristics: &mut [CharacteristicAnalysis], run: &Run<'_>) {
+fn bounds(
+    problem: &Problem,
+    outcome: &Outcome,
+    characteristics: &[CharacteristicAnalysis],
+    run: &Run<'_>,
+) -> Vec<Option<ExtremesProof>> {
     /// Of sigma: ends nearer than this look the same in print.
     const NEAR: f64 = 1e-3;
-    for (c, one) in characteristics.iter_mut().enumerate().filter(|(_, one)| one.extremes.is_none() && !one.constant) {
-        let sigma = one.moments.map(|moments| moments.sigma()).filter(|sigma| *sigma > 0.0);
-        one.bounds = sigma.and_then(|sigma| enclose(problem, outcome, c, NEAR * sigma, run));
-    }
+    let of = |(c, one): (usize, &CharacteristicAnalysis)| {
+        let sigma = one.moments.filter(|_| one.extremes.is_none() && !one.constant)?.sigma();
+        if sigma > 0.0 { enclose(problem, outcome, c, NEAR * sigma, run) } else { None }
+    };
+    characteristics.par_iter().enumerate().map(of).collect()
 }
 
 /// The points and time of the method; its budget ended it where that is why it asked for no more.

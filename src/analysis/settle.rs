@@ -21,6 +21,7 @@ use crate::capability::{Capability, Law, percentiles};
 use crate::characteristic::SpecLimits;
 use crate::law::{Branch, SurfaceLaw, joint_yield};
 use crate::method::{ErrorEstimate, Options, Outcome};
+use crate::parallel::prelude::*;
 use crate::problem::Problem;
 use crate::sampling::one_error;
 use crate::verification::Verified;
@@ -33,6 +34,32 @@ struct Rejected {
     error: Option<f64>,
 }
 
+/// The law of a surface, where it answers, with its shares and its density where that is wanted.
+pub(super) struct Found {
+    shares: SurfaceShares,
+    law: Option<SurfaceLaw>,
+    density: Option<Vec<[f64; 3]>>,
+}
+
+/// The law of the surface of every characteristic whose moments follow from one. Evaluates nothing of the model.
+pub(super) fn laws(
+    problem: &Problem,
+    outcome: &Outcome,
+    options: &Options,
+    characteristics: &[CharacteristicAnalysis],
+) -> Vec<Option<Found>> {
+    let seed = options.seed.unwrap_or(Options::SEED);
+    let of = |(c, one): (usize, &CharacteristicAnalysis)| {
+        let surface = one.moments.is_some() && follows_from_a_surface(one);
+        let beside = (is_sampled(one), seed);
+        let (shares, law) = surface.then(|| SurfaceShares::of(problem, outcome, c, fit(one), beside)).flatten()?;
+        let drawn = law.as_ref().filter(|_| options.densities);
+        let density = drawn.and_then(|law| density(law, shares.quantiles.as_ref()));
+        Some(Found { shares, law, density })
+    };
+    characteristics.par_iter().enumerate().map(of).collect()
+}
+
 /// Decides for every characteristic what its yield comes from, and sets capability and the error of the yield accordingly; the
 /// laws of the surfaces. Evaluates nothing of the model.
 pub(super) fn settle(
@@ -40,20 +67,18 @@ pub(super) fn settle(
     outcome: &Outcome,
     options: &Options,
     characteristics: &mut [CharacteristicAnalysis],
+    found: Vec<Option<Found>>,
 ) -> Vec<Option<SurfaceLaw>> {
-    let (densities, seed) = (options.densities, options.seed.unwrap_or(Options::SEED));
+    let seed = options.seed.unwrap_or(Options::SEED);
     let mut laws: Vec<Option<SurfaceLaw>> = Vec::new();
-    for (c, one) in characteristics.iter_mut().enumerate() {
+    for ((c, one), found) in characteristics.iter_mut().enumerate().zip(found) {
         one.pearson = one.capability;
         laws.push(None);
         if one.moments.is_none() {
             continue;
         }
-        if follows_from_a_surface(one) {
-            let (shares, law) = SurfaceShares::of(problem, outcome, c, fit(one), (is_sampled(one), seed)).unzip();
-            (one.surface_law, laws[c]) = (shares, law.flatten());
-            let quantiles = one.surface_law.as_ref().and_then(|law| law.quantiles.as_ref());
-            one.density = laws[c].as_ref().filter(|_| densities).and_then(|law| density(law, quantiles));
+        if let Some(Found { shares, law, density }) = found {
+            (one.surface_law, laws[c], one.density) = (Some(shares), law, density);
         }
         one.coverage = options.coverage.and_then(|probability| {
             covered(problem, outcome, (c, seed), one, (probability, follows_from_a_surface(one)))

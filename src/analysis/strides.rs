@@ -585,8 +585,9 @@ fn histogram(values: &[f64]) -> Option<Histogram> {
     sorted.sort_unstable_by(f64::total_cmp);
     let at = |share: f64| sorted[((sorted.len() - 1) as f64 * share) as usize];
     let [least, greatest] = [*sorted.first()?, *sorted.last()?];
-    let mut fine = Fine::new(Scale::about(at(0.5), at(0.75) - at(0.25)));
-    Scale::about(at(0.5), at(0.75) - at(0.25)).bins(values).into_iter().for_each(|bin| fine.count(bin));
+    let scale = Scale::about(at(0.5), at(0.75) - at(0.25));
+    let mut fine = Fine::new(scale);
+    fine.count(&scale.bins(values));
     let (edges, counts) = fine.histogram([least, greatest], [at(0.001), at(0.999)], BINS);
     Some(Histogram { edges, counts })
 }

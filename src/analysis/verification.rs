@@ -14,6 +14,7 @@ use crate::assembly::{EvaluationError, NonRepeatable, Run};
 use crate::capability::{Capability, Law};
 use crate::method::{ErrorEstimate, ErrorSource, Method, Options, Order, Outcome, interpolated};
 use crate::moments::Moments;
+use crate::parallel::prelude::*;
 use crate::problem::Problem;
 use crate::summary::RunSummary;
 use crate::surrogate::Surrogate;
@@ -69,14 +70,12 @@ pub(super) fn verify(
         return check(problem, outcome, options, most.min(left.unwrap_or(usize::MAX)), (&open, characteristics), run);
     }
     let seed = options.seed.unwrap_or(Options::SEED);
-    let mut stopped = None;
-    for c in open {
-        // A long formula takes a while for each of some 45 000 points: what is left has no verification, and the report says so.
-        if !sample(problem, outcome, (options, each), c, &mut characteristics[c], (seed, run)) {
-            stopped = Some(run.why_open());
-            break;
-        }
-    }
+    // A long formula takes a while for each of some 45 000 points: what is left has no verification, and the report says so.
+    let one = |(c, one): (usize, &mut CharacteristicAnalysis)| {
+        !open.contains(&c) || sample(problem, outcome, (options, each), c, one, (seed, run))
+    };
+    let done: Vec<bool> = characteristics.par_iter_mut().enumerate().map(one).collect();
+    let stopped = done.contains(&false).then(|| run.why_open());
     (RunSummary { stopped, ..RunSummary::default() }, Vec::new())
 }
 

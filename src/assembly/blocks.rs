@@ -6,6 +6,13 @@ use crate::parallel::prelude::*;
 /// Rows that one task evaluates: enough to hide the cost of starting it, few enough to stay in the cache.
 pub(crate) const BLOCK: usize = 1024;
 
+/// Points whose values stay in a cache near by: a power of two.
+pub(crate) fn near_rows(dimensions: usize) -> usize {
+    /// Two megabytes.
+    const VALUES: usize = 1 << 18;
+    1 << (VALUES / dimensions.max(1)).max(128).ilog2()
+}
+
 /// Evaluates `block` on blocks of about a thousand rows, side by side on rayon's current pool.
 ///
 /// `block` is given a range of rows of `points` and fills a response of its own, so the answers do not depend on the

@@ -27,7 +27,7 @@ mod states;
 mod switch;
 
 pub use account::{ModelInfo, NonRepeatable};
-pub(crate) use blocks::{in_blocks, in_ranges};
+pub(crate) use blocks::{in_blocks, in_ranges, near_rows};
 pub use bounds::Bounds;
 pub use closure::Closure;
 pub use composite::{Composite, CompositeError, Parts, Source};

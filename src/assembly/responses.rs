@@ -74,7 +74,7 @@ impl Responses {
             && self.non_repeatable.is_empty()
             && self.revoked.is_empty()
             && self.gradients.is_empty()
-            && self.values.iter().all(|value| value.is_nan())
+            && self.values.iter().fold(true, |all, value| all & value.is_nan())
     }
 
     /// Number of points.

@@ -49,8 +49,9 @@ fn central(q: f64) -> f64 {
     q * polynomial(&CENTRE[0], r) / polynomial(&CENTRE[1], r)
 }
 
-/// Probabilities that are taken together.
+/// Probabilities that are taken together, and that are looked at for tails at once.
 const LANES: usize = 256;
+const LOOK: usize = 64;
 
 struct Quantiles<'a> {
     place: (f64, f64),
@@ -66,9 +67,20 @@ impl Work for Quantiles<'_> {
         let Self { place: (mean, sigma), values } = self;
         let (mut places, mut outer) = ([0; LANES], [0.0; LANES]);
         let mut count = 0;
-        for (place, value) in values.iter().enumerate() {
-            (places[count], outer[count]) = (place as u8, *value);
-            count += usize::from((value.abs() - 0.5).abs() > CENTRAL);
+        let (looks, rest) = values.as_chunks::<LOOK>();
+        for (look, values) in looks.iter().enumerate() {
+            // Bits that a look over all of them finds, so that the few are gone over and not each.
+            let mut left = (0..LOOK).fold(0, |all, lane| all | u64::from(is_in_tail(values[lane])) << lane);
+            while left != 0 {
+                let lane = left.trailing_zeros() as usize;
+                (places[count], outer[count]) = ((LOOK * look + lane) as u8, values[lane]);
+                count += 1;
+                left &= left - 1;
+            }
+        }
+        for (place, &value) in (values.len() - rest.len()..).zip(rest).filter(|(_, value)| is_in_tail(**value)) {
+            (places[count], outer[count]) = (place as u8, value);
+            count += 1;
         }
         let (places, outer) = (&places[..count], &mut outer[..count]);
         let mut far = false;
@@ -90,6 +102,11 @@ impl Work for Quantiles<'_> {
             values[usize::from(place)] = *z;
         }
     }
+}
+
+#[inline(always)]
+fn is_in_tail(value: f64) -> bool {
+    (value.abs() - 0.5).abs() > CENTRAL
 }
 
 /// A quantile counted from below where the probability was, and from above where that was negative.

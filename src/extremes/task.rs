@@ -11,6 +11,7 @@ use crate::assembly::{Bounds, Run};
 use crate::dimension::Dimension;
 use crate::distribution::Distribution;
 use crate::method::Outcome;
+use crate::parallel::join;
 use crate::plan::Point;
 use crate::problem::Problem;
 use crate::short_sort::ShortSort;
@@ -202,6 +203,19 @@ impl Task {
         Some(bounds)
     }
 
+    /// Bounds over a part of the box, of which all of it is known; of the function, or of its negative.
+    fn signed(
+        &self,
+        problem: &Problem,
+        (region, whole): (&[[f64; 2]], &Bounds),
+        part: &[[f64; 2]],
+        sign: f64,
+    ) -> Bounds {
+        let of_part = || self.bounds(problem, part).expect("a function has bounds everywhere or nowhere");
+        let bounds = if part == region { whole.clone() } else { of_part() };
+        if sign > 0.0 { bounds } else { bounds.negated() }
+    }
+
     /// The whole box.
     fn bands(&self) -> Vec<[f64; 2]> {
         (0..self.region.len()).map(|d| [self.region.lower[d], self.region.upper[d]]).collect()
@@ -211,18 +225,15 @@ impl Task {
     /// bounds.
     pub(super) fn enclose(&self, problem: &Problem, allowed: f64, run: &Run<'_>) -> Option<ExtremesProof> {
         let region = self.bands();
-        self.bounds(problem, &region)?;
+        let whole = self.bounds(problem, &region)?;
         let round = if self.zones.is_empty() { 1 } else { ROUND };
         let limit = round * ENCLOSING * FEW / region.len().max(FEW);
         let side = |sign: f64| {
-            let bounds = |region: &[[f64; 2]]| {
-                let bounds = self.bounds(problem, region).expect("a function has bounds everywhere or nowhere");
-                if sign > 0.0 { bounds } else { bounds.negated() }
-            };
+            let bounds = |part: &[[f64; 2]]| self.signed(problem, (&region, &whole), part, sign);
             let zones = proof::Zones { places: &self.zones, bands: &region };
             proof::least(&bounds, &region, zones, f64::INFINITY, allowed, limit, &|| run.stopped())
         };
-        let (below, above) = (side(1.0), side(-1.0));
+        let (below, above) = join(|| side(1.0), || side(-1.0));
         let near = |least: &proof::Least| least.lower >= least.best - allowed;
         Some(ExtremesProof {
             bounds: [below.lower, -above.lower],
@@ -239,24 +250,19 @@ impl Task {
         answers: &Answers<'_>,
         run: &Run<'_>,
     ) -> (Option<ExtremesProof>, Vec<Vec<f64>>) {
-        let everywhere = |region: &[[f64; 2]]| self.bounds(problem, region);
         let region = self.bands();
         let values = self.known(answers).map(|(_, value)| value);
         let [least, greatest] =
             values.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, greatest], y| [least.min(y), greatest.max(y)]);
-        if answers.spent.run.unfinished() || least > greatest || everywhere(&region).is_none() {
-            return (None, Vec::new());
-        }
+        let known = !answers.spent.run.unfinished() && least <= greatest;
+        let Some(whole) = known.then(|| self.bounds(problem, &region)).flatten() else { return (None, Vec::new()) };
         let allowed = PROVEN * (greatest - least) + ROUNDING * least.abs().max(greatest.abs());
         let limit = BOXES * FEW / self.region.len().max(FEW);
         let side = |sign: f64, best: f64| {
-            let bounds = |region: &[[f64; 2]]| {
-                let bounds = everywhere(region).expect("a function has bounds everywhere or nowhere");
-                if sign > 0.0 { bounds } else { bounds.negated() }
-            };
+            let bounds = |part: &[[f64; 2]]| self.signed(problem, (&region, &whole), part, sign);
             proof::least(&bounds, &region, proof::Zones::NONE, sign * best, allowed, limit, &|| run.stopped())
         };
-        let (below, above) = (side(1.0, least), side(-1.0, greatest));
+        let (below, above) = join(|| side(1.0, least), || side(-1.0, greatest));
         let proof = ExtremesProof {
             bounds: [below.lower.min(least), (-above.lower).max(greatest)],
             proven: below.lower >= least - allowed && -above.lower <= greatest + allowed,

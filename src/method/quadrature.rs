@@ -301,6 +301,11 @@ impl<'p> Quadrature<'p> {
         point
     }
 
+    /// The node at which a variable that is one dimension stands; None at its mean.
+    pub(super) fn node(&mut self, variable: usize, node: usize) -> Option<AtNode> {
+        self.design.point(&self.variables.values(&[(variable, node)])).at().first().copied()
+    }
+
     /// Cuts along every variable: for each the points at its nodes.
     pub(super) fn cuts(&mut self) -> Vec<Vec<Point>> {
         let nodes: Vec<usize> = self.variables.all.iter().map(|variable| variable.rule.nodes.len()).collect();

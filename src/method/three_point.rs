@@ -27,7 +27,7 @@ use crate::assembly::Run;
 use crate::distribution::Rule;
 use crate::moments::{Moments, exact};
 use crate::parallel::prelude::*;
-use crate::plan::{KnownAnswers, Plan, Point, Purpose};
+use crate::plan::{AtNode, KnownAnswers, Plan, Point, Purpose};
 use crate::problem::Problem;
 
 pub(super) struct ThreePoint;
@@ -54,10 +54,10 @@ impl Procedure for ThreePoint {
 
     fn fits(&self, problem: &Problem, options: &Options) -> Result<Cost, MethodError> {
         self.check(problem, options)?;
+        let (mut quadrature, grid) = self.grid(problem, options)?;
         // Over the budget for certain, before a million points are named.
-        let points = self.grid(problem, options)?.1.len();
-        Cost { evaluations: points, stages: 1 }.within(self.name(), problem, options)?;
-        Cost::of(&*self.plan(problem, options)?).within(self.name(), problem, options)
+        Cost { evaluations: grid.len(), stages: 1 }.within(self.name(), problem, options)?;
+        Cost { evaluations: grid.cost(&mut quadrature), stages: 1 }.within(self.name(), problem, options)
     }
 
     fn plan(&self, problem: &Problem, options: &Options) -> Result<Arc<dyn Plan>, MethodError> {
@@ -114,19 +114,56 @@ impl Grid {
         place / stride % self.levels[variable]
     }
 
+    /// The node of every level of every variable, None inside at a mean; None where a variable moves several dimensions, or two of its
+    /// levels are the same double.
+    fn nodes(&self, quadrature: &mut Quadrature<'_>) -> Option<Vec<Vec<Option<AtNode>>>> {
+        let variable = |(v, &levels): (usize, &usize)| {
+            quadrature.variables.position(v)?;
+            let nodes: Vec<Option<AtNode>> = (0..levels).map(|level| quadrature.node(v, level)).collect();
+            (1..levels).all(|level| !nodes[..level].contains(&nodes[level])).then_some(nodes)
+        };
+        self.levels.iter().enumerate().map(variable).collect()
+    }
+
+    /// How many points the design has with all combinations.
+    fn cost(&self, quadrature: &mut Quadrature<'_>) -> usize {
+        let Some(nodes) = self.nodes(quadrature) else {
+            self.points(quadrature);
+            return quadrature.design.cost().0;
+        };
+        // All combinations are different. Of the points that the design begins with only the nominal one can be among them.
+        let nominal = quadrature.design.nominal().at();
+        let of_variable = |v: usize| {
+            let d = quadrature.variables.position(v).map(|position| quadrature.design.varying()[position]);
+            nominal.iter().copied().find(|at| Some(at.dimension as usize) == d)
+        };
+        let own: Vec<Option<AtNode>> = (0..nodes.len()).map(of_variable).collect();
+        let among = nodes.iter().zip(&own).all(|(nodes, own)| nodes.contains(own));
+        let whole = own.iter().flatten().count() == nominal.len();
+        quadrature.design.cost().0 + self.len() - usize::from(among && whole)
+    }
+
     fn points(&self, quadrature: &mut Quadrature<'_>) -> Vec<Point> {
+        let nodes = self.nodes(quadrature);
         let mut at: Vec<(usize, usize)> = (0..self.levels.len()).map(|v| (v, 0)).collect();
         let strides: Vec<usize> = (0..self.levels.len()).map(|v| self.stride(v)).collect();
+        let mut elsewhere = Vec::with_capacity(at.len());
+        quadrature.design.reserve(self.len());
         (0..self.len())
             .map(|place| {
                 at.iter_mut().for_each(|(v, level)| *level = self.level(place, *v, strides[*v]));
-                quadrature.want(&at, Purpose::Grid)
+                let Some(nodes) = &nodes else { return quadrature.want(&at, Purpose::Grid) };
+                elsewhere.clear();
+                elsewhere.extend(at.iter().filter_map(|&(v, level)| nodes[v][level]));
+                let point = Point::of(&elsewhere);
+                quadrature.design.want(point.clone(), Purpose::Grid);
+                point
             })
             .collect()
     }
 
     fn values(&self, points: &[Point], known: &KnownAnswers, c: usize) -> Result<Vec<f64>, Lacking> {
-        let values: Vec<Option<f64>> = points.iter().map(|point| known.value(point, c)).collect();
+        let values: Vec<Option<f64>> = points.par_iter().map(|point| known.value(point, c)).collect();
         complete(values.iter().map(Option::is_some))?;
         Ok(values.into_iter().flatten().collect())
     }

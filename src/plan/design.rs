@@ -77,6 +77,12 @@ impl Design {
         Point::of(&elsewhere)
     }
 
+    /// Makes room for so many points more.
+    pub(crate) fn reserve(&mut self, points: usize) {
+        self.wanted.reserve(points, |&place| self.points[place as usize].0.mixed());
+        self.points.reserve(points);
+    }
+
     /// Wants a point.
     pub(crate) fn want(&mut self, point: Point, purpose: Purpose) {
         let Self { points, wanted, .. } = self;

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use hashbrown::HashTable;
+use hashbrown::hash_table::Entry;
 
 use super::Point;
 use crate::assembly::EvaluationError;
@@ -37,24 +38,30 @@ impl KnownAnswers {
         self.values.iter_mut().for_each(|column| column.reserve(points));
     }
 
-    /// Keeps one characteristic's answer at a point.
-    pub(crate) fn learn(&mut self, point: &Point, characteristic: usize, answer: Result<f64, EvaluationError>) {
-        let row = match self.row(point) {
-            Some(row) => row,
-            None => {
-                let row = u32::try_from(self.points.len()).expect("fewer than four billion points");
-                self.rows.insert_unique(point.mixed(), row, |&row| self.points[row as usize].mixed());
-                self.points.push(point.clone());
-                self.values.iter_mut().for_each(|column| column.push(f64::NAN));
+    /// The place of a point, a new one where it has none. The next two keep what it answered there.
+    pub(crate) fn place(&mut self, point: &Point) -> u32 {
+        let Self { rows, points, values, .. } = self;
+        let own = |&row: &u32| points[row as usize] == *point;
+        match rows.entry(point.mixed(), own, |&row| points[row as usize].mixed()) {
+            Entry::Occupied(known) => *known.get(),
+            Entry::Vacant(free) => {
+                let row = u32::try_from(points.len()).expect("fewer than four billion points");
+                free.insert(row);
+                points.push(point.clone());
+                values.iter_mut().for_each(|column| column.push(f64::NAN));
                 row
             }
-        };
-        match answer {
-            Ok(value) => self.values[characteristic][row as usize] = value,
-            Err(error) => {
-                self.errors.insert((row, characteristic as u32), error);
-            }
         }
+    }
+
+    /// Keeps the value of a characteristic at a place.
+    pub(crate) fn set(&mut self, place: u32, characteristic: usize, value: f64) {
+        self.values[characteristic][place as usize] = value;
+    }
+
+    /// Keeps why a characteristic has no value at a place.
+    pub(crate) fn fail(&mut self, place: u32, characteristic: usize, error: EvaluationError) {
+        self.errors.insert((place, characteristic as u32), error);
     }
 
     fn row(&self, point: &Point) -> Option<u32> {

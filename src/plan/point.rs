@@ -1,5 +1,7 @@
 //! A point by name: the means, but for a few dimensions that stand at one of their nodes.
 
+use std::sync::Arc;
+
 /// One dimension at one of its nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct AtNode {
@@ -20,8 +22,8 @@ pub enum Point {
     One([AtNode; 1]),
     /// Two dimensions elsewhere.
     Two([AtNode; 2]),
-    /// Three or more dimensions elsewhere.
-    Many(Box<[AtNode]>),
+    /// Three or more dimensions elsewhere. Copies share them: a point stands in a plan, a stage and among the answers.
+    Many(Arc<[AtNode]>),
 }
 
 impl Point {
@@ -33,9 +35,12 @@ impl Point {
             [one, two] if one < two => Self::Two([one, two]),
             [one, two] => Self::Two([two, one]),
             _ => {
-                let mut at: Box<[AtNode]> = at.into();
+                if at.is_sorted() {
+                    return Self::Many(at.into());
+                }
+                let mut at = at.to_vec();
                 at.sort_unstable();
-                Self::Many(at)
+                Self::Many(at.into())
             }
         }
     }

@@ -84,10 +84,11 @@ impl Fine {
         Self { scale, counts: vec![0; 2 * SIDE], total: 0 }
     }
 
-    /// Counts a value in its bin.
-    pub fn count(&mut self, bin: u32) {
-        self.counts[bin as usize] += 1;
-        self.total += 1;
+    /// Counts values in their bins.
+    pub fn count(&mut self, bins: &[u32]) {
+        let counts = &mut self.counts[..2 * SIDE];
+        bins.iter().for_each(|&bin| counts[bin as usize] += 1);
+        self.total += bins.len() as u64;
     }
 
     /// Takes in the counts of another on the same scale.

@@ -25,9 +25,10 @@ use std::time::Duration;
 
 use serde::Serialize;
 
-use crate::assembly::{EvaluationError, NonRepeatable, Points, Request, Responses, Run};
+use crate::assembly::{EvaluationError, NonRepeatable, Points, Request, Responses, Run, near_rows};
 use crate::method::{Method, MethodError, Options, Outcome};
 use crate::parallel::prelude::*;
+use crate::parallel::{Rooms, join};
 use crate::problem::Problem;
 use crate::sampling::{Draws, Portion, Room};
 use crate::shape::through;
@@ -398,31 +399,42 @@ fn drawn(
 ) -> Simulation {
     let mut tally = Tally::new(problem, control, options.sampler);
     let mut portions = Portions::new(options, problem.function().signature().costly, problem.dimensions().len());
+    let rooms = Rooms::none();
+    let room = || (Room::default(), Points::repeated(&[], 0), Responses::open(0, 0));
+    // Where the number of points is known beforehand, a batch is counted while the next one is evaluated.
+    let ahead = !portions.costly && options.until.is_none() && options.until_yield.is_none();
+    let mut waiting: (Vec<Portion>, Vec<Block>) = Default::default();
     let (mut reached, mut expected) = (None, portions.total as f64);
-    while !run.stopped() && !tally.stopped {
-        let batch = portions.next_batch();
-        if batch.is_empty() {
+    loop {
+        let ends = run.stopped() || tally.stopped || reached == Some(true);
+        let batch = if ends { Vec::new() } else { portions.next_batch() };
+        if batch.is_empty() && waiting.0.is_empty() {
             break;
         }
-        let one = |(room, points, out): &mut (Room, Points, Responses), portion: &Portion| {
-            draws.write(*portion, room, points);
-            block(problem, (points, out), *portion, run, (tally.lenses(), control, options.sampler))
+        let lenses = tally.lenses().to_vec();
+        let one = |portion: &Portion| {
+            rooms.within(room, |(room, points, out)| {
+                draws.write(*portion, room, points);
+                block(problem, (points, out), *portion, run, (&lenses, control, options.sampler))
+            })
         };
-        let room = || (Room::default(), Points::repeated(&[], 0), Responses::open(0, 0));
-        let blocks: Vec<Block> = match portions.costly {
-            true => batch.iter().map(|portion| one(&mut room(), portion)).collect(),
-            false => batch.par_iter().map_init(room, one).collect(),
+        let blocks = || match portions.costly {
+            true => batch.iter().map(one).collect(),
+            false => batch.par_iter().map(one).collect(),
         };
-        tally.add(&batch, blocks);
+        if ahead {
+            let (before, answers) = std::mem::take(&mut waiting);
+            let ((), blocks) = join(|| tally.add(&before, answers), blocks);
+            waiting = (batch, blocks);
+        } else {
+            tally.add(&batch, blocks());
+        }
         if let Some(ratio) = tally.shortfall(options) {
             // Standard errors shrink with the root of the sample.
             expected = expected.min(tally.samples() as f64 * (ratio * ratio).max(1.0));
             reached = Some(ratio <= 1.0);
         }
         pace(Pace { samples: tally.samples(), expected, elapsed: begun.elapsed() });
-        if reached == Some(true) {
-            break;
-        }
     }
     let open = tally.stopped || reached != Some(true) && !portions.done();
     let stopped = control.and_then(Control::stopped).or_else(|| open.then(|| run.why_open()));
@@ -449,13 +461,6 @@ fn block(
     Block::of(out, took, (lenses, sampler, portion.replicate), &beside)
 }
 
-/// Points whose values stay in a cache near by: a power of two.
-fn most_rows(dimensions: usize) -> usize {
-    /// Two megabytes.
-    const VALUES: usize = 1 << 18;
-    1 << (VALUES / dimensions.max(1)).max(128).ilog2()
-}
-
 /// The portions of a sample, a batch at a time, every replicate as far as the others.
 struct Portions {
     replicates: u64,
@@ -474,7 +479,7 @@ impl Portions {
             Sampler::Random => (1, options.samples),
             Sampler::Sobol => (REPLICATES, options.samples.div_ceil(REPLICATES).next_power_of_two()),
         };
-        let rows = if costly && replicates == 1 { COSTLY } else { ROWS.min(most_rows(dimensions)) } as u64;
+        let rows = if costly && replicates == 1 { COSTLY } else { ROWS.min(near_rows(dimensions)) } as u64;
         Self { replicates, rows: rows.min(each), total: replicates * each, each, done: 0, costly }
     }
 

@@ -156,10 +156,11 @@ impl<'a> Tally<'a> {
 
     /// Takes in the blocks of these portions, in their order.
     pub(super) fn add(&mut self, portions: &[Portion], blocks: Vec<Block>) {
-        self.run.stages += 1;
+        self.run.stages += u64::from(!portions.is_empty());
         if self.lenses.iter().any(|lens| lens.scale.is_none()) {
             self.look(&blocks);
         }
+        let mut uncounted: Vec<(usize, usize, Values)> = Vec::with_capacity(portions.len() * self.counts.len());
         for (portion, block) in portions.iter().zip(blocks) {
             self.answered += block.answered;
             self.extra += block.extra;
@@ -170,20 +171,26 @@ impl<'a> Tally<'a> {
             self.stopped |= !block.complete;
             self.non_repeatable.extend(block.non_repeatable);
             block.together.iter().for_each(|(part, of)| self.together[*part].merge(of));
-            for ((count, lens), column) in self.counts.iter_mut().zip(&self.lenses).zip(block.columns) {
+            for (c, (count, column)) in self.counts.iter_mut().zip(block.columns).enumerate() {
                 count.failed += column.failed;
                 count.error = count.error.take().or(column.error);
-                let replicate = &mut count.replicates[portion.replicate as usize];
+                let place = portion.replicate as usize;
+                let replicate = &mut count.replicates[place];
                 replicate.summary.merge(&column.summary);
                 replicate.outside[0] += column.outside[0];
                 replicate.outside[1] += column.outside[1];
                 replicate.difference.merge(&column.difference);
-                let Some(scale) = lens.scale else { continue };
-                let fine = replicate.fine.get_or_insert_with(|| Fine::new(scale));
-                match column.values {
-                    Values::Plain(values) => scale.bins(&values).into_iter().for_each(|bin| fine.count(bin)),
-                    Values::Binned(bins) => bins.into_iter().for_each(|bin| fine.count(bin)),
-                }
+                uncounted.push((c, place, column.values));
+            }
+        }
+        // The counts of all replicates are larger than a cache near by: those of one after those of another.
+        uncounted.sort_by_key(|&(c, replicate, _)| (c, replicate));
+        for (c, replicate, values) in uncounted {
+            let Some(scale) = self.lenses[c].scale else { continue };
+            let fine = self.counts[c].replicates[replicate].fine.get_or_insert_with(|| Fine::new(scale));
+            match values {
+                Values::Plain(values) => fine.count(&scale.bins(&values)),
+                Values::Binned(bins) => fine.count(&bins),
             }
         }
     }
