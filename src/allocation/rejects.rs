@@ -30,13 +30,12 @@ use crate::parallel::prelude::*;
 const FAR: f64 = 0.7;
 /// Half a difference of tails in `ln T`, along held contours: truncation and rounding 1e-8.
 const STEP: f64 = 1e-4;
-/// Half a difference of what breaks several limits, which points may count, or is exact to a part of all.
-const WIDE: f64 = 0.05;
+/// Half a difference of what breaks several limits, where that is exact to a part of all; where points count it, it is taken to grow as the rejects do.
 const NARROW: f64 = 1e-3;
 const EXACT: f64 = 1e-12;
 /// A part of the rejects that breaks several limits and whose slope is left out.
 const FEW: f64 = 1e-6;
-/// Dimensions beyond which the slopes of what breaks several limits take too long.
+/// Dimensions beyond which those differences take too long.
 const MANY: usize = 60;
 /// Less is rejected by nothing that doubles tell.
 const LEAST: f64 = 1e-300;
@@ -66,9 +65,11 @@ impl RejectFit {
             by.iter_mut().zip(of).for_each(|(by, of)| *by += of);
         }
         let varying = responses.varying();
-        if twice > FEW * truth && varying.len() <= MANY {
-            let step = if of_twice.error <= EXACT { NARROW } else { WIDE };
-            let of_twice = varying.par_iter().map(|&d| self.slope_of_twice(responses, d, step).unwrap_or(0.0));
+        if of_twice.error > EXACT {
+            // Differences of what points count would be larger than the slopes themselves.
+            by.iter_mut().for_each(|by| *by *= truth / tails);
+        } else if twice > FEW * truth && varying.len() <= MANY {
+            let of_twice = varying.par_iter().map(|&d| self.slope_of_twice(responses, d).unwrap_or(0.0));
             varying.iter().zip(of_twice.collect::<Vec<f64>>()).for_each(|(&d, of)| by[d] -= of);
         }
         let each: Vec<Priced> = varying.iter().map(|&d| Priced::without_cost(d)).collect();
@@ -93,7 +94,7 @@ impl RejectFit {
     }
 
     /// How what breaks several limits grows with `ln T` of a dimension.
-    fn slope_of_twice(&self, responses: &Responses, d: usize, half: f64) -> Option<f64> {
+    fn slope_of_twice(&self, responses: &Responses, d: usize) -> Option<f64> {
         let twice = |step: f64| {
             let mut factors = vec![1.0; responses.dimensions.len()];
             factors[d] = libm::exp(step);
@@ -105,7 +106,7 @@ impl RejectFit {
             let laws: Vec<(&SurfaceLaw, SpecLimits)> = laws.iter().map(|(law, limits)| (law, *limits)).collect();
             Some(rejected(&laws).1.value)
         };
-        Some((twice(half)? - twice(-half)?) / (2.0 * half))
+        Some((twice(NARROW)? - twice(-NARROW)?) / (2.0 * NARROW))
     }
 
     /// The share at factors of all tolerances, and how it grows with `ln T` of every group; None where that takes differences.

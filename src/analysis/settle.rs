@@ -35,7 +35,7 @@ struct Rejected {
 }
 
 /// The law of a surface, where it answers, with its shares and its density where that is wanted.
-pub(super) struct Found {
+pub(super) struct SharesByLaw {
     shares: SurfaceShares,
     law: Option<SurfaceLaw>,
     density: Option<Vec<[f64; 3]>>,
@@ -47,7 +47,7 @@ pub(super) fn laws(
     outcome: &Outcome,
     options: &Options,
     characteristics: &[CharacteristicAnalysis],
-) -> Vec<Option<Found>> {
+) -> Vec<Option<SharesByLaw>> {
     let seed = options.seed.unwrap_or(Options::SEED);
     let of = |(c, one): (usize, &CharacteristicAnalysis)| {
         let surface = one.moments.is_some() && follows_from_a_surface(one);
@@ -55,7 +55,7 @@ pub(super) fn laws(
         let (shares, law) = surface.then(|| SurfaceShares::of(problem, outcome, c, fit(one), beside)).flatten()?;
         let drawn = law.as_ref().filter(|_| options.densities);
         let density = drawn.and_then(|law| density(law, shares.quantiles.as_ref()));
-        Some(Found { shares, law, density })
+        Some(SharesByLaw { shares, law, density })
     };
     characteristics.par_iter().enumerate().map(of).collect()
 }
@@ -67,7 +67,7 @@ pub(super) fn settle(
     outcome: &Outcome,
     options: &Options,
     characteristics: &mut [CharacteristicAnalysis],
-    found: Vec<Option<Found>>,
+    found: Vec<Option<SharesByLaw>>,
 ) -> Vec<Option<SurfaceLaw>> {
     let seed = options.seed.unwrap_or(Options::SEED);
     let mut laws: Vec<Option<SurfaceLaw>> = Vec::new();
@@ -77,7 +77,7 @@ pub(super) fn settle(
         if one.moments.is_none() {
             continue;
         }
-        if let Some(Found { shares, law, density }) = found {
+        if let Some(SharesByLaw { shares, law, density }) = found {
             (one.surface_law, laws[c], one.density) = (Some(shares), law, density);
         }
         one.coverage = options.coverage.and_then(|probability| {

@@ -203,7 +203,7 @@ impl Task {
         Some(bounds)
     }
 
-    /// Bounds over a part of the box, of which all of it is known; of the function, or of its negative.
+    /// Bounds of the function over a part of the box, or of its negative. Those over the whole box are computed once and handed in.
     fn signed(
         &self,
         problem: &Problem,

@@ -114,13 +114,11 @@ impl Grid {
         place / stride % self.levels[variable]
     }
 
-    /// The node of every level of every variable, None inside at a mean; None where a variable moves several dimensions, or two of its
-    /// levels are the same double.
+    /// The node of every level of every variable, None inside at a mean; None where a variable moves several dimensions.
     fn nodes(&self, quadrature: &mut Quadrature<'_>) -> Option<Vec<Vec<Option<AtNode>>>> {
         let variable = |(v, &levels): (usize, &usize)| {
             quadrature.variables.position(v)?;
-            let nodes: Vec<Option<AtNode>> = (0..levels).map(|level| quadrature.node(v, level)).collect();
-            (1..levels).all(|level| !nodes[..level].contains(&nodes[level])).then_some(nodes)
+            Some((0..levels).map(|level| quadrature.node(v, level)).collect())
         };
         self.levels.iter().enumerate().map(variable).collect()
     }

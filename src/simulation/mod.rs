@@ -434,7 +434,9 @@ fn drawn(
             expected = expected.min(tally.samples() as f64 * (ratio * ratio).max(1.0));
             reached = Some(ratio <= 1.0);
         }
-        pace(Pace { samples: tally.samples(), expected, elapsed: begun.elapsed() });
+        if tally.samples() > 0 {
+            pace(Pace { samples: tally.samples(), expected, elapsed: begun.elapsed() });
+        }
     }
     let open = tally.stopped || reached != Some(true) && !portions.done();
     let stopped = control.and_then(Control::stopped).or_else(|| open.then(|| run.why_open()));
