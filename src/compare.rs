@@ -13,7 +13,7 @@ use crate::problem::Problem;
 use crate::sampling::{Estimate, Sampler, one_error};
 use crate::shape::seconds;
 use crate::short_sort::ShortSort;
-use crate::simulation::{SimulatedCharacteristic, Simulation, SimulationError, SimulationOptions, simulate_with};
+use crate::simulation::{ROWS, SimulatedCharacteristic, Simulation, SimulationError, SimulationOptions, simulate_with};
 use crate::summary::RunSummary;
 use crate::time::Instant;
 use crate::verdict::Verdict;
@@ -472,8 +472,10 @@ fn of_analysis(contender: Contender, analysis: &Analysis, took: Duration) -> Ran
 }
 
 fn of_simulation(contender: Contender, found: &Simulation, took: Duration, costly: bool) -> Ran {
-    // A sample of a model that is not costly counts the time of every thread.
-    let evaluation = if costly { found.run.in_model } else { found.run.in_model / threads() };
+    // A sample of a model that is not costly counts the time of every thread, of which a short one has no use for all.
+    let portions = found.samples.div_ceil(ROWS as u64).max(1);
+    let at_once = if costly { 1 } else { u64::from(threads()).min(portions) as u32 };
+    let evaluation = found.run.in_model / at_once;
     Ran {
         contender,
         run: found.run,

@@ -162,7 +162,7 @@ impl SimulationOptions {
 /// Replicates of Sobol's points, each scrambled by itself: what they differ by is the standard error.
 pub(crate) const REPLICATES: u64 = crate::verification::REPLICATES as u64;
 /// Points that a task evaluates together.
-const ROWS: usize = 1024;
+pub(crate) const ROWS: usize = 1024;
 /// Tasks between two looks at the clock and at what is wanted.
 const TASKS: usize = 64;
 /// Points of a costly model between two looks.
