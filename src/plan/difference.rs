@@ -453,6 +453,7 @@ struct Builder<'k, T> {
 
 impl<T: FnMut(Point, Purpose)> Builder<'_, T> {
     /// A point that cannot have been handed out yet.
+    #[inline(always)]
     fn add_distinct(&mut self, point: Point, purpose: Purpose) {
         if !self.known.tried(&point) {
             self.taken += 1;

@@ -34,15 +34,19 @@ impl Point {
             [one] => Self::One([one]),
             [one, two] if one < two => Self::Two([one, two]),
             [one, two] => Self::Two([two, one]),
-            _ => {
-                if at.is_sorted() {
-                    return Self::Many(at.into());
-                }
-                let mut at = at.to_vec();
-                at.sort_unstable();
-                Self::Many(at.into())
-            }
+            _ => Self::many(at),
         }
+    }
+
+    // Apart, so that the usual kinds are made where they are wanted.
+    #[cold]
+    fn many(at: &[AtNode]) -> Self {
+        if at.is_sorted() {
+            return Self::Many(at.into());
+        }
+        let mut at = at.to_vec();
+        at.sort_unstable();
+        Self::Many(at.into())
     }
 
     /// The dimensions that are elsewhere.
