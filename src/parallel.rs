@@ -69,7 +69,6 @@ pub(crate) mod prelude {
             self.iter()
         }
 
-        fn par_iter_mut(&mut self) -> std::slice::IterMut<'_, T>;
         fn par_iter_mut(&mut self) -> std::slice::IterMut<'_, T> {
             self.iter_mut()
         }
