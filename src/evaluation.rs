@@ -195,7 +195,7 @@ impl Evaluated {
     }
 }
 
-/// What the points of a stage are evaluated with.
+/// The model, the plan and the run that evaluate the points of a stage.
 struct Desk<'a> {
     problem: &'a Problem,
     plan: &'a dyn Plan,
