@@ -208,7 +208,7 @@ impl Desk<'_> {
     fn answers(&self, room: &mut Points, batch: &[(Point, Purpose)]) -> Responses {
         let Self { problem, plan, centre, run } = self;
         if room.rows() != batch.len() {
-            // Two rooms would stand beside each other.
+            // The old room goes first, so that there are never two.
             *room = Points::repeated(&[], 0);
             *room = Points::repeated(centre, batch.len());
         }

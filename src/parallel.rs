@@ -86,15 +86,6 @@ pub(crate) mod prelude {
         fn flat_map_iter<U: IntoIterator, F: FnMut(Self::Item) -> U>(self, each: F) -> std::iter::FlatMap<Self, U, F> {
             self.flat_map(each)
         }
-
-        fn map_init<T, R>(
-            self,
-            init: impl FnOnce() -> T,
-            mut each: impl FnMut(&mut T, Self::Item) -> R,
-        ) -> impl Iterator<Item = R> {
-            let mut room = init();
-            self.map(move |item| each(&mut room, item))
-        }
     }
 
     impl<I: Iterator> ParallelIterator for I {}
