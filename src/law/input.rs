@@ -217,17 +217,6 @@ impl Input {
         z.clamp(self.ends[0], self.ends[1])
     }
 
-    /// Puts quantiles in the place of probabilities, as [`at_tail`](Self::at_tail).
-    pub(super) fn at_tails(&self, tails: &mut [f64]) {
-        match self.normal {
-            true => {
-                standard_normal::quantiles(tails);
-                tails.iter_mut().for_each(|z| *z = z.clamp(self.ends[0], self.ends[1]));
-            }
-            false => tails.iter_mut().for_each(|tail| *tail = self.at_tail(*tail)),
-        }
-    }
-
     /// Places where something is not smooth: the ends, and corners of the density.
     pub(super) fn breaks(&self) -> Vec<f64> {
         let mut breaks: Vec<f64> = self.corners.iter().copied().chain(self.ends).collect();

@@ -17,6 +17,7 @@
 //! Every figure comes with its own numerical error. That is the error of the law of this surface: how far the surface is from
 //! the model is another question.
 
+mod common_points;
 mod complex;
 mod contour;
 mod derivative;

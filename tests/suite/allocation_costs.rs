@@ -117,8 +117,8 @@ fn a_joint_yield_is_required_of_all_characteristics() {
 }
 
 /// Three gaps with eight dimensions in common and one each: given what they share they are independent, so that the joint yield is one integral
-/// (Simpson, 1e-9). By symmetry an optimum has two tolerances, and is scanned. What breaks several limits is counted by points, whose error
-/// of some 1e-3 the tolerances make up for: a twentieth of the cost.
+/// (Simpson, 1e-9). By symmetry an optimum has two tolerances, and is scanned. What breaks several limits is counted by points: twice their error of some
+/// 1e-5 of all assemblies, a hundredth of what may be rejected, costs less than a thousandth, and the scan is as coarse.
 #[test]
 fn a_joint_yield_of_gaps_that_vary_together_comes_to_rest() {
     const LIMIT: f64 = 0.28;
@@ -174,7 +174,7 @@ fn a_joint_yield_of_gaps_that_vary_together_comes_to_rest() {
     assert!(bands[..8].iter().all(|t| (t / of_shared - 1.0).abs() < 1e-3), "{bands:?}");
     assert!(joint(of_shared, of_own) >= LEAST, "{}", joint(of_shared, of_own));
     let ratio = found.cost_after.unwrap() / best;
-    assert!((1.0 - 1e-3..1.06).contains(&ratio), "{ratio}: {bands:?}");
+    assert!((1.0 - 1e-3..1.003).contains(&ratio), "{ratio}: {bands:?}");
     assert_eq!(found.joint_requirement.unwrap().after.unwrap().verdict, Verdict::Met);
 }
 

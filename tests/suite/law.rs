@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, LazyLock};
 
+use sensitol::Dimension;
 use sensitol::analysis::{Branch, LawError, LawFigure};
 use sensitol::correlation::{Correlation, Pair};
 use sensitol::distribution::{
@@ -10,10 +11,7 @@ use sensitol::distribution::{
 };
 use sensitol::internals::LawTail;
 use sensitol::internals::reach::*;
-use sensitol::internals::{
-    Inputs, Interactions, LawOptions, Rule, SurfaceLaw, Surrogate, Univariate, joint_yield, shapes,
-};
-use sensitol::{Dimension, SpecLimits};
+use sensitol::internals::{Inputs, Interactions, LawOptions, Rule, SurfaceLaw, Surrogate, Univariate, shapes};
 use serde_json::Value;
 
 use super::support::repository;
@@ -529,26 +527,6 @@ fn held_figures_are_smooth_in_a_tolerance() {
             assert!(fourth.abs() < allowed, "{fourth:e} of {:?}", law.branch());
         }
     }
-}
-
-/// Exact: with two independent characteristics the joint yield is the product; with the same one twice it is the yield.
-#[test]
-fn a_joint_yield_counts_common_failures_once() {
-    let inputs = vec![normal(), uniform(), uniform()];
-    let first = made(&of(0.0, &[&[1.0], &[0.5], &[]], &[]), &inputs);
-    let second = made(&of(0.0, &[&[], &[], &[1.0]], &[]), &inputs);
-    let limits = SpecLimits::new(Some(-2.0), Some(1.8)).unwrap();
-    let narrow = SpecLimits::new(Some(-1.6), Some(1.7)).unwrap();
-    let yield_of = |law: &SurfaceLaw, limits: SpecLimits| {
-        1.0 - law.below(limits.lower().unwrap()).value - law.above(limits.upper().unwrap()).value
-    };
-    let both = joint_yield(&[(&first, limits), (&second, narrow)]);
-    let product = yield_of(&first, limits) * yield_of(&second, narrow);
-    assert!((both.value - product).abs() <= both.error && both.error < 1e-3, "{both:?} {product}");
-    let same = joint_yield(&[(&first, limits), (&first, limits)]);
-    assert!((same.value - yield_of(&first, limits)).abs() <= same.error, "{same:?}");
-    let alone = joint_yield(&[(&first, limits)]);
-    assert!((alone.value - yield_of(&first, limits)).abs() < 1e-15);
 }
 
 /// A mean field that starts in the middle sees nothing of `z1 z2`, whose two signs are equally far out.

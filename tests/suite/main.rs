@@ -50,6 +50,7 @@ mod init;
 mod inspection;
 mod intervals;
 mod joint;
+mod joint_yields;
 mod journal;
 mod labels;
 mod law;

@@ -1,0 +1,275 @@
+//! Points that several laws over the same inputs share, thick where a limit is broken.
+//!
+//! Inputs are functions of independent normal scores. A quarter of the points are those of the own law; of the others every broken
+//! limit has its part, by its probability:
+//!
+//! ```text
+//! t = a'z beyond c          a: unit vector of covariances of the characteristic with the scores
+//! c = R b - 3 sqrt(1 - R^2) b: normal score of the limit, R^2: the share of the variance that t explains
+//! w(z) = 1 / (share of own points + sum over limits of share 1{t > c} / P(t > c))
+//! ```
+//!
+//! A point beyond no cut has the weight 4 at most, so that a surface which no direction explains loses a factor of 2 in its error
+//! and no more. Sources: the sample of each rare event by its own share, A. B. Owen, Y. Maximov and M. Chertkov, "Importance
+//! sampling the union of rare events", Electronic Journal of Statistics 13 (2019); weights by the mixture, E. Veach and L. Guibas,
+//! "Optimally combining sampling techniques", SIGGRAPH 1995, and A. Owen and Y. Zhou, Journal of the American Statistical
+//! Association 95 (2000). There the events are half-spaces; here a half-space is put about each.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use faer::{Mat, Side};
+
+use super::input::Input;
+use super::points::mixed;
+use super::{LawFigure, LawTail, SurfaceLaw};
+use crate::characteristic::SpecLimits;
+use crate::correlation::Block;
+use crate::distribution::standard_normal;
+use crate::sampling::{SOBOL_DIMENSIONS, Sobol, tails};
+
+/// Points in every replicate.
+pub(super) const POINTS: usize = 1 << 11;
+/// Of them those of the own law.
+const OWN: usize = POINTS / 4;
+/// Seed of the points.
+const SEED: u64 = 1;
+/// Deviations of what a direction does not explain, by which its cut is nearer than the limit: of what breaks the limit a
+/// thousandth is left to the own points.
+const NEARER: f64 = 3.0;
+/// A direction that explains less of the variance serves no cut.
+const LEAST_EXPLAINED: f64 = 0.25;
+
+/// A limit of one of the laws, by its place among them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Limit {
+    pub(super) of: usize,
+    pub(super) side: LawTail,
+}
+
+/// What one replicate says.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Counts {
+    /// Mean of the broken limits.
+    pub(super) broken: f64,
+    /// Mean of the broken limits beyond the first.
+    pub(super) beyond: f64,
+    /// Sum of squares of the weights of points that break a limit, each by the limits that it breaks.
+    pub(super) squares: f64,
+}
+
+/// All inputs that count for any of the laws, by their positions.
+pub(super) struct CommonPoints<'a> {
+    characteristics: &'a [(&'a SurfaceLaw, SpecLimits)],
+    laws: Vec<(usize, Arc<Input>)>,
+    /// Places in `laws` of correlated inputs, and the factor of their normal variables.
+    members: Vec<usize>,
+    factor: Mat<f64>,
+    /// Those of them that vary together as a whole.
+    blocks: Vec<Block>,
+    sobol: Option<Sobol>,
+    cuts: Vec<Cut>,
+}
+
+/// A half-space of the scores about what breaks a limit.
+struct Cut {
+    /// Unit vector by places in `laws`, out of the limit.
+    direction: Vec<f64>,
+    score: f64,
+    /// Of the own law beyond the cut.
+    probability: f64,
+    /// Points of a replicate that are drawn beyond it.
+    rows: std::ops::Range<usize>,
+}
+
+impl<'a> CommonPoints<'a> {
+    pub(super) fn of(characteristics: &'a [(&'a SurfaceLaw, SpecLimits)], tails: &[(Limit, LawFigure)]) -> Self {
+        let mut by_position: BTreeMap<usize, Arc<Input>> = BTreeMap::new();
+        for (law, _) in characteristics {
+            for (position, place) in law.given.places.iter().enumerate() {
+                if let Some(place) = *place {
+                    by_position.entry(position).or_insert_with(|| Arc::clone(&law.given.inputs[place]));
+                }
+            }
+        }
+        let laws: Vec<(usize, Arc<Input>)> = by_position.into_iter().collect();
+        let (mut members, mut factor, mut blocks) = (Vec::new(), Mat::zeros(0, 0), Vec::new());
+        if let Some(correlation) = characteristics.iter().find_map(|(law, _)| law.correlation.as_ref()) {
+            let place = |position: usize| laws.binary_search_by_key(&position, |&(position, _)| position).ok();
+            let known: Vec<(usize, usize)> = (correlation.members().iter().enumerate())
+                .filter_map(|(member, &position)| Some((place(position)?, member)))
+                .collect();
+            let m = known.len();
+            let matrix = Mat::from_fn(m, m, |a, b| correlation.normal()[(known[a].1, known[b].1)]);
+            if let Ok(eigen) = matrix.self_adjoint_eigen(Side::Lower) {
+                factor = Mat::from_fn(m, m, |a, b| eigen.U()[(a, b)] * eigen.S()[b].max(0.0).sqrt());
+                members = known.into_iter().map(|(place, _)| place).collect();
+            }
+            blocks = correlation.blocks().iter().filter_map(|block| block.among(&place)).collect();
+        }
+        let sobol = Sobol::new(laws.len().min(SOBOL_DIMENSIONS));
+        let mut points = Self { characteristics, laws, members, factor, blocks, sobol, cuts: Vec::new() };
+        points.cuts = points.cuts(tails);
+        points
+    }
+
+    /// Half-spaces about the limits, with the points that are not of the own law divided among them.
+    fn cuts(&self, tails: &[(Limit, LawFigure)]) -> Vec<Cut> {
+        let scores = self.scores(0);
+        let directions: Vec<Option<(Vec<f64>, f64)>> =
+            self.characteristics.iter().map(|(law, _)| self.direction(law, &scores)).collect();
+        let mut cuts: Vec<(Cut, f64)> = Vec::new();
+        for (limit, tail) in tails {
+            let Some((direction, explained)) = &directions[limit.of] else { continue };
+            let apart = NEARER * (1.0 - explained * explained).max(0.0).sqrt();
+            let score = explained * standard_normal::upper_quantile(tail.value) - apart;
+            // Where half of all points or more were beyond, those of the own law do as well.
+            if tail.value > 0.0 && score > 0.0 {
+                let out = if limit.side == LawTail::Upper { 1.0 } else { -1.0 };
+                let direction = direction.iter().map(|a| out * a).collect();
+                let cut = Cut { direction, score, probability: standard_normal::sf(score), rows: 0..0 };
+                cuts.push((cut, tail.value));
+            }
+        }
+        let total: f64 = cuts.iter().map(|(_, probability)| probability).sum();
+        let (mut first, mut sum) = (OWN, 0.0);
+        for (cut, probability) in &mut cuts {
+            sum += *probability;
+            let end = OWN + ((POINTS - OWN) as f64 * (sum / total).min(1.0)).round() as usize;
+            cut.rows = first..end;
+            first = end;
+        }
+        cuts.into_iter().map(|(cut, _)| cut).collect()
+    }
+
+    /// The unit vector of covariances of a law with the scores, and the correlation with the score along it; None where that is
+    /// small. Products of independent inputs have no part in it.
+    fn direction(&self, law: &SurfaceLaw, scores: &[Vec<f64>]) -> Option<(Vec<f64>, f64)> {
+        let mut covariances = vec![0.0; self.laws.len()];
+        for (place, (position, input)) in self.laws.iter().enumerate() {
+            let Some(own) = law.given.places.get(*position).copied().flatten() else { continue };
+            let part = &law.given.parts[own];
+            let each =
+                scores[place].iter().map(|&score| score * super::polynomial::value(part, of_score(input, score)));
+            covariances[place] = each.sum::<f64>() / POINTS as f64;
+        }
+        let by_member: Vec<f64> = self.members.iter().map(|&place| covariances[place]).collect();
+        for (b, &place) in self.members.iter().enumerate() {
+            covariances[place] = by_member.iter().enumerate().map(|(a, own)| self.factor[(a, b)] * own).sum();
+        }
+        let length = covariances.iter().map(|own| own * own).sum::<f64>().sqrt();
+        let explained = (length / law.sigma).min(1.0);
+        if explained * explained < LEAST_EXPLAINED {
+            return None;
+        }
+        covariances.iter_mut().for_each(|own| *own /= length);
+        Some((covariances, explained))
+    }
+
+    /// What breaks limits over the points of a replicate.
+    pub(super) fn counts(&self, replicate: usize) -> Counts {
+        let mut columns = self.scores(replicate);
+        let weights = self.draw(&mut columns);
+        self.inputs(&mut columns);
+        let mut broken = vec![0usize; POINTS];
+        for (law, limits) in self.characteristics {
+            let mut own: Vec<&[f64]> = vec![&[]; law.given.len()];
+            for ((position, _), column) in self.laws.iter().zip(&columns) {
+                if let Some(at) = law.given.places.get(*position).copied().flatten() {
+                    own[at] = column;
+                }
+            }
+            for (broken, value) in broken.iter_mut().zip(law.given.values(&own, POINTS)) {
+                *broken += usize::from(!limits.contains(value));
+            }
+        }
+        let mut counts = Counts::default();
+        for (broken, weight) in broken.into_iter().zip(weights).filter(|(broken, _)| *broken > 0) {
+            counts.broken += broken as f64 * weight / POINTS as f64;
+            counts.beyond += (broken - 1) as f64 * weight / POINTS as f64;
+            counts.squares += broken as f64 * weight * weight / (POINTS * POINTS) as f64;
+        }
+        counts
+    }
+
+    /// Independent normal scores of the own law: a column for every input.
+    fn scores(&self, replicate: usize) -> Vec<Vec<f64>> {
+        let mut digits = vec![0; POINTS];
+        let column = |dimension: usize| {
+            let key = mixed(mixed(mixed(SEED) ^ replicate as u64).wrapping_add(dimension as u64));
+            match &self.sobol {
+                Some(sobol) if dimension < SOBOL_DIMENSIONS => sobol.digits(dimension, 0, &mut digits),
+                // Random digits, scrambled like the others.
+                _ => {
+                    digits.iter_mut().enumerate().for_each(|(i, digits)| *digits = mixed(key ^ i as u64).reverse_bits())
+                }
+            }
+            let mut column = vec![0.0; POINTS];
+            tails(&digits, key, &mut column);
+            standard_normal::quantiles(&mut column);
+            column
+        };
+        (0..self.laws.len()).map(column).collect()
+    }
+
+    /// Puts the points of every cut beyond it; the weights of all points.
+    fn draw(&self, scores: &mut [Vec<f64>]) -> Vec<f64> {
+        let along = |scores: &[Vec<f64>], cut: &Cut, rows: std::ops::Range<usize>| {
+            let mut t = vec![0.0; rows.len()];
+            for (a, column) in cut.direction.iter().zip(scores).filter(|(a, _)| **a != 0.0) {
+                t.iter_mut().zip(&column[rows.clone()]).for_each(|(t, z)| *t += a * z);
+            }
+            t
+        };
+        for cut in &self.cuts {
+            // The score along the direction becomes the one of the same rank beyond the cut.
+            let mut moves = along(scores, cut, cut.rows.clone());
+            let beyond = |t: f64| standard_normal::upper_quantile(cut.probability * standard_normal::sf(t));
+            moves.iter_mut().for_each(|t| *t = beyond(*t) - *t);
+            for (a, column) in cut.direction.iter().zip(scores.iter_mut()).filter(|(a, _)| **a != 0.0) {
+                column[cut.rows.clone()].iter_mut().zip(&moves).for_each(|(z, by)| *z += a * by);
+            }
+        }
+        let cut_rows: usize = self.cuts.iter().map(|cut| cut.rows.len()).sum();
+        let mut ratios = vec![(POINTS - cut_rows) as f64; POINTS];
+        for cut in &self.cuts {
+            let ratio = cut.rows.len() as f64 / cut.probability;
+            let t = along(scores, cut, 0..POINTS);
+            ratios.iter_mut().zip(t).filter(|(_, t)| *t > cut.score).for_each(|(sum, _)| *sum += ratio);
+        }
+        ratios.into_iter().map(|sum| POINTS as f64 / sum).collect()
+    }
+
+    /// From independent normal scores to the inputs, in sigmas off their means.
+    fn inputs(&self, columns: &mut [Vec<f64>]) {
+        if !self.members.is_empty() {
+            self.correlate(columns);
+        }
+        for (place, (_, input)) in self.laws.iter().enumerate().filter(|(_, (_, input))| !input.is_normal()) {
+            columns[place].iter_mut().for_each(|z| *z = of_score(input, *z));
+        }
+    }
+
+    /// From independent normal scores of the correlated inputs to their normal variables.
+    fn correlate(&self, columns: &mut [Vec<f64>]) {
+        let (mut z, mut scratch) = (vec![0.0; self.laws.len()], Vec::new());
+        for point in 0..POINTS {
+            z.iter_mut().zip(columns.iter()).for_each(|(z, column)| *z = column[point]);
+            let normals: Vec<f64> = self.members.iter().map(|&place| z[place]).collect();
+            for (a, &place) in self.members.iter().enumerate() {
+                z[place] = normals.iter().enumerate().map(|(b, v)| self.factor[(a, b)] * v).sum();
+            }
+            self.blocks.iter().for_each(|block| block.apply(&mut z, &mut scratch));
+            self.members.iter().for_each(|&place| columns[place][point] = z[place]);
+        }
+    }
+}
+
+/// The input at a normal score.
+fn of_score(input: &Input, score: f64) -> f64 {
+    match (input.is_normal(), score < 0.0) {
+        (true, _) => score,
+        (_, true) => input.at_tail(standard_normal::cdf(score)),
+        _ => input.at_tail(-standard_normal::sf(score)),
+    }
+}
