@@ -119,14 +119,17 @@ impl RejectFit {
         if self.nothing && factors.iter().all(|&factor| factor == 1.0) {
             return None;
         }
-        let (mut all, mut slopes) = (0.0, vec![0.0; priced.len()]);
-        for &(c, limits) in &self.of {
+        let of = |&(c, limits): &(usize, SpecLimits)| -> Option<(f64, Vec<f64>)> {
             let (share, partial) = fitted_with_slopes(&responses.moments(c, factors)?, limits)?;
-            all += share;
             let by_group = responses.moment_slopes(c, priced, factors)?;
-            for (slope, by) in slopes.iter_mut().zip(by_group) {
-                *slope += partial.iter().zip(by).map(|(partial, by)| partial * by).sum::<f64>();
-            }
+            let along = |by: [f64; 4]| partial.iter().zip(by).map(|(partial, by)| partial * by).sum();
+            Some((share, by_group.into_iter().map(along).collect()))
+        };
+        let each = self.of.par_iter().map(of).collect::<Option<Vec<(f64, Vec<f64>)>>>()?;
+        let (mut all, mut slopes) = (0.0, vec![0.0; priced.len()]);
+        for (share, own) in each {
+            all += share;
+            slopes.iter_mut().zip(own).for_each(|(slope, own)| *slope += own);
         }
         let correction = libm::exp(self.ln_correction(factors));
         let share = all * correction;
@@ -151,10 +154,8 @@ impl RejectFit {
         if self.nothing && shifts.is_none() && factors.iter().all(|&factor| factor == 1.0) {
             return Some(0.0);
         }
-        let mut all = 0.0;
-        for &(c, limits) in &self.of {
-            all += fitted(&responses.moments_shifted(c, factors, shifts)?, limits)?;
-        }
+        let of = |&(c, limits): &(usize, SpecLimits)| fitted(&responses.moments_shifted(c, factors, shifts)?, limits);
+        let all: f64 = self.of.par_iter().map(of).collect::<Option<Vec<f64>>>()?.iter().sum();
         Some((all * libm::exp(self.ln_correction(factors))).min(1.0))
     }
 }
