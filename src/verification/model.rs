@@ -2,6 +2,7 @@
 
 use super::space::{Columns, Space};
 use crate::assembly::{Request, Responses, Run};
+use crate::parallel::prelude::*;
 use crate::problem::Problem;
 use crate::surrogate::Surrogate;
 
@@ -73,7 +74,23 @@ impl<'p> Model<'p> {
 
     /// The margins of the switches at some points; None where the function does not tell.
     pub(super) fn margins(&self, z: &Columns) -> Option<Vec<Vec<f64>>> {
-        self.problem.function().margins(self.output, &self.space.points(z))
+        /// Points that are made at once: of many dimensions all of them would take much memory.
+        const ROWS: usize = 1 << 9;
+        let of = |z: &Columns| self.problem.function().margins(self.output, &self.space.points(z));
+        let rows = z.first().map_or(1, Vec::len);
+        if rows <= ROWS {
+            return of(z);
+        }
+        let block = |index: usize| {
+            let (first, end) = (index * ROWS, rows.min((index + 1) * ROWS));
+            of(&z.iter().map(|column| column[first..end].to_vec()).collect())
+        };
+        let blocks: Vec<Option<Vec<Vec<f64>>>> = (0..rows.div_ceil(ROWS)).into_par_iter().map(block).collect();
+        blocks.into_iter().reduce(|all, block| {
+            let mut all = all?;
+            all.iter_mut().zip(block?).for_each(|(all, more)| all.extend(more));
+            Some(all)
+        })?
     }
 
     pub(super) fn problem(&self) -> &'p Problem {

@@ -66,9 +66,11 @@ impl Sample {
     /// Of so many points in the core.
     pub(super) fn draw(model: &Model<'_>, seed: u64, core: usize, beside: Option<(&[usize], &Surrogate)>) -> Self {
         let normals = Normals::new(model.len(), seed);
-        let pilot = normals.columns(1 << 33, PILOT);
-        let known = model.values(&pilot);
-        let direction = steepest(&pilot, &known);
+        let (direction, known) = {
+            let pilot = normals.columns(1 << 33, PILOT);
+            let known = model.values(&pilot);
+            (steepest(&pilot, &known), known)
+        };
         let valid: Vec<f64> = known.iter().copied().filter(|y| y.is_finite()).collect();
         let spread = moments(&valid, &vec![1.0; valid.len()])[1];
         let sides = sides(model, &normals, if spread > 0.0 { spread } else { 1.0 });
@@ -94,7 +96,7 @@ impl Sample {
             let kept = |column: &[f64]| -> Vec<f64> {
                 column.iter().zip(&own).filter(|(_, own)| **own).map(|(value, _)| *value).collect()
             };
-            let z: Columns = z.iter().map(|column| kept(column)).collect();
+            z.iter_mut().for_each(|column| *column = kept(column));
             let weights = kept(&weights).into_iter().map(|weight| weight / rows as f64).collect();
             let surface = beside.and_then(|(varying, surrogate)| model.surface(&z, varying, surrogate));
             Part { replicate, values: model.values(&z), weights, surface: surface.unwrap_or_default() }

@@ -117,8 +117,10 @@ pub(super) fn sides(model: &Model<'_>, normals: &Normals, scale: f64) -> Sides {
         return Sides { switches: Some(Vec::new()), complete: known.complete, ..Sides::default() };
     }
     let places = Places { normals, plain: OnceCell::new(), wide: OnceCell::new() };
+    // One place after the other: each is gone before the next is drawn.
+    let plain = || Margins::read(model, &places.drawn(0));
     let wide = |index: usize| Margins::read(model, &places.widened(index));
-    let margins = Margins::read(model, &places.drawn(0)).zip(wide(0)).zip(wide(1));
+    let margins = plain().zip(wide(0)).zip(wide(1));
     let margins = margins.map(|((plain, near), far)| (plain, near.and(far)));
     let Some((plain, far)) = margins.filter(|(plain, _)| plain.0.len() == known.list.len()) else {
         return Sides::default();
