@@ -1,25 +1,21 @@
 //! The results of one characteristic.
 
-use std::collections::HashMap;
-use std::sync::Arc;
-
 use serde::{Serialize, Serializer};
 
 use super::coverage_intervals::CoverageIntervals;
 use super::errors::of_yield;
+use super::interactions::{dimensions_of, mixed_of, pairs_of, share_of};
 use super::linear::Linear;
 use super::remainder::Remainder;
 use super::shares::Shares;
 use super::sobol::SobolIndices;
-use super::{SampledModel, SamplingInterval, SurfaceShares, Verification, VerificationKind, YieldSource};
+use super::{Interaction, SampledModel, SamplingInterval, SurfaceShares, Verification, VerificationKind, YieldSource};
 use crate::capability::{Capability, CapabilityShape, EstimatedShare, InspectionRisks, Law};
 use crate::characteristic::{Characteristic, SpecLimits};
 use crate::extremes::{Extremes, ExtremesProof};
 use crate::method::{ErrorEstimate, Order, Outcome, Residual, estimate};
 use crate::moments::{Moments, Sampled};
-use crate::parallel::prelude::*;
 use crate::pearson::PearsonError;
-use crate::plan::Point;
 use crate::problem::Problem;
 use crate::requirement::Requirement;
 use crate::shape::{Four, through};
@@ -166,46 +162,6 @@ pub struct Sensitivity {
     pub total: Option<EstimatedShare>,
 }
 
-/// The joint effect of two dimensions.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[non_exhaustive]
-pub struct Interaction {
-    /// The two dimensions.
-    // Their names are shared: N of them may have N (N - 1)/2 pairs.
-    #[serde(serialize_with = "names")]
-    #[cfg_attr(feature = "cli", schemars(with = "[String; 2]"))]
-    pub dimensions: [Arc<str>; 2],
-    /// Mixed second derivative at the means; None where it is missing.
-    pub mixed: Option<f64>,
-    /// Why it is missing; None where it is not.
-    pub missing: Option<Missing>,
-    /// Whether it is exact rather than a difference.
-    pub exact: bool,
-    /// The largest effect of rounding errors of the characteristic's own size on it.
-    pub rounding: Option<f64>,
-    /// Share of the variance.
-    pub share: Option<f64>,
-    /// How far it moves the mean: not at all unless the two are correlated.
-    pub mean_shift: Option<f64>,
-}
-
-fn names<S: Serializer>(names: &[Arc<str>; 2], serializer: S) -> Result<S::Ok, S::Error> {
-    names.each_ref().map(|name| &**name).serialize(serializer)
-}
-
-/// Why a derivative is missing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
-pub enum Missing {
-    /// A point that it takes has no value.
-    Failed,
-    /// A point that it takes was not evaluated before the run was stopped.
-    NotEvaluated,
-}
-
 /// The distribution that has the moments; null where there is none.
 fn fitted<S: Serializer>(law: &Option<Result<Law, PearsonError>>, serializer: S) -> Result<S::Ok, S::Error> {
     law.as_ref().and_then(|law| law.as_ref().ok()).serialize(serializer)
@@ -324,7 +280,8 @@ impl CharacteristicAnalysis {
         self.verdict()?.met()
     }
 
-    pub(super) fn of(problem: &Problem, outcome: &Outcome, c: usize) -> Self {
+    /// Without the list of its interactions, and what [`list_interactions`](Self::list_interactions) makes that of.
+    pub(super) fn of(problem: &Problem, outcome: &Outcome, c: usize) -> (Self, Option<Shares>) {
         let fitted = &outcome.fitted[c];
         let plan = &outcome.plan;
         let unexplained = outcome.climbed.as_ref().and_then(|climbed| climbed.unexplained(c));
@@ -334,11 +291,11 @@ impl CharacteristicAnalysis {
         let shares = Shares::of(fitted, plan.inputs()).map(|shares| shares.beside(unexplained)).filter(finite);
         let sensitivities: Vec<Sensitivity> =
             (0..problem.dimensions().len()).map(|d| sensitivity(problem, outcome, c, d, shares.as_ref())).collect();
-        let interactions = interactions(problem, outcome, c, shares.as_ref());
+        let pair_shares = || pairs_of(outcome, c).map(|index| share_of(outcome, c, index, shares.as_ref()));
         let possible_interactions = plan.pairs_of(c);
         let complete = outcome.order == Order::Second
-            && interactions.len() == possible_interactions
-            && interactions.iter().all(|interaction| interaction.share.is_some())
+            && pair_shares().count() == possible_interactions
+            && pair_shares().all(|share| share.is_some())
             && plan.varying().iter().all(|&d| fitted.parts[d].is_some_and(|part| part.degree() >= 2));
         let characteristic = problem.characteristics()[c].clone();
         let moments = shares.as_ref().map(Shares::moments);
@@ -357,7 +314,7 @@ impl CharacteristicAnalysis {
         let explained = || {
             let own =
                 sensitivities.iter().flat_map(|one| [one.linear_share, one.curvature_share]).flatten().sum::<f64>();
-            own + interactions.iter().filter_map(|one| one.share).sum::<f64>()
+            own + pair_shares().flatten().sum::<f64>()
         };
         let left_out_share = match (&shares, unexplained) {
             (Some(Shares::Integrated(integrated)), _) => integrated.left_out,
@@ -368,7 +325,7 @@ impl CharacteristicAnalysis {
             _ => None,
         };
         let middle = fitted.nominal.zip(linear).map(|(nominal, linear)| nominal + linear.middle);
-        Self {
+        let one = Self {
             nominal: fitted.nominal,
             moments,
             sampled,
@@ -383,7 +340,7 @@ impl CharacteristicAnalysis {
             worst_case: middle
                 .zip(linear)
                 .map(|(middle, linear)| [middle - linear.worst_case, middle + linear.worst_case]),
-            curved: curved(problem, &sensitivities, &interactions),
+            curved: curved(problem, outcome, c, &sensitivities),
             middle,
             rss: linear.map(|linear| linear.rss),
             inflated_rss: linear.map(|linear| linear.inflated_rss),
@@ -392,7 +349,7 @@ impl CharacteristicAnalysis {
             extremes: None,
             bounds: None,
             sensitivities,
-            interactions,
+            interactions: Vec::new(),
             interactions_remainder: None,
             possible_interactions,
             left_out_share,
@@ -407,25 +364,24 @@ impl CharacteristicAnalysis {
             unfinished: false,
             constant: plan.varying().iter().all(|&d| !plan.depends(c, d)),
             without_value: outcome.evaluated.known.errors().filter(|&(_, of, _)| of == c).count(),
-        }
+        };
+        (one, shares)
     }
 }
 
 /// `sum of |f_jj| h_j^2/2 + sum of |f_jk| h_j h_k` over the half bands `h`: no corner of a second-order surface lies farther from the linear one.
-fn curved(problem: &Problem, sensitivities: &[Sensitivity], interactions: &[Interaction]) -> Option<f64> {
+fn curved(problem: &Problem, outcome: &Outcome, c: usize, sensitivities: &[Sensitivity]) -> Option<f64> {
     let half = |d: usize| problem.dimensions()[d].half_band();
     let own = |(d, one): (usize, &Sensitivity)| match half(d) {
         0.0 => Some(0.0),
         half => Some(0.5 * one.second?.abs() * half * half),
     };
-    let halves: HashMap<&str, f64> =
-        problem.dimensions().iter().enumerate().map(|(d, dimension)| (dimension.name(), half(d))).collect();
-    let both = |one: &Interaction| {
-        let [j, k] = [0, 1].map(|side| halves.get(&*one.dimensions[side]));
-        Some(one.mixed?.abs() * j? * k?)
+    let both = |index: usize| {
+        let [j, k] = dimensions_of(outcome, index).map(half);
+        Some(mixed_of(outcome, c, index)?.abs() * j * k)
     };
     let own = sensitivities.iter().enumerate().map(own).sum::<Option<f64>>()?;
-    Some(own + interactions.iter().map(both).sum::<Option<f64>>()?)
+    Some(own + pairs_of(outcome, c).map(both).sum::<Option<f64>>()?)
 }
 
 /// The greatest part of the room between a value and the limits that is taken below and above it; infinite where there is no room.
@@ -491,54 +447,6 @@ fn sensitivity(problem: &Problem, outcome: &Outcome, c: usize, d: usize, shares:
         first_order: None,
         total: None,
     }
-}
-
-/// Of the pairs on which the characteristic can depend, strongest first.
-fn interactions(problem: &Problem, outcome: &Outcome, c: usize, shares: Option<&Shares>) -> Vec<Interaction> {
-    let plan = &outcome.plan;
-    let fitted = &outcome.fitted[c];
-    let share = |index: usize| {
-        let coefficient = fitted.mixed[index].map(|mixed| mixed.value);
-        shares.and_then(|shares| shares.pair(index, outcome.pairs[index], coefficient))
-    };
-    // Places are sorted rather than rows of several words and two names.
-    let mut order: Vec<(u32, f64)> = (outcome.pairs.iter().zip(&fitted.mixed).enumerate())
-        .filter(|(_, ((j, k), _))| plan.joint(c, *j, *k))
-        .map(|(index, _)| (index as u32, share(index).unwrap_or(-1.0)))
-        .collect();
-    order.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let names: Vec<Arc<str>> = problem.dimensions().iter().map(|dimension| dimension.name().into()).collect();
-    let interaction = |index: usize| {
-        let mixed = fitted.mixed[index];
-        let (j, k) = outcome.pairs[index];
-        let [j, k] = [j, k].map(|position| plan.varying()[position]);
-        let together = problem.correlation().map_or(0.0, |correlation| correlation.of(j, k));
-        let exact = fitted.exact.as_ref().and_then(|exact| exact.mixed[index]);
-        let coefficient = mixed.map(|mixed| mixed.value);
-        let mean_shift = match shares {
-            Some(shares) => shares.pair_shift(index, coefficient, together),
-            None => coefficient.map(|value| value * together),
-        };
-        let step = |d: usize| if exact.is_some() { plan.axis(d).scale } else { 0.5 * plan.axis(d).nearest_step() };
-        let missing = (exact.is_none() && mixed.is_none()).then(|| missing(outcome, c, &[j, k]));
-        Interaction {
-            dimensions: [j, k].map(|d| Arc::clone(&names[d])),
-            missing,
-            mixed: exact.or(mixed.map(|mixed| mixed.value / plan.axis(j).scale / plan.axis(k).scale)),
-            exact: exact.is_some(),
-            rounding: fitted.centre.map(|centre| f64::EPSILON * centre.abs() / step(j) / step(k)),
-            share: share(index),
-            mean_shift,
-        }
-    };
-    order.par_iter().map(|&(index, _)| interaction(index as usize)).collect()
-}
-
-/// Why a derivative by these dimensions is missing: what was stopped before any of its points failed was not evaluated.
-pub(super) fn missing(outcome: &Outcome, c: usize, dimensions: &[usize]) -> Missing {
-    let within = |point: &Point| point.at().iter().all(|at| dimensions.contains(&(at.dimension as usize)));
-    let failed = || outcome.evaluated.known.errors().any(|(point, of, _)| of == c && within(point));
-    if outcome.evaluated.stopped.is_some() && !failed() { Missing::NotEvaluated } else { Missing::Failed }
 }
 
 /// The linear results, from slopes and bands; None where a slope is missing.

@@ -10,6 +10,7 @@ mod errors;
 mod fallback;
 mod indices;
 mod inspected;
+mod interactions;
 mod interval;
 mod jumps;
 pub(crate) mod law_at;
@@ -45,8 +46,9 @@ pub use crate::moments::{Contributions, Sampled};
 pub use crate::surrogate::Relocation;
 pub use crate::verification::{Crossing, FoundSwitch, OutputCorrelation, Share, Verified};
 pub use account::Account;
-pub use characteristic::{CharacteristicAnalysis, Interaction, Missing, Sensitivity};
+pub use characteristic::{CharacteristicAnalysis, Sensitivity};
 pub use coverage_intervals::CoverageIntervals;
+pub use interactions::{Interaction, Missing};
 pub use remainder::Remainder;
 pub use sampled_model::SampledModel;
 pub use sampling_interval::SamplingInterval;
@@ -77,6 +79,7 @@ use crate::summary::{RunSummary, StopReason};
 use crate::time::Instant;
 use crate::verdict::{self, Judged};
 use crate::warning::Warning;
+use shares::Shares;
 
 /// The results of an analysis.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -168,7 +171,7 @@ pub(crate) fn analyze_keeping(
     let left = options.budget.map(|budget| budget.saturating_sub(outcome.evaluated.evaluations));
     let found = if options.extremes { search(problem, &outcome, left, run) } else { SearchedExtremes::default() };
     outcome.evaluated.non_repeatable.extend(found.spent.non_repeatable);
-    let mut characteristics = of_all(problem, &outcome);
+    let (mut characteristics, shares): (Vec<_>, Vec<_>) = of_all(problem, &outcome).into_iter().unzip();
     let left = left.map(|left| left.saturating_sub(found.spent.run.evaluations as usize));
     let seed = options.seed.unwrap_or(Options::SEED);
     // A cheap model that is verified is sampled anyway, and by points that need no surface.
@@ -196,6 +199,9 @@ pub(crate) fn analyze_keeping(
     let (bounds, laws) = join(bounds, || settle::laws(problem, &outcome, options, &characteristics));
     characteristics.iter_mut().zip(bounds).for_each(|(one, bounds)| one.bounds = bounds);
     let laws = settle::settle(problem, &outcome, options, &mut characteristics, laws);
+    for (c, (one, shares)) in characteristics.iter_mut().zip(shares).enumerate() {
+        one.list_interactions(problem, &outcome, c, shares.as_ref());
+    }
     let joint = options.target_joint_yield.and_then(|_| settle::joint(&characteristics, &laws));
     let spent = spent(&outcome, options).and(&fallback.run).and(&jumps.run).and(&verified);
     // The extremes say nothing of a share.
@@ -299,10 +305,10 @@ fn run_method(problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Out
     }
     climb_until(problem, options, run, &|outcome| {
         let excess = |one: &CharacteristicAnalysis| wanted::excess(one, &options.accuracies);
-        of_all(problem, outcome).iter().map(excess).fold(0.0, f64::max)
+        of_all(problem, outcome).iter().map(|(one, _)| excess(one)).fold(0.0, f64::max)
     })
 }
 
-fn of_all(problem: &Problem, outcome: &Outcome) -> Vec<CharacteristicAnalysis> {
+fn of_all(problem: &Problem, outcome: &Outcome) -> Vec<(CharacteristicAnalysis, Option<Shares>)> {
     (0..problem.characteristics().len()).map(|c| CharacteristicAnalysis::of(problem, outcome, c)).collect()
 }

@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use super::CharacteristicAnalysis;
 use super::errors::of_yield;
+use super::interactions::knows_all_pairs;
 use super::verified::{TRUSTED, UNTRUSTED, VarianceShare, Verification, VerificationKind};
 use super::wanted::{MORE, PART};
 use crate::assembly::{EvaluationError, NonRepeatable, Run};
@@ -92,9 +93,7 @@ fn proven(problem: &Problem, outcome: &Outcome, c: usize, one: &mut Characterist
     let order = if outcome.order == Order::First { 1 } else { 2 };
     let parts = plan.varying().iter().filter(|&&d| plan.depends(c, d));
     let bent = |&d: &usize| fitted.parts[d].is_some_and(|part| part.degree() >= 2);
-    let pairs = one.interactions.len() == one.possible_interactions
-        && one.interactions.iter().all(|interaction| interaction.mixed.is_some());
-    let complete = degree < 2 || order == 2 && pairs && parts.clone().all(bent);
+    let complete = degree < 2 || order == 2 && knows_all_pairs(outcome, c) && parts.clone().all(bent);
     if !exact || !complete || one.without_value > 0 {
         return false;
     }

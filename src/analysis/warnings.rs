@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use super::characteristic::missing;
+use super::interactions::missing;
 use super::{CharacteristicAnalysis, Missing, trust};
 use crate::capability::Law;
 use crate::dimension::Dimension;
