@@ -280,7 +280,7 @@ impl CharacteristicAnalysis {
         self.verdict()?.met()
     }
 
-    /// Without the list of its interactions, and what [`list_interactions`](Self::list_interactions) makes that of.
+    /// Without the list of its interactions, and what [`listed`](super::interactions::listed) makes that of.
     pub(super) fn of(problem: &Problem, outcome: &Outcome, c: usize) -> (Self, Option<Shares>) {
         let fitted = &outcome.fitted[c];
         let plan = &outcome.plan;

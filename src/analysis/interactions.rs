@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use serde::{Serialize, Serializer};
 
-use super::CharacteristicAnalysis;
 use super::shares::Shares;
 use crate::method::Outcome;
 use crate::parallel::prelude::*;
@@ -51,19 +50,6 @@ pub enum Missing {
     NotEvaluated,
 }
 
-impl CharacteristicAnalysis {
-    /// Lists its interactions. Of a thousand dimensions that takes more memory than all they follow from, so that it comes last.
-    pub(super) fn list_interactions(
-        &mut self,
-        problem: &Problem,
-        outcome: &Outcome,
-        c: usize,
-        shares: Option<&Shares>,
-    ) {
-        self.interactions = listed(problem, outcome, c, shares);
-    }
-}
-
 /// The pairs on which a characteristic can depend, by their places among all that were examined.
 pub(super) fn pairs_of(outcome: &Outcome, c: usize) -> impl Iterator<Item = usize> + '_ {
     (0..outcome.fitted[c].mixed.len().min(outcome.pairs.len())).filter(move |&index| {
@@ -95,8 +81,9 @@ pub(super) fn knows_all_pairs(outcome: &Outcome, c: usize) -> bool {
     pairs().count() == outcome.plan.pairs_of(c) && pairs().all(|index| mixed_of(outcome, c, index).is_some())
 }
 
-/// Of the pairs on which the characteristic can depend, strongest first.
-fn listed(problem: &Problem, outcome: &Outcome, c: usize, shares: Option<&Shares>) -> Vec<Interaction> {
+/// Of the pairs on which the characteristic can depend, strongest first. Of a thousand dimensions the list takes more memory than all it follows
+/// from, so that it is made last.
+pub(super) fn listed(problem: &Problem, outcome: &Outcome, c: usize, shares: Option<&Shares>) -> Vec<Interaction> {
     let plan = &outcome.plan;
     let fitted = &outcome.fitted[c];
     let share = |index: usize| share_of(outcome, c, index, shares);

@@ -200,7 +200,7 @@ pub(crate) fn analyze_keeping(
     characteristics.iter_mut().zip(bounds).for_each(|(one, bounds)| one.bounds = bounds);
     let laws = settle::settle(problem, &outcome, options, &mut characteristics, laws);
     for (c, (one, shares)) in characteristics.iter_mut().zip(shares).enumerate() {
-        one.list_interactions(problem, &outcome, c, shares.as_ref());
+        one.interactions = interactions::listed(problem, &outcome, c, shares.as_ref());
     }
     let joint = options.target_joint_yield.and_then(|_| settle::joint(&characteristics, &laws));
     let spent = spent(&outcome, options).and(&fallback.run).and(&jumps.run).and(&verified);
