@@ -47,7 +47,7 @@ pub(super) struct Limit {
     pub(super) side: LawTail,
 }
 
-/// What one replicate says.
+/// The counts of one replicate.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Counts {
     /// Mean of the broken limits.
@@ -166,7 +166,7 @@ impl<'a> CommonPoints<'a> {
         Some((covariances, explained))
     }
 
-    /// What breaks limits over the points of a replicate.
+    /// The counts of broken limits over the points of a replicate.
     pub(super) fn counts(&self, replicate: usize) -> Counts {
         let mut columns = self.scores(replicate);
         let weights = self.draw(&mut columns);

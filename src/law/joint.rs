@@ -60,7 +60,7 @@ fn limited<'a>(characteristics: &[(&'a SurfaceLaw, SpecLimits)]) -> Vec<(&'a Sur
     characteristics.iter().filter(|(_, limits)| limits.exist()).copied().collect()
 }
 
-/// What every limit rejects.
+/// The rejects of every limit.
 fn tails(limited: &[(&SurfaceLaw, SpecLimits)]) -> Vec<(Limit, LawFigure)> {
     let of = |(of, (law, limits)): (usize, &(&SurfaceLaw, SpecLimits))| {
         let tail = |side: LawTail, y: Option<f64>| y.map(|y| (Limit { of, side }, law.tail(y, side)));

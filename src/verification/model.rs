@@ -74,18 +74,18 @@ impl<'p> Model<'p> {
 
     /// The margins of the switches at some points; None where the function does not tell.
     pub(super) fn margins(&self, z: &Columns) -> Option<Vec<Vec<f64>>> {
-        /// Points that are made at once: of many dimensions all of them would take much memory.
-        const ROWS: usize = 1 << 9;
         let of = |z: &Columns| self.problem.function().margins(self.output, &self.space.points(z));
         let rows = z.first().map_or(1, Vec::len);
-        if rows <= ROWS {
+        if rows < 256 {
             return of(z);
         }
+        // A quarter of the points at once: of many dimensions all of them would take much memory.
+        let quarter = rows.div_ceil(4);
         let block = |index: usize| {
-            let (first, end) = (index * ROWS, rows.min((index + 1) * ROWS));
+            let (first, end) = (index * quarter, rows.min((index + 1) * quarter));
             of(&z.iter().map(|column| column[first..end].to_vec()).collect())
         };
-        let blocks: Vec<Option<Vec<Vec<f64>>>> = (0..rows.div_ceil(ROWS)).into_par_iter().map(block).collect();
+        let blocks: Vec<Option<Vec<Vec<f64>>>> = (0..4).into_par_iter().map(block).collect();
         blocks.into_iter().reduce(|all, block| {
             let mut all = all?;
             all.iter_mut().zip(block?).for_each(|(all, more)| all.extend(more));
