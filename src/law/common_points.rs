@@ -22,6 +22,7 @@ use faer::{Mat, Side};
 
 use super::input::Input;
 use super::points::mixed;
+use super::polynomial::value;
 use super::{LawFigure, LawTail, SurfaceLaw};
 use crate::characteristic::SpecLimits;
 use crate::correlation::Block;
@@ -30,7 +31,7 @@ use crate::sampling::{SOBOL_DIMENSIONS, Sobol, tails};
 
 /// Points in every replicate.
 pub(super) const POINTS: usize = 1 << 11;
-/// Of them those of the own law.
+/// How many of them are of the inputs' own distributions.
 const OWN: usize = POINTS / 4;
 /// Seed of the points.
 const SEED: u64 = 1;
@@ -40,9 +41,10 @@ const NEARER: f64 = 3.0;
 /// A direction that explains less of the variance serves no cut.
 const LEAST_EXPLAINED: f64 = 0.25;
 
-/// A limit of one of the laws, by its place among them.
+/// One side of the limits of a law.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Limit {
+    /// The place of the law among all.
     pub(super) of: usize,
     pub(super) side: LawTail,
 }
@@ -149,8 +151,7 @@ impl<'a> CommonPoints<'a> {
         for (place, (position, input)) in self.laws.iter().enumerate() {
             let Some(own) = law.given.places.get(*position).copied().flatten() else { continue };
             let part = &law.given.parts[own];
-            let each =
-                scores[place].iter().map(|&score| score * super::polynomial::value(part, of_score(input, score)));
+            let each = scores[place].iter().map(|&score| score * value(part, input.at_score(score)));
             covariances[place] = each.sum::<f64>() / POINTS as f64;
         }
         let by_member: Vec<f64> = self.members.iter().map(|&place| covariances[place]).collect();
@@ -246,7 +247,7 @@ impl<'a> CommonPoints<'a> {
             self.correlate(columns);
         }
         for (place, (_, input)) in self.laws.iter().enumerate().filter(|(_, (_, input))| !input.is_normal()) {
-            columns[place].iter_mut().for_each(|z| *z = of_score(input, *z));
+            columns[place].iter_mut().for_each(|z| *z = input.at_score(*z));
         }
     }
 
@@ -262,14 +263,5 @@ impl<'a> CommonPoints<'a> {
             self.blocks.iter().for_each(|block| block.apply(&mut z, &mut scratch));
             self.members.iter().for_each(|&place| columns[place][point] = z[place]);
         }
-    }
-}
-
-/// The input at a normal score.
-fn of_score(input: &Input, score: f64) -> f64 {
-    match (input.is_normal(), score < 0.0) {
-        (true, _) => score,
-        (_, true) => input.at_tail(standard_normal::cdf(score)),
-        _ => input.at_tail(-standard_normal::sf(score)),
     }
 }

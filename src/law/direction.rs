@@ -13,7 +13,6 @@ use super::forms::factor;
 use super::input::Input;
 use super::polynomial::{Quartic, value};
 use super::surface::Surface;
-use crate::distribution::standard_normal;
 
 /// Coordinates of a part of the surface, and the one that is integrated.
 #[derive(Debug, Clone)]
@@ -185,15 +184,7 @@ impl Direction {
             own.for_each(|block| block.apply(v, scratch));
         }
         for &j in &self.behind {
-            let input = &self.surface.inputs[j];
-            if !input.is_normal() {
-                let u = v[j];
-                v[j] = if u < 0.0 {
-                    input.at_tail(standard_normal::cdf(u))
-                } else {
-                    input.at_tail(-standard_normal::sf(u))
-                };
-            }
+            v[j] = self.surface.inputs[j].at_score(v[j]);
         }
     }
 

@@ -4,7 +4,7 @@ use std::sync::{Arc, LazyLock, OnceLock};
 
 use super::LawTail;
 use super::polynomial::{Quartic, derivative, roots, value};
-use crate::distribution::{Distribution, Normal, Probability, Uniform, standard_normal};
+use crate::distribution::{Distribution, Normal, Probability, Uniform, behind_normal, standard_normal};
 
 /// The part of an unbounded input beyond these tails is left out of quadratures: its part of a probability of 1e-30 is
 /// below the rounding of a double.
@@ -215,6 +215,16 @@ impl Input {
             (false, true) => (self.probability().upper_quantile(-tail) - self.mean) / self.sigma,
         };
         z.clamp(self.ends[0], self.ends[1])
+    }
+
+    /// The value that stands where `score` stands in a standard normal distribution.
+    pub(super) fn at_score(&self, score: f64) -> f64 {
+        match self.normal {
+            true => score,
+            false => {
+                ((behind_normal(self.probability(), score) - self.mean) / self.sigma).clamp(self.ends[0], self.ends[1])
+            }
+        }
     }
 
     /// Places where something is not smooth: the ends, and corners of the density.

@@ -72,21 +72,29 @@ fn any_of_three(of: f64) -> f64 {
     of * (3.0 - 3.0 * of + of * of)
 }
 
+/// The density of the standard normal distribution.
+fn density(s: f64) -> f64 {
+    (-0.5 * s * s).exp() / (2.0 * std::f64::consts::PI).sqrt()
+}
+
+/// Three characteristics of shared inputs, which stand first, and a normal one of its own each.
+fn sharing(shared: &[&[f64]], own: f64, inputs: &[Law]) -> Vec<SurfaceLaw> {
+    let own = [own];
+    let one = |k: usize| {
+        let mut parts = shared.to_vec();
+        parts.extend((0..3).map(|each| if each == k { &own[..] } else { &[] }));
+        made(&parts, inputs, None)
+    };
+    (0..3).map(one).collect()
+}
+
 /// Four shared inputs and one of its own for each of three characteristics: given what is shared they are independent, and the joint yield
 /// is one integral. Errors are of points that lie where limits are broken: they hold, and fall with the rejects.
 #[test]
 fn a_joint_yield_is_known_in_the_tail() {
     let inputs: Vec<Law> = (0..7).map(|_| normal()).collect();
-    let density = |s: f64| (-0.5 * s * s).exp() / (2.0 * std::f64::consts::PI).sqrt();
     for own in [0.3, 1.0, 3.0] {
-        let laws: Vec<SurfaceLaw> = (0..3)
-            .map(|k| {
-                let mut parts: Vec<&[f64]> = vec![&[0.5]; 4];
-                let own = [own];
-                parts.extend((0..3).map(|each| if each == k { &own[..] } else { &[] }));
-                made(&parts, &inputs, None)
-            })
-            .collect();
+        let laws = sharing(&[&[0.5][..]; 4], own, &inputs);
         for score in [1.0, 2.0, 3.0, 4.5, 6.0] {
             let limit = score * (1.0f64 + own * own).sqrt();
             let all: Vec<(&SurfaceLaw, SpecLimits)> = laws.iter().map(|law| (law, limits(-limit, limit))).collect();
@@ -103,7 +111,6 @@ fn a_joint_yield_is_known_in_the_tail() {
 /// What is shared is bent, uniform, or a parabola that breaks limits on both sides and that no direction explains.
 #[test]
 fn a_joint_yield_of_bent_surfaces_is_within_its_error() {
-    let density = |s: f64| (-0.5 * s * s).exp() / (2.0 * std::f64::consts::PI).sqrt();
     let root = 3f64.sqrt();
     // The last is the part of the rejects that the error may be: far out a uniform input is no direction, and a parabola nowhere.
     type Shared<'a> = (Law, &'a [f64], &'a dyn Fn(f64) -> f64, [f64; 2], f64);
@@ -114,21 +121,15 @@ fn a_joint_yield_of_bent_surfaces_is_within_its_error() {
     ];
     for (shared, part, density, [from, to], most) in cases {
         let inputs = [shared, normal(), normal(), normal()];
-        let own = [0.4];
-        let laws: Vec<SurfaceLaw> = (0..3)
-            .map(|k| {
-                let mut parts: Vec<&[f64]> = vec![part];
-                parts.extend((0..3).map(|each| if each == k { &own[..] } else { &[] }));
-                made(&parts, &inputs, None)
-            })
-            .collect();
+        let own = 0.4;
+        let laws = sharing(&[part], own, &inputs);
         for limit in [2.0, 3.0, 4.0] {
             let all: Vec<(&SurfaceLaw, SpecLimits)> = laws.iter().map(|law| (law, limits(-limit, limit))).collect();
             let found = joint_yield(&all);
             // The surface is 0 at the nominal, and its parabola is not taken off its mean.
             let given = |s: f64| {
                 let at = part[0] * s + part[1] * s * s;
-                density(s) * any_of_three(beyond(own[0], limit + at, limit - at))
+                density(s) * any_of_three(beyond(own, limit + at, limit - at))
             };
             let exact = simpson(from, to, &given);
             let rejected = 1.0 - found.value;
@@ -144,7 +145,6 @@ fn a_joint_yield_of_correlated_inputs_is_one_integral() {
     let names = ["a", "b", "c"];
     let dimensions: Vec<Dimension> = names.map(|name| Dimension::normal(name, 0.0, 1.0).unwrap()).to_vec();
     let inputs: Vec<Law> = (0..3).map(|_| normal()).collect();
-    let density = |s: f64| (-0.5 * s * s).exp() / (2.0 * std::f64::consts::PI).sqrt();
     for rho in [0.3f64, 0.8] {
         let pair = |a: &str, b: &str| Pair { between: [a.into(), b.into()], value: rho };
         let pairs = [pair("a", "b"), pair("a", "c"), pair("b", "c")];
