@@ -37,6 +37,7 @@ pub(crate) use given::GivenAnswers;
 pub use given::Table;
 pub use request::{Points, Request};
 pub use responses::Responses;
+pub(crate) use responses::all_finite;
 pub use run::{Progress, Run};
 pub use signature::{Input, Output, Signature};
 pub(crate) use states::{State, States};

@@ -265,6 +265,13 @@ impl Responses {
 }
 
 /// Whether none of them is infinite or NaN.
-pub(super) fn all_finite(values: &[f64]) -> bool {
-    values.iter().fold(true, |all, value| all & value.is_finite())
+#[inline(always)]
+pub(crate) fn all_finite(values: &[f64]) -> bool {
+    // 0 times a finite number is 0, and NaN of any other.
+    let (blocks, rest) = values.as_chunks::<8>();
+    let mut sums = [0.0; 8];
+    for block in blocks {
+        sums.iter_mut().zip(block).for_each(|(sum, value)| *sum += 0.0 * value);
+    }
+    sums.iter().sum::<f64>() == 0.0 && rest.iter().all(|value| value.is_finite())
 }

@@ -95,7 +95,58 @@ fn sine_after(angle: &Reduced, quarters: u64) -> f64 {
     let (s, c) = (sine(angle.rest, angle.tail), cosine(angle.rest, angle.tail));
     let quarters = angle.quarters.wrapping_add(quarters);
     let odd = 0u64.wrapping_sub(quarters & 1);
-    f64::from_bits(choose(odd, c, s).to_bits() ^ (quarters & 2) << 62)
+    turned(choose(odd, c, s), quarters)
+}
+
+/// A value after so many quarter turns, of which every second changes the sign.
+#[inline(always)]
+fn turned(value: f64, quarters: u64) -> f64 {
+    f64::from_bits(value.to_bits() ^ (quarters & 2) << 62)
+}
+
+/// Numbers whose quarters are looked at together.
+const LOOK: usize = 64;
+
+/// Maps numbers to the sines of them and so many quarter turns more. Inputs vary little: mostly all angles of a look want one polynomial of
+/// the two.
+#[inline(always)]
+fn map_sines<E: Elementary>(x: &[f64], out: &mut [f64], more: u64) {
+    let (looks, x_rest) = x.as_chunks::<LOOK>();
+    let (outs, out_rest) = out.as_chunks_mut::<LOOK>();
+    let (mut tails, mut quarters) = ([0.0; LOOK], [0; LOOK]);
+    let mut apart = false;
+    for (x, out) in looks.iter().zip(outs) {
+        let (mut any, mut all) = (0, u64::MAX);
+        for lane in 0..LOOK {
+            let angle = reduced(x[lane]);
+            (out[lane], tails[lane], quarters[lane]) = (angle.rest, angle.tail, angle.quarters.wrapping_add(more));
+            any |= quarters[lane];
+            all &= quarters[lane];
+            apart |= angle.apart;
+        }
+        if any & 1 == 0 {
+            for lane in 0..LOOK {
+                out[lane] = turned(sine(out[lane], tails[lane]), quarters[lane]);
+            }
+        } else if all & 1 == 1 {
+            for lane in 0..LOOK {
+                out[lane] = turned(cosine(out[lane], tails[lane]), quarters[lane]);
+            }
+        } else {
+            for lane in 0..LOOK {
+                let angle = Reduced { quarters: quarters[lane], rest: out[lane], tail: tails[lane], apart: false };
+                out[lane] = sine_after(&angle, 0);
+            }
+        }
+    }
+    for (out, &x) in out_rest.iter_mut().zip(x_rest) {
+        let (value, other) = E::lane(x);
+        *out = value;
+        apart |= other;
+    }
+    if apart {
+        out.iter_mut().zip(x).for_each(|(out, &x)| *out = E::of(x));
+    }
 }
 
 impl Elementary for Sin {
@@ -108,6 +159,11 @@ impl Elementary for Sin {
     fn apart(x: f64) -> f64 {
         libm::sin(x)
     }
+
+    #[inline(always)]
+    fn map_inline(x: &[f64], out: &mut [f64]) {
+        map_sines::<Self>(x, out, 0);
+    }
 }
 
 impl Elementary for Cos {
@@ -119,6 +175,11 @@ impl Elementary for Cos {
 
     fn apart(x: f64) -> f64 {
         libm::cos(x)
+    }
+
+    #[inline(always)]
+    fn map_inline(x: &[f64], out: &mut [f64]) {
+        map_sines::<Self>(x, out, 1);
     }
 }
 

@@ -121,10 +121,15 @@ impl TryRng for Stream {
         // The numbers that are left of the last step come first.
         let left = (LANES - self.taken).min(words.len());
         let (before, words) = words.split_at_mut(left);
-        before.iter_mut().for_each(|word| *word = self.next().to_le_bytes());
+        before.copy_from_slice(&self.row[self.taken..self.taken + left]);
+        self.taken += left;
         let (rows, after) = words.as_chunks_mut::<LANES>();
         on_this_processor(Rows { state: &mut self.state, rows });
-        after.iter_mut().for_each(|word| *word = self.next().to_le_bytes());
+        if !after.is_empty() {
+            step(&mut self.state, &mut self.row);
+            after.copy_from_slice(&self.row[..after.len()]);
+            self.taken = after.len();
+        }
         if !rest.is_empty() {
             rest.copy_from_slice(&self.next().to_le_bytes()[..rest.len()]);
         }

@@ -132,7 +132,7 @@ impl Summary {
 }
 
 /// Sums that run beside each other, on any processor as many: a sum belongs to the order in which it is taken.
-const LANES: usize = 4;
+const LANES: usize = 8;
 
 /// Sums of values, at least one, about the first of them, so that the sum of large values does not round.
 struct Apart<'a>(&'a [f64]);
@@ -142,11 +142,11 @@ impl Work for Apart<'_> {
 
     #[inline(always)]
     fn work(self) -> f64 {
-        let (pairs, rest) = self.0.as_chunks::<{ 2 * LANES }>();
+        let (pairs, rest) = self.0.as_chunks::<LANES>();
         let first = self.0[0];
-        let mut total = [0.0; 2 * LANES];
+        let mut total = [0.0; LANES];
         for pair in pairs {
-            for lane in 0..2 * LANES {
+            for lane in 0..LANES {
                 total[lane] += pair[lane] - first;
             }
         }

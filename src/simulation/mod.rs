@@ -397,6 +397,8 @@ fn drawn(
     run: &Run<'_>,
     (begun, pace): (Instant, &dyn Fn(Pace)),
 ) -> Simulation {
+    /// Where tasks take less time than this, there are so many times as many between two looks at the clock.
+    const SHORT: (Duration, usize) = (Duration::from_millis(50), 4);
     let mut tally = Tally::new(problem, control, options.sampler);
     let mut portions = Portions::new(options, problem.function().signature().costly, problem.dimensions().len());
     let rooms = Rooms::none();
@@ -418,7 +420,9 @@ fn drawn(
                 block(problem, (points, out), *portion, run, (&lenses, control, options.sampler))
             })
         };
-        let blocks = || match portions.costly {
+        let asked = Instant::now();
+        let costly = portions.costly;
+        let blocks = || match costly {
             true => batch.iter().map(one).collect(),
             false => batch.par_iter().map(one).collect(),
         };
@@ -426,6 +430,7 @@ fn drawn(
             let (before, answers) = std::mem::take(&mut waiting);
             let ((), blocks) = join(|| tally.add(&before, answers), blocks);
             waiting = (batch, blocks);
+            portions.at_once = if asked.elapsed() < SHORT.0 { SHORT.1 } else { 1 };
         } else {
             tally.add(&batch, blocks());
         }
@@ -473,6 +478,8 @@ struct Portions {
     each: u64,
     done: u64,
     costly: bool,
+    /// How many times as many as usual between two looks.
+    at_once: usize,
 }
 
 impl Portions {
@@ -482,7 +489,7 @@ impl Portions {
             Sampler::Sobol => (REPLICATES, options.samples.div_ceil(REPLICATES).next_power_of_two()),
         };
         let rows = if costly && replicates == 1 { COSTLY } else { ROWS.min(near_rows(dimensions)) } as u64;
-        Self { replicates, rows: rows.min(each), total: replicates * each, each, done: 0, costly }
+        Self { replicates, rows: rows.min(each), total: replicates * each, each, done: 0, costly, at_once: 1 }
     }
 
     fn done(&self) -> bool {
@@ -490,7 +497,7 @@ impl Portions {
     }
 
     fn next_batch(&mut self) -> Vec<Portion> {
-        let tasks = if self.costly { 1 } else { TASKS as u64 / self.replicates };
+        let tasks = if self.costly { 1 } else { (self.at_once * TASKS) as u64 / self.replicates };
         let mut batch = Vec::new();
         for _ in 0..tasks {
             if self.done() {

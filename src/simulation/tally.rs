@@ -8,7 +8,7 @@ use super::control::{Control, Twin};
 use super::count::{Count, Lens, Replicate};
 use super::difference::Difference;
 use super::together::{self, Together};
-use super::{REPLICATES, Simulation, SimulationOptions};
+use super::{REPLICATES, Simulation, SimulationOptions, TASKS};
 use crate::assembly::{EvaluationError, NonRepeatable, Responses};
 use crate::evaluation::history;
 use crate::problem::Problem;
@@ -28,7 +28,7 @@ pub(super) struct Block {
     complete: bool,
     non_repeatable: Vec<NonRepeatable>,
     took: Duration,
-    together: Vec<(usize, Together)>,
+    together: Option<Together>,
 }
 
 /// The answers of one portion for one characteristic.
@@ -113,7 +113,7 @@ pub(super) struct Tally<'a> {
     control: Option<&'a Control<'a>>,
     lenses: Vec<Lens>,
     counts: Vec<Count>,
-    together: Vec<Together>,
+    together: Together,
     answered: u64,
     extra: i64,
     /// Of the points drawn.
@@ -137,7 +137,7 @@ impl<'a> Tally<'a> {
             control,
             lenses: characteristics.iter().map(|one| Lens { limits: one.limits(), scale: None }).collect(),
             counts: characteristics.iter().map(|_| count()).collect(),
-            together: together::parts(),
+            together: Together::default(),
             answered: 0,
             extra: 0,
             run: RunSummary::default(),
@@ -154,9 +154,16 @@ impl<'a> Tally<'a> {
         self.answered
     }
 
-    /// Takes in the blocks of these portions, in their order.
+    /// Takes in the blocks of these portions, in their order: the same in one batch as in several.
     pub(super) fn add(&mut self, portions: &[Portion], blocks: Vec<Block>) {
-        self.run.stages += u64::from(!portions.is_empty());
+        let mut blocks = blocks.into_iter();
+        for portions in portions.chunks(TASKS) {
+            self.add_stage(portions, blocks.by_ref().take(portions.len()).collect());
+        }
+    }
+
+    fn add_stage(&mut self, portions: &[Portion], blocks: Vec<Block>) {
+        self.run.stages += 1;
         if self.lenses.iter().any(|lens| lens.scale.is_none()) {
             self.look(&blocks);
         }
@@ -170,7 +177,7 @@ impl<'a> Tally<'a> {
             self.run.in_model += block.took;
             self.stopped |= !block.complete;
             self.non_repeatable.extend(block.non_repeatable);
-            block.together.iter().for_each(|(part, of)| self.together[*part].merge(of));
+            block.together.iter().for_each(|parts| self.together.merge(parts));
             for (c, (count, column)) in self.counts.iter_mut().zip(block.columns).enumerate() {
                 count.failed += column.failed;
                 count.error = count.error.take().or(column.error);

@@ -3,76 +3,89 @@
 use super::characteristic::{REJECTED, YieldEstimate};
 use super::count::Lens;
 use super::replicate::of_replicates;
-use crate::assembly::Responses;
+use crate::assembly::{Responses, all_finite};
 use crate::elementary::{Work, on_this_processor};
 use crate::problem::Problem;
 use crate::sampling::{Sampler, wilson};
 use crate::verification::{OutputCorrelation, REPLICATES, student};
 
-/// One part of a sample.
+/// A number of every part.
+type Parts<T> = [T; REPLICATES];
+
+/// The parts of a sample side by side.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Together {
     /// Points at which every characteristic has a value; their means, and the sums of products about them, a triangle by rows.
-    count: f64,
-    means: Vec<f64>,
-    products: Vec<f64>,
+    count: Parts<f64>,
+    means: Vec<Parts<f64>>,
+    products: Vec<Parts<f64>>,
     /// Points at which every characteristic with limits has a value, and those of them that keep all limits.
-    known: u64,
-    kept: u64,
+    known: Parts<u64>,
+    kept: Parts<u64>,
 }
 
 impl Together {
-    /// The parts of a portion, by their numbers; none of a single characteristic.
-    pub(super) fn of(out: &Responses, lenses: &[Lens], sampler: Sampler, replicate: u64) -> Vec<(usize, Self)> {
+    /// The parts of a portion; None of a single characteristic.
+    pub(super) fn of(out: &Responses, lenses: &[Lens], sampler: Sampler, replicate: u64) -> Option<Self> {
         if lenses.len() < 2 {
-            return Vec::new();
+            return None;
         }
         let groups = on_this_processor(Groups { out, lenses });
         match sampler {
             Sampler::Sobol => {
                 let mut whole = Self::default();
-                groups.iter().for_each(|group| whole.merge(group));
-                vec![(replicate as usize, whole)]
+                (0..REPLICATES).for_each(|group| whole.merge_part(replicate as usize, &groups, group));
+                Some(whole)
             }
-            Sampler::Random => groups.into_iter().enumerate().collect(),
+            Sampler::Random => Some(groups),
         }
     }
 
-    /// Takes in another part (Pébay 2008, equation 3.12).
+    /// Takes in another portion, part by part.
     pub(super) fn merge(&mut self, other: &Self) {
-        self.known += other.known;
-        self.kept += other.kept;
-        if other.count == 0.0 {
-            return;
-        }
-        if self.count == 0.0 {
-            (self.count, self.means, self.products) = (other.count, other.means.clone(), other.products.clone());
-            return;
-        }
-        let count = self.count + other.count;
-        let by = self.count * other.count / count;
-        let apart: Vec<f64> = other.means.iter().zip(&self.means).map(|(other, own)| other - own).collect();
-        let mut index = 0;
-        for a in 0..apart.len() {
-            for b in a..apart.len() {
-                self.products[index] += other.products[index] + by * apart[a] * apart[b];
-                index += 1;
-            }
-        }
-        self.means.iter_mut().zip(&apart).for_each(|(mean, apart)| *mean += apart * other.count / count);
-        self.count = count;
+        (0..REPLICATES).for_each(|part| self.merge_part(part, other, part));
     }
 
-    /// The coefficient of every pair, NaN where one of the two does not vary.
+    /// Takes one part of another into one of its own (Pébay 2008, equation 3.12).
+    fn merge_part(&mut self, own: usize, other: &Self, part: usize) {
+        self.known[own] += other.known[part];
+        self.kept[own] += other.kept[part];
+        let [before, added] = [self.count[own], other.count[part]];
+        if added == 0.0 {
+            return;
+        }
+        self.means.resize(other.means.len(), [0.0; REPLICATES]);
+        self.products.resize(other.products.len(), [0.0; REPLICATES]);
+        let count = before + added;
+        self.count[own] = count;
+        if before == 0.0 {
+            self.means.iter_mut().zip(&other.means).for_each(|(mean, other)| mean[own] = other[part]);
+            self.products.iter_mut().zip(&other.products).for_each(|(sum, other)| sum[own] = other[part]);
+            return;
+        }
+        let by = before * added / count;
+        let mut sums = self.products.iter_mut().zip(&other.products);
+        for a in 0..self.means.len() {
+            let apart = |c: usize| other.means[c][part] - self.means[c][own];
+            for (b, (sum, other)) in (a..self.means.len()).zip(&mut sums) {
+                sum[own] += other[part] + by * apart(a) * apart(b);
+            }
+        }
+        for (mean, other) in self.means.iter_mut().zip(&other.means) {
+            mean[own] += (other[part] - mean[own]) * added / count;
+        }
+    }
+
+    /// The coefficient of every pair in the first part, NaN where one of the two does not vary.
     fn coefficients(&self) -> Vec<f64> {
         let n = self.means.len();
-        let at = |a: usize, b: usize| self.products[a * n - a * (a + 1) / 2 + b];
+        let at = |a: usize, b: usize| self.products[a * n - a * (a + 1) / 2 + b][0];
         let pairs = (0..n).flat_map(|a| (a + 1..n).map(move |b| (a, b)));
         let of = |(a, b): (usize, usize)| {
             let scale = at(a, a).sqrt() * at(b, b).sqrt();
             if scale > 0.0 { (at(a, b) / scale).clamp(-1.0, 1.0) } else { f64::NAN }
         };
-        if self.count < 2.0 { vec![f64::NAN; n * n.saturating_sub(1) / 2] } else { pairs.map(of).collect() }
+        if self.count[0] < 2.0 { vec![f64::NAN; n * n.saturating_sub(1) / 2] } else { pairs.map(of).collect() }
     }
 }
 
@@ -83,13 +96,13 @@ struct Groups<'a> {
 }
 
 impl Work for Groups<'_> {
-    type Output = Vec<Together>;
+    type Output = Together;
 
     #[inline(always)]
-    fn work(self) -> Vec<Together> {
+    fn work(self) -> Together {
         let Self { out, lenses } = self;
         let columns: Vec<&[f64]> = (0..lenses.len()).map(|output| out.column(output)).collect();
-        let mut groups = vec![Together::default(); REPLICATES];
+        let mut groups = Together::default();
         let limited: Vec<usize> = (0..lenses.len()).filter(|&c| lenses[c].limits.exist()).collect();
         if limited.len() > 1 {
             let (mut known, mut kept) = (vec![1.0; out.rows()], vec![1.0; out.rows()]);
@@ -101,49 +114,65 @@ impl Work for Groups<'_> {
                     *kept = if value >= lower && value <= upper { *kept } else { 0.0 };
                 }
             }
-            let counts = [by_group(&known), by_group(&kept)];
-            for (group, together) in groups.iter_mut().enumerate() {
-                [together.known, together.kept] = [counts[0][group] as u64, counts[1][group] as u64];
-            }
+            groups.known = by_group(&known).map(|count| count as u64);
+            groups.kept = by_group(&kept).map(|count| count as u64);
         }
         if lenses.len() > OutputCorrelation::MOST {
             return groups;
         }
-        let mut full = vec![1.0; out.rows()];
-        for column in &columns {
-            for (full, value) in full.iter_mut().zip(*column) {
-                *full = if value.is_finite() { *full } else { 0.0 };
-            }
-        }
-        let counts = by_group(&full);
-        let Some(first) = full.iter().position(|&full| full > 0.0) else { return groups };
+        // Mostly every value is known, and nothing is to be left out.
+        let complete = columns.iter().all(|column| all_finite(column));
+        let full: Vec<f64> = if complete { Vec::new() } else { full(&columns, out.rows()) };
+        let known =
+            if complete { Some(0).filter(|_| out.rows() > 0) } else { full.iter().position(|&full| full > 0.0) };
+        let Some(first) = known else { return groups };
+        let counts = match complete {
+            true => std::array::from_fn(|group| (out.rows() + REPLICATES - 1 - group) / REPLICATES).map(|n| n as f64),
+            false => by_group(&full),
+        };
         let mut deviations: Vec<Vec<f64>> = Vec::with_capacity(columns.len());
         for column in &columns {
             // About the first value, so that the sum of large values does not round.
             let at = column[first];
-            let apart = column.iter().zip(&full).map(|(value, &full)| if full > 0.0 { value - at } else { 0.0 });
-            let mut apart: Vec<f64> = apart.collect();
+            let mut apart: Vec<f64> = column.iter().map(|value| value - at).collect();
+            if !complete {
+                apart.iter_mut().zip(&full).for_each(|(apart, &full)| *apart = if full > 0.0 { *apart } else { 0.0 });
+            }
             let mut means = by_group(&apart);
             for (mean, count) in means.iter_mut().zip(counts) {
                 *mean = if count > 0.0 { *mean / count } else { 0.0 };
             }
-            for (apart, full) in apart.chunks_mut(REPLICATES).zip(full.chunks(REPLICATES)) {
-                for ((apart, full), mean) in apart.iter_mut().zip(full).zip(&means) {
-                    *apart = if *full > 0.0 { *apart - mean } else { 0.0 };
-                }
+            let (rows, rest) = apart.as_chunks_mut::<REPLICATES>();
+            for row in rows {
+                row.iter_mut().zip(&means).for_each(|(apart, mean)| *apart -= mean);
             }
-            groups.iter_mut().zip(means).for_each(|(together, mean)| together.means.push(at + mean));
+            rest.iter_mut().zip(&means).for_each(|(apart, mean)| *apart -= mean);
+            if !complete {
+                apart.iter_mut().zip(&full).for_each(|(apart, &full)| *apart = if full > 0.0 { *apart } else { 0.0 });
+            }
+            groups.means.push(means.map(|mean| at + mean));
             deviations.push(apart);
         }
-        groups.iter_mut().zip(counts).for_each(|(together, count)| together.count = count);
+        groups.count = counts;
         for (a, first) in deviations.iter().enumerate() {
             for second in &deviations[a..] {
-                let sums = products_by_group(first, second);
-                groups.iter_mut().zip(sums).for_each(|(together, sum)| together.products.push(sum));
+                groups.products.push(products_by_group(first, second));
             }
         }
         groups
     }
+}
+
+/// 1 of a point at which every column has a number, 0 of another.
+#[inline(always)]
+fn full(columns: &[&[f64]], rows: usize) -> Vec<f64> {
+    let mut full = vec![1.0; rows];
+    for column in columns {
+        for (full, value) in full.iter_mut().zip(*column) {
+            *full = if value.is_finite() { *full } else { 0.0 };
+        }
+    }
+    full
 }
 
 /// The sum over the points of every group.
@@ -175,26 +204,21 @@ fn products_by_group(first: &[f64], second: &[f64]) -> [f64; REPLICATES] {
     sums
 }
 
-/// The parts of a whole sample, in the order of their numbers.
-pub(super) fn parts() -> Vec<Together> {
-    vec![Together::default(); REPLICATES]
-}
-
 /// The correlation of every pair of characteristics; none of a single one, and of more than 40. Errors by the jackknife over the parts.
-pub(super) fn correlations(problem: &Problem, parts: &[Together]) -> Vec<OutputCorrelation> {
+pub(super) fn correlations(problem: &Problem, parts: &Together) -> Vec<OutputCorrelation> {
     let names: Vec<&str> = problem.characteristics().iter().map(|one| one.name()).collect();
     if !(2..=OutputCorrelation::MOST).contains(&names.len()) {
         return Vec::new();
     }
     let all = |except: Option<usize>| {
         let mut whole = Together::default();
-        parts.iter().enumerate().filter(|(p, _)| Some(*p) != except).for_each(|(_, part)| whole.merge(part));
+        (0..REPLICATES).filter(|part| Some(*part) != except).for_each(|part| whole.merge_part(0, parts, part));
         whole.coefficients()
     };
     let values = all(None);
-    let known = parts.iter().filter(|part| part.count > 0.0).count();
+    let known = parts.count.iter().filter(|count| **count > 0.0).count();
     let without: Vec<Vec<f64>> =
-        if known == parts.len() { (0..known).map(|part| all(Some(part))).collect() } else { Vec::new() };
+        if known == REPLICATES { (0..known).map(|part| all(Some(part))).collect() } else { Vec::new() };
     let pairs = (0..names.len()).flat_map(|a| (a + 1..names.len()).map(move |b| (a, b)));
     let of = |(index, (a, b)): (usize, (usize, usize))| {
         let n = without.len() as f64;
@@ -212,14 +236,15 @@ pub(super) fn correlations(problem: &Problem, parts: &[Together]) -> Vec<OutputC
 }
 
 /// The share that keeps all limits, of `answered` points; None with fewer than two characteristics that have limits.
-pub(super) fn joint(parts: &[Together], sampler: Sampler, answered: u64) -> Option<YieldEstimate> {
-    let (known, kept) = parts.iter().fold((0, 0), |(known, kept), part| (known + part.known, kept + part.kept));
+pub(super) fn joint(parts: &Together, sampler: Sampler, answered: u64) -> Option<YieldEstimate> {
+    let [known, kept] = [&parts.known, &parts.kept].map(|counts| counts.iter().sum::<u64>());
     if known == 0 {
         return None;
     }
     let value = kept as f64 / known as f64;
-    let few = kept.min(known - kept) < REJECTED * parts.len() as u64;
-    let each = parts.iter().map(|part| (part.known > 0).then(|| part.kept as f64 / part.known as f64));
+    let few = kept.min(known - kept) < REJECTED * REPLICATES as u64;
+    let shares = parts.known.iter().zip(&parts.kept);
+    let each = shares.map(|(&known, &kept)| (known > 0).then(|| kept as f64 / known as f64));
     let interval = match of_replicates(each).filter(|_| sampler == Sampler::Sobol) {
         Some(error) if !few && error > 0.0 => [(value - 2.0 * error).max(0.0), (value + 2.0 * error).min(1.0)],
         _ => wilson(kept as f64, known as f64),
