@@ -1,12 +1,12 @@
 //! The share of assemblies that break a limit of some characteristics, as a function of the tolerances.
 //!
 //! ```text
-//! R(T) = kappa(T) sum_c R_c(T),   ln kappa = ln kappa_0 + sum_j g_j ln(T_j/T_j0)
+//! R(T) = 1 - exp(-kappa(T) L(T)),   L = -sum_c ln(1 - R_c(T)),   ln kappa = ln kappa_0 + sum_j g_j ln(T_j/T_j0)
 //! ```
 //!
-//! `R_c` is what the Pearson fit of the four moments at `T` rejects, and a little of what a normal distribution would. `kappa` makes value and slopes at the station those of the surface laws,
-//! less what breaks several limits at once, so that what the rounds come to rest at is by the laws. Source: N. M. Alexandrov, R. M. Lewis,
-//! Optimization and Engineering 2 (2001).
+//! `R_c` is what the Pearson fit of the four moments at `T` rejects, and a little of what a normal distribution would; few rejects add up, and
+//! many are never more than all. `kappa` makes value and slopes at the station those of the surface laws, less what breaks several limits at
+//! once, so that what the rounds come to rest at is by the laws. Source: N. M. Alexandrov, R. M. Lewis, Optimization and Engineering 2 (2001).
 //!
 //! Slopes go by the moments. With `z` the limits in sigmas off the mean and `p` the density of the fit at them:
 //!
@@ -55,7 +55,7 @@ impl RejectFit {
             self.of.iter().map(|&(c, limits)| Some((responses.law(c)?, limits))).collect::<Option<_>>()?;
         let (tails, of_twice) = rejected(&laws);
         let twice = of_twice.value;
-        let (truth, fit) = (tails - twice, self.share(responses, &ones, None)?);
+        let (truth, fit) = ((tails - twice).min(1.0 - f64::EPSILON), self.share(responses, &ones, None)?);
         if truth <= LEAST {
             return Some(Self { nothing: true, ..self.clone() });
         }
@@ -73,23 +73,23 @@ impl RejectFit {
             varying.iter().zip(of_twice.collect::<Vec<f64>>()).for_each(|(&d, of)| by[d] -= of);
         }
         let each: Vec<Priced> = varying.iter().map(|&d| Priced::without_cost(d)).collect();
-        let of_fit = self
-            .with_slopes(responses, &each, &ones)
-            .map(|(share, slopes)| slopes.into_iter().map(|slope| slope / share.max(LEAST)).collect::<Vec<f64>>());
+        let of_fit = self.with_slopes(responses, &each, &ones).map(|(share, slopes)| {
+            slopes.into_iter().map(|slope| slope * ln_hazard_slope(share)).collect::<Vec<f64>>()
+        });
         let mut slopes = vec![0.0; n];
         for (place, &d) in varying.iter().enumerate() {
             let mut factors = ones.clone();
             let mut ln = |step: f64| {
                 factors[d] = libm::exp(step);
-                Some(libm::log(self.share(responses, &factors, None)?.max(LEAST)))
+                Some(ln_hazard(self.share(responses, &factors, None)?))
             };
             let own = match &of_fit {
                 Some(of_fit) => of_fit[place],
                 None => (ln(STEP)? - ln(-STEP)?) / (2.0 * STEP),
             };
-            slopes[d] = by[d] / truth - own;
+            slopes[d] = by[d] * ln_hazard_slope(truth) - own;
         }
-        let ln = libm::log(truth / fit);
+        let ln = ln_hazard(truth) - ln_hazard(fit);
         (ln.is_finite() && slopes.iter().all(|slope| slope.is_finite())).then(|| Self { ln, slopes, ..self.clone() })
     }
 
@@ -128,16 +128,18 @@ impl RejectFit {
         let each = self.of.par_iter().map(of).collect::<Option<Vec<(f64, Vec<f64>)>>>()?;
         let (mut all, mut slopes) = (0.0, vec![0.0; priced.len()]);
         for (share, own) in each {
-            all += share;
-            slopes.iter_mut().zip(own).for_each(|(slope, own)| *slope += own);
+            all += hazard(share);
+            slopes.iter_mut().zip(own).for_each(|(slope, own)| *slope += own / (1.0 - share));
         }
         let correction = libm::exp(self.ln_correction(factors));
-        let share = all * correction;
+        let kept = libm::exp(-correction * all);
         for (slope, group) in slopes.iter_mut().zip(priced) {
             let own = group.members.iter().filter(|&&d| libm::log(factors[d]).abs() < FAR).map(|&d| self.slopes[d]);
-            *slope = correction * *slope + share * own.sum::<f64>();
+            *slope = kept * correction * (*slope + all * own.sum::<f64>());
         }
-        (share < 1.0 && slopes.iter().all(|slope| slope.is_finite())).then_some((share, slopes))
+        // Where nothing is kept no difference knows more.
+        let known = kept == 0.0 || slopes.iter().all(|slope| slope.is_finite());
+        known.then_some((-libm::expm1(-correction * all), slopes))
     }
 
     /// `ln kappa`.
@@ -155,9 +157,23 @@ impl RejectFit {
             return Some(0.0);
         }
         let of = |&(c, limits): &(usize, SpecLimits)| fitted(&responses.moments_shifted(c, factors, shifts)?, limits);
-        let all: f64 = self.of.par_iter().map(of).collect::<Option<Vec<f64>>>()?.iter().sum();
-        Some((all * libm::exp(self.ln_correction(factors))).min(1.0))
+        let all: f64 = self.of.par_iter().map(of).collect::<Option<Vec<f64>>>()?.into_iter().map(hazard).sum();
+        Some(-libm::expm1(-libm::exp(self.ln_correction(factors)) * all))
     }
+}
+
+/// `-ln(1 - R)`: what adds up of rejects that know nothing of each other.
+fn hazard(share: f64) -> f64 {
+    -libm::log1p(-share)
+}
+
+fn ln_hazard(share: f64) -> f64 {
+    libm::log(hazard(share).max(LEAST))
+}
+
+/// Its derivative by the share.
+fn ln_hazard_slope(share: f64) -> f64 {
+    1.0 / ((1.0 - share) * hazard(share).max(LEAST))
 }
 
 /// A normal distribution has a little part in the rejects: a fit with ends may reject nothing, and have no slope.
@@ -178,24 +194,26 @@ fn rejected_by(law: &Law, moments: &Moments, limits: SpecLimits) -> Option<f64> 
     let sides =
         [limits.lower().map(|lower| moments.mean() - lower), limits.upper().map(|upper| upper - moments.mean())];
     let normal: f64 = sides.into_iter().flatten().map(score).filter(|share| share.is_finite()).sum();
-    Some(fit + LITTLE * normal)
+    Some((1.0 - LITTLE) * fit + LITTLE * normal)
 }
 
 /// The same with its derivatives by mean, `ln sigma`, skewness and excess; None where the density ends too abruptly for formulas.
 fn fitted_with_slopes(moments: &Moments, limits: SpecLimits) -> Option<(f64, [f64; 4])> {
     let Ok(Law::Pearson(law)) = Law::fit(moments) else { return None };
     let (mean, sigma) = (moments.mean(), moments.sigma());
-    let [by_skewness, by_excess] = law.outside_by_shape(limits.lower(), limits.upper())?;
+    let [by_skewness, by_excess] =
+        law.outside_by_shape(limits.lower(), limits.upper())?.map(|slope| (1.0 - LITTLE) * slope);
     let mut slopes = [0.0, 0.0, by_skewness, by_excess];
     let sides = [(limits.lower(), -1.0), (limits.upper(), 1.0)];
     for (limit, sign) in sides.into_iter().filter_map(|(limit, sign)| Some((limit?, sign))) {
         let z = (limit - mean) / sigma;
-        let density = sign * (law.pdf(limit) + LITTLE * standard_normal::density(z) / sigma);
+        let fit = (1.0 - LITTLE) * law.pdf(limit);
+        let density = sign * (fit + LITTLE * standard_normal::density(z) / sigma);
         slopes[0] += density;
         slopes[1] += density * (limit - mean);
     }
     let share = rejected_by(&Law::Pearson(law), moments, limits)?;
-    (share < 1.0 && slopes.iter().all(|slope| slope.is_finite())).then_some((share, slopes))
+    slopes.iter().all(|slope| slope.is_finite()).then_some((share, slopes))
 }
 
 /// How far the share is from what may be rejected, as the ratio of the normal scores `b = -Phi^-1(R)`: kept where it is at most 1, and nearly
