@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use super::super::gas;
 use super::super::jet::{Jet, Real};
-use super::{DEGREE, Rows, input};
+use super::{DEGREE, LANES, Rows, input};
 use crate::elementary::{Cos, Elementary, Sin};
 
 /// The rod by the crank of the gas trace, which tolerances do not change.
@@ -210,26 +210,41 @@ pub(super) enum Centre {
 
 /// The rod without piston and gas.
 pub(super) struct Alone<'r> {
-    pub(super) rows: &'r Rows,
-    pub(super) speed: Speed,
-    pub(super) centre: Centre,
-    pub(super) effect: Effect,
+    rows: &'r Rows,
+    speed: Speed,
+    effect: Effect,
+    /// Mass, centre of mass and inertia in every row, the same at any angle.
+    bodies: [[f64; LANES]; 3],
+}
+
+impl<'r> Alone<'r> {
+    pub(super) fn of(rows: &'r Rows, speed: Speed, centre: Centre, effect: Effect) -> Self {
+        let [reference, eyes] = REFERENCE;
+        let cubes = |centre: f64, l: f64| centre * centre * centre + (l - centre) * (l - centre) * (l - centre);
+        let mut bodies = [[0.0; LANES]; 3];
+        for row in 0..rows.count {
+            let x = rows.row(row);
+            let l = x.of(input::L);
+            let moved = |to: usize| x.of(to) + (x.of(input::MC) - reference);
+            let (at, factor) = match centre {
+                Centre::Given => (x.of(input::MC), 1.0),
+                Centre::Optimum => (moved(input::MC_F), cubes(x.of(input::MC_F), eyes) / cubes(reference, eyes)),
+                Centre::Tied => (moved(input::MC_T), cubes(moved(input::MC_T), l) / cubes(reference, l)),
+            };
+            let body = [x.of(input::M_ROD), at, factor * x.of(input::I_G)];
+            bodies.iter_mut().zip(body).for_each(|(rows, of)| rows[row] = of);
+        }
+        Self { rows, speed, effect, bodies }
+    }
 }
 
 impl Curve for Alone<'_> {
     #[inline(always)]
     fn at<T: Real>(&self, row: usize, angle: &Angle<T>) -> T {
         let x = self.rows.row(row);
-        let (l, [reference, eyes]) = (x.of(input::L), REFERENCE);
-        let moved = |to: usize| x.of(to) + (x.of(input::MC) - reference);
-        let cubes = |centre: f64, l: f64| centre * centre * centre + (l - centre) * (l - centre) * (l - centre);
-        let (centre, factor) = match self.centre {
-            Centre::Given => (x.of(input::MC), 1.0),
-            Centre::Optimum => (moved(input::MC_F), cubes(x.of(input::MC_F), eyes) / cubes(reference, eyes)),
-            Centre::Tied => (moved(input::MC_T), cubes(moved(input::MC_T), l) / cubes(reference, l)),
-        };
+        let l = x.of(input::L);
         let motion = Motion::of(angle, x.of(input::R), l, self.speed.circular(self.rows, row));
-        let body = [x.of(input::M_ROD), centre, factor * x.of(input::I_G)];
+        let body = self.bodies.each_ref().map(|rows| rows[row]);
         effect(self.effect, angle, &motion, body, angle.sin * 0.0, [x.of(input::R), l])
     }
 }

@@ -490,8 +490,7 @@ fn answer(rows: &Rows, first: usize, asked: &[(usize, usize)], out: &mut Respons
         &with_gas(Effect::Compression),
     );
     let torque = found(is_asked(&[output::T_PEAK]), &with_gas(Effect::Torque));
-    let alone =
-        |centre, effect| move || maxima(&Alone { rows, speed: fired, centre, effect }, rows, &ROD_ANGLES, false);
+    let alone = |centre, effect| move || maxima(&Alone::of(rows, fired, centre, effect), rows, &ROD_ANGLES, false);
     let normal = found(is_asked(&[output::FN_ROD]), &alone(Centre::Given, Effect::Normal));
     let braking = found(is_asked(&[output::T_ROD]), &alone(Centre::Given, Effect::Braking));
     let tied = found(is_asked(&[output::T_OPT]), &alone(Centre::Tied, Effect::Torque));
@@ -513,7 +512,7 @@ fn answer(rows: &Rows, first: usize, asked: &[(usize, usize)], out: &mut Respons
     });
     let rod = found(is_asked(&[output::F_COMP_ROD]), &|| {
         let effect = Effect::Compression;
-        maxima(&Alone { rows, speed: Speed::Given, centre: Centre::Given, effect }, rows, &ROD_ANGLES, false)
+        maxima(&Alone::of(rows, Speed::Given, Centre::Given, effect), rows, &ROD_ANGLES, false)
     });
     let at_speed = || Root { rows, speed: Speed::Given, webs: [1.0; LANES], at_cut: true };
     let required =
@@ -521,6 +520,7 @@ fn answer(rows: &Rows, first: usize, asked: &[(usize, usize)], out: &mut Respons
 
     for &(output, column) in asked {
         let mut values = [f64::NAN; LANES];
+        let across = Alone::of(rows, Speed::Given, Centre::Given, Effect::Normal);
         for (row, value) in values[..count].iter_mut().enumerate() {
             let x = |at: usize| rows.x[at][row];
             let pull = |w: f64| {
@@ -575,10 +575,7 @@ fn answer(rows: &Rows, first: usize, asked: &[(usize, usize)], out: &mut Respons
                         let loaded = |effect| Loaded { rows, speed: Speed::Given, effect }.at(row, &angle);
                         match output {
                             output::F_AXIAL => -loaded(Effect::Compression),
-                            output::F_NORMAL => {
-                                let (speed, centre, effect) = (Speed::Given, Centre::Given, Effect::Normal);
-                                Alone { rows, speed, centre, effect }.at(row, &angle)
-                            }
+                            output::F_NORMAL => across.at(row, &angle),
                             output::T_CRANK => loaded(Effect::Torque),
                             output::H_THETA => 1e3 * height_at(&mut at_speed(), row, &angle),
                             _ => -loaded(Effect::BigEnd),
