@@ -9,7 +9,9 @@ use super::linear::Linear;
 use super::remainder::Remainder;
 use super::shares::Shares;
 use super::sobol::SobolIndices;
-use super::{Interaction, SampledModel, SamplingInterval, SurfaceShares, Verification, VerificationKind, YieldSource};
+use super::{
+    InteractionList, SampledModel, SamplingInterval, SurfaceShares, Verification, VerificationKind, YieldSource,
+};
 use crate::capability::{Capability, CapabilityShape, EstimatedShare, InspectionRisks, Law};
 use crate::characteristic::{Characteristic, SpecLimits};
 use crate::extremes::{Extremes, ExtremesProof};
@@ -117,7 +119,8 @@ pub struct CharacteristicAnalysis {
     /// For every dimension of the problem, in order.
     pub sensitivities: Vec<Sensitivity>,
     /// The interactions examined, strongest first.
-    pub interactions: Vec<Interaction>,
+    #[cfg_attr(feature = "cli", schemars(with = "Vec<super::Interaction<'_>>"))]
+    pub interactions: InteractionList,
     /// The sum of the interactions that are not listed one by one; None where all are.
     pub interactions_remainder: Option<Remainder>,
     /// How many interactions it can have.
@@ -349,7 +352,7 @@ impl CharacteristicAnalysis {
             extremes: None,
             bounds: None,
             sensitivities,
-            interactions: Vec::new(),
+            interactions: InteractionList::default(),
             interactions_remainder: None,
             possible_interactions,
             left_out_share,

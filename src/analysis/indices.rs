@@ -10,7 +10,6 @@
 //! exchanging inputs, or by the ranks of a sample that is there already; contributions of that surface are then unknown.
 
 use std::collections::HashMap;
-use std::sync::Arc;
 
 use super::CharacteristicAnalysis;
 use super::sobol::{FactorIndices, IndexSource, SobolIndices};
@@ -79,7 +78,7 @@ fn forget(one: &mut CharacteristicAnalysis) {
     for row in &mut one.sensitivities {
         (row.linear_share, row.curvature_share) = (None, None);
     }
-    one.interactions.iter_mut().for_each(|pair| pair.share = None);
+    one.interactions.forget_shares();
     one.left_out_share = None;
 }
 
@@ -119,13 +118,13 @@ fn of_surface(one: &CharacteristicAnalysis, factors: &[Vec<usize>]) -> Vec<Pair>
     for (place, factor) in factors.iter().enumerate() {
         holders.extend(factor.iter().map(|&d| (one.sensitivities[d].dimension.as_str(), place)));
     }
-    let holder = |name: &Arc<str>| holders.get(&**name).copied();
+    let holder = |name: &str| holders.get(name).copied();
     let mut inside: Vec<Option<f64>> =
         factors.iter().map(|factor| factor.iter().map(own).sum::<Option<f64>>().filter(|_| trusted)).collect();
     let mut across: Vec<Option<f64>> = vec![complete.then_some(0.0); factors.len()];
     let plus = |sum: &mut Option<f64>, share: Option<f64>| *sum = sum.zip(share).map(|(sum, share)| sum + share);
-    for pair in &one.interactions {
-        let [a, b] = [&pair.dimensions[0], &pair.dimensions[1]].map(holder);
+    for pair in one.interactions.iter() {
+        let [a, b] = pair.dimensions.map(holder);
         match (a, b) {
             (Some(a), Some(b)) if a == b => plus(&mut inside[a], pair.share),
             (a, b) => a.into_iter().chain(b).for_each(|factor| plus(&mut across[factor], pair.share)),

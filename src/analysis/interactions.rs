@@ -1,54 +1,11 @@
-//! The interactions of a characteristic, two dimensions each, and how they are listed.
+//! How the interactions of a characteristic are listed.
 
-use std::sync::Arc;
-
-use serde::{Serialize, Serializer};
-
+use super::interaction::{InteractionList, Missing, Row};
 use super::shares::Shares;
 use crate::method::Outcome;
 use crate::parallel::prelude::*;
 use crate::plan::Point;
 use crate::problem::Problem;
-
-/// The joint effect of two dimensions.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[non_exhaustive]
-pub struct Interaction {
-    /// The two dimensions.
-    // Their names are shared: N of them may have N (N - 1)/2 pairs.
-    #[serde(serialize_with = "names")]
-    #[cfg_attr(feature = "cli", schemars(with = "[String; 2]"))]
-    pub dimensions: [Arc<str>; 2],
-    /// Mixed second derivative at the means; None where it is missing.
-    pub mixed: Option<f64>,
-    /// Why it is missing; None where it is not.
-    pub missing: Option<Missing>,
-    /// Whether it is exact rather than a difference.
-    pub exact: bool,
-    /// The largest effect of rounding errors of the characteristic's own size on it.
-    pub rounding: Option<f64>,
-    /// Share of the variance.
-    pub share: Option<f64>,
-    /// How far it moves the mean: not at all unless the two are correlated.
-    pub mean_shift: Option<f64>,
-}
-
-fn names<S: Serializer>(names: &[Arc<str>; 2], serializer: S) -> Result<S::Ok, S::Error> {
-    names.each_ref().map(|name| &**name).serialize(serializer)
-}
-
-/// Why a derivative is missing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
-pub enum Missing {
-    /// A point that it takes has no value.
-    Failed,
-    /// A point that it takes was not evaluated before the run was stopped.
-    NotEvaluated,
-}
 
 /// The pairs on which a characteristic can depend, by their places among all that were examined.
 pub(super) fn pairs_of(outcome: &Outcome, c: usize) -> impl Iterator<Item = usize> + '_ {
@@ -81,18 +38,21 @@ pub(super) fn knows_all_pairs(outcome: &Outcome, c: usize) -> bool {
     pairs().count() == outcome.plan.pairs_of(c) && pairs().all(|index| mixed_of(outcome, c, index).is_some())
 }
 
-/// Of the pairs on which the characteristic can depend, strongest first. Of a thousand dimensions the list takes more memory than all it follows
-/// from, so that it is made last.
-pub(super) fn listed(problem: &Problem, outcome: &Outcome, c: usize, shares: Option<&Shares>) -> Vec<Interaction> {
+/// Of the pairs on which the characteristic can depend, strongest first. Of a thousand dimensions the list takes as much memory as what it
+/// follows from, so that it is made last.
+pub(super) fn listed(problem: &Problem, outcome: &Outcome, c: usize, shares: Option<&Shares>) -> InteractionList {
     let plan = &outcome.plan;
     let fitted = &outcome.fitted[c];
     let share = |index: usize| share_of(outcome, c, index, shares);
-    // Places are sorted rather than rows of several words and two names.
-    let mut order: Vec<(u32, f64)> =
-        pairs_of(outcome, c).map(|index| (index as u32, share(index).unwrap_or(-1.0))).collect();
-    order.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let names: Vec<Arc<str>> = problem.dimensions().iter().map(|dimension| dimension.name().into()).collect();
-    let interaction = |index: usize| {
+    // Places are sorted rather than rows of several words.
+    let mut order: Vec<u32> = pairs_of(outcome, c).map(|index| index as u32).collect();
+    let mut strengths = vec![-1.0; outcome.pairs.len()];
+    order.iter().for_each(|&index| strengths[index as usize] = share(index as usize).unwrap_or(-1.0));
+    order.sort_by(|&a, &b| strengths[b as usize].total_cmp(&strengths[a as usize]));
+    drop(strengths);
+    let names = problem.dimensions().iter().map(|dimension| dimension.name().to_owned()).collect();
+    let row = |&index: &u32| {
+        let index = index as usize;
         let mixed = fitted.mixed[index];
         let [j, k] = dimensions_of(outcome, index);
         let together = problem.correlation().map_or(0.0, |correlation| correlation.of(j, k));
@@ -104,17 +64,19 @@ pub(super) fn listed(problem: &Problem, outcome: &Outcome, c: usize, shares: Opt
         };
         let step = |d: usize| if exact.is_some() { plan.axis(d).scale } else { 0.5 * plan.axis(d).nearest_step() };
         let missing = (exact.is_none() && mixed.is_none()).then(|| missing(outcome, c, &[j, k]));
-        Interaction {
-            dimensions: [j, k].map(|d| Arc::clone(&names[d])),
+        let rounding = fitted.centre.map(|centre| f64::EPSILON * centre.abs() / step(j) / step(k));
+        let known = |value: Option<f64>| value.unwrap_or(f64::NAN);
+        Row {
+            dimensions: [j, k].map(|d| d as u32),
+            mixed: known(mixed_of(outcome, c, index)),
             missing,
-            mixed: mixed_of(outcome, c, index),
             exact: exact.is_some(),
-            rounding: fitted.centre.map(|centre| f64::EPSILON * centre.abs() / step(j) / step(k)),
-            share: share(index),
-            mean_shift,
+            rounding: known(rounding),
+            share: known(share(index)),
+            mean_shift: known(mean_shift),
         }
     };
-    order.par_iter().map(|&(index, _)| interaction(index as usize)).collect()
+    InteractionList::of(names, order.par_iter().map(row).collect())
 }
 
 /// Why a derivative by these dimensions is missing: what was stopped before any of its points failed was not evaluated.

@@ -10,6 +10,7 @@ mod errors;
 mod fallback;
 mod indices;
 mod inspected;
+mod interaction;
 mod interactions;
 mod interval;
 mod jumps;
@@ -48,7 +49,7 @@ pub use crate::verification::{Crossing, FoundSwitch, OutputCorrelation, Share, V
 pub use account::Account;
 pub use characteristic::{CharacteristicAnalysis, Sensitivity};
 pub use coverage_intervals::CoverageIntervals;
-pub use interactions::{Interaction, Missing};
+pub use interaction::{Interaction, InteractionList, Missing};
 pub use remainder::Remainder;
 pub use sampled_model::SampledModel;
 pub use sampling_interval::SamplingInterval;
@@ -196,9 +197,16 @@ pub(crate) fn analyze_keeping(
     outcome.evaluated.non_repeatable.extend(doubted);
     let bounded = options.verification(signature) > 0 && !run.stopped();
     let bounds = || if bounded { bounds(problem, &outcome, &characteristics, run) } else { Vec::new() };
-    let (bounds, laws) = join(bounds, || settle::laws(problem, &outcome, options, &characteristics));
+    let laws = || settle::laws(problem, &outcome, options, &characteristics);
+    // Both have matrices of all inputs: from four megabytes on they do not stand beside each other.
+    let large = outcome.plan.varying().len().pow(2) * size_of::<f64>() > 4 << 20;
+    let (bounds, laws) = if large { (bounds(), laws()) } else { join(bounds, laws) };
     characteristics.iter_mut().zip(bounds).for_each(|(one, bounds)| one.bounds = bounds);
-    let laws = settle::settle(problem, &outcome, options, &mut characteristics, laws);
+    let mut laws = settle::settle(problem, &outcome, options, &mut characteristics, laws);
+    if !settle::have_joint_yield(&characteristics) {
+        // Nothing else asks for them again, and of many inputs they are large.
+        laws.clear();
+    }
     for (c, (one, shares)) in characteristics.iter_mut().zip(shares).enumerate() {
         one.interactions = interactions::listed(problem, &outcome, c, shares.as_ref());
     }

@@ -98,10 +98,10 @@ pub(super) fn settle(
 /// The share of assemblies that keep the limits of all characteristics, `1 - sum of all rejects + E[(number of broken limits - 1)+]`: the rejects by their sources, what they have in common by the laws of
 /// the surfaces. None with fewer than two characteristics with limits, and where a law or an error is not known.
 pub(super) fn joint(characteristics: &[CharacteristicAnalysis], laws: &[Option<SurfaceLaw>]) -> Option<Verified> {
-    let limited = || characteristics.iter().zip(laws).filter(|(one, _)| one.characteristic.limits().exist());
-    if limited().count() < 2 {
+    if !have_joint_yield(characteristics) {
         return None;
     }
+    let limited = || characteristics.iter().zip(laws).filter(|(one, _)| one.characteristic.limits().exist());
     let laws: Vec<(&SurfaceLaw, SpecLimits)> =
         limited().map(|(one, law)| Some((law.as_ref()?, one.characteristic.limits()))).collect::<Option<_>>()?;
     let by_laws = joint_yield(&laws);
@@ -115,6 +115,11 @@ pub(super) fn joint(characteristics: &[CharacteristicAnalysis], laws: &[Option<S
         .powi(2);
     }
     Some(Verified { value: value.clamp(0.0, 1.0), error: square.sqrt() })
+}
+
+/// Whether two of them have limits, which can be kept together or not.
+pub(super) fn have_joint_yield(characteristics: &[CharacteristicAnalysis]) -> bool {
+    characteristics.iter().filter(|one| one.characteristic.limits().exist()).count() > 1
 }
 
 /// Whether the moments are those of a surface, or the model's in place of those of a surface that is trusted all the same.

@@ -18,19 +18,18 @@ impl Analysis {
 impl CharacteristicAnalysis {
     /// The same of one characteristic.
     pub(crate) fn shorten(&mut self) {
-        let all = std::mem::take(&mut self.interactions);
         let mut remainder = self.interactions_remainder.unwrap_or_default();
         // Strongest first: a place is a rank.
-        for (rank, pair) in all.into_iter().enumerate() {
+        self.interactions.retain(|rank, pair| {
             let open = pair.missing == Some(Missing::NotEvaluated);
-            if rank < MOST && !open && pair.share.is_none_or(|share| share >= LEAST) {
-                self.interactions.push(pair);
-                continue;
+            let listed = rank < MOST && !open && pair.share.is_none_or(|share| share >= LEAST);
+            if !listed {
+                remainder.count += 1;
+                remainder.share += pair.share.unwrap_or(0.0);
+                remainder.not_evaluated += usize::from(open);
             }
-            remainder.count += 1;
-            remainder.share += pair.share.unwrap_or(0.0);
-            remainder.not_evaluated += usize::from(open);
-        }
+            listed
+        });
         self.interactions_remainder = (remainder.count > 0).then_some(remainder);
     }
 }

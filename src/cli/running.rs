@@ -81,9 +81,10 @@ fn start_threads() {
     });
 }
 
-/// Does the work with as many threads as were asked for.
+/// Does the work with as many threads as were asked for, on one of them: a thread beside them would hand every loop over and sleep until it is
+/// done, and keep memory of its own.
 pub(super) fn on_threads<T: Send>(threads: Option<u16>, work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
-    let Some(threads) = threads else { return Ok(work()) };
+    let Some(threads) = threads else { return Ok(rayon::scope(|_| work())) };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build();
     Ok(pool.map_err(|error| Failure::Threads { threads, reason: error.to_string() })?.install(work))
 }

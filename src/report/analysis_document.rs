@@ -513,8 +513,8 @@ impl CharacteristicAnalysis {
         let news = self.interactions.iter().filter(|pair| pair.share.is_none_or(|share| share >= NEWS)).count();
         let trusted = !self.is_of_model();
         let most = [if trusted { news.min(INTERACTIONS) } else { 0 }, news.min(INTERACTIONS_OF_PAGE)];
-        let both = |pair: &&Interaction| {
-            let [a, b] = &pair.dimensions;
+        let both = |pair: &Interaction<'_>| {
+            let [a, b] = pair.dimensions;
             Cell {
                 full: Some(format!("{a} × {b}")),
                 ..Cell::both(Value::Empty, format!("{} × {}", short(a), short(b)))
@@ -522,8 +522,8 @@ impl CharacteristicAnalysis {
         };
         Columns::default()
             .data("characteristic", |_| Cell::text(self.name()))
-            .data("dimension_a", |pair: &&Interaction| Cell::text(&*pair.dimensions[0]))
-            .data("dimension_b", |pair| Cell::text(&*pair.dimensions[1]))
+            .data("dimension_a", |pair: &Interaction<'_>| Cell::text(pair.dimensions[0]))
+            .data("dimension_b", |pair| Cell::text(pair.dimensions[1]))
             .named("", "pair", both)
             .column("mixed", "mixed derivative", |pair| {
                 Cell::both(Value::Number(pair.mixed), derivative(pair.mixed, pair.rounding, 6))

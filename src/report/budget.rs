@@ -125,8 +125,8 @@ impl Budget {
 
 /// Whether it has a product with another: at the means its slope may be 0 all the same.
 fn interacts(one: &CharacteristicAnalysis, dimension: &str) -> bool {
-    let named = |pair: &Interaction| pair.dimensions.iter().any(|of| **of == *dimension);
-    let with = |pair: &Interaction| named(pair) && pair.mixed.is_some_and(|mixed| mixed != 0.0);
+    let named = |pair: &Interaction<'_>| pair.dimensions.contains(&dimension);
+    let with = |pair: Interaction<'_>| named(&pair) && pair.mixed.is_some_and(|mixed| mixed != 0.0);
     one.interactions.iter().any(with)
 }
 

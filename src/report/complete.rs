@@ -66,7 +66,7 @@ fn characteristic(json: &Value, one: &CharacteristicAnalysis) {
         first_order: "/first_order", total: "/total",
     });
     let interaction = json.pointer("/interactions/0").unwrap();
-    complete!(interaction, &one.interactions[0] => Interaction {
+    complete!(interaction, one.interactions.get(0).unwrap() => Interaction {
         dimensions: "/dimensions", mixed: "/mixed", missing: "/missing", exact: "/exact", rounding: "/rounding",
         share: "/share", mean_shift: "/mean_shift",
     });

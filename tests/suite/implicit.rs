@@ -347,7 +347,7 @@ fn a_quadratic_by_exact_derivatives_and_by_differences() {
             close(a.second.unwrap(), b.second.unwrap(), 1e-9, 1.0);
             close(a.linear_share.unwrap(), b.linear_share.unwrap(), 1e-11, 1.0);
         }
-        for a in &one.interactions {
+        for a in one.interactions.iter() {
             let b = other.interactions.iter().find(|b| b.dimensions == a.dimensions).unwrap();
             assert!(a.exact && !b.exact);
             close(a.mixed.unwrap(), b.mixed.unwrap(), 1e-9, 1.0);

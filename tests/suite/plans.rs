@@ -249,15 +249,16 @@ fn a_failed_corner_leaves_a_one_sided_interaction() {
     let function = |x: &[f64]| x[0] * x[1];
     let one = Problem::new(standard(2), refusing(function, |x| x[0] > 0.0 && x[1] > 0.0)).unwrap();
     let analysis = analyze(&one, &Method::Full.into()).unwrap();
-    relative(analysis.characteristics[0].interactions[0].mixed.unwrap(), 1.0, 1e-14);
+    relative(analysis.characteristics[0].interactions.get(0).unwrap().mixed.unwrap(), 1.0, 1e-14);
     assert_eq!((warnings(&analysis, "lost-derivative"), analysis.run.failed), (1, 1));
     let both = Problem::new(standard(2), refusing(function, |x| x[0] * x[1] > 0.0)).unwrap();
     let analysis = analyze(&both, &Method::Full.into()).unwrap();
     let found = &analysis.characteristics[0];
-    assert_eq!((found.interactions[0].mixed, found.interactions[0].share, found.left_out_share), (None, None, None));
+    let pair = found.interactions.get(0).unwrap();
+    assert_eq!((pair.mixed, pair.share, found.left_out_share), (None, None, None));
     // Of four corners two remain.
     let analysis = analyze(&both, &Method::Classic.into()).unwrap();
-    relative(analysis.characteristics[0].interactions[0].mixed.unwrap(), 1.0, 1e-14);
+    relative(analysis.characteristics[0].interactions.get(0).unwrap().mixed.unwrap(), 1.0, 1e-14);
 }
 
 #[test]

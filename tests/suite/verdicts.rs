@@ -96,7 +96,7 @@ fn what_was_not_evaluated_is_no_failure() {
         |warning: &&Warning| matches!(warning, Warning::LostDerivative { loss: Loss::NotEvaluated { .. }, .. });
     assert!(!lost.is_empty() && lost.iter().all(unevaluated), "{lost:?}");
     let missing =
-        |pair: &sensitol::analysis::Interaction| pair.missing == Some(sensitol::analysis::Missing::NotEvaluated);
+        |pair: sensitol::analysis::Interaction<'_>| pair.missing == Some(sensitol::analysis::Missing::NotEvaluated);
     assert!(one.interactions.iter().all(missing), "{:?}", one.interactions);
 
     // A sample that was stopped has estimates, and no verdict.

@@ -256,7 +256,7 @@ fn shifts(one: &CharacteristicAnalysis, dimensions: &[DimensionReport]) -> Optio
         }
         found.extend(row.mean_shift.map(|moved| (row.dimension.clone(), moved, "curvature".to_owned())));
     }
-    for pair in &one.interactions {
+    for pair in one.interactions.iter() {
         let name = || pair.dimensions.join(" × ");
         found.extend(pair.mean_shift.map(|moved| (name(), moved, "correlation".to_owned())));
     }

@@ -28,7 +28,7 @@ pub(super) fn map(one: &CharacteristicAnalysis) -> Option<String> {
         |row: &crate::analysis::Sensitivity| row.linear_share.map(|linear| linear + row.curvature_share.unwrap_or(0.0));
     let mut rows: Vec<(&str, f64)> =
         one.sensitivities.iter().filter_map(|row| Some((row.dimension.as_str(), own(row)?))).collect();
-    let in_pair = |name: &str| one.interactions.iter().any(|pair| pair.dimensions.iter().any(|of| **of == *name));
+    let in_pair = |name: &str| one.interactions.iter().any(|pair| pair.dimensions.contains(&name));
     rows.retain(|(name, share)| *share > SEEN || in_pair(name));
     rows.sort_short_by(|a, b| b.1.total_cmp(&a.1));
     let left = rows.len().saturating_sub(MAPPED);
@@ -46,7 +46,7 @@ pub(super) fn map(one: &CharacteristicAnalysis) -> Option<String> {
         let _ = write!(text, "<tr><th scope=\"row\">{}</th>", escaped(name));
         for (other, _) in &rows[..i] {
             let pair = one.interactions.iter().find(|pair| {
-                let [a, b] = pair.dimensions.each_ref().map(|name| &**name);
+                let [a, b] = pair.dimensions;
                 (a == *name && b == *other) || (a == *other && b == *name)
             });
             text += &match pair.map(|pair| pair.share) {

@@ -1,0 +1,144 @@
+//! The interactions of a characteristic, two dimensions each.
+
+use std::fmt;
+
+use serde::{Serialize, Serializer};
+
+/// The joint effect of two dimensions.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct Interaction<'a> {
+    /// The two dimensions.
+    pub dimensions: [&'a str; 2],
+    /// Mixed second derivative at the means; None where it is missing.
+    pub mixed: Option<f64>,
+    /// Why it is missing; None where it is not.
+    pub missing: Option<Missing>,
+    /// Whether it is exact rather than a difference.
+    pub exact: bool,
+    /// The largest effect of rounding errors of the characteristic's own size on it.
+    pub rounding: Option<f64>,
+    /// Share of the variance.
+    pub share: Option<f64>,
+    /// How far it moves the mean: not at all unless the two are correlated.
+    pub mean_shift: Option<f64>,
+}
+
+/// Why a derivative is missing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Missing {
+    /// A point that it takes has no value.
+    Failed,
+    /// A point that it takes was not evaluated before the run was stopped.
+    NotEvaluated,
+}
+
+/// InteractionList in an order. Of a thousand dimensions there are half a million: 48 bytes each, and every name once.
+///
+/// ```
+/// use sensitol::{Closure, Dimension, Method, Problem, analyze};
+/// let dimensions = [Dimension::normal("width", 20.0, 0.3)?, Dimension::normal("height", 10.0, 0.3)?];
+/// let area = Problem::new(dimensions, Closure::scalar("area", |x| x[0] * x[1]))?;
+/// let found = analyze(&area, &Method::Full.into())?;
+/// let strongest = found.characteristics[0].interactions.get(0).unwrap();
+/// assert_eq!(strongest.dimensions, ["width", "height"]);
+/// assert!((strongest.mixed.unwrap() - 1.0).abs() < 1e-9);
+/// # Ok::<(), sensitol::Error>(())
+/// ```
+#[derive(Clone, Default)]
+pub struct InteractionList {
+    names: Vec<String>,
+    rows: Vec<Row>,
+}
+
+/// An interaction as it is kept: its dimensions by their places among the names, NaN for a number that is unknown.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Row {
+    pub(super) dimensions: [u32; 2],
+    pub(super) mixed: f64,
+    pub(super) missing: Option<Missing>,
+    pub(super) exact: bool,
+    pub(super) rounding: f64,
+    pub(super) share: f64,
+    pub(super) mean_shift: f64,
+}
+
+impl Row {
+    fn interaction<'a>(&self, names: &'a [String]) -> Interaction<'a> {
+        let known = |value: f64| Some(value).filter(|value| !value.is_nan());
+        Interaction {
+            dimensions: self.dimensions.map(|place| &*names[place as usize]),
+            mixed: known(self.mixed),
+            missing: self.missing,
+            exact: self.exact,
+            rounding: known(self.rounding),
+            share: known(self.share),
+            mean_shift: known(self.mean_shift),
+        }
+    }
+}
+
+impl InteractionList {
+    /// How many.
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// The one at a place.
+    pub fn get(&self, place: usize) -> Option<Interaction<'_>> {
+        self.rows.get(place).map(|row| row.interaction(&self.names))
+    }
+
+    /// All of them, in order.
+    pub fn iter(&self) -> impl Iterator<Item = Interaction<'_>> + Clone {
+        self.rows.iter().map(|row| row.interaction(&self.names))
+    }
+
+    /// Of dimensions with these names.
+    pub(super) fn of(names: Vec<String>, rows: Vec<Row>) -> Self {
+        Self { names, rows }
+    }
+
+    /// Keeps those that `keep` says, which is asked for every rank.
+    pub(super) fn retain(&mut self, mut keep: impl FnMut(usize, &Interaction<'_>) -> bool) {
+        let Self { names, rows } = self;
+        let mut rank = 0;
+        rows.retain(|row| {
+            rank += 1;
+            keep(rank - 1, &row.interaction(names))
+        });
+        rows.shrink_to_fit();
+    }
+
+    /// Without their shares.
+    pub(super) fn forget_shares(&mut self) {
+        self.rows.iter_mut().for_each(|row| row.share = f64::NAN);
+    }
+}
+
+impl PartialEq for InteractionList {
+    fn eq(&self, other: &Self) -> bool {
+        self.iter().eq(other.iter())
+    }
+}
+
+impl fmt::Debug for InteractionList {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_list().entries(self.iter()).finish()
+    }
+}
+
+impl Serialize for InteractionList {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(self.iter())
+    }
+}
