@@ -60,8 +60,15 @@ pub(crate) trait Elementary {
             any |= apart;
         }
         if any {
-            out.iter_mut().zip(x).for_each(|(out, &x)| *out = Self::of(x));
+            Self::map_apart(x, out);
         }
+    }
+
+    /// The same one by one, where some want another way.
+    #[cold]
+    #[inline(never)]
+    fn map_apart(x: &[f64], out: &mut [f64]) {
+        out.iter_mut().zip(x).for_each(|(out, &x)| *out = Self::of(x));
     }
 
     /// The values of `x`, which is as long as `out`.

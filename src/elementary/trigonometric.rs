@@ -145,7 +145,7 @@ fn map_sines<E: Elementary>(x: &[f64], out: &mut [f64], more: u64) {
         apart |= other;
     }
     if apart {
-        out.iter_mut().zip(x).for_each(|(out, &x)| *out = E::of(x));
+        E::map_apart(x, out);
     }
 }
 
