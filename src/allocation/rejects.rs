@@ -164,7 +164,8 @@ impl RejectFit {
 
 /// `-ln(1 - R)`: what adds up of rejects that know nothing of each other.
 fn hazard(share: f64) -> f64 {
-    -libm::log1p(-share)
+    // A sum of parts may round to more than all.
+    -libm::log1p(-share.min(1.0))
 }
 
 fn ln_hazard(share: f64) -> f64 {
@@ -310,6 +311,22 @@ mod tests {
                     );
                 }
             }
+        }
+    }
+
+    /// Few rejects add up, and many are what independent characteristics reject together: of 0.6, 0.7 and 0.2 all but 0.4 x 0.3 x 0.8. The slope is a
+    /// difference's.
+    #[test]
+    fn rejects_are_never_more_than_all() {
+        let together = |shares: &[f64]| -libm::expm1(-shares.iter().copied().map(hazard).sum::<f64>());
+        assert!((together(&[0.6, 0.7, 0.2]) - 0.904).abs() < 1e-15);
+        assert!((together(&[1e-12, 2e-12]) / 3e-12 - 1.0).abs() < 1e-11);
+        assert_eq!((together(&[1.0, 0.5]), together(&[1.0f64.next_up()]), together(&[0.0, 0.0])), (1.0, 1.0, 0.0));
+        for share in [1e-9, 0.0027, 0.3, 0.9] {
+            let step = 1e-6 * share;
+            let expected = (ln_hazard(share + step) - ln_hazard(share - step)) / (2.0 * step);
+            let found = ln_hazard_slope(share);
+            assert!((found - expected).abs() < 1e-8 * found, "{share}: {found}, {expected}");
         }
     }
 
