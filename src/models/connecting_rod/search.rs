@@ -61,7 +61,7 @@ impl<C: Curve> Work for Scan<'_, C> {
     #[inline(always)]
     fn work(self) -> [f64; LANES] {
         let Self { curve, rows, grid, gas } = self;
-        // The least is no other number, and tells the compiler that no row lies beyond its column.
+        // The same number, by which the compiler sees that every row lies within its column.
         let count = rows.count.min(LANES);
         let (mut best, mut place) = ([f64::NEG_INFINITY; LANES], [0.0; LANES]);
         let (mut exponents, mut unburnt) = ([0.0; LANES], [1.0; LANES]);
