@@ -37,7 +37,7 @@ pub enum Missing {
     NotEvaluated,
 }
 
-/// InteractionList in an order. Of a thousand dimensions there are half a million: 48 bytes each, and every name once.
+/// Interactions in an order. A thousand dimensions have half a million of them: each takes 48 bytes, and every name is kept once.
 ///
 /// ```
 /// use sensitol::{Closure, Dimension, Method, Problem, analyze};
@@ -108,7 +108,7 @@ impl InteractionList {
         Self { names, rows }
     }
 
-    /// Keeps those that `keep` says, which is asked for every rank.
+    /// Keeps those for which `keep` holds, which is given the rank of each, from 0 on.
     pub(super) fn retain(&mut self, mut keep: impl FnMut(usize, &Interaction<'_>) -> bool) {
         let Self { names, rows } = self;
         let mut rank = 0;

@@ -59,7 +59,7 @@ impl Work for Seeded<'_> {
 
     #[inline(always)]
     fn work(self) {
-        // One loop over all of them, long enough to stay one: unrolled, it would have half the width.
+        // One loop over all words: nested loops were unrolled, and had four words in an instruction where eight have room.
         for (word, by) in self.state.as_flattened_mut().iter_mut().zip(&APART) {
             *word = mixed(self.key.wrapping_add(*by));
         }

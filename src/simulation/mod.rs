@@ -397,7 +397,7 @@ fn drawn(
     run: &Run<'_>,
     (begun, pace): (Instant, &dyn Fn(Pace)),
 ) -> Simulation {
-    /// Where tasks take less time than this, there are so many times as many between two looks at the clock.
+    /// Where a batch takes less time than this, the next one has so many times as many tasks.
     const SHORT: (Duration, usize) = (Duration::from_millis(50), 4);
     let mut tally = Tally::new(problem, control, options.sampler);
     let mut portions = Portions::new(options, problem.function().signature().costly, problem.dimensions().len());

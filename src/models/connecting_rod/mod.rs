@@ -518,9 +518,9 @@ fn answer(rows: &Rows, first: usize, asked: &[(usize, usize)], out: &mut Respons
     let required =
         found(is_asked(&[output::H_REQ, output::THETA_H, output::M_SHANK_REQ]), &|| heights(at_speed(), &CYCLE));
 
+    let across = Alone::of(rows, Speed::Given, Centre::Given, Effect::Normal);
     for &(output, column) in asked {
         let mut values = [f64::NAN; LANES];
-        let across = Alone::of(rows, Speed::Given, Centre::Given, Effect::Normal);
         for (row, value) in values[..count].iter_mut().enumerate() {
             let x = |at: usize| rows.x[at][row];
             let pull = |w: f64| {
