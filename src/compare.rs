@@ -8,15 +8,14 @@ use serde::{Serialize, Serializer};
 use crate::analysis::{Analysis, CharacteristicAnalysis, analyze_with};
 use crate::assembly::Run;
 use crate::method::{self, Method, Options, Procedure};
-use crate::parallel::threads;
+use sensitol_numeric::parallel::threads;
 use crate::problem::Problem;
-use crate::sampling::{Estimate, Sampler, one_error};
-use crate::shape::seconds;
-use crate::short_sort::ShortSort;
+use sensitol_numeric::sampling::{Estimate, Sampler, one_error};
+use sensitol_numeric::shape::seconds;
 use crate::simulation::{ROWS, SimulatedCharacteristic, Simulation, SimulationError, SimulationOptions, simulate_with};
 use crate::summary::RunSummary;
-use crate::time::Instant;
-use crate::verdict::Verdict;
+use sensitol_numeric::time::Instant;
+use sensitol_numeric::verdict::Verdict;
 
 /// The most that may be spent.
 ///
@@ -25,7 +24,6 @@ use crate::verdict::Verdict;
 /// assert_eq!(CompareOptions::default().budget, None);
 /// ```
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct CompareOptions {
     /// Most evaluations of one method, the reference excepted.
     pub budget: Option<usize>,
@@ -73,7 +71,7 @@ const SAMPLES: [u64; 4] = [100, 1000, 10_000, 100_000];
 /// Points of the quasi-random ones: 16 replicates of a power of two.
 const QUASI: [u64; 3] = [256, 4096, 65_536];
 /// An error is told from the reference's own when it is larger than so many of its standard errors.
-pub(crate) const RESOLVED: f64 = 2.0;
+pub const RESOLVED: f64 = 2.0;
 
 /// A method as it was run: a derivative method, or so many points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -89,7 +87,7 @@ pub enum Contender {
 
 impl Contender {
     /// Its name.
-    pub(crate) fn name(self) -> String {
+    pub fn name(self) -> String {
         match self {
             Self::Method(method) => method.name().to_owned(),
             Self::MonteCarlo(samples) => format!("monte-carlo {samples}"),
@@ -106,7 +104,7 @@ impl Serialize for Contender {
 
 /// The results of a method for one characteristic. Unknown values are None.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Figures {
     /// First moment.
@@ -124,7 +122,7 @@ pub struct Figures {
 
 /// How far a method is off the reference: the mean in sigmas, sigma relative, the others as they are.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
 #[non_exhaustive]
 pub struct Errors {
@@ -139,27 +137,27 @@ pub struct Errors {
 impl Errors {
     /// Root of the sum of squares of the errors of mean and sigma: how far off the bulk is, in sigmas; None where one of
     /// them is unknown.
-    pub(crate) fn overall(&self) -> Option<f64> {
+    pub fn overall(&self) -> Option<f64> {
         Some(libm::hypot(self.off.mean?, self.off.sigma?))
     }
 
     /// The part of that error that the reference itself may have.
-    pub(crate) fn floor(&self) -> f64 {
+    pub fn floor(&self) -> f64 {
         RESOLVED * libm::hypot(self.reference.mean.unwrap_or(0.0), self.reference.sigma.unwrap_or(0.0))
     }
 
     /// Whether the reference tells the overall error from none.
-    pub(crate) fn resolved(&self) -> bool {
+    pub fn resolved(&self) -> bool {
         self.overall().is_some_and(|overall| overall > self.floor())
     }
 }
 
 /// Errors with what follows from them, as they are written.
 #[derive(Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub(crate) struct ErrorShape<'r> {
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct ErrorShape<'r> {
     #[serde(flatten, serialize_with = "Errors::serialize")]
-    #[cfg_attr(feature = "cli", schemars(with = "Errors"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Errors"))]
     own: &'r Errors,
     /// Root of the sum of squares of the errors of mean and sigma.
     overall: Option<f64>,
@@ -202,12 +200,12 @@ pub struct Ran {
 
 /// One method that was not run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct NotRun {
     /// Which.
     #[serde(rename = "method")]
-    #[cfg_attr(feature = "cli", schemars(with = "String"))]
+    #[cfg_attr(feature = "schema", schemars(with = "String"))]
     pub contender: Contender,
     /// The evaluations that it needs.
     pub evaluations: Option<u64>,
@@ -219,7 +217,7 @@ pub struct NotRun {
 
 /// Why a method was not run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum NotRunReason {
@@ -337,7 +335,7 @@ pub fn compare_with(problem: &Problem, options: &CompareOptions, run: &Run<'_>) 
 /// Quasi-random points where there are any, and none has been paid for already.
 fn sampler(problem: &Problem, costly: bool) -> Sampler {
     let varying = problem.dimensions().iter().filter(|dimension| dimension.sigma() > 0.0).count();
-    if costly || varying > crate::sampling::SOBOL_DIMENSIONS { Sampler::Random } else { Sampler::Sobol }
+    if costly || varying > sensitol_numeric::sampling::SOBOL_DIMENSIONS { Sampler::Random } else { Sampler::Sobol }
 }
 
 struct Comparer<'a> {
@@ -419,7 +417,7 @@ impl Comparer<'_> {
             ran.errors =
                 ran.figures.iter().zip(&reference.characteristics).map(|(found, of)| errors(found, of)).collect();
         }
-        self.ran.sort_short_by_key(|ran| ran.evaluations);
+        self.ran.sort_by_key(|ran| ran.evaluations);
         let fronts: Vec<Vec<bool>> = (0..reference.characteristics.len()).map(|c| front(&self.ran, c)).collect();
         for (index, ran) in self.ran.iter_mut().enumerate() {
             ran.pareto = fronts.iter().map(|front| front[index]).collect();

@@ -4,28 +4,24 @@ use crate::allocation::{AllocateError, CostError};
 use crate::analysis::NoFit;
 use crate::assembly::formula::FormulaError;
 use crate::assembly::implicit::ConditionsError;
-use crate::assembly::process::ProcessError;
+use crate::assembly::ProcessError;
 use crate::assembly::{CompositeError, EvaluationError, NoColumn};
-use crate::characteristic::LimitsError;
+use sensitol_numeric::characteristic::LimitsError;
 use crate::compare::CompareError;
-use crate::correlation::CorrelationError;
-use crate::dimension::DimensionError;
-use crate::distribution::DistributionError;
-use crate::fits::FitError;
-use crate::inspection::InspectionError;
-#[cfg(feature = "journal")]
-use crate::journal::JournalError;
-use crate::law::LawError;
+use sensitol_numeric::correlation::CorrelationError;
+use sensitol_numeric::dimension::DimensionError;
+use sensitol_numeric::distribution::DistributionError;
+use sensitol_numeric::fits::FitError;
+use sensitol_numeric::inspection::InspectionError;
+use sensitol_numeric::law::LawError;
 use crate::method::MethodError;
-use crate::names::UnknownName;
-use crate::pearson::PearsonError;
+use sensitol_numeric::names::UnknownName;
+use sensitol_numeric::pearson::PearsonError;
 use crate::problem::ProblemError;
 use crate::rare::RareError;
-use crate::requirement::RequirementError;
-use crate::sampling::SamplingError;
+use sensitol_numeric::requirement::RequirementError;
+use sensitol_numeric::sampling::SamplingError;
 use crate::simulation::SimulationError;
-#[cfg(feature = "study")]
-use crate::study::{RewriteError, StudyError};
 use crate::sweep::SweepError;
 use crate::warning::Advice;
 
@@ -60,10 +56,6 @@ pub enum Error {
     /// Dimensions cannot vary together so.
     #[error(transparent)]
     Correlation(#[from] CorrelationError),
-    /// A study file is wrong.
-    #[cfg(feature = "study")]
-    #[error(transparent)]
-    Study(#[from] StudyError),
     /// No distribution has the moments.
     #[error(transparent)]
     Pearson(#[from] PearsonError),
@@ -79,10 +71,6 @@ pub enum Error {
     /// Tolerances cannot be allocated.
     #[error(transparent)]
     Allocate(#[from] AllocateError),
-    /// A study cannot be written anew.
-    #[cfg(feature = "study")]
-    #[error(transparent)]
-    Rewrite(#[from] RewriteError),
     /// A method does not fit the problem.
     #[error(transparent)]
     Method(#[from] MethodError),
@@ -119,10 +107,6 @@ pub enum Error {
     /// A name stands for nothing.
     #[error(transparent)]
     UnknownName(#[from] UnknownName),
-    /// A journal cannot be used.
-    #[cfg(feature = "journal")]
-    #[error(transparent)]
-    Journal(#[from] JournalError),
 }
 
 impl Error {
@@ -138,8 +122,6 @@ impl Error {
             Self::Formula(error) => error.fault.help(),
             Self::Fit(error) => error.help(),
             Self::UnknownName(error) => Some(error.help()),
-            #[cfg(feature = "study")]
-            Self::Study(error) => error.help(),
             _ => None,
         }
     }
@@ -150,8 +132,6 @@ impl Error {
             Self::Method(error) => error.advice(),
             Self::Simulation(error) => error.advice(),
             Self::Allocate(error) => error.advice(),
-            #[cfg(feature = "study")]
-            Self::Study(error) => error.fault.advice(),
             _ => Vec::new(),
         }
     }

@@ -1,19 +1,19 @@
 //! Evaluates what a plan asks for, and keeps count.
 
-mod history;
+pub mod history;
 
-pub(crate) use history::history;
+pub use history::history;
 
 use std::collections::HashMap;
 use std::time::Duration;
 
 use crate::assembly::{NonRepeatable, Points, Request, Responses, Run, near_rows};
-use crate::parallel::prelude::*;
-use crate::parallel::{Rooms, join};
+use sensitol_numeric::parallel::prelude::*;
+use sensitol_numeric::parallel::{Rooms, join};
 use crate::plan::{KnownAnswers, Plan, Point, Purpose, Stage};
 use crate::problem::Problem;
 use crate::summary::{RunSummary, StopReason};
-use crate::time::Instant;
+use sensitol_numeric::time::Instant;
 
 /// Coordinates that one batch holds at most: 64 MiB. A million points in a thousand dimensions are cut into batches.
 pub(crate) const BATCH: usize = 1 << 23;

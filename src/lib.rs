@@ -74,83 +74,37 @@
 //! it runs on one thread. `study` reads TOML, JSON and CSV, `report` writes text, JSON, CSV, Markdown and SVG, `html` pages; `process` runs
 //! external programs, `journal` keeps their answers, `cli` is the command with all of them.
 
-// Code for the command line and the reports alone is dead without them; with all features the compiler looks again.
-#![cfg_attr(not(feature = "cli"), allow(dead_code, unused_imports))]
-#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
 
 pub mod allocation;
 pub mod analysis;
 pub mod assembly;
-pub mod capability;
-mod characteristic;
-#[cfg(feature = "cli")]
-#[doc(hidden)]
-pub mod cli;
 pub mod compare;
-pub mod correlation;
-mod dimension;
-pub mod distribution;
-#[cfg(feature = "report")]
-mod document;
-mod elementary;
-mod error;
-mod evaluation;
-mod extremes;
-pub mod fits;
-pub mod inspection;
-#[doc(hidden)]
-pub mod internals;
-#[cfg(feature = "journal")]
-pub mod journal;
-mod labels;
-mod law;
+pub mod error;
+pub mod evaluation;
+pub mod extremes;
 pub mod method;
-mod method_kind;
-pub mod models;
-mod moments;
-mod names;
-mod parallel;
-pub mod pearson;
-mod plan;
+pub mod method_kind;
+pub mod plan;
 pub mod probe;
-mod problem;
+pub mod problem;
 pub mod rare;
-#[cfg(feature = "report")]
-pub mod report;
-mod requirement;
-mod sampling;
-mod shape;
-mod short_sort;
 pub mod simulation;
-#[cfg(feature = "study")]
-pub mod study;
-mod summary;
-mod surrogate;
+pub mod summary;
 pub mod sweep;
-#[cfg(feature = "study")]
-mod table;
-#[cfg(feature = "task")]
-#[doc(hidden)]
-pub mod task;
-mod time;
-#[cfg_attr(not(feature = "study"), allow(dead_code))]
-mod unit;
-mod verdict;
-mod verification;
+pub mod verification;
 pub mod warning;
 
 pub use analysis::{Analysis, CharacteristicAnalysis, analyze, analyze_with};
 pub use assembly::{AssemblyFunction, Closure};
-pub use characteristic::{Characteristic, LimitsError, SpecLimits};
-pub use dimension::{Dimension, DimensionError, DimensionFault};
 pub use error::Error;
 pub use method::{DerivativeSource, Method, MethodError, Options};
-pub use moments::Moments;
-pub use names::UnknownName;
 pub use problem::{Problem, ProblemError};
-pub use requirement::{Requirement, RequirementError};
-#[cfg(feature = "study")]
-pub use study::{Study, StudyError};
+pub use sensitol_numeric::characteristic::{Characteristic, LimitsError, SpecLimits};
+pub use sensitol_numeric::dimension::{Dimension, DimensionError, DimensionFault};
+pub use sensitol_numeric::moments::Moments;
+pub use sensitol_numeric::names::UnknownName;
+pub use sensitol_numeric::requirement::{Requirement, RequirementError};
+pub use sensitol_numeric::verdict::{Judged, Verdict};
+pub use sensitol_numeric::{capability, correlation, distribution, fits, inspection, pearson};
 pub use summary::{EvaluatorSummary, RunSummary, StopReason};
-pub use verdict::{Judged, Verdict};
 pub use warning::Warning;

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use serde::{Serialize, Serializer};
 
-use crate::names::UnknownName;
+use sensitol_numeric::names::UnknownName;
 
 /// A method by name.
 ///

@@ -7,11 +7,11 @@
 
 use std::time::Duration;
 
-use crate::assembly::process::EvaluatorAccount;
+use crate::assembly::EvaluatorAccount;
 use crate::assembly::{EvaluationError, ModelInfo, Points, Request, Responses, Run};
 use crate::problem::Problem;
 use crate::summary::RunSummary;
-use crate::time::Instant;
+use sensitol_numeric::time::Instant;
 
 /// Points in the two passes that must agree.
 const SCATTERED: usize = 8;
@@ -67,7 +67,6 @@ pub struct Check {
 
 /// The result of a check.
 #[derive(Debug, Clone, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum Finding {
     /// It is as it should be.
     Passed,
@@ -81,7 +80,7 @@ pub enum Finding {
 
 impl Finding {
     /// The fault, where there is one.
-    pub(crate) fn fault(&self) -> Option<&str> {
+    pub fn fault(&self) -> Option<&str> {
         match self {
             Self::Doubtful(fault) | Self::Failed(fault) => Some(fault),
             Self::Passed | Self::NotChecked => None,
@@ -293,7 +292,7 @@ impl Asked<'_> {
     /// A point within the tolerances: fractions of the golden ratio, which fill any box evenly.
     fn scattered(&self, index: usize) -> Vec<f64> {
         let fraction = |d: usize| (0.5 + (1 + index + SCATTERED * d) as f64 * 0.618_033_988_749_894_9).fract();
-        let place = |(d, dimension): (usize, &crate::dimension::Dimension)| {
+        let place = |(d, dimension): (usize, &sensitol_numeric::dimension::Dimension)| {
             let [lower, upper] = dimension.reach();
             dimension.nominal() + lower + fraction(d) * (upper - lower)
         };

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use crate::assembly::{AssemblyFunction, Points, State, States};
-use crate::characteristic::Characteristic;
-use crate::correlation::{Block, Correlation, CorrelationError, Pair};
-use crate::dimension::Dimension;
-use crate::names::nearest;
+use sensitol_numeric::characteristic::Characteristic;
+use sensitol_numeric::correlation::{Block, Correlation, CorrelationError, Pair};
+use sensitol_numeric::dimension::Dimension;
+use sensitol_numeric::names::nearest;
 use crate::summary::EvaluatorSummary;
 
 /// N dimensions, K characteristics, and the assembly function between them.
@@ -131,7 +131,7 @@ impl Problem {
     }
 
     /// The same beside blocks of dimensions that vary together by rows or within a zone.
-    pub(crate) fn jointly(mut self, pairs: &[Pair], blocks: Vec<Block>) -> Result<Self, CorrelationError> {
+    pub fn jointly(mut self, pairs: &[Pair], blocks: Vec<Block>) -> Result<Self, CorrelationError> {
         self.correlation = match (pairs, &blocks[..]) {
             ([], []) => None,
             _ => Some(Correlation::with_blocks(&self.dimensions, pairs, blocks)?),
@@ -188,8 +188,7 @@ impl Problem {
 
     /// Knows that these pairs of dimensions interact: every method of second order that takes differences takes in their exact mixed
     /// derivative, without an evaluation, where the function knows it.
-    #[cfg(feature = "study")]
-    pub(crate) fn with_products(self, products: Vec<(String, String)>) -> Self {
+    pub fn with_products(self, products: Vec<(String, String)>) -> Self {
         Self { products: products.into(), ..self }
     }
 
@@ -225,8 +224,7 @@ impl Problem {
     }
 
     /// The name of a characteristic in a state.
-    #[cfg(feature = "study")]
-    pub(crate) fn in_state(characteristic: &str, state: &str) -> String {
+    pub fn in_state(characteristic: &str, state: &str) -> String {
         States::name(characteristic, state)
     }
 
@@ -234,8 +232,7 @@ impl Problem {
     ///
     /// # Errors
     /// When a dimension varies otherwise about its nominal value in a state.
-    #[cfg(feature = "study")]
-    pub(crate) fn in_states(&self, states: &[(&str, &Self)]) -> Result<Self, ProblemError> {
+    pub fn in_states(&self, states: &[(&str, &Self)]) -> Result<Self, ProblemError> {
         /// The error of decimal numbers, relative to the half band and to the nominal value.
         const SAME: [f64; 2] = [1e-9, 1e-13];
         let mut all = Vec::new();
@@ -309,7 +306,7 @@ impl Problem {
     }
 
     /// The outputs of the assembly function that the characteristics are.
-    pub(crate) fn outputs(&self) -> &[usize] {
+    pub fn outputs(&self) -> &[usize] {
         &self.outputs
     }
 

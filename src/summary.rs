@@ -5,11 +5,11 @@ use std::time::Duration;
 
 use serde::Serialize;
 
-use crate::shape::seconds;
+use sensitol_numeric::shape::seconds;
 
 /// Why a run ended before everything that it planned was evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum StopReason {
@@ -53,7 +53,7 @@ impl fmt::Display for StopReason {
 /// # Ok::<(), sensitol::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct RunSummary {
     /// Points sent to the model, those sent again included.
@@ -68,11 +68,11 @@ pub struct RunSummary {
     pub stages: u64,
     /// Time from the first evaluation to the result.
     #[serde(rename = "wall_s", serialize_with = "seconds")]
-    #[cfg_attr(feature = "cli", schemars(with = "f64"))]
+    #[cfg_attr(feature = "schema", schemars(with = "f64"))]
     pub wall: Duration,
     /// Time within the model, of all threads together.
     #[serde(rename = "in_model_s", serialize_with = "seconds")]
-    #[cfg_attr(feature = "cli", schemars(with = "f64"))]
+    #[cfg_attr(feature = "schema", schemars(with = "f64"))]
     pub in_model: Duration,
     /// The seed, where random numbers were drawn.
     pub seed: Option<u64>,
@@ -84,7 +84,7 @@ pub struct RunSummary {
 
 /// Starts, crashes and retries of the processes of an external model since it was made.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct EvaluatorSummary {
     /// Processes that were started, the first one of every worker included.
@@ -151,12 +151,12 @@ impl RunSummary {
     }
 
     /// Whether results rest on answers that depend on the points before them, and that no fresh process confirmed.
-    pub(crate) fn unconfirmed(&self) -> bool {
+    pub fn unconfirmed(&self) -> bool {
         self.evaluator.is_some_and(|evaluator| evaluator.unconfirmed > 0)
     }
 
     /// Whether planned points were not evaluated, so that what follows from the others is not a verdict.
-    pub(crate) fn unfinished(&self) -> bool {
+    pub fn unfinished(&self) -> bool {
         self.stopped.is_some_and(StopReason::leaves_points_open)
     }
 }

@@ -11,18 +11,18 @@ use std::time::Duration;
 use serde::Serialize;
 
 use crate::analysis::{Analysis, analyze_with};
-use crate::assembly::process::EvaluatorAccount;
+use crate::assembly::EvaluatorAccount;
 use crate::assembly::{
     AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, ModelInfo, Points, Request, Responses, Run,
     Signature,
 };
-use crate::dimension::DimensionError;
+use sensitol_numeric::dimension::DimensionError;
 use crate::evaluation::BATCH;
 use crate::method::{MethodError, Options};
-use crate::names::nearest;
+use sensitol_numeric::names::nearest;
 use crate::problem::Problem;
 use crate::summary::RunSummary;
-use crate::time::Instant;
+use sensitol_numeric::time::Instant;
 use crate::warning::Warning;
 
 /// A problem along one of its dimensions.

@@ -1,6 +1,6 @@
 //! How a dimension and its band follow the tolerance.
 
-use crate::dimension::Dimension;
+use sensitol_numeric::dimension::Dimension;
 
 /// Differences smaller than this part are rounding.
 const SAME: f64 = 1e-12;

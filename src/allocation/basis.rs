@@ -11,16 +11,15 @@
 use serde::Serialize;
 
 use super::cost::{Curve, Offer, Priced};
-use crate::dimension::Dimension;
-use crate::fits::tolerance_unit;
+use sensitol_numeric::dimension::Dimension;
+use sensitol_numeric::fits::tolerance_unit;
 use crate::problem::Problem;
-use crate::unit::Unit;
+use sensitol_numeric::unit::Unit;
 
 /// Where costs come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
 pub enum CostBasis {
     /// They are given.
     #[default]

@@ -7,8 +7,8 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use crate::assembly::{Points, Request, Responses, Run};
 use crate::problem::Problem;
-use crate::requirement::Requirement;
-use crate::verdict::Judged;
+use sensitol_numeric::requirement::Requirement;
+use sensitol_numeric::verdict::Judged;
 
 /// Half of the points are corners.
 const POINTS: usize = 1 << 13;

@@ -27,7 +27,6 @@ use super::loss::losses_at;
 use super::separable::{Best, Row, Separable};
 use super::solve::Setting;
 use super::solved::{Solved, Starts};
-use crate::short_sort::ShortSort;
 
 /// The cheapest choice found.
 #[derive(Debug, Clone, PartialEq)]
@@ -255,7 +254,7 @@ impl Search<'_> {
             let mut cheaper: Vec<usize> = (0..self.setting.priced[g].offers.len())
                 .filter(|&offer| self.price(g, offer) < self.price(g, present))
                 .collect();
-            cheaper.sort_short_by(|&a, &b| self.price(g, a).total_cmp(&self.price(g, b)));
+            cheaper.sort_by(|&a, &b| self.price(g, a).total_cmp(&self.price(g, b)));
             for offer in cheaper {
                 offers[g] = offer;
                 if kept(self.quick(&offers)) {

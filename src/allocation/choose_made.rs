@@ -14,11 +14,10 @@ use super::response::Responses;
 use super::result::{AllocationSolver, Attainable, Proof};
 use super::solve::Setting;
 use super::solved::{Solved, Starts};
-use crate::dimension::Dimension;
-use crate::law::rejected;
+use sensitol_numeric::dimension::Dimension;
+use sensitol_numeric::law::rejected;
 use crate::problem::Problem;
-use crate::requirement::Requirement;
-use crate::short_sort::ShortSort;
+use sensitol_numeric::requirement::Requirement;
 
 /// Choices few enough to look at all.
 const ALL: usize = 20_000;
@@ -199,7 +198,7 @@ impl<'s, 'a> Judge<'s, 'a> {
     fn all_normal(&self) -> bool {
         let normal = |dimension: &Dimension| {
             let law = dimension.distribution();
-            law.is_none_or(|law| law.standard_moments() == crate::distribution::StandardMoments::NORMAL)
+            law.is_none_or(|law| law.standard_moments() == sensitol_numeric::distribution::StandardMoments::NORMAL)
         };
         self.options.iter().flatten().flatten().all(normal) && self.setting.responses.dimensions.iter().all(normal)
     }
@@ -279,7 +278,7 @@ impl<'s, 'a> Judge<'s, 'a> {
         };
         let all: usize = counts.iter().product();
         let mut choices: Vec<(f64, usize)> = (0..all).map(|code| (self.held(&picks(code)), code)).collect();
-        choices.sort_short_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        choices.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let mut best: Option<(f64, Vec<usize>, f64)> = None;
         let mut nodes = 0;
         for (held, code) in choices {

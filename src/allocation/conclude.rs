@@ -17,11 +17,10 @@ use super::station::{Station, prices};
 use super::task::{AllocateError, Goal};
 use crate::analysis::TRUSTED;
 use crate::problem::Problem;
-use crate::requirement::Requirement;
-use crate::short_sort::ShortSort;
+use sensitol_numeric::requirement::Requirement;
 use crate::simulation::{SimulationOptions, simulate_with};
 use crate::summary::StopReason;
-use crate::verdict::{Judged, Verdict};
+use sensitol_numeric::verdict::{Judged, Verdict};
 use crate::warning::Warning;
 
 /// A residual up to which tolerances are called optimal.
@@ -315,7 +314,7 @@ impl Driver<'_> {
                 });
             }
         }
-        all.sort_short_by_key(|one| one.dimension);
+        all.sort_by_key(|one| one.dimension);
         all
     }
 }

@@ -21,11 +21,10 @@ use super::response::Responses;
 use super::separable::{Row, Term};
 use super::unknown::Unknown;
 use super::yield_room::YieldRoom;
-use crate::capability::{self, Capability, Law};
-use crate::characteristic::SpecLimits;
-use crate::moments::Moments;
-use crate::requirement::Requirement;
-use crate::short_sort::ShortSort;
+use sensitol_numeric::capability::{self, Capability, Law};
+use sensitol_numeric::characteristic::SpecLimits;
+use sensitol_numeric::moments::Moments;
+use sensitol_numeric::requirement::Requirement;
 
 /// The difference that sums in another order may make: limits that are met to the last digit are kept.
 pub(super) const KEPT: f64 = 1e-12;
@@ -535,7 +534,7 @@ impl Constraint {
             .map(|d| (responses.spread(self.characteristic, d), d))
             .filter(|(harm, _)| *harm > 0.0)
             .collect();
-        harm.sort_short_by(|a, b| b.0.total_cmp(&a.0));
+        harm.sort_by(|a, b| b.0.total_cmp(&a.0));
         harm.into_iter().map(|(_, d)| responses.dimensions[d].name().to_owned()).collect()
     }
 

@@ -151,7 +151,7 @@ impl Corners {
     /// The values of all dimensions at a place of the box.
     fn point(&self, place: &[f64], factors: &[f64], shifts: &[f64]) -> Vec<f64> {
         let dimensions = self.problem.dimensions();
-        let mut x: Vec<f64> = dimensions.iter().map(crate::dimension::Dimension::nominal).collect();
+        let mut x: Vec<f64> = dimensions.iter().map(sensitol_numeric::dimension::Dimension::nominal).collect();
         for (band, v) in self.bands.iter().zip(place) {
             let (d, factor) = (band.dimension, factor(factors, band.dimension));
             let shift = shifts.get(d).copied().unwrap_or(0.0) * band.sigma;
@@ -187,8 +187,8 @@ mod tests {
     use super::*;
     use crate::assembly::formula::Formula;
     use crate::assembly::{Composite, Input, Parts};
-    use crate::characteristic::Characteristic;
-    use crate::dimension::Dimension;
+    use sensitol_numeric::characteristic::Characteristic;
+    use sensitol_numeric::dimension::Dimension;
 
     /// `hypot` about its kink and a parabola within its band: the places are the corners and the middle, the slopes those of the closed form.
     #[test]

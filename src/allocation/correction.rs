@@ -15,9 +15,9 @@
 //! model management for engineering optimization", Optimization and Engineering 2 (2001).
 
 use super::root::root;
-use crate::characteristic::SpecLimits;
-use crate::law::{HeldTail, LawTail, SurfaceLaw};
-use crate::moments::Moments;
+use sensitol_numeric::characteristic::SpecLimits;
+use sensitol_numeric::law::{HeldTail, LawTail, SurfaceLaw};
+use sensitol_numeric::moments::Moments;
 
 /// The part of the allowed rejects that the uncertainty leaves at least: beyond it nothing more can be shown.
 const LEFT: f64 = 0.1;

@@ -7,7 +7,6 @@ use super::made::Made;
 use super::written_cost::WrittenCost;
 use crate::assembly::formula::{Formula, FormulaError};
 use crate::problem::Problem;
-use crate::short_sort::ShortSort;
 
 /// Cost of one part over its half band `T`, falling as the tolerance opens.
 ///
@@ -52,7 +51,7 @@ pub enum CurveKind {
 
 impl CurveKind {
     /// The kinds that have a name in study files.
-    pub(crate) const NAMED: [(&'static str, Self); 3] = [
+    pub const NAMED: [(&'static str, Self); 3] = [
         ("reciprocal", Self::Reciprocal),
         ("reciprocal-power", Self::ReciprocalPower),
         ("exponential", Self::Exponential),
@@ -143,7 +142,7 @@ impl Curve {
     }
 
     /// The half bands between which it has a value: those of a table.
-    pub(crate) fn range(&self) -> Option<[f64; 2]> {
+    pub fn range(&self) -> Option<[f64; 2]> {
         self.written.as_ref()?.range()
     }
 
@@ -153,17 +152,17 @@ impl Curve {
     }
 
     /// Points between which straight lines in `1/T` are the cost, or nearly so: of a formula or a table.
-    pub(crate) fn points(&self, min: f64, max: f64) -> Option<Vec<[f64; 2]>> {
+    pub fn points(&self, min: f64, max: f64) -> Option<Vec<[f64; 2]>> {
         self.written.as_ref().map(|written| written.points(min, max))
     }
 
     /// Its kind.
-    pub(crate) fn kind(&self) -> CurveKind {
+    pub fn kind(&self) -> CurveKind {
         self.kind
     }
 
     /// `a`, `b`, and the third of its kind: `k` of a power, 1 of a reciprocal, `c` of an exponential. `b` is 0 where the cost is fixed.
-    pub(crate) fn constants(&self) -> [f64; 3] {
+    pub fn constants(&self) -> [f64; 3] {
         [self.a, self.b, self.shape]
     }
 
@@ -242,7 +241,7 @@ pub struct Offer {
     /// The machine that it needs, which has a set-up cost of its own.
     pub machine: Option<String>,
     /// The dimensions as it makes them, where it says how its parts lie.
-    pub(crate) made: Option<Made>,
+    pub made: Option<Made>,
 }
 
 impl Offer {
@@ -278,7 +277,7 @@ impl Offer {
     }
 
     /// With a name, where several compete.
-    pub(crate) fn named(self, name: impl Into<String>) -> Self {
+    pub fn named(self, name: impl Into<String>) -> Self {
         Self { process: Some(name.into()), ..self }
     }
 }
@@ -293,7 +292,7 @@ pub struct Priced {
     /// The ways of making each part; with one of them the tolerance is free within it.
     pub offers: Vec<Offer>,
     /// The free tolerance of which the offers are steps or standard grades.
-    pub(crate) rounded: Option<Offer>,
+    pub rounded: Option<Offer>,
 }
 
 impl Priced {
@@ -318,7 +317,7 @@ impl Priced {
             (offer.min == offer.max && offer.made.is_none()).then_some((offer.min, offer.curve.cost(offer.min)))
         };
         let mut points: Vec<(f64, f64)> = offers.iter().filter_map(single).collect();
-        points.sort_short_by(|a, b| a.0.total_cmp(&b.0));
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
         if let Some(pair) = points.windows(2).find(|pair| pair[0].0 < pair[1].0 && pair[1].1 > pair[0].1) {
             return Err(CostError::Rising { loose: pair[1].0, tight: pair[0].0 });
         }
@@ -326,14 +325,13 @@ impl Priced {
     }
 
     /// With the free tolerance of which the offers are steps or standard grades.
-    #[cfg(feature = "study")]
-    pub(crate) fn rounding(self, rounded: Option<Offer>) -> Self {
+    pub fn rounding(self, rounded: Option<Offer>) -> Self {
         Self { rounded, ..self }
     }
 
     /// The cost to hold this half band, which no offer need name: a process costs what it costs at any tolerance that it
     /// holds, and a curve goes on beyond its bounds.
-    pub(crate) fn cost_to_hold(&self, t: f64) -> Option<f64> {
+    pub fn cost_to_hold(&self, t: f64) -> Option<f64> {
         self.holding(t).map(|(cost, _)| cost)
     }
 
@@ -351,7 +349,7 @@ impl Priced {
     }
 
     /// The tightest half band among its members as they stand in a problem, which the process that they share has to hold.
-    pub(crate) fn tightest_member(&self, problem: &Problem) -> f64 {
+    pub fn tightest_member(&self, problem: &Problem) -> f64 {
         self.members.iter().map(|&d| problem.dimensions()[d].half_band()).fold(f64::INFINITY, f64::min)
     }
 

@@ -8,7 +8,7 @@ use super::constraint::{Constraint, Linearised};
 use super::quadratic::dot;
 use super::solve::{SMALL, Setting};
 use super::solved::{Ends, Solved};
-use crate::requirement::Requirement;
+use sensitol_numeric::requirement::Requirement;
 
 /// Unknowns and rows beyond which the dense matrices of a step take longer than a round of the model.
 const MOST: usize = 300;

@@ -14,9 +14,9 @@ use super::machines::choose;
 use super::root::root;
 use super::solve::Setting;
 use super::task::Goal;
-use crate::distribution::standard_normal;
+use sensitol_numeric::distribution::standard_normal;
 use crate::problem::Problem;
-use crate::requirement::Requirement;
+use sensitol_numeric::requirement::Requirement;
 
 /// Levels between which the best is sought, in sigmas: from where half of the assemblies are kept to where doubles end.
 const LEVELS: [f64; 2] = [0.7, 37.0];

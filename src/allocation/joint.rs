@@ -3,13 +3,13 @@
 use serde::Serialize;
 
 use super::response::Responses;
-use crate::parallel::prelude::*;
+use sensitol_numeric::parallel::prelude::*;
 use crate::problem::Problem;
-use crate::sampling::{Draws, Portion, Sampler, wilson};
+use sensitol_numeric::sampling::{Draws, Portion, Sampler, wilson};
 
 /// A share of a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct JointYield {
     /// The share of assemblies within all limits.

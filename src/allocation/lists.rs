@@ -1,6 +1,5 @@
 //! Lists of options under rows that add up, as the knapsacks have them ([`knapsack`](super::knapsack)).
 
-use crate::short_sort::ShortSort;
 
 /// The difference that sums in another order may make to a row.
 pub(super) const ROUNDING: f64 = 1e-13;
@@ -161,7 +160,7 @@ pub(super) fn least_use(list: &[ListOption], r: usize) -> f64 {
 
 /// The options that no other one of the list beats, the cheapest first.
 fn undominated(mut list: Vec<ListOption>) -> Vec<ListOption> {
-    list.sort_short_by(|a, b| {
+    list.sort_by(|a, b| {
         a.cost.total_cmp(&b.cost).then_with(|| a.uses.iter().sum::<f64>().total_cmp(&b.uses.iter().sum()))
     });
     let mut kept: Vec<ListOption> = Vec::with_capacity(list.len());

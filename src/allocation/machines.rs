@@ -12,7 +12,6 @@ use super::cost::{Offer, Priced};
 use super::result::Proof;
 use super::setup::{SetUp, needed};
 use super::solve::Setting;
-use crate::short_sort::ShortSort;
 
 /// Costs that differ by less are the same.
 const SAME: f64 = 1e-12;
@@ -42,7 +41,7 @@ fn choose_machines(setting: &Setting<'_>, start: &[f64]) -> Choice {
         setups.iter().enumerate().filter(|(m, _)| set >> m & 1 == 1).map(|(_, setup)| setup.cost).sum()
     };
     let mut sets: Vec<usize> = (0..1usize << setups.len()).collect();
-    sets.sort_short_by(|&a, &b| of(a).total_cmp(&of(b)));
+    sets.sort_by(|&a, &b| of(a).total_cmp(&of(b)));
     // The choice without regard to set-ups is a good one to begin with.
     sets.insert(0, first);
     let (mut best, mut bound, mut nodes, mut rigorous) = (None, f64::INFINITY, 0, true);

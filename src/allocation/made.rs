@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use crate::dimension::Dimension;
+use sensitol_numeric::dimension::Dimension;
 
 /// The dimensions of a group as a process makes them, in the order of its members.
 #[derive(Debug, Clone)]
-pub(crate) struct Made(Arc<Vec<Dimension>>);
+pub struct Made(Arc<Vec<Dimension>>);
 
 impl PartialEq for Made {
     fn eq(&self, other: &Self) -> bool {
@@ -15,12 +15,11 @@ impl PartialEq for Made {
 }
 
 impl Made {
-    #[cfg(feature = "study")]
-    pub(crate) fn new(dimensions: Vec<Dimension>) -> Self {
+    pub fn new(dimensions: Vec<Dimension>) -> Self {
         Self(Arc::new(dimensions))
     }
 
-    pub(crate) fn dimensions(&self) -> &[Dimension] {
+    pub fn dimensions(&self) -> &[Dimension] {
         &self.0
     }
 }

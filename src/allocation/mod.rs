@@ -14,7 +14,7 @@
 //! ```
 //!
 //! Derivatives are taken by an ordinary analysis at the present tolerances. From there moments follow any tolerance by themselves
-//! ([`Surrogate::relocated`](crate::surrogate::Surrogate::relocated)), so that the search costs no evaluation; its answer is analysed by
+//! ([`Surrogate::relocated`](sensitol_numeric::surrogate::Surrogate::relocated)), so that the search costs no evaluation; its answer is analysed by
 //! the model again, and where that says otherwise, tolerances are chosen anew from the derivatives there, until both agree. Nominal values
 //! that may move are unknowns of the same problem.
 //!
@@ -78,15 +78,13 @@ mod written_cost;
 mod yield_room;
 
 pub use basis::CostBasis;
-pub(crate) use cost::CurveKind;
+pub use cost::CurveKind;
 pub use cost::{Curve, Offer, Priced};
 pub use cost_error::CostError;
 pub use joint::JointYield;
 pub use loss::QualityLoss;
-#[cfg(feature = "study")]
-pub(crate) use made::Made;
-#[cfg(feature = "cli")]
-pub(crate) use result::ProofShape;
+pub use made::Made;
+pub use result::ProofShape;
 
 pub use result::{
     Allocated, Allocation, AllocationSolver, Attainable, Bound, FrontPoint, JointKept, Kept, Moved, Proof, ShadowPrice,

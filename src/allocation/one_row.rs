@@ -6,7 +6,6 @@
 //! choice known; the steps that fit there complete it to a choice.
 
 use super::lists::{ListChoice, ListOption, Lists, ROUNDING, SAME, fits};
-use crate::short_sort::ShortSort;
 
 /// States of one list at most: some hundred megabytes.
 const MOST: usize = 4_000_000;
@@ -54,7 +53,7 @@ pub(super) fn one_row(problem: &Lists, stopped: &dyn Fn() -> bool) -> Option<Lis
     let left = reduced(problem, bound, price, known)?;
     // Few options first would make few states; the widest first make the bound of the rest sharp soonest.
     let mut order: Vec<usize> = (0..left.len()).collect();
-    order.sort_short_by_key(|&j| std::cmp::Reverse(left[j].len()));
+    order.sort_by_key(|&j| std::cmp::Reverse(left[j].len()));
     let ordered = Lists { lists: order.iter().map(|&j| problem.lists[j].clone()).collect(), rows: problem.rows };
     let left: Vec<Vec<usize>> = order.iter().map(|&j| left[j].clone()).collect();
     let mut best: Vec<usize> = order.iter().map(|&j| best[j]).collect();

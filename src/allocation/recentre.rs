@@ -8,10 +8,10 @@ use super::solve::Setting;
 use super::station::Station;
 use super::task::{AllocateError, Goal};
 use super::together::{Together, together};
-use crate::capability::Law;
-use crate::characteristic::SpecLimits;
-use crate::dimension::Dimension;
-use crate::moments::Moments;
+use sensitol_numeric::capability::Law;
+use sensitol_numeric::characteristic::SpecLimits;
+use sensitol_numeric::dimension::Dimension;
+use sensitol_numeric::moments::Moments;
 use crate::problem::Problem;
 
 /// Steps of the central differences, in sigmas.

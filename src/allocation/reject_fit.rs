@@ -1,6 +1,6 @@
 //! The data of what some characteristics reject together, about a station; [`rejects`](super::rejects) makes and uses it.
 
-use crate::characteristic::SpecLimits;
+use sensitol_numeric::characteristic::SpecLimits;
 
 /// The joint rejects of some characteristics.
 #[derive(Debug, Clone, PartialEq)]

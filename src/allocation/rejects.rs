@@ -19,12 +19,12 @@ use std::sync::{Arc, PoisonError};
 use super::cost::Priced;
 use super::reject_fit::RejectFit;
 use super::response::Responses;
-use crate::capability::Law;
-use crate::characteristic::SpecLimits;
-use crate::distribution::standard_normal;
-use crate::law::{HeldTail, LawTail, SurfaceLaw, rejected};
-use crate::moments::Moments;
-use crate::parallel::prelude::*;
+use sensitol_numeric::capability::Law;
+use sensitol_numeric::characteristic::SpecLimits;
+use sensitol_numeric::distribution::standard_normal;
+use sensitol_numeric::law::{HeldTail, LawTail, SurfaceLaw, rejected};
+use sensitol_numeric::moments::Moments;
+use sensitol_numeric::parallel::prelude::*;
 
 /// Farther than this from the station, in `ln T`, a slope is not followed.
 const FAR: f64 = 0.7;

@@ -7,10 +7,10 @@ use super::constraint::Constraint;
 use super::cost::Priced;
 use super::response::{Response, Responses, is_straight, shapes_of};
 use crate::analysis::law_over;
-use crate::dimension::Dimension;
-use crate::moments::Moments;
-use crate::requirement::Requirement;
-use crate::surrogate::{Inputs, Relocation};
+use sensitol_numeric::dimension::Dimension;
+use sensitol_numeric::moments::Moments;
+use sensitol_numeric::requirement::Requirement;
+use sensitol_numeric::surrogate::{Inputs, Relocation};
 
 impl Responses {
     /// With these dimensions in place of those at which the derivatives were taken; with laws where a yield is asked for. Slopes and worst cases

@@ -18,15 +18,15 @@ use super::sampled::SampledCorrection;
 use super::unknown::Unknown;
 use super::worst::WorstCase;
 use crate::analysis::{Analysis, CharacteristicAnalysis, law_over, surface_law};
-use crate::characteristic::SpecLimits;
-use crate::dimension::Dimension;
-use crate::distribution::Distribution;
-use crate::law::SurfaceLaw;
+use sensitol_numeric::characteristic::SpecLimits;
+use sensitol_numeric::dimension::Dimension;
+use sensitol_numeric::distribution::Distribution;
+use sensitol_numeric::law::SurfaceLaw;
 use crate::method::Outcome;
-use crate::moments::Moments;
+use sensitol_numeric::moments::Moments;
 use crate::problem::Problem;
-use crate::requirement::Requirement;
-use crate::surrogate::{InputShape, Inputs, Relocation, Surrogate, shapes};
+use sensitol_numeric::requirement::Requirement;
+use sensitol_numeric::surrogate::{InputShape, Inputs, Relocation, Surrogate, shapes};
 
 /// The characteristics near some tolerances, as far as they are known.
 pub(super) struct Responses {
@@ -505,7 +505,7 @@ impl Responses {
     }
 
     fn are_normal(&self) -> bool {
-        self.inputs.shapes().iter().all(|shape| shape.moments == crate::distribution::StandardMoments::NORMAL)
+        self.inputs.shapes().iter().all(|shape| shape.moments == sensitol_numeric::distribution::StandardMoments::NORMAL)
     }
 
     fn means_stay(&self) -> bool {

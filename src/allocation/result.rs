@@ -5,26 +5,23 @@ use serde::{Serialize, Serializer};
 use super::basis::CostBasis;
 use super::joint::JointYield;
 use super::setup::SetUp;
-#[cfg(feature = "cli")]
 use super::shape::RequiredOf;
-#[cfg(feature = "cli")]
 use super::shape::Sampled;
 use super::shape::{After, Before, FrontRequirement, required, sampled};
 use super::task::Goal;
 use crate::analysis::Analysis;
 use crate::problem::Problem;
-use crate::requirement::{Required, Requirement};
-use crate::shape::through;
+use sensitol_numeric::requirement::{Required, Requirement};
+use sensitol_numeric::shape::through;
 use crate::simulation::Simulation;
 use crate::summary::RunSummary;
-use crate::verdict::Judged;
+use sensitol_numeric::verdict::Judged;
 use crate::warning::Warning;
 
 /// How it ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
 pub enum Status {
     /// Every requirement is kept, and nothing cheaper does: within rounding, and proven.
     Optimal,
@@ -43,7 +40,7 @@ pub enum Status {
 
 impl Status {
     /// Its name in reports.
-    pub(crate) fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Self::Optimal => "optimal",
             Self::LocalOptimum => "local-optimum",
@@ -57,7 +54,7 @@ impl Status {
 
 /// Which bound a tolerance has met.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Bound {
     /// Its least.
     #[serde(rename = "min")]
@@ -69,8 +66,7 @@ pub enum Bound {
 
 /// One dimension with a cost.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[non_exhaustive]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Allocated {
     /// Index of the dimension in the problem; reports name it.
     #[serde(skip)]
@@ -94,7 +90,7 @@ pub struct Allocated {
 
 /// A nominal value that has moved.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Moved {
     /// Index of the dimension in the problem; reports name it.
@@ -108,7 +104,7 @@ pub struct Moved {
 
 /// The requirement of a characteristic, and its values.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Kept {
     /// Index of the characteristic in the problem; reports name it.
@@ -116,43 +112,43 @@ pub struct Kept {
     pub characteristic: usize,
     /// The requirement.
     #[serde(flatten, serialize_with = "through::<Required, _, _>")]
-    #[cfg_attr(feature = "cli", schemars(with = "Required"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Required"))]
     pub requirement: Requirement,
     /// The value by the analysis at the tolerances before.
     #[serde(flatten, serialize_with = "through::<Before, _, _>")]
-    #[cfg_attr(feature = "cli", schemars(with = "Before"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Before"))]
     pub before: Judged,
     /// The value by the analysis at those found; None where none were.
     #[serde(flatten, serialize_with = "through::<After, _, _>")]
-    #[cfg_attr(feature = "cli", schemars(with = "After"))]
+    #[cfg_attr(feature = "schema", schemars(with = "After"))]
     pub after: Option<Judged>,
     /// The verdict of a sample of the model there, of a worst case by points in the box of the bands; None without one, and of rss, of which
     /// samples know nothing.
     #[serde(serialize_with = "sampled")]
-    #[cfg_attr(feature = "cli", schemars(with = "Option<Sampled>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<Sampled>"))]
     pub sampled: Option<Judged>,
 }
 
 /// The joint yield that all characteristics with limits must keep, and what there is of it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct JointKept {
     /// The requirement.
     #[serde(flatten, serialize_with = "through::<Required, _, _>")]
-    #[cfg_attr(feature = "cli", schemars(with = "Required"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Required"))]
     pub requirement: Requirement,
     /// The value by the analysis at the tolerances before.
     #[serde(flatten, serialize_with = "through::<Before, _, _>")]
-    #[cfg_attr(feature = "cli", schemars(with = "Before"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Before"))]
     pub before: Judged,
     /// The value by the analysis at those found; None where none were.
     #[serde(flatten, serialize_with = "through::<After, _, _>")]
-    #[cfg_attr(feature = "cli", schemars(with = "After"))]
+    #[cfg_attr(feature = "schema", schemars(with = "After"))]
     pub after: Option<Judged>,
     /// The verdict of a sample of the model there; None without one.
     #[serde(serialize_with = "sampled")]
-    #[cfg_attr(feature = "cli", schemars(with = "Option<Sampled>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<Sampled>"))]
     pub sampled: Option<Judged>,
 }
 
@@ -161,7 +157,7 @@ pub struct JointKept {
 /// Where both sides of a requirement hold the cost up, widening one of them alone saves nothing, and only `both` is known. Where requirements
 /// of several characteristics hold it up in the same way, to widen one of them saves less than to narrow it costs, and there is no one price.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct ShadowPrice {
     /// Index of the characteristic in the problem; reports name it.
@@ -183,7 +179,7 @@ pub struct ShadowPrice {
 
 /// A requirement that cannot be kept.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Attainable {
     /// Index of the characteristic in the problem; reports name it.
@@ -193,7 +189,7 @@ pub struct Attainable {
     pub unit: Option<String>,
     /// The requirement.
     #[serde(flatten, serialize_with = "through::<Required, _, _>")]
-    #[cfg_attr(feature = "cli", schemars(with = "Required"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Required"))]
     pub requirement: Requirement,
     /// The best that the bounds of the tolerances allow, in the requirement's own measure.
     pub best: Option<f64>,
@@ -207,7 +203,7 @@ pub struct Attainable {
 
 /// The solver that an answer comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum AllocationSolver {
@@ -227,7 +223,7 @@ pub enum AllocationSolver {
 
 /// The evidence that nothing is cheaper.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
 #[non_exhaustive]
 pub struct Proof {
@@ -328,12 +324,12 @@ pub struct Allocation {
 
 /// One point of the front: the cheapest tolerances for a requirement.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct FrontPoint {
     /// The requirement of every characteristic that has one, in the order of the problem; of all together last.
     #[serde(serialize_with = "required")]
-    #[cfg_attr(feature = "cli", schemars(with = "Vec<RequiredOf>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Vec<RequiredOf>"))]
     pub required: Vec<FrontRequirement>,
     /// The cost of that; None where it cannot be kept.
     pub cost: Option<f64>,
@@ -343,10 +339,10 @@ pub struct FrontPoint {
 
 /// A proof with the kind of its bound, as it is written.
 #[derive(Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub(crate) struct ProofShape<'r> {
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct ProofShape<'r> {
     #[serde(flatten, serialize_with = "Proof::serialize")]
-    #[cfg_attr(feature = "cli", schemars(with = "Proof"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Proof"))]
     own: &'r Proof,
     /// Whether the bound is exact, rather than resting on a sample of choices; null without one.
     bound_is_exact: Option<bool>,

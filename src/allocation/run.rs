@@ -20,10 +20,10 @@ use super::steps::Steps;
 use super::task::{AllocateError, AllocationOptions, AllocationTask, Goal};
 use crate::assembly::Run;
 use crate::problem::Problem;
-use crate::sampling::{Draws, Sampler};
+use sensitol_numeric::sampling::{Draws, Sampler};
 use crate::simulation::SimulationError;
 use crate::summary::RunSummary;
-use crate::time::Instant;
+use sensitol_numeric::time::Instant;
 
 /// The factor up to which derivatives are trusted when they say that nothing is possible, and by which tolerances may move in a
 /// step after the model has failed farther out.

@@ -12,9 +12,9 @@
 
 use super::cost::Priced;
 use crate::assembly::Run;
-use crate::moments::Moments;
+use sensitol_numeric::moments::Moments;
 use crate::problem::Problem;
-use crate::sampling::Sampler;
+use sensitol_numeric::sampling::Sampler;
 use crate::simulation::{SimulationOptions, simulate_with};
 
 /// Points of a sample.
@@ -71,7 +71,7 @@ impl SampledCorrection {
                     let found = simulate_with(&at(g, libm::exp(step))?, &options, run, &|_| {}).ok()?;
                     points += found.run.evaluations;
                     let moments = |of: &crate::simulation::SimulatedCharacteristic| {
-                        let value = |of: Option<crate::sampling::Estimate>| of.map(|of| of.value);
+                        let value = |of: Option<sensitol_numeric::sampling::Estimate>| of.map(|of| of.value);
                         let [mean, sigma] = [value(of.mean)?, value(of.sigma)?];
                         Some(Moments::new(mean, sigma, value(of.skewness)?, value(of.kurtosis)? - 3.0))
                     };

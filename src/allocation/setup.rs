@@ -17,7 +17,7 @@ pub(super) const MOST: usize = 12;
 /// # Ok::<(), sensitol::allocation::CostError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct SetUp {
     /// The machine.

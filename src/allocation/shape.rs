@@ -2,13 +2,13 @@
 
 use serde::{Serialize, Serializer};
 
-use crate::requirement::{Required, Requirement};
-use crate::shape::{ends, finite};
-use crate::verdict::{Judged, Verdict};
+use sensitol_numeric::requirement::{Required, Requirement};
+use sensitol_numeric::shape::{ends, finite};
+use sensitol_numeric::verdict::{Judged, Verdict};
 
 /// The value of a requirement before, as it is written.
 #[derive(Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(super) struct Before {
     /// The value before.
     before: Option<f64>,
@@ -26,7 +26,7 @@ impl From<&Judged> for Before {
 
 /// The value of a requirement after, as it is written; all null where nothing was found.
 #[derive(Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(super) struct After {
     /// The value found.
     after: Option<f64>,
@@ -51,7 +51,7 @@ impl From<&Option<Judged>> for After {
 
 /// The verdict of a sample on a requirement, as it is written.
 #[derive(Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(super) struct Sampled {
     /// The figure of the sample.
     value: Option<f64>,
@@ -73,7 +73,7 @@ pub(super) fn sampled<S: Serializer>(of: &Option<Judged>, serializer: S) -> Resu
 
 /// A requirement of a characteristic, as it is written.
 #[derive(Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(super) struct RequiredOf<'r> {
     /// The characteristic.
     characteristic: &'r str,

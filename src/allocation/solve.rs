@@ -17,8 +17,8 @@ use super::response::Responses;
 use super::separable::{Row, Separable};
 use super::setup::SetUp;
 use super::solved::{Ends, Solved, Starts};
-use crate::parallel::prelude::*;
-use crate::requirement::Requirement;
+use sensitol_numeric::parallel::prelude::*;
+use sensitol_numeric::requirement::Requirement;
 
 /// The constraints, and the tolerances that they are on.
 #[derive(Clone, Copy)]

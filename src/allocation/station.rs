@@ -7,7 +7,7 @@ use super::solve::Setting;
 use super::solved::Solved;
 use crate::analysis::{Analysis, Findings};
 use crate::problem::Problem;
-use crate::requirement::Requirement;
+use sensitol_numeric::requirement::Requirement;
 
 /// A constraint that is so near its bound is at it.
 const BINDING: f64 = 1e-6;

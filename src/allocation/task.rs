@@ -6,12 +6,12 @@ use super::loss::QualityLoss;
 use super::setup::{MOST as MOST_MACHINES, SetUp};
 use serde::Serialize;
 
-use crate::dimension::Dimension;
+use sensitol_numeric::dimension::Dimension;
 use crate::method::{Method, MethodError, Options};
-use crate::names::nearest;
+use sensitol_numeric::names::nearest;
 use crate::problem::Problem;
-use crate::requirement::Requirement;
-use crate::sampling::{Draws, Sampler};
+use sensitol_numeric::requirement::Requirement;
+use sensitol_numeric::sampling::{Draws, Sampler};
 use crate::simulation::{SimulationError, chosen};
 use crate::warning::Advice;
 
@@ -38,9 +38,8 @@ pub struct AllocationTask {
 
 /// The objective.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "kind", rename_all = "kebab-case")]
-#[non_exhaustive]
 pub enum Goal {
     /// The least cost that keeps every requirement.
     #[default]
@@ -158,7 +157,6 @@ impl AllocationTask {
 
 /// How tolerances are allocated.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct AllocationOptions {
     /// How derivatives are taken; its budget is that of all evaluations together. [`Method::Auto`](crate::Method::Auto) stands for `full` where
     /// dimensions are few and for `six-n` where they are many: every round must ask the same.
@@ -190,7 +188,7 @@ impl Default for AllocationOptions {
 
 impl AllocationOptions {
     /// How derivatives of this problem are taken.
-    pub(crate) fn derivatives(&self, problem: &Problem) -> Options {
+    pub fn derivatives(&self, problem: &Problem) -> Options {
         let model_figures = self.analysis.method == Method::Auto;
         Options { extremes: false, model_figures, ..chosen(problem, &self.analysis) }
     }
@@ -391,15 +389,15 @@ pub enum AllocateError {
     Simulation(#[from] SimulationError),
     /// Other tolerances do not go with the correlation.
     #[error(transparent)]
-    Correlation(#[from] crate::correlation::CorrelationError),
+    Correlation(#[from] sensitol_numeric::correlation::CorrelationError),
     /// Other tolerances do not go with a distribution.
     #[error(transparent)]
-    Dimension(#[from] crate::dimension::DimensionError),
+    Dimension(#[from] sensitol_numeric::dimension::DimensionError),
 }
 
 impl AllocateError {
     /// The actions to take.
-    pub(crate) fn advice(&self) -> Vec<Advice> {
+    pub fn advice(&self) -> Vec<Advice> {
         match self {
             Self::NothingToChoose => vec![Advice::WriteCosts, Advice::NameMovableDimensions],
             Self::NoSurrogate { .. } => {

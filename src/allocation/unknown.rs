@@ -1,7 +1,7 @@
 //! The uncertainty of a characteristic at a station.
 
 use crate::analysis::CharacteristicAnalysis;
-use crate::requirement::Requirement;
+use sensitol_numeric::requirement::Requirement;
 
 /// How far the bad ends of the intervals lie from the figures by which trial tolerances are judged; 0 where nothing is known of an
 /// error.

@@ -13,7 +13,7 @@
 
 use super::corners::Corners;
 use crate::extremes::{Model, Region};
-use crate::surrogate::Surrogate;
+use sensitol_numeric::surrogate::Surrogate;
 
 /// A true worst case farther off than by this factor is not a correction but another function: the difference is added.
 const NEAR: f64 = 2.0;

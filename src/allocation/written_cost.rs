@@ -8,7 +8,6 @@
 
 use super::cost_error::CostError;
 use crate::assembly::formula::{Formula, FormulaError, FormulaSet, Jet, Meaning};
-use crate::short_sort::ShortSort;
 
 /// The name of the half band in a formula.
 const NAME: &str = "T";
@@ -67,7 +66,7 @@ impl WrittenCost {
             }
         }
         let mut points = points.to_vec();
-        points.sort_short_by(|a, b| b[0].total_cmp(&a[0]));
+        points.sort_by(|a, b| b[0].total_cmp(&a[0]));
         for pair in points.windows(2) {
             let ([loose, low], [tight, high]) = (pair[0], pair[1]);
             if loose == tight {

@@ -7,9 +7,9 @@
 //! ```
 
 use super::root::root;
-use crate::capability::Law;
-use crate::moments::Moments;
-use crate::pearson::Pearson;
+use sensitol_numeric::capability::Law;
+use sensitol_numeric::moments::Moments;
+use sensitol_numeric::pearson::Pearson;
 
 /// Differences in skewness and excess: truncation and rounding both near 1e-8.
 const STEP: f64 = 1e-4;

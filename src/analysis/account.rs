@@ -15,7 +15,7 @@ const STRAIGHT: f64 = 1e-8;
 
 /// The shapes that `auto` found for the dimensions, and the use of its points. As text it is a sentence.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Account {
     /// Dimensions that vary and matter.

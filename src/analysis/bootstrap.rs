@@ -11,16 +11,16 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::interval::{acceleration, bca};
 use super::{CharacteristicAnalysis, SamplingInterval};
-use crate::capability::{Capability, Law, cpk};
-use crate::characteristic::SpecLimits;
-use crate::correlation::JointLaw;
-use crate::distribution::{Distribution, Resample, Reweighted, StandardMoments};
+use sensitol_numeric::capability::{Capability, Law, cpk};
+use sensitol_numeric::characteristic::SpecLimits;
+use sensitol_numeric::correlation::JointLaw;
+use sensitol_numeric::distribution::{Distribution, Resample, Reweighted, StandardMoments};
 use crate::method::Outcome;
-use crate::moments::Moments;
-use crate::parallel::prelude::*;
+use sensitol_numeric::moments::Moments;
+use sensitol_numeric::parallel::prelude::*;
 use crate::problem::Problem;
-use crate::surrogate::{InputShape, Inputs, Pooled, Relocation, Surrogate};
-use crate::verdict::including;
+use sensitol_numeric::surrogate::{InputShape, Inputs, Pooled, Relocation, Surrogate};
+use sensitol_numeric::verdict::including;
 use crate::verification::CONFIDENCE;
 
 /// As many resamples as an end of the interval needs to be known to a tenth of its width or so;

@@ -12,20 +12,20 @@ use super::sobol::SobolIndices;
 use super::{
     InteractionList, SampledModel, SamplingInterval, SurfaceShares, Verification, VerificationKind, YieldSource,
 };
-use crate::capability::{Capability, CapabilityShape, EstimatedShare, InspectionRisks, Law};
-use crate::characteristic::{Characteristic, SpecLimits};
+use sensitol_numeric::capability::{Capability, CapabilityShape, EstimatedShare, InspectionRisks, Law};
+use sensitol_numeric::characteristic::{Characteristic, SpecLimits};
 use crate::extremes::{Extremes, ExtremesProof};
 use crate::method::{ErrorEstimate, Order, Outcome, Residual, estimate};
-use crate::moments::{Moments, Sampled};
-use crate::pearson::PearsonError;
+use sensitol_numeric::moments::{Moments, Sampled};
+use sensitol_numeric::pearson::PearsonError;
 use crate::problem::Problem;
-use crate::requirement::Requirement;
-use crate::shape::{Four, through};
-use crate::verdict::{self, Judged, Verdict};
+use sensitol_numeric::requirement::Requirement;
+use sensitol_numeric::shape::{Four, through};
+use sensitol_numeric::verdict::{self, Judged, Verdict};
 
 /// Moments, sensitivities and contributions of one characteristic. Unknown values are None.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
 #[non_exhaustive]
 pub struct CharacteristicAnalysis {
@@ -36,7 +36,7 @@ pub struct CharacteristicAnalysis {
     pub nominal: Option<f64>,
     /// Its first four moments.
     #[serde(flatten, serialize_with = "through::<Four<Option<f64>>, _, _>")]
-    #[cfg_attr(feature = "cli", schemars(with = "Four<Option<f64>>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Four<Option<f64>>"))]
     pub moments: Option<Moments>,
     /// Their uncertainty from sampling the surrogate of correlated inputs; None where they are exact.
     #[serde(rename = "surrogate_sampling")]
@@ -45,10 +45,10 @@ pub struct CharacteristicAnalysis {
     #[serde(rename = "model_sampling")]
     pub model_sampled: Option<SampledModel>,
     /// The verification of these results by the model itself; None where they were not verified.
-    #[cfg_attr(feature = "cli", schemars(with = "Option<super::verified::VerificationShape>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<super::verified::VerificationShape>"))]
     pub verification: Option<Verification>,
     /// The results of its surface distribution; None where its moments follow from no surface.
-    #[cfg_attr(feature = "cli", schemars(with = "Option<super::surface_law::SurfaceLawShape>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<super::surface_law::SurfaceLawShape>"))]
     pub surface_law: Option<SurfaceShares>,
     /// The density of that law as `[y, density, error]`, to be drawn; None unless [asked for](crate::Options::densities), and where the
     /// law has none.
@@ -67,20 +67,20 @@ pub struct CharacteristicAnalysis {
     pub residual: Option<Residual>,
     /// The distribution that has these moments, or why none has.
     #[serde(rename = "distribution", serialize_with = "fitted")]
-    #[cfg_attr(feature = "cli", schemars(with = "Option<Law>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<Law>"))]
     pub law: Option<Result<Law, PearsonError>>,
     /// How the limits are kept, by the best that is known ([`yield_source`](Self::yield_source)); quantiles by the law of the
     /// surface, where there is one.
     #[serde(flatten, serialize_with = "through::<CapabilityShape, _, _>")]
-    #[cfg_attr(feature = "cli", schemars(with = "CapabilityShape"))]
+    #[cfg_attr(feature = "schema", schemars(with = "CapabilityShape"))]
     pub capability: Option<Capability>,
     /// How the distribution with its moments keeps them: the Pearson fit.
     #[serde(rename = "pearson_fit")]
-    #[cfg_attr(feature = "cli", schemars(with = "Option<CapabilityShape>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<CapabilityShape>"))]
     pub pearson: Option<Capability>,
     /// How the normal distribution with the same mean and sigma would.
     #[serde(rename = "normal_fit")]
-    #[cfg_attr(feature = "cli", schemars(with = "Option<CapabilityShape>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<CapabilityShape>"))]
     pub normal: Option<Capability>,
     /// Intervals that hold the share of assemblies that was asked for; None where none was.
     pub coverage: Option<CoverageIntervals>,
@@ -119,7 +119,7 @@ pub struct CharacteristicAnalysis {
     /// For every dimension of the problem, in order.
     pub sensitivities: Vec<Sensitivity>,
     /// The interactions examined, strongest first.
-    #[cfg_attr(feature = "cli", schemars(with = "Vec<super::Interaction<'_>>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Vec<super::Interaction<'_>>"))]
     pub interactions: InteractionList,
     /// The sum of the interactions that are not listed one by one; None where all are.
     pub interactions_remainder: Option<Remainder>,
@@ -136,7 +136,7 @@ pub struct CharacteristicAnalysis {
 
 /// The effect of one dimension on a characteristic.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Sensitivity {
     /// The dimension.
@@ -172,13 +172,13 @@ fn fitted<S: Serializer>(law: &Option<Result<Law, PearsonError>>, serializer: S)
 
 impl CharacteristicAnalysis {
     /// All shares of its dimension: straight line and curvature.
-    pub(crate) fn share(&self, dimension: usize) -> Option<f64> {
+    pub fn share(&self, dimension: usize) -> Option<f64> {
         let sensitivity = &self.sensitivities[dimension];
         Some(sensitivity.linear_share? + sensitivity.curvature_share.unwrap_or(0.0))
     }
 
     /// The bounds of its worst case by interval arithmetic: beside the extremes where these were searched.
-    pub(crate) fn proof(&self) -> Option<&ExtremesProof> {
+    pub fn proof(&self) -> Option<&ExtremesProof> {
         self.extremes.as_ref().map_or(self.bounds.as_ref(), |found| found.proof.as_ref())
     }
 
@@ -279,7 +279,7 @@ impl CharacteristicAnalysis {
     }
 
     /// Whether its target yield is met; None where it has none, and where that is not known.
-    pub(crate) fn met(&self) -> Option<bool> {
+    pub fn met(&self) -> Option<bool> {
         self.verdict()?.met()
     }
 

@@ -8,7 +8,7 @@ use super::yield_source::YieldSource;
 ///
 /// Source: JCGM 101:2008, 5.3.2 to 5.3.4 and 7.7.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct CoverageIntervals {
     /// The share of assemblies that each holds.

@@ -1,9 +1,9 @@
 //! The errors of the yield that follow from the estimated errors of the moments.
 
-use crate::capability::{Capability, Law};
-use crate::characteristic::SpecLimits;
+use sensitol_numeric::capability::{Capability, Law};
+use sensitol_numeric::characteristic::SpecLimits;
 use crate::method::ErrorEstimate;
-use crate::moments::Moments;
+use sensitol_numeric::moments::Moments;
 
 /// How far the rejected share moves when each moment is off by its error, one after the other, as the root of the sum of
 /// squares; None where an error is unknown, there are no limits, or no law has such moments.

@@ -15,8 +15,8 @@ use super::CharacteristicAnalysis;
 use super::sobol::{FactorIndices, IndexSource, SobolIndices};
 use super::verified::{UNTRUSTED, VerificationKind};
 use crate::assembly::Run;
-use crate::capability::EstimatedShare;
-use crate::correlation::factors;
+use sensitol_numeric::capability::EstimatedShare;
+use sensitol_numeric::correlation::factors;
 use crate::method::{Options, Order, Outcome};
 use crate::problem::Problem;
 use crate::verification::factor_shares;
@@ -55,13 +55,13 @@ pub(super) fn add(
 
 impl CharacteristicAnalysis {
     /// The share of the variance that its surface leaves, as far as the model was asked.
-    pub(crate) fn left(&self) -> Option<f64> {
+    pub fn left(&self) -> Option<f64> {
         let verified = self.verification.as_ref().and_then(|of| of.left);
         verified.or(self.model_sampled.as_ref().map(|of| of.left))
     }
 
     /// Within which a share of its surface is that of the model; None where that is not known.
-    pub(crate) fn share_error(&self, share: f64) -> Option<f64> {
+    pub fn share_error(&self, share: f64) -> Option<f64> {
         let left = self.left().filter(|_| self.sampled.is_none())?;
         Some((2.0 * (share.max(0.0) * left).sqrt() + left).min(1.0))
     }

@@ -6,7 +6,7 @@ use serde::{Serialize, Serializer};
 
 /// The joint effect of two dimensions.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Interaction<'a> {
     /// The two dimensions.
@@ -27,7 +27,7 @@ pub struct Interaction<'a> {
 
 /// Why a derivative is missing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Missing {

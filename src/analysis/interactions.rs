@@ -3,7 +3,7 @@
 use super::interaction::{InteractionList, Missing, Row};
 use super::shares::Shares;
 use crate::method::Outcome;
-use crate::parallel::prelude::*;
+use sensitol_numeric::parallel::prelude::*;
 use crate::plan::Point;
 use crate::problem::Problem;
 

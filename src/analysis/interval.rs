@@ -1,6 +1,6 @@
 //! Confidence intervals from resamples.
 
-use crate::distribution::standard_normal;
+use sensitol_numeric::distribution::standard_normal;
 
 /// An interval that covers the truth with probability `level`, from the estimate, the same statistic of resamples, and
 /// its acceleration; None where it is unknown for the sample or for any resample.

@@ -9,9 +9,8 @@
 use crate::assembly::{NonRepeatable, Points, Request, Responses, Run};
 use crate::method::{Basis, Outcome};
 use crate::problem::Problem;
-use crate::short_sort::ShortSort;
 use crate::summary::RunSummary;
-use crate::time::Instant;
+use sensitol_numeric::time::Instant;
 use crate::warning::Warning;
 
 use super::CharacteristicAnalysis;
@@ -73,7 +72,7 @@ pub(super) fn find(
     }
     let mut sides: Vec<Side> =
         (0..characteristics.len()).flat_map(|c| suspicious(outcome, c, &characteristics[c])).collect();
-    sides.sort_short_by(|a, b| b.curvature.total_cmp(&a.curvature).then(a.dimension.cmp(&b.dimension)));
+    sides.sort_by(|a, b| b.curvature.total_cmp(&a.curvature).then(a.dimension.cmp(&b.dimension)));
     sides.truncate(AXES.min(left.unwrap_or(usize::MAX) / ALL));
     for step in 0..ALL {
         if step == FIRST {

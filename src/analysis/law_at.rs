@@ -2,9 +2,9 @@
 
 use super::surface::Surface;
 use super::surface_law::{law_over, with};
-use crate::law::{LawError, SurfaceLaw};
+use sensitol_numeric::law::{LawError, SurfaceLaw};
 use crate::problem::Problem;
-use crate::surrogate::Relocation;
+use sensitol_numeric::surrogate::Relocation;
 
 /// The law of a characteristic's surface where its inputs have moved and keep their shapes, beside what the surface leaves out: what
 /// pages compute by themselves. None where the moments follow from no surface.

@@ -40,11 +40,11 @@ mod warnings;
 mod written;
 mod yield_source;
 
-pub use crate::capability::{EstimatedShare, InspectionRisks};
+pub use sensitol_numeric::capability::{EstimatedShare, InspectionRisks};
 pub use crate::extremes::{Coordinate, Extreme, Extremes, ExtremesProof, Place};
-pub use crate::law::{Branch, LawError, LawFigure};
-pub use crate::moments::{Contributions, Sampled};
-pub use crate::surrogate::Relocation;
+pub use sensitol_numeric::law::{Branch, LawError, LawFigure};
+pub use sensitol_numeric::moments::{Contributions, Sampled};
+pub use sensitol_numeric::surrogate::Relocation;
 pub use crate::verification::{Crossing, FoundSwitch, OutputCorrelation, Share, Verified};
 pub use account::Account;
 pub use characteristic::{CharacteristicAnalysis, Sensitivity};
@@ -59,37 +59,36 @@ pub use surface_law::SurfaceShares;
 pub(crate) use surface_law::{law_over, surface_law};
 pub(crate) use verified::TRUSTED;
 pub use verified::{VarianceShare, Verification, VerificationKind};
-#[cfg(feature = "cli")]
-pub(crate) use written::CharacteristicShape;
+pub use written::CharacteristicShape;
 pub use yield_source::YieldSource;
 
 use serde::Serialize;
 
 use crate::assembly::Run;
 use crate::extremes::{SearchedExtremes, enclose, search};
-use crate::law::SurfaceLaw;
+use sensitol_numeric::law::SurfaceLaw;
 use crate::method::{
     Basis, ClimbEnd, DerivativeSource, Method, MethodError, Narrow, Narrowed, Options, Outcome, climb_until,
 };
-use crate::parallel::join;
-use crate::parallel::prelude::*;
+use sensitol_numeric::parallel::join;
+use sensitol_numeric::parallel::prelude::*;
 use crate::problem::Problem;
-use crate::requirement::Requirement;
-use crate::shape::through;
+use sensitol_numeric::requirement::Requirement;
+use sensitol_numeric::shape::through;
 use crate::summary::{RunSummary, StopReason};
-use crate::time::Instant;
-use crate::verdict::{self, Judged};
+use sensitol_numeric::time::Instant;
+use sensitol_numeric::verdict::{self, Judged};
 use crate::warning::Warning;
 use shares::Shares;
 
 /// The results of an analysis.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
 #[non_exhaustive]
 pub struct Analysis {
     /// The method that was run: for `auto`, what it stands for.
-    #[cfg_attr(feature = "cli", schemars(with = "String"))]
+    #[cfg_attr(feature = "schema", schemars(with = "String"))]
     pub method: Method,
     /// Dimensions that vary and on which some characteristic can depend, N.
     pub varying: usize,
@@ -97,14 +96,14 @@ pub struct Analysis {
     #[serde(flatten)]
     pub run: RunSummary,
     /// The results of every characteristic, in the problem's order.
-    #[cfg_attr(feature = "cli", schemars(with = "Vec<CharacteristicShape>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Vec<CharacteristicShape>"))]
     pub characteristics: Vec<CharacteristicAnalysis>,
     /// The share of assemblies that keep the limits of all characteristics at once, and its error; None with fewer than two that have
     /// limits, and where it is not known.
     #[serde(rename = "joint_yield")]
     pub joint: Option<Verified>,
     /// Whether that share reaches the target for all characteristics at once; None without such a target.
-    #[cfg_attr(feature = "cli", schemars(with = "Option<crate::verdict::JudgedShape>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<sensitol_numeric::verdict::JudgedShape>"))]
     pub joint_requirement: Option<Judged>,
     /// How every two characteristics vary together; empty with one characteristic, and with more than 40.
     #[serde(rename = "characteristic_correlation")]
@@ -113,7 +112,7 @@ pub struct Analysis {
     pub account: Option<Account>,
     /// The basis of the moments.
     #[serde(flatten, serialize_with = "through::<shape::BasisShape, _, _>")]
-    #[cfg_attr(feature = "cli", schemars(with = "shape::BasisShape"))]
+    #[cfg_attr(feature = "schema", schemars(with = "shape::BasisShape"))]
     pub basis: Basis,
     /// The surface that the moments follow from.
     #[serde(skip)]

@@ -14,7 +14,7 @@ use super::CharacteristicAnalysis;
 use super::verified::VerificationKind;
 use crate::method::{Options, Outcome};
 use crate::problem::Problem;
-use crate::surrogate::Surrogate;
+use sensitol_numeric::surrogate::Surrogate;
 use crate::verification::{OutputCorrelation, Verified, output_correlations};
 
 /// The correlation of every pair of characteristics; empty with one characteristic, and with more than 40.

@@ -4,7 +4,7 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::assembly::{AssemblyFunction, Request, Responses, Run, Signature};
 use crate::problem::Problem;
-use crate::sampling::rank_first;
+use sensitol_numeric::sampling::rank_first;
 use crate::verification::Share;
 
 /// Points that are kept: a costly model is seldom asked for more.

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 /// Interactions that are not listed one by one.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Remainder {
     /// How many.

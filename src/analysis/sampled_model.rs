@@ -2,13 +2,13 @@
 
 use serde::Serialize;
 
-use crate::shape::{Four, through};
+use sensitol_numeric::shape::{Four, through};
 use crate::simulation::Histogram;
 use crate::verification::Share;
 
 /// Points of the model in place of a surrogate that was not trusted.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct SampledModel {
     /// Points.
@@ -21,11 +21,11 @@ pub struct SampledModel {
     pub left: f64,
     /// Standard errors of mean, sigma, skewness and kurtosis, as far as they are known.
     #[serde(flatten, serialize_with = "through::<Four<Option<f64>>, _, _>")]
-    #[cfg_attr(feature = "cli", schemars(with = "Four<Option<f64>>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Four<Option<f64>>"))]
     pub standard_errors: [Option<f64>; 4],
     /// The share of the sample within the limits with its 95 % interval.
     #[serde(flatten, serialize_with = "through::<YieldShape, _, _>")]
-    #[cfg_attr(feature = "cli", schemars(with = "YieldShape"))]
+    #[cfg_attr(feature = "schema", schemars(with = "YieldShape"))]
     pub yield_: Option<(f64, [f64; 2])>,
     /// Its shares below the lower and above the upper limit; None without that limit.
     pub beyond: [Option<f64>; 2],
@@ -38,7 +38,7 @@ pub struct SampledModel {
 
 /// A share and its interval, as they are written.
 #[derive(Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct YieldShape {
     /// The share of the sample within the limits.
     #[serde(rename = "yield")]

@@ -2,7 +2,7 @@
 
 use serde::{Serialize, Serializer};
 
-use crate::shape::by_name;
+use sensitol_numeric::shape::by_name;
 
 /// Intervals that cover the true results with a probability of `level`, as far as the size of measured samples decides.
 ///
@@ -22,7 +22,7 @@ use crate::shape::by_name;
 /// Of skewness and kurtosis the intervals are too narrow by far in samples of this size: a sample seldom has the rare values
 /// that decide them.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct SamplingInterval {
     /// Of the mean.
@@ -35,7 +35,7 @@ pub struct SamplingInterval {
     pub kurtosis: Option<[f64; 2]>,
     /// Of the share outside the limits: that of the Pearson fit, in proportion to the share that is reported.
     #[serde(rename = "yield", serialize_with = "kept")]
-    #[cfg_attr(feature = "cli", schemars(description = "Of the share within the limits."))]
+    #[cfg_attr(feature = "schema", schemars(description = "Of the share within the limits."))]
     pub rejected: Option<[f64; 2]>,
     /// Of Cpk.
     pub cpk: Option<[f64; 2]>,
@@ -45,7 +45,7 @@ pub struct SamplingInterval {
     pub resamples: usize,
     /// The measured dimensions that the characteristic depends on, with the number of values of each.
     #[serde(serialize_with = "by_name")]
-    #[cfg_attr(feature = "cli", schemars(with = "std::collections::BTreeMap<String, usize>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "std::collections::BTreeMap<String, usize>"))]
     pub samples: Vec<(String, usize)>,
 }
 

@@ -6,7 +6,7 @@ use crate::method::{Basis, DerivativeSource};
 
 /// The basis of the moments, as it is written.
 #[derive(Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(super) struct BasisShape {
     /// Where the derivatives that the moments rest on come from: `exact` or `difference`; null where they rest on none.
     derivatives: Option<&'static str>,

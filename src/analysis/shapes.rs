@@ -10,7 +10,7 @@
 //! alone: it is the curvature that does not scale, since differences over steps `h` go like `1/h`. A kink beside the mean is in two
 //! neighbours of which the third knows nothing, and a jump is in two neighbours with opposite signs.
 
-use crate::surrogate::Univariate;
+use sensitol_numeric::surrogate::Univariate;
 
 /// The shape along an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,8 +1,8 @@
 //! The parts of the variance, wherever a method has it from.
 
 use crate::method::{Fitted, Integrated};
-use crate::moments::{Contributions, Moments, Sampled};
-use crate::surrogate::Inputs;
+use sensitol_numeric::moments::{Contributions, Moments, Sampled};
+use sensitol_numeric::surrogate::Inputs;
 
 /// Moments and contributions: of a surrogate, or integrated without one.
 pub(super) enum Shares {

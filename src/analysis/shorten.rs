@@ -9,7 +9,7 @@ const MOST: usize = 10_000;
 
 impl Analysis {
     /// Without the interactions that hardly matter: what they make together stands in their place.
-    pub(crate) fn shortened(mut self) -> Self {
+    pub fn shortened(mut self) -> Self {
         self.characteristics.iter_mut().for_each(CharacteristicAnalysis::shorten);
         self
     }
@@ -17,7 +17,7 @@ impl Analysis {
 
 impl CharacteristicAnalysis {
     /// The same of one characteristic.
-    pub(crate) fn shorten(&mut self) {
+    pub fn shorten(&mut self) {
         let mut remainder = self.interactions_remainder.unwrap_or_default();
         // Strongest first: a place is a rank.
         self.interactions.retain(|rank, pair| {

@@ -2,7 +2,7 @@
 
 use serde::{Serialize, Serializer};
 
-use crate::capability::EstimatedShare;
+use sensitol_numeric::capability::EstimatedShare;
 use crate::verification::Share;
 
 /// The source of Sobol' indices.
@@ -19,7 +19,7 @@ pub enum IndexSource {
 
 /// Dimensions that vary together, as one factor.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct FactorIndices {
     /// The dimensions.
@@ -32,11 +32,11 @@ pub struct FactorIndices {
 
 /// Where the indices of a characteristic come from, and those of factors that are no single dimension.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct SobolIndices {
     /// Their source: `surface`, `exchange` of inputs of the model, or `ranks` of a sample.
-    #[cfg_attr(feature = "cli", schemars(with = "String"))]
+    #[cfg_attr(feature = "schema", schemars(with = "String"))]
     pub source: IndexSource,
     /// Dimensions that vary together: these have indices as one factor only.
     pub factors: Vec<FactorIndices>,

@@ -18,15 +18,14 @@ use super::recorded::ranked;
 use super::remembered::Remembered;
 use crate::assembly::{EvaluationError, NonRepeatable, Points, Request, Responses, Run};
 use crate::method::{Climbed, Outcome};
-use crate::moments::Moments;
+use sensitol_numeric::moments::Moments;
 use crate::plan::Point;
 use crate::problem::Problem;
-use crate::sampling::{Draws, Estimate, Fine, Portion, SOBOL_DIMENSIONS, Sampler, Scale};
-use crate::short_sort::ShortSort;
+use sensitol_numeric::sampling::{Draws, Estimate, Fine, Portion, SOBOL_DIMENSIONS, Sampler, Scale};
 use crate::simulation::{BINS, CHOICE, Histogram};
 use crate::summary::RunSummary;
-use crate::surrogate::{Chaos, Places, Sparse, Surrogate};
-use crate::time::Instant;
+use sensitol_numeric::surrogate::{Chaos, Places, Sparse, Surrogate};
+use sensitol_numeric::time::Instant;
 use crate::verification::{
     MOMENTS, OVERLOOKED, OVERLOOKED_BY, REPLICATES, Share, TOO_SMALL, carried_by, effective, jackknife, standard,
     student, totals,
@@ -211,7 +210,7 @@ impl<'p> Strides<'p> {
         });
         let share = |j: usize| surface.as_ref().map_or(0.0, |(_, found)| found.linear[j] + found.curvature[j]);
         let mut order: Vec<usize> = (0..plan.varying().len()).filter(|&j| plan.depends(c, plan.varying()[j])).collect();
-        order.sort_short_by(|&a, &b| share(b).total_cmp(&share(a)).then(a.cmp(&b)));
+        order.sort_by(|&a, &b| share(b).total_cmp(&share(a)).then(a.cmp(&b)));
         let exact = surface.as_ref().is_some_and(|(_, found)| found.sampled.is_none());
         let surface = surface.map(|(surrogate, found)| (surrogate, found.moments));
         let known = surface.as_ref().filter(|_| !kind.is_logarithm());

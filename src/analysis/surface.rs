@@ -2,8 +2,8 @@
 
 use super::CharacteristicAnalysis;
 use crate::method::Outcome;
-use crate::moments::Contributions;
-use crate::surrogate::{InputShape, Inputs, Relocation, Surrogate};
+use sensitol_numeric::moments::Contributions;
+use sensitol_numeric::surrogate::{InputShape, Inputs, Relocation, Surrogate};
 
 /// The surrogates of all characteristics over the dimensions that vary.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,7 +19,6 @@ pub struct Surface {
 
 /// The basis of the moments of one characteristic.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct Fit {
     /// The surrogate.
     pub surrogate: Surrogate,

@@ -5,15 +5,15 @@ use std::sync::Arc;
 use serde::{Serialize, Serializer};
 
 use super::counted::{Counted, counted};
-use crate::capability::{Law, Quantiles, TAIL};
-use crate::correlation::Correlation;
-use crate::distribution::{Distribution, Normal};
-use crate::law::{Branch, LawError, LawFigure, LawOptions, LawTail, Sought, SurfaceLaw};
+use sensitol_numeric::capability::{Law, Quantiles, TAIL};
+use sensitol_numeric::correlation::Correlation;
+use sensitol_numeric::distribution::{Distribution, Normal};
+use sensitol_numeric::law::{Branch, LawError, LawFigure, LawOptions, LawTail, Sought, SurfaceLaw};
 use crate::method::Outcome;
-use crate::moments::Interactions;
-use crate::pearson::Pearson;
+use sensitol_numeric::moments::Interactions;
+use sensitol_numeric::pearson::Pearson;
 use crate::problem::Problem;
-use crate::surrogate::{Surrogate, Univariate};
+use sensitol_numeric::surrogate::{Surrogate, Univariate};
 
 /// The probabilities of the quantiles of reports, lowest first, each by the tail that it leaves.
 pub const QUANTILES: [(LawTail, f64); 7] = [
@@ -66,7 +66,7 @@ pub struct SurfaceShares {
     pub below: Option<LawFigure>,
     /// The share above the upper limit; None without one.
     pub above: Option<LawFigure>,
-    /// At the [`PROBABILITIES`](crate::capability::PROBABILITIES); None where one of them is unknown: those of the Pearson fit are then
+    /// At the [`PROBABILITIES`](sensitol_numeric::capability::PROBABILITIES); None where one of them is unknown: those of the Pearson fit are then
     /// reported.
     pub quantiles: Option<[LawFigure; 7]>,
 }
@@ -148,12 +148,12 @@ impl SurfaceShares {
     }
 
     /// The share within the limits; None without any.
-    pub(crate) fn yield_(&self) -> Option<f64> {
+    pub fn yield_(&self) -> Option<f64> {
         self.rejected().map(|rejected| 1.0 - rejected)
     }
 
     /// Its quantiles by the names of their probabilities.
-    pub(crate) fn named_quantiles(&self) -> Option<Quantiles> {
+    pub fn named_quantiles(&self) -> Option<Quantiles> {
         self.quantiles.map(|all| Quantiles(all.map(|figure| figure.value)))
     }
 
@@ -330,7 +330,7 @@ fn sought(law: &SurfaceLaw, fit: Option<&Law>, of: &[(LawTail, f64)]) -> Vec<Sou
 
 /// The results of the surface distribution, as they are written.
 #[derive(Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(super) struct SurfaceLawShape {
     /// `exact`, `single` or `sampled`: how it is computed.
     branch: &'static str,

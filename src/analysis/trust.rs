@@ -7,7 +7,7 @@ use super::{CharacteristicAnalysis, YieldSource};
 use crate::method::{ClimbEnd, Climbed, Outcome};
 use crate::plan::Point;
 use crate::problem::Problem;
-use crate::verdict::ERRORS;
+use sensitol_numeric::verdict::ERRORS;
 use crate::warning::{Figure, Warning};
 
 /// A second difference below this part of sigma does not matter: what it bends is far below what anybody wants to know.

@@ -10,7 +10,7 @@
 //! parameters does not show. Source: R. A. Fisher, E. A. Cornish, Technometrics 2 (1960), eq. of the second order.
 
 use super::CharacteristicAnalysis;
-use crate::law::{LawTail, SurfaceLaw};
+use sensitol_numeric::law::{LawTail, SurfaceLaw};
 
 /// The error of the share outside of the limits; None where the error of a moment is not known.
 pub(super) fn error_of_shares(one: &CharacteristicAnalysis, law: &SurfaceLaw) -> Option<f64> {

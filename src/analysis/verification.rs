@@ -12,14 +12,14 @@ use super::interactions::knows_all_pairs;
 use super::verified::{TRUSTED, UNTRUSTED, VarianceShare, Verification, VerificationKind};
 use super::wanted::{MORE, PART};
 use crate::assembly::{EvaluationError, NonRepeatable, Run};
-use crate::capability::{Capability, Law};
+use sensitol_numeric::capability::{Capability, Law};
 use crate::method::{ErrorEstimate, ErrorSource, Method, Options, Order, Outcome, interpolated};
-use crate::moments::Moments;
-use crate::parallel::prelude::*;
+use sensitol_numeric::moments::Moments;
+use sensitol_numeric::parallel::prelude::*;
 use crate::problem::Problem;
 use crate::summary::RunSummary;
-use crate::surrogate::Surrogate;
-use crate::time::Instant;
+use sensitol_numeric::surrogate::Surrogate;
+use sensitol_numeric::time::Instant;
 use crate::verification::{
     CORE, Checked, CheckedFigures, Crossing, SampledFigures, Target, Verified, most_points, most_points_of_shares,
     unexplained, variance_shares_during, verify_by_checks, verify_characteristic,

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde::{Serialize, Serializer};
 
-use crate::shape::{Four, Sides, through};
+use sensitol_numeric::shape::{Four, Sides, through};
 use crate::verification::{FoundSwitch, Share, Tails, Verified, WeightedSample};
 
 /// How figures were verified.
@@ -29,13 +29,13 @@ pub(super) const UNTRUSTED: f64 = 0.05;
 
 /// The results of the model itself for a characteristic.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
 #[non_exhaustive]
 pub struct Verification {
     /// How.
     #[serde(flatten, serialize_with = "through::<KindShape, _, _>")]
-    #[cfg_attr(feature = "cli", schemars(with = "KindShape"))]
+    #[cfg_attr(feature = "schema", schemars(with = "KindShape"))]
     pub kind: VerificationKind,
     /// Points of the model that were evaluated for it.
     pub points: usize,
@@ -65,7 +65,7 @@ pub struct Verification {
     /// Shares of the variance from the model, where the surface is not trusted.
     pub shares: Option<Vec<VarianceShare>>,
     /// The tails of the sample towards the limits; None without either.
-    pub(crate) tails: Option<Tails>,
+    pub tails: Option<Tails>,
     /// Whether figures of the characteristic are the model's, in place of the surface's.
     pub replaced: bool,
     /// The sample, where an inspection asks for more of it.
@@ -75,7 +75,7 @@ pub struct Verification {
 
 /// The part of the variance that a dimension explains, by the model itself.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct VarianceShare {
     /// The dimension.
@@ -88,7 +88,7 @@ pub struct VarianceShare {
 
 impl Verification {
     /// In one line.
-    pub(crate) fn words(&self) -> String {
+    pub fn words(&self) -> String {
         match self.kind {
             VerificationKind::Sample => format!("verified at {} points of the model", self.points),
             VerificationKind::Checks => {
@@ -102,7 +102,7 @@ impl Verification {
 
 /// How figures were verified, as it is written.
 #[derive(Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct KindShape {
     /// `sample`, `checks` or `exact`.
     kind: &'static str,
@@ -123,10 +123,10 @@ impl From<&VerificationKind> for KindShape {
 
 /// A verification as it is written.
 #[derive(Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(super) struct VerificationShape<'r> {
     #[serde(flatten, serialize_with = "Verification::serialize")]
-    #[cfg_attr(feature = "cli", schemars(with = "Verification"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Verification"))]
     own: &'r Verification,
     /// By the model itself; null without a sample of it.
     figures: FiguresShape,
@@ -134,7 +134,7 @@ pub(super) struct VerificationShape<'r> {
 
 /// The figures of a verification.
 #[derive(Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct FiguresShape {
     #[serde(flatten)]
     moments: Four<Option<Verified>>,

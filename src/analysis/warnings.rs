@@ -4,14 +4,14 @@ use std::collections::HashSet;
 
 use super::interactions::missing;
 use super::{CharacteristicAnalysis, Missing, trust};
-use crate::capability::Law;
-use crate::dimension::Dimension;
+use sensitol_numeric::capability::Law;
+use sensitol_numeric::dimension::Dimension;
 use crate::evaluation::history;
 use crate::method::{Basis, Lacking, Order, Outcome};
-use crate::names::element;
+use sensitol_numeric::names::element;
 use crate::plan::Point;
 use crate::problem::Problem;
-use crate::surrogate::Surrogate;
+use sensitol_numeric::surrogate::Surrogate;
 use crate::warning::{Figure, Loss, Warning, aggregated};
 
 /// The third power of a larger value is beyond the largest double, 1.8e308.

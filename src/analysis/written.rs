@@ -4,17 +4,17 @@ use serde::{Serialize, Serializer};
 
 use super::{Analysis, CharacteristicAnalysis};
 use crate::extremes::{Coordinate, Extremes};
-use crate::shape::warnings_last;
-use crate::verdict::{Judged, Verdict};
+use crate::warning::warnings_last;
+use sensitol_numeric::verdict::{Judged, Verdict};
 
 warnings_last!(Analysis);
 
 /// A characteristic with its verdicts and intervals, as it is written.
 #[derive(Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub(crate) struct CharacteristicShape<'r> {
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct CharacteristicShape<'r> {
     #[serde(flatten, serialize_with = "CharacteristicAnalysis::serialize")]
-    #[cfg_attr(feature = "cli", schemars(with = "CharacteristicAnalysis"))]
+    #[cfg_attr(feature = "schema", schemars(with = "CharacteristicAnalysis"))]
     own: &'r CharacteristicAnalysis,
     /// Intervals that no assembly leaves.
     worst_case: WorstCase<'r>,
@@ -23,7 +23,7 @@ pub(crate) struct CharacteristicShape<'r> {
     /// The same in a word; null without a target.
     verdict: Option<Verdict>,
     /// Everything that is required of it, the target yield included.
-    #[cfg_attr(feature = "cli", schemars(with = "Vec<crate::verdict::JudgedShape>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Vec<sensitol_numeric::verdict::JudgedShape>"))]
     requirements: Vec<Judged>,
     /// Within which the share is known that keeps the limits; null where that is not known.
     yield_interval: Option<[f64; 2]>,
@@ -45,7 +45,7 @@ impl Serialize for CharacteristicAnalysis {
 
 /// Intervals that no assembly leaves, as they are written.
 #[derive(Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct WorstCase<'r> {
     /// Of the linear model.
     linear: Option<[f64; 2]>,
@@ -65,15 +65,15 @@ struct WorstCase<'r> {
 
 /// Where the extremes are.
 #[derive(Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct ExtremesAt<'r> {
     /// The dimensions at the least value.
     #[serde(serialize_with = "coordinates")]
-    #[cfg_attr(feature = "cli", schemars(with = "std::collections::BTreeMap<String, f64>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "std::collections::BTreeMap<String, f64>"))]
     lower: &'r [Coordinate],
     /// The dimensions at the greatest value.
     #[serde(serialize_with = "coordinates")]
-    #[cfg_attr(feature = "cli", schemars(with = "std::collections::BTreeMap<String, f64>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "std::collections::BTreeMap<String, f64>"))]
     upper: &'r [Coordinate],
 }
 

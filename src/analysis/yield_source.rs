@@ -4,7 +4,7 @@ use serde::Serialize;
 
 /// The sources of a yield, best first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum YieldSource {
@@ -20,7 +20,7 @@ pub enum YieldSource {
 
 impl YieldSource {
     /// In a sentence.
-    pub(crate) fn words(self) -> &'static str {
+    pub fn words(self) -> &'static str {
         match self {
             Self::Proof => "proof",
             Self::Samples => "points of the model",

@@ -3,7 +3,6 @@
 
 /// The description that an external model gives of itself when it is ready.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-#[non_exhaustive]
 pub struct ModelInfo {
     /// Its name.
     pub name: Option<String>,
@@ -24,7 +23,6 @@ impl ModelInfo {
 
 /// A model answered one point otherwise than before: the nominal point, or one that was asked again to see whether it repeats.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct NonRepeatable {
     /// The output.
     pub output: String,
@@ -40,7 +38,7 @@ pub struct NonRepeatable {
 
 impl NonRepeatable {
     /// An output that varies by `spread` was `expected` and is now `found`, so that the answers at `suspects` are not trusted.
-    pub(crate) fn new(
+    pub fn new(
         output: impl Into<String>,
         [expected, found]: [Option<f64>; 2],
         spread: f64,

@@ -1,13 +1,13 @@
 //! Cheap models on all cores: a batch cut into blocks of rows.
 
 use super::{Points, Request, Responses, Run};
-use crate::parallel::prelude::*;
+use sensitol_numeric::parallel::prelude::*;
 
 /// Rows that one task evaluates: enough to hide the cost of starting it, few enough to stay in the cache.
 pub(crate) const BLOCK: usize = 1024;
 
 /// Points whose values stay in a cache near by: a power of two.
-pub(crate) fn near_rows(dimensions: usize) -> usize {
+pub fn near_rows(dimensions: usize) -> usize {
     /// Two megabytes.
     const VALUES: usize = 1 << 18;
     1 << (VALUES / dimensions.max(1)).max(128).ilog2()
@@ -27,7 +27,7 @@ pub fn in_blocks(
 }
 
 /// The same of `rows` points and `outputs` outputs, wherever the points stand.
-pub(crate) fn in_ranges(
+pub fn in_ranges(
     rows: usize,
     outputs: usize,
     run: &Run<'_>,

@@ -9,17 +9,15 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex, OnceLock};
 
 use super::formula::{Formula, FormulaError, FormulaSet, Meaning};
-#[cfg(feature = "study")]
 use super::formula::{Role, UnitFinding};
 use super::implicit::{Anchor, Assembler, AssemblyFailure, Conditions, ConditionsError};
-use super::process::EvaluatorAccount;
+use super::evaluator_account::EvaluatorAccount;
 use super::responses::all_finite;
 use super::{
     AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, Input, ModelInfo, Output, Points, Request,
     Responses, Run, Signature, Switches, in_blocks,
 };
-#[cfg(feature = "study")]
-use crate::unit::Unit;
+use sensitol_numeric::unit::Unit;
 use crate::warning::Warning;
 
 /// Parts of formulas that are looked at to explain the failures of one block of rows: all failures of short formulas, and the first few
@@ -40,7 +38,6 @@ pub enum Source {
 
 /// Parts that do not fit together.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
 pub enum CompositeError {
     /// A formula that cannot be resolved.
     #[error("formula `{name}`: {error}")]
@@ -213,8 +210,7 @@ impl Composite {
     }
 
     /// Where units of formulas and conditions do not go together, as `FormulaSet::units` finds it.
-    #[cfg(feature = "study")]
-    pub(crate) fn units(
+    pub fn units(
         &self,
         unit: &dyn Fn(&str) -> Option<Unit>,
         role: &dyn Fn(usize) -> Role,
@@ -224,21 +220,19 @@ impl Composite {
     }
 
     /// The dimensions inside a sine or cosine of a formula, each with its radians per unit.
-    #[cfg(feature = "study")]
-    pub(crate) fn turning(&self) -> Vec<(usize, f64)> {
+    pub fn turning(&self) -> Vec<(usize, f64)> {
         let dimensions = self.signature.inputs.len();
         self.formulas.turning().into_iter().filter(|&(variable, _)| variable < dimensions).collect()
     }
 
     /// With every input of the model multiplied by a factor, and every output; none where there are no factors.
-    #[cfg(feature = "study")]
-    pub(crate) fn with_factors(mut self, factors: [Vec<f64>; 2]) -> Self {
+    pub fn with_factors(mut self, factors: [Vec<f64>; 2]) -> Self {
         self.model.iter_mut().for_each(|model| model.factors.clone_from(&factors));
         self
     }
 
     /// Which formulas the outputs need, as a flag per formula, and whether they need the unknowns.
-    pub(crate) fn used(&self) -> (Vec<bool>, bool) {
+    pub fn used(&self) -> (Vec<bool>, bool) {
         let needs = self.all_needs(&self.outputs);
         let driving = if needs.answers.is_empty() { Vec::new() } else { self.driving() };
         let unknowns = needs.unknowns || driving.iter().any(|&formula| self.drives_by_unknowns(formula));

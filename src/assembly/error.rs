@@ -1,7 +1,7 @@
 //! Why one output has no value at one point.
 
 use super::formula::FormulaFailure;
-use crate::names::nearest;
+use sensitol_numeric::names::nearest;
 
 /// Why an assembly function gave no value for one output at one point.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -21,7 +21,7 @@ pub enum EvaluationError {
     Assembly(#[from] Box<super::implicit::AssemblyFailure>),
     /// An external program failed.
     #[error(transparent)]
-    Process(#[from] Box<super::process::ProcessError>),
+    Process(#[from] Box<super::process_error::ProcessError>),
     /// The table of answers that were evaluated elsewhere has none for this point.
     #[error("no answer is given for this point")]
     NotGiven,

@@ -40,7 +40,7 @@ impl Table {
     }
 
     /// Rows, from 0, that answered no point so far.
-    pub(crate) fn unused(&self) -> Vec<usize> {
+    pub fn unused(&self) -> Vec<usize> {
         let asked = self.asked.lock().unwrap_or_else(PoisonError::into_inner);
         (0..self.rows.len()).filter(|&row| !asked.used[row]).collect()
     }

@@ -15,10 +15,11 @@ mod closure;
 mod composite;
 mod derivatives;
 mod error;
+mod evaluator_account;
 pub mod formula;
 mod given;
 pub mod implicit;
-pub mod process;
+mod process_error;
 mod request;
 mod responses;
 mod run;
@@ -27,14 +28,16 @@ mod states;
 mod switch;
 
 pub use account::{ModelInfo, NonRepeatable};
-pub(crate) use blocks::{in_blocks, in_ranges, near_rows};
+pub use blocks::{in_blocks, in_ranges, near_rows};
 pub use bounds::Bounds;
 pub use closure::Closure;
 pub use composite::{Composite, CompositeError, Parts, Source};
 pub use derivatives::{Derivatives, Directions};
 pub use error::{EvaluationError, NoColumn};
-pub(crate) use given::GivenAnswers;
+pub use evaluator_account::{EvaluatorAccount, OutdatedJournal};
+pub use given::GivenAnswers;
 pub use given::Table;
+pub use process_error::{Exit, ProcessError, ProcessFault, Quoted, StderrTail};
 pub use request::{Points, Request};
 pub use responses::Responses;
 pub(crate) use responses::all_finite;
@@ -135,7 +138,7 @@ pub trait AssemblyFunction: Send + Sync {
     }
 
     /// The account of the processes of an external model so far; None for a function without any.
-    fn account(&self) -> Option<process::EvaluatorAccount> {
+    fn account(&self) -> Option<EvaluatorAccount> {
         None
     }
 

@@ -111,7 +111,7 @@ impl Responses {
     }
 
     /// Answers the entries from a row on, as [`set`](Self::set) does one by one.
-    pub(crate) fn set_rows(&mut self, first: usize, output: usize, values: &[f64]) {
+    pub fn set_rows(&mut self, first: usize, output: usize, values: &[f64]) {
         if self.errors.is_empty() && all_finite(values) {
             let start = output * self.rows + first;
             self.values[start..start + values.len()].copy_from_slice(values);
@@ -127,7 +127,7 @@ impl Responses {
     }
 
     /// Rows of which something was answered: a row that is open in every output was not sent, or not finished.
-    pub(crate) fn answered(&self) -> impl Iterator<Item = usize> + '_ {
+    pub fn answered(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.rows).filter(|&row| (0..self.outputs).any(|output| !self.is_open(row, output)))
     }
 
@@ -156,12 +156,12 @@ impl Responses {
     }
 
     /// Whether an entry has neither value nor error.
-    pub(crate) fn is_open(&self, row: usize, output: usize) -> bool {
+    pub fn is_open(&self, row: usize, output: usize) -> bool {
         self.value(row, output).is_none() && self.error(row, output).is_none()
     }
 
     /// Adds evaluations beyond one for each answered row: points tried again; fewer than none where answers came without.
-    pub(crate) fn spent(&mut self, extra: i64) {
+    pub fn spent(&mut self, extra: i64) {
         self.extra += extra;
     }
 
@@ -173,17 +173,17 @@ impl Responses {
     }
 
     /// Notes points that were sent again, which [`spent`](Self::spent) counts too.
-    pub(crate) fn retried(&mut self, points: usize) {
+    pub fn retried(&mut self, points: usize) {
         self.retried += points;
     }
 
     /// Points that were sent again.
-    pub(crate) fn count_retried(&self) -> usize {
+    pub fn count_retried(&self) -> usize {
         self.retried
     }
 
     /// Notes that the model answered a point otherwise than before.
-    pub(crate) fn note_non_repeatable(&mut self, non_repeatable: impl IntoIterator<Item = NonRepeatable>) {
+    pub fn note_non_repeatable(&mut self, non_repeatable: impl IntoIterator<Item = NonRepeatable>) {
         self.non_repeatable.extend(non_repeatable);
     }
 
@@ -193,12 +193,12 @@ impl Responses {
     }
 
     /// Notes a point of an earlier batch whose answer is not trusted any more.
-    pub(crate) fn revoke(&mut self, point: Vec<f64>) {
+    pub fn revoke(&mut self, point: Vec<f64>) {
         self.revoked.push(point);
     }
 
     /// Points of earlier batches whose answers are not trusted any more.
-    pub(crate) fn revoked(&self) -> &[Vec<f64>] {
+    pub fn revoked(&self) -> &[Vec<f64>] {
         &self.revoked
     }
 
@@ -208,7 +208,7 @@ impl Responses {
     }
 
     /// Evaluations beyond one for each answered row.
-    pub(crate) fn extra(&self) -> i64 {
+    pub fn extra(&self) -> i64 {
         self.extra
     }
 
@@ -218,7 +218,7 @@ impl Responses {
     }
 
     /// Answers one entry as another one was: by its value, its error, or not at all.
-    pub(crate) fn pass_on(&mut self, row: usize, output: usize, from: &Responses, from_row: usize, from_output: usize) {
+    pub fn pass_on(&mut self, row: usize, output: usize, from: &Responses, from_row: usize, from_output: usize) {
         if let Some(value) = from.value(from_row, from_output) {
             self.set(row, output, value);
             if let Some(gradient) = from.gradient(from_row, from_output) {
@@ -230,12 +230,12 @@ impl Responses {
     }
 
     /// How many of these rows have an output without a value.
-    pub(crate) fn failed_among(&self, rows: &[usize]) -> usize {
+    pub fn failed_among(&self, rows: &[usize]) -> usize {
         rows.iter().filter(|&&row| (0..self.outputs).any(|output| self.value(row, output).is_none())).count()
     }
 
     /// Every error with its row and output, in order.
-    pub(crate) fn errors(&self) -> impl Iterator<Item = (usize, usize, &EvaluationError)> {
+    pub fn errors(&self) -> impl Iterator<Item = (usize, usize, &EvaluationError)> {
         self.errors.iter().map(|(&(row, output), error)| (row, output, error))
     }
 

@@ -14,7 +14,6 @@ type Stop<'a> = dyn Fn() -> Option<StopReason> + Sync + 'a;
 
 /// Points that a costly model has done with, as they come.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[non_exhaustive]
 pub struct Progress {
     /// Points that are answered, by the model or from what is known.
     pub points: usize,
@@ -73,7 +72,7 @@ impl<'a> Run<'a> {
     }
 
     /// Tells `withdrawn` of rows that were final and are not trusted any more; those that are answered again are told anew.
-    pub(crate) fn withdrawing(self, withdrawn: &'a Withdrawn<'a>) -> Self {
+    pub fn withdrawing(self, withdrawn: &'a Withdrawn<'a>) -> Self {
         Self { withdrawn: Some(withdrawn), ..self }
     }
 
@@ -100,26 +99,26 @@ impl<'a> Run<'a> {
     }
 
     /// These rows, told of as final, are not trusted any more.
-    pub(crate) fn withdraw(&self, rows: &[usize]) {
+    pub fn withdraw(&self, rows: &[usize]) {
         if let Some(withdrawn) = self.withdrawn {
             withdrawn(rows);
         }
     }
 
     /// A costly model has done with more points.
-    pub(crate) fn progressed(&self, progress: Progress) {
+    pub fn progressed(&self, progress: Progress) {
         if let Some(show) = self.progress {
             show(progress);
         }
     }
 
     /// Whether to return at once: even what is under way is not waited for.
-    pub(crate) fn abandoned(&self) -> bool {
+    pub fn abandoned(&self) -> bool {
         self.abandon.is_some_and(|abandon| abandon())
     }
 
     /// The conditions of a part of the work: told to `finished` rather than to whom this one tells, and stopped by `stop`.
-    pub(crate) fn within<'b>(&'b self, finished: &'b Finished<'b>, stop: &'b Stop<'b>) -> Run<'b> {
+    pub fn within<'b>(&'b self, finished: &'b Finished<'b>, stop: &'b Stop<'b>) -> Run<'b> {
         Run { finished: Some(finished), stop: Some(stop), withdrawn: None, ..*self }
     }
 
@@ -129,7 +128,7 @@ impl<'a> Run<'a> {
     }
 
     /// Why to return now; None as long as there is no reason.
-    pub(crate) fn stop_reason(&self) -> Option<StopReason> {
+    pub fn stop_reason(&self) -> Option<StopReason> {
         self.stop.and_then(|stop| stop())
     }
 

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::process::EvaluatorAccount;
+use super::evaluator_account::EvaluatorAccount;
 use super::request::bits;
 use super::{
     AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, ModelInfo, NonRepeatable, Output, Points,

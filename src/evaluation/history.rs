@@ -1,7 +1,7 @@
 //! External models that do not answer as they did, or not at first.
 
 use crate::assembly::NonRepeatable;
-use crate::assembly::process::OutdatedJournal;
+use crate::assembly::OutdatedJournal;
 use crate::problem::Problem;
 use crate::warning::Warning;
 
@@ -11,7 +11,7 @@ const FLIP: f64 = 0.01;
 const SUSPECTS: usize = 3;
 
 /// One warning for each output, and what the model's processes went through.
-pub(crate) fn history(problem: &Problem, non_repeatable: &[NonRepeatable]) -> Vec<Warning> {
+pub fn history(problem: &Problem, non_repeatable: &[NonRepeatable]) -> Vec<Warning> {
     let first =
         |index: &usize| !non_repeatable[..*index].iter().any(|earlier| earlier.output == non_repeatable[*index].output);
     let warning = |index: usize| {

@@ -7,7 +7,7 @@ use crate::assembly::{EvaluationError, NonRepeatable, Points, Request, Responses
 use crate::evaluation::BATCH;
 use crate::problem::Problem;
 use crate::summary::{RunSummary, StopReason};
-use crate::time::Instant;
+use sensitol_numeric::time::Instant;
 
 /// Every point known so far, with what asking came to.
 pub(super) struct Answers<'a> {

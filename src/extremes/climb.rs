@@ -4,8 +4,7 @@
 //! that less is better; a point without a value is no better than any other.
 
 use super::model::{Model, Region};
-use crate::short_sort::ShortSort;
-use crate::surrogate::Univariate;
+use sensitol_numeric::surrogate::Univariate;
 
 /// A search that goes on from `x`, with value `y`.
 #[derive(Debug, Clone)]
@@ -118,7 +117,7 @@ impl<'r> Climb<'r> {
             .map(|d| (d, separate.lowest(&region, &self.x, d)))
             .filter_map(|(d, (x, gain))| (gain > 0.0).then_some((d, x, gain)))
             .collect();
-        moves.sort_short_by(|a, b| b.2.total_cmp(&a.2));
+        moves.sort_by(|a, b| b.2.total_cmp(&a.2));
         let together = |moves: &mut dyn Iterator<Item = (usize, f64, f64)>| {
             let mut point = self.x.clone();
             moves.for_each(|(d, x, _)| point[d] = x);

@@ -1,7 +1,6 @@
 //! Where a search begins: what the surrogate says, and a few points that put it to the test.
 
 use super::model::{Model, Region};
-use crate::short_sort::ShortSort;
 
 /// The points that are evaluated first for one characteristic.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,7 +57,7 @@ fn least_of(surrogate: &Model, region: &Region) -> Vec<Vec<f64>> {
             minima.push((surrogate.rise(&minimum), minimum));
         }
     }
-    minima.sort_short_by(|a, b| a.0.total_cmp(&b.0));
+    minima.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut least: Vec<Vec<f64>> = minima.into_iter().take(MINIMA).map(|(_, minimum)| minimum).collect();
     if !least.contains(&downhill) {
         least.push(downhill);
@@ -70,7 +69,7 @@ fn least_of(surrogate: &Model, region: &Region) -> Vec<Vec<f64>> {
 fn crossed(surrogate: &Model, region: &Region, from: &[f64]) -> Vec<f64> {
     let effect = |d: usize| surrogate.rise_along(from, d, [region.lower[d], region.upper[d]]).abs();
     let mut order: Vec<(f64, usize)> = (0..region.len()).map(|d| (effect(d), d)).collect();
-    order.sort_short_by(|a, b| b.0.total_cmp(&a.0));
+    order.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut point = from.to_vec();
     for &(_, d) in order.iter().step_by(2) {
         point[d] = if from[d] == region.lower[d] { region.upper[d] } else { region.lower[d] };

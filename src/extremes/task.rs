@@ -8,13 +8,12 @@ use super::model::{Model, Region};
 use super::start::Starts;
 use super::{Coordinate, Ended, Extreme, Extremes, ExtremesProof, Place, proof};
 use crate::assembly::{Bounds, Run};
-use crate::dimension::Dimension;
-use crate::distribution::Distribution;
+use sensitol_numeric::dimension::Dimension;
+use sensitol_numeric::distribution::Distribution;
 use crate::method::Outcome;
-use crate::parallel::join;
+use sensitol_numeric::parallel::join;
 use crate::plan::Point;
 use crate::problem::Problem;
-use crate::short_sort::ShortSort;
 
 /// A surrogate has foretold values that it misses by no more than this part of their range.
 const FORETOLD: f64 = 1e-9;
@@ -189,7 +188,7 @@ impl Task {
             .filter_map(|x| Some((x.clone(), sign * self.value(answers, x)?)))
             .filter(|&(_, y)| y <= strong)
             .collect();
-        others.sort_short_by(|a, b| a.1.total_cmp(&b.1));
+        others.sort_by(|a, b| a.1.total_cmp(&b.1));
         let from = std::iter::once((best, y)).chain(others).take(CLIMBS);
         from.map(|(x, y)| Climb::new(&self.region, &self.surrogate, x, y)).collect()
     }

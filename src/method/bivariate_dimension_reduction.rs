@@ -8,7 +8,7 @@
 //! with all dimensions that are not named at their means. Xu and Rahman (2004), "A generalized dimension-reduction method for
 //! multidimensional integration in stochastic mechanics", International Journal for Numerical Methods in Engineering 61, equation
 //! 21 with S = 2. They integrate powers of the function itself plane by plane (their equation 26); here all four moments are those
-//! of the decomposition, exact at the nodes of the rules ([`Tables`](crate::moments::Tables)): third and fourth moments take
+//! of the decomposition, exact at the nodes of the rules ([`Tables`](sensitol_numeric::moments::Tables)): third and fourth moments take
 //! products of planes that meet in one or two dimensions too. So everything is exact for functions whose terms have two
 //! dimensions each, as far as the rules are. Joint effects of three dimensions are left out.
 //!
@@ -24,7 +24,7 @@ use super::dimension_reduction::{tables, univariate};
 use super::quadrature::{Quadrature, check, complete, next_to_the_mean};
 use super::{Integrated, InteractionEffect, Lacking, MainEffect, Method, MethodError, Options, Outcome, Procedure};
 use crate::assembly::Run;
-use crate::moments::Tables;
+use sensitol_numeric::moments::Tables;
 use crate::plan::{KnownAnswers, Mixed, Plan, Point, Purpose};
 use crate::problem::Problem;
 

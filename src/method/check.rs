@@ -1,9 +1,9 @@
 //! Model against surrogate at points that no fit has seen.
 
 use crate::assembly::EvaluationError;
-use crate::moments::Moments;
+use sensitol_numeric::moments::Moments;
 use crate::plan::{DifferencePlan, KnownAnswers, Point};
-use crate::surrogate::{InputShape, Surrogate, Univariate};
+use sensitol_numeric::surrogate::{InputShape, Surrogate, Univariate};
 
 /// A difference three sigma out that does not matter: higher powers have that, and the other points see them.
 const FAR: f64 = 0.1;

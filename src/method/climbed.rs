@@ -7,7 +7,7 @@ use crate::plan::Point;
 /// How a climb ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub enum ClimbEnd {
     /// Every characteristic is known as well as it was wanted, by the estimate.

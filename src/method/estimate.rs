@@ -9,9 +9,9 @@ use super::check::SurrogateCheck;
 use super::hidden::{hidden, ratio};
 use super::{Basis, Climbed, Order, Outcome};
 use crate::assembly::Directions;
-use crate::moments::{Interactions, Moments, Term, contributions};
+use sensitol_numeric::moments::{Interactions, Moments, Term, contributions};
 use crate::problem::Problem;
-use crate::surrogate::{Inputs, Surrogate, Univariate};
+use sensitol_numeric::surrogate::{Inputs, Surrogate, Univariate};
 
 /// Interactions of which the exact derivatives are worth their time.
 const EXACT: usize = 2000;
@@ -23,7 +23,7 @@ const MOST: f64 = 0.5;
 
 /// The estimated error of each result, in its own unit; None where nothing is known.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct ErrorEstimate {
     /// Of the mean.
@@ -43,7 +43,7 @@ pub struct ErrorEstimate {
 
 /// The basis of an estimate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum ErrorSource {
@@ -96,7 +96,7 @@ pub enum ErrorSource {
 
 impl ErrorSource {
     /// In words.
-    pub(crate) fn words(self) -> String {
+    pub fn words(self) -> String {
         match self {
             Self::Checked { points } => format!("model against surrogate at {points} points of the distribution"),
             Self::Powers { nodes } => format!("powers that {nodes} points a dimension do not show, extrapolated"),

@@ -6,7 +6,7 @@ use super::{DerivativeSource, MethodError, Options, Order};
 use crate::assembly::{Derivatives, Directions};
 use crate::plan::{DifferencePlan, Mixed, Plan};
 use crate::problem::Problem;
-use crate::surrogate::Univariate;
+use sensitol_numeric::surrogate::Univariate;
 
 /// One characteristic's derivatives at the means, as the assembly function knows them; None where there is none.
 #[derive(Debug, Clone, PartialEq)]

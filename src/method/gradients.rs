@@ -14,8 +14,7 @@ use crate::assembly::{Points, Request, Responses, Run};
 use crate::evaluation::Evaluated;
 use crate::plan::{AtNode, DifferencePlan, Mixed, Point};
 use crate::problem::Problem;
-use crate::short_sort::ShortSort;
-use crate::surrogate::Univariate;
+use sensitol_numeric::surrogate::Univariate;
 
 /// Derivatives that differ from a difference by more than this part of the change are wrong: third derivatives of a function that a
 /// parabola describes make less.
@@ -90,7 +89,7 @@ fn nodes(plan: &DifferencePlan, d: usize) -> Vec<(Point, f64)> {
         Some((Point::of(&[AtNode { dimension: d as u32, node }]), axis.nodes[node as usize].u))
     };
     let mut nodes: Vec<(Point, f64)> = axis.slots.iter().filter_map(node).collect();
-    nodes.sort_short_by(|a, b| a.1.total_cmp(&b.1));
+    nodes.sort_by(|a, b| a.1.total_cmp(&b.1));
     nodes
 }
 

@@ -11,9 +11,9 @@
 //! That is exact for a reciprocal, and for exponentials, roots and circular functions it is too much by a factor of 2 to 5. Where
 //! a dimension acts by its square alone, two nodes tell no ratio: half its curvature beside the value at the means stands in.
 
-use crate::distribution::Rule;
-use crate::moments::Term;
-use crate::surrogate::{InputShape, Univariate};
+use sensitol_numeric::distribution::Rule;
+use sensitol_numeric::moments::Term;
+use sensitol_numeric::surrogate::{InputShape, Univariate};
 
 /// Factors above this say only that the polynomial is bad, and without a slope they are infinite. `exp(c u)` has the factor `c^2/4` by two
 /// nodes and `c^2/6` by four: these are its `c = 0.45` and `c = 1.3`.

@@ -19,8 +19,8 @@ use std::collections::BTreeMap;
 use faer::Mat;
 
 use super::Outcome;
-use crate::moments::Interactions;
-use crate::surrogate::{Surrogate, Univariate};
+use sensitol_numeric::moments::Interactions;
+use sensitol_numeric::surrogate::{Surrogate, Univariate};
 
 /// A singular value below this part of the largest is a direction in which no point lies.
 const SINGULAR: f64 = 1e-9;

@@ -8,11 +8,11 @@ use super::gradients;
 use super::{Basis, Cost, DerivativeSource, Fitted, Method, MethodError, NODES, Options, Outcome, Pairs, Procedure};
 use crate::assembly::Run;
 use crate::evaluation::{Evaluated, evaluate};
-use crate::moments::Interactions;
-use crate::names::nearest;
+use sensitol_numeric::moments::Interactions;
+use sensitol_numeric::names::nearest;
 use crate::plan::{DifferencePlan, KnownAnswers, Layout, Mixed, PairChoice, Plan, Point, Spread, Stencil};
 use crate::problem::Problem;
-use crate::surrogate::{Surrogate, Univariate};
+use sensitol_numeric::surrogate::{Surrogate, Univariate};
 
 /// The derivatives of every characteristic that the assembly function knows.
 type KnownDerivatives = Vec<Option<ExactDerivatives>>;

@@ -25,7 +25,7 @@ mod outcome;
 mod principal;
 pub(crate) mod procedure;
 mod quadrature;
-pub(crate) mod registry;
+pub mod registry;
 mod response_surface;
 mod rss;
 mod second_order;
@@ -35,7 +35,7 @@ mod worst_case;
 
 pub use crate::method_kind::Method;
 pub use crate::plan::Stencil;
-pub(crate) use auto::{ACCURACY, climb_until};
+pub use auto::{ACCURACY, climb_until};
 pub use climbed::ClimbEnd;
 pub(crate) use climbed::Climbed;
 pub use cost::Cost;
@@ -43,14 +43,14 @@ pub(crate) use estimate::estimate;
 pub use estimate::{ErrorEstimate, ErrorSource};
 pub(crate) use exact::ExactDerivatives;
 pub(crate) use interpolated::interpolated;
-pub(crate) use narrow::{Narrow, Narrowed};
+pub use narrow::{Narrow, Narrowed};
 pub use options::{Accuracies, DerivativeSource, Options, Pairs};
 pub use order::Basis;
 pub(crate) use order::Order;
 pub use outcome::Residual;
 pub(crate) use outcome::{Fitted, Integrated, InteractionEffect, Lacking, MainEffect, Outcome};
 pub(crate) use procedure::Procedure;
-pub(crate) use registry::ALL;
+pub use registry::ALL;
 
 use crate::assembly::EvaluationError;
 use crate::warning::{Advice, Figure};
@@ -208,7 +208,7 @@ pub enum MethodError {
 
 impl MethodError {
     /// The actions to take.
-    pub(crate) fn advice(&self) -> Vec<Advice> {
+    pub fn advice(&self) -> Vec<Advice> {
         match self {
             Self::OverBudget { fitting, .. } => {
                 let method = fitting.map(|(method, _)| Advice::UseMethod { methods: vec![method] });

@@ -15,13 +15,13 @@ use super::{DerivativeSource, Method, MethodError, Options, Outcome};
 use crate::assembly::{
     AssemblyFunction, Composite, EvaluationError, Input, ModelInfo, Points, Request, Responses, Run, Signature,
 };
-use crate::characteristic::Characteristic;
-use crate::dimension::Dimension;
-use crate::distribution::{Distribution, Normal, PearsonLaw};
+use sensitol_numeric::characteristic::Characteristic;
+use sensitol_numeric::dimension::Dimension;
+use sensitol_numeric::distribution::{Distribution, Normal, PearsonLaw};
 use crate::evaluation::Evaluated;
 use crate::problem::Problem;
-use crate::sampling::{Draws, Portion, Sampler, Summary};
-use crate::surrogate::Surrogate;
+use sensitol_numeric::sampling::{Draws, Portion, Sampler, Summary};
+use sensitol_numeric::surrogate::Surrogate;
 
 /// Points at which the formulas that drive the model are evaluated, to know how its inputs vary.
 const POINTS: usize = 1 << 13;
@@ -29,20 +29,20 @@ const POINTS: usize = 1 << 13;
 const NEAR: f64 = 0.01;
 
 /// The problem over the inputs of the model.
-pub(crate) struct Narrow<'p> {
+pub struct Narrow<'p> {
     composite: &'p Composite,
     /// Its characteristics are the outputs of the model that are needed.
-    pub(crate) problem: Problem,
+    pub problem: Problem,
     needed: Vec<usize>,
     /// The axes along which it is fitted, where inputs vary nearly alike.
     axes: Option<Arc<Axes>>,
     /// How many inputs of the model vary, or along how many axes, and how many dimensions.
-    pub(crate) inputs: usize,
-    pub(crate) dimensions: usize,
+    pub inputs: usize,
+    pub dimensions: usize,
 }
 
 /// A surface over the inputs, or none.
-pub(crate) enum Narrowed {
+pub enum Narrowed {
     Fitted(Box<Outcome>),
     /// Nothing but evaluations.
     Spent(Box<Evaluated>),
@@ -51,7 +51,7 @@ pub(crate) enum Narrowed {
 impl<'p> Narrow<'p> {
     /// None where no model is driven, its inputs are no fewer than the dimensions, or the options want something of the
     /// dimensions themselves.
-    pub(crate) fn of(problem: &'p Problem, options: &Options) -> Option<Self> {
+    pub fn of(problem: &'p Problem, options: &Options) -> Option<Self> {
         let composite = problem.function().driven()?;
         // Of a model that costs nothing `auto` samples what it does not find in few points.
         let samples = options.method == Method::Auto && !problem.function().signature().costly;
@@ -70,7 +70,7 @@ impl<'p> Narrow<'p> {
         if needed.is_empty() || names.is_empty() {
             return None;
         }
-        let sampler = if dimensions <= crate::sampling::SOBOL_DIMENSIONS { Sampler::Sobol } else { Sampler::Random };
+        let sampler = if dimensions <= sensitol_numeric::sampling::SOBOL_DIMENSIONS { Sampler::Sobol } else { Sampler::Random };
         let draws = Draws::new(problem.dimensions(), problem.correlation(), sampler, Options::SEED).ok()?;
         let sent = composite.drivers(&draws.points(Portion { replicate: 0, first: 0, rows: POINTS }))?;
         let nominal: Vec<f64> = problem.dimensions().iter().map(|dimension| dimension.nominal()).collect();

@@ -5,7 +5,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use super::Method;
-use crate::names::UnknownName;
+use sensitol_numeric::names::UnknownName;
 use crate::plan::Stencil;
 use crate::warning::Figure;
 
@@ -17,7 +17,6 @@ use crate::warning::Figure;
 /// assert_eq!((options.budget, options.stencil), (Some(100), None));
 /// ```
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct Options {
     /// The method.
     pub method: Method,
@@ -56,14 +55,13 @@ pub struct Options {
     /// Whether the densities of surface laws are tabulated, for those who draw them.
     pub densities: bool,
     /// Whether figures of a cheap model take the place of those of a surface that it refutes, as `auto` has it.
-    pub(crate) model_figures: bool,
+    pub model_figures: bool,
 }
 
 /// The errors that are wanted beside that of sigma, absolute; None where nothing is.
 ///
 /// They are reached by the same means: the wanted error of sigma is tightened until these estimates are small enough too.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[non_exhaustive]
 pub struct Accuracies {
     /// Of the skewness.
     pub skewness: Option<f64>,
@@ -117,7 +115,7 @@ pub enum DerivativeSource {
 
 impl DerivativeSource {
     /// The names of the sources.
-    pub(crate) const NAMES: [&str; 2] = ["exact", "difference"];
+    pub const NAMES: [&str; 2] = ["exact", "difference"];
 
     /// Its name in study files and on the command line.
     pub(crate) fn name(self) -> &'static str {
@@ -156,7 +154,7 @@ pub enum Pairs {
 
 impl Pairs {
     /// The choices that have a name.
-    pub(crate) const NAMES: [&str; 2] = ["strongest", "adjacent"];
+    pub const NAMES: [&str; 2] = ["strongest", "adjacent"];
 }
 
 /// The choices that have a name; pairs are given by the names of their dimensions.
@@ -177,7 +175,7 @@ impl Options {
     pub const VERIFY: usize = 12;
 
     /// How a result of such a function is verified: 0 for not at all.
-    pub(crate) fn verification(&self, of: &crate::assembly::Signature) -> usize {
+    pub fn verification(&self, of: &crate::assembly::Signature) -> usize {
         self.verify.unwrap_or(if of.cheap || of.costly { Self::VERIFY } else { 0 })
     }
 

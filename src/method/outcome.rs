@@ -6,9 +6,9 @@ use std::sync::Arc;
 
 use super::{Basis, Climbed, ExactDerivatives, Method, Order};
 use crate::evaluation::Evaluated;
-use crate::moments::Moments;
+use sensitol_numeric::moments::Moments;
 use crate::plan::{Mixed, Plan};
-use crate::surrogate::{Surrogate, Univariate};
+use sensitol_numeric::surrogate::{Surrogate, Univariate};
 
 /// The outcome of a method.
 #[derive(Debug, Clone)]
@@ -117,7 +117,7 @@ pub enum Lacking {
 
 /// How far a surrogate misses the values that it was fitted to.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Residual {
     /// `sqrt(sum of squares / (points - coefficients))`, in the characteristic's unit; None where there are no more points

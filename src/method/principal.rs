@@ -10,8 +10,7 @@ use faer::{Mat, Side};
 use crate::assembly::{
     AssemblyFunction, EvaluationError, Input, ModelInfo, Points, Request, Responses, Run, Signature,
 };
-use crate::sampling::{Joint, Summary};
-use crate::short_sort::ShortSort;
+use sensitol_numeric::sampling::{Joint, Summary};
 
 /// A correlation above this leaves the corners of a pair where no part is.
 const ALIKE: f64 = 0.95;
@@ -45,7 +44,7 @@ impl Axes {
         let eigen = correlation.self_adjoint_eigen(Side::Lower).ok()?;
         let (values, vectors) = (eigen.S(), eigen.U());
         let mut order: Vec<usize> = (0..moving.len()).filter(|&k| values[k] > ZERO * moving.len() as f64).collect();
-        order.sort_short_by(|&a, &b| values[b].total_cmp(&values[a]).then(a.cmp(&b)));
+        order.sort_by(|&a, &b| values[b].total_cmp(&values[a]).then(a.cmp(&b)));
         let place = |input: usize| moving.iter().position(|&of| of == input);
         // An input that does not vary is in no direction.
         let entry = |input: usize, direction: usize| place(input).map_or(0.0, |j| vectors[(j, order[direction])]);

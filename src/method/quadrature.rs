@@ -21,13 +21,12 @@ use super::{
     Outcome,
 };
 use crate::assembly::Run;
-use crate::correlation::Correlation;
-use crate::distribution::{Distribution, Normal, Rule, StandardMoments, behind_normal};
+use sensitol_numeric::correlation::Correlation;
+use sensitol_numeric::distribution::{Distribution, Normal, Rule, StandardMoments, behind_normal};
 use crate::evaluation::{Evaluated, evaluate};
 use crate::plan::{AtNode, Design, KnownAnswers, Mixed, Plan, Point, Purpose};
 use crate::problem::Problem;
-use crate::short_sort::ShortSort;
-use crate::surrogate::Univariate;
+use sensitol_numeric::surrogate::Univariate;
 
 /// A median as near to the mean as this part of sigma is the mean.
 const SAME: f64 = 1e-9;
@@ -206,7 +205,7 @@ fn directions(correlation: &Mat<f64>) -> Mat<f64> {
     let m = correlation.nrows();
     let eigen = correlation.self_adjoint_eigen(Side::Lower).expect("the eigenvalues of a correlation matrix");
     let mut order: Vec<usize> = (0..m).filter(|&k| eigen.S()[k] > ZERO * m as f64).collect();
-    order.sort_short_by(|&a, &b| eigen.S()[b].total_cmp(&eigen.S()[a]).then(a.cmp(&b)));
+    order.sort_by(|&a, &b| eigen.S()[b].total_cmp(&eigen.S()[a]).then(a.cmp(&b)));
     // An eigenvector has no sign: its largest component is positive.
     let sign = |k: usize| {
         let largest = (0..m).max_by(|&i, &j| eigen.U()[(i, k)].abs().total_cmp(&eigen.U()[(j, k)].abs()));
@@ -388,7 +387,7 @@ fn part(design: &Design, known: &KnownAnswers, c: usize, d: usize, at_means: boo
         })
         .filter(|(u, _)| u.abs() >= NEAREST)
         .collect();
-    samples.sort_short_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
+    samples.sort_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
     samples.truncate(Univariate::DEGREE);
     Univariate::through(&samples)
 }

@@ -25,7 +25,7 @@ pub fn procedure(method: Method) -> &'static dyn Procedure {
 
 impl Method {
     /// Its procedure.
-    pub(crate) fn procedure(self) -> &'static dyn Procedure {
+    pub fn procedure(self) -> &'static dyn Procedure {
         procedure(self)
     }
 }

@@ -33,10 +33,10 @@ use super::{
 };
 use crate::assembly::Run;
 use crate::evaluation::evaluate;
-use crate::moments::Interactions;
+use sensitol_numeric::moments::Interactions;
 use crate::plan::{Axis, Design, KnownAnswers, Mixed, Plan, Point, Purpose, Spread, corners};
 use crate::problem::Problem;
-use crate::surrogate::{Surrogate, Univariate};
+use sensitol_numeric::surrogate::{Surrogate, Univariate};
 
 pub(super) struct ResponseSurface;
 

@@ -1,7 +1,7 @@
 //! `three-point`: the full product of three-point rules.
 //!
 //! Every input has three levels and weights that match its moments 1 to 4, one of them the mean
-//! ([`Rule::three_point`](crate::distribution::Rule::three_point)); the function is evaluated at all `3^N` combinations, and every
+//! ([`Rule::three_point`](sensitol_numeric::distribution::Rule::three_point)); the function is evaluated at all `3^N` combinations, and every
 //! expectation is the weighted sum over them. Seo and Kwak (2002), "Efficient statistical tolerance analysis for general distributions
 //! using three-point information", International Journal of Production Research 40. They form raw moments from the sums and central
 //! ones from these, which costs the digits of mean/sigma; here the second to fourth moments are sums of powers of the deviation from
@@ -24,9 +24,9 @@ use super::{
     Cost, Integrated, InteractionEffect, Lacking, MainEffect, Method, MethodError, Options, Outcome, Procedure,
 };
 use crate::assembly::Run;
-use crate::distribution::Rule;
-use crate::moments::{Moments, exact};
-use crate::parallel::prelude::*;
+use sensitol_numeric::distribution::Rule;
+use sensitol_numeric::moments::{Moments, exact};
+use sensitol_numeric::parallel::prelude::*;
 use crate::plan::{AtNode, KnownAnswers, Plan, Point, Purpose};
 use crate::problem::Problem;
 

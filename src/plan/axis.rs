@@ -1,8 +1,7 @@
 //! One dimension's nodes as numbers that a model can be given.
 
 use super::nodes::{MovedNode, Nodes, Reaches, Spread, Tail};
-use crate::dimension::Dimension;
-use crate::short_sort::ShortSort;
+use sensitol_numeric::dimension::Dimension;
 
 /// A place on an axis: the value, and how many sigmas it really lies off the mean.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -97,7 +96,7 @@ impl Axis {
             self.open_slot(u);
         }
         let nodes = &self.nodes;
-        self.slots.sort_short_by(|a, b| nodes[a[0] as usize].u.total_cmp(&nodes[b[0] as usize].u));
+        self.slots.sort_by(|a, b| nodes[a[0] as usize].u.total_cmp(&nodes[b[0] as usize].u));
         true
     }
 

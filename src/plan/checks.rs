@@ -5,9 +5,9 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::{DifferencePlan, Point};
-use crate::correlation::Correlation;
-use crate::dimension::Dimension;
-use crate::distribution::{Probability, standard_normal};
+use sensitol_numeric::correlation::Correlation;
+use sensitol_numeric::dimension::Dimension;
+use sensitol_numeric::distribution::{Probability, standard_normal};
 
 /// The points are the same for every study of as many dimensions, and no seed of anybody's.
 const KEY: u64 = 0x5e_75_17_01;

@@ -10,9 +10,9 @@ use super::nodes::Spread;
 use super::point::{AtNode, Point, folded};
 use super::stage::{Purpose, Stage};
 use super::{KnownAnswers, Plan};
-use crate::correlation::Correlation;
-use crate::dimension::Dimension;
-use crate::surrogate::{Inputs, shapes};
+use sensitol_numeric::correlation::Correlation;
+use sensitol_numeric::dimension::Dimension;
+use sensitol_numeric::surrogate::{Inputs, shapes};
 
 /// The points of a method that asks for all of them at once.
 ///

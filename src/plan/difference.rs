@@ -12,10 +12,10 @@ use super::nodes::{Reaches, Spread};
 use super::pairs::{PairChoice, Side, Stencil, strongest};
 use super::point::{AtNode, Point};
 use super::stage::{Purpose, Stage};
-use crate::correlation::Correlation;
-use crate::dimension::Dimension;
-use crate::parallel::prelude::*;
-use crate::surrogate::{InputShape, Inputs, Univariate, shapes};
+use sensitol_numeric::correlation::Correlation;
+use sensitol_numeric::dimension::Dimension;
+use sensitol_numeric::parallel::prelude::*;
+use sensitol_numeric::surrogate::{InputShape, Inputs, Univariate, shapes};
 
 /// The points that a difference plan evaluates.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::known_answers::KnownAnswers;
 use super::point::{AtNode, Point};
-use crate::surrogate::Inputs;
+use sensitol_numeric::surrogate::Inputs;
 
 /// The common part of plans of every kind. Positions count the dimensions that vary and matter.
 #[derive(Debug, Clone)]

@@ -22,7 +22,7 @@ pub struct KnownAnswers {
 
 impl KnownAnswers {
     /// Nothing yet of `characteristics` characteristics.
-    pub(crate) fn nothing(characteristics: usize) -> Self {
+    pub fn nothing(characteristics: usize) -> Self {
         Self { characteristics, values: vec![Vec::new(); characteristics], ..Self::default() }
     }
 

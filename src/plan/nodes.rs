@@ -1,6 +1,6 @@
 //! Where on its axis a dimension is evaluated, in units of its sigma about its mean.
 
-use crate::distribution::{Distribution, Jacobi, Rule};
+use sensitol_numeric::distribution::{Distribution, Jacobi, Rule};
 
 /// How many nodes an axis has beside the mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -4,8 +4,7 @@ use std::fmt;
 
 use std::str::FromStr;
 
-use crate::names::UnknownName;
-use crate::short_sort::ShortSort;
+use sensitol_numeric::names::UnknownName;
 
 /// Which mixed derivatives are evaluated.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -36,7 +35,7 @@ pub enum Stencil {
 
 impl Stencil {
     /// The names of the stencils.
-    pub(crate) const NAMES: [&str; 2] = ["two-point", "four-point"];
+    pub const NAMES: [&str; 2] = ["two-point", "four-point"];
 
     /// Its name in study files and on the command line.
     pub(crate) fn name(self) -> &'static str {
@@ -92,7 +91,7 @@ pub(super) fn strongest(
             }
         }
     }
-    ranked.sort_short_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
+    ranked.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
     let mut pairs: Vec<(usize, usize)> = ranked.into_iter().take(count).map(|(_, j, k)| (j, k)).collect();
     pairs.sort_unstable();
     pairs

@@ -50,7 +50,7 @@ impl Point {
     }
 
     /// The dimensions that are elsewhere.
-    pub(crate) fn at(&self) -> &[AtNode] {
+    pub fn at(&self) -> &[AtNode] {
         match self {
             Self::Centre => &[],
             Self::One(at) => at,

@@ -43,8 +43,7 @@ pub enum Purpose {
 
 impl Purpose {
     /// In words.
-    #[cfg(feature = "cli")]
-    pub(crate) fn words(self) -> &'static str {
+    pub fn words(self) -> &'static str {
         match self {
             Self::Centre => "all dimensions at their means",
             Self::Nominal => "all dimensions at their nominal values",

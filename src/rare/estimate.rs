@@ -2,7 +2,7 @@
 
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use crate::sampling::Estimate;
+use sensitol_numeric::sampling::Estimate;
 
 /// Fewer effective points beyond the limit have an interval of counts, not of sums.
 const MANY: f64 = 30.0;

@@ -11,8 +11,7 @@ use super::model::{Answers, Model};
 use super::place::{BEFORE, FARTHEST, length, unit};
 use super::space::Columns;
 use super::target::Target;
-use crate::distribution::standard_normal;
-use crate::short_sort::ShortSort;
+use sensitol_numeric::distribution::standard_normal;
 use crate::verification::seldom_points;
 
 /// How wide the groups are; with more variables than this, all points of a wide group lie far out, where nothing is likely.
@@ -122,7 +121,7 @@ impl Explored {
             .map(|(row, _)| self.normals.iter().map(|column| column[row]).collect::<Vec<f64>>())
             .map(|point| (length(&point), point))
             .collect();
-        points.sort_short_by(|a, b| a.0.total_cmp(&b.0));
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
         points.into_iter().map(|(_, point)| point).collect()
     }
 

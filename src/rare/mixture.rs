@@ -19,8 +19,8 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use super::place::{BEFORE, FARTHEST, Place, PlaceKind};
 use super::space::Columns;
 use super::target::Target;
-use crate::distribution::standard_normal;
-use crate::parallel::prelude::*;
+use sensitol_numeric::distribution::standard_normal;
+use sensitol_numeric::parallel::prelude::*;
 
 /// How likely what lies beyond a component's shifted limit is, by what lies beyond the limit itself, and the component's part
 /// of the points as long as nothing else is known: from far beyond the limit to far before it.

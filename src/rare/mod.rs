@@ -33,20 +33,18 @@ mod within;
 use serde::Serialize;
 
 use crate::assembly::{EvaluationError, NonRepeatable, Run};
-use crate::characteristic::Characteristic;
+use sensitol_numeric::characteristic::Characteristic;
 use crate::evaluation::history;
 use crate::method::{Method, MethodError, Options};
 use crate::problem::Problem;
-use crate::requirement::Requirement;
-use crate::sampling::{Estimate, SamplingError};
-use crate::shape::{text, through};
-use crate::short_sort::ShortSort;
+use sensitol_numeric::requirement::Requirement;
+use sensitol_numeric::sampling::{Estimate, SamplingError};
+use sensitol_numeric::shape::{text, through};
 use crate::simulation::{Pace, SimulationError, Surrogates};
 use crate::summary::RunSummary;
-use crate::time::Instant;
-use crate::verdict::Judged;
+use sensitol_numeric::time::Instant;
+use sensitol_numeric::verdict::Judged;
 use crate::warning::Warning;
-#[cfg(feature = "cli")]
 pub(crate) use shape::RareShape;
 
 use explore::Explored;
@@ -58,7 +56,6 @@ use target::Target;
 
 /// How rare events are sought.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct RareOptions {
     /// Points of the model beside those of the surrogate, at most.
     pub samples: u64,
@@ -108,13 +105,13 @@ impl RareOptions {
 
 /// The results for rare events.
 #[derive(Debug, Clone, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
 #[non_exhaustive]
 pub struct RareEvents {
     /// The method of the surrogate.
     #[serde(rename = "surrogate")]
-    #[cfg_attr(feature = "cli", schemars(with = "String"))]
+    #[cfg_attr(feature = "schema", schemars(with = "String"))]
     pub method: Method,
     /// Its points and time, those of the surrogate included; why it ended before all points were drawn or the accuracy was
     /// reached.
@@ -138,10 +135,10 @@ pub struct RareEvents {
     #[serde(rename = "joint_yield_interval")]
     pub joint_interval: Option<[f64; 2]>,
     /// Whether that share reaches the target for all characteristics at once; None without such a target.
-    #[cfg_attr(feature = "cli", schemars(with = "Option<crate::verdict::JudgedShape>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<sensitol_numeric::verdict::JudgedShape>"))]
     pub joint_requirement: Option<Judged>,
     /// The results of every characteristic, in the problem's order.
-    #[cfg_attr(feature = "cli", schemars(with = "Vec<RareShape>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Vec<RareShape>"))]
     pub characteristics: Vec<RareCharacteristic>,
     /// Where the estimates rest on little, and where points have no value.
     #[serde(skip)]
@@ -150,7 +147,7 @@ pub struct RareEvents {
 
 /// The results of one characteristic.
 #[derive(Debug, Clone, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
 #[non_exhaustive]
 pub struct RareCharacteristic {
@@ -161,7 +158,7 @@ pub struct RareCharacteristic {
     pub failed: u64,
     /// Why not, of the first of them.
     #[serde(serialize_with = "text")]
-    #[cfg_attr(feature = "cli", schemars(with = "Option<String>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<String>"))]
     pub error: Option<EvaluationError>,
     /// Below its lower limit; None without one.
     #[serde(skip)]
@@ -180,7 +177,7 @@ pub struct RareCharacteristic {
 
 /// The results beyond one limit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Beyond {
     /// The limit.
@@ -188,7 +185,7 @@ pub struct Beyond {
     /// The probability beyond it; None where no point lies there: its interval is then a bound, which takes it for a half-space that none of
     /// the explored points met.
     #[serde(flatten, serialize_with = "through::<shape::ProbabilityShape, _, _>")]
-    #[cfg_attr(feature = "cli", schemars(with = "shape::ProbabilityShape"))]
+    #[cfg_attr(feature = "schema", schemars(with = "shape::ProbabilityShape"))]
     pub probability: Option<Estimate>,
     /// 95 % interval.
     pub interval: [f64; 2],
@@ -209,7 +206,7 @@ pub struct Beyond {
 
 /// The most likely assembly at a limit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct DesignPoint {
     /// How far it is from the middle, in standard deviations of independent normal variables.
@@ -399,7 +396,7 @@ fn correct(places: Vec<Place>, targets: &[Target<'_>], budget: usize, model: &mu
     let mut order: Vec<usize> = (0..places.len()).collect();
     // The first place of every target before the second of any.
     let rank = |p: &usize| places[..*p].iter().filter(|other| other.target == places[*p].target).count();
-    order.sort_short_by_key(|p| (rank(p), *p));
+    order.sort_by_key(|p| (rank(p), *p));
     let mut asked: Vec<(usize, f64)> = Vec::new();
     for p in order {
         let stations = places[p].stations();
@@ -458,7 +455,7 @@ fn look(
             continue;
         }
         values.extend(before.get(p).into_iter().flatten());
-        values.sort_short_by(|a, b| a.0.total_cmp(&b.0));
+        values.sort_by(|a, b| a.0.total_cmp(&b.0));
         values.dedup_by(|a, b| a.0 == b.0);
         looked.crosses[p] = Some(place.correct(&targets[place.target], values));
     }

@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::space::{Columns, Space};
 use crate::assembly::{EvaluationError, NonRepeatable, Points, Request, Responses, Run};
 use crate::problem::Problem;
-use crate::time::Instant;
+use sensitol_numeric::time::Instant;
 
 /// Points that are evaluated between two looks at the clock.
 const BATCH: usize = 1 << 14;

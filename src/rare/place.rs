@@ -4,7 +4,6 @@ use faer::{Mat, Side};
 
 use super::space::Columns;
 use super::target::Target;
-use crate::short_sort::ShortSort;
 
 /// Farther out nothing has a probability that a double knows.
 pub(super) const FARTHEST: f64 = 37.0;
@@ -64,9 +63,9 @@ pub(super) fn places(index: usize, target: &Target<'_>) -> Vec<Place> {
             found.push(Place { target: index, direction, distance, kind, offset: 0.0, spreads });
         }
     }
-    found.sort_short_by(|a, b| a.distance.total_cmp(&b.distance));
+    found.sort_by(|a, b| a.distance.total_cmp(&b.distance));
     if let Some(first) = found.first().map(|place| place.distance) {
-        let probability = crate::distribution::standard_normal::sf;
+        let probability = sensitol_numeric::distribution::standard_normal::sf;
         found.retain(|place| probability(place.distance) >= FAINT * probability(first));
         found.truncate(PLACES);
     }
@@ -170,10 +169,10 @@ fn starts(target: &Target<'_>, gradient: &[f64]) -> Vec<Vec<f64>> {
             (0..n).map(|j| (0..n).map(|row| if row == j { 3.0 * sign } else { 0.0 }).collect()).collect();
         axes.extend(target.margins(&columns).into_iter().enumerate().map(|(j, margin)| (margin, j, sign)));
     }
-    axes.sort_short_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    axes.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
     ways.extend(axes.iter().take(AXES).map(|&(_, j, sign)| along(j, sign)));
     let mut pairs = target.surrogate.interactions.pairs();
-    pairs.sort_short_by(|a, b| b.2.abs().total_cmp(&a.2.abs()));
+    pairs.sort_by(|a, b| b.2.abs().total_cmp(&a.2.abs()));
     for &(j, k, _) in pairs.iter().take(DIAGONALS) {
         for (a, b) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
             let mut way = along(j, a * std::f64::consts::FRAC_1_SQRT_2);

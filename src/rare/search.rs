@@ -9,11 +9,10 @@ use super::space::Columns;
 use super::target::Target;
 use super::within::within;
 use super::{Beyond, DesignPoint, RareCharacteristic, border, correct};
-use crate::characteristic::Characteristic;
-use crate::distribution::standard_normal;
+use sensitol_numeric::characteristic::Characteristic;
+use sensitol_numeric::distribution::standard_normal;
 use crate::problem::Problem;
-use crate::sampling::Estimate;
-use crate::short_sort::ShortSort;
+use sensitol_numeric::sampling::Estimate;
 
 /// Rejects by which the parts of the components are chosen, at most.
 const GUIDES: usize = 2000;
@@ -189,7 +188,7 @@ impl<'a> Search<'a> {
         let mut found = Vec::new();
         for index in 0..self.targets.len() {
             let mut strayed: Vec<&Vec<f64>> = self.strayed(index);
-            strayed.sort_short_by(|a, b| dot(a, a).total_cmp(&dot(b, b)));
+            strayed.sort_by(|a, b| dot(a, a).total_cmp(&dot(b, b)));
             let strayed: Vec<Vec<f64>> = strayed.into_iter().cloned().collect();
             found.push(self.half_spaces(index, &strayed, budget / self.targets.len(), model));
         }
@@ -242,7 +241,7 @@ impl<'a> Search<'a> {
             order.extend((0..count).map(|i| ((i as f64 + 0.5) / count as f64, component)));
         }
         let mut rows: Vec<usize> = (0..points).collect();
-        rows.sort_short_by(|&a, &b| order[a].0.total_cmp(&order[b].0).then(a.cmp(&b)));
+        rows.sort_by(|&a, &b| order[a].0.total_cmp(&order[b].0).then(a.cmp(&b)));
         let drawn = self.mixture.draw(&counts, seed);
         let normals = drawn.iter().map(|column| rows.iter().map(|&row| column[row]).collect()).collect();
         let heights = self.mixture.heights(&normals);
@@ -374,7 +373,7 @@ fn shared_out(points: usize, parts: &[f64]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..parts.len()).collect();
     let rest = |k: usize| parts[k] * points as f64 - counts[k] as f64;
     let rests: Vec<f64> = (0..parts.len()).map(rest).collect();
-    order.sort_short_by(|&a, &b| rests[b].total_cmp(&rests[a]).then(a.cmp(&b)));
+    order.sort_by(|&a, &b| rests[b].total_cmp(&rests[a]).then(a.cmp(&b)));
     let short = points.saturating_sub(counts.iter().sum());
     order.iter().cycle().take(short).for_each(|&k| counts[k] += 1);
     // The inputs' own density, without which some points could never be drawn.

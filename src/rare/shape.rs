@@ -3,18 +3,18 @@
 use serde::{Serialize, Serializer};
 
 use super::{Beyond, RareCharacteristic, RareEvents};
-use crate::sampling::Estimate;
-use crate::shape::warnings_last;
-use crate::verdict::{Judged, Verdict};
+use sensitol_numeric::sampling::Estimate;
+use crate::warning::warnings_last;
+use sensitol_numeric::verdict::{Judged, Verdict};
 
 warnings_last!(RareEvents);
 
 /// A characteristic with its verdicts, as it is written.
 #[derive(Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(crate) struct RareShape<'r> {
     #[serde(flatten, serialize_with = "RareCharacteristic::serialize")]
-    #[cfg_attr(feature = "cli", schemars(with = "RareCharacteristic"))]
+    #[cfg_attr(feature = "schema", schemars(with = "RareCharacteristic"))]
     own: &'r RareCharacteristic,
     /// Rejects below the lower limit; null without one.
     below: Option<BeyondShape<'r>>,
@@ -25,16 +25,16 @@ pub(crate) struct RareShape<'r> {
     /// The same in a word; null without a target.
     verdict: Option<Verdict>,
     /// Everything that is required of it, the target yield included.
-    #[cfg_attr(feature = "cli", schemars(with = "Vec<crate::verdict::JudgedShape>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Vec<sensitol_numeric::verdict::JudgedShape>"))]
     requirements: Vec<Judged>,
 }
 
 /// Rejects beyond one limit, as they are written.
 #[derive(Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct BeyondShape<'r> {
     #[serde(flatten)]
-    #[cfg_attr(feature = "cli", schemars(with = "Beyond"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Beyond"))]
     own: &'r Beyond,
     /// If no point without a value lies beyond, and if all do; null where every point has a value.
     bounds: Option<[f64; 2]>,
@@ -57,7 +57,7 @@ impl Serialize for RareCharacteristic {
 
 /// A probability as it is written.
 #[derive(Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(super) struct ProbabilityShape {
     /// The probability of an assembly beyond it; null where none was seen.
     probability: Option<f64>,

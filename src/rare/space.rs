@@ -1,14 +1,14 @@
 //! Independent standard normal variables, and the inputs that they stand for.
 //!
 //! An input is its own quantile function of a normal variable, and correlated ones are functions of correlated normal
-//! variables (Nataf's law, [`crate::correlation`]), which a factor of their matrix makes of independent ones.
+//! variables (Nataf's law, [`sensitol_numeric::correlation`]), which a factor of their matrix makes of independent ones.
 
-use crate::correlation::{Together, Transform};
-use crate::dimension::Dimension;
-use crate::distribution::{Probability, behind_normal};
+use sensitol_numeric::correlation::{Together, Transform};
+use sensitol_numeric::dimension::Dimension;
+use sensitol_numeric::distribution::{Probability, behind_normal};
 use crate::method::Outcome;
 use crate::problem::Problem;
-use crate::sampling::SamplingError;
+use sensitol_numeric::sampling::SamplingError;
 
 /// Points as columns, one for every varying dimension.
 pub(super) type Columns = Vec<Vec<f64>>;

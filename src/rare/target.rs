@@ -1,7 +1,7 @@
 //! A rare event: a characteristic beyond one of its limits, as the surrogate sees it.
 
 use super::space::{Columns, Space};
-use crate::surrogate::Surrogate;
+use sensitol_numeric::surrogate::Surrogate;
 
 /// One limit of one characteristic.
 pub(super) struct Target<'a> {

@@ -2,10 +2,10 @@
 
 use super::estimate::ProbabilityEstimate;
 use super::{Beyond, RareCharacteristic};
-use crate::characteristic::SpecLimits;
-use crate::requirement::Requirement;
-use crate::sampling::Estimate;
-use crate::verdict::{self, Judged, Verdict};
+use sensitol_numeric::characteristic::SpecLimits;
+use sensitol_numeric::requirement::Requirement;
+use sensitol_numeric::sampling::Estimate;
+use sensitol_numeric::verdict::{self, Judged, Verdict};
 
 /// The share within the limits.
 #[derive(Clone, Copy)]
@@ -68,7 +68,7 @@ fn keeping(kept: ProbabilityEstimate, other: Option<&Beyond>) -> Within {
 impl RareCharacteristic {
     /// The probability beyond one of its limits if no point without a value lies there, and if all do; None where every point has a
     /// value.
-    pub(crate) fn bounds(&self, beyond: &Beyond) -> Option<[f64; 2]> {
+    pub fn bounds(&self, beyond: &Beyond) -> Option<[f64; 2]> {
         (self.failed > 0).then_some(beyond.bounds)
     }
 

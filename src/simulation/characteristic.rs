@@ -10,18 +10,18 @@ use super::inspected::inspected;
 use super::replicate::of_replicates;
 use super::shape::value;
 use crate::assembly::EvaluationError;
-use crate::capability::{self, InspectionRisks, TAIL};
-use crate::characteristic::{Characteristic, SpecLimits};
+use sensitol_numeric::capability::{self, InspectionRisks, TAIL};
+use sensitol_numeric::characteristic::{Characteristic, SpecLimits};
 use crate::method::Method;
-use crate::requirement::Requirement;
-use crate::sampling::{Estimate, FEWEST, Fine, Summary, of_moments, wilson};
-use crate::shape::{millionths, text};
-use crate::verdict::{self, Judged, Verdict};
+use sensitol_numeric::requirement::Requirement;
+use sensitol_numeric::sampling::{Estimate, FEWEST, Fine, Summary, of_moments, wilson};
+use sensitol_numeric::shape::{millionths, text};
+use sensitol_numeric::verdict::{self, Judged, Verdict};
 use crate::warning::Warning;
 
 /// Estimates for one characteristic, each with its standard error. Unknown values are None.
 #[derive(Debug, Clone, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
 #[non_exhaustive]
 pub struct SimulatedCharacteristic {
@@ -34,39 +34,39 @@ pub struct SimulatedCharacteristic {
     pub failed: u64,
     /// Why not, of the first of them.
     #[serde(serialize_with = "text")]
-    #[cfg_attr(feature = "cli", schemars(with = "Option<String>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<String>"))]
     pub error: Option<EvaluationError>,
     /// First moment.
     #[serde(serialize_with = "value")]
-    #[cfg_attr(feature = "cli", schemars(with = "Option<f64>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub mean: Option<Estimate>,
     /// Standard deviation.
     #[serde(serialize_with = "value")]
-    #[cfg_attr(feature = "cli", schemars(with = "Option<f64>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub sigma: Option<Estimate>,
     /// Third standardised moment; None where nothing varies.
     #[serde(serialize_with = "value")]
-    #[cfg_attr(feature = "cli", schemars(with = "Option<f64>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub skewness: Option<Estimate>,
     /// Fourth standardised moment, 3 for a normal; None where nothing varies.
     #[serde(serialize_with = "value")]
-    #[cfg_attr(feature = "cli", schemars(with = "Option<f64>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub kurtosis: Option<Estimate>,
-    /// Quantiles of the [`PROBABILITIES`](crate::capability::PROBABILITIES); None where the sample is too small for one value beyond, on average, and
+    /// Quantiles of the [`PROBABILITIES`](sensitol_numeric::capability::PROBABILITIES); None where the sample is too small for one value beyond, on average, and
     /// without standard error below five.
     #[serde(skip)]
     pub quantiles: [Option<Estimate>; 7],
     /// The share of assemblies within the limits; None without any limit.
     #[serde(rename = "yield", serialize_with = "share")]
-    #[cfg_attr(feature = "cli", schemars(with = "Option<f64>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub yield_: Option<YieldEstimate>,
     /// Share below the lower limit.
     #[serde(rename = "ppm_below", serialize_with = "millionths")]
-    #[cfg_attr(feature = "cli", schemars(description = "Assemblies below the lower limit, per million."))]
+    #[cfg_attr(feature = "schema", schemars(description = "Assemblies below the lower limit, per million."))]
     pub below: Option<f64>,
     /// Share above the upper limit.
     #[serde(rename = "ppm_above", serialize_with = "millionths")]
-    #[cfg_attr(feature = "cli", schemars(description = "Assemblies above the upper limit, per million."))]
+    #[cfg_attr(feature = "schema", schemars(description = "Assemblies above the upper limit, per million."))]
     pub above: Option<f64>,
     /// Width of the limits by six sigma; None unless there are two, and where nothing varies.
     pub cp: Option<f64>,
@@ -79,7 +79,7 @@ pub struct SimulatedCharacteristic {
     /// The sample, counted in some tens of intervals.
     pub histogram: Option<Histogram>,
     /// The surrogate that stood beside the model; None where none was asked for, or it does not vary.
-    #[cfg_attr(feature = "cli", schemars(with = "Option<super::shape::ControlShape>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<super::shape::ControlShape>"))]
     pub control: Option<SurrogateControl>,
     /// Its Sobol' indices, of every input; None where none were asked for, or the sample does not tell.
     #[serde(rename = "sobol")]
@@ -106,7 +106,7 @@ pub struct SurrogateControl {
 
 /// The share of assemblies that keep the limits.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct YieldEstimate {
     /// Among the points that have a value.
@@ -124,7 +124,7 @@ fn share<S: Serializer>(estimate: &Option<YieldEstimate>, serializer: S) -> Resu
 
 /// How many values lie in which interval.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Histogram {
     /// One more than there are intervals, ascending.
@@ -247,7 +247,7 @@ impl SimulatedCharacteristic {
     }
 
     /// The yield if every point without a value is rejected, and if none is; None where every point has a value.
-    pub(crate) fn yield_bounds(&self) -> Option<[f64; 2]> {
+    pub fn yield_bounds(&self) -> Option<[f64; 2]> {
         self.yield_.filter(|_| self.failed > 0).map(|share| share.bounds)
     }
 

@@ -2,8 +2,8 @@
 
 use super::difference::Difference;
 use crate::assembly::EvaluationError;
-use crate::characteristic::SpecLimits;
-use crate::sampling::{Fine, Scale, Summary};
+use sensitol_numeric::characteristic::SpecLimits;
+use sensitol_numeric::sampling::{Fine, Scale, Summary};
 
 /// The limits and the scale by which a portion is counted.
 #[derive(Clone, Copy)]

@@ -18,8 +18,8 @@ use faer::{Mat, Side};
 
 use super::control::{Outside, Twin, sides};
 use super::replicate::of_replicates;
-use crate::moments::Sampled;
-use crate::sampling::{Estimate, FEWEST, Joint, wilson};
+use sensitol_numeric::moments::Sampled;
+use sensitol_numeric::sampling::{Estimate, FEWEST, Joint, wilson};
 
 /// Powers of the surrogate that serve as controls.
 const CONTROLS: usize = 4;

@@ -15,12 +15,12 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::{Pace, REPLICATES, SimulationError};
 use crate::assembly::{Request, Responses, Run};
-use crate::correlation::factors;
-use crate::parallel::prelude::*;
+use sensitol_numeric::correlation::factors;
+use sensitol_numeric::parallel::prelude::*;
 use crate::problem::Problem;
-use crate::sampling::Normals;
+use sensitol_numeric::sampling::Normals;
 use crate::summary::RunSummary;
-use crate::time::Instant;
+use sensitol_numeric::time::Instant;
 use crate::verification::{CONFIDENCE, Columns, Space, jackknife, totals};
 
 /// Evaluations of a costly model without a budget, at most.
@@ -32,7 +32,7 @@ const STREAM: u64 = 1 << 36;
 
 /// An index with what the sample leaves uncertain of it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct IndexEstimate {
     /// The estimate; of an index near 0 it may be below.
@@ -45,7 +45,7 @@ pub struct IndexEstimate {
 
 /// The indices of one factor.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct SampledFactor {
     /// The dimension, or those that vary together.

@@ -2,10 +2,10 @@
 
 use super::count::{Count, Replicate};
 use super::replicate::of_replicates;
-use crate::capability::{EstimatedShare, InspectionRisks, acceptance, guard_reaching};
-use crate::characteristic::{Characteristic, SpecLimits};
-use crate::inspection::Guard;
-use crate::sampling::Fine;
+use sensitol_numeric::capability::{EstimatedShare, InspectionRisks, acceptance, guard_reaching};
+use sensitol_numeric::characteristic::{Characteristic, SpecLimits};
+use sensitol_numeric::inspection::Guard;
+use sensitol_numeric::sampling::Fine;
 
 /// A piece of the sample between two values that no limit parts.
 struct Piece {

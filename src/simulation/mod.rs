@@ -13,10 +13,9 @@ mod tally;
 mod together;
 mod written;
 
-#[cfg(feature = "cli")]
-pub(crate) use written::SimulatedShape;
+pub use written::SimulatedShape;
 
-pub use crate::sampling::{Estimate, Sampler, SamplingError};
+pub use sensitol_numeric::sampling::{Estimate, Sampler, SamplingError};
 pub(crate) use characteristic::{BINS, CHOICE};
 pub use characteristic::{Histogram, SimulatedCharacteristic, SurrogateControl, YieldEstimate};
 pub use indices::{IndexEstimate, SampledFactor};
@@ -27,14 +26,14 @@ use serde::Serialize;
 
 use crate::assembly::{EvaluationError, NonRepeatable, Points, Request, Responses, Run, near_rows};
 use crate::method::{Method, MethodError, Options, Outcome};
-use crate::parallel::prelude::*;
-use crate::parallel::{Rooms, join};
+use sensitol_numeric::parallel::prelude::*;
+use sensitol_numeric::parallel::{Rooms, join};
 use crate::problem::Problem;
-use crate::sampling::{Draws, Portion, Room};
-use crate::shape::through;
+use sensitol_numeric::sampling::{Draws, Portion, Room};
+use sensitol_numeric::shape::through;
 use crate::summary::RunSummary;
-use crate::time::Instant;
-use crate::verdict::Judged;
+use sensitol_numeric::time::Instant;
+use sensitol_numeric::verdict::Judged;
 use crate::verification::OutputCorrelation;
 use crate::warning::{Advice, Warning};
 use control::Control;
@@ -50,7 +49,6 @@ use tally::{Block, Tally};
 /// assert_eq!((options.samples, options.seed), (10_000, 1));
 /// ```
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct SimulationOptions {
     /// Points, at most; Sobol's are rounded up to the next power of two in each replicate.
     pub samples: u64,
@@ -170,13 +168,13 @@ const COSTLY: usize = 4096;
 
 /// The results of a simulation.
 #[derive(Debug, Clone, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
 #[non_exhaustive]
 pub struct Simulation {
     /// How points were drawn.
     #[serde(flatten, serialize_with = "through::<shape::SamplerShape, _, _>")]
-    #[cfg_attr(feature = "cli", schemars(with = "shape::SamplerShape"))]
+    #[cfg_attr(feature = "schema", schemars(with = "shape::SamplerShape"))]
     pub sampler: Sampler,
     /// Its points and time, those of the surrogate included; why it ended before all points were drawn or the accuracy was
     /// reached.
@@ -196,13 +194,13 @@ pub struct Simulation {
     #[serde(rename = "joint_yield")]
     pub joint: Option<YieldEstimate>,
     /// Whether that share reaches the target for all characteristics at once; None without such a target.
-    #[cfg_attr(feature = "cli", schemars(with = "Option<crate::verdict::JudgedShape>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<sensitol_numeric::verdict::JudgedShape>"))]
     pub joint_requirement: Option<Judged>,
     /// How every two characteristics vary together; empty with one characteristic, and with more than 40.
     #[serde(rename = "characteristic_correlation")]
     pub correlations: Vec<OutputCorrelation>,
     /// The results of every characteristic, in the problem's order.
-    #[cfg_attr(feature = "cli", schemars(with = "Vec<SimulatedShape>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Vec<SimulatedShape>"))]
     pub characteristics: Vec<SimulatedCharacteristic>,
     /// Where points have no value, and where the model contradicted itself.
     #[serde(skip)]
@@ -223,7 +221,7 @@ pub struct Pace {
 
 impl Pace {
     /// The time that it will take in all, at the speed so far, in seconds.
-    pub(crate) fn expected_s(&self) -> f64 {
+    pub fn expected_s(&self) -> f64 {
         self.elapsed.as_secs_f64() * self.expected / self.samples.max(1) as f64
     }
 }
@@ -313,7 +311,7 @@ pub enum SimulationError {
 
 impl SimulationError {
     /// The actions to take.
-    pub(crate) fn advice(&self) -> Vec<Advice> {
+    pub fn advice(&self) -> Vec<Advice> {
         match self {
             Self::NoSurrogate { method, .. } if !method.has_surrogate() => {
                 vec![Advice::UseMethod { methods: vec![Method::Full] }]

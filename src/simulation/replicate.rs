@@ -2,7 +2,7 @@
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-use crate::sampling::Summary;
+use sensitol_numeric::sampling::Summary;
 
 /// The standard error of the mean of independent replicates, widened so that two of it are the 95 % interval of Student's
 /// distribution with one degree of freedom fewer than there are replicates; None where one has no value.

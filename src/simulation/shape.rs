@@ -2,11 +2,11 @@
 
 use serde::{Serialize, Serializer};
 
-use crate::sampling::{Estimate, Sampler};
+use sensitol_numeric::sampling::{Estimate, Sampler};
 
 /// A sampler as a method and as itself.
 #[derive(Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(super) struct SamplerShape {
     /// `monte-carlo` or `quasi-monte-carlo`.
     method: &'static str,
@@ -27,7 +27,7 @@ pub(super) fn value<S: Serializer>(estimate: &Option<Estimate>, serializer: S) -
 
 /// The effect of a surrogate as control variate, as it is written.
 #[derive(Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(super) struct ControlShape {
     /// The method that it comes from.
     pub(super) method: &'static str,
@@ -39,7 +39,7 @@ pub(super) struct ControlShape {
 
 /// The standard error without the surrogate by that with it; null where that is unknown or 0.
 #[derive(Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(super) struct Reduction {
     /// Of the mean.
     pub(super) mean: Option<f64>,

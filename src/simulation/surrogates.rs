@@ -3,9 +3,9 @@
 use super::SimulationError;
 use crate::assembly::Run;
 use crate::method::{Method, Options, Outcome};
-use crate::moments::Sampled;
+use sensitol_numeric::moments::Sampled;
 use crate::problem::Problem;
-use crate::surrogate::Surrogate;
+use sensitol_numeric::surrogate::Surrogate;
 
 /// Varying dimensions up to which every interaction is examined.
 const FULL: usize = 20;

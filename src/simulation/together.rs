@@ -4,9 +4,9 @@ use super::characteristic::{REJECTED, YieldEstimate};
 use super::count::Lens;
 use super::replicate::of_replicates;
 use crate::assembly::{Responses, all_finite};
-use crate::elementary::{Work, on_this_processor};
+use sensitol_numeric::elementary::{Work, on_this_processor};
 use crate::problem::Problem;
-use crate::sampling::{Sampler, wilson};
+use sensitol_numeric::sampling::{Sampler, wilson};
 use crate::verification::{OutputCorrelation, REPLICATES, student};
 
 /// A number of every part.

@@ -4,19 +4,20 @@ use serde::{Serialize, Serializer};
 
 use super::shape::{ControlShape, Reduction};
 use super::{SimulatedCharacteristic, Simulation, SurrogateControl};
-use crate::capability::Quantiles;
-use crate::sampling::Estimate;
-use crate::shape::{Four, warnings_last};
-use crate::verdict::{Judged, Verdict};
+use sensitol_numeric::capability::Quantiles;
+use sensitol_numeric::sampling::Estimate;
+use crate::warning::warnings_last;
+use sensitol_numeric::shape::Four;
+use sensitol_numeric::verdict::{Judged, Verdict};
 
 warnings_last!(Simulation);
 
 /// A characteristic with the standard errors beside the values, as it is written.
 #[derive(Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub(crate) struct SimulatedShape<'r> {
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct SimulatedShape<'r> {
     #[serde(flatten, serialize_with = "SimulatedCharacteristic::serialize")]
-    #[cfg_attr(feature = "cli", schemars(with = "SimulatedCharacteristic"))]
+    #[cfg_attr(feature = "schema", schemars(with = "SimulatedCharacteristic"))]
     own: &'r SimulatedCharacteristic,
     /// How uncertain the sample leaves all this.
     standard_error: StandardErrors,
@@ -29,13 +30,13 @@ pub(crate) struct SimulatedShape<'r> {
     /// The same in a word; null without a target.
     verdict: Option<Verdict>,
     /// Everything that is required of it, the target yield included.
-    #[cfg_attr(feature = "cli", schemars(with = "Vec<crate::verdict::JudgedShape>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Vec<sensitol_numeric::verdict::JudgedShape>"))]
     requirements: Vec<Judged>,
 }
 
 /// Standard errors, and the 95 % interval of the yield.
 #[derive(Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct StandardErrors {
     #[serde(flatten)]
     moments: Four<Option<f64>>,
@@ -48,7 +49,7 @@ struct StandardErrors {
 
 /// A distribution that is known by a sample.
 #[derive(Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct Empirical {
     /// Always `empirical`.
     family: &'static str,

@@ -15,8 +15,7 @@ use rand_distr::StandardNormal;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::space::Columns;
-use crate::distribution::standard_normal;
-use crate::short_sort::ShortSort;
+use sensitol_numeric::distribution::standard_normal;
 
 /// Places along a line, in sigmas.
 pub(super) const ON_LINE: [f64; 4] = [1.5, -1.5, 3.0, -3.0];
@@ -88,7 +87,7 @@ impl Design {
             wishes.iter().filter(strong).map(|wish| wish.shares[j]).fold(0.0, f64::max)
         };
         let mut axes: Vec<usize> = (0..n).filter(|&j| strength(j) > 0.0).collect();
-        axes.sort_short_by(|&a, &b| strength(b).total_cmp(&strength(a)).then(a.cmp(&b)));
+        axes.sort_by(|&a, &b| strength(b).total_cmp(&strength(a)).then(a.cmp(&b)));
         axes.truncate(AXES.min(left / 2));
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);
         let mut points: Vec<Vec<f64>> = Vec::new();

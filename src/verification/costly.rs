@@ -10,8 +10,8 @@ use super::space::{Columns, Space};
 use super::strata::{HalfSpace, between};
 use crate::assembly::{Points, Request, Responses, Run};
 use crate::problem::Problem;
-use crate::sampling::Normals;
-use crate::surrogate::Surrogate;
+use sensitol_numeric::sampling::Normals;
+use sensitol_numeric::surrogate::Surrogate;
 
 pub use super::checks::MOST as MOST_CHECKS;
 

@@ -32,16 +32,16 @@ pub(crate) use sample::REPLICATES;
 pub use shares::Share;
 pub use sides::{Crossing, FoundSwitch};
 pub(crate) use space::{Columns, Space};
-pub(crate) use tails::{TailPoint, Tails};
+pub use tails::{TailPoint, Tails};
 pub(crate) use weighted::WeightedSample;
 
 use serde::Serialize;
 
 use crate::assembly::Run;
-use crate::correlation::factors;
+use sensitol_numeric::correlation::factors;
 use crate::problem::Problem;
-use crate::sampling::Normals;
-use crate::surrogate::Surrogate;
+use sensitol_numeric::sampling::Normals;
+use sensitol_numeric::surrogate::Surrogate;
 use figures::moments;
 use model::Model;
 use sample::Sample;
@@ -64,7 +64,7 @@ pub(crate) fn most_points_of_shares(inputs: usize) -> usize {
 
 /// A figure as the model itself gives it, and its error: three of it reach the truth whenever three standard errors do.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Verified {
     /// The value.
     pub value: f64,

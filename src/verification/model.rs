@@ -2,9 +2,9 @@
 
 use super::space::{Columns, Space};
 use crate::assembly::{Request, Responses, Run};
-use crate::parallel::prelude::*;
+use sensitol_numeric::parallel::prelude::*;
 use crate::problem::Problem;
-use crate::surrogate::Surrogate;
+use sensitol_numeric::surrogate::Surrogate;
 
 pub(super) struct Model<'p> {
     problem: &'p Problem,

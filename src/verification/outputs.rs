@@ -6,9 +6,9 @@ use super::Verified;
 use super::figures::{jackknife, student, totals};
 use super::model::Model;
 use super::sample::REPLICATES;
-use crate::parallel::prelude::*;
+use sensitol_numeric::parallel::prelude::*;
 use crate::problem::Problem;
-use crate::sampling::Normals;
+use sensitol_numeric::sampling::Normals;
 
 /// Points of one randomisation.
 const ROWS: usize = 1 << 10;
@@ -17,7 +17,7 @@ const SUMS: usize = 6;
 
 /// How two characteristics vary together.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct OutputCorrelation {
     /// The two characteristics.

@@ -19,9 +19,9 @@ use super::sides::{Sides, sides};
 use super::space::Columns;
 use super::strata::{HalfSpace, between, unit};
 use super::weighted::WeightedSample;
-use crate::parallel::prelude::*;
-use crate::sampling::Normals;
-use crate::surrogate::Surrogate;
+use sensitol_numeric::parallel::prelude::*;
+use sensitol_numeric::sampling::Normals;
+use sensitol_numeric::surrogate::Surrogate;
 
 /// Randomisations.
 pub(crate) const REPLICATES: usize = 16;

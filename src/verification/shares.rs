@@ -12,8 +12,8 @@
 use super::figures::{jackknife, student, totals};
 use super::model::Model;
 use super::space::Columns;
-use crate::parallel::prelude::*;
-use crate::sampling::Normals;
+use sensitol_numeric::parallel::prelude::*;
+use sensitol_numeric::sampling::Normals;
 
 /// Evaluations, and the scramblings that share them.
 const EVALUATIONS: usize = 1 << 16;

@@ -13,7 +13,7 @@ use super::model::Model;
 use super::space::Columns;
 use super::strata::{HalfSpace, REACH, length};
 use crate::assembly::Switch;
-use crate::sampling::Normals;
+use sensitol_numeric::sampling::Normals;
 
 /// Points at which margins are read, plain, twice and three times as wide.
 const POINTS: usize = 1 << 11;
@@ -43,7 +43,7 @@ const WITHOUT_BOUND: f64 = 1e6;
 
 /// The behaviour of an output at a switch, by its values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Crossing {
     /// Its slope changes.
@@ -58,7 +58,7 @@ pub enum Crossing {
 
 /// A switch on both sides of which there are assemblies within eight sigmas.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct FoundSwitch {
     /// Where it stands.

@@ -1,12 +1,12 @@
 //! Independent standard normal variables, and the inputs that they stand for.
 //!
 //! An input is its own quantile function of a normal variable, `T(z) = F^-1(Phi(z))`, and correlated ones are functions of correlated
-//! normal variables (Nataf's law, [`crate::correlation`]), which a factor of their matrix makes of independent ones. Correlated
+//! normal variables (Nataf's law, [`sensitol_numeric::correlation`]), which a factor of their matrix makes of independent ones. Correlated
 //! inputs need no case of their own: everything here and after lives in `z`.
 
 use crate::assembly::Points;
-use crate::correlation::Together;
-use crate::distribution::{Distribution, Normal, PearsonLaw, Probability, behind_normal};
+use sensitol_numeric::correlation::Together;
+use sensitol_numeric::distribution::{Distribution, Normal, PearsonLaw, Probability, behind_normal};
 use crate::problem::Problem;
 
 /// Points as columns, one for every variable.

@@ -1,7 +1,7 @@
 //! Strata of the space of independent normal variables: half-spaces, and the slab between two of them.
 
 use super::space::Columns;
-use crate::distribution::standard_normal;
+use sensitol_numeric::distribution::standard_normal;
 
 /// Where the world ends, in sigmas: beyond lie 6e-16 of all assemblies.
 pub(super) const REACH: f64 = 8.0;
@@ -79,7 +79,7 @@ pub(super) fn length(vector: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sampling::Normals;
+    use sensitol_numeric::sampling::Normals;
 
     /// Points of a stratum in one randomisation, and randomisations.
     const ROWS: usize = 256;

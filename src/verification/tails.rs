@@ -15,24 +15,24 @@ const FEWEST: usize = 4;
 
 /// The tails of a sample, of every side that has a limit: from 10 % to 1 ppm, or to the share of the last few points, in even steps of its logarithm.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub(crate) struct Tails {
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Tails {
     /// Towards the lower limit; empty without one.
-    pub(crate) below: Vec<TailPoint>,
+    pub below: Vec<TailPoint>,
     /// Towards the upper limit; empty without one.
-    pub(crate) above: Vec<TailPoint>,
+    pub above: Vec<TailPoint>,
 }
 
 /// A value of the characteristic, and the share of the assemblies at or beyond it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub(crate) struct TailPoint {
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct TailPoint {
     /// The value.
-    pub(crate) at: f64,
+    pub at: f64,
     /// The share.
-    pub(crate) share: f64,
+    pub share: f64,
     /// Its estimated error; null where one randomisation has all values, so that none differs from it.
-    pub(crate) error: Option<f64>,
+    pub error: Option<f64>,
 }
 
 /// A value with its weight and its randomisation.
@@ -89,7 +89,7 @@ pub(super) fn tail(values: &[Weighed], above: bool, (replicates, one): (usize, f
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pearson::Pearson;
+    use sensitol_numeric::pearson::Pearson;
 
     /// Of 100 000 evenly weighted normal quantiles, the share beyond a value is the normal law's to half the weight of a point.
     #[test]

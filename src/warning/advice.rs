@@ -17,14 +17,14 @@ use crate::method_kind::Method;
 /// assert_eq!(advice.to_string(), "Use the method `full`.");
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "action", rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Advice {
     /// Analyse with one of these methods, the best first.
     UseMethod {
         /// The methods.
-        #[cfg_attr(feature = "cli", schemars(with = "Vec<String>"))]
+        #[cfg_attr(feature = "schema", schemars(with = "Vec<String>"))]
         methods: Vec<Method>,
     },
     /// Allow more evaluations.

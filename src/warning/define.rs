@@ -45,7 +45,7 @@ macro_rules! warnings {
             }
 
             /// The fields by name; numbers that are not finite are null.
-            pub(crate) fn data(&self) -> impl serde::Serialize + '_ {
+            pub fn data(&self) -> impl serde::Serialize + '_ {
                 WarningData(self)
             }
 

@@ -14,6 +14,7 @@ mod measured;
 mod model;
 mod run;
 mod sample;
+mod serialize;
 mod study;
 mod surface;
 mod terms;
@@ -21,8 +22,9 @@ mod text;
 mod written;
 
 use crate::summary::StopReason;
+pub(crate) use serialize::warnings_last;
 pub use advice::Advice;
-pub(crate) use aggregate::aggregated;
+pub use aggregate::aggregated;
 use serde::ser::SerializeMap;
 pub use terms::{Change, Counted, Ended, Figure, Loss, NameKind};
 use text::Text;

@@ -2,7 +2,7 @@
 
 use super::text::{Text, likewise, names, say};
 use super::{Advice, NameKind};
-use crate::names::shortened_to;
+use sensitol_numeric::names::shortened_to;
 
 /// Characters of a formula that a warning shows.
 const PART: usize = 40;

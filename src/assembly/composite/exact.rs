@@ -4,7 +4,7 @@ use super::{Composite, Needs, Origin};
 use crate::assembly::formula::Jet;
 use crate::assembly::implicit::Tangent;
 use crate::assembly::{Derivatives, Directions, Run};
-use crate::parallel::prelude::*;
+use sensitol_numeric::parallel::prelude::*;
 
 /// So many pairs are worth a tape of the formula.
 const TOGETHER: usize = 64;

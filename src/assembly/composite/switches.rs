@@ -2,7 +2,7 @@
 
 use super::{Composite, Origin, SolvedRows, Source};
 use crate::assembly::{Points, Run, Switch, SwitchKind, Switches};
-use crate::parallel::prelude::*;
+use sensitol_numeric::parallel::prelude::*;
 
 /// Rows whose unknowns one task finds.
 const ROWS: usize = 128;

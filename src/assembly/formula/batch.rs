@@ -2,7 +2,7 @@
 
 use super::functions::{Binary, Unary, select};
 use super::program::{Branch, Operand, Program, Step};
-use crate::elementary::{self, Elementary, Work, on_this_processor};
+use sensitol_numeric::elementary::{self, Elementary, Work, on_this_processor};
 
 /// Rows that go through the program together: few enough that all registers stay in the nearest cache.
 pub(super) const LANES: usize = 256;

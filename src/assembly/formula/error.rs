@@ -3,12 +3,11 @@
 use std::ops::Range;
 
 use super::name::is_plain;
-use crate::names::shortened_to;
+use sensitol_numeric::names::shortened_to;
 
 /// A formula that cannot be read, and where.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{fault}")]
-#[non_exhaustive]
 pub struct FormulaError {
     /// Byte range in the formula's text.
     pub span: Range<usize>,
@@ -18,7 +17,6 @@ pub struct FormulaError {
 
 /// The faults of a formula's text.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
 pub enum FormulaFault {
     /// Nothing stands there.
     #[error("the formula is empty")]
@@ -133,7 +131,7 @@ fn path_words(path: &[String]) -> String {
 
 impl FormulaFault {
     /// The text to write instead, where that can be said.
-    pub(crate) fn help(&self) -> Option<String> {
+    pub fn help(&self) -> Option<String> {
         let nearest = |nearest: &Option<String>| nearest.as_ref().map(|name| format!("did you mean `{name}`?"));
         match self {
             Self::Empty => Some("write a formula such as \"a + b - c\"".into()),

@@ -1,6 +1,6 @@
 //! The functions and operators that formulas know, on numbers.
 
-use crate::elementary::{self, Elementary};
+use sensitol_numeric::elementary::{self, Elementary};
 
 /// A function or operator of one argument.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

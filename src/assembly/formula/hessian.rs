@@ -5,7 +5,7 @@ use super::graph::{GraphNode, NodeId};
 use super::jet::Jet;
 use super::scalar::{Scalar, Verdict};
 use super::set::FormulaSet;
-use crate::parallel::prelude::*;
+use sensitol_numeric::parallel::prelude::*;
 
 /// Variables whose passes run side by side.
 const LANES: usize = 8;

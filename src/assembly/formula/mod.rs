@@ -32,18 +32,15 @@ mod scalar;
 pub(crate) mod set;
 mod slopes;
 mod switches;
-#[cfg(feature = "study")]
 mod units;
 
 pub use error::{FailureReason, FormulaError, FormulaFailure, FormulaFault};
 pub(crate) use functions::{Binary, Unary};
 pub(crate) use interval::Interval;
 pub(crate) use jet::Jet;
-#[cfg(feature = "study")]
-pub(crate) use name::is_plain;
+pub use name::is_plain;
 pub use parser::Formula;
-pub(crate) use parser::is_reserved;
+pub use parser::is_reserved;
 pub(crate) use scalar::Scalar;
-pub(crate) use set::{FormulaSet, Meaning, Routine};
-#[cfg(feature = "study")]
-pub(crate) use units::{Role, UnitFinding};
+pub use set::{FormulaSet, Meaning, Routine};
+pub use units::{Role, UnitFinding};

@@ -7,6 +7,6 @@ pub(super) fn plain_length(text: &str) -> Option<usize> {
 }
 
 /// Whether a name can stand in a formula without backquotes.
-pub(crate) fn is_plain(name: &str) -> bool {
+pub fn is_plain(name: &str) -> bool {
     plain_length(name) == Some(name.len())
 }

@@ -8,8 +8,8 @@ use std::ops::Range;
 use super::error::{FormulaError, FormulaFault};
 use super::functions::{Binary, CONSTANTS, Callable, Unary};
 use super::lexer::{Token, tokens};
-use crate::names::nearest;
-use crate::unit::Unit;
+use sensitol_numeric::names::nearest;
+use sensitol_numeric::unit::Unit;
 
 /// A formula as it was written.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,20 +66,17 @@ impl Formula {
     }
 
     /// The unit that the number at a node has.
-    #[cfg(feature = "study")]
     pub(super) fn unit_of(&self, node: usize) -> Option<&Unit> {
         self.units.iter().find(|(place, _)| *place == node).map(|(_, unit)| unit)
     }
 
     /// Whether no number has a unit.
-    #[cfg(feature = "study")]
     pub(super) fn has_no_units(&self) -> bool {
         self.units.is_empty()
     }
 
     /// The formula on names that are multiplied by a factor each, and divided by `result`: numbers with units in SI.
-    #[cfg(feature = "study")]
-    pub(crate) fn converted(&self, factor: &dyn Fn(&str) -> f64, result: f64) -> Self {
+    pub fn converted(&self, factor: &dyn Fn(&str) -> f64, result: f64) -> Self {
         let mut nodes: Vec<(Node, Range<usize>)> = Vec::with_capacity(self.nodes.len());
         let mut places = Vec::with_capacity(self.nodes.len());
         let mut push = |node: Node, span: &Range<usize>| {

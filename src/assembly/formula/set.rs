@@ -16,7 +16,7 @@ use super::program::Program;
 use super::scalar::Scalar;
 use super::slopes::Sloped;
 use crate::assembly::Bounds;
-use crate::names::nearest;
+use sensitol_numeric::names::nearest;
 
 /// The meaning of a name that is not a formula.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,7 +74,7 @@ pub struct FormulaSet {
 
 /// Formulas that are run on one point at a time.
 #[derive(Debug, Clone)]
-pub(crate) struct Routine(Arc<Program>);
+pub struct Routine(Arc<Program>);
 
 impl Routine {
     /// Every formula on what `variable` returns; `room` is what one run leaves to the next.

@@ -9,7 +9,7 @@ use std::ops::Range;
 use super::functions::{Binary, Unary};
 use super::parser::{Formula, Node};
 use super::set::{FormulaSet, Reference};
-use crate::unit::{SAME, Unit};
+use sensitol_numeric::unit::{SAME, Unit};
 
 /// Literal factors that are followed.
 const FOLLOWED: usize = 8;
@@ -18,7 +18,7 @@ const SIMPLE: [f64; 7] = [1.0, 2.0, 3.0, 4.0, 6.0, 8.0, std::f64::consts::PI];
 
 /// The role of a formula, where its unit follows from that.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Role {
+pub enum Role {
     /// Anything.
     Free,
     /// A value in this unit.
@@ -33,17 +33,17 @@ pub(crate) enum Role {
 
 /// Two units that do not go together.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct UnitFinding {
+pub struct UnitFinding {
     /// Index of the formula.
-    pub(crate) formula: usize,
+    pub formula: usize,
     /// The part of its text.
-    pub(crate) span: Range<usize>,
+    pub span: Range<usize>,
     /// The fault.
-    pub(crate) what: String,
+    pub what: String,
     /// The text to write instead.
-    pub(crate) remedy: String,
+    pub remedy: String,
     /// Whether a number without a unit could explain it.
-    pub(crate) doubtful: bool,
+    pub doubtful: bool,
 }
 
 /// The quantity that a part of a formula measures.

@@ -117,7 +117,7 @@ impl Unknown {
     }
 
     /// Its name.
-    pub(crate) fn name(&self) -> &str {
+    pub fn name(&self) -> &str {
         &self.name
     }
 
@@ -179,13 +179,12 @@ impl Conditions {
     }
 
     /// The unknowns.
-    pub(crate) fn unknowns(&self) -> &[Unknown] {
+    pub fn unknowns(&self) -> &[Unknown] {
         &self.unknowns
     }
 
     /// The same conditions with every formula made another.
-    #[cfg(feature = "study")]
-    pub(crate) fn with_formulas(&self, of: &dyn Fn(&Formula) -> Formula) -> Self {
+    pub fn with_formulas(&self, of: &dyn Fn(&Formula) -> Formula) -> Self {
         let condition = |condition: &Condition| match condition {
             Condition::Equation { name, formula } => Condition::Equation { name: name.clone(), formula: of(formula) },
             Condition::Loop { name, links } => Condition::Loop {
@@ -198,8 +197,7 @@ impl Conditions {
 
     /// For every formula of the conditions, in their order: its place within its loop, None of an equation. Even places are lengths,
     /// odd ones angles.
-    #[cfg(feature = "study")]
-    pub(crate) fn places(&self) -> Vec<Option<usize>> {
+    pub fn places(&self) -> Vec<Option<usize>> {
         let of = |condition: &Condition| match condition {
             Condition::Equation { .. } => vec![None],
             Condition::Loop { links, .. } => (0..2 * links.len()).map(Some).collect(),
@@ -208,7 +206,7 @@ impl Conditions {
     }
 
     /// Every formula of the conditions, in order: an equation's one, a loop's lengths and angles in turn.
-    pub(crate) fn formulas(&self) -> Vec<(String, Formula)> {
+    pub fn formulas(&self) -> Vec<(String, Formula)> {
         self.conditions.iter().flat_map(Condition::formulas).collect()
     }
 

@@ -14,7 +14,7 @@
 
 use super::chosen::ChosenPoints;
 use crate::plan::{Corner, DifferencePlan};
-use crate::surrogate::Univariate;
+use sensitol_numeric::surrogate::Univariate;
 
 /// The rest of a part after a fit must be below this part of it, for the products,
 const EXPLAINS: f64 = 0.2;

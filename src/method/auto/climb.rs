@@ -11,7 +11,6 @@ use crate::method::climbed::ClimbEnd;
 use crate::method::exact::ExactDerivatives;
 use crate::plan::{DifferencePlan, KnownAnswers, Plan, Point, Purpose, Stage, scattered};
 use crate::problem::Problem;
-use crate::short_sort::ShortSort;
 
 /// Mirrored pairs of points in a set that checks: twelve points.
 const CHECKS: usize = 6;
@@ -372,7 +371,7 @@ impl<'p> Climb<'p> {
                 .filter(|&j| !self.refined[j])
                 .map(|j| (0.5 * view.share(view.hidden[j]), j))
                 .collect();
-            order.sort_short_by(|a, b| b.0.total_cmp(&a.0));
+            order.sort_by(|a, b| b.0.total_cmp(&a.0));
             let mut rest: f64 = order.iter().map(|(hidden, _)| hidden).sum();
             for (hidden, j) in order {
                 if rest <= 0.3 * self.accuracy {
@@ -456,7 +455,7 @@ impl<'p> Climb<'p> {
                 }
             }
         }
-        ranked.sort_short_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
+        ranked.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
         let twin = |score: f64| ranked.get(most.wrapping_sub(1)).is_some_and(|last| score >= last.0 * (1.0 - TWINS));
         let together = ranked.iter().take_while(|(score, ..)| twin(*score)).count();
         ranked.truncate(together.max(most));

@@ -118,7 +118,7 @@ impl Procedure for Auto {
 
 /// Climbs until `excess`, the largest estimated error of an outcome in parts of what is wanted of it, is no more than 1, as far as
 /// tightening the wanted error of sigma gets that.
-pub(crate) fn climb_until(
+pub fn climb_until(
     problem: &Problem,
     options: &Options,
     run: &Run<'_>,

@@ -18,8 +18,7 @@ use faer::linalg::matmul::matmul;
 use faer::linalg::solvers::SolveLstsqCore;
 use faer::{Accum, Conj, Mat, Par};
 
-use crate::short_sort::ShortSort;
-use crate::surrogate::DEPENDENT;
+use sensitol_numeric::surrogate::DEPENDENT;
 
 /// Signs and what was seen there.
 pub(super) struct Probed<'a> {
@@ -95,7 +94,7 @@ fn pursued(fitted: &Probed<'_>, judging: &Probed<'_>, slopes: &[f64], most: usiz
         ranked.select_nth_unstable_by(batch - 1, order);
         let mut found = false;
         let mut best = ranked[..batch].to_vec();
-        best.sort_short_by(order);
+        best.sort_by(order);
         for (_, j, k) in best {
             let column: Vec<f64> = fitted.signs.iter().map(|signs| signs[j] * signs[k]).collect();
             if project(&mut basis, &mut left, &column) {

@@ -1,0 +1,243 @@
+//! How a command ends.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+
+use super::advice;
+use sensitol::allocation::AllocateError;
+use sensitol::compare::CompareError;
+use sensitol_external::journal::JournalError;
+use sensitol::method::MethodError;
+use sensitol_numeric::names::UnknownName;
+use sensitol_numeric::pearson::PearsonError;
+use sensitol::problem::ProblemError;
+use sensitol::rare::RareError;
+use sensitol::simulation::SimulationError;
+use sensitol_study::{RewriteError, StudyError};
+use sensitol::sweep::SweepError;
+use sensitol::warning::Advice;
+
+/// The exit codes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Exit {
+    /// Done, with warnings perhaps.
+    Done = 0,
+    /// `--check`: a target is missed.
+    Missed = 1,
+    /// The command line or the study is wrong.
+    Usage = 2,
+    /// The model gave some asked characteristic no result.
+    NoResult = 3,
+    /// No tolerances keep what is required, or they were not found in time.
+    NotAllocated = 4,
+    /// Ctrl-C.
+    Interrupted = 130,
+}
+
+impl Exit {
+    /// Of several studies the one that is to be heard: what is unknown is worse than a target that is known to be missed.
+    pub(super) fn worse(self, other: Self) -> Self {
+        let rank = |exit: Self| match exit {
+            Self::Done => 0,
+            Self::Missed => 1,
+            Self::NotAllocated => 2,
+            Self::NoResult => 3,
+            Self::Usage => 4,
+            Self::Interrupted => 5,
+        };
+        if rank(other) > rank(self) { other } else { self }
+    }
+}
+
+impl Exit {
+    /// Every exit code and what it says, for the manual.
+    pub(super) const ALL: [(Self, &'static str); 6] = [
+        (Self::Done, "done, with warnings perhaps; a pipe that was closed"),
+        (
+            Self::Missed,
+            "`--check`: a requirement is missed or inconclusive; `allocate --confirm`: the sample refutes what was found; `probe`: \
+             a check failed",
+        ),
+        (Self::Usage, "the command line or the study is wrong, or an output cannot be written"),
+        (
+            Self::NoResult,
+            "the model gave a characteristic that was asked for no result; `--check`: the run was stopped before its planned \
+             points were evaluated; an external model's answers depend on the points before them, and nothing confirmed them",
+        ),
+        (Self::NotAllocated, "`allocate`: no tolerances keep what is required, or they were not found in time"),
+        (
+            Self::Interrupted,
+            "interrupted: the first Ctrl-C reports what is known, the second gives up what is under way, the third ends at once",
+        ),
+    ];
+}
+
+impl From<Exit> for ExitCode {
+    fn from(exit: Exit) -> Self {
+        Self::from(exit as u8)
+    }
+}
+
+/// Why a command could not do its work.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum Failure {
+    #[error(transparent)]
+    Study(#[from] StudyError),
+    #[error(transparent)]
+    Problem(#[from] ProblemError),
+    #[error(transparent)]
+    Method(#[from] MethodError),
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+    #[error(transparent)]
+    Rare(#[from] RareError),
+    #[error(transparent)]
+    Compare(#[from] CompareError),
+    #[error(transparent)]
+    Sweep(#[from] SweepError),
+    #[error(transparent)]
+    Allocate(#[from] AllocateError),
+    #[error(transparent)]
+    Rewrite(#[from] RewriteError),
+    #[error(transparent)]
+    Pearson(#[from] PearsonError),
+    #[error(transparent)]
+    Journal(#[from] JournalError),
+    #[error("{}; there are {known}", number.map_or("--model N says which of several models".to_owned(), |number| format!("there is no model {number} in the journal")))]
+    UnknownJournalModel { number: Option<i64>, known: String },
+    #[error("{answers} answers would be forgotten, and there is no terminal to confirm it: pass --yes")]
+    NotAgreed { answers: usize },
+    #[error("{path}: {reason}", path = path.display())]
+    Points { path: PathBuf, reason: String },
+    #[error("{path}: {reason}", path = path.display())]
+    Import { path: PathBuf, reason: String, help: Option<String> },
+    #[error("the table cannot be written: {reason}")]
+    Table { reason: String },
+    #[error("{reason}")]
+    Workbook { reason: String },
+    #[error("--check has nothing to check: no characteristic asked for has a target_yield, a target_cpk or a require")]
+    NothingToCheck,
+    #[error("--pairs {text}: {fault}")]
+    Pairs { text: String, fault: &'static str },
+    #[error(transparent)]
+    UnknownName(#[from] UnknownName),
+    #[error("{path} cannot be written: {error}", path = path.display())]
+    Unwritable { path: PathBuf, error: std::io::Error },
+    #[error("the page of the workbench is not part of this build: run web/build, or name its page by --page; it is not at {sought}", sought = sought.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", "))]
+    NoPage { sought: Vec<PathBuf> },
+    #[error("{path} is not a page for `sensitol workbench`: {reason}", path = path.display())]
+    WrongPage { path: PathBuf, reason: String },
+    #[error("--compare is about two revisions of a study, the older one first: name two files, not {count}")]
+    NotTwo { count: usize },
+    #[error("the page of the workbench is older than this program: run web/build again")]
+    OldPage,
+    #[error("{path} is no folder of studies: {reason}", path = path.display())]
+    NotAFolder { path: PathBuf, reason: String },
+    #[error("nothing can listen at {address}: {reason}")]
+    NotServed { address: std::net::SocketAddr, reason: String },
+    #[error("{path} cannot be put into a page: {reason}", path = path.display())]
+    NotInPage { path: PathBuf, reason: String },
+    #[error("{path} is there already and stays as it is: name another file, or remove it", path = path.display())]
+    Exists { path: PathBuf },
+    #[error("`{path}` is {what}, which would be lost: name another file", path = path.display())]
+    WouldBeLost { path: PathBuf, what: &'static str },
+    #[error("--write {path}: the study names {names}, and its paths start from its own folder: write into that folder, and move study and files together", path = path.display())]
+    AnotherFolder { path: PathBuf, names: String },
+    #[error("`{path}` is asked for twice: name two files", path = path.display())]
+    AskedTwice { path: PathBuf },
+    #[error("{path} is a file, and --csv needs a folder", path = path.display())]
+    NoFolder { path: PathBuf },
+    #[error("{flag} {path} is {what}, and several studies need a folder for their {files}", path = path.display())]
+    NoFolderOfPages { flag: &'static str, path: PathBuf, what: &'static str, files: &'static str },
+    #[error("{first} and {second} would both write {name}: analyse them in two calls, or rename one", first = first.display(), second = second.display())]
+    SameName { first: PathBuf, second: PathBuf, name: String },
+    #[error("--points is of one study, and there are {count}: analyse each in a call of its own")]
+    PointsOfOne { count: usize },
+    #[error("cannot write to standard output: {0}")]
+    Stdout(std::io::Error),
+    #[error("cannot start {threads} threads: {reason}")]
+    Threads { threads: u16, reason: String },
+    #[error("{reason}. The run was ended: what is in the journal stays, and the same command goes on from there")]
+    NotKept { reason: String },
+    #[error("nothing reads the output any more")]
+    ClosedPipe,
+}
+
+impl Failure {
+    pub(super) fn exit(&self) -> Exit {
+        match self {
+            Self::ClosedPipe => Exit::Done,
+            _ => Exit::Usage,
+        }
+    }
+
+    /// The actions to take, where the library can name them.
+    fn advice(&self) -> Vec<Advice> {
+        match self {
+            Self::Method(error) | Self::Sweep(SweepError::Method(error)) => error.advice(),
+            Self::Simulation(error)
+            | Self::Rare(RareError::Simulation(error))
+            | Self::Compare(CompareError::Reference(error)) => error.advice(),
+            Self::Allocate(error) => error.advice(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// The message with its place in the file, or None where there is nothing to say.
+    pub(super) fn render(&self) -> Option<String> {
+        self.rendered(String::new())
+    }
+
+    /// The same of one study of several, which it names.
+    pub(super) fn render_of(&self, study: &str) -> Option<String> {
+        self.rendered(format!("{study}: "))
+    }
+
+    fn rendered(&self, of: String) -> Option<String> {
+        match self {
+            Self::ClosedPipe => None,
+            // It names its file by itself.
+            Self::Study(error) => {
+                let all: Vec<String> = std::iter::once(error).chain(&error.more).map(render).collect();
+                Some(all.join("\n\n"))
+            }
+            Self::Problem(ProblemError::UnknownCharacteristic { nearest: Some(nearest), .. }) => {
+                Some(title(&format!("{of}{self}"), Some(format!("did you mean `{nearest}`?"))))
+            }
+            Self::Import { help, .. } => Some(title(&format!("{of}{self}"), help.clone())),
+            _ => Some(title(&format!("{of}{self}"), advice::help(&self.advice()))),
+        }
+    }
+}
+
+/// The text to write instead, or the action to take.
+fn help(error: &StudyError) -> Option<String> {
+    error.help().or_else(|| advice::help(&error.fault.advice()))
+}
+
+/// Title, the lines of the file concerned with what is wrong underlined, and what to write instead.
+fn render(error: &StudyError) -> String {
+    let Some(span) = error.span.clone().filter(|_| !error.text.is_empty()) else {
+        let place = if error.key.is_empty() { error.file.clone() } else { format!("{}: {}", error.file, error.key) };
+        return title(&format!("{place}: {}", error.fault), help(error));
+    };
+    let heading = error.fault.to_string();
+    let label = error.key.as_str();
+    let snippet =
+        Snippet::source(&*error.text).path(&error.file).annotation(AnnotationKind::Primary.span(span).label(label));
+    let mut group = Group::with_title(Level::ERROR.primary_title(heading)).element(snippet);
+    if let Some(help) = help(error) {
+        group = group.element(Level::HELP.message(help));
+    }
+    Renderer::styled().render(&[group])
+}
+
+fn title(heading: &str, help: Option<String>) -> String {
+    let mut group = Group::with_title(Level::ERROR.primary_title(heading));
+    if let Some(help) = help {
+        group = group.element(Level::HELP.message(help));
+    }
+    Renderer::styled().render(&[group])
+}

@@ -1,0 +1,91 @@
+//! The files of a command: none that it reads is written, and none is written twice.
+
+use std::path::{Path, PathBuf};
+
+use super::args::OutputArgs;
+use super::csv::CsvFolder;
+use super::failure::Failure;
+use super::output::Destination;
+use sensitol_study::{FileRole, JournalPlace, Study};
+
+/// The files that are read, and those that will be written, by the paths that links lead to.
+#[derive(Debug, Default)]
+pub(super) struct Files {
+    read: Vec<(PathBuf, &'static str)>,
+    written: Vec<PathBuf>,
+}
+
+impl Files {
+    /// Of a command that reads this study, with its journal beside it unless another is named.
+    pub(super) fn of(path: &Path, study: &Study, journal: Option<&Path>) -> Self {
+        let mut files = Self::default();
+        files.study(path, study, journal);
+        files
+    }
+
+    /// Keeps a study and what it reads.
+    pub(super) fn study(&mut self, path: &Path, study: &Study, journal: Option<&Path>) {
+        self.reads(path, "the study itself");
+        for file in &study.files {
+            let what = match file.role {
+                FileRole::Measured => "measured data of the study",
+                FileRole::Model => "a file of the study's model",
+            };
+            self.reads(&file.path, what);
+        }
+        let journal = JournalPlace::asked(journal).path(&path.display().to_string());
+        journal.iter().for_each(|journal| self.reads(journal, "the study's journal"));
+    }
+
+    /// Keeps this file too.
+    pub(super) fn reads(&mut self, path: &Path, what: &'static str) {
+        self.read.push((resolved(path), what));
+    }
+
+    /// The file of `--output`, or stdout.
+    pub(super) fn output(&mut self, asked: &OutputArgs) -> Result<Destination, Failure> {
+        asked.output.as_deref().map_or(Ok(Destination::Stdout), |path| self.open(path))
+    }
+
+    /// The file of another option, where it is given.
+    pub(super) fn file(&mut self, path: Option<&Path>) -> Result<Option<Destination>, Failure> {
+        path.map(|path| self.open(path)).transpose()
+    }
+
+    /// The folder of `--csv`, where it is given, for files of these names.
+    pub(super) fn folder(&mut self, folder: Option<&Path>, names: &[String]) -> Result<Option<CsvFolder>, Failure> {
+        let Some(folder) = folder else { return Ok(None) };
+        names.iter().try_for_each(|name| self.claim(&folder.join(name)))?;
+        CsvFolder::open(folder, names).map(Some)
+    }
+
+    fn open(&mut self, path: &Path) -> Result<Destination, Failure> {
+        self.claim(path)?;
+        Destination::file(path)
+    }
+
+    fn claim(&mut self, path: &Path) -> Result<(), Failure> {
+        // A terminal or /dev/null takes any number of reports.
+        if std::fs::metadata(path).is_ok_and(|there| !there.is_file()) {
+            return Ok(());
+        }
+        let target = resolved(path);
+        if let Some((_, what)) = self.read.iter().find(|(read, _)| *read == target) {
+            return Err(Failure::WouldBeLost { path: path.to_owned(), what });
+        }
+        if self.written.contains(&target) {
+            return Err(Failure::AskedTwice { path: path.to_owned() });
+        }
+        self.written.push(target);
+        Ok(())
+    }
+}
+
+/// Where links lead, through the folder where the file is still to come.
+fn resolved(path: &Path) -> PathBuf {
+    let within = || {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        Some(std::fs::canonicalize(folder).ok()?.join(path.file_name()?))
+    };
+    std::fs::canonicalize(path).ok().or_else(within).unwrap_or_else(|| path.to_owned())
+}

@@ -1,0 +1,135 @@
+//! The command line: the only place that prints.
+//!
+//! Results go to stdout; progress, warnings and errors to stderr. A closed pipe is not an error.
+
+mod advice;
+mod allocate;
+mod analyze;
+mod args;
+mod check;
+mod compare;
+mod csv;
+mod difference;
+mod evaluate;
+mod expand;
+mod failure;
+mod files;
+mod import;
+mod init;
+mod interrupt;
+mod journal;
+mod models;
+mod output;
+mod pairs;
+mod pearson;
+mod plan;
+mod points;
+mod probe;
+mod progress;
+mod rare;
+mod reference;
+mod running;
+mod sampling;
+mod schema;
+mod serve;
+mod several;
+mod shared_args;
+mod simulate;
+mod study;
+mod sweep;
+mod values;
+mod workbench;
+
+use std::ffi::OsString;
+use std::io::Write;
+use std::process::ExitCode;
+
+use clap::error::{ContextKind, ContextValue};
+use clap::{CommandFactory, Parser};
+
+use args::{Arguments, Command};
+use failure::{Exit, Failure};
+
+use sensitol_numeric::names::nearest;
+pub use reference::{command, exit_codes};
+
+/// Prints what the command line itself has to say. Help and version are results, everything else is a usage error.
+fn told(error: clap::Error) -> Exit {
+    if error.use_stderr() {
+        output::usage(&error.render().ansi().to_string());
+        return Exit::Usage;
+    }
+    let printed = error.print().and_then(|()| std::io::stdout().flush());
+    match printed {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            let failure = Failure::Stdout(error);
+            failure.render().iter().for_each(|message| output::error(message));
+            failure.exit()
+        }
+        _ => Exit::Done,
+    }
+}
+
+/// `help analize` names the nearest command, as `analize` does.
+fn with_suggestion(mut error: clap::Error) -> clap::Error {
+    let Some(ContextValue::String(found)) = error.get(ContextKind::InvalidSubcommand) else { return error };
+    if error.get(ContextKind::SuggestedSubcommand).is_none() {
+        let command = Arguments::command();
+        let known: Vec<&str> = command.get_subcommands().map(clap::Command::get_name).collect();
+        if let Some(nearest) = nearest(found, known) {
+            let nearest = ContextValue::Strings(vec![nearest.to_owned()]);
+            error.insert(ContextKind::SuggestedSubcommand, nearest);
+        }
+    }
+    error
+}
+
+/// Runs the command with these arguments, the program's name first, and says how it went.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    run_code(arguments).into()
+}
+
+/// [`run`], with the exit code as a number: for who ends the process by other means than an [`ExitCode`].
+pub fn run_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    let arguments = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(error) => return told(with_suggestion(error)) as u8,
+    };
+    output::set_color(arguments.color);
+    let style =
+        output::Look { color: arguments.color, quiet: arguments.quiet, verbose: arguments.verbose, study: None };
+    let result = match &arguments.command {
+        Command::Analyze(asked) => match &asked.studies[..] {
+            [old, new] if asked.compare => difference::run([old, new], asked, style),
+            studies if asked.compare => Err(Failure::NotTwo { count: studies.len() }),
+            [study] if asked.how.configuration.as_deref() != Some(study::ALL) => analyze::run(study, asked, style),
+            studies => several::analyze(studies, asked, style),
+        },
+        Command::Simulate(asked) => simulate::run(asked, style),
+        Command::Compare(asked) => compare::run(asked, style),
+        Command::Sweep(asked) => sweep::run(asked, style),
+        Command::Allocate(asked) => allocate::run(asked, style),
+        Command::Plan(asked) => plan::run(asked, style),
+        Command::Check(asked) => check::run(asked, style),
+        Command::Expand(asked) => expand::run(asked, style),
+        Command::Models(asked) => models::run(asked, style),
+        Command::Probe(asked) => probe::run(asked, style),
+        Command::Evaluate(asked) => evaluate::run(asked, style),
+        Command::Journal(asked) => journal::run(asked, style),
+        Command::Init(asked) => init::run(asked),
+        Command::Import(asked) => import::run(asked),
+        Command::Workbench(asked) => workbench::run(asked, style),
+        Command::Serve(asked) => serve::run(asked),
+        Command::Schema(asked) => schema::run(asked),
+        Command::Completions(asked) => reference::completions(asked),
+        Command::Man => reference::man(),
+        Command::Pearson(asked) => pearson::run(asked, style),
+    };
+    let exit = result.unwrap_or_else(|failure| {
+        if let Some(message) = failure.render() {
+            output::error(&message);
+        }
+        Failure::exit(&failure)
+    });
+    exit as u8
+}

@@ -1,0 +1,318 @@
+//! Several studies in one call: all of them are read before any is evaluated, and none is kept from its report by another.
+
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::analyze::{Beside, analyzed, printed, read};
+use super::args::{AnalyzeArgs, StackArg};
+use super::csv::CsvFolder;
+use super::failure::{Exit, Failure};
+use super::files::Files;
+use super::interrupt;
+use super::output::{Destination, Look, error, json};
+use super::study::ALL;
+use sensitol_report::document::terminal::text;
+use sensitol_report::{Budget, Report, Stack, budget_csv_of_studies, stack_csv_of_studies};
+use sensitol_study::{Externals, Study};
+use sensitol::summary::StopReason;
+use sensitol::warning::{Counted, Warning};
+
+/// Tells what is wrong with one study, and how it ended. Only an output that can no longer be printed to ends all.
+pub(super) fn outcome(study: &str, result: Result<Exit, Failure>) -> Result<Exit, Failure> {
+    match result {
+        Err(failure @ (Failure::ClosedPipe | Failure::Stdout(_))) => Err(failure),
+        Err(failure) => {
+            tell(study, &failure);
+            Ok(failure.exit())
+        }
+        done => done,
+    }
+}
+
+fn tell(study: &str, failure: &Failure) {
+    if let Some(message) = failure.render_of(study) {
+        error(&message);
+    }
+}
+
+/// A study, or one of its configurations.
+struct Asked<'a> {
+    path: &'a Path,
+    configuration: Option<String>,
+}
+
+/// Every study, or every configuration of each.
+fn of_configurations<'a>(paths: &'a [PathBuf], asked: &AnalyzeArgs) -> Result<Vec<Asked<'a>>, Failure> {
+    let named = asked.how.configuration.as_deref();
+    let mut all = Vec::new();
+    for path in paths {
+        match named {
+            Some(ALL) => {
+                let configurations = Study::read(path)?.configurations;
+                if configurations.is_empty() {
+                    // The study's own error says that there is none.
+                    Study::read_with(path, Externals::default().with_configuration(ALL))?;
+                }
+                all.extend(configurations.into_iter().map(|name| Asked { path, configuration: Some(name) }));
+            }
+            named => all.push(Asked { path, configuration: named.map(str::to_owned) }),
+        }
+    }
+    Ok(all)
+}
+
+/// `sensitol analyze` of several studies, or configurations.
+pub(super) fn analyze(paths: &[PathBuf], asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
+    let all = of_configurations(paths, asked)?;
+    if asked.points.is_some() {
+        return Err(Failure::PointsOfOne { count: all.len() });
+    }
+    let stems = match asked.csv.is_some() || asked.html.is_some() || asked.xlsx.is_some() {
+        true => {
+            let of_paths = stems(paths)?;
+            let of = |one: &Asked<'_>| {
+                let place = paths.iter().position(|path| path == one.path).unwrap_or(0);
+                match asked.how.configuration.as_deref() {
+                    Some(ALL) => format!("{}-{}", of_paths[place], one.configuration.as_deref().unwrap_or_default()),
+                    _ => of_paths[place].clone(),
+                }
+            };
+            all.iter().map(of).collect()
+        }
+        false => vec![String::new(); all.len()],
+    };
+    let name = |one: &Asked<'_>| match (&one.configuration, asked.how.configuration.as_deref()) {
+        (Some(name), Some(ALL)) => format!("{} ({name})", one.path.display()),
+        _ => one.path.display().to_string(),
+    };
+    let names: Vec<String> = all.iter().map(name).collect();
+    let studies = (all.iter().zip(&names))
+        .map(|(one, name)| read(one.path, one.configuration.as_deref(), asked, None, look.of(name)));
+    let studies: Vec<Result<Study, Failure>> = studies.collect();
+    for (name, study) in names.iter().zip(&studies) {
+        if let Err(failure) = study {
+            tell(name, failure);
+        }
+    }
+    let mut files = Files::default();
+    for (one, study) in all.iter().zip(&studies) {
+        study.iter().for_each(|study| files.study(one.path, study, asked.work.journal.as_deref()));
+    }
+    let mut printer = Printer::open(asked, look, &mut files)?;
+    let studies = open(&stems, studies, asked, &mut files)?;
+    let mut exit = Exit::Done;
+    for ((name, one), study) in names.iter().zip(&all).zip(studies) {
+        let row = one.configuration.as_deref().filter(|_| asked.how.configuration.as_deref() == Some(ALL));
+        let (study, beside) = match study {
+            Ok(ready) => ready,
+            Err(failure) => {
+                printer.failed(name, failure.to_string());
+                exit = exit.worse(failure.exit());
+                continue;
+            }
+        };
+        if interrupt::stopped() {
+            let (cause, counted) = (StopReason::Interrupted, Counted::Evaluations);
+            look.of(name).warn(&Warning::Stopped { cause, limit_s: None, done: 0, planned: None, counted });
+            printer.failed(name, "interrupted before it was analysed".to_owned());
+            exit = Exit::Interrupted;
+            continue;
+        }
+        let shown = printer.shown;
+        let result = analyzed(&study, asked, beside, None, look.of(name), |report| {
+            printer.keep(row, report);
+            printer.show(name, report)
+        });
+        // Who has a report whose files could not be written has it all the same.
+        if let (Err(failure), false) = (&result, printer.shown > shown) {
+            printer.failed(name, failure.to_string());
+        }
+        exit = exit.worse(outcome(name, result)?);
+    }
+    printer.finish()?;
+    Ok(exit)
+}
+
+/// The names of the studies' files: those of the studies, with their folders' where several have the same. No two are the same on
+/// any file system.
+fn stems(paths: &[PathBuf]) -> Result<Vec<String>, Failure> {
+    let text = |part: Option<&OsStr>| part.map(|part| part.to_string_lossy().into_owned()).unwrap_or_default();
+    let own: Vec<String> = paths.iter().map(|path| text(path.file_stem())).collect();
+    let same = |a: &String, b: &String| a.to_lowercase() == b.to_lowercase();
+    let full = |(path, stem): (&PathBuf, &String)| {
+        // A study is named without its folder in that folder.
+        let folder = path.canonicalize().ok().and_then(|path| Some(text(path.parent()?.file_name())));
+        match own.iter().filter(|other| same(other, stem)).count() {
+            1 => stem.clone(),
+            _ => format!("{}-{stem}", folder.unwrap_or_default()),
+        }
+    };
+    let stems: Vec<String> = paths.iter().zip(&own).map(full).collect();
+    for (index, name) in stems.iter().enumerate() {
+        if let Some(first) = stems[..index].iter().position(|other| same(other, name)) {
+            let [first, second] = [first, index].map(|place| paths[place].clone());
+            return Err(Failure::SameName { first, second, name: name.clone() });
+        }
+    }
+    Ok(stems)
+}
+
+/// A study that was read with its files open, or why it was not.
+type Ready = Result<(Study, Beside), Failure>;
+
+/// Opens the files of every study that was read: what cannot be written costs no evaluation.
+fn open(
+    stems: &[String],
+    studies: Vec<Result<Study, Failure>>,
+    asked: &AnalyzeArgs,
+    files: &mut Files,
+) -> Result<Vec<Ready>, Failure> {
+    let pages = |path: &Path| folder_of(path, "--html", ["the name of one page", "pages"], &["html", "htm"]);
+    asked.html.as_deref().map(pages).transpose()?;
+    let books = |path: &Path| folder_of(path, "--xlsx", ["the name of one workbook", "workbooks"], &["xlsx"]);
+    asked.xlsx.as_deref().map(books).transpose()?;
+    asked.csv.as_deref().map(CsvFolder::make).transpose()?;
+    let of = |(stem, study): (&String, Result<Study, Failure>)| {
+        let study = match study {
+            Ok(study) => study,
+            Err(failure) => return Ok(Err(failure)),
+        };
+        let tables = asked.csv.as_deref().map(|folder| folder.join(stem));
+        let page = asked.html.as_deref().map(|folder| folder.join(format!("{stem}.html")));
+        let mut beside = Beside::open(files, &study, tables.as_deref(), page.as_deref())?;
+        let workbook = asked.xlsx.as_deref().map(|folder| folder.join(format!("{stem}.xlsx")));
+        beside.workbook = files.file(workbook.as_deref())?;
+        Ok(Ok((study, beside)))
+    };
+    stems.iter().zip(studies).map(of).collect()
+}
+
+/// The folder, made where it is missing; a name that ends as `one` file of that kind does is most likely meant as one.
+fn folder_of(
+    path: &Path,
+    flag: &'static str,
+    [one, files]: [&'static str; 2],
+    endings: &[&str],
+) -> Result<(), Failure> {
+    if path.is_dir() {
+        return Ok(());
+    }
+    let wrong = |what| Err(Failure::NoFolderOfPages { flag, path: path.to_owned(), what, files });
+    if path.exists() {
+        return wrong("a file");
+    }
+    if path.extension().and_then(|ending| ending.to_str()).is_some_and(|ending| endings.contains(&ending)) {
+        return wrong(one);
+    }
+    std::fs::create_dir_all(path).map_err(|error| Failure::Unwritable { path: path.to_owned(), error })
+}
+
+/// A study in the array of reports.
+#[derive(Serialize, JsonSchema)]
+pub(super) struct Entry {
+    study: String,
+    #[serde(flatten)]
+    outcome: Outcome,
+}
+
+#[derive(Serialize, JsonSchema)]
+#[serde(untagged)]
+pub(super) enum Outcome {
+    Report(Box<Report>),
+    Failed { error: String },
+}
+
+/// Prints reports as they come where that can be, and all in the end where they are one value or one file.
+struct Printer<'a> {
+    asked: &'a AnalyzeArgs,
+    look: Look<'a>,
+    /// None where reports are printed as they come.
+    destination: Option<Destination>,
+    text: String,
+    entries: Vec<Entry>,
+    stacks: Vec<(String, Vec<Stack>)>,
+    budgets: Vec<(String, Vec<Budget>)>,
+    /// Every configuration with its report, for the rows in the end.
+    rows: Vec<(String, Report)>,
+    shown: usize,
+}
+
+/// The format of a table that is asked for in place of the report.
+fn table(asked: &AnalyzeArgs) -> Option<StackArg> {
+    asked.stack.or(asked.gum)
+}
+
+impl<'a> Printer<'a> {
+    fn open(asked: &'a AnalyzeArgs, look: Look<'a>, files: &mut Files) -> Result<Self, Failure> {
+        let whole = asked.output.json || asked.output.output.is_some() || table(asked) == Some(StackArg::Csv);
+        let destination = whole.then(|| files.output(&asked.output)).transpose()?;
+        let (text, entries, stacks, budgets, rows) = (String::new(), Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        Ok(Self { asked, look, destination, text, entries, stacks, budgets, rows, shown: 0 })
+    }
+
+    fn show(&mut self, name: &str, report: &Report) -> Result<(), Failure> {
+        let first = self.shown == 0;
+        self.shown += 1;
+        if self.asked.output.json {
+            let report = if self.look.verbose { report.clone() } else { report.clone().shortened() };
+            let outcome = Outcome::Report(Box::new(report));
+            self.entries.push(Entry { study: name.to_owned(), outcome });
+            return Ok(());
+        }
+        let heading = match table(self.asked) {
+            Some(StackArg::Csv) if self.asked.gum.is_some() => {
+                self.budgets.push((name.to_owned(), report.budgets()));
+                return Ok(());
+            }
+            Some(StackArg::Csv) => {
+                self.stacks.push((name.to_owned(), report.stacks()));
+                return Ok(());
+            }
+            Some(StackArg::Markdown) => format!("## `{name}`\n\n"),
+            None | Some(StackArg::Text) => format!("==> {name} <==\n"),
+        };
+        let gap = if first { "" } else { "\n" };
+        let text = format!("{gap}{heading}{}", printed(report, self.asked, self.look));
+        match self.destination {
+            None => Destination::Stdout.write(&text),
+            Some(_) => {
+                self.text += &text;
+                Ok(())
+            }
+        }
+    }
+
+    /// Keeps the report of a configuration for its row.
+    fn keep(&mut self, configuration: Option<&str>, report: &Report) {
+        let shown = !self.asked.output.json && table(self.asked).is_none();
+        self.rows.extend(configuration.filter(|_| shown).map(|name| (name.to_owned(), report.clone())));
+    }
+
+    /// A study without report.
+    fn failed(&mut self, name: &str, error: String) {
+        let entry = Entry { study: name.to_owned(), outcome: Outcome::Failed { error } };
+        self.entries.push(entry);
+    }
+
+    /// Writes what was kept; where there is no report, what stands there stays.
+    fn finish(mut self) -> Result<(), Failure> {
+        if self.rows.len() > 1 {
+            let rows = text(&Report::rows_of_all(&self.rows), self.look.style(&self.asked.output));
+            let rows = format!("\n==> all configurations <==\n{rows}");
+            match self.destination {
+                None => Destination::Stdout.write(&rows)?,
+                Some(_) => self.text += &rows,
+            }
+        }
+        let Some(destination) = self.destination.filter(|_| self.shown > 0) else { return Ok(()) };
+        destination.write(&match table(self.asked) {
+            Some(StackArg::Csv) if self.asked.gum.is_some() => budget_csv_of_studies(&self.budgets),
+            Some(StackArg::Csv) => stack_csv_of_studies(&self.stacks),
+            _ if self.asked.output.json => json(&self.entries),
+            _ => self.text,
+        })
+    }
+}

@@ -1,0 +1,211 @@
+//! Values of options: numbers, ranges and words.
+
+use clap::ValueEnum;
+
+/// A parameter and its values.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Over {
+    pub(super) name: String,
+    pub(super) values: Vec<f64>,
+}
+
+/// A dimension whose nominal value may move, and within which bounds.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Movable {
+    pub(super) name: String,
+    pub(super) bounds: Option<[f64; 2]>,
+}
+
+pub(super) fn movable(text: &str) -> Result<Movable, String> {
+    let form = || "it is NAME, or NAME=LOW:HIGH, such as shoulder=14.8:15.2".to_owned();
+    // A name may hold anything; numbers hold no `=`.
+    let Some((name, range)) = text.rsplit_once('=') else {
+        return Ok(Movable { name: text.to_owned(), bounds: None });
+    };
+    let (low, high) = range.split_once(':').filter(|_| !name.is_empty()).ok_or_else(form)?;
+    let end = |what: &str, text: &str| finite(text).map_err(|why| format!("{what} `{text}`: {why}"));
+    match [end("LOW", low)?, end("HIGH", high)?] {
+        [low, high] if low < high => Ok(Movable { name: name.to_owned(), bounds: Some([low, high]) }),
+        [low, high] => Err(format!("LOW {low} is not below HIGH {high}")),
+    }
+}
+
+pub(super) fn positive(text: &str) -> Result<f64, String> {
+    number(text, |value| value.is_finite() && value > 0.0, "it must be a number above 0")
+}
+
+/// A part of something: 0.01, or 1 %.
+pub(super) fn part(text: &str) -> Result<f64, String> {
+    match text.trim().strip_suffix('%') {
+        Some(percent) => positive(percent).map(|percent| percent / 100.0),
+        None => positive(text),
+    }
+}
+
+/// A count, as digits or as 1e6.
+pub(super) fn whole(text: &str) -> Result<u64, String> {
+    /// Beyond it not every whole number is a double.
+    const MOST: f64 = (1u64 << 53) as f64;
+    if let Ok(count) = text.trim().parse::<u64>() {
+        return Ok(count);
+    }
+    match text.trim().parse::<f64>() {
+        Ok(value) if (0.0..=MOST).contains(&value) && value.fract() == 0.0 => Ok(value as u64),
+        _ => Err("it is a whole number from 0 on, such as 1000 or 1e6".to_owned()),
+    }
+}
+
+/// Points of a sample.
+pub(super) fn samples(text: &str) -> Result<u64, String> {
+    const MOST: u64 = 1 << 52;
+    match whole(text)? {
+        count @ 2..=MOST => Ok(count),
+        count => Err(format!("{count} is not in 2..={MOST}")),
+    }
+}
+
+/// Points of a sample, or 0 for no sample.
+pub(super) fn samples_or_none(text: &str) -> Result<u64, String> {
+    if whole(text)? == 0 { Ok(0) } else { samples(text) }
+}
+
+/// Evaluations, or points of a front.
+pub(super) fn count(text: &str) -> Result<usize, String> {
+    usize::try_from(whole(text)?).map_err(|_| "it is too large".to_owned())
+}
+
+pub(super) fn finite(text: &str) -> Result<f64, String> {
+    number(text, f64::is_finite, "it must be a finite number")
+}
+
+pub(super) fn probability(text: &str) -> Result<f64, String> {
+    number(text, |value| (0.0..=1.0).contains(&value), "a probability lies between 0 and 1")
+}
+
+fn number(text: &str, holds: fn(f64) -> bool, must: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(value) if holds(value) => Ok(value),
+        Ok(_) => Err(must.to_owned()),
+        Err(_) => Err("it is not a number".to_owned()),
+    }
+}
+
+/// Values of a sweep at most: more is a slip of the pen.
+const MOST_STEPS: usize = 10_000;
+
+pub(super) fn over(text: &str) -> Result<Over, String> {
+    // A name may hold anything; numbers hold no `=`.
+    let form = || "it is NAME=FROM:TO:STEPS, such as theta=-180:180:73".to_owned();
+    let (name, range) = text.rsplit_once('=').ok_or_else(form)?;
+    let parts: Vec<&str> = range.split(':').collect();
+    let (&[from, to, steps], false) = (&parts[..], name.is_empty()) else { return Err(form()) };
+    let end = |what: &str, text: &str| finite(text).map_err(|why| format!("{what} `{text}`: {why}"));
+    let (from, to) = (end("FROM", from)?, end("TO", to)?);
+    let steps: usize =
+        steps.trim().parse().map_err(|_| format!("STEPS `{steps}`: it is the number of values, a whole number"))?;
+    if !(2..=MOST_STEPS).contains(&steps) {
+        return Err(format!("STEPS is the number of values, from 2 to {MOST_STEPS}, not {steps}"));
+    }
+    if from == to {
+        return Err("FROM and TO are the same value; `analyze` looks at one".to_owned());
+    }
+    let last = (steps - 1) as f64;
+    // Both ends to the last bit, and middles that are as round as their ends.
+    let value = |step: usize| (from * (last - step as f64) + to * step as f64) / last;
+    let values: Vec<f64> = (0..steps).map(value).collect();
+    if values.iter().any(|value| !value.is_finite()) || values.windows(2).any(|pair| pair[0] == pair[1]) {
+        return Err("FROM and TO are too large, or too near to each other, for so many values".to_owned());
+    }
+    Ok(Over { name: name.to_owned(), values })
+}
+
+/// The registered methods as values of an option.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct MethodArg(pub(super) sensitol::method::Method);
+
+impl ValueEnum for MethodArg {
+    fn value_variants<'a>() -> &'a [Self] {
+        static VARIANTS: std::sync::LazyLock<Vec<MethodArg>> = std::sync::LazyLock::new(|| {
+            sensitol::method::ALL.iter().map(|procedure| MethodArg(procedure.method())).collect()
+        });
+        &VARIANTS
+    }
+
+    fn to_possible_value(&self) -> Option<clap::builder::PossibleValue> {
+        let procedure = self.0.procedure();
+        let help = format!("{} ({})", procedure.about(), procedure.count());
+        Some(clap::builder::PossibleValue::new(procedure.name()).help(help))
+    }
+}
+
+/// The relative costs as values of an option.
+#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
+pub(super) enum CostArg {
+    /// The tolerance unit of ISO 286 for the size, by the tolerance.
+    ToleranceUnit,
+    /// The same grade everywhere.
+    ConstantPrecision,
+    /// The same effect on the characteristic everywhere.
+    EqualShares,
+}
+
+/// The quantity that is to be few for a cost.
+#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
+pub(super) enum MinimiseArg {
+    /// Rejected assemblies.
+    Rejects,
+}
+
+/// The quantity that is to be high for a cost.
+#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
+pub(super) enum MaximiseArg {
+    /// The least Cpk.
+    Cpk,
+}
+
+/// The samplers as values of an option.
+#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
+pub(super) enum SamplerArg {
+    /// Independent random points
+    Random,
+    /// Sobol' points, scrambled anew in each of 16 replicates
+    Sobol,
+}
+
+/// The stencils as values of an option.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum StencilArg {
+    /// Both up and both down, beside five-point axes
+    TwoPoint,
+    /// All four corners, beside three-point axes
+    FourPoint,
+}
+
+/// The sources of derivatives as values of an option.
+#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
+pub(super) enum DerivativesArg {
+    /// Exact at the means, for the moments too: one evaluation, and one at the nominal values where they differ
+    Exact,
+    /// Differences, for the sensitivities too
+    Difference,
+}
+
+/// How a stack-up table or a budget is written.
+#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
+pub(super) enum StackArg {
+    /// For people
+    Text,
+    /// For spreadsheets, all characteristics in one table
+    Csv,
+    /// For documents
+    Markdown,
+}
+
+/// Which sensitivities are wanted, as values of an option.
+#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
+pub(super) enum SensitivitiesArg {
+    /// Of the dimensions that have a tolerance
+    Varying,
+    /// Of all dimensions
+    All,
+}

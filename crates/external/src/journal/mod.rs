@@ -1,0 +1,554 @@
+//! Answers of external programs, kept on disk: an evaluation may have cost a minute of CAD time.
+//!
+//! Every answer is in the file before anything is made of it, so that a run that is killed goes on where it was, and a
+//! repeated or enlarged one evaluates only what is new. An answer is known by the model (program and arguments, the contents
+//! of its script and of the files that it depends on, what the adapter says of itself, constants, names and units of the
+//! dimensions), the exact point, and the output. The nominal point is evaluated again by every run: where it has another value than
+//! the journal, the model has changed, and its answers are forgotten. An answer that a sentinel puts in doubt is forgotten at
+//! once, and kept again only when another, trusted process has answered it. A point that has no value by the program's own word is kept
+//! too; a crash or a missed deadline is not: the next run tries again.
+
+mod claims;
+pub(crate) mod store;
+
+pub use store::{JournalError, JournalFault};
+pub use store::{KnownModel, Store, StoredAnswer};
+
+use std::collections::HashSet;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use sha2::{Digest, Sha256};
+
+use self::claims::{BEAT, Watch};
+use self::store::{Answer, Recalled};
+use crate::Settings;
+use crate::process::{Kept, Process, Recheck};
+use sensitol::assembly::{EvaluatorAccount, OutdatedJournal, ProcessFault};
+use sensitol::assembly::{
+    AssemblyFunction, EvaluationError, ModelInfo, Points, Progress, Request, Responses, Run, Signature,
+};
+use sensitol::summary::StopReason;
+
+/// How often it is looked whether another run has ended what it claimed.
+const LOOK: Duration = Duration::from_millis(20);
+
+/// A program whose answers are kept.
+///
+/// Evaluations: those that the file does not hold.
+pub struct Journaled {
+    process: Process,
+    path: PathBuf,
+    files: Vec<PathBuf>,
+    open: Mutex<Option<Open>>,
+    /// Held while a batch is evaluated.
+    turn: Mutex<()>,
+}
+
+struct Open {
+    store: Store,
+    model: i64,
+    /// Whether the model sends derivatives.
+    gradients: bool,
+    /// Whether the nominal point was asked in this run.
+    rechecked: bool,
+    /// How the model differs from what was kept of it, where it did.
+    outdated: Option<OutdatedJournal>,
+    /// Why nothing can be kept any more.
+    failure: Option<JournalError>,
+}
+
+impl Journaled {
+    /// Keeps the answers of `process` in the journal at `path`; `files` are what it depends on beside its arguments.
+    pub fn new(process: Process, path: PathBuf, files: Vec<PathBuf>) -> Self {
+        Self { process, path, files, open: Mutex::new(None), turn: Mutex::new(()) }
+    }
+
+    /// The key of the answers of this model.
+    fn identity(&self, outputs: &[usize]) -> Result<String, EvaluationError> {
+        let adapter = self.process.adapter(outputs).map_err(Box::new)?;
+        let inputs = &self.signature().inputs;
+        let hash = |file: &PathBuf| {
+            let bytes = std::fs::read(file).map_err(|error| {
+                let fault = JournalFault::ModelFile { file: file.clone(), reason: error.to_string() };
+                not_kept(&JournalError { path: self.path.clone(), fault })
+            })?;
+            Ok(Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect::<String>())
+        };
+        // The name of a file is not its contents, and the study may have been moved: only hashes count. The first
+        // file among the arguments is the script that answers; a later one may be its log.
+        let Settings { argv, folder, .. } = self.process.settings();
+        let script = argv.iter().map(|word| folder.join(word)).find(|path| path.is_file());
+        let files: Vec<PathBuf> = script.into_iter().chain(self.files.iter().cloned()).collect();
+        let files = files.iter().map(hash).collect::<Result<Vec<String>, EvaluationError>>()?;
+        let constants: serde_json::Map<String, serde_json::Value> =
+            self.process.greeting().constants.iter().map(|(name, value)| (name.clone(), (*value).into())).collect();
+        let mut identity = serde_json::json!({
+            "command": argv,
+            "adapter": adapter.name,
+            "version": adapter.version,
+            "files": files,
+            "constants": constants,
+            "dimensions": inputs.iter().map(|input| &input.name).collect::<Vec<_>>(),
+            "units": inputs.iter().map(|input| &input.unit).collect::<Vec<_>>(),
+        });
+        // The same point is sent as other numbers then.
+        if self.process.converts() {
+            identity["units converted"] = true.into();
+        }
+        Ok(identity.to_string())
+    }
+
+    fn opened(&self, outputs: &[usize]) -> Result<Open, EvaluationError> {
+        let identity = self.identity(outputs)?;
+        let dimensions: Vec<String> = self.signature().inputs.iter().map(|input| input.name.clone()).collect();
+        let store = Store::open(&self.path).map_err(|error| not_kept(&error))?;
+        let model = store.model(&identity, &dimensions).map_err(|error| not_kept(&error))?;
+        // Of a model that nothing is known of nothing is reused but what runs at the same time find out.
+        let rechecked = !store.has_answers(model).map_err(|error| not_kept(&error))?;
+        let gradients = self.process.adapter(outputs).map_err(Box::new)?.gradients;
+        Ok(Open { store, model, gradients, rechecked, outdated: None, failure: None })
+    }
+}
+
+fn not_kept(error: &JournalError) -> EvaluationError {
+    EvaluationError::NotKept { message: error.to_string() }
+}
+
+impl AssemblyFunction for Journaled {
+    fn signature(&self) -> &Signature {
+        self.process.signature()
+    }
+
+    fn prepare(&self, outputs: &[usize]) -> Result<Option<ModelInfo>, EvaluationError> {
+        let mut open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
+        if open.is_none() {
+            *open = Some(self.opened(outputs)?);
+        }
+        drop(open);
+        self.process.prepare(outputs)
+    }
+
+    fn account(&self) -> Option<EvaluatorAccount> {
+        let open = self.opened_store();
+        let mut account = self.process.account();
+        if let Some(open) = open.as_ref() {
+            account.outdated.clone_from(&open.outdated);
+            account.not_kept = open.failure.as_ref().map(ToString::to_string);
+        }
+        Some(account)
+    }
+
+    fn evaluate(&self, ask: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
+        if let Err(error) = self.prepare(ask.outputs) {
+            return refuse(out, &error);
+        }
+        // The stage and the claim of a run are those of one batch.
+        let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Err(error) = self.evaluated(ask, run, out) {
+            let message = not_kept(&error);
+            if let Some(open) = self.opened_store().as_mut() {
+                open.failure.get_or_insert(error);
+            }
+            refuse(out, &message);
+        }
+    }
+}
+
+/// The journal's answers for some points.
+struct Recollection {
+    /// Rows whose answers are known, with them.
+    known: Vec<(usize, Vec<Answer>)>,
+    /// Which of these nothing has confirmed, as places in `known`.
+    unconfirmed: Vec<usize>,
+    /// The stages that those are of.
+    stages: Vec<i64>,
+    missing: Vec<usize>,
+}
+
+impl Recollection {
+    fn of(open: &Open, names: &[&str], rows: &[Vec<f64>], wanted: &[usize]) -> Result<Self, JournalError> {
+        let mut found = Self { known: Vec::new(), unconfirmed: Vec::new(), stages: Vec::new(), missing: Vec::new() };
+        for &row in wanted {
+            let recalled = names.iter().map(|name| open.store.recall(open.model, &rows[row], name));
+            let Some(recalled) = recalled.collect::<Result<Option<Vec<Recalled>>, JournalError>>()? else {
+                found.missing.push(row);
+                continue;
+            };
+            // An answer of a time when the model sent no derivatives is asked for again.
+            let lacks = |(name, one): (&&str, &Recalled)| {
+                Ok(one.answer.is_ok() && open.store.gradient(open.model, &rows[row], name)?.is_none())
+            };
+            let lacks = names.iter().zip(&recalled).filter(|_| open.gradients).map(lacks);
+            if lacks.collect::<Result<Vec<bool>, JournalError>>()?.contains(&true) {
+                found.missing.push(row);
+                continue;
+            }
+            let stages = recalled.iter().filter_map(|one| one.unconfirmed);
+            let before = found.stages.len();
+            found.stages.extend(stages);
+            if found.stages.len() > before {
+                found.unconfirmed.push(found.known.len());
+            }
+            found.known.push((row, recalled.into_iter().map(|one| one.answer).collect()));
+        }
+        found.stages.sort_unstable();
+        found.stages.dedup();
+        Ok(found)
+    }
+
+    /// Rows that are not known, or known and not confirmed.
+    fn unsettled(&self) -> Vec<usize> {
+        let mut rows: Vec<usize> = self.unconfirmed.iter().map(|&place| self.known[place].0).collect();
+        rows.extend(&self.missing);
+        rows.sort_unstable();
+        rows
+    }
+
+    /// All rows.
+    fn rows(&self) -> Vec<usize> {
+        let mut rows: Vec<usize> = self.known.iter().map(|(row, _)| *row).collect();
+        rows.extend(&self.missing);
+        rows.sort_unstable();
+        rows
+    }
+
+    /// Points and values.
+    fn values(&self, rows: &[Vec<f64>]) -> (Vec<Vec<f64>>, Vec<Vec<Option<f64>>>) {
+        let values = |answers: &[Answer]| answers.iter().map(|answer| answer.as_ref().ok().copied()).collect();
+        self.known.iter().map(|(row, answers)| (rows[*row].clone(), values(answers))).unzip()
+    }
+}
+
+impl Journaled {
+    fn opened_store(&self) -> MutexGuard<'_, Option<Open>> {
+        self.open.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Acts on the open journal.
+    fn with<T>(&self, act: impl FnOnce(&mut Open) -> Result<T, JournalError>) -> Result<T, JournalError> {
+        match self.opened_store().as_mut() {
+            Some(Open { failure: Some(failure), .. }) => Err(failure.clone()),
+            Some(open) => act(open),
+            None => Err(JournalError { path: self.path.clone(), fault: JournalFault::Missing }),
+        }
+    }
+
+    /// Known answers are returned, points that no other run is at are evaluated, and points that another one is at are waited
+    /// for.
+    fn evaluated(&self, ask: &Request<'_>, run: &Run<'_>, out: &mut Responses) -> Result<(), JournalError> {
+        let names: Vec<&str> =
+            ask.outputs.iter().map(|&output| self.signature().outputs[output].name.as_str()).collect();
+        let rows: Vec<Vec<f64>> = (0..ask.points.rows()).map(|row| ask.points.row(row)).collect();
+        let mut wanted: Vec<usize> = (0..rows.len()).collect();
+        let mut watch = Watch::default();
+        let mut gone = Vec::new();
+        while !wanted.is_empty() {
+            let (mut found, version) = self.with(|open| {
+                let version = open.store.version()?;
+                Ok((Recollection::of(open, &names, &rows, &wanted)?, version))
+            })?;
+            let unsettled = found.unsettled();
+            // A point that another run is at is not confirmed, and may still change.
+            let others: Vec<usize> = match unsettled.is_empty() {
+                true => Vec::new(),
+                false => self.with(|open| {
+                    let points: Vec<Vec<f64>> = unsettled.iter().map(|&row| rows[row].clone()).collect();
+                    let mine = open.store.claim(open.model, &points, &gone)?;
+                    Ok(unsettled.iter().zip(mine).filter(|(_, mine)| !mine).map(|(&row, _)| row).collect())
+                })?,
+            };
+            if !others.is_empty() || self.with(|open| open.store.version())? != version {
+                let theirs: HashSet<usize> = others.iter().copied().collect();
+                let own: Vec<usize> = wanted.iter().copied().filter(|row| !theirs.contains(row)).collect();
+                found = self.with(|open| Recollection::of(open, &names, &rows, &own))?;
+            }
+            let done = self.known_or_evaluated(ask, (&names, &rows), found, run, out);
+            let released = self.with(|open| open.store.release());
+            done.and(released)?;
+            wanted = others;
+            if run.stopped() || run.abandoned() {
+                return Ok(());
+            }
+            if !wanted.is_empty() {
+                gone = self.wait(&mut watch, run)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Waits until another run has ended what it claimed, or is gone; says which are.
+    fn wait(&self, watch: &mut Watch, run: &Run<'_>) -> Result<Vec<i64>, JournalError> {
+        loop {
+            let claimants = self.with(|open| open.store.claimants(open.model))?;
+            let gone: Vec<i64> = claimants.iter().filter(|one| watch.is_gone(one)).map(|one| one.run).collect();
+            if !gone.is_empty() || claimants.len() < watch.len() || claimants.is_empty() {
+                watch.keep(&claimants);
+                return Ok(gone);
+            }
+            if run.stopped() || run.abandoned() {
+                return Ok(Vec::new());
+            }
+            std::thread::sleep(LOOK);
+        }
+    }
+
+    /// Tells what is known of rows that no other run is at, and evaluates the others.
+    fn known_or_evaluated(
+        &self,
+        ask: &Request<'_>,
+        (names, rows): (&[&str], &[Vec<f64>]),
+        mut found: Recollection,
+        run: &Run<'_>,
+        out: &mut Responses,
+    ) -> Result<(), JournalError> {
+        if !found.known.is_empty() && self.rechecked(ask, names, rows, &found, run, out)? {
+            let own: Vec<usize> = found.rows();
+            found = self.with(|open| Recollection::of(open, names, rows, &own))?;
+        }
+        let known: Vec<usize> = found.known.iter().map(|(row, _)| *row).collect();
+        for (row, answers) in found.known {
+            for (output, answer) in answers.into_iter().enumerate() {
+                match answer {
+                    Ok(value) => {
+                        out.set(row, output, value);
+                        let kept = self.with(|open| match open.gradients {
+                            true => open.store.gradient(open.model, &rows[row], names[output]),
+                            false => Ok(None),
+                        })?;
+                        if let Some(slopes) = kept {
+                            out.set_gradient(row, output, slopes);
+                        }
+                    }
+                    Err(message) => out.fail(row, output, EvaluationError::Refused { message }),
+                }
+            }
+        }
+        out.reused(known.len());
+        run.progressed(Progress { points: known.len(), failed: out.failed_among(&known), reused: known.len() });
+        run.finished(&known, out);
+        if found.missing.is_empty() || run.stopped() {
+            return Ok(());
+        }
+        self.asked(ask, (names, rows, &found.missing), run, out)
+    }
+
+    /// Holds what is known against the model before it is used: the nominal point once in a run, and two answers that nothing has
+    /// confirmed. Returns whether something was forgotten.
+    fn rechecked(
+        &self,
+        ask: &Request<'_>,
+        names: &[&str],
+        rows: &[Vec<f64>],
+        found: &Recollection,
+        run: &Run<'_>,
+        out: &mut Responses,
+    ) -> Result<bool, JournalError> {
+        if run.stopped() || (self.with(|open| Ok(open.rechecked))? && found.unconfirmed.is_empty()) {
+            return Ok(false);
+        }
+        let (points, values) = found.values(rows);
+        let at = [self.process.greeting().nominal.clone()];
+        let kept = self.with(|open| Recollection::of(open, names, &at, &[0]))?;
+        let nominal: Option<Vec<Option<f64>>> = kept.values(&at).1.pop();
+        let known =
+            Kept { nominal: nominal.as_deref(), points: &points, values: &values, unconfirmed: &found.unconfirmed };
+        let forgotten = match self.process.recheck(ask.outputs, &known, run, out) {
+            Recheck::Stopped => return Ok(false),
+            Recheck::Same(now) => self.with(|open| {
+                if nominal.is_none() {
+                    open.keep_nominal(names, &at[0], &now)?;
+                }
+                open.store.settle_stages(&found.stages, true).map(|()| false)
+            })?,
+            Recheck::Changed(now) => self.with(|open| {
+                let before = nominal.unwrap_or_default();
+                let differs = (0..names.len()).find(|&output| before.get(output) != now.get(output)).unwrap_or(0);
+                let answers = open.store.forget_answers(open.model)?;
+                open.outdated.get_or_insert(OutdatedJournal::new(
+                    names[differs],
+                    [before.get(differs).copied().flatten(), now.get(differs).copied().flatten()],
+                    answers,
+                ));
+                open.keep_nominal(names, &at[0], &now).map(|()| true)
+            })?,
+            Recheck::Doubtful(now) => self.with(|open| {
+                open.store.settle_stages(&found.stages, false)?;
+                open.keep_nominal(names, &at[0], &now).map(|()| true)
+            })?,
+        };
+        self.with(|open| {
+            open.rechecked = true;
+            Ok(())
+        })?;
+        Ok(forgotten)
+    }
+
+    /// Evaluates rows, and keeps every answer before it is told.
+    fn asked(
+        &self,
+        ask: &Request<'_>,
+        (names, rows, missing): (&[&str], &[Vec<f64>], &[usize]),
+        run: &Run<'_>,
+        out: &mut Responses,
+    ) -> Result<(), JournalError> {
+        let model = self.with(|open| {
+            open.store.open_stage(open.model)?;
+            Ok(open.model)
+        })?;
+        let points = Points::from_rows(&missing.iter().map(|&row| &rows[row]).collect::<Vec<_>>());
+        let mut answers = Responses::open(missing.len(), out.outputs());
+        let (told, failure) = (Mutex::new(out), Mutex::new(None::<JournalError>));
+        let note = |result: Result<(), JournalError>| {
+            if let Err(error) = result {
+                failure.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+            }
+        };
+        let workers = self.process.settings().workers.max(1);
+        let (begun, done) = (Instant::now(), AtomicUsize::new(0));
+        let finished = |finished: &[usize], answers: &Responses| {
+            let kept: Vec<StoredAnswer> =
+                finished.iter().flat_map(|&row| worth_keeping(&points, answers, row, names)).collect();
+            let all = done.fetch_add(finished.len(), Ordering::Relaxed) + finished.len();
+            note(self.with(|open| {
+                open.store.set_durable(is_slow(begun.elapsed(), workers, all))?;
+                open.store.keep(model, &kept)?;
+                open.keep_gradients(names, &points, answers, finished)
+            }));
+            let mut out = told.lock().unwrap_or_else(PoisonError::into_inner);
+            for &row in finished {
+                for output in 0..answers.outputs() {
+                    out.pass_on(missing[row], output, answers, row, output);
+                }
+            }
+            let rows: Vec<usize> = finished.iter().map(|&row| missing[row]).collect();
+            run.finished(&rows, &out);
+        };
+        let withdraw = |rows: &[usize]| {
+            let points: Vec<Vec<f64>> = rows.iter().map(|&row| points.row(row)).collect();
+            note(self.with(|open| open.store.withdraw(model, &points)));
+        };
+        let beat = Mutex::new(Instant::now());
+        // Answers that cannot be kept are not evaluated: no more is asked, and what is known already stays.
+        let stop = || {
+            let mut beat = beat.lock().unwrap_or_else(PoisonError::into_inner);
+            if beat.elapsed() >= BEAT {
+                *beat = Instant::now();
+                note(self.with(|open| open.store.beat()));
+            }
+            let failed = || failure.lock().unwrap_or_else(PoisonError::into_inner).is_some();
+            run.stop_reason().or_else(|| failed().then_some(StopReason::Requested))
+        };
+        let within = run.within(&finished, &stop).withdrawing(&withdraw);
+        self.process.evaluate(&Request { points: &points, ..*ask }, &within, &mut answers);
+        let out = told.into_inner().unwrap_or_else(PoisonError::into_inner);
+        out.spent(answers.extra());
+        out.retried(answers.count_retried());
+        out.note_non_repeatable(answers.non_repeatable().iter().cloned());
+        answers.revoked().iter().for_each(|point| out.revoke(point.clone()));
+        if let Some(error) = failure.into_inner().unwrap_or_else(PoisonError::into_inner) {
+            return Err(error);
+        }
+        let confirmed = !run.stopped() && !run.abandoned();
+        self.with(|open| {
+            if !answers.revoked().is_empty() {
+                open.store.withdraw(model, answers.revoked())?;
+            }
+            open.store.close_stage(confirmed)
+        })
+    }
+}
+
+impl Open {
+    /// Keeps the derivatives that came with answers.
+    fn keep_gradients(
+        &mut self,
+        names: &[&str],
+        points: &Points,
+        answers: &Responses,
+        rows: &[usize],
+    ) -> Result<(), JournalError> {
+        for &row in rows.iter().filter(|_| self.gradients) {
+            for (output, name) in names.iter().enumerate() {
+                if let Some(slopes) = answers.gradient(row, output) {
+                    self.store.keep_gradient(self.model, &points.row(row), name, slopes)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Keeps what the nominal point has.
+    fn keep_nominal(&mut self, names: &[&str], at: &[f64], values: &[Option<f64>]) -> Result<(), JournalError> {
+        let kept = |(name, value): (&&str, &Option<f64>)| {
+            Some(StoredAnswer { point: at.to_vec(), output: (*name).to_owned(), answer: Ok((*value)?) })
+        };
+        let kept: Vec<StoredAnswer> = names.iter().zip(values).filter_map(kept).collect();
+        self.store.keep(self.model, &kept)
+    }
+}
+
+/// An evaluation that takes longer is worth more than the time that a disk needs to write its answer.
+const SLOW: Duration = Duration::from_millis(100);
+
+/// Whether so many answers of so many processes in this time are slow ones.
+fn is_slow(elapsed: Duration, workers: usize, answers: usize) -> bool {
+    elapsed * u32::try_from(workers).unwrap_or(u32::MAX) > SLOW * u32::try_from(answers).unwrap_or(u32::MAX)
+}
+
+/// Points that are still open are not evaluated, for this reason.
+fn refuse(out: &mut Responses, error: &EvaluationError) {
+    let mut unsent = 0;
+    for row in 0..out.rows() {
+        let open: Vec<usize> = (0..out.outputs()).filter(|&output| out.is_open(row, output)).collect();
+        unsent += i64::from(open.len() == out.outputs());
+        for output in open {
+            out.fail(row, output, error.clone());
+        }
+    }
+    out.spent(-unsent);
+}
+
+/// Values, and reasons for none that the program gave itself.
+fn worth_keeping(points: &Points, answers: &Responses, row: usize, names: &[&str]) -> Vec<StoredAnswer> {
+    let kept = |(output, name): (usize, &&str)| {
+        let answer = match (answers.value(row, output), answers.error(row, output)) {
+            (Some(value), _) => Ok(value),
+            (None, Some(EvaluationError::Process(error))) => match &error.fault {
+                ProcessFault::NoValue { message } => Err(message.clone()),
+                _ => return None,
+            },
+            _ => return None,
+        };
+        Some(StoredAnswer { point: points.row(row), output: (*name).to_owned(), answer })
+    };
+    names.iter().enumerate().filter_map(kept).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Derivatives that outlive an answer would be taken for those of the next one at that point.
+    #[test]
+    fn derivatives_go_with_their_answer() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut store = Store::open(&folder.path().join("a.sqlite")).unwrap();
+        let model = store.model("{}", &["a".to_owned()]).unwrap();
+        let kept = StoredAnswer { point: vec![1.0], output: "y".to_owned(), answer: Ok(2.0) };
+        store.keep(model, &[kept]).unwrap();
+        store.keep_gradient(model, &[1.0], "y", &[3.0]).unwrap();
+        assert_eq!(store.gradient(model, &[1.0], "y").unwrap(), Some(vec![3.0]));
+        store.withdraw(model, &[vec![1.0]]).unwrap();
+        assert_eq!(store.gradient(model, &[1.0], "y").unwrap(), None);
+    }
+
+    /// Eight processes that take 0.2 s each give forty answers a second: an evaluation is slow all the same.
+    #[test]
+    fn what_is_slow_is_an_evaluation() {
+        assert!(is_slow(Duration::from_secs(1), 8, 40));
+        assert!(!is_slow(Duration::from_secs(1), 8, 400) && !is_slow(Duration::from_millis(90), 1, 1));
+    }
+}

@@ -1,0 +1,543 @@
+//! The file: SQLite in WAL mode, which several runs may share and any SQLite tool can read.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use rusqlite::{Connection, ErrorCode, OptionalExtension, Transaction, TransactionBehavior, params};
+
+use super::claims::{self, Claimant};
+
+/// The version of the file's content, for `PRAGMA user_version`.
+const VERSION: i32 = 1;
+/// Who wrote it, for `PRAGMA application_id`: "snsl".
+const APPLICATION: i32 = 0x736e_736c;
+/// How long to wait for another run that is writing.
+const PATIENCE: Duration = Duration::from_secs(30);
+/// And how long before it is tried once more.
+const AGAIN: Duration = Duration::from_millis(5);
+
+const TABLES: &str = "
+    CREATE TABLE model (
+        id INTEGER PRIMARY KEY,
+        identity TEXT NOT NULL UNIQUE,
+        dimensions TEXT NOT NULL,
+        since TEXT NOT NULL DEFAULT (datetime('now'))
+    );
+    CREATE TABLE answer (
+        model INTEGER NOT NULL REFERENCES model (id) ON DELETE CASCADE,
+        point BLOB NOT NULL,
+        output TEXT NOT NULL,
+        value REAL,
+        error TEXT,
+        stage INTEGER,
+        PRIMARY KEY (model, point, output)
+    ) WITHOUT ROWID;
+";
+/// Later additions, without which an earlier version works too: stages that no replay has confirmed, and points that a run is at.
+const LATER: &str = "
+    CREATE TABLE IF NOT EXISTS stage (
+        id INTEGER PRIMARY KEY AUTOINCREMENT,
+        model INTEGER NOT NULL REFERENCES model (id) ON DELETE CASCADE
+    );
+    CREATE TABLE IF NOT EXISTS claim (
+        run INTEGER PRIMARY KEY AUTOINCREMENT,
+        model INTEGER NOT NULL REFERENCES model (id) ON DELETE CASCADE,
+        beat INTEGER NOT NULL,
+        host TEXT NOT NULL,
+        pid INTEGER NOT NULL,
+        points BLOB NOT NULL
+    );
+    CREATE TABLE IF NOT EXISTS gradient (
+        model INTEGER NOT NULL REFERENCES model (id) ON DELETE CASCADE,
+        point BLOB NOT NULL,
+        output TEXT NOT NULL,
+        slopes BLOB NOT NULL,
+        PRIMARY KEY (model, point, output)
+    ) WITHOUT ROWID;
+    CREATE TRIGGER IF NOT EXISTS forget_gradient AFTER DELETE ON answer BEGIN
+        DELETE FROM gradient WHERE model = OLD.model AND point = OLD.point AND output = OLD.output;
+    END;
+";
+
+/// A fault of a journal.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("journal {}: {fault}", path.display())]
+#[non_exhaustive]
+pub struct JournalError {
+    /// The file.
+    pub path: PathBuf,
+    /// The fault.
+    pub fault: JournalFault,
+}
+
+/// The faults of a journal.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum JournalFault {
+    /// There is no such file.
+    #[error("there is no such file")]
+    Missing,
+    /// The file is something else.
+    #[error("this is no journal of sensitol; name another file, or none")]
+    NotAJournal,
+    /// A later version wrote it.
+    #[error("version {found} of the journal was written by a later sensitol; this one reads version {VERSION}")]
+    Later {
+        /// The version found.
+        found: i32,
+    },
+    /// A file that the model depends on cannot be read.
+    #[error("the model's file {} cannot be read: {reason}", file.display())]
+    ModelFile {
+        /// The file.
+        file: PathBuf,
+        /// The operating system's words.
+        reason: String,
+    },
+    /// Reading or writing failed; what was stored before stays.
+    #[error("{reason}; what it holds already is not touched")]
+    Failed {
+        /// SQLite's words.
+        reason: String,
+    },
+}
+
+/// One kept answer: a value, or why there is none.
+pub type Answer = Result<f64, String>;
+
+/// An open journal.
+pub struct Store {
+    path: PathBuf,
+    connection: Connection,
+    /// The stage that answers are kept in; None for those that need no confirmation.
+    stage: Option<i64>,
+    /// The claim of this run.
+    claim: Option<i64>,
+    durable: bool,
+}
+
+/// A kept answer, and the stage that it is of where nothing has confirmed that one.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Recalled {
+    pub(super) answer: Answer,
+    pub(super) unconfirmed: Option<i64>,
+}
+
+/// A model whose answers are kept.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct KnownModel {
+    /// Its number in the file.
+    pub id: i64,
+    /// The key of the model, as JSON.
+    pub identity: String,
+    /// Its dimensions, in the order of a point.
+    pub dimensions: Vec<String>,
+    /// When its first answer was kept.
+    pub since: String,
+    /// How many points are known.
+    pub points: usize,
+    /// How many values, and how many reasons for none.
+    pub values: usize,
+    /// How many reasons for no value.
+    pub errors: usize,
+}
+
+/// A kept answer with its place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StoredAnswer {
+    /// The point.
+    pub point: Vec<f64>,
+    /// The output.
+    pub output: String,
+    /// The answer of the model.
+    pub answer: Answer,
+}
+
+impl Store {
+    /// Opens a journal, which is made where there is none.
+    ///
+    /// # Errors
+    /// When the file is something else, of a later version, or cannot be read and written.
+    pub fn open(path: &Path) -> Result<Self, JournalError> {
+        let connection = Connection::open(path).map_err(|error| at(path, &error))?;
+        let store = Self { path: path.to_owned(), connection, stage: None, claim: None, durable: false };
+        let begun = Instant::now();
+        loop {
+            match store.prepare() {
+                Ok(()) => return Ok(store),
+                // SQLite does not wait by itself for another run that is just changing how the file is written.
+                Err(Opening::Sqlite(error)) if is_busy(&error) && begun.elapsed() < PATIENCE => {
+                    std::thread::sleep(AGAIN);
+                }
+                Err(Opening::Sqlite(error)) => return Err(at(path, &error)),
+                Err(Opening::Fault(fault)) => return Err(JournalError { path: path.to_owned(), fault }),
+            }
+        }
+    }
+
+    /// Opens a journal that must be there.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open), and when there is none.
+    pub fn open_existing(path: &Path) -> Result<Self, JournalError> {
+        if !path.is_file() {
+            return Err(JournalError { path: path.to_owned(), fault: JournalFault::Missing });
+        }
+        Self::open(path)
+    }
+
+    fn prepare(&self) -> Result<(), Opening> {
+        let connection = &self.connection;
+        connection.busy_timeout(PATIENCE)?;
+        // All at one moment: another run may be making the tables, and its mark is not older than they are.
+        let look = connection.unchecked_transaction()?;
+        let pragma = |name: &str| look.pragma_query_value(None, name, |row| row.get::<_, i32>(0));
+        let (application, version) = (pragma("application_id")?, pragma("user_version")?);
+        let tables: i64 = look.query_row("SELECT count(*) FROM sqlite_schema", [], |row| row.get(0))?;
+        look.commit()?;
+        if tables > 0 && application != APPLICATION {
+            return Err(Opening::Fault(JournalFault::NotAJournal));
+        }
+        if version > VERSION {
+            return Err(Opening::Fault(JournalFault::Later { found: version }));
+        }
+        connection.pragma_update(None, "journal_mode", "WAL")?;
+        // Every commit reaches the operating system: a killed run loses nothing. A power cut may cost the last moments.
+        connection.pragma_update(None, "synchronous", "NORMAL")?;
+        connection.pragma_update(None, "foreign_keys", true)?;
+        if tables == 0 {
+            // Another run may be at it too: whoever comes second finds the tables.
+            let script = format!(
+                "{}; PRAGMA application_id = {APPLICATION}; PRAGMA user_version = {VERSION};",
+                TABLES.replace("CREATE TABLE", "CREATE TABLE IF NOT EXISTS").trim().trim_end_matches(';')
+            );
+            let making = Transaction::new_unchecked(connection, TransactionBehavior::Immediate)?;
+            making.execute_batch(&script)?;
+            making.commit()?;
+        }
+        self.complete()?;
+        Ok(())
+    }
+
+    /// Adds what an earlier version did not make.
+    fn complete(&self) -> rusqlite::Result<()> {
+        let is_complete = |connection: &Connection| -> rusqlite::Result<bool> {
+            let column = "SELECT count(*) FROM pragma_table_info('answer') WHERE name = 'stage'";
+            let tables =
+                "SELECT count(*) FROM sqlite_schema WHERE name IN ('stage', 'claim', 'gradient', 'forget_gradient')";
+            let count = |sql: &str| connection.query_row(sql, [], |row| row.get::<_, i64>(0));
+            Ok(count(column)? == 1 && count(tables)? == 4)
+        };
+        if is_complete(&self.connection)? {
+            return Ok(());
+        }
+        let making = Transaction::new_unchecked(&self.connection, TransactionBehavior::Immediate)?;
+        making.execute_batch(LATER)?;
+        // Another run may have done it meanwhile, or an earlier version.
+        if !is_complete(&making)? {
+            making.execute_batch("ALTER TABLE answer ADD COLUMN stage INTEGER")?;
+        }
+        making.commit()
+    }
+
+    fn failed<T>(&self, result: rusqlite::Result<T>) -> Result<T, JournalError> {
+        result.map_err(|error| at(&self.path, &error))
+    }
+
+    /// The number of the model of this identity, which is noted when it is new.
+    ///
+    /// # Errors
+    /// When reading or writing fails.
+    pub fn model(&self, identity: &str, dimensions: &[String]) -> Result<i64, JournalError> {
+        let dimensions = serde_json::to_string(dimensions).expect("names are JSON");
+        let add = "INSERT INTO model (identity, dimensions) VALUES (?1, ?2) ON CONFLICT (identity) DO NOTHING";
+        self.failed(self.connection.execute(add, params![identity, dimensions]))?;
+        let find = "SELECT id FROM model WHERE identity = ?1";
+        self.failed(self.connection.query_row(find, [identity], |row| row.get(0)))
+    }
+
+    /// The model's answer for one output at one point, if that is known.
+    ///
+    /// # Errors
+    /// When reading fails.
+    pub fn answer(&self, model: i64, point: &[f64], output: &str) -> Result<Option<Answer>, JournalError> {
+        let find = "SELECT value, error FROM answer WHERE model = ?1 AND point = ?2 AND output = ?3";
+        let found = self.connection.prepare_cached(find).and_then(|mut statement| {
+            let answer = |row: &rusqlite::Row<'_>| -> rusqlite::Result<Answer> { answer(row.get(0)?, row.get(1)?) };
+            statement.query_row(params![model, bytes(point), output], answer).optional()
+        });
+        self.failed(found)
+    }
+
+    /// The same, with the stage of an answer that nothing has confirmed.
+    pub(super) fn recall(&self, model: i64, point: &[f64], output: &str) -> Result<Option<Recalled>, JournalError> {
+        let find = "SELECT value, error, (SELECT id FROM stage WHERE id = answer.stage) FROM answer
+            WHERE model = ?1 AND point = ?2 AND output = ?3";
+        let found = self.connection.prepare_cached(find).and_then(|mut statement| {
+            let recalled = |row: &rusqlite::Row<'_>| -> rusqlite::Result<Recalled> {
+                Ok(Recalled { answer: answer(row.get(0)?, row.get(1)?)?, unconfirmed: row.get(2)? })
+            };
+            statement.query_row(params![model, bytes(point), output], recalled).optional()
+        });
+        self.failed(found)
+    }
+
+    /// Whether anything is known of a model.
+    pub(super) fn has_answers(&self, model: i64) -> Result<bool, JournalError> {
+        let find = "SELECT EXISTS (SELECT 1 FROM answer WHERE model = ?1)";
+        self.failed(self.connection.query_row(find, [model], |row| row.get(0)))
+    }
+
+    /// A number that changes when another run has written something.
+    pub(super) fn version(&self) -> Result<i64, JournalError> {
+        self.failed(self.connection.pragma_query_value(None, "data_version", |row| row.get(0)))
+    }
+
+    /// Keeps derivatives by every dimension beside the answer of one output at one point.
+    pub(super) fn keep_gradient(
+        &self,
+        model: i64,
+        point: &[f64],
+        output: &str,
+        slopes: &[f64],
+    ) -> Result<(), JournalError> {
+        let add = "INSERT OR REPLACE INTO gradient (model, point, output, slopes) VALUES (?1, ?2, ?3, ?4)";
+        let slopes: Vec<u8> = slopes.iter().flat_map(|slope| slope.to_le_bytes()).collect();
+        self.failed(self.connection.execute(add, params![model, bytes(point), output, slopes]).map(drop))
+    }
+
+    /// Those that were kept.
+    pub(super) fn gradient(&self, model: i64, point: &[f64], output: &str) -> Result<Option<Vec<f64>>, JournalError> {
+        let find = "SELECT slopes FROM gradient WHERE model = ?1 AND point = ?2 AND output = ?3";
+        let found = self.connection.query_row(find, params![model, bytes(point), output], |row| row.get(0)).optional();
+        let slope = |eight: &[u8]| f64::from_le_bytes(eight.try_into().expect("eight bytes"));
+        Ok(self.failed::<Option<Vec<u8>>>(found)?.map(|bytes| bytes.chunks_exact(8).map(slope).collect()))
+    }
+
+    /// From now on answers are kept as those of a stage that is not confirmed yet.
+    pub(super) fn open_stage(&mut self, model: i64) -> Result<(), JournalError> {
+        self.failed(self.connection.execute("INSERT INTO stage (model) VALUES (?1)", [model]))?;
+        self.stage = Some(self.connection.last_insert_rowid());
+        Ok(())
+    }
+
+    /// Ends the stage, confirmed or not.
+    pub(super) fn close_stage(&mut self, confirmed: bool) -> Result<(), JournalError> {
+        match self.stage.take().filter(|_| confirmed) {
+            Some(stage) => self.failed(self.connection.execute("DELETE FROM stage WHERE id = ?1", [stage]).map(drop)),
+            None => Ok(()),
+        }
+    }
+
+    /// Takes these stages as confirmed, or forgets their answers.
+    pub(super) fn settle_stages(&mut self, stages: &[i64], confirmed: bool) -> Result<(), JournalError> {
+        let settled = (|| {
+            let transaction = self.connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
+            for stage in stages {
+                if !confirmed {
+                    transaction.execute("DELETE FROM answer WHERE stage = ?1", [stage])?;
+                }
+                transaction.execute("DELETE FROM stage WHERE id = ?1", [stage])?;
+            }
+            transaction.commit()
+        })();
+        self.failed(settled)
+    }
+
+    /// Forgets all answers of a model; says how many there were.
+    pub(super) fn forget_answers(&mut self, model: i64) -> Result<usize, JournalError> {
+        self.failed(self.connection.execute("DELETE FROM answer WHERE model = ?1", [model]))
+    }
+
+    /// Claims points that no other run is at; says which of them are now this run's. `gone` are runs that are known to have ended.
+    pub(super) fn claim(&mut self, model: i64, points: &[Vec<f64>], gone: &[i64]) -> Result<Vec<bool>, JournalError> {
+        let own = self.claim;
+        let claimed = (|| {
+            let transaction = self.connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
+            for run in gone {
+                transaction.execute("DELETE FROM claim WHERE run = ?1", [run])?;
+            }
+            let claimed =
+                claims::claim(&transaction, model, own, &points.iter().map(|point| bytes(point)).collect::<Vec<_>>())?;
+            transaction.commit()?;
+            Ok(claimed)
+        })();
+        let (run, mine) = self.failed(claimed)?;
+        self.claim = run;
+        Ok(mine)
+    }
+
+    /// Says that this run is still at what it claimed.
+    pub(super) fn beat(&self) -> Result<(), JournalError> {
+        let Some(run) = self.claim else { return Ok(()) };
+        self.failed(self.connection.execute("UPDATE claim SET beat = beat + 1 WHERE run = ?1", [run]).map(drop))
+    }
+
+    /// Leaves what it claimed to others.
+    pub(super) fn release(&mut self) -> Result<(), JournalError> {
+        match self.claim.take() {
+            Some(run) => self.failed(self.connection.execute("DELETE FROM claim WHERE run = ?1", [run]).map(drop)),
+            None => Ok(()),
+        }
+    }
+
+    /// The runs that are at points of this model.
+    pub(super) fn claimants(&self, model: i64) -> Result<Vec<Claimant>, JournalError> {
+        self.failed(claims::claimants(&self.connection, model, self.claim))
+    }
+
+    /// Whether every commit reaches the disk, so that a power cut costs nothing, or the operating system only.
+    ///
+    /// # Errors
+    /// When the file cannot be read.
+    pub fn set_durable(&mut self, durable: bool) -> Result<(), JournalError> {
+        if self.durable != durable {
+            let synchronous = if durable { "FULL" } else { "NORMAL" };
+            self.failed(self.connection.pragma_update(None, "synchronous", synchronous))?;
+            self.durable = durable;
+        }
+        Ok(())
+    }
+
+    /// Whether every commit reaches the disk.
+    pub fn is_durable(&self) -> bool {
+        self.connection
+            .pragma_query_value(None, "synchronous", |row| row.get::<_, i64>(0))
+            .is_ok_and(|level| level >= 2)
+    }
+
+    /// Keeps answers, all of them or none; the last answer to a point counts.
+    ///
+    /// # Errors
+    /// When writing fails; nothing of these is kept then.
+    pub fn keep(&mut self, model: i64, answers: &[StoredAnswer]) -> Result<(), JournalError> {
+        let stage = self.stage;
+        let kept = (|| {
+            let transaction = self.connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
+            {
+                let add = "INSERT OR REPLACE INTO answer (model, point, output, value, error, stage) VALUES (?1, ?2, ?3, ?4, ?5, ?6)";
+                let mut statement = transaction.prepare_cached(add)?;
+                for StoredAnswer { point, output, answer } in answers {
+                    let (value, error) = match answer {
+                        Ok(value) => (Some(*value), None),
+                        Err(error) => (None, Some(error)),
+                    };
+                    statement.execute(params![model, bytes(point), output, value, error, stage])?;
+                }
+            }
+            transaction.commit()
+        })();
+        self.failed(kept)
+    }
+
+    /// Forgets what is known of these points: answers that are not trusted any more.
+    ///
+    /// # Errors
+    /// When writing fails; nothing of this is forgotten then.
+    pub fn withdraw(&mut self, model: i64, points: &[Vec<f64>]) -> Result<(), JournalError> {
+        let withdrawn = (|| {
+            let transaction = self.connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
+            {
+                let mut statement = transaction.prepare_cached("DELETE FROM answer WHERE model = ?1 AND point = ?2")?;
+                for point in points {
+                    statement.execute(params![model, bytes(point)])?;
+                }
+            }
+            transaction.commit()
+        })();
+        self.failed(withdrawn)
+    }
+
+    /// Every model in the file.
+    ///
+    /// # Errors
+    /// When reading fails.
+    pub fn models(&self) -> Result<Vec<KnownModel>, JournalError> {
+        let all = "SELECT id, identity, dimensions, since,
+                (SELECT count(DISTINCT point) FROM answer WHERE model = id),
+                (SELECT count(value) FROM answer WHERE model = id),
+                (SELECT count(error) FROM answer WHERE model = id)
+            FROM model ORDER BY id";
+        let models = self.connection.prepare(all).and_then(|mut statement| {
+            let model = |row: &rusqlite::Row<'_>| {
+                Ok(KnownModel {
+                    id: row.get(0)?,
+                    identity: row.get(1)?,
+                    dimensions: serde_json::from_str(&row.get::<_, String>(2)?).unwrap_or_default(),
+                    since: row.get(3)?,
+                    points: row.get::<_, i64>(4)? as usize,
+                    values: row.get::<_, i64>(5)? as usize,
+                    errors: row.get::<_, i64>(6)? as usize,
+                })
+            };
+            statement.query_map([], model)?.collect()
+        });
+        self.failed(models)
+    }
+
+    /// Every answer of a model, point by point.
+    ///
+    /// # Errors
+    /// When reading fails.
+    pub fn answers(&self, model: i64) -> Result<Vec<StoredAnswer>, JournalError> {
+        let all = "SELECT point, output, value, error FROM answer WHERE model = ?1";
+        let answers = self.connection.prepare(all).and_then(|mut statement| {
+            let kept = |row: &rusqlite::Row<'_>| {
+                let bytes: Vec<u8> = row.get(0)?;
+                let coordinate = |eight: &[u8]| f64::from_le_bytes(eight.try_into().expect("eight bytes"));
+                let point = bytes.chunks_exact(8).map(coordinate).collect();
+                Ok(StoredAnswer { point, output: row.get(1)?, answer: answer(row.get(2)?, row.get(3)?)? })
+            };
+            statement.query_map([model], kept)?.collect()
+        });
+        self.failed(answers)
+    }
+
+    /// Forgets a model and its answers, or all of them; says how many answers there were.
+    ///
+    /// # Errors
+    /// When writing fails; nothing is forgotten then.
+    pub fn forget(&mut self, model: Option<i64>) -> Result<usize, JournalError> {
+        let forgotten = (|| {
+            let transaction = self.connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
+            let answers = transaction.execute("DELETE FROM answer WHERE ?1 IS NULL OR model = ?1", [model])?;
+            transaction.execute("DELETE FROM model WHERE ?1 IS NULL OR id = ?1", [model])?;
+            transaction.commit()?;
+            Ok(answers)
+        })();
+        self.failed(forgotten)
+    }
+}
+
+fn is_busy(error: &rusqlite::Error) -> bool {
+    matches!(error.sqlite_error_code(), Some(ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked))
+}
+
+enum Opening {
+    Sqlite(rusqlite::Error),
+    Fault(JournalFault),
+}
+
+impl From<rusqlite::Error> for Opening {
+    fn from(error: rusqlite::Error) -> Self {
+        Self::Sqlite(error)
+    }
+}
+
+fn at(path: &Path, error: &rusqlite::Error) -> JournalError {
+    let fault = match error.sqlite_error_code() {
+        Some(ErrorCode::NotADatabase) => JournalFault::NotAJournal,
+        _ => JournalFault::Failed { reason: error.to_string() },
+    };
+    JournalError { path: path.to_owned(), fault }
+}
+
+fn answer(value: Option<f64>, error: Option<String>) -> rusqlite::Result<Answer> {
+    Ok(value.ok_or_else(|| error.unwrap_or_default()))
+}
+
+/// The exact doubles; 0 has one sign only.
+fn bytes(point: &[f64]) -> Vec<u8> {
+    point.iter().flat_map(|&x| (x + 0.0).to_le_bytes()).collect()
+}

@@ -1,0 +1,178 @@
+//! The work that is left of a batch of points, and its results.
+
+use std::collections::{HashMap, HashSet, VecDeque};
+
+use sensitol::assembly::{ProcessError, ProcessFault, StderrTail};
+use super::protocol::Line;
+use sensitol::assembly::{Points, Progress, Responses, Run};
+
+/// The work that is left of a batch.
+pub(super) struct Batch<'a> {
+    pub(super) points: &'a Points,
+    pub(super) out: &'a mut Responses,
+    pub(super) waiting: VecDeque<usize>,
+    /// Groups of rows among which one made a child crash: each is tried again with nothing else under way, and divided when it
+    /// crashes once more.
+    pub(super) suspects: VecDeque<Vec<usize>>,
+    /// Failures of every row that had one.
+    pub(super) failures: HashMap<usize, u32>,
+    pub(super) left: usize,
+    /// Rows that are evaluated again because the child that answered them is not trusted: once.
+    pub(super) again: HashSet<usize>,
+    /// Rows whose second answer is in doubt as well.
+    pub(super) twice: HashSet<usize>,
+    /// Rows that are final and not yet told of.
+    pub(super) done: Vec<usize>,
+    /// Rows that are not trusted any more and not yet told of as such.
+    pub(super) withdrawn: Vec<usize>,
+    pub(super) sent: usize,
+    /// Those of them that had been sent before.
+    pub(super) resent: usize,
+    ever: Vec<bool>,
+}
+
+impl<'a> Batch<'a> {
+    /// Every row of `points` is waiting.
+    pub(super) fn new(points: &'a Points, out: &'a mut Responses) -> Self {
+        Self {
+            points,
+            out,
+            waiting: (0..points.rows()).collect(),
+            suspects: VecDeque::new(),
+            failures: HashMap::new(),
+            left: points.rows(),
+            again: HashSet::new(),
+            twice: HashSet::new(),
+            done: Vec::new(),
+            withdrawn: Vec::new(),
+            sent: 0,
+            resent: 0,
+            ever: vec![false; points.rows()],
+        }
+    }
+
+    /// Rows that are still to be sent.
+    pub(super) fn unsent(&self) -> usize {
+        self.waiting.len() + self.suspects.iter().map(Vec::len).sum::<usize>()
+    }
+
+    /// Tries rows again of which one made a child crash, in two groups.
+    pub(super) fn divide(&mut self, rows: &[usize]) {
+        let (first, second) = rows.split_at(rows.len().div_ceil(2));
+        self.suspects.extend([first, second].into_iter().filter(|half| !half.is_empty()).map(<[usize]>::to_vec));
+    }
+
+    /// Counts a row that is sent.
+    pub(super) fn sends(&mut self, row: usize) {
+        self.sent += 1;
+        self.resent += usize::from(std::mem::replace(&mut self.ever[row], true));
+    }
+
+    /// Whether a row is evaluated with nothing else under way in its child.
+    pub(super) fn goes_alone(&self, row: usize) -> bool {
+        self.failures.contains_key(&row) || self.again.contains(&row)
+    }
+
+    /// The points of rows.
+    pub(super) fn coordinates(&self, rows: &[usize]) -> Vec<Vec<f64>> {
+        rows.iter().map(|&row| self.points.row(row)).collect()
+    }
+
+    /// Notes a failure of a row, and how many there are now.
+    pub(super) fn charged(&mut self, row: usize) -> u32 {
+        let failures = self.failures.entry(row).or_insert(0);
+        *failures += 1;
+        *failures
+    }
+
+    /// Tries a row again, or gives it up when it has failed too often.
+    pub(super) fn charge(&mut self, row: usize, error: &ProcessError, retries: u32) {
+        if self.charged(row) <= retries {
+            self.suspects.push_back(vec![row]);
+        } else {
+            self.fail(row, error);
+        }
+    }
+
+    pub(super) fn fail(&mut self, row: usize, error: &ProcessError) {
+        for output in 0..self.out.outputs() {
+            self.out.fail(row, output, Box::new(error.clone()).into());
+        }
+        self.finish(row);
+    }
+
+    /// Evaluates rows again whose answers are in doubt; once. An answer that is in doubt a second time stays so.
+    pub(super) fn distrust(&mut self, rows: &[usize]) {
+        self.withdrawn.extend(rows);
+        for &row in rows {
+            if self.again.insert(row) {
+                self.waiting.push_back(row);
+                self.left += 1;
+            } else {
+                self.twice.insert(row);
+            }
+        }
+    }
+
+    pub(super) fn finish(&mut self, row: usize) {
+        self.left -= 1;
+        // A new answer takes the place of one that is not trusted.
+        self.withdrawn.retain(|&withdrawn| withdrawn != row);
+        self.done.push(row);
+    }
+
+    /// The answers of the model: values, and for what has none the reason.
+    pub(super) fn settle(&mut self, row: usize, line: Line, names: &[String]) {
+        let no_value = |message: String| {
+            Box::new(ProcessError { fault: ProcessFault::NoValue { message }, stderr: StderrTail::default() }).into()
+        };
+        for (output, name) in names.iter().enumerate() {
+            let value = line.y.as_ref().and_then(|values| values[output]);
+            match (value, &line.error) {
+                (Some(value), None) => {
+                    self.out.set(row, output, value);
+                    if let Some(dy) = &line.dy {
+                        self.out.set_gradient(row, output, dy[output].clone());
+                    }
+                }
+                (_, Some(message)) => self.out.fail(row, output, no_value(message.clone())),
+                (None, None) => {
+                    let message = line.errors.get(name).cloned();
+                    let silent = if line.not_finite { "NaN or an infinity" } else { "null" };
+                    self.out.fail(
+                        row,
+                        output,
+                        no_value(message.unwrap_or_else(|| format!("the model returned {silent}"))),
+                    );
+                }
+            }
+        }
+        self.finish(row);
+    }
+
+    /// No child can be had any more: everything left fails with this.
+    pub(super) fn give_up(&mut self, error: &ProcessError) {
+        for row in 0..self.out.rows() {
+            if (0..self.out.outputs()).any(|output| self.out.is_open(row, output)) {
+                self.fail(row, error);
+            }
+        }
+        // A row that was to be evaluated again keeps its first answer.
+        self.waiting.clear();
+        self.suspects.clear();
+        self.left = 0;
+    }
+
+    pub(super) fn tell(&mut self, run: &Run<'_>) {
+        if !self.done.is_empty() {
+            let failed = self.out.failed_among(&self.done);
+            run.progressed(Progress { points: self.done.len(), failed, reused: 0 });
+            run.finished(&self.done, self.out);
+            self.done.clear();
+        }
+        if !self.withdrawn.is_empty() {
+            run.withdraw(&self.withdrawn);
+            self.withdrawn.clear();
+        }
+    }
+}

@@ -1,0 +1,283 @@
+//! One child process: its group, its pipes, and the threads that keep them moving.
+
+use std::collections::VecDeque;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::path::Path;
+use std::process::{ExitStatus, Stdio};
+use std::sync::mpsc::{Sender, channel};
+use std::sync::{Arc, Mutex};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use process_wrap::std::{ChildWrapper, CommandWrap};
+
+use sensitol::assembly::{Exit, ProcessFault, Quoted, StderrTail};
+use super::protocol::Line;
+use crate::settings::Listener;
+
+/// The longest line that is read: a hundred thousand characteristics fit into it.
+pub(super) const LONGEST: usize = 16 << 20;
+/// Lines of stderr that errors quote, and the characters of each.
+const TAIL: usize = 5;
+const TAIL_WIDTH: usize = 200;
+/// How long a child may take to end by itself once its stdin is closed.
+const GRACE: Duration = Duration::from_secs(2);
+
+/// Something that happened in the child of this number.
+#[derive(Debug)]
+pub(super) struct Event {
+    pub(super) child: u64,
+    pub(super) what: What,
+}
+
+#[derive(Debug)]
+pub(super) enum What {
+    /// Lines that arrived together.
+    Lines(Vec<Result<Line, ProcessFault>>),
+    /// It closed its stdout; nothing comes any more.
+    Closed,
+}
+
+pub(super) struct Child {
+    pub(super) number: u64,
+    /// Ends the child's group when this process is gone, however; None where it cannot be had.
+    #[cfg(unix)]
+    guard: Option<Guard>,
+    process: Box<dyn ChildWrapper>,
+    /// To the thread that writes; None once its stdin is closed.
+    requests: Option<Sender<Vec<u8>>>,
+    /// Since when it could know that nothing more will come.
+    closed: Option<Instant>,
+    stderr: Arc<Mutex<VecDeque<String>>>,
+    readers: Vec<JoinHandle<()>>,
+}
+
+/// A thread, where the system has one.
+fn thread<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> std::io::Result<JoinHandle<T>> {
+    std::thread::Builder::new().spawn(work)
+}
+
+impl Child {
+    /// Starts a program in a process group of its own. Never through a shell.
+    pub(super) fn start(
+        argv: &[String],
+        folder: &Path,
+        number: u64,
+        events: &Sender<Event>,
+        listener: Option<Listener>,
+    ) -> Result<Self, ProcessFault> {
+        let program = &argv[0];
+        let mut command = CommandWrap::with_new(path(program, folder), |command| {
+            command.args(&argv[1..]).current_dir(folder);
+            command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        });
+        // The whole group ends with its leader: what a child started for itself is not an orphan.
+        #[cfg(unix)]
+        command.wrap(process_wrap::std::ProcessGroup::leader());
+        #[cfg(windows)]
+        command.wrap(process_wrap::std::JobObject);
+        let mut process = command.spawn().map_err(|error| match error.kind() {
+            std::io::ErrorKind::NotFound if folder.is_dir() => {
+                ProcessFault::NotFound { program: program.clone(), folder: folder.display().to_string() }
+            }
+            _ => ProcessFault::NotStarted { program: program.clone(), reason: error.to_string() },
+        })?;
+        let (requests, lines) = channel::<Vec<u8>>();
+        let mut stdin = process.stdin().take().expect("stdin is a pipe");
+        // A child that never reads blocks this thread alone.
+        let write = move || {
+            for line in lines {
+                if stdin.write_all(&line).and_then(|()| stdin.flush()).is_err() {
+                    break;
+                }
+            }
+        };
+        let stdout = process.stdout().take().expect("stdout is a pipe");
+        let events = events.clone();
+        let stderr = Arc::new(Mutex::new(VecDeque::new()));
+        let (pipe, tail) = (process.stderr().take().expect("stderr is a pipe"), Arc::clone(&stderr));
+        let streams = thread(write).and_then(|_| {
+            let out = thread(move || read(stdout, number, &events))?;
+            Ok(vec![out, thread(move || listen(pipe, &tail, listener.as_ref()))?])
+        });
+        let readers = match streams {
+            Ok(readers) => readers,
+            Err(error) => {
+                // The child reads the end of its input; nothing of it is waited for.
+                let _ = process.start_kill();
+                let reason = format!("there is no thread for its streams: {error}");
+                return Err(ProcessFault::NotStarted { program: program.clone(), reason });
+            }
+        };
+        #[cfg(unix)]
+        let guard = Guard::of(process.id());
+        Ok(Self {
+            number,
+            #[cfg(unix)]
+            guard,
+            process,
+            requests: Some(requests),
+            closed: None,
+            stderr,
+            readers,
+        })
+    }
+
+    /// Sends lines; those that cannot be written come back as the child's end.
+    pub(super) fn send(&self, lines: Vec<u8>) {
+        if let Some(requests) = &self.requests {
+            let _ = requests.send(lines);
+        }
+    }
+
+    /// Tells the child that nothing more will come.
+    pub(super) fn close(&mut self) {
+        self.requests = None;
+        self.closed.get_or_insert_with(Instant::now);
+    }
+
+    /// Ends the child and all that it started, at once.
+    pub(super) fn kill(&mut self) -> (Exit, StderrTail) {
+        self.end(Duration::ZERO)
+    }
+
+    /// Ends the child and all that it started; it may take `grace` to end by itself first.
+    fn end(&mut self, grace: Duration) -> (Exit, StderrTail) {
+        self.close();
+        let begun = self.closed.unwrap_or_else(Instant::now);
+        let mut status = self.process.try_wait().ok().flatten();
+        while status.is_none() && begun.elapsed() < grace {
+            std::thread::sleep(Duration::from_millis(2));
+            status = self.process.try_wait().ok().flatten();
+        }
+        let by_itself = status.is_some();
+        // Before the group's number is free for others.
+        #[cfg(unix)]
+        drop(self.guard.take());
+        let _ = self.process.start_kill();
+        let status = status.or_else(|| self.process.wait().ok());
+        // The pipes are closed now, unless a process left the group: their last lines are worth a moment.
+        let begun = Instant::now();
+        while !self.readers.iter().all(JoinHandle::is_finished) && begun.elapsed() < Duration::from_millis(200) {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        let exit = if by_itself { status.map_or(Exit::Signal(None), exit) } else { Exit::ClosedStdout };
+        (exit, self.tail())
+    }
+
+    pub(super) fn tail(&self) -> StderrTail {
+        StderrTail(self.stderr.lock().map(|lines| lines.iter().cloned().collect()).unwrap_or_default())
+    }
+
+    /// Waits a moment for a child that closed its stdout to end by itself.
+    pub(super) fn ended(&mut self) -> (Exit, StderrTail) {
+        self.end(Duration::from_millis(500))
+    }
+}
+
+/// A shell that waits for the end of a pipe whose other end only this process holds. The pipe closes even when this process is killed;
+/// the shell then ends the child's process group, busy or not. A child that waits for requests would have seen its own pipe close.
+#[cfg(unix)]
+struct Guard(std::process::Child);
+
+#[cfg(unix)]
+impl Guard {
+    fn of(group: u32) -> Option<Self> {
+        let mut command = std::process::Command::new("/bin/sh");
+        // In a group of its own: Ctrl-C on a terminal reaches this process first.
+        std::os::unix::process::CommandExt::process_group(&mut command, 0);
+        command.args(["-c", "read -r line; kill -s KILL -- \"-$1\"", "sensitol-guard", &group.to_string()]);
+        command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().ok().map(Self)
+    }
+}
+
+#[cfg(unix)]
+impl Drop for Guard {
+    /// Its work is done: it must not see its pipe close.
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+impl Drop for Child {
+    fn drop(&mut self) {
+        self.end(GRACE);
+    }
+}
+
+/// A program named by a path is looked for in the study's folder, any other in the PATH.
+fn path(program: &str, folder: &Path) -> std::path::PathBuf {
+    let path = Path::new(program);
+    if path.components().count() > 1 { folder.join(path) } else { path.to_owned() }
+}
+
+fn exit(status: ExitStatus) -> Exit {
+    #[cfg(unix)]
+    let signal = std::os::unix::process::ExitStatusExt::signal(&status);
+    #[cfg(not(unix))]
+    let signal = None;
+    status.code().map_or(Exit::Signal(signal), Exit::Code)
+}
+
+/// Reads stdout until it ends or cannot be understood.
+fn read(stdout: impl Read, child: u64, events: &Sender<Event>) {
+    let mut stdout = BufReader::with_capacity(1 << 16, stdout);
+    let mut lines = Vec::new();
+    let mut line = Vec::new();
+    loop {
+        line.clear();
+        let read = (&mut stdout).take(LONGEST as u64 + 1).read_until(b'\n', &mut line);
+        let ended = !matches!(read, Ok(read) if read > 0);
+        if !ended {
+            let oversized = line.len() > LONGEST;
+            let parsed = if oversized {
+                Err(ProcessFault::Oversized { limit: LONGEST, line: Quoted::of(&line) })
+            } else if line.iter().all(u8::is_ascii_whitespace) {
+                continue;
+            } else {
+                Line::parse(&line)
+            };
+            let stop = parsed.is_err();
+            lines.push(parsed);
+            if !stop && stdout.buffer().contains(&b'\n') {
+                continue;
+            }
+            if events.send(Event { child, what: What::Lines(std::mem::take(&mut lines)) }).is_err() || stop {
+                return;
+            }
+            continue;
+        }
+        let _ = events.send(Event { child, what: What::Closed });
+        return;
+    }
+}
+
+/// Keeps the last lines of stderr, and hands every line on.
+fn listen(stderr: impl Read, tail: &Mutex<VecDeque<String>>, listener: Option<&Listener>) {
+    let mut stderr = BufReader::new(stderr);
+    let mut line = Vec::new();
+    loop {
+        line.clear();
+        // A line without end is cut into pieces.
+        match (&mut stderr).take(1 << 16).read_until(b'\n', &mut line) {
+            Ok(read) if read > 0 => {}
+            _ => return,
+        }
+        let text = String::from_utf8_lossy(&line);
+        let text = text.trim_end();
+        if text.is_empty() {
+            continue;
+        }
+        if let Some(listener) = listener {
+            listener(text);
+        }
+        if let Ok(mut tail) = tail.lock() {
+            if tail.len() == TAIL {
+                tail.pop_front();
+            }
+            let clean = |c: char| if c.is_control() { ' ' } else { c };
+            tail.push_back(text.chars().take(TAIL_WIDTH).map(clean).collect());
+        }
+    }
+}

@@ -1,0 +1,639 @@
+//! Children side by side, and the points under way in each.
+
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::time::{Duration, Instant};
+
+use sensitol::assembly::EvaluatorAccount;
+use super::batch::Batch;
+use super::border::Border;
+use super::child::{Child, Event, What};
+use sensitol::assembly::{ProcessError, ProcessFault, Quoted, StderrTail};
+use super::protocol::{Hello, Line, VERSION, request};
+use super::sentinel::{Reference, SENTINEL, interval, is_flip, values};
+use crate::settings::Settings;
+use super::suspicion::Answers;
+use super::worker::{Sent, Worker};
+use sensitol::assembly::{ModelInfo, Points, Responses, Run};
+
+/// How often a stop is looked for.
+const TICK: Duration = Duration::from_millis(50);
+/// The first pause before a child that failed is started again; it doubles with every failure in a row.
+const PAUSE: Duration = Duration::from_millis(50);
+const LONGEST_PAUSE: Duration = Duration::from_secs(5);
+/// The longest deadline, some thirty years: a later moment may be more than the clock can hold.
+const FOREVER: Duration = Duration::from_secs(1_000_000_000);
+/// Starts in a row that may fail before no more are tried.
+const STARTS: u32 = 4;
+/// Crashes in a row, without an answer between them, after which points of an isolated program are suspected after all.
+const ISOLATED: u32 = 3;
+/// How long a stop waits for points that were taken back: an answer that comes all the same is kept.
+const TAKEN_BACK: Duration = Duration::from_secs(1);
+
+/// The children of one model, asked for one choice of outputs.
+pub(super) struct Pool {
+    pub(super) settings: Settings,
+    pub(super) hello: Hello,
+    slots: Vec<Slot>,
+    events: (Sender<Event>, Receiver<Event>),
+    /// Number of the next child, and of the next point.
+    next_child: u64,
+    next_point: u64,
+    /// Starts in a row that failed.
+    failed_starts: u32,
+    /// Children in a row that said that they were ready and ended before they were sent a point; the last one's error where they are too many.
+    unused: u32,
+    useless: Option<ProcessError>,
+    adapter: Option<ModelInfo>,
+    /// Whether numbers are converted on their way to the program and back.
+    pub(super) converts: bool,
+    pub(super) reference: Reference,
+    pub(super) account: EvaluatorAccount,
+    /// Answers so far, of which some are replayed.
+    pub(super) answers: Answers,
+    /// The difference of every output when the nominal point is evaluated again.
+    pub(super) noise: Vec<f64>,
+    /// Whether an answer was found to depend on the points before it.
+    pub(super) flips: bool,
+    /// Whether it has another answer every time.
+    pub(super) hopeless: bool,
+    /// Whether points go to one child, one by one in their order, without sentinels.
+    pub(super) walking: bool,
+}
+
+/// A place for one child.
+#[derive(Default)]
+struct Slot {
+    state: State,
+    /// Failures since the last answer.
+    failures: u32,
+    /// Since when it has been without a child that answers, after a failure.
+    lost: Option<Instant>,
+}
+
+#[derive(Default)]
+enum State {
+    /// No child, and none wanted yet.
+    #[default]
+    Empty,
+    /// No child before this moment.
+    Pausing(Instant),
+    /// A child that has not said that it is ready.
+    Starting(Child, Instant),
+    Ready(Box<Worker>),
+}
+
+impl Pool {
+    pub(super) fn new(mut settings: Settings, hello: Hello) -> Self {
+        settings.timeout = settings.timeout.min(FOREVER);
+        settings.start_timeout = settings.start_timeout.min(FOREVER);
+        let slots = (0..settings.workers.max(1)).map(|_| Slot::default()).collect();
+        Self {
+            settings,
+            hello,
+            slots,
+            events: channel(),
+            next_child: 0,
+            next_point: 0,
+            failed_starts: 0,
+            unused: 0,
+            useless: None,
+            adapter: None,
+            converts: false,
+            reference: Reference::default(),
+            account: EvaluatorAccount::default(),
+            answers: Answers::default(),
+            noise: Vec::new(),
+            flips: false,
+            hopeless: false,
+            walking: false,
+        }
+    }
+
+    pub(super) fn asks(&self, characteristics: &[String]) -> bool {
+        self.hello.characteristics == characteristics
+    }
+
+    /// Starts one child and waits until it is ready: whether the model can be used at all.
+    pub(super) fn prepare(&mut self) -> Result<&ModelInfo, ProcessError> {
+        while self.adapter.is_none() {
+            if matches!(self.slots[0].state, State::Empty | State::Pausing(_)) {
+                self.start(0)?;
+            }
+            self.turn(&mut None)?;
+        }
+        Ok(self.adapter.as_ref().expect("a child is ready"))
+    }
+
+    /// Evaluates every row of `points`; what a stop leaves undone stays open, but what is under way is waited for.
+    pub(super) fn evaluate(&mut self, points: &Points, run: &Run<'_>, out: &mut Responses) {
+        let rows = points.rows();
+        let mut batch = Some(Batch::new(points, out));
+        let mut stopped_at = None;
+        loop {
+            let stopping = run.stopped();
+            if run.abandoned() {
+                break;
+            }
+            if stopping && stopped_at.is_none() {
+                stopped_at = Some(Instant::now());
+                self.workers().for_each(Worker::take_back);
+            }
+            let work = batch.as_mut().expect("a batch");
+            let checked = work.left == 0 && self.slots.iter().all(Slot::is_checked);
+            let waits = stopped_at.is_some_and(|at| at.elapsed() < TAKEN_BACK)
+                && self.workers().any(|worker| worker.cancelled.values().any(Option::is_some));
+            if checked || (stopping && !self.busy() && !waits) {
+                break;
+            }
+            let dispatched = if stopping { Ok(()) } else { self.dispatch(work) };
+            let turned = dispatched.and_then(|()| self.turn(&mut batch));
+            let work = batch.as_mut().expect("a batch");
+            if let Err(error) = turned {
+                // No child can be had any more.
+                work.give_up(&error);
+                work.tell(run);
+                break;
+            }
+            work.tell(run);
+        }
+        let work = batch.expect("a batch");
+        work.out.spent(work.sent as i64 - (rows - work.left) as i64);
+        self.account.counts.retried += work.resent as u64;
+        if self.settings.verify == Some(0) {
+            // Nothing is replayed, so that what is in doubt twice stays so.
+            self.account.counts.unconfirmed += work.twice.len() as u64;
+        }
+        work.out.retried(work.resent);
+        // After giving up, a process may still work on points of this batch: the next one must not hear of them.
+        for slot in &mut self.slots {
+            if let State::Ready(worker) = &mut slot.state {
+                worker.unchecked.clear();
+                worker.cancelled.values_mut().for_each(|row| *row = None);
+                if !worker.under_way.is_empty() {
+                    worker.child.kill();
+                    slot.state = State::Empty;
+                }
+            }
+        }
+    }
+
+    /// Ends the first child, so that the next point goes to a fresh one.
+    pub(super) fn renew(&mut self) {
+        self.slots[0].state = State::Empty;
+    }
+
+    fn workers(&mut self) -> impl Iterator<Item = &mut Worker> {
+        self.slots.iter_mut().filter_map(|slot| match &mut slot.state {
+            State::Ready(worker) => Some(&mut **worker),
+            _ => None,
+        })
+    }
+
+    fn busy(&self) -> bool {
+        self.slots.iter().any(|slot| matches!(&slot.state, State::Ready(worker) if !worker.under_way.is_empty()))
+    }
+
+    /// Starts children where there is work for them, and gives every ready one as much as it may have.
+    fn dispatch(&mut self, batch: &mut Batch<'_>) -> Result<(), ProcessError> {
+        let now = Instant::now();
+        let mut wanted = batch.unsent();
+        let usable = if self.walking { 1 } else { self.slots.len() };
+        for index in 0..usable {
+            let start = match &self.slots[index].state {
+                State::Empty => wanted > 0,
+                State::Pausing(until) => wanted > 0 && *until <= now,
+                State::Starting(..) => false,
+                State::Ready(_) => {
+                    self.give(index, batch);
+                    wanted = batch.unsent();
+                    continue;
+                }
+            };
+            // One child for each window of points: no more than there is work for.
+            wanted = wanted.saturating_sub(self.adapter.as_ref().map_or(1, |adapter| adapter.window));
+            // Later failures arrive as events.
+            if start && let Err(error) = self.start(index) {
+                self.lost_start(index, error)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn give(&mut self, index: usize, batch: &mut Batch<'_>) {
+        let State::Ready(worker) = &mut self.slots[index].state else { return };
+        let mut lines = Vec::new();
+        let idle = batch.waiting.is_empty() && batch.suspects.is_empty();
+        // After every point that is evaluated again: the one that led the model astray will do so once more.
+        let again = worker.unchecked.last().is_some_and(|row| batch.again.contains(row));
+        let due = worker.troubled || again || worker.unchecked.len() >= interval(worker.window) || idle;
+        if self.settings.sentinels && !self.walking && due && !worker.unchecked.is_empty() {
+            if worker.under_way.is_empty() {
+                // One for each place that is known, where the program has several.
+                let places: Vec<Option<String>> = worker.places.iter().cloned().map(Some).collect();
+                for place in if places.is_empty() { vec![None] } else { places } {
+                    let nominal = worker.border.out(self.hello.nominal.iter().copied());
+                    request(&mut lines, self.next_point, nominal, place.as_deref());
+                    worker.sent(self.next_point, SENTINEL);
+                    self.next_point += 1;
+                    batch.sent += 1;
+                }
+                worker.child.send(lines);
+            }
+            return;
+        }
+        if worker.under_way.is_empty() {
+            worker.exclusive = false;
+        }
+        let mut send = |row: usize, worker: &mut Worker, batch: &mut Batch<'_>| {
+            worker.sent(self.next_point, row);
+            batch.sends(row);
+            let columns = batch.points.dimensions();
+            let point = (0..columns).map(|column| batch.points.column(column)[row]);
+            request(&mut lines, self.next_point, worker.border.out(point), None);
+            self.next_point += 1;
+        };
+        if worker.under_way.is_empty()
+            && let Some(group) = batch.suspects.pop_front()
+        {
+            worker.exclusive = true;
+            group.into_iter().for_each(|row| send(row, worker, batch));
+        }
+        let window = if self.walking { 1 } else { worker.room() };
+        while worker.under_way.len() < window && !worker.exclusive {
+            let Some(&row) = batch.waiting.front() else { break };
+            if batch.goes_alone(row) {
+                if !worker.under_way.is_empty() {
+                    break;
+                }
+                worker.exclusive = true;
+            }
+            batch.waiting.pop_front();
+            send(row, worker, batch);
+        }
+        if !lines.is_empty() {
+            worker.child.send(lines);
+        }
+    }
+
+    fn start(&mut self, index: usize) -> Result<(), ProcessError> {
+        let Settings { argv, folder, listener, .. } = &self.settings;
+        let number = self.next_child;
+        self.next_child += 1;
+        let child = Child::start(argv, folder, number, &self.events.0, listener.clone())
+            .map_err(|fault| ProcessError { fault, stderr: StderrTail::default() })?;
+        child.send(self.hello.line());
+        self.account.counts.starts += 1;
+        self.slots[index].state = State::Starting(child, Instant::now() + self.settings.start_timeout);
+        Ok(())
+    }
+
+    /// Waits for something to happen, or for a deadline, and acts on it. An error is one of every start.
+    fn turn(&mut self, batch: &mut Option<Batch<'_>>) -> Result<(), ProcessError> {
+        let now = Instant::now();
+        let pause = self.deadlines().map(|deadline| deadline.saturating_duration_since(now)).min();
+        let timeout = pause.unwrap_or(TICK).min(TICK);
+        match self.events.1.recv_timeout(timeout) {
+            Ok(event) => {
+                self.hear(event, batch)?;
+                // Whatever came meanwhile, before points are sent for it.
+                while let Ok(event) = self.events.1.try_recv() {
+                    self.hear(event, batch)?;
+                }
+            }
+            Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => {}
+        }
+        self.late(batch)?;
+        self.useless.take().map_or(Ok(()), Err)
+    }
+
+    fn deadlines(&self) -> impl Iterator<Item = Instant> {
+        self.slots.iter().filter_map(|slot| match &slot.state {
+            State::Empty => None,
+            State::Pausing(until) => Some(*until),
+            State::Starting(_, until) => Some(*until),
+            State::Ready(worker) => worker.deadline(self.settings.timeout),
+        })
+    }
+
+    /// Ends what has taken too long.
+    fn late(&mut self, batch: &mut Option<Batch<'_>>) -> Result<(), ProcessError> {
+        let now = Instant::now();
+        for index in 0..self.slots.len() {
+            match &mut self.slots[index].state {
+                State::Starting(child, until) if *until <= now => {
+                    let (_, stderr) = child.kill();
+                    let fault = ProcessFault::SilentAtStart { after: self.settings.start_timeout };
+                    self.lost_start(index, ProcessError { fault, stderr })?;
+                }
+                State::Ready(worker) => {
+                    let Some(position) = worker.overdue(self.settings.timeout, now) else { continue };
+                    let fault = ProcessFault::TimedOut { after: self.settings.timeout };
+                    let Some(late) = worker.under_way.remove(position) else { continue };
+                    if worker.abilities.cancel && late.started.is_some() && late.row != SENTINEL {
+                        // The program goes on without this point.
+                        worker.cancel([late]);
+                        let error = ProcessError { fault, stderr: worker.child.tail() };
+                        self.account.failed(&error);
+                        batch.iter_mut().for_each(|batch| batch.charge(late.row, &error, self.settings.retries));
+                    } else {
+                        worker.under_way.push_front(late);
+                        self.fail(index, fault, batch);
+                    }
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn hear(&mut self, event: Event, batch: &mut Option<Batch<'_>>) -> Result<(), ProcessError> {
+        let of = |slot: &Slot| match &slot.state {
+            State::Starting(child, _) => child.number == event.child,
+            State::Ready(worker) => worker.child.number == event.child,
+            _ => false,
+        };
+        // A child that was ended already may still have something to say.
+        let Some(index) = self.slots.iter().position(of) else { return Ok(()) };
+        match event.what {
+            What::Closed => self.closed(index, batch),
+            What::Lines(lines) => {
+                for line in lines {
+                    match &self.slots[index].state {
+                        State::Starting(..) => self.greet(index, line)?,
+                        State::Ready(_) => self.answer(index, line, batch),
+                        // An earlier line ended the child.
+                        _ => break,
+                    }
+                }
+                Ok(())
+            }
+        }
+    }
+
+    /// The first line of a child.
+    fn greet(&mut self, index: usize, line: Result<Line, ProcessFault>) -> Result<(), ProcessError> {
+        let State::Starting(child, _) = &mut self.slots[index].state else { return Ok(()) };
+        let fault = match line {
+            Err(ProcessFault::Garbage { line, .. }) => ProcessFault::NotReady { line },
+            Err(fault) => fault,
+            Ok(line) => match line {
+                Line { error: Some(message), .. } => ProcessFault::RefusedStudy { message },
+                Line { sensitol: Some(version), .. } if version != VERSION => ProcessFault::RefusedStudy {
+                    message: format!("it speaks version {version} of the protocol, and this is version {VERSION}"),
+                },
+                line @ Line { ready: Some(true), .. } => {
+                    match Border::of(&self.hello, &line.units, self.settings.units) {
+                        Err(fault) => fault,
+                        Ok(border) => {
+                            self.converts = !border.is_open();
+                            self.adapter = Some(line.info());
+                            self.failed_starts = 0;
+                            let slot = &mut self.slots[index];
+                            if let Some(lost) = slot.lost.take() {
+                                self.account.counts.lost_s += lost.elapsed().as_secs_f64();
+                            }
+                            let State::Starting(child, _) = std::mem::take(&mut slot.state) else { return Ok(()) };
+                            slot.state = State::Ready(Box::new(Worker::new(child, &line, border, self.next_point)));
+                            return Ok(());
+                        }
+                    }
+                }
+                other => ProcessFault::NotReady { line: other.quoted.unwrap_or_else(|| Quoted(String::new())) },
+            },
+        };
+        let stderr = child.kill().1;
+        self.lost_start(index, ProcessError { fault, stderr })
+    }
+
+    /// A child that could not be started after others could is tried again, a few times.
+    fn lost_start(&mut self, index: usize, error: ProcessError) -> Result<(), ProcessError> {
+        self.failed_starts += 1;
+        self.account.failed(&error);
+        self.pause(index);
+        if self.is_hopeless() { Err(error) } else { Ok(()) }
+    }
+
+    /// Whether there is no child, and none to be had: the first start failed, or too many in a row did.
+    fn is_hopeless(&self) -> bool {
+        let alone = !self.slots.iter().any(|slot| matches!(slot.state, State::Ready(_)));
+        self.adapter.is_none() || (alone && self.failed_starts >= STARTS)
+    }
+
+    /// Leaves a place empty for a while that grows with every failure.
+    fn pause(&mut self, index: usize) {
+        let slot = &mut self.slots[index];
+        let pause = if slot.failures == 0 { Duration::ZERO } else { PAUSE * 2u32.pow(slot.failures.min(10) - 1) };
+        slot.failures += 1;
+        slot.state = State::Pausing(Instant::now() + pause.min(LONGEST_PAUSE));
+    }
+
+    /// An answer, or something that should have been one.
+    fn answer(&mut self, index: usize, line: Result<Line, ProcessFault>, batch: &mut Option<Batch<'_>>) {
+        let slot = &mut self.slots[index];
+        let State::Ready(worker) = &mut slot.state else { return };
+        let mut line = match line {
+            Ok(line) => line,
+            Err(fault) => return self.fail(index, fault, batch),
+        };
+        worker.border.back(&mut line);
+        if let Some(note) = &line.note
+            && let Some(listener) = &self.settings.listener
+        {
+            listener(note);
+        }
+        if line.id.is_none() && (line.alive || line.window.is_some()) {
+            worker.window = line.window.unwrap_or(worker.window).max(1);
+            if line.alive {
+                worker.since = Instant::now();
+            }
+            return;
+        }
+        let Some(id) = line.id else {
+            return self.fail(index, line.garbage("it has no id"), batch);
+        };
+        let is_start = line.started.is_some() && line.y.is_none() && line.error.is_none();
+        if let Some(row) = worker.cancelled.get(&id).copied() {
+            if !is_start {
+                worker.cancelled.remove(&id);
+                self.late_answer(row, line, batch);
+            }
+            return;
+        }
+        let Some(position) = worker.under_way.iter().position(|sent| sent.id == id) else {
+            let twice = id >= worker.first && id < self.next_point;
+            let fault = if twice { ProcessFault::AnsweredTwice { id } } else { ProcessFault::UnknownPoint { id } };
+            return self.fail(index, fault, batch);
+        };
+        if is_start {
+            worker.note_place(line.started.as_ref());
+            worker.under_way[position].started = Some(Instant::now());
+            return;
+        }
+        let expected = self.hello.characteristics.len();
+        if let Some(fault) = line.misshapen(expected, self.hello.dimensions.len()) {
+            // Only this point: the line was whole, and the others may be right.
+            if worker.under_way[position].row == SENTINEL {
+                return self.fail(index, fault, batch);
+            }
+            if let Some(Sent { row, .. }) = worker.under_way.remove(position) {
+                worker.since = Instant::now();
+                let error = ProcessError { fault, stderr: worker.child.tail() };
+                batch.iter_mut().for_each(|batch| batch.fail(row, &error));
+            }
+            return;
+        }
+        if line.y.is_none() && line.error.is_none() {
+            return self.fail(index, line.garbage("it has neither y nor error"), batch);
+        }
+        let Some(Sent { row, .. }) = worker.under_way.remove(position) else { return };
+        worker.note_place(line.place.as_ref());
+        self.account.answered(line.place.as_ref(), line.cost_s);
+        worker.since = Instant::now();
+        slot.failures = 0;
+        (self.failed_starts, self.unused) = (0, 0);
+        let values = values(&line, expected);
+        if row == SENTINEL {
+            return self.checked(index, values, batch);
+        }
+        self.reference.learn(&values);
+        if let Some(batch) = batch {
+            let nominal = |(column, x): (usize, &f64)| batch.points.column(column)[row] == *x;
+            let is_nominal = self.hello.nominal.iter().enumerate().all(nominal);
+            let troubled = values.contains(&None);
+            if is_nominal && !self.walking {
+                // The study's own evaluation of the nominal point is the first sentinel.
+                let non_repeatable =
+                    self.reference.check(values, &self.hello.characteristics, &batch.coordinates(&worker.unchecked));
+                self.flips |= is_flip(&non_repeatable);
+                batch.out.note_non_repeatable(non_repeatable);
+            }
+            let again = line.error.is_some() && line.retry && batch.charged(row) <= self.settings.retries;
+            if self.settings.sentinels && !self.walking && !is_nominal && !again {
+                worker.unchecked.push(row);
+                worker.troubled |= troubled;
+            }
+            if again {
+                batch.suspects.push_back(vec![row]);
+            } else {
+                batch.settle(row, line, &self.hello.characteristics);
+            }
+        }
+    }
+
+    /// An answer to a point that was taken back: it is kept where its row is still open.
+    fn late_answer(&mut self, row: Option<usize>, line: Line, batch: &mut Option<Batch<'_>>) {
+        let shaped =
+            line.y.is_some() && line.misshapen(self.hello.characteristics.len(), self.hello.dimensions.len()).is_none();
+        if let (Some(row), Some(batch), true) = (row, batch, shaped)
+            && (0..batch.out.outputs()).all(|output| batch.out.is_open(row, output))
+        {
+            self.account.answered(line.place.as_ref(), line.cost_s);
+            batch.settle(row, line, &self.hello.characteristics);
+        }
+    }
+
+    /// The nominal point, evaluated again: a child that answers otherwise than before is not trusted any more.
+    fn checked(&mut self, index: usize, found: Vec<Option<f64>>, batch: &mut Option<Batch<'_>>) {
+        let State::Ready(worker) = &mut self.slots[index].state else { return };
+        // Of several places each has a sentinel: the last one settles what is checked, and the first that differs does.
+        let last = !worker.under_way.iter().any(|sent| sent.row == SENTINEL);
+        let rows = worker.unchecked.clone();
+        let suspects = batch.as_ref().map(|batch| batch.coordinates(&rows)).unwrap_or_default();
+        let non_repeatable = self.reference.check(found, &self.hello.characteristics, &suspects);
+        if non_repeatable.is_empty() {
+            if last {
+                worker.troubled = false;
+                worker.unchecked.clear();
+            }
+            return;
+        }
+        worker.child.kill();
+        // An even number of flips hides from the nominal point: every answer of the batch is replayed at its end.
+        self.flips |= is_flip(&non_repeatable);
+        if let Some(batch) = batch {
+            batch.out.note_non_repeatable(non_repeatable);
+            batch.distrust(&rows);
+        }
+        self.pause(index);
+    }
+
+    /// A child closed its stdout.
+    fn closed(&mut self, index: usize, batch: &mut Option<Batch<'_>>) -> Result<(), ProcessError> {
+        match &mut self.slots[index].state {
+            State::Starting(child, _) => {
+                let (exit, stderr) = child.ended();
+                self.lost_start(index, ProcessError { fault: ProcessFault::EndedAtStart { exit }, stderr })
+            }
+            State::Ready(_) => {
+                self.crash(index, None, batch);
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// A child that did something wrong: it is ended, its oldest point is charged with it, the others are free.
+    fn fail(&mut self, index: usize, fault: ProcessFault, batch: &mut Option<Batch<'_>>) {
+        self.crash(index, Some(fault), batch);
+    }
+
+    fn crash(&mut self, index: usize, fault: Option<ProcessFault>, batch: &mut Option<Batch<'_>>) {
+        let State::Ready(mut worker) = std::mem::take(&mut self.slots[index].state) else { return };
+        let (exit, stderr) = if fault.is_some() { worker.child.kill() } else { worker.child.ended() };
+        let known = fault.is_some();
+        let error = ProcessError { fault: fault.unwrap_or(ProcessFault::Crashed { exit }), stderr };
+        self.account.failed(&error);
+        self.slots[index].lost.get_or_insert(worker.since);
+        let crashes = self.slots[index].failures;
+        self.unused = if worker.asked { 0 } else { self.unused + 1 };
+        // No point is charged with it: without an end here such children would be started for ever.
+        if self.unused >= STARTS && !self.slots.iter().any(|slot| matches!(slot.state, State::Ready(_))) {
+            self.useless = Some(error);
+            return self.pause(index);
+        }
+        if let Some(batch) = batch {
+            if worker.under_way.iter().any(|sent| sent.row == SENTINEL) {
+                // It did not survive the nominal point, which it had answered before.
+                batch.distrust(&worker.unchecked);
+                return self.pause(index);
+            }
+            // Points that were taken back stay open.
+            let rows: Vec<usize> = worker.under_way.iter().map(|sent| sent.row).collect();
+            if known || rows.len() == 1 {
+                if let Some(&row) = rows.first() {
+                    batch.charge(row, &error, self.settings.retries);
+                }
+                rows.iter().skip(1).rev().for_each(|&row| batch.waiting.push_front(row));
+            } else if worker.abilities.isolated && crashes < ISOLATED {
+                rows.iter().rev().for_each(|&row| batch.waiting.push_front(row));
+            } else {
+                // Of several points under way in a child that crashed it is not known which one it was.
+                batch.divide(&rows);
+            }
+        }
+        self.pause(index);
+    }
+}
+
+impl Slot {
+    /// Whether nothing is left that its child has answered and that is not checked.
+    fn is_checked(&self) -> bool {
+        match &self.state {
+            State::Ready(worker) => worker.unchecked.is_empty() && worker.under_way.is_empty(),
+            _ => true,
+        }
+    }
+}
+
+impl Drop for Pool {
+    /// All are told first, so that they end side by side.
+    fn drop(&mut self) {
+        for slot in &mut self.slots {
+            match &mut slot.state {
+                State::Starting(child, _) => child.close(),
+                State::Ready(worker) => worker.child.close(),
+                State::Empty | State::Pausing(_) => {}
+            }
+        }
+    }
+}

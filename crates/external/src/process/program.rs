@@ -1,0 +1,169 @@
+//! The external program as assembly function.
+
+use std::sync::{Mutex, PoisonError};
+
+use sensitol::assembly::EvaluatorAccount;
+use sensitol::assembly::ProcessError;
+use super::pool::Pool;
+use super::protocol::{Hello, VERSION};
+use crate::settings::{Greeting, Settings};
+use sensitol::assembly::{AssemblyFunction, EvaluationError, ModelInfo, Request, Responses, Run, Signature};
+
+/// An external program as assembly function.
+///
+/// Evaluations: one for each point, and one more for each time that it is tried again. Children start with the first
+/// point or with [`prepare`](AssemblyFunction::prepare), and end with this value.
+pub struct Process {
+    signature: Signature,
+    settings: Settings,
+    greeting: Greeting,
+    pool: Mutex<Option<Pool>>,
+}
+
+impl Process {
+    /// A program that is asked for the outputs of `signature` at points of its inputs.
+    ///
+    /// # Panics
+    /// When `argv` is empty, or there are not as many nominal values as inputs.
+    pub fn new(signature: Signature, greeting: Greeting, settings: Settings) -> Self {
+        assert!(!settings.argv.is_empty(), "a program has a name");
+        assert_eq!(signature.inputs.len(), greeting.nominal.len(), "every dimension has a nominal value");
+        let signature = Signature { costly: true, cheap: false, ..signature };
+        Self { signature, settings, greeting, pool: Mutex::new(None) }
+    }
+
+    /// The program's description of itself; starts the program if need be.
+    ///
+    /// # Errors
+    /// When it does not start, or does not serve the study.
+    pub(crate) fn adapter(&self, outputs: &[usize]) -> Result<ModelInfo, ProcessError> {
+        self.with_pool(outputs, |pool| pool.prepare().cloned())
+    }
+
+    /// Whether numbers are converted on their way to the program and back; known once it has started.
+    pub(crate) fn converts(&self) -> bool {
+        let pool = self.pool.lock().unwrap_or_else(PoisonError::into_inner);
+        pool.as_ref().is_some_and(|pool| pool.converts)
+    }
+
+    /// The account of its processes so far: nothing where none was started.
+    pub(crate) fn account(&self) -> EvaluatorAccount {
+        let pool = self.pool.lock().unwrap_or_else(PoisonError::into_inner);
+        pool.as_ref().map(|pool| pool.account.clone()).unwrap_or_default()
+    }
+
+    /// How it is run.
+    pub(crate) fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// The content of its first line beside names.
+    pub(crate) fn greeting(&self) -> &Greeting {
+        &self.greeting
+    }
+
+    fn with_pool<T>(&self, outputs: &[usize], act: impl FnOnce(&mut Pool) -> T) -> T {
+        let names: Vec<String> = outputs.iter().map(|&output| self.signature.outputs[output].name.clone()).collect();
+        let mut pool = self.pool.lock().unwrap_or_else(PoisonError::into_inner);
+        // Children are told once what they are asked for; another question takes others.
+        if pool.as_ref().is_none_or(|pool| !pool.asks(&names)) {
+            let account = pool.take().map(|pool| pool.account.clone()).unwrap_or_default();
+            let mut fresh = Pool::new(self.settings.clone(), self.hello(names));
+            fresh.account = account;
+            *pool = Some(fresh);
+        }
+        act(pool.as_mut().expect("it was just made"))
+    }
+
+    fn hello(&self, characteristics: Vec<String>) -> Hello {
+        let unit = |name: &String| self.signature.outputs.iter().find(|output| output.name == *name)?.unit.clone();
+        let asked_units = characteristics.iter().map(unit).collect();
+        let value = |value: f64| serde_json::Number::from_f64(value).map_or(serde_json::Value::Null, Into::into);
+        Hello {
+            sensitol: VERSION,
+            dimensions: self.signature.inputs.iter().map(|input| input.name.clone()).collect(),
+            units: self.signature.inputs.iter().map(|input| input.unit.clone()).collect(),
+            nominal: self.greeting.nominal.clone(),
+            constants: self.greeting.constants.iter().map(|(name, number)| (name.clone(), value(*number))).collect(),
+            characteristics,
+            optional: self.greeting.optional.clone(),
+            asked_units,
+        }
+    }
+}
+
+/// The result of a comparison of an earlier run's answers with the model as it is.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Recheck {
+    /// They are its answers, and this is what the nominal point has.
+    Same(Vec<Option<f64>>),
+    /// The nominal point has another value: the model is another one.
+    Changed(Vec<Option<f64>>),
+    /// The nominal point is the same, and another point is not: these answers depend on the points before them.
+    Doubtful(Vec<Option<f64>>),
+    /// A stop came first.
+    Stopped,
+}
+
+/// Answers of an earlier run.
+pub(crate) struct Kept<'a> {
+    /// The answers of the nominal point; None where they were not kept.
+    pub(crate) nominal: Option<&'a [Option<f64>]>,
+    /// Points and their values, by which noise is told from a difference.
+    pub(crate) points: &'a [Vec<f64>],
+    pub(crate) values: &'a [Vec<Option<f64>>],
+    /// Those of them that no replay has confirmed.
+    pub(crate) unconfirmed: &'a [usize],
+}
+
+impl Process {
+    /// Holds answers of an earlier run against the model: the nominal point once, and two of those that no replay has confirmed.
+    pub(crate) fn recheck(&self, outputs: &[usize], kept: &Kept<'_>, run: &Run<'_>, out: &mut Responses) -> Recheck {
+        self.with_pool(outputs, |pool| {
+            let replays = self.settings.sentinels && self.settings.verify != Some(0);
+            pool.remember(kept.points, kept.values);
+            let Some((same, found)) = pool.is_as_kept(kept.nominal, out, run) else { return Recheck::Stopped };
+            if !same {
+                return Recheck::Changed(found);
+            }
+            if !replays || kept.unconfirmed.is_empty() {
+                return Recheck::Same(found);
+            }
+            let points: Vec<Vec<f64>> = kept.unconfirmed.iter().map(|&row| kept.points[row].clone()).collect();
+            let values: Vec<Vec<Option<f64>>> = kept.unconfirmed.iter().map(|&row| kept.values[row].clone()).collect();
+            match pool.are_as_kept(&points, &values, out, run) {
+                Some(true) => Recheck::Same(found),
+                Some(false) => Recheck::Doubtful(found),
+                None => Recheck::Stopped,
+            }
+        })
+    }
+}
+
+impl AssemblyFunction for Process {
+    fn signature(&self) -> &Signature {
+        &self.signature
+    }
+
+    fn prepare(&self, outputs: &[usize]) -> Result<Option<ModelInfo>, EvaluationError> {
+        self.adapter(outputs).map(Some).map_err(|error| Box::new(error).into())
+    }
+
+    fn account(&self) -> Option<EvaluatorAccount> {
+        Some(Process::account(self))
+    }
+
+    fn evaluate(&self, ask: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
+        self.with_pool(ask.outputs, |pool| {
+            pool.evaluate(ask.points, run, out);
+            let changed = match run.stopped() || run.abandoned() {
+                true => Some(pool.doubt(ask.points, out)),
+                false => pool.confirm(ask.points, out, run),
+            };
+            if let Some(changed) = changed.filter(|changed| !changed.is_empty()) {
+                run.withdraw(&changed);
+                run.finished(&changed, out);
+            }
+        });
+    }
+}

@@ -1,0 +1,458 @@
+//! Points again, by walks of small steps in a fresh child: whether an answer depends on what was asked before it.
+//!
+//! A solver that starts from its last solution flips on a long way and stays in the wrong branch until the next long way; sentinels
+//! see only every second flip. A fresh child that goes from the nominal point in small steps has no long way. Where its answer differs
+//! from the first one, a third child goes another way, one dimension after the other: two answers that agree are taken, three
+//! different ones are none. After any difference every point of the batch is walked to.
+
+use sensitol::assembly::{ProcessError, ProcessFault, StderrTail};
+use super::pool::Pool;
+use super::sentinel::{FLIP, agree};
+use super::suspicion::moved;
+use sensitol::assembly::{EvaluationError, NonRepeatable, Points, Responses, Run};
+
+/// Equal steps of a walk.
+const STEPS: usize = 3;
+/// Noise of the model, times this, is not a difference.
+const NOISY: f64 = 10.0;
+/// Answers of an earlier run that are replayed before any is used.
+const REUSED: usize = 2;
+
+/// The way from the nominal point to another one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Route {
+    /// All dimensions at once.
+    Straight,
+    /// One dimension after the other.
+    AxisByAxis,
+}
+
+impl Route {
+    /// The points on the way, the last one included.
+    fn points(self, from: &[f64], to: &[f64]) -> Vec<Vec<f64>> {
+        let part = |start: &[f64], end: &[f64], step: usize, steps: usize| -> Vec<f64> {
+            let between =
+                |(&a, &b): (&f64, &f64)| if step == steps { b } else { a + (b - a) * step as f64 / steps as f64 };
+            start.iter().zip(end).map(between).collect()
+        };
+        match self {
+            _ if from == to => vec![to.to_vec()],
+            Self::Straight => (1..=STEPS).map(|step| part(from, to, step, STEPS)).collect(),
+            Self::AxisByAxis => {
+                let moved = moved(from, to);
+                // A single dimension has no other way: it is gone in smaller steps.
+                let steps = if moved.len() == 1 { 2 * STEPS - 1 } else { STEPS.div_ceil(moved.len().max(1)).max(2) };
+                let mut at = from.to_vec();
+                let mut way = Vec::new();
+                for d in moved.into_iter().rev() {
+                    let mut next = at.clone();
+                    next[d] = to[d];
+                    way.extend((1..=steps).map(|step| part(&at, &next, step, steps)));
+                    at = next;
+                }
+                way
+            }
+        }
+    }
+}
+
+/// Values of one point, None where it has none.
+type Values = Vec<Option<f64>>;
+
+/// The result of one walk.
+#[derive(Debug, Clone, PartialEq)]
+enum Walked {
+    /// A stop came before its end.
+    Stopped,
+    /// The process did not get there: it crashed, was too slow, or cannot be started any more. That says nothing of the answer.
+    Lost,
+    /// The nominal point was not as it should be when the walk began: the end does not count.
+    Astray,
+    /// The answers at its end.
+    There(Values),
+}
+
+impl Walked {
+    fn values(&self) -> Option<&Values> {
+        match self {
+            Self::There(values) => Some(values),
+            _ => None,
+        }
+    }
+}
+
+/// Replays that differ, in three ways each, after which no more is tried: the model has another answer every time.
+const HOPELESS: usize = 3;
+
+impl Pool {
+    /// Replays some answers of a batch, and all of them where one of these differs. Returns the rows whose answers were changed
+    /// or taken away; None where a stop came before the end.
+    pub(super) fn confirm(&mut self, points: &Points, out: &mut Responses, run: &Run<'_>) -> Option<Vec<usize>> {
+        if !self.settings.sentinels || self.settings.verify == Some(0) {
+            return Some(Vec::new());
+        }
+        let rows: Vec<Vec<f64>> = (0..points.rows()).map(|row| points.row(row)).collect();
+        let values = |row: usize| (0..out.outputs()).map(|output| out.value(row, output)).collect();
+        let all: Vec<Values> = (0..rows.len()).map(values).collect();
+        let nominal = self.hello.nominal.clone();
+        self.answers.learn(&rows, &all, &nominal);
+        let mut chosen = self.answers.choose(&rows, &all, &nominal, self.settings.verify);
+        if self.flips {
+            let known = (0..rows.len()).filter(|&row| all[row].iter().any(Option::is_some));
+            if self.hopeless {
+                let known: Vec<usize> = known.collect();
+                self.give_up(&known, &rows, &all, out);
+                return Some(known);
+            }
+            // All of them will be; a few first, of which a model that never repeats itself is known.
+            let more: Vec<usize> = known.filter(|row| !chosen.contains(row)).collect();
+            chosen.extend(more.into_iter().take((2 * HOPELESS).saturating_sub(chosen.len())));
+        }
+        if chosen.is_empty() {
+            return Some(Vec::new());
+        }
+        let changed = match self.replayed(&rows, &all, &chosen, out, run) {
+            // A stop came after a flip was found and before everything was confirmed.
+            None if self.flips => {
+                self.give_up(&(0..rows.len()).collect::<Vec<_>>(), &rows, &all, out);
+                Some((0..rows.len()).collect())
+            }
+            changed => changed,
+        };
+        if self.flips {
+            self.look_back(&rows, out, run);
+        }
+        changed
+    }
+
+    /// Takes away the answers of a batch that was stopped after a flip: nothing confirmed them. Returns their rows.
+    pub(super) fn doubt(&mut self, points: &Points, out: &mut Responses) -> Vec<usize> {
+        if !self.flips || self.settings.verify == Some(0) {
+            return Vec::new();
+        }
+        let rows: Vec<Vec<f64>> = (0..points.rows()).map(|row| points.row(row)).collect();
+        let values = |row: usize| (0..out.outputs()).map(|output| out.value(row, output)).collect();
+        let all: Vec<Values> = (0..rows.len()).map(values).collect();
+        let known: Vec<usize> = (0..rows.len()).filter(|&row| all[row].iter().any(Option::is_some)).collect();
+        self.give_up(&known, &rows, &all, out);
+        known
+    }
+
+    /// Replays the answers of earlier batches, of which only some were, once a flip is found. Results may have been made of them: one
+    /// that differs, or that is not reached, is unconfirmed.
+    fn look_back(&mut self, batch: &[Vec<f64>], out: &mut Responses, run: &Run<'_>) {
+        let (earlier, forgotten) = self.answers.unconfirmed(batch);
+        self.account.counts.unconfirmed += forgotten as u64;
+        if earlier.is_empty() {
+            return;
+        }
+        let (points, values): (Vec<Vec<f64>>, Vec<Values>) = earlier.into_iter().unzip();
+        let walked = if self.hopeless { None } else { self.walk(&points, Route::Straight, out, run) };
+        for (row, point) in points.iter().enumerate() {
+            let found = walked.as_ref().and_then(|walked| walked[row].values());
+            if found.is_some_and(|found| self.alike(&values[row], found)) {
+                self.answers.confirm(point);
+                continue;
+            }
+            self.account.counts.unconfirmed += 1;
+            let nothing = vec![None; values[row].len()];
+            let found = found.unwrap_or(&nothing);
+            for output in 0..nothing.len() {
+                if !self.alike_at(output, values[row][output], found[output]) {
+                    let (name, spread) = (self.hello.characteristics[output].clone(), self.reference.spread(output));
+                    let differ = [found[output], values[row][output]];
+                    out.note_non_repeatable([NonRepeatable::new(name, differ, spread, vec![point.clone()])]);
+                }
+            }
+            out.revoke(point.clone());
+            self.answers.confirm(point);
+        }
+    }
+
+    /// The values of the nominal point now, and whether they are those that were kept; None where a stop came first. A model that
+    /// does not repeat itself is asked three times, and may differ by its noise.
+    pub(super) fn is_as_kept(
+        &mut self,
+        kept: Option<&[Option<f64>]>,
+        out: &mut Responses,
+        run: &Run<'_>,
+    ) -> Option<(bool, Values)> {
+        let nominal = self.hello.nominal.clone();
+        let first = self.asked_once(&nominal, out, run)?;
+        let Some(kept) = kept.map(<[Option<f64>]>::to_vec).filter(|kept| !self.alike(kept, &first)) else {
+            return Some((true, first));
+        };
+        let more = [self.asked_once(&nominal, out, run)?, self.asked_once(&nominal, out, run)?];
+        let near = |output: usize| {
+            let all = (kept[output], first[output], more[0][output], more[1][output]);
+            let (Some(kept), Some(a), Some(b), Some(c)) = all else {
+                return kept[output].is_none() && first[output].is_none();
+            };
+            let noise = a.max(b).max(c) - a.min(b).min(c);
+            let allowed = (NOISY * noise).max(if noise > 0.0 { FLIP * self.reference.spread(output) } else { 0.0 });
+            self.alike_at(output, Some(kept), Some(a)) || (kept - a).abs() <= allowed
+        };
+        Some(((0..kept.len()).all(near), first))
+    }
+
+    /// The answer to one point; None where a stop came first.
+    fn asked_once(&mut self, point: &[f64], out: &mut Responses, run: &Run<'_>) -> Option<Values> {
+        let mut answers = Responses::open(1, out.outputs());
+        let (stopped, abandoned) = (|| run.stop_reason(), || run.abandoned());
+        let quiet = Run::to_the_end().stopping_when(&stopped).abandoning_when(&abandoned);
+        self.evaluate(&Points::from_rows(&[point]), &quiet, &mut answers);
+        out.spent(answers.extra());
+        if (0..answers.outputs()).all(|output| answers.is_open(0, output)) {
+            return None;
+        }
+        out.spent(1);
+        Some((0..answers.outputs()).map(|output| answers.value(0, output)).collect())
+    }
+
+    /// Takes in answers of an earlier run, by which later ones are judged.
+    pub(super) fn remember(&mut self, points: &[Vec<f64>], values: &[Values]) {
+        values.iter().for_each(|values| self.reference.learn(values));
+        self.answers.remember(points, values, &self.hello.nominal);
+    }
+
+    /// Whether two of these answers, the most suspicious ones, are those of a fresh process; None where a stop came first.
+    pub(super) fn are_as_kept(
+        &mut self,
+        points: &[Vec<f64>],
+        values: &[Values],
+        out: &mut Responses,
+        run: &Run<'_>,
+    ) -> Option<bool> {
+        let chosen = self.answers.most_suspicious(points, values, &self.hello.nominal, REUSED);
+        let targets: Vec<Vec<f64>> = chosen.iter().map(|&row| points[row].clone()).collect();
+        let walked = self.walk(&targets, Route::Straight, out, run)?;
+        Some(!self.differing(&chosen, &walked, values).iter().any(|(_, walked)| walked.is_some()))
+    }
+
+    /// Replays these rows, and where one differs all others.
+    fn replayed(
+        &mut self,
+        rows: &[Vec<f64>],
+        all: &[Values],
+        chosen: &[usize],
+        out: &mut Responses,
+        run: &Run<'_>,
+    ) -> Option<Vec<usize>> {
+        let place = |rows_of: &[usize]| -> Vec<Vec<f64>> { rows_of.iter().map(|&row| rows[row].clone()).collect() };
+        let first = self.walk(&place(chosen), Route::Straight, out, run)?;
+        let suspicious = self.differing(chosen, &first, all);
+        self.confirm_others(chosen, &suspicious, rows);
+        // A point that a process does not reach in small steps is not a sign of a flip.
+        if !self.flips && !suspicious.iter().any(|(_, walked)| walked.is_some()) {
+            return Some(Vec::new());
+        }
+        self.flips = true;
+        let mut changed = Vec::new();
+        let unsettled = self.settle(rows, all, suspicious, out, run, &mut changed)?;
+        let rest: Vec<usize> =
+            (0..rows.len()).filter(|row| !chosen.contains(row) && all[*row].iter().any(Option::is_some)).collect();
+        if unsettled >= HOPELESS && unsettled == changed.len() {
+            self.hopeless = true;
+            self.give_up(&rest, rows, all, out);
+            changed.extend(rest);
+            return Some(changed);
+        }
+        // Every other point as well: an even number of flips hides.
+        let more = self.walk(&place(&rest), Route::Straight, out, run)?;
+        let suspicious = self.differing(&rest, &more, all);
+        self.confirm_others(&rest, &suspicious, rows);
+        self.settle(rows, all, suspicious, out, run, &mut changed)?;
+        Some(changed)
+    }
+
+    /// Notes the rows that are not among those that differ as confirmed.
+    fn confirm_others(&mut self, of: &[usize], differing: &[(usize, Option<Values>)], rows: &[Vec<f64>]) {
+        for &row in of.iter().filter(|row| !differing.iter().any(|(other, _)| other == *row)) {
+            self.answers.confirm(&rows[row]);
+        }
+    }
+
+    /// Takes away the answers to rows: the model has another one every time.
+    fn give_up(&mut self, of: &[usize], rows: &[Vec<f64>], all: &[Values], out: &mut Responses) {
+        for &row in of {
+            let nothing = vec![None; all[row].len()];
+            self.replace(row, &rows[row], &all[row], &nothing, &nothing, out);
+        }
+    }
+
+    /// The rows whose walk ended elsewhere than they were answered; None for a walk without an end.
+    fn differing(&self, of: &[usize], walked: &[Walked], all: &[Values]) -> Vec<(usize, Option<Values>)> {
+        let differs = |(&row, walked): (&usize, &Walked)| match walked.values() {
+            Some(values) if self.alike(&all[row], values) => None,
+            other => Some((row, other.cloned())),
+        };
+        of.iter().zip(walked).filter_map(differs).collect()
+    }
+
+    /// Goes another way to rows whose replay differs: two ways that agree settle the answer, otherwise there is none. Returns how many
+    /// have none; None where a stop came before the end.
+    fn settle(
+        &mut self,
+        rows: &[Vec<f64>],
+        all: &[Values],
+        suspicious: Vec<(usize, Option<Values>)>,
+        out: &mut Responses,
+        run: &Run<'_>,
+        changed: &mut Vec<usize>,
+    ) -> Option<usize> {
+        let targets: Vec<Vec<f64>> = suspicious.iter().map(|(row, _)| rows[*row].clone()).collect();
+        let other = self.walk(&targets, Route::AxisByAxis, out, run)?;
+        let mut unsettled = 0;
+        for ((row, walked), other) in suspicious.into_iter().zip(other) {
+            let nothing = vec![None; all[row].len()];
+            let (walked, other) = (walked.as_ref().unwrap_or(&nothing), other.values().unwrap_or(&nothing));
+            unsettled += usize::from(self.replace(row, &rows[row], &all[row], walked, other, out));
+            changed.push(row);
+        }
+        Some(unsettled)
+    }
+
+    /// Takes the answer on which two ways agree, or none; whether it is none.
+    fn replace(
+        &mut self,
+        row: usize,
+        point: &[f64],
+        before: &Values,
+        walked: &Values,
+        other: &Values,
+        out: &mut Responses,
+    ) -> bool {
+        let mut unsettled = false;
+        for output in 0..before.len() {
+            let (first, second, third) = (before[output], walked[output], other[output]);
+            if first.is_none() || self.alike_at(output, first, second) {
+                continue;
+            }
+            let spread = self.reference.spread(output);
+            let name = self.hello.characteristics[output].clone();
+            out.note_non_repeatable([NonRepeatable::new(name, [second, first], spread, vec![point.to_vec()])]);
+            match second.filter(|_| self.alike_at(output, second, third)) {
+                Some(value) => out.set(row, output, value),
+                None => {
+                    unsettled = true;
+                    let fault = ProcessFault::TwoAnswers { first, second, third };
+                    out.fail(row, output, Box::new(ProcessError { fault, stderr: StderrTail::default() }).into());
+                }
+            }
+        }
+        // The value now is the one that two ways agree on, or none.
+        self.answers.confirm(point);
+        self.account.counts.unconfirmed += u64::from(unsettled);
+        unsettled
+    }
+
+    fn alike(&self, a: &Values, b: &Values) -> bool {
+        a.iter().zip(b).enumerate().all(|(output, (&a, &b))| self.alike_at(output, a, b))
+    }
+
+    fn alike_at(&self, output: usize, a: Option<f64>, b: Option<f64>) -> bool {
+        let noise = self.noise.get(output).copied().unwrap_or(0.0);
+        agree(a, b, self.reference.spread(output), NOISY * noise)
+    }
+
+    /// The answers at these points, each reached from the nominal one by a child that went no long way before; None where a stop
+    /// came before the end.
+    fn walk(&mut self, targets: &[Vec<f64>], route: Route, out: &mut Responses, run: &Run<'_>) -> Option<Vec<Walked>> {
+        let mut found: Vec<Walked> = Vec::new();
+        let mut truth: Option<Values> = None;
+        while found.len() < targets.len() {
+            // The way back to the nominal point is a long one: a child that it leads astray is replaced.
+            self.renew();
+            let begun = found.len();
+            while found.len() < targets.len() {
+                match self.walk_to(&targets[found.len()], route, &mut truth, out, run) {
+                    Walked::Stopped => return None,
+                    Walked::Astray if found.len() > begun => break,
+                    walked => {
+                        let lost = walked == Walked::Lost;
+                        found.push(walked);
+                        if lost {
+                            break;
+                        }
+                    }
+                }
+            }
+            if truth.is_none() {
+                // No process can be had any more.
+                found.resize(targets.len(), Walked::Lost);
+            }
+        }
+        Some(found)
+    }
+
+    /// One walk in the child that there is.
+    fn walk_to(
+        &mut self,
+        target: &[f64],
+        route: Route,
+        truth: &mut Option<Values>,
+        out: &mut Responses,
+        run: &Run<'_>,
+    ) -> Walked {
+        let mut way = vec![self.hello.nominal.clone()];
+        way.extend(route.points(&way[0], target));
+        let answers = match self.one_by_one(&way, out, run) {
+            Ok(answers) => answers,
+            Err(walked) => return walked,
+        };
+        match truth {
+            Some(truth) => {
+                if !self.settles(truth, &answers[0]) {
+                    return Walked::Astray;
+                }
+            }
+            None => {
+                // A fresh child knows nothing but the way from its start: this is what the nominal point has.
+                self.reference.trust(&answers[0]);
+                *truth = Some(answers[0].clone());
+            }
+        }
+        answers.last().map_or(Walked::Lost, |values| Walked::There(values.clone()))
+    }
+
+    /// Whether a nominal point is as before; small differences are noted as noise.
+    fn settles(&mut self, expected: &Values, found: &Values) -> bool {
+        self.noise.resize(expected.len(), 0.0);
+        let mut same = true;
+        for (output, (a, b)) in expected.iter().zip(found).enumerate() {
+            match (a, b) {
+                (Some(a), Some(b)) if (a - b).abs() <= FLIP * self.reference.spread(output) => {
+                    self.noise[output] = self.noise[output].max((a - b).abs());
+                }
+                (None, None) => {}
+                (Some(a), Some(b)) if a == b => {}
+                _ => same = false,
+            }
+        }
+        same
+    }
+
+    /// Answers to points in this order, one at a time, by one child.
+    fn one_by_one(&mut self, way: &[Vec<f64>], out: &mut Responses, run: &Run<'_>) -> Result<Vec<Values>, Walked> {
+        let mut answers = Responses::open(way.len(), out.outputs());
+        let (stopped, abandoned) = (|| run.stop_reason(), || run.abandoned());
+        let quiet = Run::to_the_end().stopping_when(&stopped).abandoning_when(&abandoned);
+        self.walking = true;
+        self.evaluate(&Points::from_rows(way), &quiet, &mut answers);
+        self.walking = false;
+        let sent = answers.answered().count();
+        out.spent(sent as i64 + answers.extra());
+        if sent < way.len() {
+            return Err(Walked::Stopped);
+        }
+        let lost = |error: &EvaluationError| match error {
+            EvaluationError::Process(error) => !matches!(error.fault, ProcessFault::NoValue { .. }),
+            _ => true,
+        };
+        if answers.errors().any(|(.., error)| lost(error)) {
+            return Err(Walked::Lost);
+        }
+        let values = |row: usize| (0..answers.outputs()).map(|output| answers.value(row, output)).collect();
+        Ok((0..way.len()).map(values).collect())
+    }
+}

@@ -1,0 +1,51 @@
+//! The quantiles that every result has, by the names of their probabilities.
+
+use serde::{Serialize, Serializer};
+
+use super::TAIL;
+use crate::pearson::Pearson;
+
+/// The names of the probabilities of [`Quantiles`], lowest first.
+pub const PROBABILITIES: [&str; 7] = ["0.00135", "0.01", "0.05", "0.5", "0.95", "0.99", "0.99865"];
+
+/// Something for each probability of [`PROBABILITIES`]; it serialises as a map by their names.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Quantiles<T = f64>(pub [T; 7]);
+
+impl Quantiles {
+    /// Of a Pearson law; the upper ones by what lies above, for `1 - p` would lose digits.
+    pub fn of(law: &Pearson) -> Self {
+        let [below, above] = [|law: &Pearson, p| law.quantile(p), |law: &Pearson, p| law.upper_quantile(p)];
+        let all =
+            [(TAIL, below), (0.01, below), (0.05, below), (0.5, below), (0.05, above), (0.01, above), (TAIL, above)];
+        Self(all.map(|(p, side)| side(law, p)))
+    }
+}
+
+impl<T> Quantiles<T> {
+    /// Each with the name of its probability.
+    pub fn iter(&self) -> impl Iterator<Item = (&'static str, &T)> {
+        PROBABILITIES.into_iter().zip(&self.0)
+    }
+}
+
+impl<T: Serialize> Serialize for Quantiles<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.iter())
+    }
+}
+
+#[cfg(feature = "schema")]
+impl<T: schemars::JsonSchema> schemars::JsonSchema for Quantiles<T> {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        format!("QuantilesOf{}", T::schema_name()).into()
+    }
+
+    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        std::collections::BTreeMap::<String, T>::json_schema(generator)
+    }
+}

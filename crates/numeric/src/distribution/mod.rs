@@ -1,0 +1,130 @@
+//! Input distributions, one file each, behind one trait.
+//!
+//! Everything that the derivative methods need of a distribution is its mean, its sigma, its standardised
+//! moments and its support; a [`Jacobi`] matrix gives Gauss rules, from which evaluation nodes and quadrature come.
+//!
+//! # A new distribution
+//! One new file with a type that implements [`Distribution`], one line in the list below, one arm where study files
+//! name distributions (`study/dimension/kinds.rs`), and one row in `tests/suite/distributions/densities.rs`.
+
+mod beta;
+mod central_moments;
+mod curvilinear_trapezoid;
+mod discretised;
+mod drifting;
+mod ends;
+mod error;
+mod exponential;
+mod gamma;
+mod inverse;
+mod lognormal;
+mod measured;
+mod mixture;
+mod normal;
+pub mod outliers;
+mod pearson;
+mod probability;
+mod rayleigh;
+pub(crate) mod rule;
+pub(crate) mod sample;
+mod standard_moments;
+pub mod standard_normal;
+mod student;
+mod tabulated;
+mod tail;
+mod trapezoidal;
+mod triangular;
+mod truncated_normal;
+mod two_values;
+mod u_shaped;
+mod uniform;
+mod weibull;
+pub(crate) mod ziggurat;
+
+pub use beta::Beta;
+pub use central_moments::CentralMoments;
+pub use curvilinear_trapezoid::CurvilinearTrapezoid;
+pub use drifting::Drifting;
+pub use error::DistributionError;
+pub use exponential::Exponential;
+pub use gamma::Gamma;
+pub use lognormal::Lognormal;
+pub use measured::Measured;
+pub use mixture::{Mixture, Part};
+pub use normal::Normal;
+pub use outliers::outliers;
+pub use pearson::PearsonLaw;
+pub use probability::Probability;
+pub use probability::behind_normal;
+pub use rayleigh::Rayleigh;
+pub use rule::Jacobi;
+pub use rule::Rule;
+pub use sample::{Resample, Reweighted, Sample};
+pub use standard_moments::StandardMoments;
+pub use student::Student;
+pub use tabulated::Tabulated;
+pub use trapezoidal::Trapezoidal;
+pub use triangular::Triangular;
+pub use truncated_normal::TruncatedNormal;
+pub use two_values::TwoValues;
+pub use u_shaped::UShaped;
+pub use uniform::Uniform;
+pub use weibull::Weibull;
+
+use error::{between, interval};
+pub(crate) use error::{finite, positive};
+
+use std::fmt::Debug;
+use std::sync::Arc;
+
+/// A distribution that follows from another one by scaling, or why there is none.
+pub type Scaled = Result<Arc<dyn Distribution>, DistributionError>;
+
+/// A probability distribution of one dimension, with sigma above 0.
+///
+/// A dimension that does not vary has no distribution at all, so an implementation never divides by zero.
+pub trait Distribution: Debug + Send + Sync {
+    /// The name that study files use, such as `normal`.
+    fn name(&self) -> &'static str;
+
+    /// Mean, in the dimension's own unit.
+    fn mean(&self) -> f64;
+
+    /// Standard deviation, in the dimension's own unit; finite and above 0.
+    fn sigma(&self) -> f64;
+
+    /// Moments 3 to 8 of `u = (x - mean)/sigma`, analytic wherever a closed form exists; NaN where the distribution has none, as
+    /// Student's has of orders that its degrees of freedom do not exceed.
+    fn standard_moments(&self) -> StandardMoments;
+
+    /// Smallest and largest possible value, in the dimension's own unit; infinite where there is no bound or where
+    /// it is unknown.
+    fn support(&self) -> [f64; 2];
+
+    /// The recurrence coefficients of the orthogonal polynomials of `u = (x - mean)/sigma` up to `order`, or as far
+    /// as they are known: a distribution known by eight moments ends at order 4, one with `m` atoms at order `m`.
+    fn jacobi(&self, order: usize) -> Jacobi;
+
+    /// Density, probabilities, quantiles and samples; None where only moments are known.
+    fn probability(&self) -> Option<&dyn Probability>;
+
+    /// The distribution of the same kind when the tolerance is `factor` times as wide and the middle of its band moves by
+    /// `moved`; None where the tolerance does not say how it varies.
+    ///
+    /// A normal distribution and those over the band keep their shape: widths scale, the middle moves, and a `shift` of
+    /// the mean against it stays. Those with a tail get a sigma `factor` times as large at the same mean and origin, so
+    /// that their shape changes. Exponential and Rayleigh distributions, whose mean is all that they have, and those
+    /// known by moments or by data do not scale.
+    ///
+    /// # Errors
+    /// When the scaled parameters are out of range.
+    fn scaled(&self, factor: f64, moved: f64) -> Option<Scaled> {
+        let _ = (factor, moved);
+        None
+    }
+
+    /// The measured values that the law follows from; None where it was given by parameters.
+    fn measured(&self) -> Option<&dyn Resample> {
+        None
+    }
+}

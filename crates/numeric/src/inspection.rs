@@ -1,0 +1,118 @@
+//! How a characteristic is measured before it is accepted: with a gauge that errs, within limits that are tightened by a guard band.
+
+/// A gauge and its guard bands.
+///
+/// A part is accepted where its measured value, which is normal about the true one with sigma `gauge`, lies within the limits, tightened by
+/// the guard on every side.
+///
+/// ```
+/// use sensitol::inspection::{Guard, Inspection};
+/// use sensitol::{Characteristic, SpecLimits};
+/// let inspection = Inspection::new(0.015)?.with_guard(Guard::Width(0.01))?;
+/// let gap = Characteristic::new("gap").with_limits(SpecLimits::new(Some(9.95), Some(10.05))?).with_inspection(inspection)?;
+/// assert_eq!(gap.inspection().unwrap().gauge(), 0.015);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Inspection {
+    gauge: f64,
+    guard: Guard,
+}
+
+/// How far the limits are tightened for acceptance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Guard {
+    /// By so much, in the unit of the characteristic.
+    Width(f64),
+    /// By so much that bad parts are accepted at this rate only, as a share of all parts.
+    FalseAccept(f64),
+}
+
+/// Why a characteristic cannot be inspected so.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum InspectionError {
+    /// The standard deviation of the gauge is negative, infinite or NaN.
+    #[error("the sigma of a gauge must be 0 or above, got {value}")]
+    Gauge {
+        /// As given.
+        value: f64,
+    },
+    /// The guard is negative, infinite or NaN.
+    #[error("a guard band must be 0 or above, got {value}: it tightens the limits on every side")]
+    Guard {
+        /// As given.
+        value: f64,
+    },
+    /// The wanted rate is 0 or less, or 1 or more.
+    #[error("the share of bad parts that are accepted must lie between 0 and 1, both excluded, got {value}")]
+    FalseAccept {
+        /// As given.
+        value: f64,
+    },
+    /// Nothing would be accepted.
+    #[error("guard {guard} leaves nothing between {lower} and {upper}")]
+    NothingLeft {
+        /// The guard.
+        guard: f64,
+        /// The lower limit.
+        lower: f64,
+        /// The upper limit.
+        upper: f64,
+    },
+    /// There is nothing to inspect for.
+    #[error("a gauge needs limits to inspect for: give the characteristic a lower or an upper one")]
+    NoLimits,
+}
+
+impl Inspection {
+    /// By a gauge with this standard deviation, without guard bands.
+    ///
+    /// # Errors
+    /// When it is negative or not finite.
+    pub fn new(gauge: f64) -> Result<Self, InspectionError> {
+        match gauge.is_finite() && gauge >= 0.0 {
+            true => Ok(Self { gauge, guard: Guard::Width(0.0) }),
+            false => Err(InspectionError::Gauge { value: gauge }),
+        }
+    }
+
+    /// With guard bands.
+    ///
+    /// # Errors
+    /// When a width is negative or not finite, or a rate does not lie between 0 and 1.
+    pub fn with_guard(mut self, guard: Guard) -> Result<Self, InspectionError> {
+        match guard {
+            Guard::Width(value) if !(value.is_finite() && value >= 0.0) => {
+                return Err(InspectionError::Guard { value });
+            }
+            Guard::FalseAccept(value) if !(value > 0.0 && value < 1.0) => {
+                return Err(InspectionError::FalseAccept { value });
+            }
+            _ => {}
+        }
+        self.guard = guard;
+        Ok(self)
+    }
+
+    /// The standard deviation of the gauge.
+    pub fn gauge(&self) -> f64 {
+        self.gauge
+    }
+
+    /// Its guard bands.
+    pub fn guard(&self) -> Guard {
+        self.guard
+    }
+
+    /// For these limits, the lower and the upper one.
+    pub(crate) fn checked(self, limits: [Option<f64>; 2]) -> Result<Self, InspectionError> {
+        match (self.guard, limits) {
+            (_, [None, None]) => Err(InspectionError::NoLimits),
+            (Guard::Width(guard), [Some(lower), Some(upper)]) if lower + guard >= upper - guard => {
+                Err(InspectionError::NothingLeft { guard, lower, upper })
+            }
+            _ => Ok(self),
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! `K(s) = log E exp(s (y - centre))` of a sum of independent components, and where it exists.
+
+use super::complex::Complex;
+use super::forms::{Block, Forms};
+use super::hats::{Hat, Hats};
+use super::single_sum::Single;
+use super::surface::Surface;
+use super::tree::Tree;
+
+/// A tilt up to this many by sigma is looked for.
+const FARTHEST: f64 = 2000.0;
+/// Below this, by sigma, a tail is too heavy to be tilted.
+const LEAST_TILT: f64 = 0.3;
+
+/// The sum of those components of a surface whose transform is known.
+#[derive(Debug)]
+pub(super) struct Transform {
+    pub(super) forms: Forms,
+    pub(super) hats: Hats,
+    pub(super) singles: Vec<Single>,
+    pub(super) trees: Vec<Tree>,
+    /// About the centre of the surface, as everything here.
+    pub(super) mean: f64,
+    pub(super) sigma: f64,
+    /// Lowest and highest real part of `s`; infinite where none was found.
+    pub(super) domain: [f64; 2],
+    /// Where the contour cannot be bent, because there the law of a quadratic form has a corner; None where it has none.
+    pub(super) vertex: Option<f64>,
+}
+
+/// A component's kind.
+enum Kind {
+    Form(Block),
+    Hat(Hat),
+    Single(Single),
+    Tree(Tree),
+}
+
+impl Kind {
+    fn of(surface: &Surface, members: &[usize]) -> Option<Self> {
+        if members.iter().all(|&j| surface.is_normal_parabola(j)) {
+            return Some(Self::Form(Block::of(surface, members)?));
+        }
+        if let [j] = *members {
+            let law = std::sync::Arc::clone(&surface.inputs[j]);
+            if let Some(hat) = Hat::of(j, &law, &surface.parts[j]) {
+                return Some(Self::Hat(hat));
+            }
+            return Some(Self::Single(Single::new(j, law, surface.parts[j])));
+        }
+        Tree::of(surface, members).map(Self::Tree)
+    }
+}
+
+impl Transform {
+    /// Of a surface's components, and the components that it does not take: neither tree nor form, or too heavy a tail, or a tree where
+    /// there are to be none.
+    pub(super) fn of(surface: &Surface, components: &[Vec<usize>], trees: bool) -> (Self, Vec<Vec<usize>>) {
+        let mut transform = Self {
+            forms: Forms::default(),
+            hats: Hats::default(),
+            singles: Vec::new(),
+            trees: Vec::new(),
+            mean: 0.0,
+            sigma: 0.0,
+            domain: [f64::NEG_INFINITY, f64::INFINITY],
+            vertex: None,
+        };
+        let mut left = Vec::new();
+        for members in components {
+            match Kind::of(surface, members) {
+                Some(Kind::Form(block)) => transform.forms.push(block),
+                Some(Kind::Hat(hat)) => transform.hats.push(hat),
+                Some(Kind::Single(single)) => transform.singles.push(single),
+                Some(Kind::Tree(tree)) if trees => transform.trees.push(tree),
+                Some(Kind::Tree(_)) | None => left.push(members.clone()),
+            }
+        }
+        transform.measure();
+        // A component whose own tail is too heavy for a tilt of the whole.
+        let least = LEAST_TILT / transform.sigma;
+        let bears = |single: &Single| single.bears(least, least) && single.bears(-least, least);
+        let heavy: Vec<usize> = transform.singles.iter().filter(|single| !bears(single)).map(|s| s.input).collect();
+        transform.singles.retain(|single| !heavy.contains(&single.input));
+        left.extend(heavy.iter().map(|&input| vec![input]));
+        let tall = |tree: &Tree| !(tree.bears(least, least) && tree.bears(-least, least));
+        let heavy: Vec<Vec<usize>> = transform.trees.iter().filter(|tree| tall(tree)).map(Tree::sorted).collect();
+        transform.trees.retain(|tree| !heavy.contains(&tree.sorted()));
+        left.extend(heavy);
+        if !left.is_empty() {
+            left.sort();
+            transform.measure();
+        }
+        transform.domain = transform.reach();
+        if transform.is_form() {
+            transform.vertex = transform.forms.vertex();
+        }
+        (transform, left)
+    }
+
+    /// Whether there is no component at all.
+    pub(super) fn is_empty(&self) -> bool {
+        self.forms.blocks.is_empty() && self.hats.is_empty() && self.is_closed()
+    }
+
+    /// Whether there are quadratic forms of normal inputs only.
+    pub(super) fn is_form(&self) -> bool {
+        self.hats.is_empty() && self.is_closed()
+    }
+
+    /// Whether no panel is summed.
+    pub(super) fn is_closed(&self) -> bool {
+        self.singles.is_empty() && self.trees.is_empty()
+    }
+
+    /// Whether there are closed forms and atoms only, so that a contour may have many points.
+    pub(super) fn is_cheap(&self) -> bool {
+        self.trees.is_empty() && self.singles.iter().all(Single::is_discrete)
+    }
+
+    /// Mean and sigma.
+    fn measure(&mut self) {
+        let (mut mean, mut variance) = (self.forms.mean(), self.forms.variance() + self.hats.variance());
+        for single in &self.singles {
+            let [own, spread] = single.moments();
+            (mean, variance) = (mean + own, variance + spread);
+        }
+        for tree in &self.trees {
+            let [own, spread] = tree.moments();
+            (mean, variance) = (mean + own, variance + spread);
+        }
+        (self.mean, self.sigma) = (mean, variance.sqrt());
+    }
+
+    /// The domain: of the forms in closed form; of the others as far as no cut end of an unbounded input weighs anything.
+    fn reach(&self) -> [f64; 2] {
+        const GROWTH: f64 = 1.25;
+        let [low, high] = self.forms.domain();
+        let at_mean = 1.0 / self.sigma;
+        let bears = |theta: f64| {
+            self.singles.iter().all(|single| single.bears(theta, at_mean))
+                && self.trees.iter().all(|tree| tree.bears(theta, at_mean))
+        };
+        let far = |sign: f64| {
+            let unbounded = self.is_closed();
+            let mut t = 0.02;
+            while !unbounded && t < FARTHEST && bears(sign * t * GROWTH / self.sigma) {
+                t *= GROWTH;
+            }
+            if unbounded || t >= FARTHEST { f64::INFINITY } else { t / self.sigma }
+        };
+        [low.max(-far(-1.0)), high.min(far(1.0))]
+    }
+
+    /// `[K, K', K'']` at a real `theta` within the domain; the derivatives of trees by differences, which are good for a
+    /// contour.
+    pub(super) fn cumulants(&self, theta: f64) -> [f64; 3] {
+        let (forms, hats) = (self.forms.cumulants(theta), self.hats.cumulants(theta));
+        let [mut k, mut k1, mut k2] = std::array::from_fn(|order| forms[order] + hats[order]);
+        for single in &self.singles {
+            let [own, first, second] = single.cumulants(theta);
+            (k, k1, k2) = (k + own, k1 + first, k2 + second);
+        }
+        if !self.trees.is_empty() {
+            let step = 1e-3 / self.sigma;
+            for tree in &self.trees {
+                let [below, at, above] = [theta - step, theta, theta + step].map(|theta| tree.log(theta));
+                k += at;
+                k1 += (above - below) / (2.0 * step);
+                k2 += (above - 2.0 * at + below) / (step * step);
+            }
+        }
+        [k, k1, k2]
+    }
+
+    /// `K(theta)` of every single input.
+    pub(super) fn logs(&self, theta: f64) -> Vec<f64> {
+        self.singles.iter().map(|single| single.cumulants(theta)[0]).collect()
+    }
+
+    /// `M(s)/M(theta)` for a block of points `s = theta + i t`; None where a tree is too large.
+    pub(super) fn ratios(&self, theta: f64, logs: &[f64], from: f64, step: f64, out: &mut [Complex]) -> Option<()> {
+        let at_theta = self.forms.log(Complex::from(theta)).re;
+        for (i, out) in out.iter_mut().enumerate() {
+            let s = Complex::new(theta, from + step * i as f64);
+            *out = (self.forms.log(s) - Complex::from(at_theta)).exp() * self.hats.ratio(theta, s.im);
+        }
+        for (single, &log) in self.singles.iter().zip(logs) {
+            single.multiply(theta, log, from, step, out);
+        }
+        self.trees.iter().all(|tree| tree.multiply(theta, from, step, out)).then_some(())
+    }
+}

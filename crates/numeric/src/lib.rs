@@ -1,0 +1,28 @@
+//! The mathematics of tolerance analysis: distributions, moments, the Pearson system, correlation, samples and surface distributions.
+//!
+//! Nothing here knows a model, evaluates one, or reads a file.
+
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
+
+pub mod capability;
+pub mod characteristic;
+pub mod correlation;
+pub mod dimension;
+pub mod distribution;
+pub mod elementary;
+pub mod fits;
+pub mod inspection;
+pub mod labels;
+pub mod law;
+pub mod moments;
+pub mod names;
+pub mod parallel;
+pub mod pearson;
+pub mod points;
+pub mod requirement;
+pub mod sampling;
+pub mod shape;
+pub mod surrogate;
+pub mod time;
+pub mod unit;
+pub mod verdict;

@@ -1,0 +1,93 @@
+//! Loops over all cores: by rayon where there are threads; one item after the other in a browser, whose WebAssembly has one thread.
+//!
+//! Results are collected in the order of the items, so both give the same bits.
+
+use std::sync::{Mutex, PoisonError};
+
+#[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
+pub use rayon::join;
+
+/// Two pieces of work, one after the other here.
+#[cfg(all(target_family = "wasm", target_os = "unknown"))]
+pub fn join<A, B>(first: impl FnOnce() -> A, second: impl FnOnce() -> B) -> (A, B) {
+    (first(), second())
+}
+
+/// How many threads work side by side.
+pub fn threads() -> u32 {
+    #[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
+    return rayon::current_num_threads() as u32;
+    #[cfg(all(target_family = "wasm", target_os = "unknown"))]
+    1
+}
+
+/// Rooms to work in, as many as tasks run at once: a task takes one that another has left.
+pub struct Rooms<T>(Mutex<Vec<T>>);
+
+impl<T> Rooms<T> {
+    /// None yet.
+    pub fn none() -> Self {
+        Self(Mutex::new(Vec::new()))
+    }
+
+    /// Works in a room that is free, or in a new one.
+    pub fn within<R>(&self, new: impl FnOnce() -> T, work: impl FnOnce(&mut T) -> R) -> R {
+        let free = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let left = free().pop();
+        let mut room = left.unwrap_or_else(new);
+        let result = work(&mut room);
+        free().push(room);
+        result
+    }
+}
+
+/// Parallel iterators of rayon.
+#[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
+pub mod prelude {
+    pub use rayon::prelude::*;
+}
+
+/// The functions of rayon that this crate calls, on iterators of the standard library.
+#[cfg(all(target_family = "wasm", target_os = "unknown"))]
+pub mod prelude {
+    pub trait IntoParallelIterator: IntoIterator + Sized {
+        fn into_par_iter(self) -> Self::IntoIter {
+            self.into_iter()
+        }
+    }
+
+    impl<I: IntoIterator> IntoParallelIterator for I {}
+
+    pub trait ParallelSlice<T> {
+        fn par_iter(&self) -> std::slice::Iter<'_, T>;
+        fn par_iter_mut(&mut self) -> std::slice::IterMut<'_, T>;
+        fn par_chunks(&self, size: usize) -> std::slice::Chunks<'_, T>;
+        fn par_chunks_mut(&mut self, size: usize) -> std::slice::ChunksMut<'_, T>;
+    }
+
+    impl<T> ParallelSlice<T> for [T] {
+        fn par_iter(&self) -> std::slice::Iter<'_, T> {
+            self.iter()
+        }
+
+        fn par_iter_mut(&mut self) -> std::slice::IterMut<'_, T> {
+            self.iter_mut()
+        }
+
+        fn par_chunks(&self, size: usize) -> std::slice::Chunks<'_, T> {
+            self.chunks(size)
+        }
+
+        fn par_chunks_mut(&mut self, size: usize) -> std::slice::ChunksMut<'_, T> {
+            self.chunks_mut(size)
+        }
+    }
+
+    pub trait ParallelIterator: Iterator + Sized {
+        fn flat_map_iter<U: IntoIterator, F: FnMut(Self::Item) -> U>(self, each: F) -> std::iter::FlatMap<Self, U, F> {
+            self.flat_map(each)
+        }
+    }
+
+    impl<I: Iterator> ParallelIterator for I {}
+}

@@ -1,0 +1,95 @@
+//! Estimates with their standard errors.
+
+use super::Summary;
+
+/// A value that a sample estimates, and how uncertain it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate {
+    /// The value.
+    pub value: f64,
+    /// Its standard error; None where the sample does not tell.
+    pub standard_error: Option<f64>,
+}
+
+/// Fewer values have no standard errors.
+pub const FEWEST: u64 = 10;
+
+/// The four moments of a sample of independent values.
+///
+/// The standard errors are those of the asymptotic normal law of a smooth function of moments, by its influence function
+/// (Serfling 1980, section 6.3) with the sample's own moments: with `u = (y - mean)/sigma`, skewness `s`, kurtosis `k`,
+///
+/// ```text
+/// mean: sigma u                 sigma: sigma (u^2 - 1)/2
+/// skewness: u^3 - s - 3 u - (3/2) s (u^2 - 1)        kurtosis: u^4 - k - 4 s u - 2 k (u^2 - 1)
+/// ```
+///
+/// A kurtosis of 10 or more needs its eighth moment, which a sample of less than a million hardly has: there the standard
+/// error is too small.
+pub fn of_moments(summary: &Summary) -> [Option<Estimate>; 4] {
+    let n = summary.count() as f64;
+    if summary.count() == 0 {
+        return [None; 4];
+    }
+    let (mean, sigma) = (summary.mean(), summary.sigma());
+    if !sigma.is_finite() {
+        return [
+            Some(Estimate { value: mean, standard_error: None }).filter(|mean| mean.value.is_finite()),
+            None,
+            None,
+            None,
+        ];
+    }
+    let Some(a) = summary.standardised() else {
+        let exact = |value| Some(Estimate { value, standard_error: (summary.count() > 1).then_some(0.0) });
+        return [exact(mean), exact(0.0), None, None];
+    };
+    let (s, k) = (a[3], a[4]);
+    // E[p(u)^2] of a polynomial.
+    let spread = |p: [f64; 5]| {
+        let terms = (0..25).map(|i| p[i / 5] * p[i % 5] * a[i / 5 + i % 5]);
+        (terms.sum::<f64>().max(0.0) / n).sqrt()
+    };
+    // Its own moments say nothing of how uncertain a handful of values leaves them.
+    let known = summary.count() >= FEWEST;
+    // Powers that leave the range of doubles are 0 or infinite: what rests on them is unknown, and no 0.
+    let whole = |order: usize| summary.moment(order).is_normal();
+    let estimate = |of: [usize; 2], value, error| {
+        let error = Some(error).filter(|_| known && whole(of[1]));
+        Some(Estimate { value, standard_error: error }).filter(|_| whole(of[0]))
+    };
+    [
+        Some(Estimate {
+            value: mean,
+            standard_error: Some(sigma * spread([0.0, 1.0, 0.0, 0.0, 0.0])).filter(|_| known && whole(2)),
+        }),
+        estimate([2, 4], sigma, sigma * spread([-0.5, 0.0, 0.5, 0.0, 0.0])),
+        estimate([4, 6], s, spread([0.5 * s, -3.0, -1.5 * s, 1.0, 0.0])),
+        estimate([4, 8], k, spread([k, -4.0 * s, -2.0 * k, 0.0, 1.0])),
+    ]
+}
+
+/// One error of a value with a 95 % interval: half of the way to its farther end, as two errors are to reach both.
+pub fn one_error(value: f64, [low, high]: [f64; 2]) -> f64 {
+    0.5 * (high - value).max(value - low)
+}
+
+/// The 95 % interval of a share of which `hits` of `n` were seen (Wilson 1927): never empty, never outside 0 to 1.
+///
+/// ```
+/// use sensitol::internals::wilson;
+/// let [low, high] = wilson(1000.0, 1000.0);
+/// assert!(low < 0.9963 && low > 0.996 && high == 1.0); // all of a thousand is not all
+/// ```
+pub fn wilson(hits: f64, n: f64) -> [f64; 2] {
+    const Z: f64 = 1.959_963_984_540_054;
+    if n <= 0.0 {
+        return [0.0, 1.0];
+    }
+    let (share, square) = (hits / n, Z * Z / n);
+    let middle = (share + 0.5 * square) / (1.0 + square);
+    let half = Z * ((share * (1.0 - share) + 0.25 * square) / n).sqrt() / (1.0 + square);
+    let low = if hits == 0.0 { 0.0 } else { (middle - half).max(0.0) };
+    let high = if hits == n { 1.0 } else { (middle + half).min(1.0) };
+    [low, high]
+}

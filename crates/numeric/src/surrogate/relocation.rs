@@ -1,0 +1,93 @@
+//! The same surrogate in terms of inputs whose mean and sigma have moved.
+
+use super::{Surrogate, Univariate};
+
+/// Where an input's law has moved: `u = shift + stretch v`, in the old sigmas about the old mean, with `v` standardised
+/// anew.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Relocation {
+    /// How far the mean has moved, in old sigmas.
+    pub shift: f64,
+    /// The new sigma, in old sigmas.
+    pub stretch: f64,
+}
+
+impl Relocation {
+    /// An input that stays as it is.
+    pub const NONE: Self = Self { shift: 0.0, stretch: 1.0 };
+}
+
+impl Surrogate {
+    /// The same function of the dimensions, in terms of the moved inputs `v`.
+    ///
+    /// A part is expanded about its new mean; a product `A_jk u_j u_k` becomes
+    /// `A_jk (d_j d_k + d_j r_k v_k + d_k r_j v_j + r_j r_k v_j v_k)` with shifts `d` and stretches `r`, so that an
+    /// interaction turns into a slope of `k` where the mean of `j` moves.
+    ///
+    /// Shapes: `moved` has length N. No evaluation.
+    ///
+    /// ```
+    /// use sensitol::internals::reach::*;
+    /// use sensitol::internals::{Interactions, Surrogate, Univariate};
+    /// use sensitol::analysis::Relocation;
+    /// // y = u0 + u0 u1, and the mean of u1 moves by half a sigma: y = 1.5 u0 + u0 v1.
+    /// let parts = vec![Some(Univariate::of_coefficients(&[1.0])), Some(Univariate::of_coefficients(&[0.0]))];
+    /// let product = Interactions::of_pairs(2, [(0, 1, 1.0)]);
+    /// let moved = Surrogate { centre: 0.0, parts, interactions: product }
+    ///     .relocated(&[Relocation::NONE, Relocation { shift: 0.5, stretch: 1.0 }]);
+    /// assert_eq!(moved.parts[0].unwrap().slope(), 1.5);
+    /// ```
+    pub fn relocated(&self, moved: &[Relocation]) -> Self {
+        let interactions = &self.interactions;
+        let mut centre = self.centre;
+        let mut parts = Vec::with_capacity(self.parts.len());
+        for (j, (part, to)) in self.parts.iter().zip(moved).enumerate() {
+            let slope: f64 = interactions.neighbours(j).map(|(k, a)| a * moved[k].shift).sum();
+            // Every product is met from both of its sides.
+            centre += 0.5 * slope * to.shift;
+            parts.push(part.map(|part| {
+                let (constant, part) = part.relocated(*to);
+                centre += constant;
+                part.with_slope(slope * to.stretch)
+            }));
+        }
+        let stretches: Vec<f64> = moved.iter().map(|to| to.stretch).collect();
+        Self { centre, parts, interactions: interactions.scaled(&stretches) }
+    }
+}
+
+impl Univariate {
+    /// `g(shift + stretch v) = constant + part(v)`.
+    fn relocated(&self, to: Relocation) -> (f64, Self) {
+        if to == Relocation::NONE {
+            return (0.0, *self);
+        }
+        let constant = self.value(to.shift);
+        let [c1, c2, c3, c4] = self.coefficients;
+        let (d, r) = (to.shift, to.stretch);
+        // Derivatives at the new mean by their factorials: Taylor's series, which ends.
+        let first = c1 + d * (2.0 * c2 + d * (3.0 * c3 + d * 4.0 * c4));
+        let second = c2 + d * (3.0 * c3 + d * 6.0 * c4);
+        let third = c3 + d * 4.0 * c4;
+        let coefficients = [r * first, r * r * second, r * r * r * third, r * r * r * r * c4];
+        (constant, Self { coefficients, degree: self.degree })
+    }
+
+    /// With this much added to the factor of the square.
+    pub fn with_curvature(mut self, more: f64) -> Self {
+        self.coefficients[1] += more;
+        self
+    }
+
+    /// Without factors of higher powers that are no larger than this.
+    pub(crate) fn without_bends(mut self, least: f64) -> Self {
+        self.coefficients[1..].iter_mut().filter(|c| c.abs() <= least).for_each(|c| *c = 0.0);
+        self
+    }
+
+    /// With this much added to the slope.
+    pub fn with_slope(mut self, more: f64) -> Self {
+        self.coefficients[0] += more;
+        self
+    }
+}

@@ -1,0 +1,97 @@
+//! The ranges of a characteristic beside its limits, and what its contributions leave out.
+
+use super::figures::{Figures, Named};
+use sensitol::analysis::CharacteristicAnalysis;
+use crate::document::number::{NEWS, beside, percent};
+use crate::document::{Bar, Bars, Extent, Fill, Line, Tone};
+use sensitol::extremes::Extremes;
+use crate::statistics::CharacteristicStatistics;
+
+/// A part of the extent of all intervals that rounding may make.
+const ROUNDING: f64 = 1e-9;
+/// A limit farther off than this many extents would press everything together.
+const FAR: f64 = 2.0;
+
+/// The part of the variance that the contributions leave, in words; None where that is nothing to speak of, or unknown.
+pub(super) fn left_out(one: &CharacteristicAnalysis) -> Option<String> {
+    let left_out = one.left_out_share.filter(|share| *share > 0.5 * NEWS)?;
+    Some(format!("{} % is left out by all of these", percent(left_out)))
+}
+
+/// The ranges below a density: mean \u{b1} 3 sigma, RSS, and the worst case as well as it is known.
+pub(super) fn ranges(one: &CharacteristicAnalysis) -> Vec<(String, [f64; 2])> {
+    let around = |middle: Option<f64>, reach: Option<f64>| Some([middle? - reach?, middle? + reach?]);
+    let worst = worst_case(one).map_or(("worst case", None), |(name, ends)| (name, Some(ends)));
+    [
+        ("mean \u{b1} 3\u{3c3}", around(one.mean(), one.sigma().map(|sigma| 3.0 * sigma))),
+        ("RSS", around(one.middle, one.rss)),
+        worst,
+    ]
+    .into_iter()
+    .filter_map(|(name, ends)| Some((name.to_owned(), ends.filter(|ends| ends[0] < ends[1])?)))
+    .collect()
+}
+
+/// The worst case as well as it is known, and how it is known: proven, found by a search, or linear.
+pub(super) fn worst_case(one: &CharacteristicAnalysis) -> Option<(&'static str, [f64; 2])> {
+    let searched = one.extremes.as_ref().map(|found| [found.least.value, found.greatest.value]);
+    match (searched, one.proof().filter(|proof| proof.proven)) {
+        (Some(ends), Some(_)) => Some(("worst case, proven", ends)),
+        (None, Some(proof)) => Some(("worst case, proven", proof.bounds)),
+        (Some(ends), None) => Some(("worst case found", ends)),
+        (None, None) => Some(("worst case, linear", one.worst_case?)),
+    }
+}
+
+/// Worst case, RSS and three sigma on one scale with the limits; None where there is no extent.
+pub(super) fn spans(one: &CharacteristicAnalysis) -> Option<Bars> {
+    let around = |middle: Option<f64>, reach: Option<f64>| Some([middle? - reach?, middle? + reach?]);
+    let found = one.extremes.as_ref();
+    let proven = if found.is_some_and(Extremes::proven) { "extremes, proven" } else { "extremes found" };
+    // Unless the study says otherwise.
+    let bender = one.rss.zip(one.inflated_rss).is_none_or(|(rss, inflated)| (inflated - 1.5 * rss).abs() <= 1e-9 * rss);
+    let inflated = if bender { "RSS x 1.5 (Bender)" } else { "RSS x factors" };
+    let intervals: Vec<(&str, [f64; 2])> = [
+        ("worst case, linear", one.worst_case),
+        (proven, found.map(|found| [found.least.value, found.greatest.value])),
+        ("worst case, proven bounds", one.proof().map(|proof| proof.bounds)),
+        ("RSS", around(one.middle, one.rss)),
+        (inflated, around(one.middle, one.inflated_rss)),
+        ("RSS with shifted means", around(one.middle, one.mean_shift_rss)),
+        ("mean \u{b1} 3 sigma", around(one.mean(), one.sigma().map(|sigma| 3.0 * sigma))),
+    ]
+    .into_iter()
+    .filter_map(|(name, interval)| Some((name, interval?)))
+    .collect();
+    let limits = Named::limits(one);
+    let ends = intervals.iter().flat_map(|(_, interval)| *interval);
+    let extent = ends.clone().fold(f64::NEG_INFINITY, f64::max) - ends.clone().fold(f64::INFINITY, f64::min);
+    let middle = one.mean().or(one.middle).unwrap_or(0.0);
+    let near = limits.into_iter().flatten().filter(|limit| (limit - middle).abs() < FAR * extent);
+    let scale = Extent::over(ends.chain(near), 0.04, 100.0)?;
+    let (unit, slack) = (one.scale(), ROUNDING * extent);
+    let limited = limits != [None, None];
+    let row = |(name, [from, to]): (&str, [f64; 2])| {
+        let kept = one.lower().is_none_or(|lower| from >= lower - slack)
+            && one.upper().is_none_or(|upper| to <= upper + slack);
+        let fill = if limited && !kept { Fill::Over } else { Fill::Span };
+        let x = scale.at(from);
+        Bar {
+            name: name.to_owned(),
+            parts: vec![(fill, [x, (scale.at(to) - x).max(0.2)])],
+            text: format!("{} .. {}", beside(from, unit), beside(to, unit)),
+            remark: match (limited, kept) {
+                (false, _) => Line::default(),
+                (true, true) => Line::toned("within", Tone::Good),
+                (true, false) => Line::toned("exceeds", Tone::Bad),
+            },
+        }
+    };
+    let inside = |x: &f64| *x >= scale.from && *x <= scale.to;
+    Some(Bars {
+        caption: format!("Intervals of {} on one scale, with the limits as lines", one.name()),
+        rows: intervals.into_iter().map(row).collect(),
+        marks: limits.into_iter().flatten().filter(inside).map(|limit| scale.at(limit)).collect(),
+        legend: Vec::new(),
+    })
+}

@@ -1,0 +1,87 @@
+//! The tabular parts of reports as files of CSV.
+
+use super::Report;
+use super::budget::Budget;
+use super::figures::Named;
+use super::stack::{Stack, stack_document};
+use crate::document::csv::{csv, joined};
+use crate::document::{DataTable, Document};
+
+/// The tables of an analysis but for the stacks.
+const TABLES: [&str; 6] = ["dimensions", "characteristics", "sensitivities", "interactions", "quantiles", "warnings"];
+
+/// Bytes of a characteristic's name in a file name, of the 255 that a file name has.
+const LONGEST: usize = 100;
+
+/// One file: its name and its text.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CsvFile {
+    /// A name that is safe on every file system, `sensitivities.csv`.
+    pub name: String,
+    /// The whole table.
+    pub text: String,
+}
+
+/// The tables of a document by their names.
+pub fn csv_tables(document: &Document, names: &[&str]) -> Vec<CsvFile> {
+    names.iter().map(|name| CsvFile { name: format!("{name}.csv"), text: csv(document, name) }).collect()
+}
+
+/// The tables of a report: `dimensions.csv`, `characteristics.csv`, `sensitivities.csv`, `interactions.csv`, `quantiles.csv`,
+/// `warnings.csv`, and `stack-NAME.csv` for every characteristic.
+pub fn csv_files(report: &Report) -> Vec<CsvFile> {
+    let names = csv_file_names(report.analysis.characteristics.iter().map(|one| one.name()));
+    let document = report.document();
+    let tables = TABLES.iter().map(|name| csv(&document, name));
+    let stacks = report.stacks().into_iter().map(|stack| stack_csv(&[stack]));
+    names.into_iter().zip(tables.chain(stacks)).map(|(name, text)| CsvFile { name, text }).collect()
+}
+
+/// The names of the files that [`csv_files`] makes of a report on these characteristics.
+pub fn csv_file_names<'n>(characteristics: impl IntoIterator<Item = &'n str>) -> Vec<String> {
+    TABLES.iter().map(|name| format!("{name}.csv")).chain(stack_file_names(characteristics)).collect()
+}
+
+/// `stack-NAME.csv`: letters, digits, `-`, `_` and `.` stay, everything else is `_`; names that would be the same where case does
+/// not count have a number.
+fn stack_file_names<'n>(characteristics: impl IntoIterator<Item = &'n str>) -> Vec<String> {
+    let mut taken: Vec<String> = Vec::new();
+    let safe = |c: char| if c.is_alphanumeric() || ['-', '_', '.'].contains(&c) { c } else { '_' };
+    for name in characteristics {
+        let kept = name.char_indices().take_while(|(at, c)| at + c.len_utf8() <= LONGEST);
+        let stem: String = kept.map(|(_, c)| safe(c)).collect();
+        let numbered = |number: usize| match number {
+            1 => format!("stack-{stem}.csv"),
+            number => format!("stack-{stem}-{number}.csv"),
+        };
+        let free = |name: &String| !taken.iter().any(|taken| taken.to_lowercase() == name.to_lowercase());
+        let name = (1..).map(numbered).find(free).expect("numbers do not end");
+        taken.push(name);
+    }
+    taken
+}
+
+/// Stacks as one table: dimensions and totals of every characteristic, by `row`. Of a total, `nominal` is the middle, and `lower`
+/// and `upper` are its half width as deviations.
+pub fn stack_csv(stacks: &[Stack]) -> String {
+    csv(&stack_document(stacks), "stack")
+}
+
+/// Budgets of one or several studies as one table, with the study's name in front where there are several.
+pub fn budget_csv_of_studies(studies: &[(String, Vec<Budget>)]) -> String {
+    let several = studies.len() > 1;
+    let tables: Vec<(&str, DataTable)> = studies
+        .iter()
+        .flat_map(|(study, budgets)| budgets.iter().flat_map(Budget::tables).map(move |table| (study.as_str(), table)))
+        .collect();
+    joined(tables.iter().map(|(study, table)| (several.then_some(["study", *study]), table)))
+}
+
+/// The stacks of several studies as one table, with the study's name before the columns of [`stack_csv`].
+pub fn stack_csv_of_studies(studies: &[(String, Vec<Stack>)]) -> String {
+    let tables: Vec<(&str, DataTable)> = studies
+        .iter()
+        .flat_map(|(study, stacks)| stacks.iter().flat_map(Stack::tables).map(move |table| (study.as_str(), table)))
+        .collect();
+    joined(tables.iter().map(|(study, table)| (Some(["study", *study]), table)))
+}

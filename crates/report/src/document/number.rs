@@ -1,0 +1,226 @@
+//! Numbers and names for people: rounded to what they are worth, the sign for what is unknown, and what is too small to be shown.
+
+use sensitol_numeric::names::{clean, shortened_to};
+
+/// In place of what is unknown.
+pub const UNKNOWN: &str = "-";
+
+/// Names longer than this are shortened in their middle.
+const NAME: usize = 30;
+
+/// Shares of the variance below this are not shown one by one.
+pub(crate) const NEWS: f64 = 1e-4;
+
+/// A power of ten, just so: the last digit of `libm::pow` may be another one, and a label would show it.
+pub(crate) fn power_of_ten(exponent: f64) -> f64 {
+    format!("1e{exponent}").parse().unwrap_or_else(|_| libm::pow(10.0, exponent))
+}
+
+/// A count with what is counted.
+pub fn plural(count: usize, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
+}
+
+/// A yield in percent, with three digits of what is rejected.
+pub(crate) fn share(rejected: f64) -> String {
+    let percent = 100.0 * rejected;
+    if percent <= 0.0 {
+        return "100 %".to_owned();
+    }
+    let decimals = (2.0 - libm::log10(percent).floor()).clamp(2.0, 12.0) as usize;
+    let text = format!("{:.decimals$}", 100.0 - percent);
+    match text.trim_end_matches('0') {
+        "100." => "100 %".to_owned(),
+        "0." => "0 %".to_owned(),
+        _ => format!("{text} %"),
+    }
+}
+
+/// As many decimals as show `digits` significant digits of `scale`; None where that takes an exponent.
+pub(crate) fn decimals(scale: f64, digits: i32) -> Option<usize> {
+    if scale == 0.0 || !scale.is_finite() {
+        return Some(0);
+    }
+    let magnitude = libm::log10(scale.abs()).floor() as i32;
+    usize::try_from((digits - 1 - magnitude).max(0)).ok().filter(|&decimals| decimals <= 9)
+}
+
+/// `digits` significant digits, with an exponent where the number is very large or very small.
+pub fn significant(value: f64, digits: usize) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    // Rounded first, so that 0.9999999 counts as 1.
+    let rounded = format!("{value:.*e}", digits - 1);
+    let magnitude: i32 = rounded.split_once('e').and_then(|(_, exponent)| exponent.parse().ok()).unwrap_or(0);
+    if !(-4..9).contains(&magnitude) {
+        return shortened(&rounded);
+    }
+    let decimals = (digits as i32 - 1 - magnitude).max(0) as usize;
+    format!("{value:.decimals$}")
+}
+
+/// The number as it was written in the study, within reason.
+pub fn plain(value: f64) -> String {
+    let text = format!("{value}");
+    // A tolerance computed from limits has a tail of rounding errors that the study does not write.
+    let text = if text.len() > 10 { trimmed(&significant(value, 8)) } else { text };
+    let exponent = shortened(&format!("{value:e}"));
+    if exponent.len() + 2 < text.len() { exponent } else { text }
+}
+
+/// A mean beside its sigma: as many digits as sigma has five of.
+pub(crate) fn beside(value: f64, sigma: f64) -> String {
+    match decimals(sigma, 5) {
+        Some(decimals) if value.abs() < 1e9 => unsigned_zero(format!("{value:.decimals$}")),
+        _ => {
+            let ratio = libm::log10((value / sigma).abs().max(1.0)).floor();
+            let digits = if ratio.is_finite() { (ratio as usize + 5).min(17) } else { 6 };
+            significant(value, digits)
+        }
+    }
+}
+
+/// `-0.00` says no more than `0.00`.
+pub(crate) fn unsigned_zero(text: String) -> String {
+    match text.strip_prefix('-') {
+        Some(zero) if zero.chars().all(|c| c == '0' || c == '.') => zero.to_owned(),
+        _ => text,
+    }
+}
+
+/// A share in percent.
+pub(crate) fn percent(share: f64) -> String {
+    match 100.0 * share {
+        nothing if nothing.abs() < 1e-12 => "0".to_owned(),
+        small if small.abs() < 0.005 => "<0.01".to_owned(),
+        percent => format!("{percent:.2}"),
+    }
+}
+
+/// Without the zeros at the end of a mantissa.
+fn shortened(text: &str) -> String {
+    match text.split_once('e') {
+        Some((mantissa, exponent)) => format!("{}e{exponent}", trimmed(mantissa)),
+        None => text.to_owned(),
+    }
+}
+
+fn trimmed(text: &str) -> String {
+    if text.contains('.') && !text.contains('e') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text.to_owned()
+    }
+}
+
+/// A share in percent with no more decimals than its error carries, and how many these are.
+pub(crate) fn percent_within(share: f64, error: Option<f64>) -> (String, usize) {
+    match of_error(error.map(|error| 100.0 * error)) {
+        Some(decimals) if decimals < 2 => (unsigned_zero(format!("{:.decimals$}", 100.0 * share)), decimals),
+        _ => (percent(share), 2),
+    }
+}
+
+/// A number to so many significant digits, or to those that its error carries.
+pub(crate) fn within(value: f64, digits: usize, error: Option<f64>) -> String {
+    match (decimals(value, digits as i32), of_error(error)) {
+        (Some(own), Some(of_error)) if of_error < own => unsigned_zero(format!("{value:.of_error$}")),
+        _ => significant(value, digits),
+    }
+}
+
+/// A name on one line that does not push everything else off it.
+pub(crate) fn short(name: &str) -> String {
+    shortened_to(&clean(name), NAME)
+}
+
+/// A number, or the sign for unknown.
+pub fn known(value: Option<f64>, show: impl FnOnce(f64) -> String) -> String {
+    value.map_or(UNKNOWN.to_owned(), show)
+}
+
+/// Skewness and kurtosis.
+pub(crate) fn shape(value: f64) -> String {
+    shape_with(value, None)
+}
+
+/// As many decimals as show two digits of an error; None where it is unknown, or none.
+fn of_error(error: Option<f64>) -> Option<usize> {
+    decimals(error.filter(|error| *error > 0.0 && error.is_finite())?, 2)
+}
+
+/// Skewness and kurtosis with no more decimals than their error carries.
+pub(crate) fn shape_with(value: f64, error: Option<f64>) -> String {
+    let decimals = of_error(error).map_or(4, |of_error| of_error.min(4));
+    unsigned_zero(format!("{value:.decimals$}"))
+}
+
+/// Cp, Cpk and the like.
+pub(crate) fn index(value: f64) -> String {
+    unsigned_zero(format!("{value:.3}"))
+}
+
+/// Fewer rejects than this share are not told apart: no law of a dimension is known so far out.
+pub(super) const FEWEST: f64 = 1e-9;
+
+/// A yield that was found, in percent, by itself.
+pub(crate) fn yielded(yield_: f64) -> String {
+    unrejected(1.0 - yield_)
+}
+
+/// The yield where so many are rejected.
+pub(crate) fn unrejected(rejected: f64) -> String {
+    if rejected > 0.0 && rejected < FEWEST { "> 99.9999999 %".to_owned() } else { share(rejected) }
+}
+
+/// A yield that was asked for, in percent.
+pub(crate) fn target_yield(yield_: f64) -> String {
+    share(1.0 - yield_)
+}
+
+/// Limits in words.
+pub(crate) fn limits(lower: Option<f64>, upper: Option<f64>) -> String {
+    match (lower, upper) {
+        (None, None) => String::new(),
+        (Some(lower), None) => format!("above {}", plain(lower)),
+        (None, Some(upper)) => format!("below {}", plain(upper)),
+        (Some(lower), Some(upper)) => format!("{} .. {}", plain(lower), plain(upper)),
+    }
+}
+
+/// A value beside its sigma with no more decimals than its error carries: the error's second digit is the last one.
+pub(crate) fn carried(value: f64, sigma: f64, error: Option<f64>) -> String {
+    match (decimals(sigma, 5), of_error(error)) {
+        (Some(of_sigma), Some(of_error)) if of_error < of_sigma && value.abs() < 1e9 => {
+            unsigned_zero(format!("{value:.of_error$}"))
+        }
+        _ => beside(value, sigma),
+    }
+}
+
+/// A number as a sample of this standard error knows it: two digits of the error.
+pub(crate) fn estimated(value: f64, error: Option<f64>) -> String {
+    match error {
+        Some(error) if error > 0.0 && error.is_finite() => {
+            let decimals = (1.0 - libm::log10(error).floor()).clamp(0.0, 15.0) as usize;
+            unsigned_zero(format!("{value:.decimals$}"))
+        }
+        Some(_) => plain(value),
+        None => significant(value, 4),
+    }
+}
+
+/// A standard error.
+pub(crate) fn uncertainty(error: f64) -> String {
+    significant(error, 2)
+}
+
+/// The ends of a tolerance band as drawings have them.
+pub(crate) fn band([lower, upper]: [f64; 2]) -> String {
+    if lower == -upper {
+        return format!("± {}", plain(upper));
+    }
+    let signed = |value: f64| if value >= 0.0 { format!("+{}", plain(value)) } else { plain(value) };
+    format!("{} / {}", signed(lower), signed(upper))
+}

@@ -1,0 +1,103 @@
+//! A density in a few lines of text, with the limits marked, and a histogram of bars.
+
+use super::number::{beside, plain, significant};
+use super::{Cell, Columns, DataTable};
+use sensitol_numeric::pearson::Pearson;
+use sensitol::simulation::Histogram;
+use crate::analysis_document::CharacteristicSections;
+use crate::rare::RareSection;
+
+/// Characters of the longest bar of a histogram.
+const BAR: usize = 50;
+
+/// Columns of the picture, where there is room.
+const COLUMNS: usize = 64;
+/// Its lines.
+const LINES: usize = 5;
+/// The picture reaches from this quantile to its counterpart,
+const TAIL: f64 = 2e-4;
+/// and to limits that lie no farther outside than this part of its width.
+const OUTSIDE: f64 = 0.6;
+/// An eighth of a line, two eighths and so on.
+const BLOCKS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
+/// A third of a line, two thirds, a whole one.
+const PLAIN: [char; 4] = [' ', '.', ':', '#'];
+
+/// Draws the density between its extreme quantiles, limits included where they are near.
+pub(super) fn sketch(law: &Pearson, limits: [Option<f64>; 2], width: usize, unicode: bool) -> Vec<String> {
+    let columns = COLUMNS.min(width.saturating_sub(2)).max(1);
+    let (from, to) = (law.quantile(TAIL), law.upper_quantile(TAIL));
+    let width = to - from;
+    let near = |limit: &&f64| **limit > from - OUTSIDE * width && **limit < to + OUTSIDE * width;
+    let marks: Vec<f64> = limits.iter().flatten().filter(near).copied().collect();
+    // Half a column beyond a limit, for its mark to stand in the picture.
+    let low = marks.iter().fold(from, |low, limit| low.min(limit - width / columns as f64));
+    let high = marks.iter().fold(to, |high, limit| high.max(limit + width / columns as f64));
+    let step = (high - low) / columns as f64;
+    if !(step > 0.0 && step.is_finite()) {
+        return Vec::new();
+    }
+    // By probability rather than density, which may be infinite at an end of the support.
+    let below: Vec<[f64; 2]> =
+        (0..=columns).map(|column| low + step * column as f64).map(|x| [law.cdf(x), law.sf(x)]).collect();
+    let heights: Vec<f64> =
+        below.windows(2).map(|edges| (edges[1][0] - edges[0][0]).min(edges[0][1] - edges[1][1]).max(0.0)).collect();
+    let highest = heights.iter().copied().fold(0.0, f64::max);
+    let column = |x: f64| (((x - low) / step) as usize).min(columns - 1);
+    let bars: Vec<usize> = marks.iter().map(|&limit| column(limit)).collect();
+    let (levels, bar): (&[char], char) = if unicode { (&BLOCKS, '│') } else { (&PLAIN, '|') };
+    let full = levels.len() - 1;
+    let row = |line: usize| {
+        let cell = |(column, height): (usize, &f64)| {
+            let filled = (height / highest * (LINES * full) as f64).round() as usize;
+            match filled.saturating_sub(line * full).min(full) {
+                0 if bars.contains(&column) => bar,
+                level => levels[level],
+            }
+        };
+        format!("  {}", heights.iter().enumerate().map(cell).collect::<String>())
+    };
+    let mut lines: Vec<String> = (0..LINES).rev().map(row).collect();
+    let (rule, cross) = if unicode { ('─', '┴') } else { ('-', '+') };
+    let axis: String = (0..columns).map(|column| if bars.contains(&column) { cross } else { rule }).collect();
+    lines.extend([format!("  {axis}"), format!("  {}", labels(limits, [low, high], columns, column))]);
+    lines
+}
+
+/// Bars of a sample, turned by a right angle, some intervals a line.
+pub(super) fn bars(bins: &Histogram, sigma: f64, together: usize) -> DataTable {
+    let groups: Vec<(f64, f64)> = (bins.counts.chunks(together).zip(bins.edges.chunks(together)))
+        .map(|(counts, edges)| (edges[0], counts.iter().sum::<u64>() as f64))
+        .collect();
+    let most = groups.iter().map(|&(_, count)| count).fold(1.0, f64::max);
+    let total = bins.counts.iter().sum::<u64>() as f64;
+    Columns::default()
+        .shown("from", |&(edge, _): &(f64, f64)| Cell::number(edge, |edge| beside(edge, sigma)))
+        .shown("%", |&(_, count)| Cell::number(count, |count| format!("{:.2}", 100.0 * count / total)))
+        .shown("", |&(_, count)| Cell::text("█".repeat((BAR as f64 * count / most).round() as usize)))
+        .table("", groups)
+}
+
+/// The limits below their marks, those outside the picture at its edge with where they are; without limits the ends.
+fn labels(limits: [Option<f64>; 2], [low, high]: [f64; 2], columns: usize, column: impl Fn(f64) -> usize) -> String {
+    let mut line = vec![' '; columns];
+    let mut write = |text: &str, start: usize| {
+        let start = start.min(columns.saturating_sub(text.chars().count()));
+        for (cell, c) in line[start..].iter_mut().zip(text.chars()) {
+            *cell = c;
+        }
+    };
+    if limits == [None, None] {
+        write(&significant(low, 4), 0);
+        write(&significant(high, 4), columns);
+    }
+    for limit in limits.into_iter().flatten() {
+        let text = plain(limit);
+        match limit {
+            _ if limit < low => write(&format!("< {text}"), 0),
+            _ if limit > high => write(&format!("{text} >"), columns),
+            _ => write(&text, column(limit).saturating_sub(text.chars().count() / 2)),
+        }
+    }
+    line.into_iter().collect()
+}

@@ -1,0 +1,410 @@
+//! Plots as SVG: by themselves one below the other, each with a frame of its own; in a page twice, for two widths.
+
+use std::fmt::Write;
+
+use super::labels::{LETTER, Label, placed};
+use super::number::{plain, power_of_ten, significant};
+use super::{Chart, Document, Element, Layer, Plot, PlotAxis, PlotPoint, PlotScale, Stroke};
+
+/// The colours of what is to be looked at, and of what it is compared with.
+const ACCENT: &str = "#1f6feb";
+const FAINT: &str = "#666";
+/// Names beside the chart are no nearer to one another.
+const NEAR: f64 = 13.0;
+
+/// The sheet of a plot: its size, margins and steps of axes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Sheet {
+    width: f64,
+    height: f64,
+    /// Left, right, above, below.
+    margin: [f64; 4],
+    /// Steps of an axis with round numbers, at least: across and upwards.
+    ticks: [f64; 2],
+    /// Whether the style sheet of a page has the colours.
+    page: bool,
+}
+
+/// A drawing by itself.
+const ALONE: Sheet =
+    Sheet { width: 720.0, height: 420.0, margin: [80.0, 150.0, 48.0, 56.0], ticks: [5.0, 5.0], page: false };
+/// The two drawings of a page, of which it shows the one that fits; their margins follow what stands there.
+const PAGES: [(&str, Sheet); 2] = [
+    ("wide", Sheet { width: 736.0, height: 330.0, margin: [48.0, 16.0, 28.0, 44.0], ticks: [5.0, 4.0], page: true }),
+    ("narrow", Sheet { width: 358.0, height: 270.0, margin: [40.0, 16.0, 28.0, 44.0], ticks: [3.0, 4.0], page: true }),
+];
+
+/// The ink of a mark, by its meaning.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Ink {
+    Grid,
+    Band,
+    Line(Stroke),
+    Mark,
+    MarkName,
+    EndName,
+}
+
+impl Sheet {
+    /// As attributes.
+    fn ink(self, ink: Ink) -> String {
+        if self.page {
+            let class = match ink {
+                Ink::Grid => "grid",
+                Ink::Band => "band",
+                Ink::Line(Stroke::Strong) => "strong",
+                Ink::Line(Stroke::Thin) => "thin",
+                Ink::Line(Stroke::Dotted) => "dotted",
+                Ink::Mark => "mark",
+                Ink::MarkName => "of-mark",
+                Ink::EndName => "end",
+            };
+            return format!("class=\"{class}\"");
+        }
+        match ink {
+            Ink::Grid => "stroke=\"#ddd\"".to_owned(),
+            Ink::Band => format!("fill=\"{ACCENT}\" fill-opacity=\"0.2\""),
+            Ink::Line(stroke) => {
+                let stroke = match stroke {
+                    Stroke::Strong => format!("stroke=\"{ACCENT}\" stroke-width=\"1.5\""),
+                    Stroke::Thin => format!("stroke=\"{ACCENT}\""),
+                    Stroke::Dotted => format!("stroke=\"{FAINT}\" stroke-dasharray=\"2 3\""),
+                };
+                format!("fill=\"none\" {stroke}")
+            }
+            Ink::Mark => "stroke=\"#888\" stroke-dasharray=\"4 4\"".to_owned(),
+            Ink::MarkName => "fill=\"#555\"".to_owned(),
+            Ink::EndName => format!("fill=\"{ACCENT}\""),
+        }
+    }
+
+    /// A point and its name: the attributes of its circle, of the name, and of the line between them.
+    fn of_point(self, point: &PlotPoint) -> [String; 3] {
+        let colour = if point.strong { ACCENT } else { FAINT };
+        let fill = if point.filled { colour } else { "#fff" };
+        if !self.page {
+            let line = format!("stroke=\"{colour}\" stroke-width=\"0.5\"");
+            return [format!("fill=\"{fill}\" stroke=\"{colour}\""), format!("fill=\"{colour}\""), line];
+        }
+        let kind = if point.strong { "best" } else { "other" };
+        let filled = if point.filled { "" } else { " open" };
+        [format!("class=\"{kind}{filled}\""), format!("class=\"of-{kind}\""), format!("class=\"lead {kind}\"")]
+    }
+}
+
+/// All plots of a document.
+pub fn svg(document: &Document, title: &str) -> String {
+    let plots = document.all().filter_map(|block| match block {
+        Element::Chart(Chart::Plot(plot)) => Some(plot),
+        _ => None,
+    });
+    drawn(&plots.collect::<Vec<_>>(), title)
+}
+
+/// Plots as one drawing on white.
+fn drawn(plots: &[&Plot], title: &str) -> String {
+    let Sheet { width, height: each, margin, .. } = ALONE;
+    let (height, title) = (each * plots.len() as f64, escaped(title));
+    let mut svg = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
+         font-family=\"sans-serif\" font-size=\"12\" role=\"img\">\n<title>{title}</title>\n\
+         <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n"
+    );
+    for (index, one) in plots.iter().enumerate() {
+        let (down, name) = (each * index as f64, escaped(&one.name));
+        let _ = writeln!(svg, "<g transform=\"translate(0 {down})\">");
+        let _ = writeln!(svg, "<text x=\"{}\" y=\"24\" font-size=\"15\" font-weight=\"bold\">{name}</text>", margin[0]);
+        plot(&mut svg, one, ALONE);
+        svg += "</g>\n";
+    }
+    svg + "</svg>\n"
+}
+
+/// A plot of a page, with what stands below it.
+pub(super) fn figure(of: &Plot) -> String {
+    let label = escaped(&said(of));
+    let mut text = "<figure>\n".to_owned();
+    for (class, sheet) in PAGES {
+        let Sheet { width, height, .. } = sheet;
+        let _ = writeln!(
+            text,
+            "<svg class=\"density plot {class}\" viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"{label}\">"
+        );
+        plot(&mut text, of, sheet);
+        text += "</svg>\n";
+    }
+    text + &format!("<figcaption>{}</figcaption>\n</figure>\n", escaped(&of.words))
+}
+
+/// The text of a plot for screen readers.
+fn said(of: &Plot) -> String {
+    let number = |value: f64| significant(value, 4);
+    let ends = |known: Vec<(f64, f64)>| Some((*known.first()?, *known.last()?));
+    let mut parts = vec![format!("{}: {} over {}", of.name, of.y.label, of.x.label)];
+    for layer in &of.layers {
+        match layer {
+            Layer::Band(points) => {
+                let all = points.iter().filter_map(|&(at, band)| Some((at, band?)));
+                let all: Vec<(f64, [f64; 2])> = all.collect();
+                parts.extend([all.first(), all.last()].into_iter().flatten().map(|(at, [low, high])| {
+                    format!("band at {} from {} to {}", plain(*at), number(*low), number(*high))
+                }));
+            }
+            Layer::Curve(points, Stroke::Strong) => {
+                let known = points.iter().filter_map(|&(at, value)| Some((at, value?))).collect();
+                if let Some(((from, first), (to, last))) = ends(known) {
+                    let [from, to] = [from, to].map(plain);
+                    parts.push(format!("line from {} at {from} to {} at {to}", number(first), number(last)));
+                }
+            }
+            Layer::Curve(..) | Layer::End(..) => {}
+            Layer::Points(points) => parts.extend(points.iter().map(|point| {
+                let name = if point.name.is_empty() { String::new() } else { format!("{} ", point.name) };
+                match point.tip.as_str() {
+                    "" => format!("{name}{} at {}", number(point.at[1]), number(point.at[0])),
+                    tip => format!("{name}{tip}"),
+                }
+            })),
+            Layer::Mark(at, name) => parts.push(format!("{name} {}", plain(*at))),
+        }
+    }
+    parts.join(", ")
+}
+
+/// Names come from studies: nothing in them is markup, and characters that XML 1.0 does not have are left out.
+pub(crate) fn escaped(text: &str) -> String {
+    let allowed =
+        |c: &char| !matches!(c, '\0'..='\u{8}' | '\u{b}' | '\u{c}' | '\u{e}'..='\u{1f}' | '\u{fffe}' | '\u{ffff}');
+    let text: String = text.chars().filter(allowed).collect();
+    let text = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+    text.replace('"', "&quot;").replace('\'', "&#x27;")
+}
+
+/// A scale from values to places in the drawing.
+struct Ruler {
+    scale: PlotScale,
+    from: f64,
+    to: f64,
+    pixels: [f64; 2],
+}
+
+impl Ruler {
+    fn over(values: Vec<f64>, scale: PlotScale, pixels: [f64; 2]) -> Self {
+        let ends = |values: &mut dyn Iterator<Item = f64>| {
+            let ends = values.filter(|value| value.is_finite());
+            let [low, high] =
+                ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)]);
+            if low <= high { [low, high] } else { [0.0, 1.0] }
+        };
+        let [from, to] = match scale {
+            PlotScale::Linear(margin) => {
+                let [from, to] = ends(&mut values.into_iter());
+                // A constant stands in the middle.
+                let room = if from < to { margin * (to - from) } else { 0.5 * from.abs().max(1.0) };
+                [from - room, to + room]
+            }
+            PlotScale::Decades => {
+                let [from, to] = ends(&mut values.into_iter().filter(|value| *value > 0.0).map(libm::log10));
+                [from.floor(), to.ceil().max(from.floor() + 1.0)]
+            }
+        };
+        Self { scale, from, to, pixels }
+    }
+
+    fn at(&self, value: f64) -> f64 {
+        let value = if self.scale == PlotScale::Decades { libm::log10(value) } else { value };
+        self.pixels[0] + (value - self.from) / (self.to - self.from) * (self.pixels[1] - self.pixels[0])
+    }
+
+    /// Places of an axis with what stands there, which is markup.
+    fn ticks(&self, axis: &PlotAxis, least: f64) -> Vec<(f64, String)> {
+        if !axis.ticks.is_empty() {
+            return axis.ticks.iter().map(|(at, label)| (self.at(*at), escaped(label))).collect();
+        }
+        if self.scale == PlotScale::Decades {
+            return (self.from as i32..=self.to as i32).map(|of| (self.at(10f64.powi(of)), power(of))).collect();
+        }
+        // Round numbers, so many of them to twice as many.
+        let rough = (self.to - self.from) / least;
+        let decade = power_of_ten(libm::log10(rough).floor());
+        let step =
+            [5.0, 2.0, 1.0].map(|digit| digit * decade).into_iter().find(|step| *step <= rough).unwrap_or(decade);
+        let (first, last) = ((self.from / step).ceil() as i64, (self.to / step).floor() as i64);
+        // A product is rounder than a sum of steps.
+        let rounded = |tick: i64| format!("{:.12e}", tick as f64 * step).parse().unwrap_or(tick as f64 * step);
+        (first..=last).map(rounded).map(|tick| (self.at(tick), plain(tick))).collect()
+    }
+}
+
+/// A power of ten with its exponent raised; 1 to 1000 in full.
+fn power(decade: i32) -> String {
+    match decade {
+        0..=3 => 10u32.pow(decade as u32).to_string(),
+        _ => format!("10<tspan baseline-shift=\"super\" font-size=\"9\">{decade}</tspan>"),
+    }
+}
+
+/// Letters of a label that is markup.
+fn letters(label: &str) -> usize {
+    let parts = label.split('<').enumerate();
+    let shown = parts.map(|(i, part)| if i == 0 { part } else { part.split_once('>').map_or("", |(_, text)| text) });
+    shown.map(|part| part.chars().count()).sum()
+}
+
+/// A name beside the chart: where it belongs, and what it is drawn with.
+type Beside = (f64, &'static str, Ink);
+
+/// All names beside the chart, from above, none over another.
+fn beside(plot: &Plot, y: &Ruler, [above, floor]: [f64; 2]) -> Vec<Beside> {
+    let name = |layer: &Layer| match layer {
+        Layer::Mark(value, name) => Some((y.at(*value), *name, Ink::MarkName)),
+        Layer::End(value, name) => Some((y.at(*value), *name, Ink::EndName)),
+        _ => None,
+    };
+    let mut names: Vec<Beside> = plot.layers.iter().filter_map(name).collect();
+    names.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut last = above - NEAR;
+    for one in &mut names {
+        one.0 = one.0.max(last + NEAR);
+        last = one.0;
+    }
+    let mut next = floor + NEAR;
+    for one in names.iter_mut().rev() {
+        one.0 = one.0.min(next - NEAR);
+        next = one.0;
+    }
+    names
+}
+
+/// The text as far as it fits.
+fn fitted(text: &str, width: f64) -> String {
+    let most = (width / LETTER) as usize;
+    match text.chars().count() > most {
+        true => text.chars().take(most.saturating_sub(1)).chain(['\u{2026}']).collect(),
+        false => text.to_owned(),
+    }
+}
+
+fn plot(svg: &mut String, plot: &Plot, mut sheet: Sheet) {
+    let [_, _, above, below] = sheet.margin;
+    let floor = sheet.height - below;
+    let y = Ruler::over(plot.values(1), plot.y.scale, [floor, above]);
+    let upwards = y.ticks(&plot.y, sheet.ticks[1]);
+    let names = beside(plot, &y, [above, floor]);
+    if sheet.page {
+        let widest = |lengths: &mut dyn Iterator<Item = usize>| LETTER * lengths.max().unwrap_or(0) as f64;
+        sheet.margin[0] = sheet.margin[0].max(widest(&mut upwards.iter().map(|(_, label)| letters(label))) + 12.0);
+        // A name that takes too much of the width stands inside.
+        let room = 0.25 * sheet.width;
+        let outside = names.iter().map(|(_, name, _)| name.len()).filter(|length| LETTER * *length as f64 <= room);
+        sheet.margin[1] = sheet.margin[1].max(widest(&mut outside.into_iter()) + 10.0);
+    }
+    let [left, right, ..] = sheet.margin;
+    let far = sheet.width - right;
+    let x = Ruler::over(plot.values(0), plot.x.scale, [left, far]);
+    let grid = sheet.ink(Ink::Grid);
+    let mut end = f64::NEG_INFINITY;
+    for (at, label) in x.ticks(&plot.x, sheet.ticks[0]) {
+        let _ = writeln!(svg, "<path d=\"M{at:.1} {above}V{floor}\" {grid}/>");
+        let half = 0.5 * LETTER * letters(&label) as f64;
+        // Alone there is room for all of them.
+        if sheet.page && at - half < end {
+            continue;
+        }
+        end = at + half + 4.0;
+        let _ = writeln!(svg, "<text x=\"{at:.1}\" y=\"{}\" text-anchor=\"middle\">{label}</text>", floor + 18.0);
+    }
+    for (at, label) in upwards {
+        let _ = writeln!(svg, "<path d=\"M{left} {at:.1}H{far}\" {grid}/>");
+        let _ = writeln!(svg, "<text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{label}</text>", left - 8.0, at + 4.0);
+    }
+    let (middle, low) = (0.5 * (left + far), sheet.height - if sheet.page { 8.0 } else { 12.0 });
+    if sheet.page {
+        // Across the whole width; what is longer is cut.
+        let of_x = fitted(&plot.x.label, 2.0 * middle.min(sheet.width - middle));
+        let _ = writeln!(svg, "<text x=\"{middle:.1}\" y=\"{low}\" text-anchor=\"middle\">{}</text>", escaped(&of_x));
+        let of_y = fitted(&plot.y.label, sheet.width);
+        let _ = writeln!(svg, "<text class=\"name\" x=\"0\" y=\"12\">{}</text>", escaped(&of_y));
+    } else {
+        let label = escaped(&plot.x.label);
+        let _ = writeln!(svg, "<text x=\"{middle}\" y=\"{low}\" text-anchor=\"middle\">{label}</text>");
+        let (centre, label) = (0.5 * (above + floor), escaped(&plot.y.label));
+        let turned = format!("text-anchor=\"middle\" transform=\"rotate(-90 18 {centre})\"");
+        let _ = writeln!(svg, "<text x=\"18\" y=\"{centre}\" {turned}>{label}</text>");
+    }
+    let (mut held, mut texts) = (Vec::new(), String::new());
+    for (at, name, ink) in names {
+        let (ink, name, wide) = (sheet.ink(ink), escaped(name), LETTER * name.len() as f64);
+        // Alone the margin is wide enough.
+        if !sheet.page || wide <= right - 6.0 {
+            held.push([far + 6.0, far + 6.0 + wide, at - 7.0, at + 7.0]);
+            let _ = writeln!(texts, "<text x=\"{}\" y=\"{:.1}\" {ink}>{name}</text>", far + 6.0, at + 4.0);
+            continue;
+        }
+        held.push([far - wide - 4.0, far, at - 16.0, at - 2.0]);
+        let (x, y) = (far - 4.0, at - 5.0);
+        let _ = writeln!(texts, "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"end\" {ink}>{name}</text>");
+    }
+    for layer in &plot.layers {
+        match layer {
+            Layer::Band(points) => {
+                let ink = sheet.ink(Ink::Band);
+                for part in known(points) {
+                    let low = part.iter().map(|&(at, [low, _])| (at, low));
+                    let high = part.iter().rev().map(|&(at, [_, high])| (at, high));
+                    let _ = writeln!(svg, "<path d=\"{}Z\" {ink}/>", path(&x, &y, low.chain(high)));
+                }
+            }
+            Layer::Curve(points, stroke) => {
+                let ink = sheet.ink(Ink::Line(*stroke));
+                for part in known(points) {
+                    let _ = writeln!(svg, "<path d=\"{}\" {ink}/>", path(&x, &y, part.into_iter()));
+                }
+            }
+            Layer::Points(points) => circles(svg, &x, &y, points, &sheet, &held),
+            Layer::Mark(value, _) => {
+                let _ = writeln!(svg, "<path d=\"M{left} {:.1}H{far}\" {}/>", y.at(*value), sheet.ink(Ink::Mark));
+            }
+            Layer::End(..) => {}
+        }
+    }
+    *svg += &texts;
+}
+
+/// Stretches of points that are known.
+fn known<T: Copy>(points: &[(f64, Option<T>)]) -> Vec<Vec<(f64, T)>> {
+    let stretches = points.chunk_by(|a, b| a.1.is_some() == b.1.is_some());
+    let inside = |part: &[(f64, Option<T>)]| part.iter().filter_map(|&(at, value)| Some((at, value?))).collect();
+    stretches.map(inside).filter(|part: &Vec<_>| !part.is_empty()).collect()
+}
+
+fn path(x: &Ruler, y: &Ruler, points: impl Iterator<Item = (f64, f64)>) -> String {
+    let points: Vec<String> = points.map(|(at, value)| format!("{:.1} {:.1}", x.at(at), y.at(value))).collect();
+    format!("M{}", points.join("L"))
+}
+
+fn circles(svg: &mut String, x: &Ruler, y: &Ruler, points: &[PlotPoint], sheet: &Sheet, held: &[[f64; 4]]) {
+    let [left, _, above, below] = sheet.margin;
+    let place = |point: &PlotPoint| [x.at(point.at[0]), y.at(point.at[1])];
+    let named: Vec<&PlotPoint> = points.iter().filter(|point| !point.name.is_empty()).collect();
+    let names: Vec<([f64; 2], &str)> = named.iter().map(|point| (place(point), point.name.as_str())).collect();
+    // A page has them in its table too.
+    let labels = placed(&names, [left, sheet.width - 5.0, above - 12.0, sheet.height - below], held, !sheet.page);
+    for Label { x, y, of: [from, top], point, .. } in labels.iter().filter(|label| label.far) {
+        // To the middle of the line, where the text begins or ends.
+        let (to, [.., ink]) = (y - 4.0, sheet.of_point(named[*point]));
+        let _ = writeln!(svg, "<path d=\"M{from:.1} {top:.1}L{x:.1} {to:.1}\" {ink}/>");
+    }
+    for point in points {
+        let ([at, height], [ink, ..]) = (place(point), sheet.of_point(point));
+        let circle = format!("circle cx=\"{at:.1}\" cy=\"{height:.1}\" r=\"4\" {ink}");
+        let _ = match point.tip.as_str() {
+            "" => writeln!(svg, "<{circle}/>"),
+            tip => writeln!(svg, "<{circle}><title>{}</title></circle>", escaped(tip)),
+        };
+    }
+    for Label { x, y, ends, point, text, .. } in labels {
+        let ([_, ink, _], anchor) = (sheet.of_point(named[point]), if ends { " text-anchor=\"end\"" } else { "" });
+        let _ = writeln!(svg, "<text x=\"{x:.1}\" y=\"{y:.1}\" {ink}{anchor}>{}</text>", escaped(&text));
+    }
+}

@@ -1,0 +1,345 @@
+//! Documents as text for a terminal: lines and tables without lines, in Unicode or plain ASCII.
+
+use super::sketch::{bars, sketch};
+use super::{Chart, DataTable, Document, Element, Flow, Line, List, Paragraph, Section, Tone};
+use sensitol_numeric::names::{clean, shortened_to};
+use crate::figures::FittedFigures;
+use crate::rare::RareSection;
+use crate::simulation::SimulationSection;
+
+/// How much is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Detail {
+    /// The table of all results, without sections.
+    Summary,
+    /// Sections in brief, with the strongest contributions.
+    Short,
+    /// Everything.
+    Full,
+}
+
+/// How a text report looks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Style {
+    /// How much is shown.
+    pub detail: Detail,
+    /// Whether signs such as ± may be used.
+    pub unicode: bool,
+    /// Whether verdicts are coloured.
+    pub color: bool,
+    /// No line is longer, if that can be.
+    pub width: usize,
+}
+
+impl Style {
+    /// The width of what is written to no terminal.
+    pub const WIDTH: usize = 80;
+}
+
+/// Before every column.
+const GAP: usize = 2;
+/// A name in the first column is shortened to no less than this where a table would be too wide.
+const SHORTEST: usize = 8;
+/// Lines of a list unless everything is shown, and the room for "and N more" in the last of them.
+const LINES: usize = 3;
+const MORE: usize = 20;
+/// Signs of the report, and what stands for them in ASCII.
+const ASCII: [(char, &str); 5] = [('±', "+-"), ('×', "x"), ('…', "~"), ('●', "*"), ('█', "#")];
+
+/// The escape sequence of a tone; None where it has no colour.
+fn escape(tone: Tone) -> Option<&'static str> {
+    match tone {
+        Tone::Plain => None,
+        Tone::Good => Some("\u{1b}[32m"),
+        Tone::Doubtful => Some("\u{1b}[33m"),
+        Tone::Bad => Some("\u{1b}[1;31m"),
+    }
+}
+
+/// A document as text.
+pub fn text(document: &Document, style: Style) -> String {
+    let mut page = Page { text: String::new(), style };
+    if let Some(title) = &document.title {
+        page.folded(&title.as_str().into());
+    }
+    document.head.iter().for_each(|block| page.block(block));
+    let sections = document.sections.iter().filter(|_| style.detail != Detail::Summary);
+    for (index, section) in sections.enumerate() {
+        if index > 0 || !page.text.is_empty() {
+            page.text.push('\n');
+        }
+        page.section(section);
+    }
+    page.text
+}
+
+/// A letter in its tone.
+type Letter = (char, Tone);
+
+/// A text as it grows.
+struct Page {
+    text: String,
+    style: Style,
+}
+
+impl Page {
+    fn section(&mut self, section: &Section) {
+        if !section.name.is_empty() {
+            let unit = section.unit.as_deref().map(|unit| format!(" [{unit}]")).unwrap_or_default();
+            self.folded(&format!("{}{unit}{}", section.name, section.words).into());
+        }
+        section.blocks.iter().for_each(|block| self.block(block));
+    }
+
+    fn block(&mut self, block: &Element) {
+        match block {
+            Element::Gap => self.text.push('\n'),
+            Element::Paragraph(paragraph) => self.paragraph(paragraph),
+            Element::List(list) => self.list(list),
+            Element::Table(table) => self.table(table),
+            Element::Chart(Chart::Spread(spread)) => {
+                if let Some(bins) = spread.bins.as_ref().filter(|_| spread.sampled) {
+                    let together = if self.style.detail == Detail::Full { 2 } else { 4 };
+                    self.table(&bars(bins, spread.sigma, together));
+                } else if let Some(law) = &spread.law {
+                    let picture = sketch(law, spread.limits, self.style.width, self.style.unicode);
+                    picture.into_iter().for_each(|line| self.folded(&line.into()));
+                }
+            }
+            Element::Detail(inner) if self.style.detail == Detail::Full => inner.iter().for_each(|one| self.block(one)),
+            Element::Brief(inner) if self.style.detail == Detail::Short => inner.iter().for_each(|one| self.block(one)),
+            Element::Detail(_) | Element::Brief(_) | Element::Markup(_) => {}
+            Element::Chart(Chart::Plot(_) | Chart::Bars(_)) | Element::Aside(_) | Element::Finding(_) => {}
+        }
+    }
+
+    fn paragraph(&mut self, Paragraph { line, indent, flow }: &Paragraph) {
+        match flow {
+            Flow::Verbatim => {
+                self.text += &line.text();
+                self.text.push('\n');
+            }
+            Flow::Folded => self.folded(&Line::from(" ".repeat(*indent)).and(line.clone())),
+            Flow::Wrapped => self.wrapped(*indent, line),
+        }
+    }
+
+    /// The letters of a line, in signs that the page has.
+    fn letters(&self, line: &Line) -> Vec<Letter> {
+        let letters = |span: &super::Span| {
+            let text = clean(&span.text);
+            let text = if self.style.unicode {
+                text
+            } else {
+                ASCII.iter().fold(text, |text, (sign, plain)| text.replace(*sign, plain))
+            };
+            text.chars().map(|letter| (letter, span.tone)).collect::<Vec<_>>()
+        };
+        line.0.iter().flat_map(letters).collect()
+    }
+
+    /// Puts letters down, without spaces at their end.
+    fn put(&mut self, letters: &[Letter]) {
+        let end = letters.iter().rposition(|&(letter, _)| !letter.is_whitespace()).map_or(0, |last| last + 1);
+        for part in letters[..end].chunk_by(|a, b| a.1 == b.1) {
+            let text: String = part.iter().map(|&(letter, _)| letter).collect();
+            match escape(part[0].1).filter(|_| self.style.color) {
+                Some(escape) => self.text += &format!("{escape}{text}\u{1b}[0m"),
+                None => self.text += &text,
+            }
+        }
+        self.text.push('\n');
+    }
+
+    /// A line; what is too long for the page goes on in the next one.
+    fn folded(&mut self, line: &Line) {
+        let mut rest = self.letters(line);
+        let width = self.style.width;
+        while trimmed(&rest) > width {
+            let words = rest.iter().take_while(|letter| letter.0 == ' ').count();
+            let Some(space) = (words + 1..=width).rev().find(|&at| rest[at].0 == ' ') else { break };
+            self.put(&rest[..space]);
+            let more = rest[space..].iter().copied().skip_while(|letter| letter.0 == ' ');
+            rest = spaces(4).chain(more).collect();
+        }
+        self.put(&rest);
+    }
+
+    /// A text that may take several lines, those after the first indented by four; a percent sign stays with its number.
+    fn wrapped(&mut self, indent: usize, line: &Line) {
+        let letters = self.letters(line);
+        let glued = |at: usize| letters[at].0 == ' ' && letters.get(at + 1).is_some_and(|next| next.0 == '%');
+        let mut words: Vec<Vec<Letter>> = vec![Vec::new()];
+        for (at, &letter) in letters.iter().enumerate() {
+            match letter.0 == ' ' && !glued(at) {
+                true => words.push(Vec::new()),
+                false => words.last_mut().expect("never empty").push(letter),
+            }
+        }
+        let mut line: Vec<Letter> = spaces(indent).collect();
+        let mut empty = true;
+        for word in words.into_iter().filter(|word| !word.is_empty()) {
+            if !empty && line.len() + 1 + word.len() > self.style.width {
+                self.put(&std::mem::replace(&mut line, spaces(4).collect()));
+            } else if !empty {
+                line.extend(spaces(1));
+            }
+            line.extend(word);
+            empty = false;
+        }
+        self.put(&line);
+    }
+
+    /// Words with commas after a title, on as many lines as it takes; the rest is counted.
+    fn list(&mut self, List { title, words }: &List) {
+        let most = if self.style.detail == Detail::Full { usize::MAX } else { LINES };
+        let (mut lines, mut line) = (0, title.clone());
+        for (index, word) in words.iter().enumerate() {
+            let last = index + 1 == words.len();
+            let comma = if last || word.ends_with(';') { "" } else { "," };
+            let word = format!(" {}{comma}", if last { word.trim_end_matches(';') } else { word });
+            let room = self.style.width - if lines + 1 == most { MORE } else { 0 };
+            let full = line.chars().count() + word.chars().count() > room;
+            if full && lines + 1 == most {
+                line += &format!(" and {} more", words.len() - index);
+                break;
+            }
+            if full {
+                self.folded(&std::mem::replace(&mut line, " ".repeat(title.chars().count())).into());
+                lines += 1;
+            }
+            line += &word;
+        }
+        self.folded(&line.into());
+    }
+
+    /// A table, indented by two and no wider than the page: names, in the first column, give way, and columns that have no room
+    /// stand in a table of their own below, with the names again.
+    fn table(&mut self, table: &DataTable) {
+        let most = if self.style.detail == Detail::Full { usize::MAX } else { table.most[0] };
+        let places = table.places(|column| column.terminal);
+        if table.view.is_empty() || places.is_empty() || most == 0 {
+            return;
+        }
+        let titles = places.iter().map(|&place| self.letters(&table.columns[place].title.into()));
+        let mut rows = vec![titles.collect::<Vec<_>>()];
+        for &index in table.view.iter().take(most) {
+            rows.push(places.iter().map(|&place| self.letters(&table.rows[index][place].line)).collect());
+        }
+        let right: Vec<bool> = places.iter().map(|&place| table.right(place)).collect();
+        let widest = |column: usize| rows.iter().map(|row| width(&row[column])).max().unwrap_or(0).max(1);
+        let widths: Vec<usize> = (0..places.len()).map(widest).collect();
+        let least = widths[0].min(SHORTEST) + GAP;
+        let (mut columns, mut taken) = (vec![0], least);
+        for (column, width) in widths.iter().enumerate().skip(1) {
+            if taken + width + GAP > self.style.width && columns.len() > 1 {
+                self.part(&rows, &columns, &widths, &right);
+                (columns, taken) = (vec![0], least);
+            }
+            columns.push(column);
+            taken += width + GAP;
+        }
+        self.part(&rows, &columns, &widths, &right);
+        if table.view.len() > most && !table.rest.is_empty() {
+            self.folded(&format!("  {}", table.rest).into());
+        }
+    }
+
+    /// Some columns of a table; below the first ones a row that has nothing in them is left out.
+    fn part(&mut self, rows: &[Vec<Vec<Letter>>], columns: &[usize], widths: &[usize], right: &[bool]) {
+        let total: usize = columns.iter().map(|&column| widths[column] + GAP).sum();
+        let names = widths[0].saturating_sub(total.saturating_sub(self.style.width)).max(SHORTEST);
+        let below = columns.get(1).is_some_and(|&column| column > 1);
+        let said = |row: &&Vec<Vec<Letter>>| columns.iter().skip(1).any(|&column| trimmed(&row[column]) > 0);
+        for row in rows.iter().filter(|row| !below || said(row)) {
+            let mut line: Vec<Letter> = Vec::new();
+            for &column in columns {
+                let first = column == 0;
+                let cell = if first { self.fitted(&row[0], names) } else { row[column].clone() };
+                let wanted = if first { widths[0].min(names) } else { widths[column] };
+                let missing = wanted.saturating_sub(width(&cell));
+                let [before, after] = if right[column] { [missing, 0] } else { [0, missing] };
+                line.extend(spaces(GAP + before).chain(cell).chain(spaces(after)));
+            }
+            if trimmed(&line) > 0 {
+                self.put(&line);
+            }
+        }
+    }
+
+    /// A name without its middle, where it is longer than `most`.
+    fn fitted(&self, cell: &[Letter], most: usize) -> Vec<Letter> {
+        if cell.len() <= most {
+            return cell.to_vec();
+        }
+        let name: String = cell.iter().map(|&(letter, _)| letter).collect();
+        self.letters(&Line::toned(shortened_to(&name, most), cell[0].1))
+    }
+}
+
+fn spaces(count: usize) -> impl Iterator<Item = Letter> {
+    std::iter::repeat_n((' ', Tone::Plain), count)
+}
+
+/// How many letters there are before the spaces at the end.
+fn trimmed(letters: &[Letter]) -> usize {
+    letters.iter().rposition(|&(letter, _)| letter != ' ').map_or(0, |last| last + 1)
+}
+
+/// Columns of a terminal that letters take: two for those of East Asia and pictures, none for marks on the letter before.
+fn width(letters: &[Letter]) -> usize {
+    let columns = |&(letter, _): &Letter| match u32::from(letter) {
+        0x300..=0x36f | 0x200b..=0x200f | 0xfe00..=0xfe0f => 0,
+        0x1100..=0x115f | 0x2e80..=0xa4cf | 0xac00..=0xd7a3 | 0xf900..=0xfaff | 0xfe30..=0xfe6f => 2,
+        0xff00..=0xff60 | 0xffe0..=0xffe6 | 0x1f300..=0x1faff | 0x20000..=0x3fffd => 2,
+        _ => 1,
+    };
+    letters.iter().map(columns).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Blocks, Cell};
+    use super::*;
+
+    const STYLE: Style = Style { detail: Detail::Short, unicode: true, color: true, width: 20 };
+
+    fn shown(blocks: impl FnOnce(&mut Document), style: Style) -> String {
+        let mut document = Document::default();
+        blocks(&mut document);
+        text(&document, style)
+    }
+
+    /// The colour follows the tone, also where a line goes on in the next one; words have none of their own.
+    #[test]
+    fn colour_follows_the_tone() {
+        let line = || Line::from("met: the yield is ").and(Line::toned("met by far", Tone::Good));
+        let page = shown(|page| page.wrapped(0, line()), STYLE);
+        assert_eq!(
+            page,
+            "met: the yield is\n    \u{1b}[32mmet\u{1b}[0m \u{1b}[32mby\u{1b}[0m \u{1b}[32mfar\u{1b}[0m\n"
+        );
+        let plain = shown(|page| page.wrapped(0, line()), Style { color: false, ..STYLE });
+        assert_eq!(plain, "met: the yield is\n    met by far\n");
+    }
+
+    /// Names give way, and columns without room stand below with the names again.
+    #[test]
+    fn tables_fit_the_page() {
+        let row =
+            |name: &str| [Cell::name(name), Cell::number(1.25, |x| format!("{x:.3}")), Cell::text("a word or two")];
+        let table = DataTable::untitled([row("a"), row("a name that is long")]);
+        let page = shown(|page| page.table(table), Style { color: false, ..STYLE });
+        let lines: Vec<&str> = page.lines().collect();
+        let expected =
+            ["  a            1.250", "  a nam… long  1.250", "  a         a word or two", "  a na…ong  a word or two"];
+        assert_eq!(lines, expected);
+    }
+
+    /// Letters that take two columns of a terminal, or none, stand below others all the same.
+    #[test]
+    fn wide_letters_are_counted_twice() {
+        let letters = |text: &str| text.chars().map(|letter| (letter, Tone::Plain)).collect::<Vec<_>>();
+        assert_eq!(["gap", "隙間", "gap\u{301}"].map(|text| width(&letters(text))), [3, 4, 3]);
+    }
+}

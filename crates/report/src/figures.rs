@@ -1,0 +1,182 @@
+//! The figures that documents ask of every result of a characteristic.
+
+use sensitol::analysis::{CharacteristicAnalysis, Missing};
+use sensitol_numeric::capability::{Capability, Law, Quantiles};
+use sensitol_numeric::characteristic::Characteristic;
+use sensitol_numeric::moments::Moments;
+use sensitol::rare::RareCharacteristic;
+use sensitol_numeric::sampling::Estimate;
+use sensitol::simulation::SimulatedCharacteristic;
+
+/// A result of one characteristic.
+pub(super) trait Named {
+    fn characteristic(&self) -> &Characteristic;
+
+    fn name(&self) -> &str {
+        self.characteristic().name()
+    }
+
+    fn unit(&self) -> Option<&str> {
+        self.characteristic().unit()
+    }
+
+    fn lower(&self) -> Option<f64> {
+        self.characteristic().limits().lower()
+    }
+
+    fn upper(&self) -> Option<f64> {
+        self.characteristic().limits().upper()
+    }
+
+    fn limits(&self) -> [Option<f64>; 2] {
+        [self.lower(), self.upper()]
+    }
+
+    fn limited(&self) -> bool {
+        self.characteristic().limits().exist()
+    }
+
+    fn target(&self) -> Option<f64> {
+        self.characteristic().target_yield()
+    }
+}
+
+impl Named for Characteristic {
+    fn characteristic(&self) -> &Characteristic {
+        self
+    }
+}
+
+impl Named for CharacteristicAnalysis {
+    fn characteristic(&self) -> &Characteristic {
+        &self.characteristic
+    }
+}
+
+impl Named for SimulatedCharacteristic {
+    fn characteristic(&self) -> &Characteristic {
+        &self.characteristic
+    }
+}
+
+impl Named for RareCharacteristic {
+    fn characteristic(&self) -> &Characteristic {
+        &self.characteristic
+    }
+}
+
+/// The figures of a result; None where they are unknown.
+pub(super) trait Figures {
+    fn mean(&self) -> Option<f64>;
+    fn sigma(&self) -> Option<f64>;
+    fn skewness(&self) -> Option<f64>;
+    fn kurtosis(&self) -> Option<f64>;
+    fn yield_(&self) -> Option<f64>;
+    fn ppm_below(&self) -> Option<f64>;
+    fn ppm_above(&self) -> Option<f64>;
+}
+
+impl Figures for CharacteristicAnalysis {
+    fn mean(&self) -> Option<f64> {
+        self.moments.map(|of| of.mean())
+    }
+
+    fn sigma(&self) -> Option<f64> {
+        self.moments.map(|of| of.sigma())
+    }
+
+    fn skewness(&self) -> Option<f64> {
+        self.moments.as_ref().and_then(Moments::skewness)
+    }
+
+    fn kurtosis(&self) -> Option<f64> {
+        self.moments.as_ref().and_then(Moments::kurtosis)
+    }
+
+    fn yield_(&self) -> Option<f64> {
+        self.capability.as_ref().and_then(Capability::yield_)
+    }
+
+    fn ppm_below(&self) -> Option<f64> {
+        self.capability.as_ref().and_then(Capability::ppm_below)
+    }
+
+    fn ppm_above(&self) -> Option<f64> {
+        self.capability.as_ref().and_then(Capability::ppm_above)
+    }
+}
+
+fn value(estimate: Option<Estimate>) -> Option<f64> {
+    estimate.map(|estimate| estimate.value)
+}
+
+impl Figures for SimulatedCharacteristic {
+    fn mean(&self) -> Option<f64> {
+        value(self.mean)
+    }
+
+    fn sigma(&self) -> Option<f64> {
+        value(self.sigma)
+    }
+
+    fn skewness(&self) -> Option<f64> {
+        value(self.skewness)
+    }
+
+    fn kurtosis(&self) -> Option<f64> {
+        value(self.kurtosis)
+    }
+
+    fn yield_(&self) -> Option<f64> {
+        self.yield_.map(|share| share.value)
+    }
+
+    fn ppm_below(&self) -> Option<f64> {
+        self.below.map(|share| 1e6 * share)
+    }
+
+    fn ppm_above(&self) -> Option<f64> {
+        self.above.map(|share| 1e6 * share)
+    }
+}
+
+/// Figures of the fitted distribution of a characteristic.
+pub(crate) trait FittedFigures {
+    /// The distribution that has its moments; None where there is none.
+    fn fitted(&self) -> Option<&Law>;
+
+    /// How many interactions were examined: not those whose points a stopped run left open.
+    fn examined(&self) -> usize;
+
+    /// Its quantiles: by the law of its surface, where there is one, by the Pearson fit elsewhere.
+    fn quantiles(&self) -> Option<Quantiles>;
+}
+
+impl FittedFigures for CharacteristicAnalysis {
+    fn fitted(&self) -> Option<&Law> {
+        self.law.as_ref()?.as_ref().ok()
+    }
+
+    fn examined(&self) -> usize {
+        self.interactions.iter().filter(|pair| pair.missing != Some(Missing::NotEvaluated)).count()
+    }
+
+    fn quantiles(&self) -> Option<Quantiles> {
+        let own = self.surface_law.as_ref().and_then(|law| law.named_quantiles());
+        own.or_else(|| match self.fitted()? {
+            Law::Pearson(law) => Some(Quantiles::of(law)),
+            Law::Point { .. } => None,
+        })
+    }
+}
+
+/// The names of quantiles as estimates.
+pub(super) const QUANTILES: [&str; 7] = [
+    "quantile 0.00135",
+    "quantile 0.01",
+    "quantile 0.05",
+    "quantile 0.5",
+    "quantile 0.95",
+    "quantile 0.99",
+    "quantile 0.99865",
+];

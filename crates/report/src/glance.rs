@@ -1,0 +1,84 @@
+//! Every characteristic in one line, before all else: where it lies, what it keeps, and the verdict.
+
+use super::figures::Named;
+use super::requirement::loud;
+use crate::document::number::{estimated, index, known, yielded};
+use crate::document::rejects::Rejects;
+use crate::document::{Cell, Columns, DataTable, Line, Value};
+use sensitol::rare::RareCharacteristic;
+use sensitol_numeric::sampling::{Estimate, one_error};
+use sensitol::simulation::SimulatedCharacteristic;
+use sensitol_numeric::verdict::{Judged, worst};
+use crate::rare::RareSection;
+
+/// A characteristic in words.
+pub(super) struct Glance<'r> {
+    name: &'r str,
+    unit: Option<&'r str>,
+    mean: String,
+    sigma: String,
+    cpk: Option<f64>,
+    yield_: String,
+    verdict: Line,
+}
+
+impl<'r> Glance<'r> {
+    /// Of a sample: as many digits as its standard errors carry.
+    pub(super) fn sampled(one: &'r SimulatedCharacteristic) -> Self {
+        let text = |of: Option<Estimate>| {
+            known(of.map(|of| of.value), |value| estimated(value, of.and_then(|of| of.standard_error)))
+        };
+        Self {
+            name: one.name(),
+            unit: one.unit(),
+            mean: text(one.mean),
+            sigma: text(one.sigma),
+            cpk: one.cpk,
+            yield_: one.yield_.map_or_else(String::new, |share| {
+                let error = Some(one_error(share.value, share.interval));
+                let text = Rejects::new(one.below, one.above, error).with_error();
+                text.unwrap_or_else(|| yielded(share.value))
+            }),
+            verdict: verdict(&one.requirements()),
+        }
+    }
+
+    /// Of rare events: the yield with its interval.
+    pub(super) fn sought(one: &'r RareCharacteristic) -> Self {
+        let interval = one.yield_interval.map(|ends| ends.map(yielded));
+        let interval = interval.map_or_else(String::new, |[low, high]| format!(", {low} to {high}"));
+        Self {
+            name: one.name(),
+            unit: one.unit(),
+            mean: String::new(),
+            sigma: String::new(),
+            cpk: None,
+            yield_: one.yield_.map_or_else(String::new, |share| format!("{}{interval}", yielded(share))),
+            verdict: verdict(&one.requirements()),
+        }
+    }
+}
+
+/// The worst verdict of all requirements; where there is one target yield only, that one.
+pub(super) fn verdict(judged: &[Judged]) -> Line {
+    worst(judged.iter().map(|one| one.verdict)).map_or_else(Line::default, loud)
+}
+
+/// The table, for terminals: pages have the verdict and its gauges in its place.
+pub(super) fn table<'r>(all: impl IntoIterator<Item = Glance<'r>>) -> DataTable {
+    let all: Vec<Glance<'_>> = all.into_iter().collect();
+    let any = |of: fn(&Glance<'_>) -> bool| all.iter().any(of);
+    let (moments, cpk) = (any(|one| !one.mean.is_empty()), any(|one| one.cpk.is_some()));
+    let (limited, judged) = (any(|one| !one.yield_.is_empty()), any(|one| !one.verdict.text().is_empty()));
+    // Figures stand below one another at their right ends.
+    let figure = |text: &str| Cell::both(Value::Number(None), text);
+    Columns::default()
+        .terminal(true, "", |one: &&Glance<'_>| Cell::name(one.name))
+        .terminal(moments, "mean", move |one| figure(&one.mean))
+        .terminal(moments, "sigma", move |one| figure(&one.sigma))
+        .terminal(moments, "", |one| Cell::optional(one.unit))
+        .terminal(cpk, "Cpk", |one| Cell::known(one.cpk, index))
+        .terminal(limited, "yield", |one| Cell::text(&one.yield_))
+        .terminal(judged, "verdict", |one| Cell { line: one.verdict.clone(), ..Cell::empty() })
+        .table("", &all)
+}

@@ -1,0 +1,88 @@
+//! The page of an analysis.
+
+use super::super::Report;
+use super::super::head::seed;
+use super::terms::terms;
+use super::verdict::{JudgedCharacteristic, Together, Words, verdict};
+use super::what_if::WhatIf;
+use super::{Fact, evidence, fact, inputs, json, others, provenance, render, sure, tries};
+use sensitol::analysis::Analysis;
+use crate::document::html::{head, sections};
+use crate::document::number::{plain, plural};
+use sensitol::method::Basis;
+use sensitol::summary::RunSummary;
+
+/// An analysis as one page of HTML. With a [`WhatIf`] the page computes the results of other tolerances and means by itself, as
+/// [`Surface::at`](sensitol::analysis::Surface::at) does.
+///
+/// The page needs no network and loads nothing. No evaluation.
+pub fn analyze_html(report: &Report, what_if: Option<&WhatIf>) -> String {
+    let possible = what_if.filter(|what_if| what_if.possible());
+    let mut document = report.brief_document();
+    evidence::add(report, &mut document.sections);
+    let tries = match (possible, what_if.and_then(WhatIf::impossible)) {
+        (Some(what_if), _) => tries::section(what_if),
+        (None, Some(why)) => tries::impossible(&why),
+        (None, None) => String::new(),
+    };
+    let all = &report.analysis.characteristics;
+    let rows: Vec<JudgedCharacteristic<'_>> = all
+        .iter()
+        .enumerate()
+        .map(|(place, one)| JudgedCharacteristic::analysed(place, one).warned(&report.warnings))
+        .collect();
+    let joint = report.analysis.joint.as_ref();
+    let joint = joint.map(|of| Together::about(of.value, of.error, report.analysis.joint_requirement.as_ref()));
+    let words = Words { warnings: others(&document, &report.warnings), ..Words::default() };
+    let errors: Vec<sure::Row> = all.iter().flat_map(|one| sure::analysed(one, None)).collect();
+    let sure = sure::section(&errors, sure::ANALYSED, &repeated(report));
+    let judged = verdict(&rows, joint, &words);
+    // The verdict's own words are not repeated before the figures.
+    let [first, rest] = match rows.iter().any(JudgedCharacteristic::counts) {
+        true => [judged, head(&document) + &sure],
+        false => [judged + &head(&document), sure],
+    };
+    let parts = [first, sections(&document) + &inputs::section(report), tries + &rest, terms("analyze", false)];
+    render(&report.head, facts(report), parts, possible.map(json))
+}
+
+/// The method and the seed that give the same figures again.
+fn repeated(report: &Report) -> String {
+    let run = &report.analysis.run;
+    let spent = plural(run.evaluations as usize, "evaluation", "evaluations");
+    let (method, seed) = (report.analysis.method.name(), seed(run));
+    format!(
+        "The analysis took {spent} by the method {method}{seed}, which give the same figures again. A simulation of a million points holds \
+         them against the model itself."
+    )
+}
+
+/// How many there were, and how often the next ones waited for the last.
+fn evaluations(run: &RunSummary) -> String {
+    let rounds = plural(run.stages as usize, "round", "rounds");
+    format!("{} in {rounds}, {} of them failed", run.evaluations, run.failed)
+}
+
+fn facts(report: &Report) -> Vec<Fact> {
+    let Analysis { method, account, varying, run, basis, .. } = &report.analysis;
+    let procedure = method.procedure();
+    let method = format!("{method}: {}; evaluations: {}", procedure.about(), procedure.count());
+    let mut facts = vec![fact("method", method)];
+    facts.extend(account.as_ref().map(|account| fact("what its points went to", account.to_string())));
+    facts.push(fact("varying dimensions", varying.to_string()));
+    facts.push(fact("evaluations", evaluations(run)));
+    let derivatives = match basis {
+        Basis::Exact => "exact",
+        Basis::Differences => "differences",
+        Basis::LeastSquares | Basis::Quadrature => "none: the moments rest on values or on a fitted surface",
+    };
+    facts.push(fact("derivatives", derivatives));
+    let pairs = report.correlation.iter();
+    let pairs: Vec<String> =
+        pairs.map(|pair| format!("{} and {}: {}", pair.between[0], pair.between[1], plain(pair.value))).collect();
+    if !pairs.is_empty() {
+        facts.push(fact("correlations", pairs.join("; ")));
+    }
+    facts.extend(provenance(&report.head, run));
+    facts
+}

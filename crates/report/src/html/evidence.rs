@@ -1,0 +1,391 @@
+//! The next questions of a review, for each characteristic: the tails, why the mean is not the nominal value, the chain of dimensions.
+
+use std::fmt::Write;
+
+use super::super::analysis_document::SHARES;
+use super::super::figures::{Figures, Named};
+use super::super::{DimensionReport, Report};
+use super::facts::facts;
+use super::pareto::pareto;
+use sensitol::analysis::{CharacteristicAnalysis, Sensitivity};
+use sensitol_numeric::capability::Law;
+use crate::document::number::{band, beside, estimated, plain, power_of_ten};
+use crate::document::svg::escaped;
+use crate::document::{Bar, Bars, Chart, Element, Extent, Fill, Line, Section, html};
+use sensitol_numeric::pearson::Pearson;
+use sensitol::verification::TailPoint;
+use crate::figures::FittedFigures;
+
+/// A shift of the mean below this part of sigma is none.
+const SEEN: f64 = 0.01;
+/// Rows of a table of shifts.
+const SHIFTS: usize = 12;
+/// A slope this near to 1 or -1 is that of a link of a chain.
+const STRAIGHT: f64 = 0.05;
+/// A chain of more links is too long for a picture.
+const LINKS: usize = 24;
+/// Columns of the table of all dimensions.
+const OF_INPUTS: [&str; 3] = ["nominal", "tolerance", "unit"];
+/// The share from which a tail is drawn, and the least to which.
+const FROM: f64 = 0.1;
+const TO: f64 = 1e-5;
+
+/// Puts what belongs to each characteristic into its section.
+pub(super) fn add(report: &Report, sections: &mut [Section]) {
+    for (one, section) in report.analysis.characteristics.iter().zip(sections) {
+        // The statistics of a terminal, in place of which stand the facts; the ranges are drawn.
+        if let Some(statistics) = section.blocks.iter().position(|block| matches!(block, Element::Table(_))) {
+            section.blocks.remove(statistics);
+        }
+        let findings = section.blocks.iter().take_while(|block| matches!(block, Element::Finding(_))).count();
+        section.blocks.insert(findings, Element::Markup(facts(one)));
+        section.blocks.retain_mut(|block| match block {
+            Element::Aside(aside) if aside.title == SHARES => {
+                aside.blocks = pareto(report, one).map(Element::Markup).into_iter().collect();
+                !aside.blocks.is_empty()
+            }
+            _ => true,
+        });
+        section.blocks.iter_mut().for_each(fold_derivatives);
+        let mut drawn = |title: &'static str, block: Option<Element>| {
+            let blocks = block.into_iter().collect::<Vec<_>>();
+            if !blocks.is_empty() {
+                crate::document::Blocks::aside(section, title, blocks);
+            }
+        };
+        drawn("Tails", tails(one).map(Element::Markup));
+        drawn("Dimension chain", chain(one, &report.dimensions).map(Element::Markup));
+        let shifts = shifts(one, &report.dimensions).map(|bars| Element::Chart(Chart::Bars(bars)));
+        drawn("From the nominal value to the mean", shifts);
+        drawn("Interactions", super::map::map(one).map(Element::Markup));
+    }
+}
+
+/// The derivatives of a characteristic, without what the table of all dimensions has: for those who ask, and on paper.
+fn fold_derivatives(block: &mut Element) {
+    let Element::Detail(inner) = block else { return };
+    let of_derivatives = |block: &Element| matches!(block, Element::Table(table) if table.name == "sensitivities");
+    let Some(place) = inner.iter().position(of_derivatives) else { return };
+    let rest = inner.split_off(place);
+    let mut folded = String::new();
+    for mut block in rest {
+        if let Element::Table(table) = &mut block {
+            table.columns.iter_mut().for_each(|column| column.page &= !OF_INPUTS.contains(&column.heading));
+        }
+        folded += &html::blocks(&[block]);
+    }
+    let title = "Slopes, curvatures and shifts of the mean as a table";
+    inner.push(Element::Markup(format!("<details class=\"fold\"><summary>{title}</summary>\n{folded}</details>\n")));
+}
+
+/// One limit, the share beyond it in any distance, and who says what at it.
+struct Tail<'l> {
+    name: &'static str,
+    limit: f64,
+    upper: bool,
+    law: &'l Pearson,
+    /// The share beyond the limit by the surface, and by points of the model with its error.
+    surface: Option<f64>,
+    model: Option<(f64, f64)>,
+    /// Values with the shares at or beyond them, by points of the model.
+    seen: &'l [TailPoint],
+}
+
+/// The share rejected on a logarithmic scale near each limit: the Pearson fit as a line, the surface and the model as marks at the limit.
+fn tails(one: &CharacteristicAnalysis) -> Option<String> {
+    let Some(Law::Pearson(law)) = one.fitted() else { return None };
+    let of_surface = one.surface_law.as_ref();
+    let by_model = one.verification.as_ref().map_or([None, None], |found| found.beyond);
+    let seen = one.verification.as_ref().and_then(|found| found.tails.as_ref());
+    let seen = seen.map_or([&[][..], &[]], |tails| [&tails.below[..], &tails.above[..]]);
+    let all = [
+        ("lower", one.lower(), false, of_surface.and_then(|law| law.below), by_model[0], seen[0]),
+        ("upper", one.upper(), true, of_surface.and_then(|law| law.above), by_model[1], seen[1]),
+    ];
+    let panels: Vec<String> = all
+        .into_iter()
+        .filter_map(|(name, limit, upper, surface, model, seen)| {
+            let surface = surface.map(|figure| figure.value);
+            let model = model.map(|found| (found.value, found.error));
+            panel(one, &Tail { name, limit: limit?, upper, law, surface, model, seen })
+        })
+        .collect();
+    (!panels.is_empty()).then(|| {
+        format!(
+            "<div class=\"tails\">{}</div>\n<p class=\"note\">Share of the assemblies beyond a value, on a logarithmic scale. Line: the Pearson fit; small \
+             dots: points of the model, with the band of two standard errors. At the limit: diamond, the surface; dot and bar, points of the model.</p>\n",
+            panels.concat()
+        )
+    })
+}
+
+/// A panel; None where the limit is too far out for shares that are drawn.
+fn panel(one: &CharacteristicAnalysis, tail: &Tail<'_>) -> Option<String> {
+    const WIDTH: f64 = 340.0;
+    const TALL: f64 = 150.0;
+    const LEFT: f64 = 56.0;
+    let beyond = |x: f64| if tail.upper { tail.law.sf(x) } else { tail.law.cdf(x) };
+    let at = |share: f64| if tail.upper { tail.law.upper_quantile(share) } else { tail.law.quantile(share) };
+    let seen = [tail.surface, tail.model.map(|model| model.0), Some(beyond(tail.limit))];
+    let least = seen.into_iter().flatten().filter(|share| *share > 0.0).fold(TO, f64::min);
+    // Further out than this a picture says nothing.
+    const FARTHEST: f64 = 1e-9;
+    if least < FARTHEST {
+        return None;
+    }
+    let decades = -libm::log10(least).floor();
+    let least = power_of_ten(-decades);
+    let shown = || tail.seen.iter().filter(|point| point.share >= least);
+    let values = [at(FROM), at(least), tail.limit].into_iter().chain(shown().map(|point| point.at));
+    let scale = Extent::over(values, 0.04, WIDTH - LEFT)?;
+    let x = |value: f64| LEFT + scale.at(value);
+    let y = |share: f64| {
+        let part = (libm::log10(FROM) - libm::log10(share.max(least))) / (libm::log10(FROM) - libm::log10(least));
+        (10.0 * TALL * part.clamp(0.0, 1.0)).round() / 10.0 + 8.0
+    };
+    let mut line = String::new();
+    for i in 0..=60 {
+        let value = scale.from + (scale.to - scale.from) * f64::from(i) / 60.0;
+        let share = beyond(value);
+        if share <= FROM && share >= least {
+            let _ = write!(line, "{}{:.1} {:.1}", if line.is_empty() { "M" } else { "L" }, x(value), y(share));
+        }
+    }
+    // Lines without length and with round ends are dots, and shorter than circles. The band is that of two standard errors.
+    let (mut dots, mut band) = (String::new(), String::new());
+    shown().for_each(|point| {
+        let _ = write!(dots, "M{:.1} {:.1}h0", x(point.at), y(point.share));
+    });
+    let known: Vec<(&TailPoint, f64)> = shown().filter_map(|point| Some((point, point.error?))).collect();
+    for (point, error) in &known {
+        let _ = write!(band, "{:.1} {:.1} ", x(point.at), y(point.share + 2.0 * error));
+    }
+    for (point, error) in known.iter().rev() {
+        let _ = write!(band, "{:.1} {:.1} ", x(point.at), y((point.share - 2.0 * error).max(least)));
+    }
+    let limit = x(tail.limit);
+    let (from, to) = if tail.upper { (limit, WIDTH) } else { (LEFT, limit) };
+    let unit = one.unit().map(|unit| format!(" {unit}")).unwrap_or_default();
+    let said = |share: f64| format!("{} ppm", estimated(1e6 * share, None));
+    let mut spoken = vec![format!("Tail of {} at the {} limit {}{unit}", one.name(), tail.name, plain(tail.limit))];
+    spoken.push(format!("Pearson fit {}", said(beyond(tail.limit))));
+    spoken.extend(tail.surface.map(|share| format!("surface {}", said(share))));
+    spoken.extend(tail.model.map(|(share, error)| format!("model {} ± {}", said(share), said(error))));
+    let mut svg = format!(
+        "<svg class=\"tail\" viewBox=\"0 0 {WIDTH} {}\" role=\"img\" aria-label=\"{}\">\n",
+        TALL + 30.0,
+        escaped(&spoken.join(", "))
+    );
+    let _ = writeln!(
+        svg,
+        "<rect class=\"zone\" x=\"{from:.1}\" y=\"8\" width=\"{:.1}\" height=\"{TALL}\"/>",
+        (to - from).max(0.0)
+    );
+    for decade in 1..=decades as i32 {
+        let share = 10f64.powi(-decade);
+        let name = match decade {
+            1 => "10 %".to_owned(),
+            2 => "1 %".to_owned(),
+            3 => "0.1 %".to_owned(),
+            4..=6 => format!("{} ppm", 10i32.pow(6 - decade as u32)),
+            _ => format!("{} ppm", plain(10f64.powi(6 - decade))),
+        };
+        let at = y(share);
+        let _ = writeln!(
+            svg,
+            "<path class=\"axis\" d=\"M{LEFT} {at}H{WIDTH}\"/><text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{name}</text>",
+            LEFT - 6.0,
+            at + 4.0
+        );
+    }
+    let _ =
+        writeln!(svg, "<path class=\"line\" d=\"{line}\"/><path class=\"limit\" d=\"M{limit:.1} 2V{}\"/>", TALL + 12.0);
+    if !dots.is_empty() {
+        let _ = writeln!(
+            svg,
+            "<polygon class=\"seen-within\" points=\"{}\"/><path class=\"seen\" d=\"{dots}\"/>",
+            band.trim_end()
+        );
+    }
+    let anchor = if limit > 0.75 * WIDTH {
+        "end"
+    } else if limit < 0.35 * WIDTH {
+        "start"
+    } else {
+        "middle"
+    };
+    let _ = writeln!(
+        svg,
+        "<text class=\"name\" x=\"{limit:.1}\" y=\"{}\" text-anchor=\"{anchor}\">{} {}{}</text>",
+        TALL + 25.0,
+        tail.name,
+        plain(tail.limit),
+        escaped(&unit)
+    );
+    if let Some(share) = tail.surface.filter(|share| *share > 0.0) {
+        let _ = writeln!(svg, "<path class=\"of-surface\" d=\"M{limit:.1} {:.1}l5 5l-5 5l-5 -5z\"/>", y(share) - 5.0);
+    }
+    if let Some((share, error)) = tail.model.filter(|(share, error)| share + 2.0 * error > least) {
+        let [low, high] = [-2.0, 2.0].map(|by| y((share + by * error).max(least)));
+        let _ = writeln!(svg, "<path class=\"reach\" d=\"M{limit:.1} {low:.1}V{high:.1}\"/>");
+        if share > least {
+            let _ = writeln!(svg, "<circle cx=\"{limit:.1}\" cy=\"{:.1}\" r=\"4\"/>", y(share));
+        }
+    }
+    Some(svg + "</svg>")
+}
+
+/// Why the mean is not the value of the nominal dimensions; None where it nearly is, or where that is not known.
+fn shifts(one: &CharacteristicAnalysis, dimensions: &[DimensionReport]) -> Option<Bars> {
+    let (nominal, mean, sigma) = (one.nominal?, one.mean()?, one.sigma()?);
+    let seen = SEEN * sigma;
+    if !(sigma > 0.0 && (mean - nominal).abs() >= seen) {
+        return None;
+    }
+    let mut found: Vec<(String, f64, String)> = Vec::new();
+    for row in &one.sensitivities {
+        let Some(dimension) = dimensions.iter().find(|of| of.name == row.dimension) else { continue };
+        let off = dimension.mean - dimension.nominal;
+        if let Some(first) = row.first.filter(|_| off != 0.0) {
+            // From the nominal value to the mean of the dimension, by the derivatives at the mean.
+            let moved = first * off - 0.5 * row.second.unwrap_or(0.0) * off * off;
+            let one_sided = dimension.tolerance.filter(|[lower, upper]| lower + upper != 0.0);
+            let cause = one_sided
+                .map_or("its mean is off the nominal value".to_owned(), |ends| format!("tolerance {}", band(ends)));
+            found.push((row.dimension.clone(), moved, cause));
+        }
+        found.extend(row.mean_shift.map(|moved| (row.dimension.clone(), moved, "curvature".to_owned())));
+    }
+    for pair in one.interactions.iter() {
+        let name = || pair.dimensions.join(" × ");
+        found.extend(pair.mean_shift.map(|moved| (name(), moved, "correlation".to_owned())));
+    }
+    found.retain(|(_, moved, _)| moved.abs() >= seen);
+    found.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+    found.truncate(SHIFTS);
+    let rest = mean - nominal - found.iter().map(|(_, moved, _)| moved).sum::<f64>();
+    if rest.abs() >= seen {
+        found.push(("all others".to_owned(), rest, "together".to_owned()));
+    }
+    let mut at = nominal;
+    let ends: Vec<[f64; 2]> = (found.iter())
+        .map(|(_, moved, _)| {
+            let from = at;
+            at += moved;
+            [from, at]
+        })
+        .collect();
+    let scale = Extent::over(ends.iter().flatten().copied().chain([nominal, mean]), 0.04, 100.0)?;
+    let place = |value: f64| vec![(Fill::Span, [(scale.at(value) - 0.3).max(0.0), 0.6])];
+    let end = |name: &str, value: f64| Bar {
+        name: name.to_owned(),
+        parts: place(value),
+        text: beside(value, sigma),
+        remark: Line::default(),
+    };
+    let mut rows = vec![end("nominal value", nominal)];
+    rows.extend(found.into_iter().zip(ends).map(|((name, moved, cause), [from, to])| {
+        let (low, high) = (from.min(to), from.max(to));
+        let sign = if moved > 0.0 { "+" } else { "" };
+        Bar {
+            name,
+            parts: vec![(Fill::Span, [scale.at(low), (scale.at(high) - scale.at(low)).max(0.2)])],
+            text: format!("{sign}{}", beside(moved, sigma)),
+            remark: Line::from(cause),
+        }
+    }));
+    rows.push(end("mean", mean));
+    Some(Bars {
+        caption: format!("Shifts of the mean of {} above 1 % of sigma", one.name()),
+        rows,
+        marks: Vec::new(),
+        legend: Vec::new(),
+    })
+}
+
+/// The links as arrows from one to the next; None where the characteristic is not a sum and difference of its dimensions.
+fn chain(one: &CharacteristicAnalysis, dimensions: &[DimensionReport]) -> Option<String> {
+    let nominal = one.nominal?;
+    let straight = |row: &&Sensitivity| row.first.is_some_and(|first| first != 0.0);
+    let rows: Vec<&Sensitivity> = one.sensitivities.iter().filter(straight).collect();
+    let curved = |row: &&&Sensitivity| row.curvature_share.is_some_and(|share| share > 1e-6);
+    if !(2..=LINKS).contains(&rows.len()) || rows.iter().any(|row| curved(&row)) || !one.interactions.is_empty() {
+        return None;
+    }
+    let links: Option<Vec<(&DimensionReport, f64)>> = (rows.iter())
+        .map(|row| {
+            let first = row.first?;
+            let of = dimensions.iter().find(|of| of.name == row.dimension)?;
+            ((first.abs() - 1.0).abs() <= STRAIGHT).then_some((of, first.signum()))
+        })
+        .collect();
+    let links = links?;
+    let sum: f64 = links.iter().map(|(of, sign)| sign * of.nominal).sum();
+    let size = links.iter().map(|(of, _)| of.nominal.abs()).fold(nominal.abs(), f64::max);
+    // The rest would be a link that has no name.
+    if (sum - nominal).abs() > 1e-9 * size || size == 0.0 {
+        return None;
+    }
+    Some([("wide", 736.0), ("narrow", 358.0)].map(|(class, width)| drawing(one, &links, class, width)).concat())
+}
+
+fn drawing(one: &CharacteristicAnalysis, links: &[(&DimensionReport, f64)], class: &str, width: f64) -> String {
+    const ROW: f64 = 26.0;
+    const LETTER: f64 = 7.0;
+    let longest = |texts: &mut dyn Iterator<Item = String>| texts.map(|text| text.chars().count()).max().unwrap_or(0);
+    let band = |of: &DimensionReport| of.tolerance.map(band).unwrap_or_default();
+    let notes = longest(&mut links.iter().map(|(of, _)| band(of)));
+    let values = longest(&mut links.iter().map(|(of, _)| plain(of.nominal)));
+    // A value in the middle of a short link at the end of the scale does not reach into the column of bands.
+    let room = LETTER * (notes as f64 + 0.5 * values as f64 + 1.0);
+    let (left, right) = if width > 500.0 { (110.0, room.max(110.0)) } else { (84.0, room.max(74.0)) };
+    let mut at = 0.0;
+    let ends: Vec<[f64; 2]> = (links.iter())
+        .map(|(of, sign)| {
+            let from = at;
+            at += sign * of.nominal;
+            [from, at]
+        })
+        .collect();
+    let Some(scale) = Extent::over(ends.iter().flatten().copied(), 0.02, width - left - right) else {
+        return String::new();
+    };
+    let x = |value: f64| left + scale.at(value);
+    let tall = ROW * (links.len() + 1) as f64 + 8.0;
+    let unit = one.unit().map(|unit| format!(" {unit}")).unwrap_or_default();
+    let named: Vec<String> = (links.iter())
+        .map(|(of, sign)| format!("{}{} {}", if *sign < 0.0 { "minus " } else { "plus " }, of.name, plain(of.nominal)))
+        .collect();
+    let nominal = plain(one.nominal.unwrap_or(at));
+    let label = format!("Chain of {}: {}, which is {nominal}{unit}", one.name(), named.join(", "));
+    let mut svg = format!(
+        "<svg class=\"density chain {class}\" viewBox=\"0 0 {width} {tall}\" role=\"img\" aria-label=\"{}\">\n",
+        escaped(&label)
+    );
+    let datum = x(0.0);
+    let _ = writeln!(svg, "<path class=\"datum\" d=\"M{datum:.1} 2V{}\"/>", tall - 4.0);
+    let mut arrow = |row: usize, [from, to]: [f64; 2], (name, value, note, class): (&str, String, String, &str)| {
+        let (y, a, b) = (ROW * (row as f64 + 0.5) + 4.0, x(from), x(to));
+        let head = if b >= a { -7.0 } else { 7.0 };
+        let _ = writeln!(svg, "<path class=\"{class}\" d=\"M{a:.1} {y}H{b:.1}m{head} -4l{} 4l{head} 4\"/>", -head);
+        let _ = writeln!(svg, "<path class=\"axis\" d=\"M{b:.1} {y}V{}\"/>", y + ROW);
+        let _ = writeln!(
+            svg,
+            "<text class=\"name\" x=\"0\" y=\"{:.1}\">{}</text>",
+            y + 4.0,
+            escaped(&crate::document::number::short(name))
+        );
+        let _ = writeln!(
+            svg,
+            "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{value}</text>",
+            0.5 * (a + b),
+            y - 4.0
+        );
+        let _ = writeln!(svg, "<text x=\"{width}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>", y + 4.0, escaped(&note));
+    };
+    for (row, ((of, _), ends)) in links.iter().zip(&ends).enumerate() {
+        arrow(row, *ends, (&of.name, plain(of.nominal), band(of), "link"));
+    }
+    arrow(links.len(), [0.0, at], (one.name(), nominal, String::new(), "link gap"));
+    svg + "</svg>\n"
+}

@@ -1,0 +1,209 @@
+//! Reports as pages: one file each that opens from disk and asks nothing of any network.
+//!
+//! Everything that comes from a study or an adapter is escaped where it is written; drawings are made of numbers alone, and
+//! data for the page's script stand in a block of JSON in which no `<` is left. A content-security policy
+//! tells the browser the parts that may run: this script and this style, known by their hashes, and nothing else.
+
+mod analysis;
+mod evidence;
+mod facts;
+mod inputs;
+mod map;
+mod pages;
+mod pareto;
+mod sure;
+mod terms;
+mod tries;
+mod verdict;
+mod what_if;
+
+pub use analysis::analyze_html;
+pub use pages::{allocate_html, compare_html, rare_html, simulate_html, sweep_html};
+pub use what_if::WhatIf;
+
+use serde::Serialize;
+use sha2::{Digest, Sha256};
+
+use super::head::findings;
+use super::{DifferenceReport, Head, WarningReport};
+use crate::document::Document;
+use crate::document::html::{blocks, head as summary, sections};
+use crate::document::number::significant;
+use crate::document::svg::escaped;
+use sensitol::summary::RunSummary;
+
+const STYLE: &str = include_str!("page.css");
+/// The mathematics of the what-if, and then what shows it.
+const SCRIPT: &str = concat!(
+    include_str!("what_if.js"),
+    include_str!("pearson.js"),
+    include_str!("law.js"),
+    include_str!("counted.js"),
+    include_str!("live.js"),
+    include_str!("page.js")
+);
+/// One thing worth knowing of a report.
+struct Fact {
+    name: &'static str,
+    text: String,
+}
+
+fn fact(name: &'static str, text: impl Into<String>) -> Fact {
+    Fact { name, text: text.into() }
+}
+
+/// The facts that every report ends with.
+fn provenance(head: &Head, run: &RunSummary) -> Vec<Fact> {
+    let seconds = |time: std::time::Duration| format!("{} s", significant(time.as_secs_f64(), 3));
+    let mut facts = vec![fact("known answers", run.cached.to_string())];
+    if run.retried > 0 {
+        facts.push(fact("sent again", run.retried.to_string()));
+    }
+    facts.extend(run.stopped.map(|reason| fact("stopped by", reason.to_string())));
+    facts.push(fact("time", format!("{}, {} of it in the model", seconds(run.wall), seconds(run.in_model))));
+    facts.extend(run.seed.map(|seed| fact("seed", seed.to_string())));
+    facts.push(fact("sensitol", format!("{}, report schema {}", head.sensitol, head.schema)));
+    if !head.study_sha256.is_empty() {
+        facts.push(fact("SHA-256 of the study", head.study_sha256.clone()));
+    }
+    facts
+}
+
+/// Two revisions of a study as one page of HTML: what changed in inputs, results and contributions.
+pub(crate) fn difference_html(report: &DifferenceReport) -> String {
+    let document = report.document();
+    let [old, new] = &report.studies;
+    let [of_old, of_new] = &report.sha256;
+    let facts = vec![
+        fact("was", format!("{old}, SHA-256 {of_old}")),
+        fact("is", format!("{new}, SHA-256 {of_new}")),
+        fact("evaluations", format!("{} and {}", report.evaluations[0], report.evaluations[1])),
+        fact("sensitol", format!("{}, report schema {}", report.head.sensitol, report.head.schema)),
+    ];
+    let parts = [summary(&document), sections(&document), String::new(), terms::terms("analyze", false)];
+    render(&report.head, facts, parts, None)
+}
+
+/// Warnings that stand in no section of their own, as markup.
+fn others(document: &Document, warnings: &[WarningReport]) -> String {
+    let told = |name: &str| document.sections.iter().any(|section| section.name == name);
+    blocks(&findings(warnings, |name| name.is_none_or(|name| !told(name))))
+}
+
+/// Who made what, the study, the tool: as on a drawing.
+fn block(head: &Head) -> Vec<(&str, &str)> {
+    let mut cells: Vec<(&str, &str)> = head.block.iter().map(|(name, text)| (*name, text.as_str())).collect();
+    if let Some(first) = head.study_sha256.get(..12) {
+        cells.push(("Study, SHA-256", first));
+    }
+    cells.push(("sensitol", head.sensitol));
+    cells
+}
+
+/// The footer of every printed page: part, revision, the study's hash, page number.
+fn footer(head: &Head) -> String {
+    let cell = |wanted: &str| head.block.iter().find(|(name, _)| *name == wanted).map(|(_, text)| text.as_str());
+    let revision = cell("Revision").map(|revision| format!("revision {revision}"));
+    let hash = head.study_sha256.get(..12).map(|hash| format!("study {hash}"));
+    let what = cell("Part").or(head.title.as_deref()).map(str::to_owned);
+    let text: Vec<String> = [what, revision, hash].into_iter().flatten().collect();
+    // Nothing but letters and digits stays as it is: names come from studies.
+    let safe = |c: char| match c {
+        c if c.is_alphanumeric() || c == ' ' => c.to_string(),
+        c => format!("\\{:x} ", u32::from(c)),
+    };
+    let text: String = text.join(", ").chars().filter(|c| !c.is_control()).map(safe).collect();
+    format!("@page {{ @bottom-left {{ content: \"{text}\"; }} }}\n")
+}
+
+/// The page around its parts, which are markup in their order; `data` is JSON for the page's script, none where there is nothing to run.
+fn render(head: &Head, facts: Vec<Fact>, [first, sections, rest, terms]: [String; 4], data: Option<String>) -> String {
+    let style = format!("{STYLE}{}", footer(head));
+    let allowed = match data {
+        Some(_) => format!(" script-src '{}';", hash(SCRIPT)),
+        None => String::new(),
+    };
+    let policy =
+        format!("default-src 'none'; style-src '{}';{allowed} base-uri 'none'; form-action 'none'", hash(&style));
+    let (policy, command) = (escaped(&policy), escaped(head.command));
+    let title = escaped(head.title.as_deref().unwrap_or("Tolerance report"));
+    let entry = |name: &str, text: &str| format!("<div><dt>{}</dt><dd>{}</dd></div>\n", escaped(name), escaped(text));
+    let block: String = block(head).into_iter().map(|(name, text)| entry(name, text)).collect();
+    let facts: String = facts.iter().map(|one| entry(one.name, &one.text)).collect();
+    let script = data.map(|data| {
+        format!("<script type=\"application/json\" id=\"data\">{data}</script>\n<script>{SCRIPT}</script>\n")
+    });
+    let script = script.unwrap_or_default();
+    format!(
+        r#"<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="{policy}">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="light dark">
+<meta name="generator" content="sensitol">
+<title>{title} – {command}</title>
+<style>{style}</style>
+</head>
+<body>
+<header class="head">
+<div><p class="brand">sensitol {command}</p>
+<h1>{title}</h1></div>
+<dl class="block">
+{block}</dl>
+</header>
+<main>
+{first}
+{sections}
+{rest}
+<section aria-labelledby="about">
+<h2 id="about">What was done</h2>
+<dl class="facts">
+{facts}</dl>
+</section>
+{terms}
+</main>
+{script}</body>
+</html>"#
+    )
+}
+
+/// As a content-security policy names a script or style.
+fn hash(text: &str) -> String {
+    format!("sha256-{}", base64(&Sha256::digest(text.as_bytes())))
+}
+
+fn base64(bytes: &[u8]) -> String {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::new();
+    for group in bytes.chunks(3) {
+        let bits = group.iter().enumerate().fold(0u32, |bits, (i, &byte)| bits | u32::from(byte) << (16 - 8 * i));
+        for i in 0..4 {
+            let digit = char::from(DIGITS[(bits >> (18 - 6 * i)) as usize & 63]);
+            text.push(if i <= group.len() { digit } else { '=' });
+        }
+    }
+    text
+}
+
+/// JSON that may stand in a page: nothing in it ends a script or begins a comment.
+fn json(value: &impl Serialize) -> String {
+    let text = serde_json::to_string(value).expect("reports are plain data");
+    text.replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// RFC 4648, section 10.
+    #[test]
+    fn base64_is_that_of_the_standard() {
+        let pairs =
+            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foob", "Zm9vYg=="), ("foobar", "Zm9vYmFy")];
+        for (bytes, text) in pairs {
+            assert_eq!(base64(bytes.as_bytes()), text);
+        }
+    }
+}

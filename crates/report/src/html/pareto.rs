@@ -1,0 +1,341 @@
+//! The contributions to the variance of a characteristic as bars, with their running sum and the part that is not resolved.
+
+use std::fmt::Write;
+
+use super::super::figures::{Figures, Named};
+use super::super::statistics::derivative;
+use super::super::{DimensionReport, Report};
+use sensitol::analysis::{CharacteristicAnalysis, EstimatedShare, Sensitivity};
+use crate::document::number::{NEWS, UNKNOWN, percent, percent_within, short, within};
+use crate::document::svg::escaped;
+use crate::statistics::CharacteristicStatistics;
+
+/// A diagram of more rows than this folds those below `SMALL` of the variance into one.
+const ROWS: usize = 12;
+const SMALL: f64 = 5e-3;
+/// Rows of a diagram, whatever they make.
+const MOST: usize = 24;
+/// Dimensions without influence that are named rather than counted.
+const NAMED: usize = 24;
+/// Height of a row's drawing, and the bar in it. The running sum goes on from row to row.
+const TALL: u32 = 32;
+const BAR: [u32; 2] = [9, 14];
+/// From one line of a hatched bar to the next, in percent of the variance.
+const HATCH: f64 = 0.8;
+
+/// A contribution, as a part of the variance.
+struct Share {
+    name: String,
+    /// By slope, curvature and interaction; of a model by itself and with others.
+    parts: [f64; 3],
+    /// Its part of the sum.
+    value: f64,
+    error: Option<f64>,
+    /// With every interaction, where points of the model say that.
+    total: Option<EstimatedShare>,
+    /// Whether no other dimension varies with it: a share of others has no sigma of its own.
+    alone: bool,
+    /// Slope x half tolerance.
+    reach: Option<String>,
+}
+
+/// The contributions to the variance, strongest first; None where none is known.
+pub(super) fn pareto(report: &Report, one: &CharacteristicAnalysis) -> Option<String> {
+    let of_model = one.is_of_model();
+    let mut all = if of_model { of_points(one, &report.dimensions) } else { of_surface(one, &report.dimensions) };
+    let idle: Vec<String> = (one.sensitivities.iter())
+        .filter(|row| all.iter().any(|share| share.name == row.dimension && none(share)))
+        .map(|row| short(&row.dimension))
+        .collect();
+    all.retain(|share| !none(share));
+    if all.is_empty() {
+        return None;
+    }
+    all.sort_by(|a, b| b.parts.iter().sum::<f64>().total_cmp(&a.parts.iter().sum()));
+    if !of_model {
+        fold(&mut all);
+    }
+    all.truncate(MOST + 1);
+    let sigma = one.sigma().map(|sigma| (sigma, one.error_estimate.as_ref().and_then(|of| of.sigma)));
+    let unit = one.unit().map(|unit| format!(", {}", escaped(unit))).unwrap_or_default();
+    let (by, sum) = match of_model {
+        true => (" by the model", ""),
+        false => ("", "<th scope=\"col\" class=\"n opt\">cumulative</th>"),
+    };
+    let mut text = format!(
+        "<table class=\"drivers\"><caption class=\"sr\">Contributions to the variance of {}{by}, strongest first</caption>\n\
+         <thead><tr><th scope=\"col\">dimension</th><th scope=\"col\">of the variance, 0 to 100 %</th><th scope=\"col\" class=\"n\">share</th>{sum}\
+         <th scope=\"col\" class=\"n\">sigma{unit}</th><th scope=\"col\" class=\"n opt\">slope × half tolerance{unit}</th></tr></thead><tbody>\n",
+        escaped(one.name())
+    );
+    let mut before = Sum::default();
+    for share in &all {
+        let after = before.and(share);
+        let fills = if of_model { ["linear", "interaction", ""] } else { ["linear", "curvature", "interaction"] };
+        let mut at = 0.0;
+        let mut bars = String::new();
+        for (fill, part) in fills.into_iter().zip(share.parts.map(|part| scaled(part.max(0.0)))) {
+            if part > 0.0 {
+                let _ = write!(
+                    bars,
+                    "<rect class=\"{fill}\" x=\"{at:.2}\" y=\"{}\" width=\"{part:.2}\" height=\"{}\"/>",
+                    BAR[0], BAR[1]
+                );
+                at += part;
+            }
+        }
+        let (amount, cells) = match of_model {
+            true => (of_model_text(share), String::new()),
+            false => {
+                bars += &step(before.value, after.value);
+                (format!("{} %", percent_within(share.value, share.error).0), summed(&after))
+            }
+        };
+        let spread =
+            sigma.filter(|_| share.alone).map_or(UNKNOWN.to_owned(), |sigma| spread(sigma, share.value, share.error));
+        let reach = share.reach.as_deref().unwrap_or_default();
+        row(&mut text, &share.name, "", &bars, &[amount, cells, spread, reach.to_owned()]);
+        before = after;
+    }
+    let open = unresolved(one).filter(|_| !of_model);
+    if let Some(open) = &open {
+        let (bars, amount, cells, spread) = match *open {
+            Open::LeftOut(share) => {
+                let after = Sum { value: before.value + share, ..before };
+                let bars = hatched(share) + &step(before.value, after.value);
+                let spread = sigma.map_or(UNKNOWN.to_owned(), |sigma| spread(sigma, share, None));
+                (bars, format!("{} %", percent(share)), summed(&after), spread)
+            }
+            Open::ByPoints(share) => (
+                hatched(share),
+                format!("{} %", percent(share)),
+                "<td class=\"n sum opt\"></td>".to_owned(),
+                String::new(),
+            ),
+            Open::Unknown => (
+                String::new(),
+                UNKNOWN.to_owned(),
+                format!("<td class=\"n sum opt\">{UNKNOWN}</td>"),
+                UNKNOWN.to_owned(),
+            ),
+        };
+        row(&mut text, "not resolved", " class=\"unknown\"", &bars, &[amount, cells, spread, String::new()]);
+    }
+    text += "</tbody></table>\n";
+    let keys: &[[&str; 2]] = match of_model {
+        true => &[["linear", "by itself"], ["interaction", "with others"]],
+        false => {
+            &[["linear", "linear"], ["curvature", "curvature"], ["interaction", "interaction"], ["step", "cumulative"]]
+        }
+    };
+    let key = |[fill, name]: &[&str; 2]| format!("<li class=\"key {fill}\">{name}</li>");
+    let _ = writeln!(text, "<ul class=\"legend\">{}</ul>", keys.iter().map(key).collect::<String>());
+    match open {
+        Some(Open::ByPoints(_)) => {
+            text += "<p class=\"note\">Not resolved: by points of the model, the surface leaves this part of the variance.</p>\n"
+        }
+        Some(Open::LeftOut(_)) => {
+            text += "<p class=\"note\">Not resolved: part of the variance, and in no contribution.</p>\n"
+        }
+        Some(Open::Unknown) => {
+            text += "<p class=\"note\">Not resolved: what these contributions leave of the variance is unknown.</p>\n"
+        }
+        None => {}
+    }
+    if of_model {
+        text += "<p class=\"note\">Share by itself, and with every interaction; sigma is that of a dimension by itself.</p>\n";
+    }
+    if !idle.is_empty() {
+        let more = idle.len().saturating_sub(NAMED);
+        let names = escaped(&idle[..idle.len() - more].join(", "));
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        let _ =
+            writeln!(text, "<p class=\"note\">Less than {} % of the variance each: {names}{more}.</p>", 50.0 * NEWS);
+    }
+    Some(text)
+}
+
+/// By itself and with every interaction, in percent.
+fn of_model_text(share: &Share) -> String {
+    let (first, _) = percent_within(share.value, share.error);
+    match share.total {
+        Some(total) => format!("{first} to {} %", percent_within(total.value, total.error).0),
+        None => format!("{first} %"),
+    }
+}
+
+/// Whether it varies together with another.
+fn varies_with(one: &CharacteristicAnalysis, dimension: &str) -> bool {
+    let mut together = one.indices.iter().flat_map(|of| &of.factors).flat_map(|factor| &factor.dimensions);
+    together.any(|of| of == dimension)
+}
+
+/// Whether it is too small for a row.
+fn none(share: &Share) -> bool {
+    share.parts.iter().sum::<f64>().abs() <= 0.5 * NEWS
+}
+
+fn of_surface(one: &CharacteristicAnalysis, dimensions: &[DimensionReport]) -> Vec<Share> {
+    let own = one.sensitivities.iter().zip(dimensions).filter_map(|(row, of)| {
+        let parts = [row.linear_share?, row.curvature_share.unwrap_or(0.0), 0.0];
+        let value = parts.iter().sum();
+        let error = row.first_order.map_or_else(|| one.share_error(value), |index| index.error);
+        let alone = !varies_with(one, &row.dimension);
+        Some(Share {
+            name: row.dimension.clone(),
+            parts,
+            value,
+            error,
+            total: None,
+            alone,
+            reach: Some(reach(row, of)),
+        })
+    });
+    let joint = one.interactions.iter().filter_map(|pair| {
+        let value = pair.share?;
+        let name = pair.dimensions.join(" \u{d7} ");
+        let alone = !pair.dimensions.iter().any(|dimension| varies_with(one, dimension));
+        let error = one.share_error(value);
+        Some(Share { name, parts: [0.0, 0.0, value], value, error, total: None, alone, reach: None })
+    });
+    own.chain(joint).collect()
+}
+
+/// Of the model: by itself, and what interactions add.
+fn of_points(one: &CharacteristicAnalysis, dimensions: &[DimensionReport]) -> Vec<Share> {
+    let share = |(row, of): (&Sensitivity, &DimensionReport)| {
+        let index = row.first_order?;
+        let joint = row.total.map_or(0.0, |total| total.value - index.value.max(0.0)).max(0.0);
+        let parts = [index.value.max(0.0), joint, 0.0];
+        Some(Share {
+            name: row.dimension.clone(),
+            parts,
+            value: index.value,
+            error: index.error,
+            total: row.total,
+            alone: true,
+            reach: Some(reach(row, of)),
+        })
+    };
+    one.sensitivities.iter().zip(dimensions).filter_map(share).collect()
+}
+
+/// The rows below what a long diagram shows one by one become its last.
+fn fold(all: &mut Vec<Share>) {
+    let first =
+        if all.len() > ROWS { all.partition_point(|share| share.value >= SMALL).clamp(ROWS, MOST) } else { MOST };
+    // One row takes no more room than the row about it.
+    if all.len() <= first + 1 {
+        return;
+    }
+    let rest = all.split_off(first);
+    let mut parts = [0.0; 3];
+    rest.iter().for_each(|share| (0..3).for_each(|i| parts[i] += share.parts[i]));
+    let error = rest.iter().map(|share| share.error).sum();
+    let alone = rest.iter().all(|share| share.alone);
+    let name = format!("{} others", rest.len());
+    all.push(Share { name, parts, value: parts.iter().sum(), error, total: None, alone, reach: None });
+}
+
+/// Slope x half tolerance, signed, to the digits that the rounding of the slope carries.
+fn reach(row: &Sensitivity, dimension: &DimensionReport) -> String {
+    let (Some(first), Some([lower, upper])) = (row.first, dimension.tolerance) else { return UNKNOWN.to_owned() };
+    if slope(row, 1) == "0" {
+        return "0".to_owned();
+    }
+    let half = 0.5 * (upper - lower);
+    let text = within(first * half, 3, row.rounding.map(|rounding| rounding[0] * half));
+    if first * half > 0.0 { format!("+{text}") } else { text }
+}
+
+/// A slope to so many digits, or to those that its rounding carries.
+pub(super) fn slope(row: &Sensitivity, digits: usize) -> String {
+    let rounding = row.rounding.map(|rounding| rounding[0]);
+    let text = derivative(row.first, rounding, digits);
+    match row.first {
+        Some(first) if text != "0" => within(first, digits, rounding),
+        _ => text,
+    }
+}
+
+/// The sigma that a share of the variance alone would make, with the digits that the errors of both carry; none of a negative share, as
+/// dimensions that vary together can have.
+fn spread((sigma, of_sigma): (f64, Option<f64>), share: f64, of_share: Option<f64>) -> String {
+    if share <= 0.0 {
+        return UNKNOWN.to_owned();
+    }
+    let root = share.sqrt();
+    let error = of_sigma.unwrap_or(0.0).mul_add(root, 0.5 * sigma * of_share.unwrap_or(0.0) / root);
+    within(sigma * root, 3, Some(error))
+}
+
+/// The part of the variance that no contribution explains.
+enum Open {
+    /// A part of the variance.
+    LeftOut(f64),
+    /// A part that the model has beside its surface, by points.
+    ByPoints(f64),
+    Unknown,
+}
+
+/// None where everything is resolved, as far as a row shows.
+fn unresolved(one: &CharacteristicAnalysis) -> Option<Open> {
+    let seen = |share: &f64| *share > 0.5 * NEWS;
+    match (one.left_out_share, one.left()) {
+        (Some(left_out), _) if seen(&left_out) => Some(Open::LeftOut(left_out)),
+        (_, Some(left)) => Some(left).filter(seen).map(Open::ByPoints),
+        (Some(_), None) => None,
+        (None, None) => Some(Open::Unknown),
+    }
+}
+
+/// A running sum: its value, and the decimals that all of it carries.
+#[derive(Clone, Copy)]
+struct Sum {
+    value: f64,
+    decimals: usize,
+}
+
+impl Default for Sum {
+    fn default() -> Self {
+        Self { value: 0.0, decimals: 2 }
+    }
+}
+
+impl Sum {
+    fn and(self, share: &Share) -> Self {
+        let (_, decimals) = percent_within(share.value, share.error);
+        Self { value: self.value + share.value, decimals: self.decimals.min(decimals) }
+    }
+}
+
+fn summed(sum: &Sum) -> String {
+    format!("<td class=\"n sum opt\">{:.*} %</td>", sum.decimals, 100.0 * sum.value)
+}
+
+/// In percent, as the drawings of rows have it.
+fn scaled(share: f64) -> f64 {
+    (100.0 * share).clamp(0.0, 100.0)
+}
+
+/// A step of the running sum: across at the top of its row, and down to the next.
+fn step(from: f64, to: f64) -> String {
+    format!("<path class=\"step\" d=\"M{:.2} 0H{:.2}V{TALL}\"/>", scaled(from), scaled(to))
+}
+
+fn hatched(share: f64) -> String {
+    let width = scaled(share);
+    let [top, tall] = BAR;
+    let lines = (1..=(width / HATCH) as usize).map(|i| format!("M{:.2} {top}v{tall}", HATCH * i as f64));
+    format!("<path class=\"open\" d=\"M0 {top}h{width:.2}v{tall}h-{width:.2}z{}\"/>", lines.collect::<String>())
+}
+
+/// A row: name, drawing, share, cells of the sum, sigma, reach.
+fn row(text: &mut String, name: &str, class: &str, bars: &str, [amount, cells, spread, reach]: &[String; 4]) {
+    let _ = writeln!(
+        text,
+        "<tr><th scope=\"row\"{class}>{}</th><td class=\"grow\"><svg viewBox=\"0 0 100 {TALL}\" preserveAspectRatio=\"none\" aria-hidden=\"true\">{bars}</svg></td>\
+         <td class=\"n\">{amount}</td>{cells}<td class=\"n\">{spread}</td><td class=\"n opt\">{reach}</td></tr>",
+        escaped(name)
+    );
+}

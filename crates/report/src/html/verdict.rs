@@ -1,0 +1,574 @@
+//! Whether it works, of every report: a sentence, and a gauge for every characteristic.
+
+use std::fmt::Write;
+
+use super::super::WarningReport;
+use super::super::bars::worst_case;
+use super::super::figures::{Figures, Named};
+use super::super::statistics::part;
+use super::super::sweep::{SweptPointReport, SweptReport};
+use sensitol::analysis::CharacteristicAnalysis;
+use sensitol_numeric::capability::Capability;
+use crate::document::number::{beside, index, plain, plural, significant, yielded};
+use crate::document::rejects::Rejects;
+use crate::document::svg::escaped;
+use sensitol::rare::{Beyond, RareCharacteristic};
+use sensitol_numeric::requirement::Requirement;
+use sensitol_numeric::sampling::{Estimate, one_error};
+use sensitol_numeric::shape::finite;
+use sensitol::simulation::{SimulatedCharacteristic, YieldEstimate};
+use sensitol_numeric::verdict::{Judged, Verdict, about, share};
+use crate::analysis_document::CharacteristicSections;
+use crate::statistics::CharacteristicStatistics;
+
+/// Claims of one kind that a sentence makes.
+const NAMED: usize = 6;
+/// A rejected share below this is none in a sentence.
+const NONE: f64 = 1e-9;
+
+/// The findings of one characteristic with limits or requirements, by whatever command.
+pub(super) struct JudgedCharacteristic<'r> {
+    name: &'r str,
+    unit: Option<&'r str>,
+    /// The section about it.
+    place: Option<usize>,
+    /// Warnings in that section.
+    warned: usize,
+    limits: [Option<f64>; 2],
+    /// A line below its name.
+    pub(super) at: String,
+    /// The target yield, and what is to be said of it.
+    pub(super) target: Option<f64>,
+    pub(super) verdict: Option<Verdict>,
+    /// All that is required besides.
+    pub(super) asked: Vec<Asked>,
+    yield_: Option<f64>,
+    interval: Option<[f64; 2]>,
+    /// The yield before something changed.
+    pub(super) before: Option<f64>,
+    yield_text: Option<String>,
+    /// Parts per million: all, on either side, and on either side in words.
+    all_ppm: Option<String>,
+    ppm: [Option<f64>; 2],
+    sides: Vec<String>,
+    cpk: Option<f64>,
+    worst: Option<[f64; 2]>,
+    /// By which numbers are rounded.
+    scale: f64,
+    /// The dimension that makes most of the variance, and its share.
+    driver: Option<(&'r str, f64)>,
+}
+
+/// A requirement other than a yield: in words, what there is of it, and what is to be said.
+pub(super) struct Asked {
+    what: String,
+    found: String,
+    verdict: Verdict,
+}
+
+/// All limits at once.
+pub(super) struct Together<'r> {
+    value: f64,
+    ends: [f64; 2],
+    rejects: Rejects,
+    judged: Option<&'r Judged>,
+}
+
+/// The source of a verdict, in the words of its page.
+#[derive(Default)]
+pub(super) struct Words {
+    /// A sentence before the others, as markup.
+    pub(super) before: String,
+    /// A sentence after them.
+    pub(super) after: String,
+    /// A note on the gauges.
+    pub(super) gauge: &'static str,
+    /// Warnings that belong to no section, after the table.
+    pub(super) warnings: String,
+}
+
+impl<'r> JudgedCharacteristic<'r> {
+    fn of(one: &'r impl Named, place: usize) -> Self {
+        Self { unit: one.unit(), target: one.target(), ..Self::named(one.name(), Named::limits(one), place) }
+    }
+
+    /// With a section, and nothing known yet.
+    fn named(name: &'r str, limits: [Option<f64>; 2], place: usize) -> Self {
+        Self {
+            name,
+            unit: None,
+            place: Some(place),
+            warned: 0,
+            limits,
+            at: String::new(),
+            target: None,
+            verdict: None,
+            asked: Vec::new(),
+            yield_: None,
+            interval: None,
+            before: None,
+            yield_text: None,
+            all_ppm: None,
+            ppm: [None; 2],
+            sides: Vec::new(),
+            cpk: None,
+            worst: None,
+            scale: 0.0,
+            driver: None,
+        }
+    }
+
+    /// Of these rejects.
+    fn rejecting(mut self, rejects: Rejects) -> Self {
+        self.yield_text = rejects.yield_text();
+        self.all_ppm = rejects.all_ppm();
+        self.sides = rejects.sides().split(", ").filter(|side| !side.is_empty()).map(str::to_owned).collect();
+        self
+    }
+
+    /// Of an analysis.
+    pub(super) fn analysed(place: usize, one: &'r CharacteristicAnalysis) -> Self {
+        let all = one.sensitivities.iter().filter_map(|row| Some((row.dimension.as_str(), part(row)?)));
+        Self {
+            verdict: one.verdict(),
+            asked: asked(one.requirements()),
+            yield_: one.yield_(),
+            interval: one.yield_interval(),
+            ppm: [one.ppm_below(), one.ppm_above()],
+            cpk: one.capability.as_ref().and_then(|of: &Capability| of.cpk),
+            worst: worst_case(one).map(|(_, ends)| ends),
+            scale: one.scale(),
+            driver: all.max_by(|a, b| a.1.total_cmp(&b.1)),
+            ..Self::of(one, place).rejecting(one.rejects())
+        }
+    }
+
+    /// Of a simulation.
+    pub(super) fn simulated(place: usize, one: &'r SimulatedCharacteristic) -> Self {
+        let error = one.yield_.map(|share| one_error(share.value, share.interval));
+        Self {
+            verdict: one.verdict(),
+            asked: asked(one.requirements()),
+            yield_: one.yield_(),
+            interval: one.yield_.map(|share| share.interval),
+            ppm: [one.ppm_below(), one.ppm_above()],
+            cpk: one.cpk,
+            ..Self::of(one, place).rejecting(Rejects::new(one.below, one.above, error))
+        }
+    }
+
+    /// Of rare events.
+    pub(super) fn rare(place: usize, one: &'r RareCharacteristic) -> Self {
+        let value = |of: &Option<Beyond>| Some(of.as_ref()?.probability?.value);
+        let sides = [("below", &one.below), ("above", &one.above)];
+        let known = sides.iter().all(|(_, of)| of.as_ref().is_none_or(|of| of.probability.is_some()));
+        let all: f64 = sides.iter().filter_map(|(_, of)| value(of)).sum();
+        Self {
+            verdict: one.verdict(),
+            asked: asked(one.requirements()),
+            yield_: one.yield_,
+            interval: one.yield_interval,
+            yield_text: one.yield_.map(yielded),
+            all_ppm: (known && one.limited()).then(|| significant(1e6 * all, 3)),
+            ppm: [&one.below, &one.above].map(|of| value(of).map(|share| 1e6 * share)),
+            sides: sides.into_iter().filter_map(|(side, of)| Some(beyond(side, of.as_ref()?))).collect(),
+            ..Self::of(one, place)
+        }
+    }
+
+    /// Of a sweep: where it is worst.
+    pub(super) fn swept(place: usize, one: &'r SweptReport, parameter: &str) -> Option<Self> {
+        let rank = |point: &SweptPointReport| {
+            let worst = point.requirements.iter().map(|judged| match judged.verdict {
+                Verdict::Missed => 2,
+                Verdict::Inconclusive => 1,
+                Verdict::Met => 0,
+            });
+            (worst.max().unwrap_or(0), point.yield_.map_or(0.0, |yield_| 1.0 - yield_))
+        };
+        let worst = one.points.iter().max_by(|a, b| {
+            let (a, b) = (rank(a), rank(b));
+            a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+        })?;
+        let error = worst.error_estimate.as_ref().and_then(|estimate| estimate.yield_);
+        let target = worst.requirements.iter().find_map(|judged| match judged.requirement {
+            Requirement::Yield(target) => Some(target),
+            _ => None,
+        });
+        Some(Self {
+            unit: one.unit.as_deref(),
+            target,
+            verdict: worst.verdict,
+            asked: asked(worst.requirements.clone()),
+            at: format!("at {parameter} = {}", plain(worst.at)),
+            yield_: worst.yield_,
+            interval: worst.yield_.and_then(|value| about(value, error)).map(share),
+            ppm: [worst.ppm_below, worst.ppm_above],
+            ..Self::named(&one.name, [one.lower, one.upper], place).rejecting(worst.rejects())
+        })
+    }
+
+    /// With how many of these warnings concern it.
+    pub(super) fn warned(self, warnings: &[WarningReport]) -> Self {
+        let concerned = warnings.iter().filter(|one| one.characteristic.as_deref() == Some(self.name));
+        Self { warned: concerned.count(), ..self }
+    }
+
+    /// Without a section of its own.
+    pub(super) fn nowhere(self) -> Self {
+        Self { place: None, ..self }
+    }
+
+    fn limited(&self) -> bool {
+        self.limits != [None, None]
+    }
+
+    /// Whether there is anything to say of it.
+    pub(super) fn counts(&self) -> bool {
+        self.limited() || !self.asked.is_empty()
+    }
+}
+
+/// The rejects on one side, or their bound.
+fn beyond(side: &str, of: &Beyond) -> String {
+    match of.probability {
+        Some(Estimate { value, .. }) => format!("{} ppm {side}", significant(1e6 * value, 3)),
+        None => format!("< {} ppm {side}", significant(1e6 * of.interval[1], 2)),
+    }
+}
+
+/// All but the target yield.
+pub(super) fn asked(judged: Vec<Judged>) -> Vec<Asked> {
+    judged.into_iter().filter_map(|one| Asked::of(one.requirement, &one)).collect()
+}
+
+impl Asked {
+    /// None of a yield.
+    pub(super) fn of(requirement: Requirement, judged: &Judged) -> Option<Self> {
+        let number = |value: f64| significant(value, 4);
+        let value = judged.value.and_then(finite);
+        let (what, found) = match requirement {
+            Requirement::Yield(_) => return None,
+            Requirement::Cpk(least) => (format!("a Cpk of {}", plain(least)), value.map(index)),
+            Requirement::Sigma(most) => (format!("a sigma of {}", plain(most)), value.map(number)),
+            Requirement::Rss | Requirement::WorstCase => {
+                let room = value.map(|value| format!("{} % of the room", number(100.0 * value)));
+                (format!("its limits by {}", requirement.name()), room)
+            }
+        };
+        Some(Self { what, found: found.unwrap_or_else(|| "unknown".to_owned()), verdict: judged.verdict })
+    }
+}
+
+impl<'r> Together<'r> {
+    /// A share with one error of it.
+    pub(super) fn about(value: f64, error: f64, judged: Option<&'r Judged>) -> Self {
+        let ends = [value - 2.0 * error, value + 2.0 * error].map(|end| end.clamp(0.0, 1.0));
+        Self { value, ends, rejects: Rejects::all(1.0 - value, Some(error)), judged }
+    }
+
+    /// A share within an interval.
+    pub(super) fn within(share: &YieldEstimate, judged: Option<&'r Judged>) -> Self {
+        let error = one_error(share.value, share.interval);
+        let rejects = Rejects::all(1.0 - share.value, Some(error));
+        Self { value: share.value, ends: share.interval, rejects, judged }
+    }
+}
+
+/// The section that answers whether it works; empty where nothing is asked.
+pub(super) fn verdict(all: &[JudgedCharacteristic<'_>], together: Option<Together<'_>>, words: &Words) -> String {
+    let lead = [words.before.as_str(), &sentence(all), &words.after];
+    let lead: Vec<&str> = lead.into_iter().filter(|part| !part.is_empty()).collect();
+    let lead = lead.join(" ");
+    let rows: Vec<&JudgedCharacteristic<'_>> = all.iter().filter(|one| one.counts()).collect();
+    if lead.is_empty() && rows.is_empty() {
+        return words.warnings.clone();
+    }
+    let mut text =
+        "<section aria-labelledby=\"verdict\" class=\"verdict\">\n<h2 id=\"verdict\">Verdict</h2>\n".to_owned();
+    if !lead.is_empty() {
+        let _ = writeln!(text, "<p class=\"lead\">{lead}</p>");
+    }
+    if !rows.is_empty() {
+        let table = Table {
+            gauge: Gauge::of(all),
+            cpk: rows.iter().any(|one| one.cpk.is_some()),
+            worst: rows.iter().any(|one| one.worst.is_some()),
+        };
+        text += &table.head();
+        text.extend(rows.iter().map(|one| table.row(one)));
+        if let Some(together) = together {
+            let limited = rows.iter().filter(|one| one.limited()).count();
+            text += &table.together(&together, limited);
+        }
+        let _ = writeln!(
+            text,
+            "</tbody></table></div>\n<p class=\"note\">Gauge: dot and bar, the yield and its interval; tick, the target; tinted, the side of a missed target.{}</p>",
+            words.gauge
+        );
+    }
+    text + &words.warnings + "</section>\n"
+}
+
+/// The failures first, by how much, on which side and why; then the requirements that are met.
+fn sentence(all: &[JudgedCharacteristic<'_>]) -> String {
+    let mut parts = Vec::new();
+    for (wanted, more) in [
+        (Verdict::Missed, "more targets are missed"),
+        (Verdict::Inconclusive, "more targets may be missed"),
+        (Verdict::Met, "more targets are met"),
+    ] {
+        let of_yield = all.iter().filter(|one| one.target.is_some() && one.verdict == Some(wanted));
+        let mut claims: Vec<String> = of_yield.map(|one| of_target(one, wanted)).collect();
+        let others = all.iter().flat_map(|one| one.asked.iter().map(move |asked| (one.name, asked)));
+        claims.extend(others.filter(|(_, asked)| asked.verdict == wanted).map(|(name, asked)| of_asked(name, asked)));
+        let left = claims.len().saturating_sub(NAMED);
+        parts.extend(claims.into_iter().take(NAMED));
+        parts.extend((left > 0).then(|| format!("{left} {more}.")));
+    }
+    parts.join(" ")
+}
+
+fn of_asked(name: &str, Asked { what, found, verdict }: &Asked) -> String {
+    let (name, what, found) = (escaped(name), escaped(what), escaped(found));
+    match verdict {
+        Verdict::Missed => format!("<strong>{name} misses {what}:</strong> it has {found}."),
+        Verdict::Inconclusive => format!("<strong>{name} may or may not keep {what}</strong>: it has {found}."),
+        Verdict::Met => format!("{name} keeps {what}: it has {found}."),
+    }
+}
+
+fn of_target(one: &JudgedCharacteristic<'_>, wanted: Verdict) -> String {
+    let name = escaped(one.name);
+    let ppm = |target: f64| significant(1e6 * (1.0 - target), 4);
+    let allowed = one.target.map(ppm).unwrap_or_default();
+    let at = if one.at.is_empty() { String::new() } else { format!("{} ", escaped(&one.at)) };
+    match wanted {
+        Verdict::Missed => {
+            let rejected = one.all_ppm.clone().unwrap_or_else(|| "an unknown number of".to_owned());
+            let side = side(one).unwrap_or_default();
+            let cause = driver(one).map(|cause| format!(" {cause}")).unwrap_or_default();
+            format!(
+                "<strong>{name} misses its target:</strong> {at}{} ppm are rejected where {allowed} are allowed{side}.{cause}",
+                escaped(&rejected)
+            )
+        }
+        Verdict::Inconclusive => {
+            let between = one.interval.map_or(String::new(), |[low, high]| {
+                let [most, least] = [low, high].map(|end| significant(1e6 * (1.0 - end), 2));
+                format!(": {at}{least} to {most} ppm are rejected where {allowed} are allowed")
+            });
+            format!("<strong>{name} may or may not meet its target</strong>{between}.")
+        }
+        Verdict::Met => {
+            let none = one.yield_.is_some_and(|yield_| 1.0 - yield_ < NONE);
+            let rejected = match &one.all_ppm {
+                Some(_) if none => " with fewer than 0.001 ppm".to_owned(),
+                Some(ppm) => match ppm.strip_prefix("< ") {
+                    Some(most) => format!(" with fewer than {most} ppm"),
+                    None => format!(" with {ppm} ppm"),
+                },
+                None => String::new(),
+            };
+            let at = if one.at.is_empty() { String::new() } else { format!(" {}", escaped(&one.at)) };
+            format!("{name} meets its target{rejected}{at}.")
+        }
+    }
+}
+
+/// On which side most of the rejects lie.
+fn side(one: &JudgedCharacteristic<'_>) -> Option<String> {
+    let [lower, upper] = one.limits;
+    let [below, above] = one.ppm.map(|ppm| ppm.unwrap_or(0.0));
+    let unit = one.unit.map(|unit| format!(" {}", escaped(unit))).unwrap_or_default();
+    let (share, word, limit) = if below > above {
+        (below / (below + above), "below", lower?)
+    } else {
+        (above / (below + above), "above", upper?)
+    };
+    let part = match share {
+        _ if lower.is_none() || upper.is_none() => return None,
+        share if share > 0.995 => "all of them".to_owned(),
+        share if share > 0.6 => format!("{:.0} % of them", 100.0 * share),
+        _ => return None,
+    };
+    Some(format!(", {part} {word} {}{unit}", plain(limit)))
+}
+
+/// The dimension with most of the variance.
+fn driver(one: &JudgedCharacteristic<'_>) -> Option<String> {
+    let (name, share) = one.driver?;
+    let percent = (100.0 * share).round();
+    (share >= 0.2).then(|| format!("<em>{}</em> makes {percent} % of its variance.", escaped(name)))
+}
+
+/// The scale that all gauges share: from 10 % rejected down to 10 ppm, or as far as a target needs.
+struct Gauge {
+    /// The exponent of ten of the least share.
+    least: f64,
+}
+
+impl Gauge {
+    const WIDTH: f64 = 150.0;
+
+    fn of(all: &[JudgedCharacteristic<'_>]) -> Self {
+        let targets = all.iter().filter_map(|one| one.target);
+        let least = targets.map(|target| libm::log10(1.0 - target).floor() - 1.0).fold(-5.0, f64::min);
+        Self { least: least.max(-9.0) }
+    }
+
+    /// Left is bad.
+    fn at(&self, rejected: f64) -> f64 {
+        let share = (-1.0 - libm::log10(rejected.max(1e-300))) / (-1.0 - self.least);
+        (10.0 * Self::WIDTH * share.clamp(0.0, 1.0)).round() / 10.0
+    }
+
+    fn svg(&self, value: Option<f64>, interval: Option<[f64; 2]>, target: Option<f64>, before: Option<f64>) -> String {
+        let mut svg = format!("<svg class=\"gauge\" viewBox=\"-6 0 {} 30\" aria-hidden=\"true\">", Self::WIDTH + 12.0);
+        let width = Self::WIDTH;
+        let _ = write!(svg, "<rect class=\"track\" y=\"6\" width=\"{width}\" height=\"8\"/>");
+        if let Some(target) = target {
+            let x = self.at(1.0 - target);
+            let _ = write!(
+                svg,
+                "<rect class=\"zone\" y=\"6\" width=\"{x}\" height=\"8\"/><path class=\"tick\" d=\"M{x} 2V18\"/>"
+            );
+        }
+        if let Some([low, high]) = interval {
+            let (from, to) = (self.at(1.0 - low), self.at(1.0 - high));
+            let _ = write!(svg, "<path class=\"reach\" d=\"M{from} 10H{to}\"/>");
+        }
+        if let Some(before) = before {
+            let x = self.at(1.0 - before);
+            let _ = write!(svg, "<path class=\"was\" d=\"M{x} 5l5 5l-5 5l-5 -5z\"/>");
+        }
+        if let Some(value) = value {
+            let _ = write!(svg, "<circle cx=\"{}\" cy=\"10\" r=\"4\"/>", self.at(1.0 - value));
+        }
+        let names = [(-1.0, "10 %", "start"), (-3.0, "0.1 %", "middle"), (-5.0, "10 ppm", "middle")];
+        for (exponent, name, anchor) in names {
+            let x = self.at(libm::pow(10f64, exponent));
+            let anchor = if x >= width { "end" } else { anchor };
+            let _ = write!(svg, "<text x=\"{x}\" y=\"28\" text-anchor=\"{anchor}\">{name}</text>");
+        }
+        svg + "</svg>"
+    }
+}
+
+/// A verdict as a shape and a word, so that no colour is needed.
+fn badge(verdict: Option<Verdict>) -> String {
+    let (class, shape, word) = match verdict {
+        None => return "<span class=\"note\">no target</span>".to_owned(),
+        Some(Verdict::Met) => {
+            ("met", "<circle cx=\"8\" cy=\"8\" r=\"6.5\"/><path d=\"M4.8 8.2L7 10.5L11.2 5.8\"/>", "Met")
+        }
+        Some(Verdict::Missed) => ("missed", "<path d=\"M8 1.8L15 14H1ZM8 6V10M8 11.5V12.6\"/>", "Missed"),
+        Some(Verdict::Inconclusive) => {
+            ("unknown", "<circle cx=\"8\" cy=\"8\" r=\"6.5\" stroke-dasharray=\"3 2\"/>", "Inconclusive")
+        }
+    };
+    format!("<span class=\"st {class}\"><svg viewBox=\"0 0 16 16\" aria-hidden=\"true\">{shape}</svg>{word}</span>")
+}
+
+/// The ends of an interval with the digits that its width leaves.
+pub(super) fn interval(ends: [f64; 2]) -> String {
+    let width = 100.0 * (ends[1] - ends[0]);
+    // Narrower than this it is the yield itself.
+    const NARROW: f64 = 1e-7;
+    if width < NARROW {
+        return String::new();
+    }
+    let decimals = (1.0 - libm::log10(width).floor()).clamp(0.0, 9.0) as usize;
+    let [low, high] = ends.map(|end| format!("{:.decimals$}", 100.0 * end));
+    format!("{low} – {high} %")
+}
+
+/// The columns that there are.
+struct Table {
+    gauge: Gauge,
+    cpk: bool,
+    worst: bool,
+}
+
+impl Table {
+    fn head(&self) -> String {
+        let mut titles = vec![
+            ("characteristic", false),
+            ("verdict", false),
+            ("rejects, log scale", false),
+            ("yield, 95 %", true),
+            ("target", true),
+            ("rejects", true),
+        ];
+        titles.extend(self.cpk.then_some(("Cpk", true)));
+        titles.extend(self.worst.then_some(("worst case", true)));
+        let title = |(name, right): (&str, bool)| {
+            format!("<th scope=\"col\"{}>{name}</th>", if right { " class=\"n\"" } else { "" })
+        };
+        format!(
+            "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"Verdicts\"><table class=\"gauges\"><thead><tr>{}</tr></thead><tbody>\n",
+            titles.into_iter().map(title).collect::<String>()
+        )
+    }
+
+    fn row(&self, one: &JudgedCharacteristic<'_>) -> String {
+        let unit = one.unit.map(|unit| format!(" <small>{}</small>", escaped(unit))).unwrap_or_default();
+        let name = escaped(one.name);
+        let name = one.place.map_or(name.clone(), |place| format!("<a href=\"#kc-{place}\">{name}</a>"));
+        let warned = one.place.filter(|_| one.warned > 0).map_or(String::new(), |place| {
+            let count = plural(one.warned, "warning", "warnings");
+            format!("<br><small><a class=\"warned\" href=\"#warned-{place}\">{count}</a></small>")
+        });
+        let at = if one.at.is_empty() { String::new() } else { format!("<br><small>{}</small>", escaped(&one.at)) };
+        let mut verdicts = Vec::new();
+        if one.target.is_some() || one.asked.is_empty() {
+            verdicts.push(badge(one.verdict));
+        }
+        verdicts.extend(one.asked.iter().map(|asked| badge(Some(asked.verdict))));
+        let mut targets: Vec<String> = one.target.map(yielded).into_iter().collect();
+        targets.extend(one.asked.iter().map(|asked| escaped(&asked.what)));
+        let unknown = || if one.limited() { "unknown".to_owned() } else { String::new() };
+        let sides: Vec<String> = one.sides.iter().map(|side| escaped(side)).collect();
+        let mut cells = format!(
+            "<tr><th scope=\"row\">{name}{unit}{at}{warned}</th><td>{}</td><td>{}</td><td class=\"n\"><strong>{}</strong><br><small>{}</small></td><td class=\"n\">{}</td><td class=\"n\">{}</td>",
+            verdicts.join("<br>"),
+            if one.limited() {
+                self.gauge.svg(one.yield_, one.interval, one.target, one.before)
+            } else {
+                String::new()
+            },
+            escaped(&one.yield_text.clone().unwrap_or_else(unknown)),
+            one.interval.map(interval).unwrap_or_default(),
+            targets.join("<br>"),
+            sides.join("<br>"),
+        );
+        if self.cpk {
+            let _ = write!(cells, "<td class=\"n\">{}</td>", one.cpk.map(index).unwrap_or_default());
+        }
+        if self.worst {
+            let ends = one.worst.map(|ends| ends.map(|end| beside(end, one.scale)));
+            let ends = ends.map(|[low, high]| format!("{low} –<br>{high}")).unwrap_or_default();
+            let _ = write!(cells, "<td class=\"n\">{ends}</td>");
+        }
+        cells + "</tr>\n"
+    }
+
+    /// The row of all limits at once.
+    fn together(&self, of: &Together<'_>, limited: usize) -> String {
+        let target = of.judged.and_then(|judged| match judged.requirement {
+            Requirement::Yield(target) => Some(target),
+            _ => None,
+        });
+        let rest = "<td></td>".repeat(usize::from(self.cpk) + usize::from(self.worst));
+        format!(
+            "<tr class=\"all\"><th scope=\"row\">{} together</th><td>{}</td><td>{}</td><td class=\"n\"><strong>{}</strong><br><small>{}</small></td><td class=\"n\">{}</td><td class=\"n\">{} ppm</td>{rest}</tr>\n",
+            if limited == 2 { "Both" } else { "All" },
+            badge(of.judged.map(|judged| judged.verdict)),
+            self.gauge.svg(Some(of.value), Some(of.ends), target, None),
+            escaped(&of.rejects.yield_text().unwrap_or_else(|| "unknown".to_owned())),
+            interval(of.ends),
+            target.map(yielded).unwrap_or_default(),
+            escaped(&of.rejects.all_ppm().unwrap_or_default()),
+        )
+    }
+}

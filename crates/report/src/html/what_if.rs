@@ -1,0 +1,387 @@
+//! The data that the page needs to compute the results of other tolerances by itself.
+
+use serde::Serialize;
+
+use sensitol::allocation::{Curve, CurveKind, Priced};
+use sensitol::analysis::{Analysis, Branch, CharacteristicAnalysis, Fit, NoFit};
+use sensitol_numeric::dimension::Dimension;
+use sensitol_numeric::distribution::StandardMoments;
+use sensitol_numeric::law::TabulatedInput;
+use sensitol::problem::Problem;
+use sensitol_numeric::surrogate::InputShape;
+use crate::analysis_document::CharacteristicSections;
+
+/// An entry of the study's `[dimensions]`: its name, and its keys with their values as TOML.
+type Line = (String, Vec<(String, String)>);
+
+/// Distributions whose tolerance the page can change: their shape does not follow it, and a study writes it in one key.
+const KINDS: [&str; 6] = ["normal", "truncated-normal", "uniform", "triangular", "trapezoidal", "beta"];
+/// A standardised moment that differs by less is the same.
+const SAME: f64 = 1e-9;
+
+/// Dimensions, surrogates, limits and costs.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct WhatIf {
+    shapes: Vec<Shape>,
+    dimensions: Vec<Tried>,
+    characteristics: Vec<Wanted>,
+    lines: Vec<Line>,
+    costs: Vec<Cost>,
+    #[serde(skip)]
+    paid: Option<f64>,
+}
+
+/// Dimensions that share a process, and what it costs.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct Cost {
+    /// Those that the page knows.
+    members: Vec<usize>,
+    /// The tightest half band of the others; null where there is none.
+    others: Option<f64>,
+    parts: f64,
+    offers: Vec<Offered>,
+}
+
+/// `a + b T^-shape`, or `a + b exp(-T/shape)`, or points `[T, cost]` with straight lines in `1/T` between them.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct Offered {
+    exponential: bool,
+    a: f64,
+    b: f64,
+    shape: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    points: Option<Vec<[f64; 2]>>,
+    min: f64,
+    max: f64,
+}
+
+/// Moments of a standardised input, and the rule for parts that are no parabolas.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct Shape {
+    s: f64,
+    k: f64,
+    m5: f64,
+    m6: f64,
+    h6: f64,
+    h7: f64,
+    h8: f64,
+    nodes: Vec<f64>,
+    weights: Vec<f64>,
+    /// Its distribution; null where nothing but moments is known of it, or a table of it is too large for a page.
+    law: Option<TabulatedInput>,
+}
+
+/// A dimension that varies.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(super) struct Tried {
+    pub(super) name: String,
+    pub(super) unit: Option<String>,
+    shape: usize,
+    pub(super) nominal: f64,
+    /// Of the mean from nominal and the band's middle.
+    offset: f64,
+    pub(super) sigma: f64,
+    pub(super) band: Option<[f64; 2]>,
+    middle: f64,
+    /// Half the band, or three sigma where there is none.
+    pub(super) half: f64,
+    normal: bool,
+    /// Why it stays as it is; null where it can be changed.
+    pub(super) fixed: Option<&'static str>,
+}
+
+/// A characteristic.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(super) struct Wanted {
+    pub(super) name: String,
+    pub(super) unit: Option<String>,
+    lower: Option<f64>,
+    upper: Option<f64>,
+    target: Option<f64>,
+    /// Why nothing can be tried; null where it can.
+    pub(super) why: Option<String>,
+    centre: f64,
+    parts: Vec<[f64; 4]>,
+    pairs: Pairs,
+    unexplained: Option<f64>,
+    /// Whether the page computes the law of its surface.
+    law: bool,
+    /// Shares below and above the limits by the law of its surface at the study's settings, to which the page adds what points of the surface
+    /// say of changes; null where the page computes the law, and where it shows the Pearson fit.
+    counted: Option<[Option<f64>; 2]>,
+    /// Why the page does not compute the law; null where it does.
+    why_fit: Option<&'static str>,
+    /// How far below and above its yield by that law the interval reaches within which it is known; None where that is not known.
+    reach: Option<[f64; 2]>,
+}
+
+/// Products, column by column.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+struct Pairs {
+    j: Vec<usize>,
+    k: Vec<usize>,
+    a: Vec<f64>,
+}
+
+/// Why the page cannot compute moments that the tail of an input makes infinite.
+fn endless(found: &CharacteristicAnalysis) -> Option<String> {
+    let lacks = found.moments.is_some_and(|moments| moments.sigma() > 0.0 && moments.kurtosis().is_none());
+    lacks.then(|| "the tail of a dimension is so long that the kurtosis is infinite".to_owned())
+}
+
+/// How far the interval of a yield reaches on either side of what the page computes, the law of the surface or the Pearson fit: where
+/// that is off, both ends may lie on one side of it.
+fn reach(found: &CharacteristicAnalysis, by_law: bool) -> Option<[f64; 2]> {
+    let value = match by_law {
+        true => found.surface_law.as_ref()?.yield_(),
+        false => found.pearson?.yield_(),
+    };
+    let (value, [low, high]) = value.zip(found.yield_interval().filter(|_| !found.unfinished))?;
+    Some([value - low, high - value])
+}
+
+/// A degree beyond every closed form.
+const DRAWN: usize = 5;
+
+/// Whether the part of an input is a parabola of a normal one.
+fn parabola(fit: &Fit, j: usize, normal: bool) -> bool {
+    normal && fit.surrogate.parts[j].is_some_and(|part| part.coefficients()[2..] == [0.0; 2])
+}
+
+/// Why a page inverts no transform of products of inputs that are not normal.
+const INTERACT: &str = "dimensions interact that are not normal";
+
+/// Why the page shows the Pearson fit of a characteristic; None where it computes the law of its surface, which it does for sums of
+/// single inputs and products of normal ones.
+fn why_fit(found: &CharacteristicAnalysis, fit: &Fit, laws: &[Option<TabulatedInput>]) -> Option<&'static str> {
+    let Fit { surrogate, .. } = fit;
+    let counts = |j: &usize| {
+        surrogate.parts[*j].is_some_and(|part| part.largest() > 0.0)
+            || surrogate.interactions.pairs().iter().any(|&(a, b, product)| product != 0.0 && (a == *j || b == *j))
+    };
+    let counting = || (0..laws.len()).filter(counts);
+    if counting().any(|j| laws[j].is_none()) {
+        return Some("the distribution of a dimension is not in the page");
+    }
+    if counting().all(|j| laws[j].as_ref().is_some_and(TabulatedInput::is_discrete)) {
+        return Some("every dimension has a few values only");
+    }
+    let parabola = |j: usize| parabola(fit, j, laws[j].as_ref().is_some_and(TabulatedInput::is_normal));
+    if surrogate.interactions.pairs().iter().any(|&(j, k, product)| product != 0.0 && !(parabola(j) && parabola(k))) {
+        return Some(INTERACT);
+    }
+    match found.surface_law {
+        Some(law) if law.branch != Branch::Sampled => None,
+        Some(_) => Some("the tail of a dimension is too heavy"),
+        None => Some("there is no law of the surface"),
+    }
+}
+
+impl WhatIf {
+    /// Of an analysis; `lines` and `costs` are those of the study, none where the problem was built without one.
+    pub fn of(problem: &Problem, analysis: &Analysis, lines: &[Line], costs: &[Priced]) -> Self {
+        let surface = &analysis.surface;
+        let clean = |fit: &Fit| Fit { surrogate: fit.surrogate.without_rounding(), ..fit.clone() };
+        let fits: Vec<Result<Fit, NoFit>> =
+            surface.characteristics.iter().map(|fit| fit.as_ref().map(clean).map_err(|&no| no)).collect();
+        // A dimension takes nodes only where its part has a higher degree than its closed form, or points of it are drawn.
+        let normal = |j: usize| {
+            problem.dimensions()[surface.varying[j]].distribution().is_some_and(|law| law.name() == "normal")
+        };
+        let interacts = |fit: &Fit| {
+            let pairs = fit.surrogate.interactions.pairs();
+            pairs
+                .iter()
+                .any(|&(j, k, product)| product != 0.0 && !(parabola(fit, j, normal(j)) && parabola(fit, k, normal(k))))
+        };
+        let drawn = fits.iter().flatten().any(interacts);
+        let degree = |j: usize| {
+            if drawn {
+                return DRAWN;
+            }
+            let own = |fit: &Fit| Some(fit.surrogate.parts.get(j)?.as_ref()?.coefficients());
+            let degree = |c: [f64; 4]| c.iter().rposition(|&c| c != 0.0).map_or(0, |place| place + 1);
+            fits.iter().flatten().filter_map(own).map(degree).max().unwrap_or(0)
+        };
+        let mut tables: Vec<TabulatedInput> = Vec::new();
+        let mut table = |(j, &d): (usize, &usize)| {
+            let own = TabulatedInput::of(problem.dimensions()[d].law()?, degree(j))?;
+            let known = tables.iter().position(|known| known.is_near(&own)).unwrap_or_else(|| {
+                tables.push(own);
+                tables.len() - 1
+            });
+            Some(tables[known].clone())
+        };
+        let laws: Vec<Option<TabulatedInput>> = surface.varying.iter().enumerate().map(&mut table).collect();
+        let mut shapes: Vec<Shape> = Vec::new();
+        let mut index = |shape: &InputShape, law: &Option<TabulatedInput>| {
+            let shape = Shape::of(shape, law);
+            shapes.iter().position(|known| *known == shape).unwrap_or_else(|| {
+                shapes.push(shape);
+                shapes.len() - 1
+            })
+        };
+        let dimension = |((&d, shape), law): ((&usize, &InputShape), &Option<TabulatedInput>)| {
+            Tried::of(&problem.dimensions()[d], index(shape, law))
+        };
+        let dimensions = surface.varying.iter().zip(&surface.shapes).zip(&laws).map(dimension).collect();
+        let all = analysis.characteristics.iter().zip(&fits);
+        let characteristics = all.map(|(found, fit)| {
+            let one = &found.characteristic;
+            let limits = one.limits();
+            let empty = || (0.0, Vec::new(), Pairs::default(), None);
+            let (centre, parts, pairs, unexplained) = fit.as_ref().map_or_else(|_| empty(), contents);
+            let why_fit = fit.as_ref().ok().and_then(|fit| why_fit(found, fit, &laws));
+            let law = fit.is_ok() && why_fit.is_none();
+            let of_surface = found.surface_law.as_ref().filter(|_| why_fit == Some(INTERACT));
+            let counted = of_surface
+                .map(|law| [law.below, law.above].map(|share| Some(share?.value)))
+                .filter(|shares| shares.iter().any(Option::is_some));
+            Wanted {
+                name: one.name().to_owned(),
+                unit: one.unit().map(str::to_owned),
+                lower: limits.lower(),
+                upper: limits.upper(),
+                target: one.target_yield(),
+                why: fit.as_ref().err().map(ToString::to_string).or_else(|| endless(found)),
+                centre,
+                parts,
+                pairs,
+                unexplained,
+                law,
+                counted,
+                why_fit,
+                reach: reach(found, law || counted.is_some()),
+            }
+        });
+        let characteristics = characteristics.collect();
+        let paid = costs.iter().map(|group| group.cost_to_hold(group.tightest_member(problem))).sum();
+        let costs = costs.iter().map(|group| Cost::of(problem, &surface.varying, group)).collect();
+        Self { dimensions, characteristics, lines: lines.to_vec(), costs, paid, shapes }
+    }
+
+    /// Whether there is something to change, and something that follows it.
+    pub(super) fn possible(&self) -> bool {
+        self.dimensions.iter().any(|one| one.fixed.is_none())
+            && self.characteristics.iter().any(|one| one.why.is_none())
+    }
+
+    /// Why there is nothing to try; None where there is, and where nothing varies at all.
+    pub(super) fn impossible(&self) -> Option<String> {
+        if self.possible() || self.dimensions.is_empty() {
+            return None;
+        }
+        let mut whys: Vec<&str> = self.characteristics.iter().filter_map(|one| one.why.as_deref()).collect();
+        if whys.len() < self.characteristics.len() {
+            whys = self.dimensions.iter().filter_map(|one| one.fixed).collect();
+        }
+        whys.sort_unstable();
+        whys.dedup();
+        Some(whys.join("; "))
+    }
+
+    pub(super) fn dimensions(&self) -> &[Tried] {
+        &self.dimensions
+    }
+
+    pub(super) fn characteristics(&self) -> &[Wanted] {
+        &self.characteristics
+    }
+
+    /// The cost of the tolerances as analysed; None where nothing has a cost, and none inside where no process holds them.
+    pub(super) fn paid(&self) -> Option<Option<f64>> {
+        (!self.costs.is_empty()).then_some(self.paid)
+    }
+
+    /// Whether the study's own lines are known, so that changed ones can be written.
+    pub(super) fn written(&self) -> bool {
+        !self.lines.is_empty()
+    }
+}
+
+fn contents(fit: &Fit) -> (f64, Vec<[f64; 4]>, Pairs, Option<f64>) {
+    let Fit { surrogate, unexplained } = fit;
+    let parts = surrogate.parts.iter().flatten().map(|part| part.coefficients()).collect();
+    let mut pairs = Pairs::default();
+    for (j, k, a) in surrogate.interactions.pairs() {
+        pairs.j.push(j);
+        pairs.k.push(k);
+        pairs.a.push(a);
+    }
+    (surrogate.centre, parts, pairs, *unexplained)
+}
+
+impl Cost {
+    fn of(problem: &Problem, varying: &[usize], group: &Priced) -> Self {
+        let place = |d: &usize| varying.iter().position(|known| known == d);
+        let others = group.members.iter().filter(|d| place(d).is_none());
+        let offer = |curve: &Curve, min: f64, max: f64| {
+            let [a, b, shape] = curve.constants();
+            let points = curve.points(min, max);
+            Offered { exponential: curve.kind() == CurveKind::Exponential, a, b, shape, points, min, max }
+        };
+        Self {
+            members: group.members.iter().filter_map(place).collect(),
+            others: others.map(|&d| problem.dimensions()[d].half_band()).reduce(f64::min),
+            parts: group.parts,
+            offers: group.offers.iter().map(|one| offer(&one.curve, one.min, one.max)).collect(),
+        }
+    }
+}
+
+impl Shape {
+    fn of(shape: &InputShape, law: &Option<TabulatedInput>) -> Self {
+        let StandardMoments { skewness, excess, m5, m6, h6, h7, h8, .. } = shape.moments;
+        let (nodes, weights) = (shape.rule.nodes.clone(), shape.rule.weights.clone());
+        Self { s: skewness, k: excess, m5, m6, h6, h7, h8, nodes, weights, law: law.clone() }
+    }
+}
+
+impl Tried {
+    fn of(dimension: &Dimension, shape: usize) -> Self {
+        let band = dimension.tolerance();
+        let middle = band.map_or(0.0, |[lower, upper]| 0.5 * (lower + upper));
+        let kind = dimension.distribution().map_or("", |law| law.name());
+        let half = match band {
+            Some([lower, upper]) => 0.5 * (upper - lower),
+            None => 3.0 * dimension.sigma(),
+        };
+        Self {
+            name: dimension.name().to_owned(),
+            unit: dimension.unit().map(str::to_owned),
+            shape,
+            nominal: dimension.nominal(),
+            offset: dimension.mean() - dimension.nominal() - middle,
+            sigma: dimension.sigma(),
+            band,
+            middle,
+            half,
+            normal: kind == "normal",
+            fixed: fixed(dimension, kind),
+        }
+    }
+}
+
+/// Why a dimension stays as it is.
+fn fixed(dimension: &Dimension, kind: &str) -> Option<&'static str> {
+    if dimension.zone().is_some() {
+        return Some("a coordinate of a circular zone");
+    }
+    match kind {
+        "mixture" => return Some("a mixture is changed in the study, part by part"),
+        _ if dimension.distribution().is_some_and(|law| law.measured().is_some()) => return Some("measured"),
+        kind if !KINDS.contains(&kind) => return Some("its shape or its tolerance does not follow a factor"),
+        _ => {}
+    }
+    let same = |factor: f64| {
+        let scaled = dimension.scaled(factor)?.ok()?;
+        let [before, after] =
+            [dimension, &scaled].map(|one| one.distribution().map(|law| law.standard_moments().raw()));
+        let near = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME * a.abs().max(1.0);
+        Some(before?.iter().zip(&after?).all(near))
+    };
+    match same(0.5).zip(same(2.0)) {
+        Some((true, true)) => None,
+        _ => Some("its shape changes with its tolerance"),
+    }
+}

@@ -1,0 +1,234 @@
+//! Reports of results: a versioned value with serde, and the document that it is for people.
+
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
+
+mod allocation;
+mod allocation_document;
+mod analysis_document;
+mod analysis_tables;
+mod bars;
+mod budget;
+mod compare;
+#[cfg(test)]
+mod complete;
+pub mod csv;
+mod difference;
+pub mod document;
+mod figures;
+mod glance;
+mod head;
+pub mod html;
+mod inspection;
+mod labels;
+mod output_correlation;
+mod rare;
+mod requirement;
+mod simulation;
+mod source;
+mod stack;
+mod statistics;
+mod sweep;
+pub mod task;
+mod to_document;
+#[cfg(feature = "xlsx")]
+mod xlsx;
+
+pub use crate::document::csv::csv;
+pub use crate::document::markdown::markdown;
+pub use crate::document::svg::svg;
+pub use crate::document::terminal::text;
+pub use crate::document::{Detail, Document, Style};
+pub use allocation::{AllocationReport, WrittenAnew};
+pub use analysis_document::law_text;
+pub use budget::budget_document;
+pub use budget::{Budget, BudgetRow};
+pub use compare::CompareReport;
+pub use csv::{CsvFile, csv_files};
+pub use csv::{budget_csv_of_studies, csv_file_names, csv_tables, stack_csv, stack_csv_of_studies};
+pub use difference::DifferenceReport;
+pub(crate) use head::Head;
+pub use rare::RareReport;
+pub use simulation::SimulationReport;
+pub use stack::{Stack, StackNote, StackRow, StackTotal, TotalKind, stack_document};
+pub use sweep::SweepReport;
+pub use sweep::SweptReport;
+pub use to_document::ToDocument;
+#[cfg(feature = "xlsx")]
+pub use xlsx::analyze_xlsx;
+
+use serde::Serialize;
+
+use sensitol::analysis::Analysis;
+use sensitol_numeric::correlation::Pair;
+use sensitol_numeric::dimension::Dimension;
+use crate::document::number::{UNKNOWN, band, significant};
+use sensitol_numeric::labels::Labels;
+use sensitol::problem::Problem;
+use sensitol::warning::{Advice, Warning};
+use crate::analysis_document::CharacteristicSections;
+
+/// The version of the JSON report's shape.
+pub const SCHEMA: u32 = 2;
+
+/// The report of an analysis, as `--json` prints it. Unknown values are null, never 0.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Report {
+    /// The common head of every report.
+    #[serde(flatten)]
+    pub(crate) head: Head,
+    /// The analysis.
+    #[serde(flatten, serialize_with = "Analysis::serialize")]
+    #[cfg_attr(feature = "schema", schemars(with = "Analysis"))]
+    pub analysis: Analysis,
+    /// The dimensions, in the study's order.
+    pub(crate) dimensions: Vec<DimensionReport>,
+    /// The dimensions that vary together.
+    pub(crate) correlation: Vec<Pair>,
+    /// Where an assumption fails, in the study or in the analysis.
+    pub warnings: Vec<WarningReport>,
+}
+
+/// One dimension as the analysis took it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct DimensionReport {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: Option<String>,
+    /// The value on the drawing.
+    pub nominal: f64,
+    /// Lower and upper deviation from the nominal.
+    pub tolerance: Option<[f64; 2]>,
+    /// The circular zone of which it is a coordinate.
+    pub zone: Option<String>,
+    /// The kind of its distribution; null when it does not vary.
+    pub distribution: Option<&'static str>,
+    /// Its mean.
+    pub mean: f64,
+    /// Its standard deviation.
+    pub sigma: f64,
+    /// Texts beside its name.
+    #[serde(flatten)]
+    pub(crate) labels: Labels,
+    /// Degrees of freedom of its standard uncertainty; null where the study says none.
+    pub degrees: Option<f64>,
+}
+
+/// A warning.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct WarningReport {
+    /// The kind.
+    pub code: &'static str,
+    /// The characteristic concerned.
+    pub characteristic: Option<String>,
+    /// The dimension concerned.
+    pub dimension: Option<String>,
+    /// Cause and consequence.
+    pub message: String,
+    /// The fields of the warning.
+    pub(crate) data: serde_json::Map<String, serde_json::Value>,
+    /// Remedies, the most promising first.
+    pub advice: Vec<Advice>,
+    /// Of a sweep, the values of the parameter at which it is so.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) at: Vec<f64>,
+}
+
+/// The facts about the study that a report shows beside the analysis.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct About {
+    /// The study's title.
+    pub title: Option<String>,
+    /// SHA-256 of the study file.
+    pub sha256: String,
+    /// Warnings of the study itself.
+    pub warnings: Vec<Warning>,
+    /// The cells of the title block of pages: name and text.
+    pub block: Vec<(&'static str, String)>,
+}
+
+impl Report {
+    /// The report of an analysis.
+    pub fn of(problem: &Problem, analysis: &Analysis, about: About) -> Self {
+        Self::keeping(problem, analysis.clone(), about)
+    }
+
+    /// The same without a copy: half a million interactions have a million names.
+    pub fn keeping(problem: &Problem, analysis: Analysis, about: About) -> Self {
+        Self {
+            head: Head::of("analyze", &about),
+            dimensions: problem.dimensions().iter().map(DimensionReport::of).collect(),
+            correlation: correlation(problem),
+            warnings: about.warnings.iter().chain(&analysis.warnings).map(WarningReport::of).collect(),
+            analysis,
+        }
+    }
+
+    /// Without the interactions that hardly matter: what they make together stands in their place.
+    pub fn shortened(self) -> Self {
+        Self { analysis: self.analysis.shortened(), ..self }
+    }
+}
+
+/// Every pair that is not 0.
+fn correlation(problem: &Problem) -> Vec<Pair> {
+    let Some(correlation) = problem.correlation() else { return Vec::new() };
+    let name = |&d: &usize| problem.dimensions()[d].name().to_owned();
+    let members = correlation.members();
+    let pairs = members.iter().enumerate().flat_map(|(i, a)| members[i + 1..].iter().map(move |b| (a, b)));
+    pairs
+        .map(|(a, b)| Pair { between: [name(a), name(b)], value: correlation.of(*a, *b) })
+        .filter(|pair| pair.value != 0.0)
+        .collect()
+}
+
+impl DimensionReport {
+    fn of(dimension: &Dimension) -> Self {
+        Self {
+            name: dimension.name().to_owned(),
+            unit: dimension.unit().map(str::to_owned),
+            nominal: dimension.nominal(),
+            tolerance: dimension.tolerance(),
+            zone: dimension.zone().map(str::to_owned),
+            distribution: dimension.distribution().map(|distribution| distribution.name()),
+            mean: dimension.mean(),
+            sigma: dimension.sigma(),
+            labels: dimension.labels().clone(),
+            degrees: dimension.convention().degrees,
+        }
+    }
+
+    /// Its tolerance as drawings have it.
+    fn tolerance(&self) -> String {
+        match self.tolerance {
+            Some(ends) => band(ends),
+            None if self.sigma > 0.0 => format!("sigma {}", significant(self.sigma, 4)),
+            None => UNKNOWN.to_owned(),
+        }
+    }
+}
+
+impl WarningReport {
+    pub fn of(warning: &Warning) -> Self {
+        Self {
+            code: warning.code(),
+            characteristic: warning.characteristic().map(str::to_owned),
+            dimension: warning.dimension().map(str::to_owned),
+            message: warning.message(),
+            data: fields(warning),
+            advice: warning.advice(),
+            at: Vec::new(),
+        }
+    }
+}
+
+/// The fields of a warning.
+fn fields(warning: &Warning) -> serde_json::Map<String, serde_json::Value> {
+    match serde_json::to_value(warning.data()) {
+        Ok(serde_json::Value::Object(fields)) => fields,
+        other => unreachable!("the fields of warnings are plain data: {other:?}"),
+    }
+}

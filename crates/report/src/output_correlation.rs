@@ -1,0 +1,65 @@
+//! How characteristics vary together, for people.
+
+use sensitol::analysis::OutputCorrelation;
+use crate::document::number::{short, unsigned_zero, yielded};
+use crate::document::rejects::Rejects;
+use crate::document::{Cell, Columns, DataTable};
+use sensitol_numeric::requirement::Requirement;
+use sensitol_numeric::sampling::one_error;
+use sensitol::simulation::YieldEstimate;
+use sensitol_numeric::verdict::Judged;
+use crate::rare::RareSection;
+
+/// Correlations that are said; a file has all.
+const TOGETHER: usize = 6;
+
+/// The strongest correlations of characteristics.
+pub(super) fn together(correlations: &[OutputCorrelation]) -> Option<String> {
+    let mut known: Vec<(f64, &OutputCorrelation)> =
+        correlations.iter().filter_map(|one| Some((one.value?, one))).collect();
+    known.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
+    let said = known.iter().take(TOGETHER).map(|(value, one)| {
+        let [first, second] = [&one.between[0], &one.between[1]].map(|name| short(name));
+        format!("{first} with {second} {}", coefficient(*value, one.error))
+    });
+    let said: Vec<String> = said.collect();
+    let more = known.len().saturating_sub(TOGETHER);
+    let more = if more > 0 { format!("; {more} weaker") } else { String::new() };
+    (!said.is_empty()).then(|| format!("correlation of characteristics: {}{more}", said.join(", ")))
+}
+
+/// All correlations of characteristics.
+pub(super) fn together_table(correlations: &[OutputCorrelation]) -> DataTable {
+    Columns::default()
+        .data("first", |one: &&OutputCorrelation| Cell::text(&one.between[0]))
+        .data("second", |one| Cell::text(&one.between[1]))
+        .data("correlation", |one| Cell::data(one.value))
+        .data("error", |one| Cell::data(one.error))
+        .table("characteristic_correlation", correlations)
+}
+
+/// A coefficient of correlation with the decimals that its error carries, three of them at most.
+fn coefficient(value: f64, error: Option<f64>) -> String {
+    let decimals =
+        error.filter(|error| *error > 0.0).map_or(3, |error| (-libm::log10(error).floor()).clamp(1.0, 3.0) as usize);
+    unsigned_zero(format!("{value:.decimals$}"))
+}
+
+/// The share that keeps all limits at once, with its target.
+pub(super) fn all_limits(yield_: &str, error: &str, requirement: Option<&Judged>) -> String {
+    let target = requirement.map_or_else(String::new, |judged| {
+        let Requirement::Yield(target) = judged.requirement else { return String::new() };
+        // Without the digits that a product by 100 adds.
+        let percent = (1e11 * target).round() / 1e9;
+        format!("; target {percent} %: {}", judged.verdict.name())
+    });
+    format!("all limits at once: yield {yield_}, {error}{target}")
+}
+
+/// The same of a share with its 95 % interval.
+pub(super) fn all_limits_within(share: &YieldEstimate, requirement: Option<&Judged>) -> String {
+    let error = one_error(share.value, share.interval);
+    let text = Rejects::all(1.0 - share.value, Some(error)).yield_text().unwrap_or_else(|| yielded(share.value));
+    let [low, high] = share.interval.map(yielded);
+    all_limits(&text, &format!("95 % interval {low} to {high}"), requirement)
+}

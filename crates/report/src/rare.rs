@@ -1,0 +1,167 @@
+//! The report of rare events.
+
+use serde::Serialize;
+
+use super::figures::Named;
+use super::glance::{self, Glance};
+use super::head::{self, seed};
+use super::output_correlation::all_limits;
+use super::requirement::{judged, lines};
+use super::{About, DimensionReport, Head, WarningReport, correlation};
+use sensitol_numeric::correlation::Pair;
+use crate::document::number::{known, plain, short, significant, yielded};
+use crate::document::{Blocks, Cell, Columns, DataTable, Document, Element, Line, Section, Value};
+use sensitol::problem::Problem;
+use sensitol::rare::{Beyond, DesignPoint, RareCharacteristic, RareEvents};
+use sensitol_numeric::sampling::Estimate;
+use crate::analysis_document::CharacteristicSections;
+use crate::simulation::SimulationSection;
+
+/// The report of rare events, as `--json` prints it. Unknown values are null, never 0.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct RareReport {
+    /// The common head of every report.
+    #[serde(flatten)]
+    pub(crate) head: Head,
+    /// `importance-sampling`.
+    pub(crate) method: &'static str,
+    /// The results.
+    #[serde(flatten, serialize_with = "RareEvents::serialize")]
+    #[cfg_attr(feature = "schema", schemars(with = "RareEvents"))]
+    pub(crate) found: RareEvents,
+    /// The dimensions, in the study's order.
+    pub(crate) dimensions: Vec<DimensionReport>,
+    /// The dimensions that vary together.
+    pub(crate) correlation: Vec<Pair>,
+    /// Where an assumption fails.
+    pub warnings: Vec<WarningReport>,
+}
+
+impl RareReport {
+    /// The report of rare events.
+    pub fn of(problem: &Problem, found: &RareEvents, about: About) -> Self {
+        Self {
+            head: Head::of("simulate", &about),
+            method: "importance-sampling",
+            found: found.clone(),
+            dimensions: problem.dimensions().iter().map(DimensionReport::of).collect(),
+            correlation: correlation(problem),
+            warnings: about.warnings.iter().chain(&found.warnings).map(WarningReport::of).collect(),
+        }
+    }
+}
+
+/// Dimensions of a design point that are shown: those that move farthest.
+const SHOWN: usize = 6;
+
+impl RareReport {
+    /// The text of the search for rare events: every probability with its interval (table `rare`), and the assembly in which it
+    /// most likely comes about.
+    pub fn document(&self) -> Document {
+        let found = &self.found;
+        let mut document = Document::titled(self.head.title.as_deref());
+        document.line(format!(
+            "importance sampling: {} points, {} evaluations with the {} surrogate{}{}",
+            found.samples,
+            found.run.evaluations,
+            found.method.name(),
+            seed(&found.run),
+            head::beside(&found.run)
+        ));
+        document.gap();
+        document.table(glance::table(found.characteristics.iter().map(Glance::sought)));
+        if let Some([low, high]) = found.joint_interval {
+            let interval = format!("95 % interval {} to {}", yielded(low), yielded(high));
+            document.note(all_limits(&known(found.joint, yielded), &interval, found.joint_requirement.as_ref()));
+        }
+        document.sections = found.characteristics.iter().map(|one| one.section(&self.dimensions)).collect();
+        document
+    }
+}
+
+/// A side of the limits: `below` or `above`, and what lies there.
+type Side<'r> = (&'static str, &'r Beyond);
+
+/// Section of the report of a characteristic with rare rejects.
+pub(crate) trait RareSection {
+    fn section(&self, dimensions: &[DimensionReport]) -> Section;
+
+    fn table(&self, sides: &[Side<'_>]) -> DataTable;
+}
+
+impl RareSection for RareCharacteristic {
+    fn section(&self, dimensions: &[DimensionReport]) -> Section {
+        let mut section = Section::of(self.name(), self.unit());
+        let sides = [("below", &self.below), ("above", &self.above)];
+        let sides: Vec<Side<'_>> = sides.into_iter().filter_map(|(side, of)| Some((side, of.as_ref()?))).collect();
+        section.detail(vec![Element::Table(self.table(&sides))]);
+        section.brief(vec![Element::Table(self.table(&sides).without(&["plain sampling"]))]);
+        if sides.is_empty() {
+            section.note(if self.limited() { "its surrogate does not vary" } else { "no limit" });
+            return section;
+        }
+        for (side, of) in &sides {
+            if let Some([low, high]) = self.bounds(of) {
+                let ([low, high], failed) = ([low, high].map(ppm), self.failed);
+                let all = format!("{high} if all {failed} do");
+                section.note(format!("{side}: {low} ppm if no point without a value lies there, {all}"));
+            }
+        }
+        if let Some([low, high]) = self.yield_interval {
+            let interval = format!("95 % interval {} to {}", yielded(low), yielded(high));
+            let target = judged(self.target(), self.verdict());
+            section.note(Line::from(format!("yield {}, {interval}", known(self.yield_, yielded))).and(target));
+        }
+        lines(self.requirements()).for_each(|line| section.note(line));
+        for (side, of) in sides {
+            if let Some(point) = &of.design_point {
+                section.note(format!("most likely {side}, in sigmas off the means: {}", farthest(point, dimensions)));
+            }
+        }
+        section
+    }
+
+    fn table(&self, sides: &[Side<'_>]) -> DataTable {
+        let limit = |(side, of): &Side<'_>| Cell::both(Value::Empty, format!("{side} {}", plain(of.limit)));
+        let millionths =
+            |value: Option<f64>, digits: usize| Cell::number(value, |value| significant(1e6 * value, digits));
+        Columns::default()
+            .data("characteristic", |_| Cell::text(self.name()))
+            .data("unit", |_| Cell::optional(self.unit()))
+            .data("side", |row: &Side<'_>| Cell::text(row.0))
+            .shown("", limit)
+            .data("limit", |row| Cell::data(row.1.limit))
+            .column("probability", "ppm", move |row| {
+                millionths(row.1.probability.map(|found: Estimate| found.value), 4)
+            })
+            .column("standard_error", "standard error", move |row| {
+                millionths(row.1.probability.and_then(|found| found.standard_error), 2)
+            })
+            .column("interval_low", "95 % interval", |row| Cell::number(row.1.interval[0], ppm))
+            .named("interval_high", "to", |row| Cell::number(row.1.interval[1], ppm))
+            .column("hits", "points there", |row| Cell::count(row.1.hits))
+            .data("effective_samples", |row| Cell::data(row.1.effective_samples))
+            .column("plain_samples", "plain sampling", |row| {
+                Cell::number(row.1.plain_samples, |samples| significant(samples, 2))
+            })
+            .table("rare", sides.iter().copied())
+    }
+}
+
+fn ppm(value: f64) -> String {
+    significant(1e6 * value, 3)
+}
+
+/// A design point in sigmas off the means, farthest first.
+fn farthest(point: &DesignPoint, dimensions: &[DimensionReport]) -> String {
+    let mut moved: Vec<(f64, String)> = (dimensions.iter().zip(&point.values))
+        .filter(|(dimension, _)| dimension.sigma > 0.0)
+        .map(|(dimension, value)| ((value - dimension.mean) / dimension.sigma, short(&dimension.name)))
+        .collect();
+    moved.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
+    let rest = moved.len().saturating_sub(SHOWN);
+    let words = moved.iter().take(SHOWN).map(|(sigmas, name)| format!("{name} {sigmas:+.2}"));
+    let rest = if rest > 0 { format!(" and {rest} less") } else { String::new() };
+    format!("{}{rest}", words.collect::<Vec<_>>().join(", "))
+}

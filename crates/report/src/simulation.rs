@@ -1,0 +1,313 @@
+//! The report of a simulation: the names of an analysis, each number with its standard error.
+
+use serde::Serialize;
+
+use super::figures::{Figures, Named, QUANTILES};
+use super::glance::{self, Glance};
+use super::head::{self, findings, seed};
+use super::inspection::inspected;
+use super::output_correlation::{all_limits_within, together};
+use super::requirement::{judged, lines};
+use super::{About, DimensionReport, Head, WarningReport, correlation};
+use sensitol::analysis::{EstimatedShare, InspectionRisks};
+use sensitol_numeric::capability::Law;
+use sensitol_numeric::correlation::Pair;
+use crate::document::number::{estimated, index, known, limits, percent, plain, significant, uncertainty, yielded};
+use crate::document::rejects::Rejects;
+use crate::document::{Blocks, Cell, Chart, Columns, DataTable, Document, Element, Line, Section, SpreadChart};
+use sensitol_numeric::moments::Moments;
+use sensitol_numeric::pearson::Pearson;
+use sensitol::problem::Problem;
+use sensitol_numeric::sampling::{Estimate, one_error};
+use sensitol::simulation::{IndexEstimate, SampledFactor, SimulatedCharacteristic, Simulation, YieldEstimate};
+use crate::analysis_document::CharacteristicSections;
+use crate::rare::RareSection;
+
+/// The report of a simulation, as `--json` prints it. Unknown values are null, never 0.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct SimulationReport {
+    /// The common head of every report.
+    #[serde(flatten)]
+    pub(crate) head: Head,
+    /// The results.
+    #[serde(flatten, serialize_with = "Simulation::serialize")]
+    #[cfg_attr(feature = "schema", schemars(with = "Simulation"))]
+    pub(crate) simulation: Simulation,
+    /// The dimensions, in the study's order.
+    pub(crate) dimensions: Vec<DimensionReport>,
+    /// The dimensions that vary together.
+    pub(crate) correlation: Vec<Pair>,
+    /// Where an assumption fails.
+    pub warnings: Vec<WarningReport>,
+}
+
+impl SimulationReport {
+    /// The report of a simulation.
+    pub fn of(problem: &Problem, simulation: &Simulation, about: About) -> Self {
+        Self {
+            head: Head::of("simulate", &about),
+            simulation: simulation.clone(),
+            dimensions: problem.dimensions().iter().map(DimensionReport::of).collect(),
+            correlation: correlation(problem),
+            warnings: about.warnings.iter().chain(&simulation.warnings).map(WarningReport::of).collect(),
+        }
+    }
+}
+
+/// Inputs whose Sobol' indices a terminal shows.
+const FACTORS: usize = 8;
+/// Fewer intervals make no picture.
+const INTERVALS: usize = 5;
+
+impl SimulationReport {
+    /// The text of the simulation: every number with its standard error (table `estimates`), and the histogram (table
+    /// `histogram`).
+    pub fn document(&self) -> Document {
+        let mut document = Document::titled(self.head.title.as_deref());
+        let Simulation { sampler, run, samples, characteristics, .. } = &self.simulation;
+        let (seed, rest) = (seed(run), head::beside(run));
+        document.line(format!("{}: {samples} points{seed}{rest}; ± is one standard error", sampler.method()));
+        document.gap();
+        document.table(glance::table(characteristics.iter().map(Glance::sampled)));
+        if let Some(joint) = &self.simulation.joint {
+            document.note(all_limits_within(joint, self.simulation.joint_requirement.as_ref()));
+        }
+        if let Some(line) = together(&self.simulation.correlations) {
+            document.wrapped(2, line);
+        }
+        document.sections = characteristics.iter().map(|one| one.section(&self.warnings)).collect();
+        document
+    }
+}
+
+/// An estimate: its name, its value with its standard error, its interval.
+type Row = (&'static str, Option<Estimate>, Option<[f64; 2]>);
+
+/// Section of the report of a simulated characteristic.
+pub(crate) trait SimulationSection {
+    fn section(&self, warnings: &[WarningReport]) -> Section;
+
+    fn kept(&self, section: &mut Section, yield_: YieldEstimate);
+
+    /// Moments on the left, quantiles on the right.
+    fn brief_estimates(&self) -> DataTable;
+
+    fn estimates(&self) -> DataTable;
+
+    /// Sobol' indices with their 95 % intervals (table `sobol`), the strongest first.
+    fn sobol(&self, section: &mut Section);
+
+    fn histogram_table(&self) -> DataTable;
+
+    /// The sample, and the Pearson curve of its own moments.
+    fn picture(&self, section: &mut Vec<Element>);
+
+    /// The distribution of the sample's own moments.
+    fn own_law(&self) -> Option<Pearson>;
+}
+
+impl SimulationSection for SimulatedCharacteristic {
+    fn section(&self, warnings: &[WarningReport]) -> Section {
+        let mut section = Section::of(self.name(), self.unit());
+        if self.limited() {
+            section.words = format!(", limits {}", limits(self.lower(), self.upper()));
+        }
+        section.blocks = findings(warnings, |name| name == Some(self.name()));
+        section.detail(vec![Element::Table(self.estimates())]);
+        section.brief(vec![Element::Table(self.brief_estimates())]);
+        section.table(self.histogram_table());
+        self.sobol(&mut section);
+        if self.samples == 0 {
+            section.note("no point has a value");
+            return section;
+        }
+        if let Some(control) = &self.control {
+            let times = |value: Option<f64>, name: &str| value.map(|value| format!("{name} {}", significant(value, 3)));
+            let shrunk = [times(control.mean, "mean"), times(control.sigma, "sigma")];
+            let shrunk: Vec<String> = shrunk.into_iter().flatten().collect();
+            let shrunk = match shrunk.is_empty() {
+                true => String::new(),
+                false => format!(": standard errors shrunk by {}", shrunk.join(", ")),
+            };
+            let (method, evaluations) = (control.method, control.evaluations);
+            section.note(format!("control: {method} surrogate, {evaluations} evaluations{shrunk}"));
+        }
+        if let Some(yield_) = self.yield_ {
+            self.kept(&mut section, yield_);
+        }
+        lines(self.requirements()).for_each(|line| section.note(line));
+        if let Some(of) = &self.inspection {
+            inspected(&mut section, of);
+        }
+        let mut picture = Vec::new();
+        self.picture(&mut picture);
+        match self.indices {
+            None => section.blocks.extend(picture),
+            // The indices that were asked for need the room.
+            Some(_) => section.detail(picture),
+        }
+        section
+    }
+
+    fn kept(&self, section: &mut Section, yield_: YieldEstimate) {
+        let [low, high] = yield_.interval.map(yielded);
+        let target = judged(self.target(), self.verdict());
+        let error = one_error(yield_.value, yield_.interval);
+        let rejects = Rejects::new(self.below, self.above, Some(error));
+        let text = rejects.yield_text().unwrap_or_else(|| yielded(yield_.value));
+        section.note(Line::from(format!("yield {text}, 95 % interval {low} to {high}")).and(target));
+        if let Some([low, high]) = self.yield_bounds() {
+            let (points, [low, high]) = (self.failed, [low, high].map(yielded));
+            section
+                .note(format!("{points} points have no value: {low} if all of these are rejected, {high} if none is"));
+        }
+        let named = |value: Option<f64>, name: &str| value.map(|value| format!("{name} {}", index(value)));
+        let sides = Some(rejects.sides()).filter(|sides| !sides.is_empty());
+        let figures = [sides, named(self.cp, "Cp"), named(self.cpk, "Cpk")];
+        section.note(figures.into_iter().flatten().collect::<Vec<_>>().join("  "));
+        section.remark(format!(
+            "Limits {}; values seen from {} to {}.",
+            limits(self.lower(), self.upper()),
+            known(self.range.map(|[least, _]| least), plain),
+            known(self.range.map(|[_, greatest]| greatest), plain),
+        ));
+    }
+
+    fn brief_estimates(&self) -> DataTable {
+        if self.samples == 0 {
+            return DataTable::untitled::<6>([]);
+        }
+        let moments =
+            [("mean", self.mean), ("sigma", self.sigma), ("skewness", self.skewness), ("kurtosis", self.kurtosis)];
+        let quantiles = ["0.135 %", "1 %", "5 %", "median", "95 %", "99 %", "99.865 %"].into_iter().zip(self.quantiles);
+        let cells = |(name, of): (&str, Option<Estimate>)| {
+            let error = of.and_then(|of| of.standard_error);
+            let value = Cell::number(of.map(|of| of.value), |value| estimated(value, error));
+            let error = error.map_or(String::new(), |error| format!("± {}", uncertainty(error)));
+            [Cell::text(name), value, Cell::text(error)]
+        };
+        let mut left = moments.into_iter().map(cells);
+        let rows = quantiles.map(cells).map(|[name, value, error]| {
+            let [of, moment, moment_error] = left.next().unwrap_or_else(|| std::array::from_fn(|_| Cell::empty()));
+            [of, moment, moment_error, name, value, error]
+        });
+        DataTable::untitled(rows)
+    }
+
+    fn estimates(&self) -> DataTable {
+        let moments: [Row; 4] = [
+            ("mean", self.mean, None),
+            ("sigma", self.sigma, None),
+            ("skewness", self.skewness, None),
+            ("kurtosis", self.kurtosis, None),
+        ];
+        let quantiles = QUANTILES.into_iter().zip(self.quantiles).map(|(name, estimate)| (name, estimate, None));
+        let seen = if self.samples == 0 { 0 } else { moments.len() + QUANTILES.len() };
+        let plain = |value: Option<f64>| value.map(|value| Estimate { value, standard_error: None });
+        let risk = |name: &'static str, share: fn(&InspectionRisks) -> Option<EstimatedShare>| {
+            let of = self.inspection.as_ref()?;
+            Some((name, share(of).map(|of| Estimate { value: of.value, standard_error: of.error }), None))
+        };
+        let risks: [Option<Row>; 4] = [
+            risk("false_accept", |of| of.false_accept),
+            risk("false_reject", |of| of.false_reject),
+            risk("accepted", |of| of.accepted),
+            risk("bad_among_accepted", |of| of.bad_among_accepted),
+        ];
+        let rest: [Row; 3] = [
+            ("yield", plain(self.yield_()), self.yield_.map(|share| share.interval)),
+            ("ppm_below", plain(self.ppm_below()), None),
+            ("ppm_above", plain(self.ppm_above()), None),
+        ];
+        let error = |row: &Row| row.1.and_then(|estimate| estimate.standard_error);
+        Columns::default()
+            .data("characteristic", |_| Cell::text(self.name()))
+            .data("unit", |_| Cell::optional(self.unit()))
+            .named("estimate", "", |row: &Row| Cell::text(row.0))
+            .named("value", "value", move |row| {
+                Cell::number(row.1.map(|estimate| estimate.value), |value| estimated(value, error(row)))
+            })
+            .column("standard_error", "standard error", move |row| Cell::number(error(row), uncertainty))
+            .data("interval_low", |row| Cell::data(row.2.map(|[low, _]| low)))
+            .data("interval_high", |row| Cell::data(row.2.map(|[_, high]| high)))
+            .table("estimates", moments.into_iter().chain(quantiles).chain(rest).chain(risks.into_iter().flatten()))
+            .seen((0..seen).collect())
+    }
+
+    fn sobol(&self, section: &mut Section) {
+        let Some(of) = &self.indices else { return };
+        let mut order: Vec<usize> = (0..of.len()).collect();
+        order.sort_by(|&a, &b| of[b].total.value.total_cmp(&of[a].total.value));
+        let value = |of: IndexEstimate| Cell::number(of.value, |value| estimated(value, Some(of.standard_error)));
+        let interval = |of: IndexEstimate| {
+            let [low, high] = of.interval.map(|end| estimated(end, Some(of.standard_error)));
+            Cell::text(format!("{low} .. {high}"))
+        };
+        section.gap();
+        section.table(
+            Columns::default()
+                .data("characteristic", |_| Cell::text(self.name()))
+                .named("inputs", "input", |factor: &&SampledFactor| Cell::name(&factor.dimensions.join(", ")))
+                .column("first_order", "first order", move |factor| value(factor.first_order))
+                .shown("95 % interval", move |factor| interval(factor.first_order))
+                .column("total", "total", move |factor| value(factor.total))
+                .shown("95 % interval", move |factor| interval(factor.total))
+                .data("first_order_error", |factor| Cell::data(factor.first_order.standard_error))
+                .data("first_order_low", |factor| Cell::data(factor.first_order.interval[0]))
+                .data("first_order_high", |factor| Cell::data(factor.first_order.interval[1]))
+                .data("total_error", |factor| Cell::data(factor.total.standard_error))
+                .data("total_low", |factor| Cell::data(factor.total.interval[0]))
+                .data("total_high", |factor| Cell::data(factor.total.interval[1]))
+                .table("sobol", of)
+                .seen(order)
+                .at_most(
+                    [FACTORS, usize::MAX],
+                    format!("and {} weaker; -v shows all", of.len().saturating_sub(FACTORS)),
+                ),
+        );
+        let rest = 1.0 - of.iter().map(|factor| factor.first_order.value).sum::<f64>();
+        section.note(format!("Sobol' indices, parts of the variance: interactions have {} %", percent(rest)));
+    }
+
+    fn histogram_table(&self) -> DataTable {
+        let rows = self.histogram.iter().flat_map(|of| of.edges.windows(2).zip(&of.counts));
+        Columns::default()
+            .data("characteristic", |_| Cell::text(self.name()))
+            .data("from", |row: &(&[f64], &u64)| Cell::data(row.0[0]))
+            .data("to", |row| Cell::data(row.0[1]))
+            .data("count", |row| Cell::count(*row.1))
+            .table("histogram", rows)
+    }
+
+    fn picture(&self, section: &mut Vec<Element>) {
+        let Some(of) = self.histogram.as_ref().filter(|of| of.counts.len() >= INTERVALS) else { return };
+        let law = self.own_law();
+        let curve = law.as_ref().map_or(String::new(), |law| {
+            format!(" The line: the Pearson curve of its four moments ({}).", law.kind().name())
+        });
+        section.gap();
+        section.chart(Chart::Spread(Box::new(SpreadChart {
+            bins: Some(of.clone()),
+            curve: None,
+            law,
+            sampled: true,
+            limits: Named::limits(self),
+            rejects: [None, None],
+            ranges: Vec::new(),
+            nominal: None,
+            places: self.mean().map(|mean| (mean, "mean", "mean")).into_iter().collect(),
+            sigma: self.sigma().unwrap_or(0.0),
+            label: format!("Histogram of {} with the standard error of every bar", self.name()),
+            words: format!("The sample; each bar with one standard error.{curve}"),
+        })));
+    }
+
+    fn own_law(&self) -> Option<Pearson> {
+        let moments = Moments::new(self.mean()?, self.sigma()?, self.skewness()?, self.kurtosis()? - 3.0);
+        match Law::fit(&moments).ok()? {
+            Law::Pearson(law) => Some(*law),
+            Law::Point { .. } => None,
+        }
+    }
+}

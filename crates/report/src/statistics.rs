@@ -1,0 +1,284 @@
+//! One characteristic at a glance: its statistics with their errors beside the intervals, and who contributes most.
+
+use super::DimensionReport;
+use super::figures::Figures;
+use sensitol::analysis::{CharacteristicAnalysis, IndexSource, Sensitivity};
+use crate::document::number::{UNKNOWN, carried, known, percent, plain, shape_with, significant, uncertainty};
+use crate::document::{Blocks, Cell, Columns, DataTable, Section, Value};
+use sensitol::method::{ErrorEstimate, ErrorSource};
+use sensitol_numeric::names::element;
+use crate::analysis_document::CharacteristicSections;
+use crate::rare::RareSection;
+
+/// Contributors that a terminal names.
+const CONTRIBUTORS: usize = 6;
+/// Rows of statistics that a terminal shows: the linear worst case beside a proven one comes after.
+const ROWS: usize = 6;
+/// Of sigma: worst cases nearer than this look the same in print.
+const SAME: f64 = 1e-3;
+/// Sigmas on either side that stand for the band of a dimension without a tolerance.
+const BAND: f64 = 3.0;
+/// Interactions of one dimension that are worth a column, by the variance.
+const TOTAL: f64 = 0.01;
+/// A second derivative or a slope within this many of its rounding errors is 0.
+const ROUNDINGS: f64 = 2.0;
+
+/// A figure as it is shown, with no more decimals than its error carries.
+pub(super) struct Shown {
+    name: &'static str,
+    value: Option<f64>,
+    pub(super) text: String,
+    /// `±` what, or `exact`; empty where that is not known.
+    pub(super) error: String,
+}
+
+impl Shown {
+    fn cells(self) -> [Cell; 3] {
+        let error = if self.error.is_empty() { Cell::empty() } else { Cell::text(self.error) };
+        [Cell::text(self.name), Cell::both(Value::Number(self.value), self.text), error]
+    }
+}
+
+/// Statistics and contributors of a characteristic.
+pub(crate) trait CharacteristicStatistics {
+    /// Nominal value, mean, the distance between the two, sigma, skewness and kurtosis.
+    fn first_figures(&self) -> [Shown; 6];
+
+    /// The unit by which its numbers are rounded.
+    fn scale(&self) -> f64;
+
+    /// Statistics on the left, intervals on the right.
+    fn statistics(&self, section: &mut Section);
+
+    /// Whether its contributions are those of the model, in place of a surface that is not trusted.
+    fn is_of_model(&self) -> bool;
+
+    /// Whether a dimension does visibly more together with others than by itself.
+    fn has_totals(&self) -> bool;
+
+    /// The strongest contributors, each with its own spread and what it does here. The parts of a geometric element are one.
+    fn contributors(&self, dimensions: &[DimensionReport]) -> DataTable;
+}
+
+impl CharacteristicStatistics for CharacteristicAnalysis {
+    fn first_figures(&self) -> [Shown; 6] {
+        let scale = self.scale();
+        let estimate = self.error_estimate.as_ref();
+        let exact = estimate.is_some_and(|of| matches!(of.sources[..], [ErrorSource::Proven { .. }]));
+        let of = |figure: fn(&ErrorEstimate) -> Option<f64>| estimate.and_then(figure);
+        let error = |error: Option<f64>| match error {
+            Some(_) if exact => "exact".to_owned(),
+            error => error.map(|error| format!("± {}", uncertainty(error))).unwrap_or_default(),
+        };
+        let shown = |name: &'static str, value: Option<f64>, text: &dyn Fn(f64) -> String, error: String| Shown {
+            name,
+            value,
+            text: known(value, text),
+            error,
+        };
+        let [of_mean, of_sigma] = [of(|of| of.mean), of(|of| of.sigma)];
+        let [of_skewness, of_kurtosis] = [of(|of| of.skewness), of(|of| of.kurtosis)];
+        let shift = self.mean().zip(self.nominal).map(|(mean, nominal)| mean - nominal);
+        [
+            shown("nominal", self.nominal, &|value| carried(value, scale, None), String::new()),
+            shown("mean", self.mean(), &|value| carried(value, scale, of_mean), error(of_mean)),
+            shown("shift", shift, &|value| carried(value, scale, of_mean), String::new()),
+            shown("sigma", self.sigma(), &|value| carried(value, scale, of_sigma), error(of_sigma)),
+            shown("skewness", self.skewness(), &|value| shape_with(value, of_skewness), error(of_skewness)),
+            shown("kurtosis", self.kurtosis(), &|value| shape_with(value, of_kurtosis), error(of_kurtosis)),
+        ]
+    }
+
+    fn scale(&self) -> f64 {
+        self.sigma().filter(|&sigma| sigma > 0.0).or(self.rss).unwrap_or(0.0)
+    }
+
+    fn statistics(&self, section: &mut Section) {
+        let scale = self.scale();
+        let estimate = self.error_estimate.as_ref();
+        let [mean_error, sigma_error] = [estimate.and_then(|of| of.mean), estimate.and_then(|of| of.sigma)];
+        // Of an end k sigmas from the mean.
+        let end_error = |k: f64| mean_error.zip(sigma_error).map(|(mean, sigma)| libm::hypot(mean, k * sigma));
+        let interval = |ends: Option<[f64; 2]>, error: Option<f64>| {
+            let ends = ends.map(|ends| ends.map(|end| carried(end, scale, error)));
+            Cell::text(ends.map_or(UNKNOWN.to_owned(), |[low, high]| format!("{low} .. {high}")))
+        };
+        let around = |middle: Option<f64>, reach: Option<f64>, error| {
+            interval(middle.zip(reach).map(|(middle, reach)| [middle - reach, middle + reach]), error)
+        };
+        // Found by no search, so that the bounds are all that is known of the true worst case.
+        let proven =
+            self.bounds.as_ref().filter(|bounds| bounds.proven && self.extremes.is_none()).map(|bounds| bounds.bounds);
+        let same =
+            |[a, b]: [[f64; 2]; 2]| (0..2).all(|end| (a[end] - b[end]).abs() <= SAME * self.sigma().unwrap_or(0.0));
+        let as_linear = proven.zip(self.worst_case).is_some_and(|(proven, linear)| same([proven, linear]));
+        let (worst, linear) = match proven.filter(|_| !as_linear) {
+            Some(proven) => (("proven worst case", Some(proven)), Some(("linear worst case", self.worst_case))),
+            None if as_linear => (("worst case", self.worst_case), None),
+            None => (("linear worst case", self.worst_case), None),
+        };
+        // Beyond slopes, and not proven to be reached.
+        let within = (self.bounds.as_ref().filter(|_| self.extremes.is_none() && proven.is_none()))
+            .map(|bounds| bounds.bounds)
+            .filter(|within| !self.worst_case.is_some_and(|linear| same([*within, linear])));
+        let beside = [
+            ("± 3 sigma", around(self.mean(), self.sigma().map(|sigma| 3.0 * sigma), end_error(3.0))),
+            ("RSS", around(self.middle, self.rss, None)),
+            ("inflated RSS", around(self.middle, self.inflated_rss, None)),
+            ("mean-shift RSS", around(self.middle, self.mean_shift_rss, None)),
+            (worst.0, interval(worst.1, None)),
+            match within {
+                Some(within) => ("worst case within", interval(Some(within), None)),
+                None => ("", Cell::empty()),
+            },
+        ];
+        let row = |[name, value, error]: [Cell; 3], (of, ends): (&'static str, Cell)| {
+            let of = if of.is_empty() { Cell::empty() } else { Cell::text(of) };
+            [name, value, error, of, ends]
+        };
+        let rows = self.first_figures().map(Shown::cells).into_iter().zip(beside);
+        let rows: Vec<[Cell; 5]> = rows.map(|(cells, beside)| row(cells, beside)).collect();
+        let linear_row =
+            linear.map(|(name, ends)| row([Cell::empty(), Cell::empty(), Cell::empty()], (name, interval(ends, None))));
+        section
+            .table(DataTable::untitled(rows.into_iter().chain(linear_row)).at_most([ROWS, usize::MAX], String::new()));
+    }
+
+    fn is_of_model(&self) -> bool {
+        let sampled = self.indices.as_ref().is_some_and(|of| of.source != IndexSource::Surface);
+        sampled && self.sensitivities.iter().all(|row| row.linear_share.is_none())
+    }
+
+    fn has_totals(&self) -> bool {
+        // Contributions of a linear method stand beside no indices of the model.
+        if self.indices.as_ref().is_some_and(|of| of.source != IndexSource::Surface) && !self.is_of_model() {
+            return false;
+        }
+        let more = |row: &Sensitivity| Some(total(row)? - part(row)?);
+        self.sensitivities.iter().filter_map(more).any(|more| more >= TOTAL)
+    }
+
+    fn contributors(&self, dimensions: &[DimensionReport]) -> DataTable {
+        let mut all: Vec<Contributor<'_>> = Vec::new();
+        for row in self.sensitivities.iter().zip(dimensions).filter(|(row, of)| matters(row, of)) {
+            let name = element(&row.0.dimension);
+            match all.iter_mut().find(|known| known.name == name) {
+                Some(known) => known.parts.push(row),
+                None => all.push(Contributor { name, parts: vec![row] }),
+            }
+        }
+        // Those that do nothing here are no contributors.
+        for one in &mut all {
+            if one.parts.iter().any(does) {
+                one.parts.retain(does);
+            }
+        }
+        let mut view: Vec<usize> = (0..all.len()).filter(|&index| all[index].parts.iter().any(does)).collect();
+        let size = |index: usize| all[index].size();
+        view.sort_by(|&a, &b| size(b).total_cmp(&size(a)));
+        let rest = &view[view.len().min(CONTRIBUTORS)..];
+        let together: f64 = rest.iter().filter_map(|&index| all[index].part()).sum();
+        let rest = format!("and {} more with {} % together; -v shows all", rest.len(), percent(together));
+        let shown = |value: Option<f64>, text: fn(f64) -> String| Cell::number(value, text);
+        let unknown = || Cell::text(UNKNOWN.to_owned());
+        Columns::default()
+            .named("", "contributor", |one: &&Contributor<'_>| Cell::name(one.name))
+            .shown("mean", |one| one.alone().map_or_else(unknown, |row| Cell::number(row.1.mean, plain)))
+            .shown("tolerance", |one| {
+                let Some((_, dimension)) = one.alone() else { return Cell::text(UNKNOWN.to_owned()) };
+                let unit = dimension.unit.as_deref().map_or(String::new(), |unit| format!(" {unit}"));
+                Cell::text(format!("{}{unit}", dimension.tolerance()))
+            })
+            .shown("sigma", move |one| shown(one.alone().map(|row| row.1.sigma), |sigma| significant(sigma, 3)))
+            .shown("sensitivity", |one| {
+                let Some((row, _)) = one.alone() else { return Cell::text(UNKNOWN.to_owned()) };
+                let rounding = row.rounding.map(|rounding| rounding[0]);
+                Cell::both(Value::Number(row.first), derivative(row.first, rounding, 4))
+            })
+            .shown("effect", move |one| shown(one.alone().and_then(effect), |effect| significant(effect, 3)))
+            .shown("contrib. %", move |one| shown(one.part(), percent))
+            // A column more does not fit into 80: the details have it.
+            .shown_if(self.is_of_model() && self.has_totals(), "total %", move |one| shown(one.total(), percent))
+            .table("", all.iter())
+            .seen(view)
+            .at_most([CONTRIBUTORS, 0], rest)
+    }
+}
+
+/// A sensitivity, and the dimension that it is of.
+type Row<'r> = (&'r Sensitivity, &'r DimensionReport);
+
+/// A dimension, or a geometric element with the parts of it that do something here.
+struct Contributor<'r> {
+    name: &'r str,
+    parts: Vec<Row<'r>>,
+}
+
+impl<'r> Contributor<'r> {
+    /// The one part that there is.
+    fn alone(&self) -> Option<&Row<'r>> {
+        if let [row] = &self.parts[..] { Some(row) } else { None }
+    }
+
+    /// The share of the variance; None where a part's is unknown.
+    fn part(&self) -> Option<f64> {
+        self.parts.iter().map(|row| part(row.0)).sum()
+    }
+
+    /// The share with every interaction; None of an element of several parts, whose own interactions would count twice.
+    fn total(&self) -> Option<f64> {
+        self.alone().and_then(|row| total(row.0))
+    }
+
+    /// The order of rows.
+    fn size(&self) -> f64 {
+        self.alone().map_or_else(|| self.part().unwrap_or(-1.0), |row| size(row.0))
+    }
+}
+
+/// Whether a dimension does something here.
+fn does(row: &Row<'_>) -> bool {
+    part(row.0) != Some(0.0) || effect(row) != Some(0.0)
+}
+
+/// How far the characteristic moves where this dimension alone goes to the end of its band that moves it more, by slope and curvature.
+fn effect((row, dimension): &(&Sensitivity, &DimensionReport)) -> Option<f64> {
+    let ends = match dimension.tolerance {
+        Some(ends) => ends.map(|end| dimension.nominal + end - dimension.mean),
+        None => [-BAND * dimension.sigma, BAND * dimension.sigma],
+    };
+    let (first, second) = (row.first?, row.second.unwrap_or(0.0));
+    Some(ends.map(|t| (t * (first + 0.5 * second * t)).abs()).into_iter().fold(0.0, f64::max))
+}
+
+/// Whether a dimension varies, or does something without.
+pub(super) fn matters(row: &Sensitivity, dimension: &DimensionReport) -> bool {
+    dimension.sigma > 0.0 || row.first.is_some_and(|first| first != 0.0)
+}
+
+/// The share of the variance of a dimension by itself, by slope and curvature; by the model where its surface is not trusted. None where
+/// neither is known.
+pub(super) fn part(row: &Sensitivity) -> Option<f64> {
+    let of_surface = row.linear_share.map(|linear| linear + row.curvature_share.unwrap_or(0.0));
+    of_surface.or(row.first_order.map(|index| index.value))
+}
+
+/// The same with every interaction in which it has a part.
+pub(super) fn total(row: &Sensitivity) -> Option<f64> {
+    row.total.map(|index| index.value)
+}
+
+/// By what rows are ordered: of the model with its interactions, which may be all that a dimension does.
+pub(super) fn size(row: &Sensitivity) -> f64 {
+    let of_model = total(row).filter(|_| row.linear_share.is_none());
+    of_model.or(part(row)).unwrap_or(-1.0)
+}
+
+/// A derivative to so many digits; within its own rounding error it is shown as 0.
+pub(super) fn derivative(value: Option<f64>, rounding: Option<f64>, digits: usize) -> String {
+    match (value, rounding) {
+        (None, _) => UNKNOWN.to_owned(),
+        (Some(value), Some(rounding)) if value.abs() <= ROUNDINGS * rounding => "0".to_owned(),
+        (Some(value), _) => significant(value, digits),
+    }
+}

@@ -1,0 +1,384 @@
+//! The report of a sweep: as data.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::figures::{Figures, QUANTILES};
+use super::glance::verdict;
+use super::head::{self, findings};
+use super::{About, Head, WarningReport};
+use sensitol::analysis::{CharacteristicAnalysis, YieldSource};
+use sensitol_numeric::capability::{Law, Quantiles};
+use crate::document::number::{UNKNOWN, beside, known, limits, plain, plural, shape, short, significant};
+use crate::document::rejects::Rejects;
+use crate::document::{
+    Blocks, Cell, Chart, Columns, DataTable, Document, Element, Layer, Paragraph, Plot, PlotAxis, PlotScale, Section,
+    Stroke, Value,
+};
+use sensitol::method::ErrorEstimate;
+use sensitol::problem::Problem;
+use sensitol::summary::RunSummary;
+use sensitol::sweep::Sweep;
+use sensitol_numeric::verdict::{Judged, Verdict};
+use crate::analysis_document::CharacteristicSections;
+use crate::figures::FittedFigures;
+use crate::rare::RareSection;
+use crate::simulation::SimulationSection;
+
+/// The report of a sweep, as `--json` prints it. Unknown values are null, never 0.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct SweepReport {
+    /// The common head of every report.
+    #[serde(flatten)]
+    pub(crate) head: Head,
+    /// The swept parameter.
+    pub(crate) parameter: ParameterReport,
+    /// The method that was run; null where nothing was done.
+    pub(crate) method: Option<&'static str>,
+    /// Its points and time, and why it ended early.
+    #[serde(flatten)]
+    pub(crate) run: RunSummary,
+    /// The results of every characteristic asked for.
+    pub characteristics: Vec<SweptReport>,
+    /// Where an assumption fails, each once, with the values at which it does.
+    pub warnings: Vec<WarningReport>,
+}
+
+/// The parameter.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub(crate) struct ParameterReport {
+    /// Its name.
+    pub(crate) name: String,
+    /// Its unit.
+    pub(crate) unit: Option<String>,
+    /// Its standard deviation at every value.
+    pub(crate) sigma: f64,
+    /// Its nominal values.
+    pub(crate) values: Vec<f64>,
+}
+
+/// One characteristic.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct SweptReport {
+    /// Its name.
+    pub(crate) name: String,
+    /// Its unit.
+    pub(crate) unit: Option<String>,
+    /// Lower limit.
+    pub(crate) lower: Option<f64>,
+    /// Upper limit.
+    pub(crate) upper: Option<f64>,
+    /// In the order of the parameter's values.
+    pub points: Vec<SweptPointReport>,
+}
+
+/// One characteristic at one value of the parameter.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct SweptPointReport {
+    /// The parameter.
+    pub(crate) at: f64,
+    /// With every dimension at its nominal value.
+    pub(crate) nominal: Option<f64>,
+    /// First moment.
+    pub mean: Option<f64>,
+    /// Standard deviation.
+    pub(crate) sigma: Option<f64>,
+    /// Third standardised moment.
+    pub(crate) skewness: Option<f64>,
+    /// Fourth standardised moment.
+    pub(crate) kurtosis: Option<f64>,
+    /// How far all that may be off, by what the method did not see; null without moments.
+    pub(crate) error_estimate: Option<ErrorEstimate>,
+    /// Root of the sum of squares.
+    pub(crate) rss: Option<f64>,
+    /// By the law of the surface where there is one, by the Pearson fit elsewhere.
+    pub(crate) quantiles: Quantiles<Option<f64>>,
+    /// Share of assemblies within the limits.
+    #[serde(rename = "yield")]
+    pub(crate) yield_: Option<f64>,
+    /// Its source; null without limits.
+    pub(crate) yield_source: Option<YieldSource>,
+    /// Rejected below the lower limit, in parts per million.
+    pub(crate) ppm_below: Option<f64>,
+    /// Rejected above the upper limit.
+    pub(crate) ppm_above: Option<f64>,
+    /// Whether the target yield is met; null where that is not known, and without one.
+    pub(crate) met: Option<bool>,
+    /// The same in a word.
+    pub(crate) verdict: Option<Verdict>,
+    /// Everything that is required of it, the target yield included.
+    #[cfg_attr(feature = "schema", schemars(with = "Vec<sensitol_numeric::verdict::JudgedShape>"))]
+    pub(crate) requirements: Vec<Judged>,
+}
+
+impl SweepReport {
+    /// The report of a sweep of this problem.
+    pub fn of(problem: &Problem, sweep: &Sweep, about: About) -> Self {
+        let dimension = &problem.dimensions()[sweep.dimension];
+        let characteristics = problem.characteristics().iter().enumerate().map(|(c, one)| SweptReport {
+            name: one.name().to_owned(),
+            unit: one.unit().map(str::to_owned),
+            lower: one.limits().lower(),
+            upper: one.limits().upper(),
+            points: (sweep.values.iter().zip(&sweep.analyses))
+                .map(|(&at, analysis)| SweptPointReport::of(at, analysis.as_ref().map(|all| &all.characteristics[c])))
+                .collect(),
+        });
+        Self {
+            head: Head::of("sweep", &about),
+            parameter: ParameterReport {
+                name: dimension.name().to_owned(),
+                unit: dimension.unit().map(str::to_owned),
+                sigma: dimension.sigma(),
+                values: sweep.values.clone(),
+            },
+            method: sweep.analyses.iter().flatten().next().map(|analysis| analysis.method.name()),
+            run: sweep.run,
+            characteristics: characteristics.collect(),
+            warnings: warnings(sweep, dimension.name(), &about),
+        }
+    }
+}
+
+impl SweepReport {
+    /// The text of the sweep: for every characteristic a chart, and a table (`sweep`) with a row for every value of the
+    /// parameter.
+    pub fn document(&self) -> Document {
+        let mut document = Document::titled(self.head.title.as_deref());
+        document.line(format!(
+            "{}: {} in {} for {} of {}{}",
+            self.method.unwrap_or("nothing was done"),
+            plural(self.run.evaluations as usize, "evaluation", "evaluations"),
+            plural(self.run.stages as usize, "batch", "batches"),
+            plural(self.parameter.values.len(), "value", "values"),
+            short(&self.parameter.name),
+            head::beside(&self.run),
+        ));
+        document.gap();
+        document.table(self.glance());
+        document.sections = self.characteristics.iter().map(|one| self.section(one)).collect();
+        document
+    }
+
+    /// Every characteristic in one line: where its mean goes, and its worst value.
+    fn glance(&self) -> DataTable {
+        let all = &self.characteristics;
+        let limited = all.iter().any(|one| one.points.iter().any(|point| point.yield_.is_some()));
+        let judged = all.iter().any(|one| one.points.iter().any(|point| !point.requirements.is_empty()));
+        let greatest = |one: &SweptReport| one.points.iter().filter_map(|point| point.sigma).reduce(f64::max);
+        let means = move |one: &&SweptReport| {
+            let ends = one.points.iter().filter_map(|point| point.mean).map(|mean| [mean, mean]);
+            let ends = ends.reduce(|[low, high], [mean, _]| [low.min(mean), high.max(mean)]);
+            let sigma = greatest(one).unwrap_or(0.0);
+            Cell::text(ends.map_or(UNKNOWN.to_owned(), |ends| ends.map(|end| beside(end, sigma)).join(" .. ")))
+        };
+        let worst = |one: &SweptReport| one.worst().map(|place| one.points[place].clone());
+        Columns::default()
+            .terminal(true, "", |one: &&SweptReport| Cell::name(&one.name))
+            .terminal(true, "mean", means)
+            .terminal(true, "sigma up to", move |one| Cell::number(greatest(one), |sigma| significant(sigma, 5)))
+            .terminal(true, "", |one| Cell::optional(one.unit.as_deref()))
+            .terminal(limited, "least yield", move |one| {
+                Cell::text(worst(one).and_then(|point| point.rejects().yield_text()).unwrap_or_default())
+            })
+            .terminal(limited, "at", move |one| {
+                worst(one).map_or_else(Cell::empty, |point| Cell::number(point.at, plain))
+            })
+            .terminal(judged, "verdict", |one| {
+                let judged: Vec<Judged> = one.points.iter().flat_map(|point| point.requirements.clone()).collect();
+                Cell { line: verdict(&judged), ..Cell::empty() }
+            })
+            .table("", all)
+    }
+
+    fn section(&self, one: &SweptReport) -> Section {
+        let of = &self.parameter;
+        let mut section = Section::of(&one.name, one.unit.as_deref());
+        section.words = format!(" over {}", with_unit(&short(&of.name), of.unit.as_deref()));
+        if one.lower.or(one.upper).is_some() {
+            section.remark(format!("Limits {}.", limits(one.lower, one.upper)));
+        }
+        section.blocks.extend(findings(&self.warnings, |name| name == Some(&one.name)));
+        section.chart(Chart::Plot(one.plot(with_unit(&of.name, of.unit.as_deref()))));
+        section.detail(vec![Element::Table(one.table(&of.name))]);
+        section.brief(one.brief(&of.name));
+        if let Some(source) = one.source() {
+            section.note(source);
+        }
+        section
+    }
+}
+
+fn with_unit(name: &str, unit: Option<&str>) -> String {
+    unit.map_or(name.to_owned(), |unit| format!("{name} [{unit}]"))
+}
+
+/// Values of the parameter that a terminal shows.
+const ROWS: usize = 19;
+
+impl SweptReport {
+    /// The place of the value with the least yield; None without limits.
+    fn worst(&self) -> Option<usize> {
+        let known = self.points.iter().enumerate().filter_map(|(place, point)| Some((place, point.yield_?)));
+        known.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(place, _)| place)
+    }
+
+    /// The table for a terminal: mean, sigma and band at evenly spaced values, and at the worst one.
+    fn brief(&self, parameter: &str) -> Vec<Element> {
+        let table = self.table(parameter).without(&["nominal", "50 %"]);
+        let count = table.rows.len();
+        if count <= ROWS {
+            return vec![Element::Table(table)];
+        }
+        let even = (0..count).step_by((count - 1).div_ceil(ROWS - 1));
+        let mut view: Vec<usize> = even.chain([count - 1]).chain(self.worst()).collect();
+        view.sort_unstable();
+        view.dedup();
+        let rest = Paragraph::note(format!("{} of {count} values; -v shows all", view.len()));
+        vec![Element::Table(table.seen(view)), Element::Paragraph(rest)]
+    }
+
+    fn table(&self, parameter: &str) -> DataTable {
+        let rounded = |value: Option<f64>, point: &SweptPointReport| {
+            Cell::number(value, |value| match point.sigma.filter(|sigma| *sigma > 0.0) {
+                Some(sigma) => beside(value, sigma),
+                None => significant(value, 6),
+            })
+        };
+        let yielded = |point: &&SweptPointReport| {
+            let text = known(point.yield_, |_| point.rejects().yield_text().unwrap_or_default());
+            Cell::both(Value::Number(point.yield_), text.trim_end_matches(" %"))
+        };
+        let mut columns = Columns::default()
+            .data("characteristic", |_| Cell::text(&self.name))
+            .data("unit", |_| Cell::optional(self.unit.as_deref()))
+            .data("parameter", |_| Cell::text(parameter))
+            .named("at", "at", |point: &&SweptPointReport| Cell::number(point.at, plain))
+            .column("nominal", "nominal", |point| rounded(point.nominal, point))
+            .column("mean", "mean", |point| rounded(point.mean, point))
+            .column("sigma", "sigma", |point| Cell::number(point.sigma, |sigma| significant(sigma, 5)))
+            .wide("skewness", "skewness", |point| Cell::number(point.skewness, shape))
+            .wide("kurtosis", "kurtosis", |point| Cell::number(point.kurtosis, shape))
+            .wide("rss", "rss", |point| rounded(point.rss, point));
+        for (index, key) in QUANTILES.into_iter().enumerate() {
+            let quantile = move |point: &&SweptPointReport| rounded(point.quantiles.0[index], point);
+            columns = match index {
+                0 => columns.column(key, "0.135 %", quantile),
+                3 => columns.column(key, "50 %", quantile),
+                6 => columns.column(key, "99.865 %", quantile),
+                _ => columns.data(key, quantile),
+            };
+        }
+        let columns = match self.lower.or(self.upper) {
+            Some(_) => columns.column("yield", "yield %", yielded),
+            None => columns.data("yield", yielded),
+        };
+        columns.table("sweep", &self.points)
+    }
+
+    /// The sources of the yields, where there are any.
+    fn source(&self) -> Option<String> {
+        let mut sources: Vec<&str> = self.points.iter().filter_map(|point| Some(point.yield_source?.words())).collect();
+        sources.sort_unstable();
+        sources.dedup();
+        (!sources.is_empty()).then(|| format!("yields by {}", sources.join(", or by ")))
+    }
+
+    /// Mean, nominal value and the band of all but 0.27 %, over the parameter.
+    fn plot(&self, parameter: String) -> Plot {
+        let over = |value: fn(&SweptPointReport) -> Option<f64>| {
+            self.points.iter().map(|point| (point.at, value(point))).collect::<Vec<_>>()
+        };
+        let mut layers = vec![
+            Layer::Band(self.points.iter().map(|point| (point.at, point.band())).collect()),
+            Layer::Curve(over(|point| point.nominal), Stroke::Dotted),
+            Layer::Curve(over(|point| point.mean), Stroke::Strong),
+        ];
+        layers.extend(self.lower.map(|limit| Layer::Mark(limit, "lower limit")));
+        layers.extend(self.upper.map(|limit| Layer::Mark(limit, "upper limit")));
+        let named = |point: &SweptPointReport| Some((point.band()?, point.mean?));
+        if let Some(([low, high], mean)) = self.points.iter().rev().find_map(named) {
+            let ends = [(mean, "mean"), (high, "99.865 %"), (low, "0.135 %")];
+            layers.extend(ends.map(|(at, name)| Layer::End(at, name)));
+        }
+        Plot {
+            name: self.name.clone(),
+            x: PlotAxis::new(parameter, PlotScale::Linear(0.0)),
+            y: PlotAxis::new(with_unit(&self.name, self.unit.as_deref()), PlotScale::Linear(0.05)),
+            layers,
+            words: format!(
+                "Line: the mean. Band: from the 0.135 % to the 99.865 % quantile, which holds all but 0.27 % of the assemblies. Dotted: the value of \
+                 the nominal dimensions.{}",
+                if self.lower.or(self.upper).is_some() { " Dashed: the limits." } else { "" }
+            ),
+        }
+    }
+}
+
+/// Those of the study, then those of the analyses: of one kind about one thing, the first with the number of values.
+fn warnings(sweep: &Sweep, parameter: &str, about: &About) -> Vec<WarningReport> {
+    let mut kinds: BTreeMap<(usize, &str), (WarningReport, Vec<f64>)> = BTreeMap::new();
+    let mut order: Vec<(&'static str, Option<String>, Option<String>)> = Vec::new();
+    for (&at, analysis) in sweep.values.iter().zip(&sweep.analyses) {
+        for warning in analysis.iter().flat_map(|analysis| &analysis.warnings).map(WarningReport::of) {
+            let kind = (warning.code, warning.characteristic.clone(), warning.dimension.clone());
+            let place = order.iter().position(|known| *known == kind).unwrap_or_else(|| {
+                order.push(kind);
+                order.len() - 1
+            });
+            kinds.entry((place, warning.code)).or_insert_with(|| (warning, Vec::new())).1.push(at);
+        }
+    }
+    let all = sweep.analyses.iter().flatten().count();
+    let of_values = kinds.into_values().map(|(warning, at)| {
+        let share = if at.len() == all { "every value".to_owned() } else { format!("{} of {all} values", at.len()) };
+        let message = format!("At {share}, first at {parameter} = {}: {}", plain(at[0]), warning.message);
+        WarningReport { message, at, ..warning }
+    });
+    about.warnings.iter().map(WarningReport::of).chain(of_values).collect()
+}
+
+impl SweptPointReport {
+    fn of(at: f64, analysis: Option<&CharacteristicAnalysis>) -> Self {
+        let of = |figure: fn(&CharacteristicAnalysis) -> Option<f64>| analysis.and_then(figure);
+        let quantiles = analysis.and_then(|one| match (one.quantiles(), one.fitted()) {
+            (None, Some(Law::Point { at })) => Some(Quantiles([*at; 7])),
+            (known, _) => known,
+        });
+        Self {
+            at,
+            nominal: of(|one| one.nominal),
+            mean: of(Figures::mean),
+            sigma: of(Figures::sigma),
+            skewness: of(Figures::skewness),
+            kurtosis: of(Figures::kurtosis),
+            error_estimate: analysis.and_then(|one| one.error_estimate.clone()),
+            rss: of(|one| one.rss),
+            quantiles: Quantiles(quantiles.map_or([None; 7], |all| all.0.map(Some))),
+            yield_: of(Figures::yield_),
+            yield_source: analysis.and_then(|one| one.yield_source),
+            ppm_below: of(Figures::ppm_below),
+            ppm_above: of(Figures::ppm_above),
+            met: analysis.and_then(CharacteristicAnalysis::met),
+            verdict: analysis.and_then(CharacteristicAnalysis::verdict),
+            requirements: analysis.map_or(Vec::new(), CharacteristicAnalysis::requirements),
+        }
+    }
+
+    pub(super) fn rejects(&self) -> Rejects {
+        let error = self.error_estimate.as_ref().and_then(|estimate| estimate.yield_);
+        let [below, above] = [self.ppm_below, self.ppm_above].map(|ppm| ppm.map(|ppm| 1e-6 * ppm));
+        Rejects::new(below, above, error)
+    }
+
+    /// The ends of the band in which all but 0.27 % lie; None where they are unknown.
+    pub(crate) fn band(&self) -> Option<[f64; 2]> {
+        let all = self.quantiles.0;
+        Some([all[0]?, all[6]?])
+    }
+}

@@ -1,0 +1,37 @@
+//! Errors as data that a page can place.
+
+use serde_json::{Value, json};
+
+use sensitol_study::Error;
+use sensitol_study::StudyError;
+
+/// The faults of a study, each with its place in the text in bytes.
+pub(super) fn of_study(error: &StudyError) -> Value {
+    let all: Vec<Value> = std::iter::once(error).chain(&error.more).map(one).collect();
+    json!({ "faults": all })
+}
+
+fn one(error: &StudyError) -> Value {
+    let mut alone = error.clone();
+    alone.more.clear();
+    let whole = Error::from(alone);
+    let advice: Vec<String> = whole.advice().iter().map(ToString::to_string).collect();
+    json!({
+        "key": error.key,
+        "fault": error.fault.to_string(),
+        "help": whole.help().or_else(|| (!advice.is_empty()).then(|| advice.join(" "))),
+        "start": error.span.as_ref().map(|span| span.start),
+        "end": error.span.as_ref().map(|span| span.end),
+        "line": error.line_column().map(|(line, _)| line),
+        "column": error.line_column().map(|(_, column)| column),
+    })
+}
+
+/// Any other error.
+pub(super) fn of_engine(error: &Error) -> Value {
+    if let Error::Study(error) = error {
+        return of_study(error);
+    }
+    let advice: Vec<String> = error.advice().iter().map(ToString::to_string).collect();
+    json!({ "error": error.to_string(), "advice": advice })
+}

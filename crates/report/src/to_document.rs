@@ -1,0 +1,54 @@
+//! Every report as a document and as a page.
+
+use super::{AllocationReport, CompareReport, DifferenceReport, RareReport, Report, SimulationReport, SweepReport};
+use crate::document::Document;
+
+/// A report that can be shown to people.
+///
+/// ```
+/// use sensitol::report::{About, Report, ToDocument, markdown};
+/// use sensitol::{Closure, Dimension, Method, Problem, analyze};
+/// let dimensions = [Dimension::normal("bore", 25.02, 0.01)?, Dimension::normal("shaft", 24.98, 0.01)?];
+/// let problem = Problem::new(dimensions, Closure::scalar("clearance", |x| x[0] - x[1]))?;
+/// let report = Report::of(&problem, &analyze(&problem, &Method::SecondOrder.into())?, About::default());
+/// assert!(markdown(&report.document()).contains("clearance"));
+/// # Ok::<(), sensitol::Error>(())
+/// ```
+pub trait ToDocument {
+    /// The sections, tables and charts of the report. [`text`](super::text), [`csv`](super::csv), [`markdown`](super::markdown) and
+    /// [`svg`](super::svg) write it. No evaluation.
+    fn document(&self) -> Document;
+
+    /// The report as one page of HTML, which needs no network and loads nothing. No evaluation.
+    fn html(&self) -> String;
+}
+
+/// Passes on to the report's own functions.
+macro_rules! to_document {
+    ($($report:ident by $html:path),* $(,)?) => {
+        $(impl ToDocument for $report {
+            fn document(&self) -> Document {
+                Self::document(self)
+            }
+
+            fn html(&self) -> String {
+                $html(self)
+            }
+        })*
+    };
+}
+
+/// The page of an analysis, with nothing to try.
+fn analysis_html(report: &Report) -> String {
+    super::html::analyze_html(report, None)
+}
+
+to_document! {
+    Report by analysis_html,
+    SimulationReport by super::html::simulate_html,
+    RareReport by super::html::rare_html,
+    CompareReport by super::html::compare_html,
+    SweepReport by super::html::sweep_html,
+    AllocationReport by super::html::allocate_html,
+    DifferenceReport by super::html::difference_html,
+}

@@ -1,0 +1,94 @@
+//! A report as a workbook: the stack with formulas that a spreadsheet computes anew, and the tables of the report.
+
+mod book;
+mod stack;
+
+use rust_xlsxwriter::{Workbook, XlsxError};
+
+use super::Report;
+use super::output_correlation::together_table;
+use crate::document::{Cell, Columns, DataTable, Document, Element, Value};
+use book::{Names, tables};
+use crate::rare::RareSection;
+
+/// Why a workbook cannot be made of a report.
+#[derive(Debug, thiserror::Error)]
+#[error("a workbook cannot hold this report: {0}")]
+pub struct WorkbookError(#[from] XlsxError);
+
+/// The sheets `Stack`, one for each characteristic where there are several, `Results`, `Contributions`, `Joint`, `Inputs`, `Warnings` and `Study`. Cells of the
+/// stack that are formulas hold what the report has, too; where it has something else than they would give, it stands there as a number.
+pub fn analyze_xlsx(report: &Report) -> Result<Vec<u8>, WorkbookError> {
+    let mut book = Workbook::new();
+    let mut names = Names::default();
+    let stacks = report.stacks();
+    for (stack, one) in stacks.iter().zip(&report.analysis.characteristics) {
+        let name = if stacks.len() == 1 { "Stack".to_owned() } else { format!("Stack {}", stack.characteristic) };
+        stack::write(book.add_worksheet().set_name(names.free(&name))?, stack, one)?;
+    }
+    let document = report.document();
+    for (name, table) in [
+        ("Results", "characteristics"),
+        ("Contributions", "sensitivities"),
+        ("Inputs", "dimensions"),
+        ("Warnings", "warnings"),
+    ] {
+        let found: Vec<&DataTable> = of_name(&document, table).collect();
+        if name != "Warnings" || found.iter().any(|table| !table.rows.is_empty()) {
+            tables(book.add_worksheet().set_name(names.free(name))?, &found)?;
+        }
+        if name == "Contributions" {
+            let correlations = together_table(&report.analysis.correlations);
+            let joint = joint(report);
+            let sheet = book.add_worksheet().set_name(names.free("Joint"))?;
+            tables(sheet, &[&joint])?;
+            book::table(sheet, joint.rows.len() as u32 + 2, &correlations, true)?;
+        }
+    }
+    tables(book.add_worksheet().set_name(names.free("Study"))?, &[&study(report)])?;
+    Ok(book.save_to_buffer()?)
+}
+
+/// The tables of this name.
+fn of_name<'d>(document: &'d Document, name: &'static str) -> impl Iterator<Item = &'d DataTable> {
+    document.all().filter_map(move |element| match element {
+        Element::Table(table) if table.name == name => Some(table),
+        _ => None,
+    })
+}
+
+/// A table of names and values.
+fn pairs(rows: Vec<(&str, Value)>) -> DataTable {
+    Columns::default()
+        .data("name", |row: &(&str, Value)| Cell::text(row.0))
+        .data("value", |row| Cell::both(row.1.clone(), ""))
+        .table("", rows)
+}
+
+/// The share that keeps all limits at once.
+fn joint(report: &Report) -> DataTable {
+    let joint = report.analysis.joint.as_ref();
+    let verdict = report.analysis.joint_requirement.as_ref().map(|judged| judged.verdict.name().to_owned());
+    pairs(vec![
+        ("joint_yield", Value::Number(joint.map(|joint| joint.value))),
+        ("joint_yield_error", Value::Number(joint.map(|joint| joint.error))),
+        ("verdict", verdict.map_or(Value::Empty, Value::Text)),
+    ])
+}
+
+/// The title block, and how the report came about.
+fn study(report: &Report) -> DataTable {
+    let text = |text: &str| Value::Text(text.to_owned());
+    let head = &report.head;
+    let mut rows = vec![("title", head.title.as_deref().map_or(Value::Empty, text))];
+    rows.extend(head.block.iter().map(|(name, cell)| (*name, text(cell))));
+    rows.extend([
+        ("study_sha256", text(&head.study_sha256)),
+        ("sensitol", text(head.sensitol)),
+        ("schema", Value::Count(u64::from(head.schema))),
+        ("method", text(&report.analysis.method.to_string())),
+        ("evaluations", Value::Count(report.analysis.run.evaluations)),
+        ("failed", Value::Count(report.analysis.run.failed)),
+    ]);
+    pairs(rows)
+}

@@ -1,0 +1,141 @@
+//! The section `[analysis]` as it is written.
+
+use std::fmt;
+
+use serde::de::{SeqAccess, Visitor, value};
+use serde::{Deserialize, Deserializer};
+
+#[cfg(feature = "schema")]
+use super::registry;
+use super::spanned::Spanned;
+#[cfg(feature = "schema")]
+use sensitol::method::{ACCURACY, Options};
+
+/// Two names whose product is in the surface.
+pub(super) type Product = (Spanned<String>, Spanned<String>);
+
+/// `[analysis]`.
+#[derive(Debug, Default, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, expecting = "a table of options")]
+pub(super) struct AnalysisEntry {
+    /// The method.
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = registry::methods(), "default" = Options::default().method.name())))]
+    pub(super) method: Option<Spanned<String>>,
+    /// Wanted relative error of sigma, for auto.
+    #[cfg_attr(feature = "schema", schemars(extend("default" = ACCURACY)))]
+    pub(super) accuracy: Option<Spanned<f64>>,
+    /// Wanted error of the skewness, for auto.
+    pub(super) accuracy_skewness: Option<Spanned<f64>>,
+    /// Wanted error of the kurtosis, for auto.
+    pub(super) accuracy_kurtosis: Option<Spanned<f64>>,
+    /// Wanted error of the yield, a share such as 1e-5, for auto.
+    pub(super) accuracy_yield: Option<Spanned<f64>>,
+    /// Most evaluations that may be spent; a method that needs more is an error, auto stays below. Without it a method that needs more
+    /// than 1000000 is an error.
+    pub(super) budget: Option<Spanned<u64>>,
+    /// Evaluate at so many sigma on either side, in place of the nodes that suit each distribution.
+    pub(super) step: Option<Spanned<f64>>,
+    /// The interactions that six-n examines: strongest, adjacent, or a list of pairs of names.
+    pub(super) pairs: Option<Spanned<PairsEntry>>,
+    /// Pairs of names of dimensions whose product a formula has, such as size and place of a bonus: every method of second order takes in
+    /// their exact mixed derivative, without an evaluation. Geometric elements write their own.
+    pub(super) products: Option<Spanned<Vec<Product>>>,
+    /// How six-n evaluates an interaction.
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = registry::stencils())))]
+    pub(super) stencil: Option<Spanned<String>>,
+    /// How many nodes the quadrature rules of dimension-reduction have, univariate or bivariate.
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = [3, 5, 7], "default" = 5)))]
+    pub(super) nodes: Option<Spanned<u64>>,
+    /// Sensitivities of all dimensions, at two evaluations more for each without tolerance, or of the varying ones alone.
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = registry::sensitivities(), "default" = "varying")))]
+    pub(super) sensitivities: Option<Spanned<String>>,
+    /// Where derivatives come from, for sensitivities and moments alike. Left out: exact sensitivities where the model gives them,
+    /// moments by differences.
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = registry::derivatives())))]
+    pub(super) derivatives: Option<Spanned<String>>,
+    /// Whether the true extremes in the box of the tolerance bands are searched too.
+    #[cfg_attr(feature = "schema", schemars(extend("default" = false)))]
+    pub(super) extremes: Option<bool>,
+    /// Seed of random numbers, for what draws some.
+    #[cfg_attr(feature = "schema", schemars(extend("default" = Options::SEED)))]
+    pub(super) seed: Option<Spanned<u64>>,
+    /// The share of assemblies that must keep the limits of all characteristics at once, between 0 and 1; what --check looks at too, and what
+    /// allocate keeps.
+    pub(super) target_joint_yield: Option<Spanned<f64>>,
+    /// The factor of the inflated RSS, or "modified": 1 + (W - R)/(2 R (sqrt n - 1)) with the worst case W and the RSS R of n dimensions.
+    #[cfg_attr(feature = "schema", schemars(extend("default" = 1.5)))]
+    pub(super) rss_factor: Option<Spanned<FactorEntry>>,
+    /// The part of every half band by which its mean may be off in the mean-shift RSS, from 0 to 1.
+    #[cfg_attr(feature = "schema", schemars(extend("default" = 0.5)))]
+    pub(super) mean_shift: Option<Spanned<f64>>,
+    /// The share that coverage intervals and expanded uncertainties hold, from 0.5 to below 1: every characteristic then has the interval with
+    /// equal tails and the shortest.
+    pub(super) coverage: Option<Spanned<f64>>,
+    /// How many check points of a costly model verify every figure, 18 at most; a cheap model is sampled instead. 0 for no
+    /// verification.
+    #[cfg_attr(feature = "schema", schemars(extend("default" = Options::VERIFY)))]
+    pub(super) verify: Option<u64>,
+}
+
+/// `"strongest"`, `"adjacent"` or `[["a", "b"], ["c", "d"]]`.
+#[derive(Debug)]
+pub(super) enum PairsEntry {
+    Word(String),
+    Listed(Vec<(String, String)>),
+}
+
+/// `1.5` or `"modified"`.
+#[derive(Debug, Clone)]
+pub(super) enum FactorEntry {
+    Number(f64),
+    Word(String),
+}
+
+impl<'de> Deserialize<'de> for PairsEntry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Pairs;
+        impl<'de> Visitor<'de> for Pairs {
+            type Value = PairsEntry;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("\"strongest\", \"adjacent\", or pairs of dimensions such as [[\"a\", \"b\"]],")
+            }
+
+            fn visit_str<E>(self, word: &str) -> Result<Self::Value, E> {
+                Ok(PairsEntry::Word(word.to_owned()))
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Self::Value, A::Error> {
+                Vec::deserialize(value::SeqAccessDeserializer::new(seq)).map(PairsEntry::Listed)
+            }
+        }
+        deserializer.deserialize_any(Pairs)
+    }
+}
+
+impl<'de> Deserialize<'de> for FactorEntry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Factor;
+        impl Visitor<'_> for Factor {
+            type Value = FactorEntry;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number such as 1.5, or \"modified\",")
+            }
+
+            fn visit_str<E>(self, word: &str) -> Result<Self::Value, E> {
+                Ok(FactorEntry::Word(word.to_owned()))
+            }
+
+            fn visit_f64<E>(self, number: f64) -> Result<Self::Value, E> {
+                Ok(FactorEntry::Number(number))
+            }
+
+            fn visit_i64<E>(self, number: i64) -> Result<Self::Value, E> {
+                Ok(FactorEntry::Number(number as f64))
+            }
+        }
+        deserializer.deserialize_any(Factor)
+    }
+}

@@ -1,0 +1,380 @@
+//! The kinds of distribution: their names, what each knows, and what each makes of band, sigma and shift.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use super::super::decimal::{SAID, decimal};
+use super::super::error::{Fault, StudyFault, fault};
+use super::super::file::{DimensionEntry, DistributionEntry};
+use super::super::spanned::Spanned;
+use super::super::words::{KINDS, Kind, SIGMAS};
+use super::conflict;
+use super::spread::{Spread, agree, is_flat, needs_band, nothing_to_spread, only_normal, shift, sigma, sigmas};
+use sensitol_numeric::dimension::DimensionFault;
+use sensitol_numeric::distribution::{
+    Beta, CentralMoments, CurvilinearTrapezoid, Distribution, DistributionError, Exponential, Gamma, Lognormal,
+    Rayleigh, Student, Tabulated, Trapezoidal, Triangular, TruncatedNormal, TwoValues, UShaped, Uniform, Weibull,
+};
+use sensitol_numeric::names::nearest;
+
+/// A distribution from a dimension's entry, nominal value and tolerance.
+pub(super) type OfBand = fn(&DimensionEntry, f64, Option<[f64; 2]>) -> Result<Spread, Fault>;
+
+/// A normal distribution from a dimension's entry, mean, sigma and tolerance.
+pub(super) type OfProcess = fn(&DimensionEntry, f64, f64, Option<[f64; 2]>) -> Result<Spread, Fault>;
+
+/// The distribution of this line; None when it does not vary.
+pub(super) fn distribution(
+    entry: &DimensionEntry,
+    nominal: f64,
+    tolerance: Option<[f64; 2]>,
+    mixture: OfBand,
+    process: OfProcess,
+) -> Result<Spread, Fault> {
+    let kind = kind(entry)?;
+    if kind != Kind::Normal {
+        let name = KINDS.iter().find(|known| known.1 == kind).map_or("moments", |known| known.0);
+        only_normal(entry, &format!("the distribution `{name}`"))?;
+    }
+    match kind {
+        Kind::Moments => moments(entry, nominal),
+        Kind::Normal => normal(entry, nominal, tolerance, process),
+        Kind::Mixture => mixture(entry, nominal, tolerance),
+        over @ (Kind::TruncatedNormal
+        | Kind::Uniform
+        | Kind::TwoPoint
+        | Kind::Triangular
+        | Kind::Trapezoidal
+        | Kind::Beta
+        | Kind::Arcsine
+        | Kind::UShaped
+        | Kind::CurvilinearTrapezoid) => over_band(over, entry, nominal, tolerance),
+        Kind::Student => student(entry, nominal, tolerance),
+        Kind::Lognormal => {
+            with_tail(entry, nominal, tolerance, |o, mean, sigma| shared(Lognormal::new(o, mean, sigma)))
+        }
+        Kind::Gamma => with_tail(entry, nominal, tolerance, |o, mean, sigma| shared(Gamma::new(o, mean, sigma))),
+        Kind::Weibull => with_tail(entry, nominal, tolerance, |o, mean, sigma| shared(Weibull::new(o, mean, sigma))),
+        Kind::Exponential => {
+            of_mean(entry, nominal, "an exponential distribution", |o, mean| shared(Exponential::new(o, mean)))
+        }
+        Kind::Rayleigh => of_mean(entry, nominal, "a rayleigh distribution", |o, mean| shared(Rayleigh::new(o, mean))),
+        Kind::Tabulated => tabulated(entry),
+    }
+}
+
+fn kind(entry: &DimensionEntry) -> Result<Kind, Fault> {
+    if entry.moments.is_some() {
+        let why = || "are two ways of giving a distribution: leave one out".to_owned();
+        let excluded: [(&'static str, Option<Range<usize>>); 5] = [
+            ("distribution", entry.distribution.as_ref().map(Spanned::span)),
+            ("sigma", entry.sigma.as_ref().map(Spanned::span)),
+            ("sigmas", entry.sigmas.as_ref().map(Spanned::span)),
+            ("cp", entry.cp.as_ref().map(Spanned::span)),
+            ("cpk", entry.cpk.as_ref().map(Spanned::span)),
+        ];
+        for (key, span) in excluded {
+            if let Some(span) = span {
+                return Err(fault(span, key, StudyFault::Conflict { a: "moments", b: key, why: why() }));
+            }
+        }
+        return Ok(Kind::Moments);
+    }
+    let Some(distribution) = &entry.distribution else { return Ok(Kind::Normal) };
+    let found = distribution.get_ref().kind.as_str();
+    let names = || KINDS.iter().map(|known| known.0);
+    let Some((name, kind, knows, instead)) = KINDS.iter().find(|known| known.0 == found) else {
+        let nearest = nearest(found, names()).map(str::to_owned);
+        let known = names().map(str::to_owned).collect();
+        let unknown = StudyFault::UnknownWord { what: "distribution", found: found.to_owned(), nearest, known };
+        return Err(fault(distribution.span(), "distribution", unknown));
+    };
+    for (key, span) in parameters(distribution.get_ref()) {
+        if let Some(span) = span.filter(|_| !knows.contains(&key)) {
+            let to = format!("the distribution `{name}`");
+            return Err(fault(span, within(key), StudyFault::DoesNotApply { key, to, instead }));
+        }
+    }
+    Ok(*kind)
+}
+
+/// Every parameter that a table may have, and where it stands.
+fn parameters(entry: &DistributionEntry) -> [(&'static str, Option<Range<usize>>); 11] {
+    let span = |parameter: &Option<Spanned<f64>>| parameter.as_ref().map(Spanned::span);
+    [
+        ("mode", span(&entry.mode)),
+        ("top", span(&entry.top)),
+        ("alpha", span(&entry.alpha)),
+        ("beta", span(&entry.beta)),
+        ("origin", span(&entry.origin)),
+        ("inexactness", span(&entry.inexactness)),
+        ("degrees", span(&entry.degrees)),
+        ("scale", span(&entry.scale)),
+        ("parts", entry.parts.as_ref().map(Spanned::span)),
+        ("scores", entry.scores.as_ref().map(Spanned::span)),
+        ("values", entry.values.as_ref().map(Spanned::span)),
+    ]
+}
+
+fn within(parameter: &str) -> String {
+    format!("distribution.{parameter}")
+}
+
+/// Mean = the band's middle plus `shift`; sigma = half band / `sigmas`, or as given.
+fn normal(
+    entry: &DimensionEntry,
+    nominal: f64,
+    tolerance: Option<[f64; 2]>,
+    process: OfProcess,
+) -> Result<Spread, Fault> {
+    let Some(sigma) = sigma(entry, tolerance)? else { return nothing_to_spread(entry) };
+    if sigma == 0.0 && tolerance.is_none() && entry.shift.is_none() {
+        return Ok(None);
+    }
+    let middle = tolerance.map_or(0.0, |[lower, upper]| 0.5 * (lower + upper));
+    process(entry, nominal + middle + shift(entry), sigma, tolerance)
+}
+
+/// As a normal distribution; its sigma may be given by the scale.
+fn student(entry: &DimensionEntry, nominal: f64, tolerance: Option<[f64; 2]>) -> Result<Spread, Fault> {
+    let degrees = parameter(entry, "degrees", |entry| &entry.degrees)?;
+    let middle = tolerance.map_or(0.0, |[lower, upper]| 0.5 * (lower + upper));
+    let mean = nominal + middle + shift(entry);
+    let scale = entry.distribution.as_ref().and_then(|table| table.get_ref().scale.as_ref());
+    let Some(scale) = scale else {
+        let Some(sigma) = sigma(entry, tolerance)? else { return nothing_to_spread(entry) };
+        return placed(entry, shared(Student::new(mean, sigma, degrees)));
+    };
+    let again = entry.sigma.as_ref().map(|sigma| ("sigma", sigma.span()));
+    if let Some((key, span)) = again.or(sigmas(entry)?.map(|(key, span, _)| (key, span))) {
+        let why = "say the same thing: sigma is scale sqrt(degrees/(degrees - 2)), so leave one out";
+        return Err(fault(span, key, conflict("scale", key, why)));
+    }
+    let value = *scale.get_ref();
+    if value <= 0.0 {
+        return Err(fault(scale.span(), within("scale"), StudyFault::OutOfRange { value, range: "above 0" }));
+    }
+    if is_flat(entry) {
+        return nothing_to_spread(entry);
+    }
+    placed(entry, shared(Student::with_scale(mean, value, degrees)))
+}
+
+/// The support is the band, or about it; mean and sigma follow from the shape.
+fn over_band(kind: Kind, entry: &DimensionEntry, nominal: f64, tolerance: Option<[f64; 2]>) -> Result<Spread, Fault> {
+    let name = KINDS.iter().find(|known| known.1 == kind).map_or("", |known| known.0);
+    let to = || format!("a {name} distribution");
+    let per_band = sigmas(entry)?;
+    if kind != Kind::TruncatedNormal {
+        if let Some((key, span, _)) = per_band {
+            let instead = "its sigma follows from the band";
+            return Err(fault(span, key, StudyFault::DoesNotApply { key, to: to(), instead }));
+        }
+        if let Some(shift) = &entry.shift {
+            let instead = "move the limits instead";
+            return Err(fault(shift.span(), "shift", StudyFault::DoesNotApply { key: "shift", to: to(), instead }));
+        }
+    }
+    let Some([lower, upper]) = tolerance else {
+        if let Some(sigma) = &entry.sigma {
+            return Err(fault(sigma.span(), "sigma", needs_band("sigma")));
+        }
+        return nothing_to_spread(entry);
+    };
+    let (offset, half) = (0.5 * (lower + upper), 0.5 * (upper - lower));
+    let middle = nominal + offset;
+    let distribution = match kind {
+        Kind::TruncatedNormal => {
+            let per_band = per_band.map_or(SIGMAS, |(_, _, sigmas)| sigmas);
+            shared(TruncatedNormal::about(middle, half, shift(entry), half / per_band))
+        }
+        Kind::Triangular => shared(Triangular::about(middle, half, lean(entry, nominal, offset, half)?)),
+        Kind::Trapezoidal => shared(Trapezoidal::about(middle, half, parameter(entry, "top", |entry| &entry.top)?)),
+        Kind::Beta => {
+            let alpha = parameter(entry, "alpha", |entry| &entry.alpha)?;
+            shared(Beta::about(middle, half, alpha, parameter(entry, "beta", |entry| &entry.beta)?))
+        }
+        Kind::Arcsine => shared(Beta::about(middle, half, 0.5, 0.5)),
+        Kind::UShaped => shared(UShaped::about(middle, half)),
+        Kind::CurvilinearTrapezoid => {
+            let inexactness = parameter(entry, "inexactness", |entry| &entry.inexactness)?;
+            shared(CurvilinearTrapezoid::about(middle, half, inexactness))
+        }
+        Kind::TwoPoint => shared(TwoValues::about(middle, half)),
+        _ => shared(Uniform::about(middle, half)),
+    };
+    let distribution = placed(entry, distribution)?;
+    agreeing(entry, &distribution, "tolerance", &format!("{name} over this band"))?;
+    Ok(distribution)
+}
+
+/// The mode is a value of the dimension, as `limits` are; where it lies in the band, from -1 to 1.
+fn lean(entry: &DimensionEntry, nominal: f64, offset: f64, half: f64) -> Result<f64, Fault> {
+    let Some(mode) = entry.distribution.as_ref().and_then(|entry| entry.get_ref().mode.as_ref()) else {
+        return Ok(0.0);
+    };
+    let lean = ((mode.get_ref() - nominal) - offset) / half;
+    // The rounding of a mode at an end of the band is not a fault.
+    if lean.abs() > 1.0 + 1e-9 {
+        let (value, range) = (*mode.get_ref(), "within the tolerance band");
+        let outside = DistributionError::OutOfRange { parameter: "mode", value, range };
+        return Err(fault(mode.span(), within("mode"), DimensionFault::from(outside)));
+    }
+    Ok(lean.clamp(-1.0, 1.0))
+}
+
+/// Mean = nominal plus `shift`, whatever the band; sigma as given or half band / `sigmas`.
+fn with_tail(
+    entry: &DimensionEntry,
+    nominal: f64,
+    tolerance: Option<[f64; 2]>,
+    build: impl Fn(f64, f64, f64) -> Result<Arc<dyn Distribution>, DistributionError>,
+) -> Result<Spread, Fault> {
+    let flat = is_flat(entry);
+    let sigma = match (sigma(entry, tolerance)?, &entry.distribution) {
+        (Some(sigma), _) => sigma,
+        (None, Some(table)) if !flat => {
+            let instead = "give it, or a tolerance of which it is a third: the mean is the nominal".to_owned();
+            return Err(fault(table.span(), "distribution", StudyFault::MissingKey { key: "sigma".into(), instead }));
+        }
+        _ => return nothing_to_spread(entry),
+    };
+    if sigma == 0.0 && flat {
+        return Ok(None);
+    }
+    placed(entry, build(origin(entry), nominal + shift(entry), sigma))
+}
+
+/// Mean = nominal plus `shift`; the distance from the origin fixes sigma.
+fn of_mean(
+    entry: &DimensionEntry,
+    nominal: f64,
+    to: &str,
+    build: impl Fn(f64, f64) -> Result<Arc<dyn Distribution>, DistributionError>,
+) -> Result<Spread, Fault> {
+    if let Some((key, span, _)) = sigmas(entry)? {
+        let instead = "its sigma follows from mean and origin";
+        return Err(fault(span, key, StudyFault::DoesNotApply { key, to: to.to_owned(), instead }));
+    }
+    if is_flat(entry) {
+        // A tolerance of 0 beside a sigma contradicts it; alone it makes the dimension fixed.
+        sigma(entry, None)?;
+        return nothing_to_spread(entry);
+    }
+    let distribution = placed(entry, build(origin(entry), nominal + shift(entry)))?;
+    agreeing(entry, &distribution, "distribution", &format!("{to} with this mean and origin"))?;
+    Ok(distribution)
+}
+
+/// Known by moments: mean = nominal plus `shift`, whatever the band.
+fn moments(entry: &DimensionEntry, nominal: f64) -> Result<Spread, Fault> {
+    let moments = entry.moments.as_ref().expect("the kind was told by them");
+    match CentralMoments::new(nominal + shift(entry), *moments.get_ref()) {
+        Ok(distribution) => Ok(Some(Arc::new(distribution))),
+        Err(error) => Err(fault(moments.span(), "moments", DimensionFault::from(error))),
+    }
+}
+
+/// The table says all: values of the dimension by their scores.
+fn tabulated(entry: &DimensionEntry) -> Result<Spread, Fault> {
+    const TO: &str = "a tabulated distribution";
+    let table = entry.distribution.as_ref().expect("its kind was told by it");
+    if let Some((key, span, _)) = sigmas(entry)? {
+        let instead = "its sigma follows from the table";
+        return Err(fault(span, key, StudyFault::DoesNotApply { key, to: TO.to_owned(), instead }));
+    }
+    if let Some(shift) = &entry.shift {
+        let instead = "move the values of the table instead";
+        let found = StudyFault::DoesNotApply { key: "shift", to: TO.to_owned(), instead };
+        return Err(fault(shift.span(), "shift", found));
+    }
+    let (Some(scores), Some(values)) = (&table.get_ref().scores, &table.get_ref().values) else {
+        let key = if table.get_ref().scores.is_none() { "scores" } else { "values" };
+        let instead = "write { kind = \"tabulated\", scores = [-3, 0, 3], values = [9.9, 10.0, 10.2] }".to_owned();
+        return Err(fault(table.span(), "distribution", StudyFault::MissingKey { key: key.to_owned(), instead }));
+    };
+    match Tabulated::new(scores.get_ref(), values.get_ref()) {
+        Ok(law) => {
+            let law: Spread = Some(Arc::new(law));
+            agreeing(entry, &law, "distribution", "the law of this table")?;
+            Ok(law)
+        }
+        Err(error) => Err(fault(table.span(), "distribution", DimensionFault::from(error))),
+    }
+}
+
+fn origin(entry: &DimensionEntry) -> f64 {
+    let table = entry.distribution.as_ref().map(Spanned::get_ref);
+    table.and_then(|table| table.origin.as_ref()).map_or(0.0, |origin| *origin.get_ref())
+}
+
+/// A parameter that must be there.
+fn parameter(
+    entry: &DimensionEntry,
+    key: &'static str,
+    of: impl Fn(&DistributionEntry) -> &Option<Spanned<f64>>,
+) -> Result<f64, Fault> {
+    let distribution = entry.distribution.as_ref().expect("a kind with parameters was named");
+    of(distribution.get_ref()).as_ref().map(|value| *value.get_ref()).ok_or_else(|| {
+        let instead = match key {
+            "top" => "write { kind = \"trapezoidal\", top = 0.5 }: the share of the band over which it is flat",
+            "inexactness" => {
+                "write { kind = \"curvilinear-trapezoid\", inexactness = 0.01 }: by how much the ends of the band may be off"
+            }
+            "degrees" => {
+                "write { kind = \"student\", degrees = 18 }: the degrees of freedom, one less than the number of readings"
+            }
+            _ => "write { kind = \"beta\", alpha = 2, beta = 5 }",
+        };
+        let missing = StudyFault::MissingKey { key: key.to_owned(), instead: instead.to_owned() };
+        fault(distribution.span(), "distribution", missing)
+    })
+}
+
+/// A sigma beside a distribution that has one of its own must be that.
+pub(super) fn agreeing(entry: &DimensionEntry, spread: &Spread, a: &'static str, what: &str) -> Result<(), Fault> {
+    let (Some(given), Some(distribution)) = (&entry.sigma, spread) else { return Ok(()) };
+    if agree(*given.get_ref(), distribution.sigma()) {
+        return Ok(());
+    }
+    let why = format!("disagree: {what} has sigma {}", decimal(distribution.sigma(), SAID));
+    Err(fault(given.span(), "sigma", conflict(a, "sigma", &why)))
+}
+
+/// The distribution, or its fault at the key that is to blame.
+pub(super) fn placed(
+    entry: &DimensionEntry,
+    distribution: Result<Arc<dyn Distribution>, DistributionError>,
+) -> Result<Spread, Fault> {
+    let error = match distribution {
+        Ok(distribution) => return Ok(Some(distribution)),
+        Err(error) => error,
+    };
+    let table = entry.distribution.as_ref().map(|entry| (entry.span(), parameters(entry.get_ref())));
+    let of_table = |key: &str| {
+        let (_, parameters) = table.as_ref()?;
+        let (key, span) = parameters.iter().find(|(known, _)| *known == key)?;
+        Some((span.clone()?, within(key)))
+    };
+    let of_line = |key: &str, span: Option<Range<usize>>| Some((span?, key.to_owned()));
+    let sigma = of_line("sigma", entry.sigma.as_ref().map(Spanned::span));
+    let whole = table.as_ref().map(|(span, _)| (span.clone(), "distribution".to_owned()));
+    let blamed = match &error {
+        DistributionError::OutOfRange { parameter: "the mean before the cut", .. } => {
+            of_line("shift", entry.shift.as_ref().map(Spanned::span))
+        }
+        DistributionError::OutOfRange { parameter, .. } => of_table(parameter),
+        DistributionError::NotAboveOrigin { .. } => of_table("origin").or(whole),
+        DistributionError::NoSigma { .. } => of_table("degrees"),
+        DistributionError::SigmaToMean { .. } => sigma.or(whole),
+        _ => sigma.or(whole),
+    };
+    let (span, key) = blamed.unwrap_or((0..0, String::new()));
+    Err(fault(span, key, DimensionFault::from(error)))
+}
+
+pub(super) fn shared<D: Distribution + 'static>(
+    distribution: Result<D, DistributionError>,
+) -> Result<Arc<dyn Distribution>, DistributionError> {
+    Ok(Arc::new(distribution?))
+}

@@ -1,0 +1,43 @@
+//! From where to where the sizes of features go.
+
+use super::line::{Line, as_number, unit_of};
+use sensitol::assembly::formula::{Formula, FormulaSet, Meaning};
+use crate::de;
+use crate::dimension;
+use crate::error::Faults;
+use crate::expand::Tree;
+use crate::file::DimensionEntry;
+
+/// Least and greatest size of a dimension, and its unit; None where it has no band. Faults of its line are told where it is
+/// read.
+pub(super) fn limits<'t>(study: &'t Tree, name: &str) -> Option<([f64; 2], Option<&'t str>)> {
+    let line = study.get("dimensions")?.get(name)?;
+    let read: Result<DimensionEntry, Faults> = de::read(line);
+    Some((dimension::limits(&read.ok()?)?, unit_of(line)))
+}
+
+/// From where to where a formula of dimensions and constants goes, by interval arithmetic, in the unit of the line; None where that is
+/// unknown.
+pub(super) fn range(line: &Line<'_>, formula: &str) -> Option<[f64; 2]> {
+    let study = line.study;
+    let parsed = Formula::parse(formula).ok()?;
+    let mut names: Vec<String> = parsed.names().map(|(name, _)| name.to_owned()).collect();
+    names.sort();
+    names.dedup();
+    let band = |name: &String| {
+        let constant = study.get("constants").and_then(|constants| constants.get(name));
+        match constant.map(|entry| entry.get("value").unwrap_or(entry)) {
+            Some(value) => as_number(value).map(|value| [value; 2]),
+            // Numbers of other units are converted later.
+            None => limits(study, name)
+                .filter(|(_, unit)| !line.converted() || *unit == line.unit())
+                .map(|(limits, _)| limits),
+        }
+    };
+    let region = names.iter().map(band).collect::<Option<Vec<_>>>()?;
+    let meanings = names.iter().enumerate().map(|(index, name)| (name.as_str(), Meaning::Variable(index)));
+    let set = FormulaSet::new(vec![(String::new(), parsed)], meanings).ok()?;
+    let value = set.bounds(0, &region).value;
+    (!value.is_empty() && value.lower().is_finite() && value.upper().is_finite())
+        .then(|| [value.lower(), value.upper()])
+}

@@ -1,0 +1,16 @@
+//! A stack-up table of a spreadsheet as a study: one row a dimension, and one characteristic that adds them up.
+
+mod columns;
+mod fault;
+mod sheet;
+mod stack;
+mod tolerance;
+#[cfg(feature = "xlsx")]
+pub mod workbook;
+
+pub use columns::{ROLES, Role, named};
+pub use fault::{ImportFault, ImportProblem};
+pub use sheet::Sheet;
+pub use stack::{has_header, import};
+#[cfg(feature = "xlsx")]
+pub use workbook::{WorkbookFault, is_workbook, workbook};

@@ -1,0 +1,78 @@
+//! A sheet: cells by their row and column, as a spreadsheet names them.
+
+use crate::table::{DELIMITERS, delimiter, records};
+
+/// A cell as a spreadsheet holds it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Content {
+    /// Nothing.
+    Empty,
+    /// Text, numbers too: their style belongs to the whole table.
+    Text(String),
+    /// A number of a workbook, and whether it is shown in percent.
+    Number {
+        /// As it is: 2 % are 0.02.
+        value: f64,
+        /// Whether 0.02 is shown as 2 %.
+        percent: bool,
+    },
+    /// A date or a time.
+    Date,
+    /// The result of a formula that cannot be computed, such as #REF!.
+    Error(String),
+}
+
+impl Content {
+    /// Text and plain numbers, for a column of words.
+    pub(super) fn words(&self) -> Option<String> {
+        match self {
+            Self::Text(text) => Some(text.clone()),
+            Self::Number { value, .. } => Some(value.to_string()),
+            Self::Empty | Self::Date | Self::Error(_) => None,
+        }
+    }
+}
+
+/// The rows of a table that is to become a study.
+#[derive(Debug, Clone, Default)]
+pub struct Sheet {
+    /// Every row with its number in the file, from 1.
+    pub(crate) rows: Vec<(u64, Vec<Content>)>,
+    /// Whether commas separate its columns, so that a comma in a cell is not a decimal one.
+    pub(crate) commas_separate: bool,
+}
+
+impl Sheet {
+    /// Of text with tabs, semicolons or commas between the columns.
+    pub fn of_text(text: &str) -> Self {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let delimiter = delimiter(text, DELIMITERS);
+        let content = |cell: &str| match cell.trim_matches([' ', '\u{a0}']) {
+            "" => Content::Empty,
+            text => Content::Text(text.to_owned()),
+        };
+        let rows = records(text, delimiter).map(|(line, row)| (line, row.iter().map(content).collect())).collect();
+        Self { rows, commas_separate: delimiter == b',' }
+    }
+}
+
+/// The name of a cell, such as B7: the column counted from 0, the row from 1.
+pub(crate) fn address(row: u64, column: usize) -> String {
+    let (mut letters, mut left) = (String::new(), column + 1);
+    while left > 0 {
+        letters.insert(0, char::from(b'A' + ((left - 1) % 26) as u8));
+        left = (left - 1) / 26;
+    }
+    format!("{letters}{row}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_have_the_names_of_spreadsheets() {
+        let names = [(7, 1, "B7"), (1, 0, "A1"), (3, 25, "Z3"), (3, 26, "AA3"), (2, 701, "ZZ2"), (2, 702, "AAA2")];
+        names.into_iter().for_each(|(row, column, name)| assert_eq!(address(row, column), name));
+    }
+}

@@ -1,0 +1,30 @@
+//! Texts of dimensions and characteristics that mean nothing to an analysis.
+
+use super::file::{CharacteristicEntry, DimensionEntry};
+use sensitol_numeric::labels::Labels;
+
+/// An empty text is none.
+fn labels([description, part, drawing, revision, feature]: [&Option<String>; 5]) -> Labels {
+    let text = |text: &Option<String>| text.clone().filter(|text| !text.trim().is_empty());
+    Labels {
+        description: text(description),
+        part: text(part),
+        drawing: text(drawing),
+        revision: text(revision),
+        feature: text(feature),
+    }
+}
+
+impl DimensionEntry {
+    /// Its texts.
+    pub(super) fn labels(&self) -> Labels {
+        labels([&self.description, &self.part, &self.drawing, &self.revision, &self.feature])
+    }
+}
+
+impl CharacteristicEntry {
+    /// Its texts.
+    pub(super) fn labels(&self) -> Labels {
+        labels([&self.description, &self.part, &self.drawing, &self.revision, &self.feature])
+    }
+}

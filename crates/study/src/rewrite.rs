@@ -1,0 +1,401 @@
+//! A study with other tolerances and nominal values, and otherwise as it was written, comments included.
+//!
+//! Only the numbers concerned are replaced in the text, at their places. The new text is read again and must hold the wanted
+//! values.
+
+use std::ops::Range;
+
+use super::Study;
+use super::error::StudyError;
+use super::externals::Externals;
+use super::place::Format;
+use super::tree::{Key, Tree, Value};
+use super::write;
+use sensitol::allocation::Offer;
+use sensitol_numeric::dimension::Dimension;
+use sensitol::problem::Problem;
+
+/// A study written anew.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Rewritten {
+    /// The whole text.
+    pub text: String,
+    /// The entries that have changed, as they stand in it, each with its name.
+    pub entries: String,
+    /// Dimensions whose fit of ISO 286 has become a plain tolerance.
+    pub replaced_fits: Vec<String>,
+}
+
+/// Why a study cannot be written anew.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RewriteError {
+    /// A form that does not scale by a number or two.
+    #[error("dimension `{dimension}` cannot be written anew: {why}; change it by hand")]
+    ByHand {
+        /// The dimension.
+        dimension: String,
+        /// The reason that stands in the way.
+        why: &'static str,
+    },
+    /// The new text is not a study.
+    #[error("the study written anew cannot be read: {0}")]
+    Unreadable(Box<StudyError>),
+    /// The new text has another meaning.
+    #[error("dimension `{dimension}` written anew is not what was wanted; change it by hand")]
+    NotTheSame {
+        /// The dimension.
+        dimension: String,
+    },
+}
+
+/// Digits of a tolerance, cut off rather than rounded: what is written is never wider than what was found.
+const DIGITS: usize = 6;
+/// How far a tolerance that was read again may be off, relative.
+const SAME: f64 = 1e-5;
+/// And a nominal value, in sigmas.
+const SAME_PLACE: f64 = 1e-3;
+/// Shapes that differ by less are one.
+const ALIKE: f64 = 1e-9;
+
+impl Study {
+    /// The study with the tolerances and nominal values of `wanted`, a problem with the same dimensions.
+    ///
+    /// Tolerances have six digits and are cut off, so that they are never wider than wanted; nominal values are rounded to a ten
+    /// thousandth of their sigma.
+    ///
+    /// # Errors
+    /// When a dimension that has changed is a mixture of parts, or what was written does not say what was wanted.
+    ///
+    /// ```
+    /// use sensitol::Study;
+    /// let text = "[dimensions]\na = { nominal = 10, tolerance = 0.3 } # turned\n[characteristics]\ny = { formula = \"2*a\" }\n";
+    /// let study = Study::from_toml(text, "study.toml")?;
+    /// let half = study.problem.dimensions()[0].scaled(0.5).expect("a normal dimension scales").unwrap();
+    /// let wanted = study.problem.clone().with_dimensions(vec![half]).unwrap();
+    /// assert_eq!(study.rewritten(&wanted).unwrap().text, text.replace("0.3", "0.15"));
+    /// # Ok::<(), sensitol::StudyError>(())
+    /// ```
+    pub fn rewritten(&self, wanted: &Problem) -> Result<Rewritten, RewriteError> {
+        let tree = self.tree();
+        let lines = tree.as_ref().and_then(|tree| tree.entry("dimensions"));
+        let mut edits: Vec<(Range<usize>, String)> = Vec::new();
+        let (mut changed, mut replaced_fits) = (Vec::new(), Vec::new());
+        for (d, (old, new)) in self.problem.dimensions().iter().zip(wanted.dimensions()).enumerate() {
+            let process = if alike(old, new) { None } else { self.process_of(d, new) };
+            if process.is_none() && old.half_band() == new.half_band() && old.nominal() == new.nominal() {
+                continue;
+            }
+            let name = old.zone().unwrap_or(old.name());
+            // Of a relative dimension the study writes its own part under its name.
+            let own = name.strip_suffix(".own").filter(|_| lines.is_some_and(|lines| lines.entry(name).is_none()));
+            let name = own.unwrap_or(name);
+            if changed.contains(&name) {
+                continue;
+            }
+            changed.push(name);
+            let Some(line) = lines.and_then(|lines| lines.entry(name)) else {
+                let why = "it has no entry of its own";
+                return Err(RewriteError::ByHand { dimension: name.to_owned(), why });
+            };
+            let spread = process.and_then(|(cost, process)| spread_of(tree.as_ref()?, cost, process));
+            let entry = Entry { text: &self.text, format: self.format, line, old, new, spread };
+            if entry.edits(&mut edits)? {
+                replaced_fits.push(name.to_owned());
+            }
+        }
+        edits.sort_by_key(|(place, _)| (place.start, place.end));
+        let (mut text, mut at) = (String::with_capacity(self.text.len()), 0);
+        for (place, new) in &edits {
+            text += &self.text[at..place.start];
+            text += new;
+            at = place.end;
+        }
+        text += &self.text[at..];
+        let read = self.read_again(&text)?;
+        for (found, new) in read.problem.dimensions().iter().zip(wanted.dimensions()) {
+            let band = found.half_band() <= new.half_band() * (1.0 + 1e-12)
+                && found.half_band() >= new.half_band() * (1.0 - SAME);
+            let place = (found.mean() - new.mean()).abs().max((found.nominal() - new.nominal()).abs());
+            let sigma = (found.sigma() - new.sigma()).abs() <= SAME * new.sigma();
+            if !(band && sigma && place <= SAME_PLACE * new.sigma()) {
+                return Err(RewriteError::NotTheSame { dimension: new.name().to_owned() });
+            }
+        }
+        let entries = read.entries(&changed);
+        Ok(Rewritten { text, entries, replaced_fits })
+    }
+
+    /// The dimension with the cost and the name of the process that makes this one so, where it says how its parts lie.
+    fn process_of(&self, d: usize, new: &Dimension) -> Option<(&str, &str)> {
+        let group = self.costs.iter().find(|group| group.members.contains(&d))?;
+        let place = group.members.iter().position(|&member| member == d)?;
+        let made = |offer: &&Offer| offer.made.as_ref().is_some_and(|made| alike(&made.dimensions()[place], new));
+        let process = group.offers.iter().find(made)?.process.as_deref()?;
+        Some((self.problem.dimensions()[group.members[0]].name(), process))
+    }
+
+    /// The tree of the text that it was read from.
+    pub(super) fn tree(&self) -> Option<Tree> {
+        match self.format {
+            Format::Toml => Tree::of_toml(&self.text).ok(),
+            Format::Json => Tree::of_json(&self.text).ok(),
+        }
+    }
+
+    fn read_again(&self, text: &str) -> Result<Self, RewriteError> {
+        let externals = Externals { host: self.host.clone(), ..Externals::default() };
+        Self::parse(text, self.format, &self.name, self.place.clone(), externals, None)
+            .map_err(|error| RewriteError::Unreadable(Box::new(error)))
+    }
+
+    /// The entries of these dimensions as they are written.
+    fn entries(&self, names: &[&str]) -> String {
+        let tree = self.tree();
+        let lines = tree.as_ref().and_then(|tree| tree.entry("dimensions"));
+        let Some(Tree { value: Value::Table(lines), .. }) = lines else { return String::new() };
+        let mut text = String::new();
+        let width = |key: &Key| self.text[key.span.clone()].chars().count();
+        let of_names = || lines.iter().filter(|(key, _)| names.contains(&key.name.as_str()));
+        let widest = of_names().map(|(key, _)| width(key)).max().unwrap_or(0);
+        for (key, line) in of_names() {
+            let name = &self.text[key.span.clone()];
+            let written = match self.text[line.span.clone()].starts_with('{') {
+                true => self.text[line.span.clone()].to_owned(),
+                // A section of its own, as the table that it is.
+                false => inline(&self.text, line),
+            };
+            text += &write::entry(self.format, name, widest - width(key), &written);
+        }
+        text
+    }
+}
+
+/// Keys that say how parts lie within a band.
+const SPREAD: [&str; 9] = ["process", "cp", "cpk", "sigma", "sigmas", "side", "drift", "shift", "distribution"];
+
+/// The keys by which a process of a list of costs says how its parts lie.
+fn spread_of<'t>(tree: &'t Tree, cost: &str, process: &str) -> Option<Vec<&'t (Key, Tree)>> {
+    let Value::Array(list) = &tree.entry("costs")?.entry(cost)?.entry("processes")?.value else { return None };
+    let is_named =
+        |line: &&Tree| matches!(line.entry("name").map(|name| &name.value), Some(Value::Text(name)) if name == process);
+    let Value::Table(keys) = &list.iter().find(is_named)?.value else { return None };
+    Some(keys.iter().filter(|(key, _)| SPREAD.contains(&key.name.as_str())).collect())
+}
+
+/// Whether two dimensions lie alike within bands of the same width about their nominal values.
+fn alike(a: &Dimension, b: &Dimension) -> bool {
+    let (Some(of), Some(found)) = (a.distribution(), b.distribution()) else { return false };
+    let offset = |of: &Dimension| (of.mean() - of.nominal()) / of.sigma();
+    let near = |a: f64, b: f64| (a - b).abs() <= ALIKE * a.abs().max(b.abs()).max(1.0);
+    let figures = [a.half_band() / b.half_band(), a.sigma() / b.sigma(), 1.0 + offset(a) - offset(b)];
+    let (of, found) = (of.standard_moments().raw(), found.standard_moments().raw());
+    figures.into_iter().all(|figure| near(figure, 1.0))
+        && of.iter().zip(found).all(|(&a, b)| a.is_nan() && b.is_nan() || near(a, b))
+}
+
+/// A table of its own on one line.
+fn inline(text: &str, line: &Tree) -> String {
+    let Value::Table(keys) = &line.value else { return String::new() };
+    let of = |span: &Range<usize>| &text[span.clone()];
+    write::inline(keys.iter().map(|(key, value)| write::pair(Format::Toml, of(&key.span), of(&value.span))))
+}
+
+impl Tree {
+    fn entry(&self, name: &str) -> Option<&Self> {
+        let Value::Table(entries) = &self.value else { return None };
+        entries.iter().find(|(key, _)| key.name == name).map(|(_, value)| value)
+    }
+}
+
+/// The entry of one dimension, or of a position.
+struct Entry<'a> {
+    text: &'a str,
+    format: Format,
+    line: &'a Tree,
+    old: &'a Dimension,
+    new: &'a Dimension,
+    /// The keys of the process that says how its parts lie.
+    spread: Option<Vec<&'a (Key, Tree)>>,
+}
+
+impl Entry<'_> {
+    /// The replacements; true where a fit has become a tolerance.
+    fn edits(&self, edits: &mut Vec<(Range<usize>, String)>) -> Result<bool, RewriteError> {
+        let by_hand = |why| RewriteError::ByHand { dimension: self.old.name().to_owned(), why };
+        let Value::Table(keys) = &self.line.value else { return Err(by_hand("it is no table")) };
+        let half = cut(self.new.half_band());
+        let width: f64 = half.parse().unwrap_or(self.new.half_band());
+        let factor = width / self.old.half_band();
+        let scales = self.old.half_band() != self.new.half_band();
+        let moves = self.old.nominal() != self.new.nominal();
+        let nominal = self.nominal();
+        let mut fit = false;
+        if let Some(spread) = &self.spread {
+            self.respread(keys, spread, edits);
+        }
+        for (key, value) in keys {
+            if self.spread.is_some() && SPREAD.contains(&key.name.as_str()) {
+                continue;
+            }
+            let mut replace = |text: String| edits.push((value.span.clone(), text));
+            match (key.name.as_str(), &value.value) {
+                ("nominal", _) if moves => replace(nominal.0.clone()),
+                ("tolerance", Value::Array(items)) if scales => {
+                    for (side, (item, end)) in items.iter().zip(self.band(factor)).enumerate() {
+                        edits.push((item.span.clone(), self.deviation(&item.value, end, width, side == 0)));
+                    }
+                }
+                ("tolerance", Value::Text(_)) if scales => {
+                    replace(self.deviation(&value.value, width, width, false));
+                }
+                ("tolerance", _) if scales => replace(half.clone()),
+                // Written as zones; what is none of these bands has formulas of its own.
+                (
+                    "position" | "profile" | "symmetry" | "flatness" | "straightness" | "roundness" | "cylindricity"
+                    | "runout" | "total_runout" | "coaxiality" | "concentricity",
+                    Value::Number(_) | Value::Integer(_),
+                ) if scales => replace(cut(2.0 * width)),
+                ("limits", _) => {
+                    let [lower, upper] = self.band(factor);
+                    let from = rounded(nominal.1 + lower, width, true);
+                    let to = rounded(nominal.1 + upper, width, false);
+                    replace(write::array([from, to]));
+                }
+                ("fit", _) if scales => {
+                    let [lower, upper] = self.band(factor);
+                    let (lower, upper) = (rounded(lower, width, true), rounded(upper, width, false));
+                    let tolerance = write::pair(self.format, "tolerance", &write::array([lower, upper]));
+                    edits.push((key.span.start..value.span.end, tolerance));
+                    fit = true;
+                }
+                ("sigma", Value::Number(sigma)) if scales => replace(write::number(sigma * factor)),
+                ("sigma", Value::Integer(sigma)) if scales => replace(write::number(*sigma as f64 * factor)),
+                ("distribution", Value::Table(parameters)) => {
+                    for (key, value) in parameters {
+                        match (key.name.as_str(), &value.value) {
+                            ("parts", _) => return Err(by_hand("it is a mixture of parts")),
+                            ("mode", Value::Number(_) | Value::Integer(_)) => {
+                                let mode = match value.value {
+                                    Value::Integer(mode) => mode as f64,
+                                    Value::Number(mode) => mode,
+                                    _ => continue,
+                                };
+                                let [lower, upper] = self.old.tolerance().unwrap_or([0.0; 2]);
+                                let from_middle = mode - self.old.nominal() - 0.5 * (lower + upper);
+                                let [low, high] = self.band(factor);
+                                let mode = nominal.1 + 0.5 * (low + high) + from_middle * factor;
+                                edits.push((value.span.clone(), write::number(mode)));
+                            }
+                            _ => {}
+                        }
+                    }
+                }
+                _ => {}
+            }
+        }
+        let known = |name: &str| keys.iter().any(|(key, _)| key.name == name);
+        if moves && !known("nominal") && !known("limits") {
+            self.insert_nominal(keys, &nominal.0, edits);
+        }
+        Ok(fit)
+    }
+
+    /// The keys of the line that say how its parts lie give way to those of the process.
+    fn respread(&self, keys: &[(Key, Tree)], spread: &[&(Key, Tree)], edits: &mut Vec<(Range<usize>, String)>) {
+        let inline = self.text[self.line.span.clone()].starts_with('{');
+        let between = if inline { ", " } else { "\n" };
+        let of = |(key, value): &&(Key, Tree)| {
+            let text = |span: &Range<usize>| &self.text[span.clone()];
+            write::pair(self.format, &key.name, text(&value.span))
+        };
+        let own: Vec<String> = spread.iter().map(of).collect();
+        let own = own.join(between);
+        let old = |(key, _): &(Key, Tree)| SPREAD.contains(&key.name.as_str());
+        let mut written = false;
+        for (at, (key, value)) in keys.iter().enumerate().filter(|(_, line)| old(line)) {
+            match written {
+                false => edits.push((key.span.start..value.span.end, own.clone())),
+                true => edits.push((keys[at - 1].1.span.end..value.span.end, String::new())),
+            }
+            written = true;
+        }
+        if let (false, Some((_, last))) = (written, keys.last()) {
+            edits.push((last.span.end..last.span.end, format!("{between}{own}")));
+        }
+    }
+
+    /// The nominal of a built-in model, written where it moves.
+    fn insert_nominal(&self, keys: &[(Key, Tree)], nominal: &str, edits: &mut Vec<(Range<usize>, String)>) {
+        let inline = self.text[self.line.span.clone()].starts_with('{');
+        let at = keys.first().map_or(self.line.span.start + 1, |(key, _)| key.span.start);
+        let comma = if keys.is_empty() { " " } else { ", " };
+        let end = if self.format == Format::Json || inline { comma } else { "\n" };
+        let text = write::pair(self.format, "nominal", nominal) + end;
+        edits.push((at..at, text));
+    }
+
+    /// Text and value of the new nominal: to a ten thousandth of sigma, where it has moved.
+    fn nominal(&self) -> (String, f64) {
+        let value = self.new.nominal();
+        if self.old.nominal() == value {
+            return (write::number(value), value);
+        }
+        let decimals = (4 - libm::log10(self.new.sigma()).floor() as i32).clamp(0, 15) as usize;
+        let text = format!("{value:.decimals$}");
+        let text = if text.contains('.') { text } else { format!("{text}.0") };
+        let rounded = text.parse().unwrap_or(value);
+        (text, rounded)
+    }
+
+    /// The band with `factor` times its width.
+    fn band(&self, factor: f64) -> [f64; 2] {
+        self.old.opened(self.old.tolerance().unwrap_or_else(|| self.old.reach()), factor)
+    }
+
+    /// An end of the band in the way in which the old one is written, as a number or in percent of the nominal: rounded towards
+    /// the inside of a band of this half width.
+    fn deviation(&self, written: &Value, end: f64, width: f64, up: bool) -> String {
+        match written {
+            Value::Text(_) => {
+                let percent = 100.0 / self.new.nominal().abs();
+                write::quoted(&format!("{}%", rounded(percent * end, percent * width, up)))
+            }
+            _ => rounded(end, width, up),
+        }
+    }
+}
+
+/// A number with the digits that make six of `scale`, rounded up or down, without zeros at the end.
+fn rounded(value: f64, scale: f64, up: bool) -> String {
+    if scale == 0.0 || !value.is_finite() {
+        return "0.0".to_owned();
+    }
+    // A value that is a round number but for rounding is that number.
+    let magnitude = libm::log10(scale.abs() * (1.0 + 8.0 * f64::EPSILON)).floor() as i32;
+    let decimals = DIGITS as i32 - 1 - magnitude;
+    let unit = 10f64.powi(decimals);
+    let (scaled, blur) = (value * unit, 8.0 * f64::EPSILON * (value * unit).abs());
+    let whole = if up { (scaled - blur).ceil() } else { (scaled + blur).floor() };
+    let text = format!("{:.*}", decimals.max(0) as usize, whole / unit);
+    if !text.contains('.') {
+        return text + ".0";
+    }
+    let text = text.trim_end_matches('0');
+    match text.strip_suffix('.') {
+        Some(whole) => {
+            if whole == "-0" {
+                "0.0".to_owned()
+            } else {
+                format!("{whole}.0")
+            }
+        }
+        None => text.to_owned(),
+    }
+}
+
+/// Six digits, rounded down.
+fn cut(value: f64) -> String {
+    rounded(value, value, false)
+}

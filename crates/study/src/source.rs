@@ -1,0 +1,70 @@
+//! The text of a study file, and places in it.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use super::error::{Fault, StudyFault, fault};
+use super::externals::Externals;
+use super::place::Place;
+use sensitol::assembly::formula::FormulaError;
+
+/// A study file's name and text.
+#[derive(Clone)]
+pub(super) struct Source {
+    pub(super) name: String,
+    pub(super) text: Arc<str>,
+    /// Where the files are that it names.
+    pub(super) place: Place,
+    pub(super) externals: Externals,
+}
+
+impl Source {
+    /// The place in the file of a range of a decoded string, whose literal with its quotes stands at `literal`.
+    ///
+    /// Every escape is one character of the string; a line break right after a triple quote is none.
+    pub(super) fn within_string(&self, literal: Range<usize>, decoded: Range<usize>) -> Range<usize> {
+        let raw = &self.text[literal.clone()];
+        let quote = ["\"\"\"", "'''", "\"", "'"].into_iter().find(|quote| raw.starts_with(quote)).unwrap_or("");
+        let body = &raw[quote.len()..raw.len() - quote.len()];
+        let trimmed =
+            if quote.len() == 3 { body.trim_start_matches('\r').strip_prefix('\n').unwrap_or(body) } else { body };
+        let start = literal.start + quote.len() + (body.len() - trimmed.len());
+        let place = |target: usize| start + raw_offset(trimmed, target, quote.starts_with('"'));
+        place(decoded.start)..place(decoded.end)
+    }
+}
+
+/// Bytes of a literal's body before the decoded byte `target`.
+fn raw_offset(body: &str, target: usize, escapes: bool) -> usize {
+    let (mut raw, mut decoded) = (0, 0);
+    while decoded < target && raw < body.len() {
+        let rest = &body[raw..];
+        let character = rest.chars().next().expect("not at the end");
+        if !(escapes && character == '\\') {
+            raw += character.len_utf8();
+            decoded += character.len_utf8();
+            continue;
+        }
+        let digits = match rest[1..].chars().next() {
+            Some('x') => 2,
+            Some('u') => 4,
+            Some('U') => 8,
+            Some(c) if c.is_whitespace() => {
+                // A TOML line continuation swallows all white space that follows.
+                raw += 1 + rest[1..].len() - rest[1..].trim_start().len();
+                continue;
+            }
+            _ => 0,
+        };
+        let code = rest.get(2..2 + digits).and_then(|digits| u32::from_str_radix(digits, 16).ok());
+        decoded += code.and_then(char::from_u32).map_or(1, char::len_utf8);
+        raw += (2 + digits).min(rest.len());
+    }
+    raw
+}
+
+/// A fault within a formula, at its place in the file.
+pub(super) fn in_formula(source: &Source, text: Range<usize>, key: String, error: FormulaError) -> Fault {
+    let span = source.within_string(text, error.span);
+    fault(span, key, StudyFault::Formula(error.fault))
+}

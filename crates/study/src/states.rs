@@ -1,0 +1,50 @@
+//! A study in several of its configurations at once: the same dimensions with the same tolerances, every characteristic in each.
+
+use super::Study;
+use sensitol::allocation::QualityLoss;
+use sensitol::problem::{Problem, ProblemError};
+
+impl Study {
+    /// The study with every characteristic once in each of these configurations of it, named `gap [hot]`: what is required is required in all
+    /// of them, by the same tolerances. Nominal values are those of the study itself; a configuration moves them, and sets constants.
+    ///
+    /// # Errors
+    /// When a dimension has another tolerance in one of them, as percent of a nominal value have.
+    ///
+    /// ```
+    /// use sensitol::Study;
+    /// use sensitol::study::{Externals, StudyText};
+    /// let text = "[dimensions]\na = { nominal = 10.0, tolerance = 0.1 }\n[constants]\nplay = 0.0\n\
+    ///     [characteristics]\ngap = { formula = \"a - 9 - play\", lower = 0.5 }\n\
+    ///     [configurations]\ncold = { play = 0.1 }\nlong = { a = 11.0 }\n";
+    /// let read = |externals| Study::from_text(StudyText::toml("gap.toml", text).with_externals(externals));
+    /// let study = read(Externals::default())?;
+    /// let of = |name: &str| Ok::<_, sensitol::StudyError>((name.to_owned(), read(Externals::default().with_configuration(name))?));
+    /// let all = study.in_configurations(&[of("cold")?, of("long")?])?;
+    /// let names: Vec<&str> = all.problem.characteristics().iter().map(|one| one.name()).collect();
+    /// assert_eq!(names, ["gap [cold]", "gap [long]"]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn in_configurations(mut self, configurations: &[(String, Self)]) -> Result<Self, ProblemError> {
+        let problems: Vec<(&str, &Problem)> =
+            configurations.iter().map(|(name, study)| (name.as_str(), &study.problem)).collect();
+        let problem = self.problem.in_states(&problems)?;
+        let per_state = self.problem.characteristics().len();
+        let again = |(name, _): &(String, Self)| {
+            let of =
+                |(characteristic, requirement): &(String, _)| (Problem::in_state(characteristic, name), *requirement);
+            self.requirements.iter().map(of).collect::<Vec<_>>()
+        };
+        self.requirements = configurations.iter().flat_map(again).collect();
+        let losses = |state: usize| {
+            let of = move |loss: &QualityLoss| QualityLoss {
+                characteristic: state * per_state + loss.characteristic,
+                ..*loss
+            };
+            self.losses.iter().map(of).collect::<Vec<_>>()
+        };
+        self.losses = (0..configurations.len()).flat_map(losses).collect();
+        self.problem = problem;
+        Ok(self)
+    }
+}
