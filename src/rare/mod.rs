@@ -45,6 +45,7 @@ use crate::summary::RunSummary;
 use sensitol_numeric::time::Instant;
 use sensitol_numeric::verdict::Judged;
 use crate::warning::Warning;
+#[cfg(feature = "schema")]
 pub(crate) use shape::RareShape;
 
 use explore::Explored;

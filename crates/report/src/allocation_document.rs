@@ -22,7 +22,6 @@ use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::shape::finite;
 use sensitol_numeric::verdict::{Judged, Verdict};
 use crate::analysis_document::CharacteristicSections;
-use crate::rare::RareSection;
 
 /// A smaller residual is rounding.
 const LEAST: f64 = 1e-12;

@@ -25,8 +25,6 @@ use sensitol::method::Basis;
 use sensitol_numeric::pearson::Pearson;
 use crate::figures::FittedFigures;
 use crate::statistics::CharacteristicStatistics;
-use crate::rare::RareSection;
-use crate::simulation::SimulationSection;
 
 /// Contributions and interactions that a terminal shows unless all are asked for, and interactions that a page shows.
 const CONTRIBUTIONS: usize = 30;

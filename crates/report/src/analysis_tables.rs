@@ -10,7 +10,6 @@ use crate::document::{Blocks, Cell, Column, Columns, DataTable, Document, Value}
 use sensitol::method::ErrorEstimate;
 use crate::analysis_document::CharacteristicSections;
 use crate::figures::FittedFigures;
-use crate::rare::RareSection;
 
 impl Report {
     /// A row for every characteristic: where it lies, its limits, and how it keeps them.

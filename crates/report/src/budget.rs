@@ -17,7 +17,6 @@ use sensitol::analysis::{CharacteristicAnalysis, Interaction};
 use sensitol_numeric::distribution::standard_normal;
 use crate::document::number::{UNKNOWN, beside, percent, plain, significant};
 use crate::document::{Blocks, Cell, Columns, DataTable, Document, Section, Value};
-use crate::rare::RareSection;
 
 /// The share that an expanded uncertainty holds unless the study says otherwise.
 const PROBABILITY: f64 = 0.95;

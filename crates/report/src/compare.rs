@@ -16,7 +16,6 @@ use sensitol::summary::RunSummary;
 use sensitol_numeric::verdict::Verdict;
 #[cfg(feature = "schema")]
 use sensitol::{compare::ErrorShape, simulation::SimulatedShape};
-use crate::rare::RareSection;
 
 /// The report of a comparison, as `--json` prints it. Unknown values are null, never 0.
 #[derive(Debug, Clone, Serialize)]

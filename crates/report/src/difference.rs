@@ -9,8 +9,6 @@ use sensitol_numeric::capability::Capability;
 use crate::document::number::{UNKNOWN, band, beside, estimated, index, limits, percent, plain, plural, yielded};
 use crate::document::{Blocks, Cell, Columns, DataTable, Document, Section, Tone, Value};
 use sensitol_numeric::verdict::Verdict;
-use crate::analysis_document::CharacteristicSections;
-use crate::rare::RareSection;
 
 /// A share of the variance that moves by less than this is not worth a line.
 const SEEN: f64 = 0.005;

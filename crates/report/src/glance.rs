@@ -9,7 +9,6 @@ use sensitol::rare::RareCharacteristic;
 use sensitol_numeric::sampling::{Estimate, one_error};
 use sensitol::simulation::SimulatedCharacteristic;
 use sensitol_numeric::verdict::{Judged, worst};
-use crate::rare::RareSection;
 
 /// A characteristic in words.
 pub(super) struct Glance<'r> {

@@ -3,8 +3,6 @@
 use super::Report;
 use crate::document::{Cell, Columns, DataTable, Element};
 use sensitol_numeric::labels::{LABELS, Labels};
-use crate::analysis_document::CharacteristicSections;
-use crate::rare::RareSection;
 
 impl<'a, T: 'a> Columns<'a, T> {
     /// A column for each text, for programs.

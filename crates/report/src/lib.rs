@@ -65,7 +65,6 @@ use crate::document::number::{UNKNOWN, band, significant};
 use sensitol_numeric::labels::Labels;
 use sensitol::problem::Problem;
 use sensitol::warning::{Advice, Warning};
-use crate::analysis_document::CharacteristicSections;
 
 /// The version of the JSON report's shape.
 pub const SCHEMA: u32 = 2;

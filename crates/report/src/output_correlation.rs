@@ -8,7 +8,6 @@ use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::sampling::one_error;
 use sensitol::simulation::YieldEstimate;
 use sensitol_numeric::verdict::Judged;
-use crate::rare::RareSection;
 
 /// Correlations that are said; a file has all.
 const TOGETHER: usize = 6;

@@ -14,8 +14,6 @@ use crate::document::{Blocks, Cell, Columns, DataTable, Document, Element, Line,
 use sensitol::problem::Problem;
 use sensitol::rare::{Beyond, DesignPoint, RareCharacteristic, RareEvents};
 use sensitol_numeric::sampling::Estimate;
-use crate::analysis_document::CharacteristicSections;
-use crate::simulation::SimulationSection;
 
 /// The report of rare events, as `--json` prints it. Unknown values are null, never 0.
 #[derive(Debug, Clone, Serialize)]

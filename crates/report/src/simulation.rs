@@ -20,8 +20,6 @@ use sensitol_numeric::pearson::Pearson;
 use sensitol::problem::Problem;
 use sensitol_numeric::sampling::{Estimate, one_error};
 use sensitol::simulation::{IndexEstimate, SampledFactor, SimulatedCharacteristic, Simulation, YieldEstimate};
-use crate::analysis_document::CharacteristicSections;
-use crate::rare::RareSection;
 
 /// The report of a simulation, as `--json` prints it. Unknown values are null, never 0.
 #[derive(Debug, Clone, Serialize)]

@@ -16,8 +16,6 @@ use sensitol::analysis::{CharacteristicAnalysis, Sensitivity};
 use crate::document::number::{UNKNOWN, beside, limits, percent, plain, short, significant};
 use crate::document::{Blocks, Cell, Columns, DataTable, Document, Line, Section, Tone, Value};
 use sensitol::method::Method;
-use crate::analysis_document::CharacteristicSections;
-use crate::rare::RareSection;
 
 /// A slope this near to 1 or -1 is a direction.
 const DIRECTION: f64 = 1e-9;

@@ -7,8 +7,6 @@ use crate::document::number::{UNKNOWN, carried, known, percent, plain, shape_wit
 use crate::document::{Blocks, Cell, Columns, DataTable, Section, Value};
 use sensitol::method::{ErrorEstimate, ErrorSource};
 use sensitol_numeric::names::element;
-use crate::analysis_document::CharacteristicSections;
-use crate::rare::RareSection;
 
 /// Contributors that a terminal names.
 const CONTRIBUTORS: usize = 6;

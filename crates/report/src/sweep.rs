@@ -21,10 +21,7 @@ use sensitol::problem::Problem;
 use sensitol::summary::RunSummary;
 use sensitol::sweep::Sweep;
 use sensitol_numeric::verdict::{Judged, Verdict};
-use crate::analysis_document::CharacteristicSections;
 use crate::figures::FittedFigures;
-use crate::rare::RareSection;
-use crate::simulation::SimulationSection;
 
 /// The report of a sweep, as `--json` prints it. Unknown values are null, never 0.
 #[derive(Debug, Clone, PartialEq, Serialize)]

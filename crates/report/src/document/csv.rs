@@ -3,8 +3,6 @@
 //! RFC 4180, but for line ends without carriage return.
 
 use super::{Cell, DataTable, Document, Element, Value};
-use crate::analysis_document::CharacteristicSections;
-use crate::rare::RareSection;
 
 /// All tables of this name in a document as one: they have the same columns.
 pub fn csv(document: &Document, name: &str) -> String {

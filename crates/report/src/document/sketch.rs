@@ -4,8 +4,6 @@ use super::number::{beside, plain, significant};
 use super::{Cell, Columns, DataTable};
 use sensitol_numeric::pearson::Pearson;
 use sensitol::simulation::Histogram;
-use crate::analysis_document::CharacteristicSections;
-use crate::rare::RareSection;
 
 /// Characters of the longest bar of a histogram.
 const BAR: usize = 50;

@@ -3,9 +3,6 @@
 use super::sketch::{bars, sketch};
 use super::{Chart, DataTable, Document, Element, Flow, Line, List, Paragraph, Section, Tone};
 use sensitol_numeric::names::{clean, shortened_to};
-use crate::figures::FittedFigures;
-use crate::rare::RareSection;
-use crate::simulation::SimulationSection;
 
 /// How much is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

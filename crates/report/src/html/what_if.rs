@@ -9,7 +9,6 @@ use sensitol_numeric::distribution::StandardMoments;
 use sensitol_numeric::law::TabulatedInput;
 use sensitol::problem::Problem;
 use sensitol_numeric::surrogate::InputShape;
-use crate::analysis_document::CharacteristicSections;
 
 /// An entry of the study's `[dimensions]`: its name, and its keys with their values as TOML.
 type Line = (String, Vec<(String, String)>);

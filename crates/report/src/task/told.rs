@@ -13,7 +13,6 @@ use super::place::TaskPlace;
 use sensitol_study::Error;
 use sensitol_models::{ALL, Model};
 use sensitol_study::{Study, StudyError, StudyText};
-use crate::analysis_document::CharacteristicSections;
 
 /// A study, and what is asked of it.
 #[derive(Debug, Deserialize)]

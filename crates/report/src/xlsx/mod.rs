@@ -9,7 +9,6 @@ use super::Report;
 use super::output_correlation::together_table;
 use crate::document::{Cell, Columns, DataTable, Document, Element, Value};
 use book::{Names, tables};
-use crate::rare::RareSection;
 
 /// Why a workbook cannot be made of a report.
 #[derive(Debug, thiserror::Error)]
