@@ -4,9 +4,10 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use sensitol::assembly::process::{Greeting, Process, Settings};
 use sensitol::assembly::{AssemblyFunction, Points, Request, Responses, Run, Signature};
-use sensitol::journal::Journaled;
+use sensitol_external::journal::Journaled;
+use sensitol_external::process::Process;
+use sensitol_external::{Greeting, Settings};
 
 const MODEL: &str = "
 import sys, time

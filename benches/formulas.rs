@@ -4,7 +4,7 @@ use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use sensitol::assembly::formula::Formula;
-use sensitol::internals::{FormulaSet, Meaning};
+use sensitol::assembly::formula::set::{FormulaSet, Meaning};
 
 const ROWS: usize = 100_000;
 

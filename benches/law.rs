@@ -5,7 +5,9 @@ use std::sync::Arc;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use sensitol::distribution::{Distribution, Normal, Triangular, Uniform};
-use sensitol::internals::{Interactions, LawOptions, SurfaceLaw, Surrogate, Univariate};
+use sensitol_numeric::law::{LawOptions, SurfaceLaw};
+use sensitol_numeric::moments::Interactions;
+use sensitol_numeric::surrogate::{Surrogate, Univariate};
 
 type Law = Arc<dyn Distribution>;
 

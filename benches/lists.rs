@@ -7,7 +7,7 @@ mod generated_lists;
 use std::time::Instant;
 
 use generated_lists::lists;
-use sensitol::internals::cheapest;
+use sensitol::allocation::knapsack::cheapest;
 use serde_json::Value;
 
 fn main() {

@@ -4,7 +4,7 @@ use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use sensitol::assembly::{AssemblyFunction, Points, Request, Responses, Run};
-use sensitol::models::{self, Model};
+use sensitol_models::{self, Model};
 
 /// Model, outputs asked, and rows.
 const CASES: &[(&str, &[&str], usize)] = &[

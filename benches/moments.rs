@@ -4,7 +4,7 @@ use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use sensitol::distribution::StandardMoments;
-use sensitol::internals::{Interactions, of_quadratic};
+use sensitol_numeric::moments::{Interactions, of_quadratic};
 
 fn moments(c: &mut Criterion) {
     let mut group = c.benchmark_group("moments");

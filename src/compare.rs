@@ -8,12 +8,12 @@ use serde::{Serialize, Serializer};
 use crate::analysis::{Analysis, CharacteristicAnalysis, analyze_with};
 use crate::assembly::Run;
 use crate::method::{self, Method, Options, Procedure};
-use sensitol_numeric::parallel::threads;
 use crate::problem::Problem;
-use sensitol_numeric::sampling::{Estimate, Sampler, one_error};
-use sensitol_numeric::shape::seconds;
 use crate::simulation::{ROWS, SimulatedCharacteristic, Simulation, SimulationError, SimulationOptions, simulate_with};
 use crate::summary::RunSummary;
+use sensitol_numeric::parallel::threads;
+use sensitol_numeric::sampling::{Estimate, Sampler, one_error};
+use sensitol_numeric::shape::seconds;
 use sensitol_numeric::time::Instant;
 use sensitol_numeric::verdict::Verdict;
 

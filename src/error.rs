@@ -2,28 +2,28 @@
 
 use crate::allocation::{AllocateError, CostError};
 use crate::analysis::NoFit;
+use crate::assembly::ProcessError;
 use crate::assembly::formula::FormulaError;
 use crate::assembly::implicit::ConditionsError;
-use crate::assembly::ProcessError;
 use crate::assembly::{CompositeError, EvaluationError, NoColumn};
-use sensitol_numeric::characteristic::LimitsError;
 use crate::compare::CompareError;
+use crate::method::MethodError;
+use crate::problem::ProblemError;
+use crate::rare::RareError;
+use crate::simulation::SimulationError;
+use crate::sweep::SweepError;
+use crate::warning::Advice;
+use sensitol_numeric::characteristic::LimitsError;
 use sensitol_numeric::correlation::CorrelationError;
 use sensitol_numeric::dimension::DimensionError;
 use sensitol_numeric::distribution::DistributionError;
 use sensitol_numeric::fits::FitError;
 use sensitol_numeric::inspection::InspectionError;
 use sensitol_numeric::law::LawError;
-use crate::method::MethodError;
 use sensitol_numeric::names::UnknownName;
 use sensitol_numeric::pearson::PearsonError;
-use crate::problem::ProblemError;
-use crate::rare::RareError;
 use sensitol_numeric::requirement::RequirementError;
 use sensitol_numeric::sampling::SamplingError;
-use crate::simulation::SimulationError;
-use crate::sweep::SweepError;
-use crate::warning::Advice;
 
 /// Any error of the library.
 #[derive(Debug, thiserror::Error)]

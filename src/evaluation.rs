@@ -8,11 +8,11 @@ use std::collections::HashMap;
 use std::time::Duration;
 
 use crate::assembly::{NonRepeatable, Points, Request, Responses, Run, near_rows};
-use sensitol_numeric::parallel::prelude::*;
-use sensitol_numeric::parallel::{Rooms, join};
 use crate::plan::{KnownAnswers, Plan, Point, Purpose, Stage};
 use crate::problem::Problem;
 use crate::summary::{RunSummary, StopReason};
+use sensitol_numeric::parallel::prelude::*;
+use sensitol_numeric::parallel::{Rooms, join};
 use sensitol_numeric::time::Instant;
 
 /// Coordinates that one batch holds at most: 64 MiB. A million points in a thousand dimensions are cut into batches.

@@ -74,7 +74,6 @@
 //! it runs on one thread. `study` reads TOML, JSON and CSV, `report` writes text, JSON, CSV, Markdown and SVG, `html` pages; `process` runs
 //! external programs, `journal` keeps their answers, `cli` is the command with all of them.
 
-
 pub mod allocation;
 pub mod analysis;
 pub mod assembly;

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use crate::assembly::{AssemblyFunction, Points, State, States};
+use crate::summary::EvaluatorSummary;
 use sensitol_numeric::characteristic::Characteristic;
 use sensitol_numeric::correlation::{Block, Correlation, CorrelationError, Pair};
 use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::names::nearest;
-use crate::summary::EvaluatorSummary;
 
 /// N dimensions, K characteristics, and the assembly function between them.
 #[derive(Clone)]

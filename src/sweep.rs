@@ -16,14 +16,14 @@ use crate::assembly::{
     AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, ModelInfo, Points, Request, Responses, Run,
     Signature,
 };
-use sensitol_numeric::dimension::DimensionError;
 use crate::evaluation::BATCH;
 use crate::method::{MethodError, Options};
-use sensitol_numeric::names::nearest;
 use crate::problem::Problem;
 use crate::summary::RunSummary;
-use sensitol_numeric::time::Instant;
 use crate::warning::Warning;
+use sensitol_numeric::dimension::DimensionError;
+use sensitol_numeric::names::nearest;
+use sensitol_numeric::time::Instant;
 
 /// A problem along one of its dimensions.
 #[derive(Debug, Clone, Serialize)]

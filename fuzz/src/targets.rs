@@ -5,11 +5,13 @@ use std::process::ExitCode;
 
 use sensitol::assembly::formula::Formula;
 use sensitol::fits::deviations;
-use sensitol::internals::Store;
-use sensitol::internals::reach::*;
-use sensitol::internals::{FormulaSet, Jet, Meaning};
+use sensitol_external::journal::store::Store;
+
+use sensitol::assembly::formula::jet::Jet;
+use sensitol::assembly::formula::set::{FormulaSet, Meaning};
 use sensitol::pearson::Pearson;
-use sensitol::{Options, Study, analyze};
+use sensitol::{Options, analyze};
+use sensitol_study::Study;
 
 /// A surface and what is done to it.
 pub struct Target {
@@ -53,7 +55,7 @@ fn study_json(bytes: &[u8]) {
 }
 
 /// A fault can be shown, with a place inside the text; a study that is read and small can be analysed.
-fn read(study: Result<Study, sensitol::StudyError>) {
+fn read(study: Result<Study, sensitol_study::StudyError>) {
     match study {
         Err(error) => {
             for error in std::iter::once(&error).chain(&error.more) {
@@ -194,7 +196,7 @@ fn command_line(bytes: &[u8]) {
     if *command != "check" {
         all.extend(["-o".to_owned(), folder.path().join("report").display().to_string()]);
     }
-    let _: ExitCode = sensitol::cli::run(all.into_iter().map(Into::into));
+    let _: ExitCode = sensitol_cli::run(all.into_iter().map(Into::into));
 }
 
 /// A table or a workbook is refused or becomes a study, which is read again.
@@ -203,7 +205,7 @@ fn import(bytes: &[u8]) {
     let at = |name: &str| folder.path().join(name).display().to_string();
     std::fs::write(at("table"), bytes).expect("a file");
     let words = ["sensitol", "import", &at("table"), "-o", &at("study.toml"), "--color", "never"].map(str::to_owned);
-    let _: ExitCode = sensitol::cli::run(words.into_iter().map(Into::into));
+    let _: ExitCode = sensitol_cli::run(words.into_iter().map(Into::into));
     if Path::new(&at("study.toml")).exists() {
         assert!(Study::read(Path::new(&at("study.toml"))).is_ok(), "the imported study cannot be read");
     }

@@ -2,7 +2,8 @@
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use sensitol::{Error, StudyError};
+use sensitol::Error;
+use sensitol_study::StudyError;
 
 /// The exception of this name in `sensitol._errors`, with these attributes.
 fn exception(py: Python<'_>, name: &str, message: String, attributes: &Bound<'_, PyDict>) -> PyResult<PyErr> {

@@ -18,7 +18,7 @@ use pyo3::prelude::*;
 /// The command line, with the program's name first; the exit code. It listens to signals: for a process of its own.
 #[pyfunction]
 fn run_cli(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
-    py.detach(|| sensitol::cli::run_code(arguments))
+    py.detach(|| sensitol_cli::run_code(arguments))
 }
 
 /// The functions that the package `sensitol` wraps.

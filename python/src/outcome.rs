@@ -1,7 +1,7 @@
 //! The outcome of a run.
 
 use pyo3::prelude::*;
-use sensitol::internals::task::TaskReport;
+use sensitol_report::task::TaskReport;
 
 /// The outcome of a run.
 #[pyclass(frozen, module = "sensitol._core")]

@@ -10,8 +10,9 @@ use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList};
 use sensitol::assembly::Run;
-use sensitol::internals::task::{Asked, TaskReport, done};
-use sensitol::{Error, StopReason, Study};
+use sensitol_report::task::{Asked, TaskReport, done};
+use sensitol::{Error, StopReason};
+use sensitol_study::Study;
 
 use crate::host::{Answer, Call, Event};
 use crate::pools::Pool;

@@ -8,10 +8,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use sensitol::assembly::Signature;
-use sensitol::assembly::process::Greeting;
-use sensitol::internals::task::Asked;
-use sensitol::study::{Externals, JournalPlace, StudyText};
-use sensitol::{Error, StudyError};
+use sensitol_external::Greeting;
+use sensitol_report::task::Asked;
+use sensitol_study::{Externals, JournalPlace, StudyText};
+use sensitol::Error;
+use sensitol_study::StudyError;
 use serde_json::json;
 
 use crate::errors::{of_engine, of_study};
@@ -49,7 +50,7 @@ impl Study {
         journal: JournalPlace,
         events: Option<Sender<Event<Ended>>>,
         whole: bool,
-    ) -> Result<(sensitol::Study, Hello), StudyError> {
+    ) -> Result<(sensitol_study::Study, Hello), StudyError> {
         let hello: Hello = Hello::default();
         let mut externals = configured(Externals::default().with_journal(journal), self.configuration.as_deref());
         if let Some(cheap) = self.hosted {
@@ -68,12 +69,12 @@ impl Study {
         let text = text.in_folder(&self.folder).with_externals(externals);
         let text = self.files.iter().fold(text, |text, (name, bytes)| text.with_file(name, bytes));
         let text = parameter.map_or(text.clone(), |parameter| text.sweeping(parameter));
-        Ok((sensitol::Study::from_text(text)?, hello))
+        Ok((sensitol_study::Study::from_text(text)?, hello))
     }
 }
 
 /// The description of a study for Python, as JSON.
-fn described(study: &sensitol::Study, hello: &Hello) -> String {
+fn described(study: &sensitol_study::Study, hello: &Hello) -> String {
     let dimension = |one: &sensitol::Dimension| {
         json!({
             "name": one.name(), "unit": one.unit(), "nominal": one.nominal(), "tolerance": one.tolerance(),
@@ -160,7 +161,7 @@ impl Study {
                 Arc::new(Host::new(signature, (cheap, true), channel::<Event<Ended>>().0))
             });
         }
-        let read = sensitol::Study::read_with(&path, externals).map_err(|error| of_study(py, &error, false))?;
+        let read = sensitol_study::Study::read_with(&path, externals).map_err(|error| of_study(py, &error, false))?;
         let toml = path.extension().is_some_and(|extension| extension == "toml");
         let (name, folder) = (path.display().to_string(), read.folder().to_owned());
         Self::from_text(py, read.text().to_owned(), toml, name, folder, BTreeMap::new(), false, hosted, configuration)

@@ -11,9 +11,9 @@
 use serde::Serialize;
 
 use super::cost::{Curve, Offer, Priced};
+use crate::problem::Problem;
 use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::fits::tolerance_unit;
-use crate::problem::Problem;
 use sensitol_numeric::unit::Unit;
 
 /// Where costs come from.

@@ -14,9 +14,9 @@ use super::response::Responses;
 use super::result::{AllocationSolver, Attainable, Proof};
 use super::solve::Setting;
 use super::solved::{Solved, Starts};
+use crate::problem::Problem;
 use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::law::rejected;
-use crate::problem::Problem;
 use sensitol_numeric::requirement::Requirement;
 
 /// Choices few enough to look at all.

@@ -17,11 +17,11 @@ use super::station::{Station, prices};
 use super::task::{AllocateError, Goal};
 use crate::analysis::TRUSTED;
 use crate::problem::Problem;
-use sensitol_numeric::requirement::Requirement;
 use crate::simulation::{SimulationOptions, simulate_with};
 use crate::summary::StopReason;
-use sensitol_numeric::verdict::{Judged, Verdict};
 use crate::warning::Warning;
+use sensitol_numeric::requirement::Requirement;
+use sensitol_numeric::verdict::{Judged, Verdict};
 
 /// A residual up to which tolerances are called optimal.
 const OPTIMAL: f64 = 1e-6;

@@ -17,13 +17,13 @@ use super::task::{AllocateError, AllocationOptions, AllocationTask, Goal};
 use super::unknown::Unknown;
 use crate::analysis::{Analysis, CharacteristicAnalysis, Findings, analyze_keeping};
 use crate::assembly::Run;
-use sensitol_numeric::dimension::Dimension;
 use crate::method::{MethodError, Options};
+use crate::problem::Problem;
+use crate::summary::{RunSummary, StopReason};
+use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::moments::Moments;
 use sensitol_numeric::parallel::prelude::*;
-use crate::problem::Problem;
 use sensitol_numeric::requirement::Requirement;
-use crate::summary::{RunSummary, StopReason};
 
 /// Rounds of derivatives, at most.
 pub(super) const ROUNDS: usize = 20;

@@ -6,8 +6,8 @@ use super::machines::choose;
 use super::result::FrontPoint;
 use super::shape::FrontRequirement;
 use super::solve::Setting;
-use sensitol_numeric::distribution::standard_normal;
 use crate::problem::Problem;
+use sensitol_numeric::distribution::standard_normal;
 use sensitol_numeric::requirement::Requirement;
 
 /// From one sigma less to one and a half more than what is required, and for Cpk a third of that.

@@ -14,8 +14,8 @@ use super::machines::choose;
 use super::root::root;
 use super::solve::Setting;
 use super::task::Goal;
-use sensitol_numeric::distribution::standard_normal;
 use crate::problem::Problem;
+use sensitol_numeric::distribution::standard_normal;
 use sensitol_numeric::requirement::Requirement;
 
 /// Levels between which the best is sought, in sigmas: from where half of the assemblies are kept to where doubles end.

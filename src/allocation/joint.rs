@@ -3,8 +3,8 @@
 use serde::Serialize;
 
 use super::response::Responses;
-use sensitol_numeric::parallel::prelude::*;
 use crate::problem::Problem;
+use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::sampling::{Draws, Portion, Sampler, wilson};
 
 /// A share of a sample.

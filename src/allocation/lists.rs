@@ -1,6 +1,5 @@
 //! Lists of options under rows that add up, as the knapsacks have them ([`knapsack`](super::knapsack)).
 
-
 /// The difference that sums in another order may make to a row.
 pub(super) const ROUNDING: f64 = 1e-13;
 /// Costs that differ by less are the same.

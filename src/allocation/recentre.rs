@@ -8,11 +8,11 @@ use super::solve::Setting;
 use super::station::Station;
 use super::task::{AllocateError, Goal};
 use super::together::{Together, together};
+use crate::problem::Problem;
 use sensitol_numeric::capability::Law;
 use sensitol_numeric::characteristic::SpecLimits;
 use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::moments::Moments;
-use crate::problem::Problem;
 
 /// Steps of the central differences, in sigmas.
 const STEP: f64 = 1e-4;

@@ -18,13 +18,13 @@ use super::sampled::SampledCorrection;
 use super::unknown::Unknown;
 use super::worst::WorstCase;
 use crate::analysis::{Analysis, CharacteristicAnalysis, law_over, surface_law};
+use crate::method::Outcome;
+use crate::problem::Problem;
 use sensitol_numeric::characteristic::SpecLimits;
 use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::distribution::Distribution;
 use sensitol_numeric::law::SurfaceLaw;
-use crate::method::Outcome;
 use sensitol_numeric::moments::Moments;
-use crate::problem::Problem;
 use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::surrogate::{InputShape, Inputs, Relocation, Surrogate, shapes};
 
@@ -505,7 +505,10 @@ impl Responses {
     }
 
     fn are_normal(&self) -> bool {
-        self.inputs.shapes().iter().all(|shape| shape.moments == sensitol_numeric::distribution::StandardMoments::NORMAL)
+        self.inputs
+            .shapes()
+            .iter()
+            .all(|shape| shape.moments == sensitol_numeric::distribution::StandardMoments::NORMAL)
     }
 
     fn means_stay(&self) -> bool {

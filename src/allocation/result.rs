@@ -11,12 +11,12 @@ use super::shape::{After, Before, FrontRequirement, required, sampled};
 use super::task::Goal;
 use crate::analysis::Analysis;
 use crate::problem::Problem;
-use sensitol_numeric::requirement::{Required, Requirement};
-use sensitol_numeric::shape::through;
 use crate::simulation::Simulation;
 use crate::summary::RunSummary;
-use sensitol_numeric::verdict::Judged;
 use crate::warning::Warning;
+use sensitol_numeric::requirement::{Required, Requirement};
+use sensitol_numeric::shape::through;
+use sensitol_numeric::verdict::Judged;
 
 /// How it ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]

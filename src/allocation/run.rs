@@ -20,9 +20,9 @@ use super::steps::Steps;
 use super::task::{AllocateError, AllocationOptions, AllocationTask, Goal};
 use crate::assembly::Run;
 use crate::problem::Problem;
-use sensitol_numeric::sampling::{Draws, Sampler};
 use crate::simulation::SimulationError;
 use crate::summary::RunSummary;
+use sensitol_numeric::sampling::{Draws, Sampler};
 use sensitol_numeric::time::Instant;
 
 /// The factor up to which derivatives are trusted when they say that nothing is possible, and by which tolerances may move in a

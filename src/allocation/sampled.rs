@@ -12,10 +12,10 @@
 
 use super::cost::Priced;
 use crate::assembly::Run;
-use sensitol_numeric::moments::Moments;
 use crate::problem::Problem;
-use sensitol_numeric::sampling::Sampler;
 use crate::simulation::{SimulationOptions, simulate_with};
+use sensitol_numeric::moments::Moments;
+use sensitol_numeric::sampling::Sampler;
 
 /// Points of a sample.
 const POINTS: u64 = 1 << 14;

@@ -6,14 +6,14 @@ use super::loss::QualityLoss;
 use super::setup::{MOST as MOST_MACHINES, SetUp};
 use serde::Serialize;
 
-use sensitol_numeric::dimension::Dimension;
 use crate::method::{Method, MethodError, Options};
-use sensitol_numeric::names::nearest;
 use crate::problem::Problem;
-use sensitol_numeric::requirement::Requirement;
-use sensitol_numeric::sampling::{Draws, Sampler};
 use crate::simulation::{SimulationError, chosen};
 use crate::warning::Advice;
+use sensitol_numeric::dimension::Dimension;
+use sensitol_numeric::names::nearest;
+use sensitol_numeric::requirement::Requirement;
+use sensitol_numeric::sampling::{Draws, Sampler};
 
 /// Points that confirm what was found for a cheap model, where nothing is said.
 const CONFIRM: u64 = 100_000;

@@ -11,17 +11,17 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::interval::{acceleration, bca};
 use super::{CharacteristicAnalysis, SamplingInterval};
+use crate::method::Outcome;
+use crate::problem::Problem;
+use crate::verification::CONFIDENCE;
 use sensitol_numeric::capability::{Capability, Law, cpk};
 use sensitol_numeric::characteristic::SpecLimits;
 use sensitol_numeric::correlation::JointLaw;
 use sensitol_numeric::distribution::{Distribution, Resample, Reweighted, StandardMoments};
-use crate::method::Outcome;
 use sensitol_numeric::moments::Moments;
 use sensitol_numeric::parallel::prelude::*;
-use crate::problem::Problem;
 use sensitol_numeric::surrogate::{InputShape, Inputs, Pooled, Relocation, Surrogate};
 use sensitol_numeric::verdict::including;
-use crate::verification::CONFIDENCE;
 
 /// As many resamples as an end of the interval needs to be known to a tenth of its width or so;
 const RESAMPLES: usize = 1000;

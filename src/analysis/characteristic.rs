@@ -12,13 +12,13 @@ use super::sobol::SobolIndices;
 use super::{
     InteractionList, SampledModel, SamplingInterval, SurfaceShares, Verification, VerificationKind, YieldSource,
 };
-use sensitol_numeric::capability::{Capability, CapabilityShape, EstimatedShare, InspectionRisks, Law};
-use sensitol_numeric::characteristic::{Characteristic, SpecLimits};
 use crate::extremes::{Extremes, ExtremesProof};
 use crate::method::{ErrorEstimate, Order, Outcome, Residual, estimate};
+use crate::problem::Problem;
+use sensitol_numeric::capability::{Capability, CapabilityShape, EstimatedShare, InspectionRisks, Law};
+use sensitol_numeric::characteristic::{Characteristic, SpecLimits};
 use sensitol_numeric::moments::{Moments, Sampled};
 use sensitol_numeric::pearson::PearsonError;
-use crate::problem::Problem;
 use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::shape::{Four, through};
 use sensitol_numeric::verdict::{self, Judged, Verdict};

@@ -1,9 +1,9 @@
 //! The shares beyond the limits and the quantiles counted at points of a surface whose law could not be computed.
 
-use sensitol_numeric::law::{LawFigure, LawTail, QUANTILE};
 use crate::method::Outcome;
-use sensitol_numeric::parallel::prelude::*;
 use crate::problem::Problem;
+use sensitol_numeric::law::{LawFigure, LawTail, QUANTILE};
+use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::sampling::{Draws, Portion, SOBOL_DIMENSIONS, Sampler};
 
 /// Points of the surface, in blocks of so many.

@@ -5,11 +5,11 @@ use super::counted::points;
 use super::coverage_intervals::CoverageIntervals;
 use super::surface_law::{full_law, quantiles_at};
 use super::yield_source::YieldSource;
+use crate::method::Outcome;
+use crate::problem::Problem;
 use sensitol_numeric::capability::Law;
 use sensitol_numeric::law::LawTail;
-use crate::method::Outcome;
 use sensitol_numeric::pearson::Pearson;
-use crate::problem::Problem;
 
 /// Splits of the share outside that are compared in one round,
 const SPLITS: usize = 24;

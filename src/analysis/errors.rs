@@ -1,8 +1,8 @@
 //! The errors of the yield that follow from the estimated errors of the moments.
 
+use crate::method::ErrorEstimate;
 use sensitol_numeric::capability::{Capability, Law};
 use sensitol_numeric::characteristic::SpecLimits;
-use crate::method::ErrorEstimate;
 use sensitol_numeric::moments::Moments;
 
 /// How far the rejected share moves when each moment is off by its error, one after the other, as the root of the sum of

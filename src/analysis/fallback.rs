@@ -9,15 +9,15 @@ use super::strides::{Beside, StridedFigures, Strides};
 use super::wanted::{MORE, PART, excess};
 use super::{CharacteristicAnalysis, SampledModel};
 use crate::assembly::{NonRepeatable, Run};
-use sensitol_numeric::capability::{Capability, Law};
 use crate::method::{Climbed, ErrorEstimate, ErrorSource, Outcome};
-use sensitol_numeric::moments::Moments;
 use crate::problem::Problem;
-use sensitol_numeric::sampling::{Estimate, SOBOL_DIMENSIONS, Sampler, one_error};
 use crate::simulation::{REPLICATES, SimulatedCharacteristic, Simulation, SimulationOptions, simulate_beside};
 use crate::summary::RunSummary;
 use crate::verification::{Share, carried_by, student};
 use crate::warning::Figure;
+use sensitol_numeric::capability::{Capability, Law};
+use sensitol_numeric::moments::Moments;
+use sensitol_numeric::sampling::{Estimate, SOBOL_DIMENSIONS, Sampler, one_error};
 
 /// Points of a cheap model, at most;
 const MOST: u64 = 1 << 18;

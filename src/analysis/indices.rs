@@ -15,11 +15,11 @@ use super::CharacteristicAnalysis;
 use super::sobol::{FactorIndices, IndexSource, SobolIndices};
 use super::verified::{UNTRUSTED, VerificationKind};
 use crate::assembly::Run;
-use sensitol_numeric::capability::EstimatedShare;
-use sensitol_numeric::correlation::factors;
 use crate::method::{Options, Order, Outcome};
 use crate::problem::Problem;
 use crate::verification::factor_shares;
+use sensitol_numeric::capability::EstimatedShare;
+use sensitol_numeric::correlation::factors;
 
 /// First order and total of one factor.
 type Pair = (Option<EstimatedShare>, Option<EstimatedShare>);

@@ -1,11 +1,11 @@
 //! The risks of an inspection: from the law that the yield comes from, beside the sample of the model where there is one.
 
 use super::{CharacteristicAnalysis, YieldSource};
+use crate::verification::WeightedSample;
 use sensitol_numeric::capability::{EstimatedShare, InspectionRisks, Law, Risks, Tails, acceptance, guard_for};
 use sensitol_numeric::characteristic::SpecLimits;
 use sensitol_numeric::inspection::{Guard, Inspection};
 use sensitol_numeric::law::SurfaceLaw;
-use crate::verification::WeightedSample;
 
 /// Of a characteristic whose yield is settled; None without an inspection, and where nothing is known of its distribution.
 pub(super) fn inspected(one: &CharacteristicAnalysis, surface: Option<&SurfaceLaw>) -> Option<InspectionRisks> {

@@ -3,9 +3,9 @@
 use super::interaction::{InteractionList, Missing, Row};
 use super::shares::Shares;
 use crate::method::Outcome;
-use sensitol_numeric::parallel::prelude::*;
 use crate::plan::Point;
 use crate::problem::Problem;
+use sensitol_numeric::parallel::prelude::*;
 
 /// The pairs on which a characteristic can depend, by their places among all that were examined.
 pub(super) fn pairs_of(outcome: &Outcome, c: usize) -> impl Iterator<Item = usize> + '_ {

@@ -10,8 +10,8 @@ use crate::assembly::{NonRepeatable, Points, Request, Responses, Run};
 use crate::method::{Basis, Outcome};
 use crate::problem::Problem;
 use crate::summary::RunSummary;
-use sensitol_numeric::time::Instant;
 use crate::warning::Warning;
+use sensitol_numeric::time::Instant;
 
 use super::CharacteristicAnalysis;
 

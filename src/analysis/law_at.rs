@@ -2,8 +2,8 @@
 
 use super::surface::Surface;
 use super::surface_law::{law_over, with};
-use sensitol_numeric::law::{LawError, SurfaceLaw};
 use crate::problem::Problem;
+use sensitol_numeric::law::{LawError, SurfaceLaw};
 use sensitol_numeric::surrogate::Relocation;
 
 /// The law of a characteristic's surface where its inputs have moved and keep their shapes, beside what the surface leaves out: what

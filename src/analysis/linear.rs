@@ -28,9 +28,9 @@
 //! bands as an effective sigma `s/(1 - k)` (M. J. Harry, R. Stewart, Six Sigma Mechanical Design Tolerancing, Motorola 1988); with a shift of
 //! a whole half band there is none.
 
+use crate::problem::Problem;
 use sensitol_numeric::correlation::JointLaw;
 use sensitol_numeric::dimension::RssFactor;
-use crate::problem::Problem;
 
 /// The factor of the inflated RSS.
 const INFLATION: f64 = 1.5;

@@ -40,11 +40,7 @@ mod warnings;
 mod written;
 mod yield_source;
 
-pub use sensitol_numeric::capability::{EstimatedShare, InspectionRisks};
 pub use crate::extremes::{Coordinate, Extreme, Extremes, ExtremesProof, Place};
-pub use sensitol_numeric::law::{Branch, LawError, LawFigure};
-pub use sensitol_numeric::moments::{Contributions, Sampled};
-pub use sensitol_numeric::surrogate::Relocation;
 pub use crate::verification::{Crossing, FoundSwitch, OutputCorrelation, Share, Verified};
 pub use account::Account;
 pub use characteristic::{CharacteristicAnalysis, Sensitivity};
@@ -53,6 +49,10 @@ pub use interaction::{Interaction, InteractionList, Missing};
 pub use remainder::Remainder;
 pub use sampled_model::SampledModel;
 pub use sampling_interval::SamplingInterval;
+pub use sensitol_numeric::capability::{EstimatedShare, InspectionRisks};
+pub use sensitol_numeric::law::{Branch, LawError, LawFigure};
+pub use sensitol_numeric::moments::{Contributions, Sampled};
+pub use sensitol_numeric::surrogate::Relocation;
 pub use sobol::{FactorIndices, IndexSource, SobolIndices};
 pub use surface::{Fit, NoFit, Surface};
 pub use surface_law::SurfaceShares;
@@ -66,19 +66,19 @@ use serde::Serialize;
 
 use crate::assembly::Run;
 use crate::extremes::{SearchedExtremes, enclose, search};
-use sensitol_numeric::law::SurfaceLaw;
 use crate::method::{
     Basis, ClimbEnd, DerivativeSource, Method, MethodError, Narrow, Narrowed, Options, Outcome, climb_until,
 };
+use crate::problem::Problem;
+use crate::summary::{RunSummary, StopReason};
+use crate::warning::Warning;
+use sensitol_numeric::law::SurfaceLaw;
 use sensitol_numeric::parallel::join;
 use sensitol_numeric::parallel::prelude::*;
-use crate::problem::Problem;
 use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::shape::through;
-use crate::summary::{RunSummary, StopReason};
 use sensitol_numeric::time::Instant;
 use sensitol_numeric::verdict::{self, Judged};
-use crate::warning::Warning;
 use shares::Shares;
 
 /// The results of an analysis.

@@ -14,8 +14,8 @@ use super::CharacteristicAnalysis;
 use super::verified::VerificationKind;
 use crate::method::{Options, Outcome};
 use crate::problem::Problem;
-use sensitol_numeric::surrogate::Surrogate;
 use crate::verification::{OutputCorrelation, Verified, output_correlations};
+use sensitol_numeric::surrogate::Surrogate;
 
 /// The correlation of every pair of characteristics; empty with one characteristic, and with more than 40.
 ///

@@ -4,8 +4,8 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::assembly::{AssemblyFunction, Request, Responses, Run, Signature};
 use crate::problem::Problem;
-use sensitol_numeric::sampling::rank_first;
 use crate::verification::Share;
+use sensitol_numeric::sampling::rank_first;
 
 /// Points that are kept: a costly model is seldom asked for more.
 const MOST: usize = 1 << 14;

@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use sensitol_numeric::shape::{Four, through};
 use crate::simulation::Histogram;
 use crate::verification::Share;
+use sensitol_numeric::shape::{Four, through};
 
 /// Points of the model in place of a surrogate that was not trusted.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -17,14 +17,14 @@ use super::surface_law::{SurfaceShares, density};
 use super::unverified::error_of_shares;
 use super::verified::{TRUSTED, Verification, VerificationKind};
 use super::yield_source::YieldSource;
+use crate::method::{ErrorEstimate, Options, Outcome};
+use crate::problem::Problem;
+use crate::verification::Verified;
 use sensitol_numeric::capability::{Capability, Law, percentiles};
 use sensitol_numeric::characteristic::SpecLimits;
 use sensitol_numeric::law::{Branch, SurfaceLaw, joint_yield};
-use crate::method::{ErrorEstimate, Options, Outcome};
 use sensitol_numeric::parallel::prelude::*;
-use crate::problem::Problem;
 use sensitol_numeric::sampling::one_error;
-use crate::verification::Verified;
 
 /// A share beyond each limit, and the error of all of it.
 struct Rejected {

@@ -2,8 +2,8 @@
 
 use serde::{Serialize, Serializer};
 
-use sensitol_numeric::capability::EstimatedShare;
 use crate::verification::Share;
+use sensitol_numeric::capability::EstimatedShare;
 
 /// The source of Sobol' indices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -18,18 +18,18 @@ use super::recorded::ranked;
 use super::remembered::Remembered;
 use crate::assembly::{EvaluationError, NonRepeatable, Points, Request, Responses, Run};
 use crate::method::{Climbed, Outcome};
-use sensitol_numeric::moments::Moments;
 use crate::plan::Point;
 use crate::problem::Problem;
-use sensitol_numeric::sampling::{Draws, Estimate, Fine, Portion, SOBOL_DIMENSIONS, Sampler, Scale};
 use crate::simulation::{BINS, CHOICE, Histogram};
 use crate::summary::RunSummary;
-use sensitol_numeric::surrogate::{Chaos, Places, Sparse, Surrogate};
-use sensitol_numeric::time::Instant;
 use crate::verification::{
     MOMENTS, OVERLOOKED, OVERLOOKED_BY, REPLICATES, Share, TOO_SMALL, carried_by, effective, jackknife, standard,
     student, totals,
 };
+use sensitol_numeric::moments::Moments;
+use sensitol_numeric::sampling::{Draws, Estimate, Fine, Portion, SOBOL_DIMENSIONS, Sampler, Scale};
+use sensitol_numeric::surrogate::{Chaos, Places, Sparse, Surrogate};
+use sensitol_numeric::time::Instant;
 
 /// The parts into which the scramblings fall.
 const PARTS: usize = 4;

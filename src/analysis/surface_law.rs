@@ -5,14 +5,14 @@ use std::sync::Arc;
 use serde::{Serialize, Serializer};
 
 use super::counted::{Counted, counted};
+use crate::method::Outcome;
+use crate::problem::Problem;
 use sensitol_numeric::capability::{Law, Quantiles, TAIL};
 use sensitol_numeric::correlation::Correlation;
 use sensitol_numeric::distribution::{Distribution, Normal};
 use sensitol_numeric::law::{Branch, LawError, LawFigure, LawOptions, LawTail, Sought, SurfaceLaw};
-use crate::method::Outcome;
 use sensitol_numeric::moments::Interactions;
 use sensitol_numeric::pearson::Pearson;
-use crate::problem::Problem;
 use sensitol_numeric::surrogate::{Surrogate, Univariate};
 
 /// The probabilities of the quantiles of reports, lowest first, each by the tail that it leaves.

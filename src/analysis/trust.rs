@@ -7,8 +7,8 @@ use super::{CharacteristicAnalysis, YieldSource};
 use crate::method::{ClimbEnd, Climbed, Outcome};
 use crate::plan::Point;
 use crate::problem::Problem;
-use sensitol_numeric::verdict::ERRORS;
 use crate::warning::{Figure, Warning};
+use sensitol_numeric::verdict::ERRORS;
 
 /// A second difference below this part of sigma does not matter: what it bends is far below what anybody wants to know.
 const BEND: f64 = 1e-3;

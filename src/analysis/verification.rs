@@ -12,19 +12,19 @@ use super::interactions::knows_all_pairs;
 use super::verified::{TRUSTED, UNTRUSTED, VarianceShare, Verification, VerificationKind};
 use super::wanted::{MORE, PART};
 use crate::assembly::{EvaluationError, NonRepeatable, Run};
-use sensitol_numeric::capability::{Capability, Law};
 use crate::method::{ErrorEstimate, ErrorSource, Method, Options, Order, Outcome, interpolated};
-use sensitol_numeric::moments::Moments;
-use sensitol_numeric::parallel::prelude::*;
 use crate::problem::Problem;
 use crate::summary::RunSummary;
-use sensitol_numeric::surrogate::Surrogate;
-use sensitol_numeric::time::Instant;
 use crate::verification::{
     CORE, Checked, CheckedFigures, Crossing, SampledFigures, Target, Verified, most_points, most_points_of_shares,
     unexplained, variance_shares_during, verify_by_checks, verify_characteristic,
 };
 use crate::warning::{Change, Warning};
+use sensitol_numeric::capability::{Capability, Law};
+use sensitol_numeric::moments::Moments;
+use sensitol_numeric::parallel::prelude::*;
+use sensitol_numeric::surrogate::Surrogate;
+use sensitol_numeric::time::Instant;
 
 /// A sample is drawn again, larger, where it leaves more of a share open than this part of what a target lets be rejected: of 1e-4, 1e-5.
 const TARGET: f64 = 0.1;

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use serde::{Serialize, Serializer};
 
-use sensitol_numeric::shape::{Four, Sides, through};
 use crate::verification::{FoundSwitch, Share, Tails, Verified, WeightedSample};
+use sensitol_numeric::shape::{Four, Sides, through};
 
 /// How figures were verified.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

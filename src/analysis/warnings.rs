@@ -4,15 +4,15 @@ use std::collections::HashSet;
 
 use super::interactions::missing;
 use super::{CharacteristicAnalysis, Missing, trust};
-use sensitol_numeric::capability::Law;
-use sensitol_numeric::dimension::Dimension;
 use crate::evaluation::history;
 use crate::method::{Basis, Lacking, Order, Outcome};
-use sensitol_numeric::names::element;
 use crate::plan::Point;
 use crate::problem::Problem;
-use sensitol_numeric::surrogate::Surrogate;
 use crate::warning::{Figure, Loss, Warning, aggregated};
+use sensitol_numeric::capability::Law;
+use sensitol_numeric::dimension::Dimension;
+use sensitol_numeric::names::element;
+use sensitol_numeric::surrogate::Surrogate;
 
 /// The third power of a larger value is beyond the largest double, 1.8e308.
 const LARGEST: f64 = 1e100;

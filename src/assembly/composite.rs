@@ -8,17 +8,17 @@ mod switches;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, OnceLock};
 
+use super::evaluator_account::EvaluatorAccount;
 use super::formula::{Formula, FormulaError, FormulaSet, Meaning};
 use super::formula::{Role, UnitFinding};
 use super::implicit::{Anchor, Assembler, AssemblyFailure, Conditions, ConditionsError};
-use super::evaluator_account::EvaluatorAccount;
 use super::responses::all_finite;
 use super::{
     AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, Input, ModelInfo, Output, Points, Request,
     Responses, Run, Signature, Switches, in_blocks,
 };
-use sensitol_numeric::unit::Unit;
 use crate::warning::Warning;
+use sensitol_numeric::unit::Unit;
 
 /// Parts of formulas that are looked at to explain the failures of one block of rows: all failures of short formulas, and the first few
 /// of long ones. Explaining a failure costs an evaluation of every part of all formulas, without the

@@ -52,7 +52,8 @@ impl<'a> Run<'a> {
     /// Stops as soon as `stop` says why; from then on it must go on saying so.
     ///
     /// ```
-    /// use sensitol::{StopReason, assembly::Run};
+    /// use sensitol::StopReason;
+    /// use sensitol::assembly::Run;
     /// let stop = || Some(StopReason::TimeLimit);
     /// assert!(Run::to_the_end().stopping_when(&stop).stopped());
     /// ```

@@ -45,7 +45,6 @@ impl Switch {
     ///
     /// ```
     /// use sensitol::assembly::{Switch, SwitchKind};
-    /// use sensitol::internals::reach::*;
     /// let text = "max(a, b)".to_owned();
     /// let switch = Switch { kind: SwitchKind::Kink, text, formula: Some("reach".into()), span: 4..13 };
     /// assert_eq!(switch.name("reach"), "`max(a, b)`");

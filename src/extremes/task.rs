@@ -8,12 +8,12 @@ use super::model::{Model, Region};
 use super::start::Starts;
 use super::{Coordinate, Ended, Extreme, Extremes, ExtremesProof, Place, proof};
 use crate::assembly::{Bounds, Run};
-use sensitol_numeric::dimension::Dimension;
-use sensitol_numeric::distribution::Distribution;
 use crate::method::Outcome;
-use sensitol_numeric::parallel::join;
 use crate::plan::Point;
 use crate::problem::Problem;
+use sensitol_numeric::dimension::Dimension;
+use sensitol_numeric::distribution::Distribution;
+use sensitol_numeric::parallel::join;
 
 /// A surrogate has foretold values that it misses by no more than this part of their range.
 const FORETOLD: f64 = 1e-9;

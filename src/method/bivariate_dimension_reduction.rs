@@ -24,9 +24,9 @@ use super::dimension_reduction::{tables, univariate};
 use super::quadrature::{Quadrature, check, complete, next_to_the_mean};
 use super::{Integrated, InteractionEffect, Lacking, MainEffect, Method, MethodError, Options, Outcome, Procedure};
 use crate::assembly::Run;
-use sensitol_numeric::moments::Tables;
 use crate::plan::{KnownAnswers, Mixed, Plan, Point, Purpose};
 use crate::problem::Problem;
+use sensitol_numeric::moments::Tables;
 
 pub(super) struct BivariateDimensionReduction;
 

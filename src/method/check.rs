@@ -1,8 +1,8 @@
 //! Model against surrogate at points that no fit has seen.
 
 use crate::assembly::EvaluationError;
-use sensitol_numeric::moments::Moments;
 use crate::plan::{DifferencePlan, KnownAnswers, Point};
+use sensitol_numeric::moments::Moments;
 use sensitol_numeric::surrogate::{InputShape, Surrogate, Univariate};
 
 /// A difference three sigma out that does not matter: higher powers have that, and the other points see them.

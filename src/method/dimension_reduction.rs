@@ -24,10 +24,10 @@ use std::sync::Arc;
 use super::quadrature::{Quadrature, check, complete};
 use super::{Integrated, Lacking, MainEffect, Method, MethodError, Options, Outcome, Procedure};
 use crate::assembly::Run;
-use sensitol_numeric::distribution::Rule;
-use sensitol_numeric::moments::{Interactions, Term, contributions};
 use crate::plan::{KnownAnswers, Plan, Point};
 use crate::problem::Problem;
+use sensitol_numeric::distribution::Rule;
+use sensitol_numeric::moments::{Interactions, Term, contributions};
 
 pub(super) struct DimensionReduction;
 

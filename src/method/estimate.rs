@@ -9,8 +9,8 @@ use super::check::SurrogateCheck;
 use super::hidden::{hidden, ratio};
 use super::{Basis, Climbed, Order, Outcome};
 use crate::assembly::Directions;
-use sensitol_numeric::moments::{Interactions, Moments, Term, contributions};
 use crate::problem::Problem;
+use sensitol_numeric::moments::{Interactions, Moments, Term, contributions};
 use sensitol_numeric::surrogate::{Inputs, Surrogate, Univariate};
 
 /// Interactions of which the exact derivatives are worth their time.

@@ -8,10 +8,10 @@ use super::gradients;
 use super::{Basis, Cost, DerivativeSource, Fitted, Method, MethodError, NODES, Options, Outcome, Pairs, Procedure};
 use crate::assembly::Run;
 use crate::evaluation::{Evaluated, evaluate};
-use sensitol_numeric::moments::Interactions;
-use sensitol_numeric::names::nearest;
 use crate::plan::{DifferencePlan, KnownAnswers, Layout, Mixed, PairChoice, Plan, Point, Spread, Stencil};
 use crate::problem::Problem;
+use sensitol_numeric::moments::Interactions;
+use sensitol_numeric::names::nearest;
 use sensitol_numeric::surrogate::{Surrogate, Univariate};
 
 /// The derivatives of every characteristic that the assembly function knows.

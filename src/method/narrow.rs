@@ -15,11 +15,11 @@ use super::{DerivativeSource, Method, MethodError, Options, Outcome};
 use crate::assembly::{
     AssemblyFunction, Composite, EvaluationError, Input, ModelInfo, Points, Request, Responses, Run, Signature,
 };
+use crate::evaluation::Evaluated;
+use crate::problem::Problem;
 use sensitol_numeric::characteristic::Characteristic;
 use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::distribution::{Distribution, Normal, PearsonLaw};
-use crate::evaluation::Evaluated;
-use crate::problem::Problem;
 use sensitol_numeric::sampling::{Draws, Portion, Sampler, Summary};
 use sensitol_numeric::surrogate::Surrogate;
 
@@ -70,7 +70,8 @@ impl<'p> Narrow<'p> {
         if needed.is_empty() || names.is_empty() {
             return None;
         }
-        let sampler = if dimensions <= sensitol_numeric::sampling::SOBOL_DIMENSIONS { Sampler::Sobol } else { Sampler::Random };
+        let sampler =
+            if dimensions <= sensitol_numeric::sampling::SOBOL_DIMENSIONS { Sampler::Sobol } else { Sampler::Random };
         let draws = Draws::new(problem.dimensions(), problem.correlation(), sampler, Options::SEED).ok()?;
         let sent = composite.drivers(&draws.points(Portion { replicate: 0, first: 0, rows: POINTS }))?;
         let nominal: Vec<f64> = problem.dimensions().iter().map(|dimension| dimension.nominal()).collect();

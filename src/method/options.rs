@@ -5,9 +5,9 @@ use std::fmt;
 use std::str::FromStr;
 
 use super::Method;
-use sensitol_numeric::names::UnknownName;
 use crate::plan::Stencil;
 use crate::warning::Figure;
+use sensitol_numeric::names::UnknownName;
 
 /// How a problem is to be analysed.
 ///

@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use super::{Basis, Climbed, ExactDerivatives, Method, Order};
 use crate::evaluation::Evaluated;
-use sensitol_numeric::moments::Moments;
 use crate::plan::{Mixed, Plan};
+use sensitol_numeric::moments::Moments;
 use sensitol_numeric::surrogate::{Surrogate, Univariate};
 
 /// The outcome of a method.

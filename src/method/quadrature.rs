@@ -21,11 +21,11 @@ use super::{
     Outcome,
 };
 use crate::assembly::Run;
-use sensitol_numeric::correlation::Correlation;
-use sensitol_numeric::distribution::{Distribution, Normal, Rule, StandardMoments, behind_normal};
 use crate::evaluation::{Evaluated, evaluate};
 use crate::plan::{AtNode, Design, KnownAnswers, Mixed, Plan, Point, Purpose};
 use crate::problem::Problem;
+use sensitol_numeric::correlation::Correlation;
+use sensitol_numeric::distribution::{Distribution, Normal, Rule, StandardMoments, behind_normal};
 use sensitol_numeric::surrogate::Univariate;
 
 /// A median as near to the mean as this part of sigma is the mean.

@@ -33,9 +33,9 @@ use super::{
 };
 use crate::assembly::Run;
 use crate::evaluation::evaluate;
-use sensitol_numeric::moments::Interactions;
 use crate::plan::{Axis, Design, KnownAnswers, Mixed, Plan, Point, Purpose, Spread, corners};
 use crate::problem::Problem;
+use sensitol_numeric::moments::Interactions;
 use sensitol_numeric::surrogate::{Surrogate, Univariate};
 
 pub(super) struct ResponseSurface;

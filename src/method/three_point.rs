@@ -24,11 +24,11 @@ use super::{
     Cost, Integrated, InteractionEffect, Lacking, MainEffect, Method, MethodError, Options, Outcome, Procedure,
 };
 use crate::assembly::Run;
+use crate::plan::{AtNode, KnownAnswers, Plan, Point, Purpose};
+use crate::problem::Problem;
 use sensitol_numeric::distribution::Rule;
 use sensitol_numeric::moments::{Moments, exact};
 use sensitol_numeric::parallel::prelude::*;
-use crate::plan::{AtNode, KnownAnswers, Plan, Point, Purpose};
-use crate::problem::Problem;
 
 pub(super) struct ThreePoint;
 

@@ -12,7 +12,7 @@ use std::collections::HashSet;
 /// 15, 16, 32, 51, 64, 85, 106, 128 and so on. Up to 17 dimensions no regular design of this resolution is smaller.
 ///
 /// ```
-/// use sensitol::internals::corners;
+/// use sensitol::plan::corners;
 /// assert_eq!([1, 4, 5, 6, 8, 11, 17].map(|n| corners(n).len()), [2, 16, 16, 32, 64, 128, 256]);
 /// ```
 pub fn corners(n: usize) -> Vec<Vec<bool>> {

@@ -11,8 +11,8 @@ use super::model::{Answers, Model};
 use super::place::{BEFORE, FARTHEST, length, unit};
 use super::space::Columns;
 use super::target::Target;
-use sensitol_numeric::distribution::standard_normal;
 use crate::verification::seldom_points;
+use sensitol_numeric::distribution::standard_normal;
 
 /// How wide the groups are; with more variables than this, all points of a wide group lie far out, where nothing is likely.
 const SCALES: [f64; 4] = [1.0, 1.5, 2.0, 3.0];

@@ -33,18 +33,18 @@ mod within;
 use serde::Serialize;
 
 use crate::assembly::{EvaluationError, NonRepeatable, Run};
-use sensitol_numeric::characteristic::Characteristic;
 use crate::evaluation::history;
 use crate::method::{Method, MethodError, Options};
 use crate::problem::Problem;
+use crate::simulation::{Pace, SimulationError, Surrogates};
+use crate::summary::RunSummary;
+use crate::warning::Warning;
+use sensitol_numeric::characteristic::Characteristic;
 use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::sampling::{Estimate, SamplingError};
 use sensitol_numeric::shape::{text, through};
-use crate::simulation::{Pace, SimulationError, Surrogates};
-use crate::summary::RunSummary;
 use sensitol_numeric::time::Instant;
 use sensitol_numeric::verdict::Judged;
-use crate::warning::Warning;
 #[cfg(feature = "schema")]
 pub(crate) use shape::RareShape;
 

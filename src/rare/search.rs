@@ -9,9 +9,9 @@ use super::space::Columns;
 use super::target::Target;
 use super::within::within;
 use super::{Beyond, DesignPoint, RareCharacteristic, border, correct};
+use crate::problem::Problem;
 use sensitol_numeric::characteristic::Characteristic;
 use sensitol_numeric::distribution::standard_normal;
-use crate::problem::Problem;
 use sensitol_numeric::sampling::Estimate;
 
 /// Rejects by which the parts of the components are chosen, at most.

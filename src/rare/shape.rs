@@ -3,8 +3,8 @@
 use serde::{Serialize, Serializer};
 
 use super::{Beyond, RareCharacteristic, RareEvents};
-use sensitol_numeric::sampling::Estimate;
 use crate::warning::warnings_last;
+use sensitol_numeric::sampling::Estimate;
 use sensitol_numeric::verdict::{Judged, Verdict};
 
 warnings_last!(RareEvents);

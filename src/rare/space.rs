@@ -3,11 +3,11 @@
 //! An input is its own quantile function of a normal variable, and correlated ones are functions of correlated normal
 //! variables (Nataf's law, [`sensitol_numeric::correlation`]), which a factor of their matrix makes of independent ones.
 
+use crate::method::Outcome;
+use crate::problem::Problem;
 use sensitol_numeric::correlation::{Together, Transform};
 use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::distribution::{Probability, behind_normal};
-use crate::method::Outcome;
-use crate::problem::Problem;
 use sensitol_numeric::sampling::SamplingError;
 
 /// Points as columns, one for every varying dimension.

@@ -10,14 +10,14 @@ use super::inspected::inspected;
 use super::replicate::of_replicates;
 use super::shape::value;
 use crate::assembly::EvaluationError;
+use crate::method::Method;
+use crate::warning::Warning;
 use sensitol_numeric::capability::{self, InspectionRisks, TAIL};
 use sensitol_numeric::characteristic::{Characteristic, SpecLimits};
-use crate::method::Method;
 use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::sampling::{Estimate, FEWEST, Fine, Summary, of_moments, wilson};
 use sensitol_numeric::shape::{millionths, text};
 use sensitol_numeric::verdict::{self, Judged, Verdict};
-use crate::warning::Warning;
 
 /// Estimates for one characteristic, each with its standard error. Unknown values are None.
 #[derive(Debug, Clone, Serialize)]

@@ -6,14 +6,14 @@
 use super::surrogates::{KnownSurrogate, Shape, Surrogates};
 use super::{ROWS, SimulationError, SimulationOptions};
 use crate::assembly::{Points, Run};
-use sensitol_numeric::characteristic::{Characteristic, SpecLimits};
 use crate::evaluation::Evaluated;
 use crate::method::{Method, Options, Outcome};
+use crate::problem::Problem;
+use crate::summary::StopReason;
+use sensitol_numeric::characteristic::{Characteristic, SpecLimits};
 use sensitol_numeric::moments::Sampled;
 use sensitol_numeric::parallel::prelude::*;
-use crate::problem::Problem;
 use sensitol_numeric::sampling::{Draws, Portion, Sampler};
-use crate::summary::StopReason;
 use sensitol_numeric::surrogate::Surrogate;
 
 /// Points of the surrogate for every point of the model, by which its own share within the limits is known,

@@ -15,13 +15,13 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::{Pace, REPLICATES, SimulationError};
 use crate::assembly::{Request, Responses, Run};
+use crate::problem::Problem;
+use crate::summary::RunSummary;
+use crate::verification::{CONFIDENCE, Columns, Space, jackknife, totals};
 use sensitol_numeric::correlation::factors;
 use sensitol_numeric::parallel::prelude::*;
-use crate::problem::Problem;
 use sensitol_numeric::sampling::Normals;
-use crate::summary::RunSummary;
 use sensitol_numeric::time::Instant;
-use crate::verification::{CONFIDENCE, Columns, Space, jackknife, totals};
 
 /// Evaluations of a costly model without a budget, at most.
 const UNASKED: u64 = 10_000;

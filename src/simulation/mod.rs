@@ -15,10 +15,10 @@ mod written;
 
 pub use written::SimulatedShape;
 
-pub use sensitol_numeric::sampling::{Estimate, Sampler, SamplingError};
 pub(crate) use characteristic::{BINS, CHOICE};
 pub use characteristic::{Histogram, SimulatedCharacteristic, SurrogateControl, YieldEstimate};
 pub use indices::{IndexEstimate, SampledFactor};
+pub use sensitol_numeric::sampling::{Estimate, Sampler, SamplingError};
 
 use std::time::Duration;
 
@@ -26,18 +26,18 @@ use serde::Serialize;
 
 use crate::assembly::{EvaluationError, NonRepeatable, Points, Request, Responses, Run, near_rows};
 use crate::method::{Method, MethodError, Options, Outcome};
-use sensitol_numeric::parallel::prelude::*;
-use sensitol_numeric::parallel::{Rooms, join};
 use crate::problem::Problem;
-use sensitol_numeric::sampling::{Draws, Portion, Room};
-use sensitol_numeric::shape::through;
 use crate::summary::RunSummary;
-use sensitol_numeric::time::Instant;
-use sensitol_numeric::verdict::Judged;
 use crate::verification::OutputCorrelation;
 use crate::warning::{Advice, Warning};
 use control::Control;
 use count::Lens;
+use sensitol_numeric::parallel::prelude::*;
+use sensitol_numeric::parallel::{Rooms, join};
+use sensitol_numeric::sampling::{Draws, Portion, Room};
+use sensitol_numeric::shape::through;
+use sensitol_numeric::time::Instant;
+use sensitol_numeric::verdict::Judged;
 pub(crate) use surrogates::{Surrogates, chosen};
 use tally::{Block, Tally};
 

@@ -3,8 +3,8 @@
 use super::SimulationError;
 use crate::assembly::Run;
 use crate::method::{Method, Options, Outcome};
-use sensitol_numeric::moments::Sampled;
 use crate::problem::Problem;
+use sensitol_numeric::moments::Sampled;
 use sensitol_numeric::surrogate::Surrogate;
 
 /// Varying dimensions up to which every interaction is examined.

@@ -12,9 +12,9 @@ use super::{REPLICATES, Simulation, SimulationOptions, TASKS};
 use crate::assembly::{EvaluationError, NonRepeatable, Responses};
 use crate::evaluation::history;
 use crate::problem::Problem;
+use crate::summary::{RunSummary, StopReason};
 use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::sampling::{Fine, Portion, Sampler, Scale, Summary};
-use crate::summary::{RunSummary, StopReason};
 use sensitol_numeric::verdict::Judged;
 
 /// The answers of one portion.

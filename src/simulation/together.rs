@@ -4,10 +4,10 @@ use super::characteristic::{REJECTED, YieldEstimate};
 use super::count::Lens;
 use super::replicate::of_replicates;
 use crate::assembly::{Responses, all_finite};
-use sensitol_numeric::elementary::{Work, on_this_processor};
 use crate::problem::Problem;
-use sensitol_numeric::sampling::{Sampler, wilson};
 use crate::verification::{OutputCorrelation, REPLICATES, student};
+use sensitol_numeric::elementary::{Work, on_this_processor};
+use sensitol_numeric::sampling::{Sampler, wilson};
 
 /// A number of every part.
 type Parts<T> = [T; REPLICATES];

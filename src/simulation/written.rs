@@ -4,9 +4,9 @@ use serde::{Serialize, Serializer};
 
 use super::shape::{ControlShape, Reduction};
 use super::{SimulatedCharacteristic, Simulation, SurrogateControl};
+use crate::warning::warnings_last;
 use sensitol_numeric::capability::Quantiles;
 use sensitol_numeric::sampling::Estimate;
-use crate::warning::warnings_last;
 use sensitol_numeric::shape::Four;
 use sensitol_numeric::verdict::{Judged, Verdict};
 

@@ -81,7 +81,7 @@ impl Checked {
 /// The 95 % interval of a share of which `seen` of `points` were: Clopper and Pearson (1934), one-sided where none was.
 ///
 /// ```
-/// use sensitol::internals::unseen;
+/// use sensitol::verification::unseen;
 /// // 1 - 0.05^(1/14) = 19.3 %.
 /// assert!((unseen(14, 0)[1] - 0.1926).abs() < 1e-4 && unseen(14, 0)[0] == 0.0);
 /// // The exact interval of 1 of 10 is 0.25 % to 44.5 %.

@@ -38,13 +38,13 @@ pub(crate) use weighted::WeightedSample;
 use serde::Serialize;
 
 use crate::assembly::Run;
-use sensitol_numeric::correlation::factors;
 use crate::problem::Problem;
-use sensitol_numeric::sampling::Normals;
-use sensitol_numeric::surrogate::Surrogate;
 use figures::moments;
 use model::Model;
 use sample::Sample;
+use sensitol_numeric::correlation::factors;
+use sensitol_numeric::sampling::Normals;
+use sensitol_numeric::surrogate::Surrogate;
 
 /// Points of the core of a sample.
 pub(crate) const CORE: usize = 1 << 15;
@@ -109,7 +109,6 @@ impl Verified {
     ///
     /// ```
     /// use sensitol::analysis::Verified;
-    /// use sensitol::internals::reach::*;
     /// assert_eq!(Verified { value: 1.0, error: 3.0 }.error_of(5.0), 5.0);
     /// ```
     pub(crate) fn error_of(&self, value: f64) -> f64 {
@@ -129,7 +128,7 @@ impl Verified {
 ///
 /// ```
 /// use sensitol::{Closure, Dimension, Problem};
-/// use sensitol::internals::verify_by_sampling;
+/// use sensitol::verification::verify_by_sampling;
 /// let dimensions = [Dimension::normal("a", 0.0, 3.0)?, Dimension::normal("b", 0.0, 3.0)?];
 /// let problem = Problem::new(dimensions, Closure::scalar("larger", |x| x[0].max(x[1])))?;
 /// let mean = verify_by_sampling(&problem, 1)[0].mean.unwrap();
@@ -188,7 +187,7 @@ pub(crate) fn unexplained(
 ///
 /// ```
 /// use sensitol::{Closure, Dimension, Problem};
-/// use sensitol::internals::variance_shares;
+/// use sensitol::verification::variance_shares;
 /// let dimensions = [Dimension::normal("a", 0.0, 3.0)?, Dimension::normal("b", 0.0, 3.0)?];
 /// let problem = Problem::new(dimensions, Closure::scalar("y", |x| x[0] + x[0] * x[1]))?;
 /// let shares = variance_shares(&problem, 0, 1).unwrap();

@@ -2,8 +2,8 @@
 
 use super::space::{Columns, Space};
 use crate::assembly::{Request, Responses, Run};
-use sensitol_numeric::parallel::prelude::*;
 use crate::problem::Problem;
+use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::surrogate::Surrogate;
 
 pub(super) struct Model<'p> {

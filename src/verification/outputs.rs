@@ -6,8 +6,8 @@ use super::Verified;
 use super::figures::{jackknife, student, totals};
 use super::model::Model;
 use super::sample::REPLICATES;
-use sensitol_numeric::parallel::prelude::*;
 use crate::problem::Problem;
+use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::sampling::Normals;
 
 /// Points of one randomisation.

@@ -5,9 +5,9 @@
 //! inputs need no case of their own: everything here and after lives in `z`.
 
 use crate::assembly::Points;
+use crate::problem::Problem;
 use sensitol_numeric::correlation::Together;
 use sensitol_numeric::distribution::{Distribution, Normal, PearsonLaw, Probability, behind_normal};
-use crate::problem::Problem;
 
 /// Points as columns, one for every variable.
 pub(crate) type Columns = Vec<Vec<f64>>;

@@ -12,7 +12,8 @@ use crate::method_kind::Method;
 /// `Display` writes a plain sentence without the name of any option.
 ///
 /// ```
-/// use sensitol::{Method, warning::Advice};
+/// use sensitol::Method;
+/// use sensitol::warning::Advice;
 /// let advice = Advice::UseMethod { methods: vec![Method::Full] };
 /// assert_eq!(advice.to_string(), "Use the method `full`.");
 /// ```

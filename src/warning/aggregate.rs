@@ -9,7 +9,7 @@ use super::{Loss, Warning};
 ///
 /// ```
 /// use sensitol::Warning;
-/// use sensitol::internals::aggregated;
+/// use sensitol::warning::aggregate::aggregated;
 /// let edge = |dimension: &str, to| {
 ///     Warning::SupportEdge { dimension: dimension.into(), from: -1.5, to, others: Vec::new() }
 /// };

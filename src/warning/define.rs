@@ -19,7 +19,8 @@ macro_rules! warnings {
         /// It serialises as `{ code, characteristic, dimension, message, data, advice }`, with its fields in `data`.
         ///
         /// ```
-        /// use sensitol::{Method, Warning, warning::Advice};
+        /// use sensitol::{Method, Warning};
+        /// use sensitol::warning::Advice;
         /// let warning = Warning::PairsNotExamined { examined: 10, possible: 45 };
         /// assert_eq!(warning.code(), "pairs-not-examined");
         /// assert_eq!(warning.advice(), [Advice::UseMethod { methods: vec![Method::Full, Method::Auto] }]);

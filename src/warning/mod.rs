@@ -22,10 +22,10 @@ mod text;
 mod written;
 
 use crate::summary::StopReason;
-pub(crate) use serialize::warnings_last;
 pub use advice::Advice;
 pub use aggregate::aggregated;
 use serde::ser::SerializeMap;
+pub(crate) use serialize::warnings_last;
 pub use terms::{Change, Counted, Ended, Figure, Loss, NameKind};
 use text::Text;
 use written::WarningData;

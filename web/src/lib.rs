@@ -1,7 +1,7 @@
 //! The engine for the workbench: studies as text in, results and errors as JSON out.
 
 use js_sys::Function;
-use sensitol::internals::task::{Task, TaskPlace, models as built_in};
+use sensitol_report::task::{Task, TaskPlace, models as built_in};
 use wasm_bindgen::prelude::wasm_bindgen;
 use wasm_bindgen::{JsError, JsValue};
 

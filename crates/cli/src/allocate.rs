@@ -11,13 +11,13 @@ use super::running::{Clock, confirmed, externals, kept, on_threads};
 use super::{interrupt, study};
 use sensitol::allocation::{Allocation, AllocationOptions, AllocationTask, CostBasis, Goal, Status, allocate_with};
 use sensitol::assembly::{Progress, Run};
+use sensitol::method::Options;
+use sensitol::warning::{Counted, Warning};
 use sensitol_report::document::svg::svg;
 use sensitol_report::document::terminal::text;
-use sensitol::method::Options;
 use sensitol_report::html::allocate_html;
 use sensitol_report::{AllocationReport, WrittenAnew, csv_tables};
 use sensitol_study::{NamedFile, Rewritten, Study};
-use sensitol::warning::{Counted, Warning};
 
 pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
     let study = study::read_for_all(&asked.study, &|| externals(asked.work.journal.as_deref(), look, None))?;

@@ -15,17 +15,17 @@ use super::running::{Clock, checked, confirmed, externals, kept, on_threads};
 use super::study;
 use sensitol::analysis::{Analysis, CharacteristicAnalysis, analyze_with};
 use sensitol::assembly::{Progress, Run, Table};
+use sensitol::method::Narrow;
+use sensitol::warning::{Counted, Warning};
 use sensitol_numeric::characteristic::Characteristic;
 use sensitol_report::document::markdown::markdown;
 use sensitol_report::document::terminal::text;
 use sensitol_report::document::{Detail, Style};
-use sensitol::method::Narrow;
 use sensitol_report::html::{WhatIf, analyze_html};
 use sensitol_report::{
     Report, analyze_xlsx, budget_csv_of_studies, budget_document, csv_file_names, csv_files, stack_csv, stack_document,
 };
 use sensitol_study::Study;
-use sensitol::warning::{Counted, Warning};
 
 /// `sensitol analyze` of one study.
 pub(super) fn run(path: &Path, asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {

@@ -8,13 +8,13 @@ use super::running::{Clock, confirmed, kept, on_threads};
 use super::{interrupt, study};
 use sensitol::assembly::Run;
 use sensitol::compare::{CompareOptions, compare_with};
-use sensitol_report::document::svg::svg;
-use sensitol_report::document::terminal::text;
 use sensitol::evaluation::history;
 use sensitol::method::Options;
+use sensitol::warning::{Counted, Warning};
+use sensitol_report::document::svg::svg;
+use sensitol_report::document::terminal::text;
 use sensitol_report::html::compare_html;
 use sensitol_report::{CompareReport, csv_tables};
-use sensitol::warning::{Counted, Warning};
 
 pub(super) fn run(asked: &CompareArgs, look: Look) -> Result<Exit, Failure> {
     let study = study::read_sampled(&asked.of, look)?;

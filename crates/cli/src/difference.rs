@@ -8,8 +8,8 @@ use super::csv::CsvFolder;
 use super::failure::{Exit, Failure};
 use super::files::Files;
 use super::output::{Look, json};
-use sensitol_report::document::terminal::text;
 use sensitol_report::csv::csv_tables;
+use sensitol_report::document::terminal::text;
 use sensitol_report::{DifferenceReport, Report, ToDocument};
 
 /// The tables that go to `--csv`.

@@ -8,16 +8,16 @@ use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use super::advice;
 use sensitol::allocation::AllocateError;
 use sensitol::compare::CompareError;
-use sensitol_external::journal::JournalError;
 use sensitol::method::MethodError;
-use sensitol_numeric::names::UnknownName;
-use sensitol_numeric::pearson::PearsonError;
 use sensitol::problem::ProblemError;
 use sensitol::rare::RareError;
 use sensitol::simulation::SimulationError;
-use sensitol_study::{RewriteError, StudyError};
 use sensitol::sweep::SweepError;
 use sensitol::warning::Advice;
+use sensitol_external::journal::JournalError;
+use sensitol_numeric::names::UnknownName;
+use sensitol_numeric::pearson::PearsonError;
+use sensitol_study::{RewriteError, StudyError};
 
 /// The exit codes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

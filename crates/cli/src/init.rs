@@ -7,8 +7,8 @@ use super::args::InitArgs;
 use super::failure::{Exit, Failure};
 use super::models::known;
 use super::output::Destination;
-use sensitol_report::document::number::plain;
 use sensitol_models::{Model, ModelInput};
+use sensitol_report::document::number::plain;
 use sensitol_study::Format;
 use sensitol_study::write::{inline, pair, quoted};
 

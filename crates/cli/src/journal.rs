@@ -12,11 +12,11 @@ use super::failure::{Exit, Failure};
 use super::files::Files;
 use super::output::{self, Destination, Look, json};
 use super::shared_args::OutputArgs;
+use sensitol_external::journal::{KnownModel, Store, StoredAnswer};
 use sensitol_report::document::csv::guarded;
 use sensitol_report::document::number::UNKNOWN;
 use sensitol_report::document::terminal::text;
 use sensitol_report::document::{Blocks, Document};
-use sensitol_external::journal::{KnownModel, Store, StoredAnswer};
 
 /// The report of `journal show --json` on one model.
 #[derive(Debug, Serialize, JsonSchema)]

@@ -50,8 +50,8 @@ use clap::{CommandFactory, Parser};
 use args::{Arguments, Command};
 use failure::{Exit, Failure};
 
-use sensitol_numeric::names::nearest;
 pub use reference::{command, exit_codes};
+use sensitol_numeric::names::nearest;
 
 /// Prints what the command line itself has to say. Help and version are results, everything else is a usage error.
 fn told(error: clap::Error) -> Exit {

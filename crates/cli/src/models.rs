@@ -6,10 +6,10 @@ use serde::Serialize;
 use super::args::ModelsArgs;
 use super::failure::{Exit, Failure};
 use super::output::{Destination, Look, json};
+use sensitol_models::{ALL, Model};
 use sensitol_report::document::number::plain;
 use sensitol_report::document::terminal::text;
 use sensitol_report::document::{Blocks, Cell, DataTable, Document, Section};
-use sensitol_models::{ALL, Model};
 
 /// The report of `models --json` on one model.
 #[derive(Debug, Serialize, JsonSchema)]

@@ -11,10 +11,10 @@ use tempfile::TempPath;
 use super::advice;
 use super::args::OutputArgs;
 use super::failure::Failure;
-use sensitol_report::document::{Detail, Style};
+use sensitol::warning::Warning;
 use sensitol_numeric::names::{clean, is_hidden};
 use sensitol_report::WarningReport;
-use sensitol::warning::Warning;
+use sensitol_report::document::{Detail, Style};
 
 /// Warnings of one code that are shown each, and names of the others that are shown.
 const EACH: usize = 3;

@@ -10,15 +10,15 @@ use super::failure::{Exit, Failure};
 use super::files::Files;
 use super::output::{Look, json};
 use super::{points, study};
-use sensitol_report::document::number::plural;
-use sensitol_report::document::terminal::text;
-use sensitol_report::document::{Blocks, Document};
 use sensitol::method::{DerivativeSource, Narrow};
 use sensitol::plan::{KnownAnswers, Plan, Point, Purpose, Stage};
 use sensitol::problem::Problem;
-use sensitol_study::Externals;
 use sensitol::verification::MOST_CHECKS;
 use sensitol::warning::Warning;
+use sensitol_report::document::number::plural;
+use sensitol_report::document::terminal::text;
+use sensitol_report::document::{Blocks, Document};
+use sensitol_study::Externals;
 
 /// The report of `plan --json`.
 #[derive(Debug, Serialize, JsonSchema)]

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use super::failure::Failure;
 use sensitol::assembly::{Points, Table};
-use sensitol_report::document::csv::{guarded, unguarded};
 use sensitol::problem::Problem;
+use sensitol_report::document::csv::{guarded, unguarded};
 use sensitol_study::table::{NumberFault, Style, delimiter, records};
 
 /// A column for every input that the model is sent, a row for every point, every number to its last digit.

@@ -11,13 +11,13 @@ use super::progress::Bar;
 use super::running::listener;
 use super::{interrupt, study};
 use sensitol::assembly::{Progress, Run};
+use sensitol::method::MethodError;
+use sensitol::probe::{Finding, Probe, evaluations, probe};
+use sensitol::summary::RunSummary;
 use sensitol_report::document::number::{UNKNOWN, known, plural, significant};
 use sensitol_report::document::terminal::text;
 use sensitol_report::document::{Blocks, Document, Line, Section, Tone};
-use sensitol::method::MethodError;
-use sensitol::probe::{Finding, Probe, evaluations, probe};
 use sensitol_study::Externals;
-use sensitol::summary::RunSummary;
 
 /// The report of `probe --json`.
 #[derive(Debug, Serialize, JsonSchema)]

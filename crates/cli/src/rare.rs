@@ -7,13 +7,13 @@ use super::interrupt;
 use super::output::{Look, json};
 use super::running::{Clock, checked, confirmed, kept};
 use super::sampling::{sampling, surrogate};
-use sensitol_report::document::terminal::text;
 use sensitol::method::Options;
 use sensitol::rare::{RareCharacteristic, RareOptions, rare_with};
+use sensitol::warning::{Counted, Warning};
+use sensitol_report::document::terminal::text;
 use sensitol_report::html::rare_html;
 use sensitol_report::{RareReport, csv_tables};
 use sensitol_study::Study;
-use sensitol::warning::{Counted, Warning};
 
 /// Points unless the user says otherwise, of a cheap model and of a costly one.
 const SAMPLES: [u64; 2] = [10_000, 1000];

@@ -15,7 +15,7 @@ pub(super) fn completions(asked: &CompletionsArgs) -> Result<Exit, Failure> {
 /// The command line as it is parsed: what the manual page and `docs/reference/commands.md` are made from.
 ///
 /// ```
-/// let analyze = sensitol::cli::command().find_subcommand("analyze").cloned().unwrap();
+/// let analyze = sensitol_cli::command().find_subcommand("analyze").cloned().unwrap();
 /// assert!(analyze.get_arguments().any(|option| option.get_long() == Some("method")));
 /// ```
 pub fn command() -> clap::Command {
@@ -27,7 +27,7 @@ pub fn command() -> clap::Command {
 /// Exit codes and what they say, in ascending order.
 ///
 /// ```
-/// assert_eq!(sensitol::cli::exit_codes().next().unwrap().0, 0);
+/// assert_eq!(sensitol_cli::exit_codes().next().unwrap().0, 0);
 /// ```
 pub fn exit_codes() -> impl Iterator<Item = (u8, &'static str)> {
     Exit::ALL.into_iter().map(|(exit, meaning)| (exit as u8, meaning))

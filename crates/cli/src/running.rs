@@ -8,13 +8,13 @@ use super::failure::{Exit, Failure};
 use super::interrupt;
 use super::output::{self, Look};
 use sensitol::assembly::Table;
-use sensitol_external::Listener;
 use sensitol::problem::Problem;
+use sensitol::summary::{RunSummary, StopReason};
+use sensitol::warning::{Counted, Warning};
+use sensitol_external::Listener;
+use sensitol_numeric::verdict::{self, Judged, Verdict};
 use sensitol_report::About;
 use sensitol_study::{Externals, JournalPlace, Study};
-use sensitol::summary::{RunSummary, StopReason};
-use sensitol_numeric::verdict::{self, Judged, Verdict};
-use sensitol::warning::{Counted, Warning};
 
 /// Since when a command runs, and for how long it may.
 pub(super) struct Clock {

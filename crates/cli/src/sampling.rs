@@ -12,8 +12,8 @@ use super::running::{Clock, on_threads};
 use sensitol::assembly::Run;
 use sensitol::method::{Method, Options};
 use sensitol::simulation::Pace;
-use sensitol_study::Study;
 use sensitol::warning::Warning;
+use sensitol_study::Study;
 
 /// A simulation that will take longer than this tells so.
 const LONG: Duration = Duration::from_secs(60);

@@ -14,11 +14,11 @@ use super::files::Files;
 use super::interrupt;
 use super::output::{Destination, Look, error, json};
 use super::study::ALL;
+use sensitol::summary::StopReason;
+use sensitol::warning::{Counted, Warning};
 use sensitol_report::document::terminal::text;
 use sensitol_report::{Budget, Report, Stack, budget_csv_of_studies, stack_csv_of_studies};
 use sensitol_study::{Externals, Study};
-use sensitol::summary::StopReason;
-use sensitol::warning::{Counted, Warning};
 
 /// Tells what is wrong with one study, and how it ended. Only an output that can no longer be printed to ends all.
 pub(super) fn outcome(study: &str, result: Result<Exit, Failure>) -> Result<Exit, Failure> {

@@ -7,14 +7,14 @@ use super::output::{Look, json};
 use super::running::{Clock, checked, confirmed, kept};
 use super::sampling::{sampling, surrogate};
 use super::{interrupt, rare, study};
-use sensitol_report::document::terminal::text;
 use sensitol::method::Options;
+use sensitol::simulation::{SimulatedCharacteristic, Simulation, SimulationOptions, simulate_with};
+use sensitol::warning::{Counted, Warning};
+use sensitol_numeric::sampling::Sampler;
+use sensitol_report::document::terminal::text;
 use sensitol_report::html::simulate_html;
 use sensitol_report::{SimulationReport, csv_tables};
-use sensitol_numeric::sampling::Sampler;
-use sensitol::simulation::{SimulatedCharacteristic, Simulation, SimulationOptions, simulate_with};
 use sensitol_study::Study;
-use sensitol::warning::{Counted, Warning};
 
 /// Points unless the user says otherwise; where accuracy is wanted, as many as that takes.
 const SAMPLES: u64 = 100_000;

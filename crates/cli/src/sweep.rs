@@ -8,13 +8,13 @@ use super::progress::Bar;
 use super::running::{Clock, confirmed, externals, kept, on_threads};
 use super::{interrupt, study};
 use sensitol::assembly::{Progress, Run};
+use sensitol::sweep::{Sweep, sweep_with};
+use sensitol::warning::Counted;
 use sensitol_report::document::svg::svg;
 use sensitol_report::document::terminal::text;
 use sensitol_report::html::sweep_html;
 use sensitol_report::{SweepReport, csv_tables};
 use sensitol_study::Study;
-use sensitol::sweep::{Sweep, sweep_with};
-use sensitol::warning::Counted;
 
 pub(super) fn run(asked: &SweepArgs, look: Look) -> Result<Exit, Failure> {
     let externals = externals(asked.work.journal.as_deref(), look, None);

@@ -19,8 +19,8 @@ use std::str::FromStr;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use sensitol::assembly::{AssemblyFunction, Input, Output, Request, Responses, Run, Signature, in_ranges};
-use sensitol_numeric::names::UnknownName;
 use sensitol::warning::Warning;
+use sensitol_numeric::names::UnknownName;
 
 /// Every built-in model, in the order in which they are listed.
 pub static ALL: &[&Model] = &[
@@ -121,7 +121,7 @@ impl Model {
     ///
     /// ```
     /// use sensitol::assembly::{AssemblyFunction, Points, Request, Responses, Run};
-    /// let engine: &sensitol::models::Model = "engine-balance".parse().unwrap();
+    /// let engine: &sensitol_models::Model = "engine-balance".parse().unwrap();
     /// let nominal: Vec<f64> = engine.inputs.iter().map(|input| input.nominal).collect();
     /// let (points, mut force) = (Points::from_rows(&[nominal]), Responses::open(1, 1));
     /// engine.function().evaluate(&Request::values(&points, &[0]), &Run::to_the_end(), &mut force);

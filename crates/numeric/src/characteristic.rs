@@ -9,10 +9,10 @@ use crate::requirement::{Requirement, RequirementError};
 /// A key characteristic: its name, its unit, and the limits it should keep.
 ///
 /// ```
-/// use sensitol::{Characteristic, SpecLimits};
+/// use sensitol_numeric::characteristic::{Characteristic, SpecLimits};
 /// let gap = Characteristic::new("gap").with_unit("mm").with_limits(SpecLimits::new(Some(5.0), Some(7.0))?);
 /// assert_eq!((gap.limits().lower(), gap.limits().upper()), (Some(5.0), Some(7.0)));
-/// # Ok::<(), sensitol::LimitsError>(())
+/// # Ok::<(), sensitol_numeric::characteristic::LimitsError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -91,7 +91,8 @@ impl Characteristic {
     /// When the number is impossible, or limits are missing that it speaks of.
     ///
     /// ```
-    /// use sensitol::{Characteristic, Requirement, SpecLimits};
+    /// use sensitol_numeric::characteristic::{Characteristic, SpecLimits};
+    /// use sensitol_numeric::requirement::Requirement;
     /// let gap = Characteristic::new("gap").with_limits(SpecLimits::new(Some(5.0), Some(7.0))?);
     /// let gap = gap.with_target_yield(0.99)?.with_requirement(Requirement::Cpk(1.33))?;
     /// assert_eq!(gap.requirements(), [Requirement::Yield(0.99), Requirement::Cpk(1.33)]);

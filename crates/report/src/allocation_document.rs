@@ -7,10 +7,7 @@ use super::figures::{Figures, Named};
 use super::glance::verdict;
 use super::head;
 use super::requirement::loud;
-use sensitol::allocation::{
-    Allocated, Attainable, Bound, CostBasis, FrontRequirement, Goal, JointYield, Kept, Moved, ShadowPrice, Status,
-};
-use sensitol::analysis::CharacteristicAnalysis;
+use crate::analysis_document::CharacteristicSections;
 use crate::document::number::{
     beside, index, known, plain, plural, power_of_ten, share, short, significant, target_yield, yielded,
 };
@@ -18,10 +15,13 @@ use crate::document::{
     Bar, Bars, Blocks, Cell, Chart, Columns, DataTable, Document, Element, Fill, Flow, Layer, Line, Paragraph, Plot,
     PlotAxis, PlotPoint, PlotScale, Section, Stroke, Tone, Value,
 };
+use sensitol::allocation::{
+    Allocated, Attainable, Bound, CostBasis, FrontRequirement, Goal, JointYield, Kept, Moved, ShadowPrice, Status,
+};
+use sensitol::analysis::CharacteristicAnalysis;
 use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::shape::finite;
 use sensitol_numeric::verdict::{Judged, Verdict};
-use crate::analysis_document::CharacteristicSections;
 
 /// A smaller residual is rounding.
 const LEAST: f64 = 1e-12;

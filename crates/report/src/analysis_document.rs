@@ -9,9 +9,6 @@ use super::source::source;
 use super::stack::Stack;
 use super::statistics::{derivative, matters, part, size, total};
 use super::{DimensionReport, Report, bars};
-use sensitol::analysis::{CharacteristicAnalysis, EstimatedShare, IndexSource, Interaction, Sensitivity, SobolIndices};
-use sensitol_numeric::capability::{Capability, Law, Quantiles, TAIL};
-use sensitol_numeric::correlation::Pair;
 use crate::document::number::{
     NEWS, UNKNOWN, beside, index, known, limits, percent, plain, plural, shape, share, short, significant,
 };
@@ -20,11 +17,14 @@ use crate::document::{
     Blocks, Cell, Chart, Columns, DataTable, Document, Element, Line, Paragraph, Section, SpreadChart, Style, Value,
     terminal,
 };
-use sensitol::extremes::{Extreme, Place};
-use sensitol::method::Basis;
-use sensitol_numeric::pearson::Pearson;
 use crate::figures::FittedFigures;
 use crate::statistics::CharacteristicStatistics;
+use sensitol::analysis::{CharacteristicAnalysis, EstimatedShare, IndexSource, Interaction, Sensitivity, SobolIndices};
+use sensitol::extremes::{Extreme, Place};
+use sensitol::method::Basis;
+use sensitol_numeric::capability::{Capability, Law, Quantiles, TAIL};
+use sensitol_numeric::correlation::Pair;
+use sensitol_numeric::pearson::Pearson;
 
 /// Contributions and interactions that a terminal shows unless all are asked for, and interactions that a page shows.
 const CONTRIBUTIONS: usize = 30;

@@ -3,13 +3,13 @@
 use super::figures::{Figures, Named};
 use super::glance::verdict;
 use super::{DimensionReport, Report, WarningReport};
-use sensitol::analysis::{CharacteristicAnalysis, EstimatedShare, InspectionRisks};
-use sensitol_numeric::capability::{Capability, Law};
+use crate::analysis_document::CharacteristicSections;
 use crate::document::number::{UNKNOWN, carried, index, limits};
 use crate::document::{Blocks, Cell, Column, Columns, DataTable, Document, Value};
-use sensitol::method::ErrorEstimate;
-use crate::analysis_document::CharacteristicSections;
 use crate::figures::FittedFigures;
+use sensitol::analysis::{CharacteristicAnalysis, EstimatedShare, InspectionRisks};
+use sensitol::method::ErrorEstimate;
+use sensitol_numeric::capability::{Capability, Law};
 
 impl Report {
     /// A row for every characteristic: where it lies, its limits, and how it keeps them.

@@ -1,11 +1,11 @@
 //! The ranges of a characteristic beside its limits, and what its contributions leave out.
 
 use super::figures::{Figures, Named};
-use sensitol::analysis::CharacteristicAnalysis;
 use crate::document::number::{NEWS, beside, percent};
 use crate::document::{Bar, Bars, Extent, Fill, Line, Tone};
-use sensitol::extremes::Extremes;
 use crate::statistics::CharacteristicStatistics;
+use sensitol::analysis::CharacteristicAnalysis;
+use sensitol::extremes::Extremes;
 
 /// A part of the extent of all intervals that rounding may make.
 const ROUNDING: f64 = 1e-9;

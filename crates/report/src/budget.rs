@@ -13,10 +13,10 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::figures::{Figures, Named};
 use super::{DimensionReport, Report};
-use sensitol::analysis::{CharacteristicAnalysis, Interaction};
-use sensitol_numeric::distribution::standard_normal;
 use crate::document::number::{UNKNOWN, beside, percent, plain, significant};
 use crate::document::{Blocks, Cell, Columns, DataTable, Document, Section, Value};
+use sensitol::analysis::{CharacteristicAnalysis, Interaction};
+use sensitol_numeric::distribution::standard_normal;
 
 /// The share that an expanded uncertainty holds unless the study says otherwise.
 const PROBABILITY: f64 = 0.95;

@@ -5,17 +5,18 @@ use serde::Serialize;
 use super::figures::{Figures as _, Named};
 use super::glance::{self, Glance};
 use super::{About, Head, head};
-use sensitol::compare::{Comparison, Errors, Figures, NotRun, RESOLVED, Ran};
 use crate::document::number::{known, significant, yielded};
 use crate::document::{
     Blocks, Cell, Chart, Columns, DataTable, Document, Element, Layer, Plot, PlotAxis, PlotPoint, PlotScale, Section,
     Stroke, Tone, Value,
 };
+#[cfg(feature = "schema")]
+use sensitol::compare::ErrorShape;
+use sensitol::compare::{Comparison, Errors, Figures, NotRun, RESOLVED, Ran};
 use sensitol::simulation::SimulatedCharacteristic;
+use sensitol::simulation::SimulatedShape;
 use sensitol::summary::RunSummary;
 use sensitol_numeric::verdict::Verdict;
-#[cfg(feature = "schema")]
-use sensitol::{compare::ErrorShape, simulation::SimulatedShape};
 
 /// The report of a comparison, as `--json` prints it. Unknown values are null, never 0.
 #[derive(Debug, Clone, Serialize)]

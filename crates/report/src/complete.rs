@@ -8,14 +8,14 @@ use sensitol::allocation::{
 };
 use sensitol::analysis::{CharacteristicAnalysis, Interaction, Sensitivity, analyze};
 use sensitol::assembly::Closure;
-use sensitol_numeric::characteristic::{Characteristic, SpecLimits};
 use sensitol::compare::{CompareOptions, Comparison, Contender, NotRun, Ran, compare};
 use sensitol::method::Method;
 use sensitol::rare::{Beyond, RareCharacteristic, RareEvents, RareOptions, rare};
-use sensitol_numeric::requirement::Requirement;
 use sensitol::simulation::{SimulatedCharacteristic, Simulation, SimulationOptions, simulate};
 use sensitol::summary::RunSummary;
 use sensitol::sweep::{Sweep, sweep};
+use sensitol_numeric::characteristic::{Characteristic, SpecLimits};
+use sensitol_numeric::requirement::Requirement;
 
 /// Takes a result apart, all of its fields by name, and seeks each in the JSON by its pointer.
 macro_rules! complete {

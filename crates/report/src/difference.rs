@@ -4,10 +4,10 @@ use serde::Serialize;
 
 use super::figures::{Figures, Named};
 use super::{About, DimensionReport, Head, Report};
-use sensitol::analysis::CharacteristicAnalysis;
-use sensitol_numeric::capability::Capability;
 use crate::document::number::{UNKNOWN, band, beside, estimated, index, limits, percent, plain, plural, yielded};
 use crate::document::{Blocks, Cell, Columns, DataTable, Document, Section, Tone, Value};
+use sensitol::analysis::CharacteristicAnalysis;
+use sensitol_numeric::capability::Capability;
 use sensitol_numeric::verdict::Verdict;
 
 /// A share of the variance that moves by less than this is not worth a line.

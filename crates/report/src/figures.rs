@@ -1,12 +1,12 @@
 //! The figures that documents ask of every result of a characteristic.
 
 use sensitol::analysis::{CharacteristicAnalysis, Missing};
+use sensitol::rare::RareCharacteristic;
+use sensitol::simulation::SimulatedCharacteristic;
 use sensitol_numeric::capability::{Capability, Law, Quantiles};
 use sensitol_numeric::characteristic::Characteristic;
 use sensitol_numeric::moments::Moments;
-use sensitol::rare::RareCharacteristic;
 use sensitol_numeric::sampling::Estimate;
-use sensitol::simulation::SimulatedCharacteristic;
 
 /// A result of one characteristic.
 pub(super) trait Named {

@@ -6,8 +6,8 @@ use crate::document::number::{estimated, index, known, yielded};
 use crate::document::rejects::Rejects;
 use crate::document::{Cell, Columns, DataTable, Line, Value};
 use sensitol::rare::RareCharacteristic;
-use sensitol_numeric::sampling::{Estimate, one_error};
 use sensitol::simulation::SimulatedCharacteristic;
+use sensitol_numeric::sampling::{Estimate, one_error};
 use sensitol_numeric::verdict::{Judged, worst};
 
 /// A characteristic in words.

@@ -1,8 +1,8 @@
 //! The risks of an inspection, in words.
 
-use sensitol::analysis::{EstimatedShare, InspectionRisks};
 use crate::document::number::{known, limits, plain, significant};
 use crate::document::{Blocks, Section};
+use sensitol::analysis::{EstimatedShare, InspectionRisks};
 
 /// The parts that an inspection accepts and rejects wrongly.
 pub(super) fn inspected(section: &mut Section, of: &InspectionRisks) {

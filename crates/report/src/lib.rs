@@ -58,13 +58,13 @@ pub use xlsx::analyze_xlsx;
 
 use serde::Serialize;
 
-use sensitol::analysis::Analysis;
-use sensitol_numeric::correlation::Pair;
-use sensitol_numeric::dimension::Dimension;
 use crate::document::number::{UNKNOWN, band, significant};
-use sensitol_numeric::labels::Labels;
+use sensitol::analysis::Analysis;
 use sensitol::problem::Problem;
 use sensitol::warning::{Advice, Warning};
+use sensitol_numeric::correlation::Pair;
+use sensitol_numeric::dimension::Dimension;
+use sensitol_numeric::labels::Labels;
 
 /// The version of the JSON report's shape.
 pub const SCHEMA: u32 = 2;

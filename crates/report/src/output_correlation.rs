@@ -1,12 +1,12 @@
 //! How characteristics vary together, for people.
 
-use sensitol::analysis::OutputCorrelation;
 use crate::document::number::{short, unsigned_zero, yielded};
 use crate::document::rejects::Rejects;
 use crate::document::{Cell, Columns, DataTable};
+use sensitol::analysis::OutputCorrelation;
+use sensitol::simulation::YieldEstimate;
 use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::sampling::one_error;
-use sensitol::simulation::YieldEstimate;
 use sensitol_numeric::verdict::Judged;
 
 /// Correlations that are said; a file has all.

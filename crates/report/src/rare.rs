@@ -8,11 +8,11 @@ use super::head::{self, seed};
 use super::output_correlation::all_limits;
 use super::requirement::{judged, lines};
 use super::{About, DimensionReport, Head, WarningReport, correlation};
-use sensitol_numeric::correlation::Pair;
 use crate::document::number::{known, plain, short, significant, yielded};
 use crate::document::{Blocks, Cell, Columns, DataTable, Document, Element, Line, Section, Value};
 use sensitol::problem::Problem;
 use sensitol::rare::{Beyond, DesignPoint, RareCharacteristic, RareEvents};
+use sensitol_numeric::correlation::Pair;
 use sensitol_numeric::sampling::Estimate;
 
 /// The report of rare events, as `--json` prints it. Unknown values are null, never 0.

@@ -9,17 +9,17 @@ use super::inspection::inspected;
 use super::output_correlation::{all_limits_within, together};
 use super::requirement::{judged, lines};
 use super::{About, DimensionReport, Head, WarningReport, correlation};
-use sensitol::analysis::{EstimatedShare, InspectionRisks};
-use sensitol_numeric::capability::Law;
-use sensitol_numeric::correlation::Pair;
 use crate::document::number::{estimated, index, known, limits, percent, plain, significant, uncertainty, yielded};
 use crate::document::rejects::Rejects;
 use crate::document::{Blocks, Cell, Chart, Columns, DataTable, Document, Element, Line, Section, SpreadChart};
+use sensitol::analysis::{EstimatedShare, InspectionRisks};
+use sensitol::problem::Problem;
+use sensitol::simulation::{IndexEstimate, SampledFactor, SimulatedCharacteristic, Simulation, YieldEstimate};
+use sensitol_numeric::capability::Law;
+use sensitol_numeric::correlation::Pair;
 use sensitol_numeric::moments::Moments;
 use sensitol_numeric::pearson::Pearson;
-use sensitol::problem::Problem;
 use sensitol_numeric::sampling::{Estimate, one_error};
-use sensitol::simulation::{IndexEstimate, SampledFactor, SimulatedCharacteristic, Simulation, YieldEstimate};
 
 /// The report of a simulation, as `--json` prints it. Unknown values are null, never 0.
 #[derive(Debug, Clone, Serialize)]

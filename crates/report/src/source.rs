@@ -1,9 +1,9 @@
 //! The source of the yield, in words.
 
 use super::figures::Figures;
+use crate::document::number::{significant, unrejected};
 use sensitol::analysis::{CharacteristicAnalysis, YieldSource};
 use sensitol_numeric::capability::Capability;
-use crate::document::number::{significant, unrejected};
 
 /// The Pearson fit is named beside the yield where it has more than this part of what is rejected wrong.
 const DIFFERENT: f64 = 0.01;

@@ -12,9 +12,9 @@ use std::fmt;
 
 use super::figures::{Figures, Named};
 use super::{DimensionReport, Report};
-use sensitol::analysis::{CharacteristicAnalysis, Sensitivity};
 use crate::document::number::{UNKNOWN, beside, limits, percent, plain, short, significant};
 use crate::document::{Blocks, Cell, Columns, DataTable, Document, Line, Section, Tone, Value};
+use sensitol::analysis::{CharacteristicAnalysis, Sensitivity};
 use sensitol::method::Method;
 
 /// A slope this near to 1 or -1 is a direction.

@@ -2,9 +2,9 @@
 
 use super::DimensionReport;
 use super::figures::Figures;
-use sensitol::analysis::{CharacteristicAnalysis, IndexSource, Sensitivity};
 use crate::document::number::{UNKNOWN, carried, known, percent, plain, shape_with, significant, uncertainty};
 use crate::document::{Blocks, Cell, Columns, DataTable, Section, Value};
+use sensitol::analysis::{CharacteristicAnalysis, IndexSource, Sensitivity};
 use sensitol::method::{ErrorEstimate, ErrorSource};
 use sensitol_numeric::names::element;
 

@@ -8,20 +8,20 @@ use super::figures::{Figures, QUANTILES};
 use super::glance::verdict;
 use super::head::{self, findings};
 use super::{About, Head, WarningReport};
-use sensitol::analysis::{CharacteristicAnalysis, YieldSource};
-use sensitol_numeric::capability::{Law, Quantiles};
 use crate::document::number::{UNKNOWN, beside, known, limits, plain, plural, shape, short, significant};
 use crate::document::rejects::Rejects;
 use crate::document::{
     Blocks, Cell, Chart, Columns, DataTable, Document, Element, Layer, Paragraph, Plot, PlotAxis, PlotScale, Section,
     Stroke, Value,
 };
+use crate::figures::FittedFigures;
+use sensitol::analysis::{CharacteristicAnalysis, YieldSource};
 use sensitol::method::ErrorEstimate;
 use sensitol::problem::Problem;
 use sensitol::summary::RunSummary;
 use sensitol::sweep::Sweep;
+use sensitol_numeric::capability::{Law, Quantiles};
 use sensitol_numeric::verdict::{Judged, Verdict};
-use crate::figures::FittedFigures;
 
 /// The report of a sweep, as `--json` prints it. Unknown values are null, never 0.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -6,7 +6,7 @@ use crate::document::Document;
 /// A report that can be shown to people.
 ///
 /// ```
-/// use sensitol::report::{About, Report, ToDocument, markdown};
+/// use sensitol_report::{About, Report, ToDocument, markdown};
 /// use sensitol::{Closure, Dimension, Method, Problem, analyze};
 /// let dimensions = [Dimension::normal("bore", 25.02, 0.01)?, Dimension::normal("shaft", 24.98, 0.01)?];
 /// let problem = Problem::new(dimensions, Closure::scalar("clearance", |x| x[0] - x[1]))?;

@@ -25,16 +25,16 @@ use super::written::{Named, Written};
 use super::zone;
 use sensitol::allocation::{Priced, QualityLoss, SetUp};
 use sensitol::assembly::formula::{Formula, FormulaError, FormulaFault, is_plain, is_reserved};
-use sensitol_external::Greeting;
 use sensitol::assembly::{AssemblyFunction, Composite, CompositeError, Input, Parts, Signature};
+use sensitol::method::Options;
+use sensitol::problem::Problem;
+use sensitol::warning::{NameKind, Warning, aggregated};
+use sensitol_external::Greeting;
+use sensitol_models::Model;
 use sensitol_numeric::characteristic::{Characteristic, LimitsError, SpecLimits};
 use sensitol_numeric::dimension::Dimension;
-use sensitol::method::Options;
-use sensitol_models::Model;
 use sensitol_numeric::names::{element, is_hidden, nearest};
-use sensitol::problem::Problem;
 use sensitol_numeric::requirement::Requirement;
-use sensitol::warning::{NameKind, Warning, aggregated};
 
 /// The content of a study file.
 pub(super) struct Built {

@@ -20,14 +20,15 @@ impl Study {
     /// An unknown key, or a value that is impossible; the place is the key alone.
     ///
     /// ```
-    /// use sensitol::{Method, Study};
+    /// use sensitol::Method;
+    /// use sensitol_study::Study;
     /// let text = "[dimensions]\na = { nominal = 10, tolerance = 0.3 }\n[characteristics]\ny = { formula = \"a^2\" }\n";
     /// let study = Study::from_toml(text, "study.toml")?;
     /// let full = study.with_analysis(r#"{"method": "full", "seed": 7}"#)?;
     /// assert_eq!((full.options.method, full.seed), (Method::Full, Some(7)));
     /// let error = study.with_analysis(r#"{"method": "fool"}"#).unwrap_err();
     /// assert_eq!((error.key.as_str(), error.span), ("analysis.method", None));
-    /// # Ok::<(), sensitol::StudyError>(())
+    /// # Ok::<(), sensitol_study::StudyError>(())
     /// ```
     pub fn with_analysis(&self, keys: &str) -> Result<Self, StudyError> {
         let read = || -> Result<(_, _), Faults> {

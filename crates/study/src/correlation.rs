@@ -4,9 +4,9 @@ use super::error::{Fault, StudyFault, fault};
 use super::joint::Block;
 use super::spanned::Spanned;
 use super::together::CorrelationEntry;
-use sensitol_numeric::correlation::{self, CorrelationError, Pair, Refusal};
 use sensitol::problem::Problem;
 use sensitol::warning::Warning;
+use sensitol_numeric::correlation::{self, CorrelationError, Pair, Refusal};
 
 /// Rounds in which correlations of rows are brought to what their distributions allow.
 const ROUNDS: usize = 8;

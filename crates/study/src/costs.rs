@@ -12,11 +12,11 @@ use super::spanned::Spanned;
 use super::words::REQUIREMENTS;
 use sensitol::allocation::{CostError, Curve, CurveKind, Made, Offer, Priced};
 use sensitol::assembly::formula::Formula;
+use sensitol::problem::Problem;
 use sensitol_numeric::characteristic::Characteristic;
 use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::fits::{HeldEnd, held_end};
 use sensitol_numeric::names::nearest;
-use sensitol::problem::Problem;
 use sensitol_numeric::requirement::Requirement;
 
 /// The present half band by this, and times this, where no bound is given.

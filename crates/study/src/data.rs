@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use super::files::{FileRole, NamedFile};
 use super::place::{Place, Unread};
-use sensitol_numeric::names::nearest;
 use crate::table::{DELIMITERS, NumberFault, Style, delimiter, records};
 use sensitol::warning::Warning;
+use sensitol_numeric::names::nearest;
 
 /// The entries for values that were not measured, in any case of letters.
 const MISSING: [&str; 5] = ["", "-", "na", "n/a", "nan"];

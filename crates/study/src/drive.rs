@@ -5,12 +5,12 @@ use super::error::{Fault, Faults, StudyFault, fault};
 use super::file::{ModelEntry, StudyFile};
 use super::spanned::Spanned;
 use super::written::Written;
-use sensitol_external::Greeting;
 use sensitol::assembly::{
     self, AssemblyFunction, Composite, CompositeError, Input, Parts, Points, Request, Responses, Run,
 };
-use sensitol_numeric::dimension::Dimension;
+use sensitol_external::Greeting;
 use sensitol_models::{Model, ModelInput};
+use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::names::nearest;
 
 /// The values that a program is sent.

@@ -10,14 +10,14 @@ use sensitol::allocation::CostError;
 use sensitol::assembly::NoColumn;
 use sensitol::assembly::formula::FormulaFault;
 use sensitol::assembly::implicit::ConditionsError;
+use sensitol::method::MethodError;
+use sensitol::problem::ProblemError;
 use sensitol_numeric::characteristic::LimitsError;
 use sensitol_numeric::correlation::Refusal;
 use sensitol_numeric::dimension::DimensionFault;
 use sensitol_numeric::fits::FitError;
 use sensitol_numeric::inspection::InspectionError;
-use sensitol::method::MethodError;
 use sensitol_numeric::names::UnknownName;
-use sensitol::problem::ProblemError;
 use sensitol_numeric::requirement::RequirementError;
 
 /// A study that cannot be used: file, place, key, what is wrong, and what to write instead.
@@ -60,7 +60,7 @@ impl StudyError {
     /// Line and column, both from 1, the column in characters.
     ///
     /// ```
-    /// use sensitol::study::Study;
+    /// use sensitol_study::Study;
     /// let error = Study::from_toml("[dimensions]\na = { nominal = 1, tolerance = -2 }", "gap.toml").unwrap_err();
     /// assert_eq!(error.line_column(), Some((2, 32)));
     /// assert_eq!(error.key, "dimensions.a.tolerance");

@@ -5,8 +5,8 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use sensitol_external::{Greeting, Listener};
 use sensitol::assembly::{AssemblyFunction, Signature, Table};
+use sensitol_external::{Greeting, Listener};
 
 /// Makes the function that answers a study's model from the names and units of its inputs and outputs, nominal values and constants.
 #[derive(Clone)]
@@ -91,7 +91,7 @@ impl Externals {
     ///
     /// ```
     /// use std::sync::Arc;
-    /// use sensitol::study::{Externals, Study, StudyText};
+    /// use sensitol_study::{Externals, Study, StudyText};
     /// use sensitol::{Closure, analyze};
     /// let text = r#"
     ///     [dimensions]

@@ -7,9 +7,9 @@ use super::data::{Data, DataFault, DataProblem};
 use super::error::{Fault, Faults, StudyFault, fault};
 use super::file::{DimensionEntry, StudyFile};
 use super::spanned::Spanned;
+use sensitol::warning::Warning;
 use sensitol_numeric::correlation::{JointLaw, Pair, Rows};
 use sensitol_numeric::names::nearest;
-use sensitol::warning::Warning;
 
 /// Fewer rows than this in common say nothing of how columns vary together.
 const LEAST: usize = 5;

@@ -26,7 +26,7 @@
 //! `shift` and `distribution` as a dimension has; nominal and band are the dimension's where the part gives none:
 //!
 //! ```
-//! use sensitol::Study;
+//! use sensitol_study::Study;
 //! let study = Study::from_toml(
 //!     r#"
 //!     [dimensions]
@@ -37,7 +37,7 @@
 //!     "bore.toml",
 //! )?;
 //! assert!((study.problem.dimensions()[0].mean() - 25.005).abs() < 1e-12);
-//! # Ok::<(), sensitol::StudyError>(())
+//! # Ok::<(), sensitol_study::StudyError>(())
 //! ```
 
 mod about;
@@ -113,14 +113,14 @@ use std::sync::Arc;
 
 use sha2::{Digest, Sha256};
 
-use sensitol::allocation::{AllocationTask, Priced, QualityLoss, SetUp};
-use sensitol_numeric::characteristic::Characteristic;
-use sensitol::method::Options;
-use sensitol::problem::Problem;
-use sensitol_numeric::requirement::Requirement;
-use sensitol::warning::Warning;
 use error::Faults;
 use place::Place;
+use sensitol::allocation::{AllocationTask, Priced, QualityLoss, SetUp};
+use sensitol::method::Options;
+use sensitol::problem::Problem;
+use sensitol::warning::Warning;
+use sensitol_numeric::characteristic::Characteristic;
+use sensitol_numeric::requirement::Requirement;
 use source::Source;
 use tree::Tree;
 
@@ -255,7 +255,7 @@ impl Study {
     /// From TOML text; `name` stands for the file in errors, and relative paths start from the current folder.
     ///
     /// ```
-    /// use sensitol::study::Study;
+    /// use sensitol_study::Study;
     /// let study = Study::from_toml(r#"
     ///     [dimensions]
     ///     a = { nominal = 10.0, tolerance = 0.3 }

@@ -4,8 +4,8 @@ use super::error::{Fault, StudyFault, fault};
 use super::file::StudyFile;
 use super::spanned::Spanned;
 use sensitol::allocation::{CostError, QualityLoss, SetUp};
-use sensitol_numeric::names::nearest;
 use sensitol::problem::Problem;
+use sensitol_numeric::names::nearest;
 
 /// The losses, in the order of the file.
 pub(super) fn losses(file: &StudyFile, problem: &Problem) -> Result<Vec<QualityLoss>, Fault> {

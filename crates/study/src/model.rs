@@ -9,10 +9,10 @@ use super::externals::Host;
 use super::file::ModelEntry;
 use super::source::Source;
 use super::spanned::Spanned;
+use sensitol::assembly::{AssemblyFunction, GivenAnswers, Input, Output, Signature};
 #[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
 use sensitol_external::process::Process;
 use sensitol_external::{ForeignUnits, Greeting, Settings};
-use sensitol::assembly::{AssemblyFunction, GivenAnswers, Input, Output, Signature};
 use sensitol_models::Model;
 use sensitol_numeric::names::UnknownName;
 

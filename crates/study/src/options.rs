@@ -7,8 +7,8 @@ use super::file::{AnalysisEntry, PairsEntry};
 use super::spanned::Spanned;
 use super::words::SENSITIVITIES;
 use sensitol::method::{Accuracies, MethodError, Options, Pairs};
-use sensitol_numeric::names::{UnknownName, nearest};
 use sensitol::problem::Problem;
+use sensitol_numeric::names::{UnknownName, nearest};
 
 /// The value of this word under a key of `[analysis]`.
 fn named<T: FromStr<Err = UnknownName>>(word: &Spanned<String>, key: &str) -> Result<T, Fault> {

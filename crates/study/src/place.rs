@@ -19,7 +19,7 @@ pub enum Format {
 /// The text of a study, with the files that it names: nothing of it has to be on a disk.
 ///
 /// ```
-/// use sensitol::study::{Study, StudyText};
+/// use sensitol_study::{Study, StudyText};
 /// let text = r#"
 ///     [dimensions]
 ///     pin = { nominal = 8.0, measured = "pin.csv" }

@@ -5,10 +5,10 @@ use serde_json::{Map, Value, json};
 
 use super::words::{self, MEASURED_MODELS, SENSITIVITIES};
 use sensitol::allocation::CurveKind;
-use sensitol_external::Settings;
 use sensitol::method::{ALL as METHODS, DerivativeSource};
-use sensitol_models;
 use sensitol::plan::Stencil;
+use sensitol_external::Settings;
+use sensitol_models;
 
 /// The names of all methods.
 pub(super) fn methods() -> Vec<&'static str> {

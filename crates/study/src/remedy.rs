@@ -5,12 +5,12 @@ use super::slip::{Slip, percent};
 use super::words::CORRELATIONS;
 use sensitol::allocation::CostError;
 use sensitol::assembly::implicit::ConditionsError;
+use sensitol::warning::Advice;
 use sensitol_numeric::characteristic::LimitsError;
 use sensitol_numeric::dimension::DimensionFault;
 use sensitol_numeric::distribution::DistributionError;
 use sensitol_numeric::inspection::InspectionError;
 use sensitol_numeric::requirement::RequirementError;
-use sensitol::warning::Advice;
 
 impl StudyFault {
     /// The actions to take, beside changing what is written.

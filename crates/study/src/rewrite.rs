@@ -12,8 +12,8 @@ use super::place::Format;
 use super::tree::{Key, Tree, Value};
 use super::write;
 use sensitol::allocation::Offer;
-use sensitol_numeric::dimension::Dimension;
 use sensitol::problem::Problem;
+use sensitol_numeric::dimension::Dimension;
 
 /// A study written anew.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,13 +69,13 @@ impl Study {
     /// When a dimension that has changed is a mixture of parts, or what was written does not say what was wanted.
     ///
     /// ```
-    /// use sensitol::Study;
+    /// use sensitol_study::Study;
     /// let text = "[dimensions]\na = { nominal = 10, tolerance = 0.3 } # turned\n[characteristics]\ny = { formula = \"2*a\" }\n";
     /// let study = Study::from_toml(text, "study.toml")?;
     /// let half = study.problem.dimensions()[0].scaled(0.5).expect("a normal dimension scales").unwrap();
     /// let wanted = study.problem.clone().with_dimensions(vec![half]).unwrap();
     /// assert_eq!(study.rewritten(&wanted).unwrap().text, text.replace("0.3", "0.15"));
-    /// # Ok::<(), sensitol::StudyError>(())
+    /// # Ok::<(), sensitol_study::StudyError>(())
     /// ```
     pub fn rewritten(&self, wanted: &Problem) -> Result<Rewritten, RewriteError> {
         let tree = self.tree();

@@ -12,14 +12,14 @@ impl Study {
     /// When a dimension has another tolerance in one of them, as percent of a nominal value have.
     ///
     /// ```
-    /// use sensitol::Study;
-    /// use sensitol::study::{Externals, StudyText};
+    /// use sensitol_study::Study;
+    /// use sensitol_study::{Externals, StudyText};
     /// let text = "[dimensions]\na = { nominal = 10.0, tolerance = 0.1 }\n[constants]\nplay = 0.0\n\
     ///     [characteristics]\ngap = { formula = \"a - 9 - play\", lower = 0.5 }\n\
     ///     [configurations]\ncold = { play = 0.1 }\nlong = { a = 11.0 }\n";
     /// let read = |externals| Study::from_text(StudyText::toml("gap.toml", text).with_externals(externals));
     /// let study = read(Externals::default())?;
-    /// let of = |name: &str| Ok::<_, sensitol::StudyError>((name.to_owned(), read(Externals::default().with_configuration(name))?));
+    /// let of = |name: &str| Ok::<_, sensitol_study::StudyError>((name.to_owned(), read(Externals::default().with_configuration(name))?));
     /// let all = study.in_configurations(&[of("cold")?, of("long")?])?;
     /// let names: Vec<&str> = all.problem.characteristics().iter().map(|one| one.name()).collect();
     /// assert_eq!(names, ["gap [cold]", "gap [long]"]);

@@ -10,12 +10,12 @@ use super::words::UNIT_MODES;
 use super::written::{Named, Written};
 use sensitol::assembly::Composite;
 use sensitol::assembly::formula::{Role, UnitFinding};
+use sensitol::warning::Warning;
 use sensitol_external::ForeignUnits;
-use sensitol_numeric::dimension::Dimension;
 use sensitol_models::{Model, ModelOutput};
+use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::names::nearest;
 use sensitol_numeric::unit::{SAME, Unit};
-use sensitol::warning::Warning;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Mode {

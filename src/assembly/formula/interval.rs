@@ -30,7 +30,7 @@ impl Interval {
     /// From one number to another.
     ///
     /// ```
-    /// use sensitol::internals::Interval;
+    /// use sensitol::assembly::formula::interval::Interval;
     /// let band = Interval::between(-0.1, 0.3);
     /// assert_eq!((band.lower(), band.upper(), band.is_whole()), (-0.1, 0.3, true));
     /// ```

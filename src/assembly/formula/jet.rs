@@ -12,7 +12,8 @@ use super::scalar::{Scalar, Verdict};
 ///
 /// ```
 /// use sensitol::assembly::formula::Formula;
-/// use sensitol::internals::{FormulaSet, Jet, Meaning};
+/// use sensitol::assembly::formula::jet::Jet;
+/// use sensitol::assembly::formula::set::{FormulaSet, Meaning};
 /// let formulas = vec![("y".to_owned(), Formula::parse("a^2*b + abs(b - 3)")?)];
 /// let names = [("a", Meaning::Variable(0)), ("b", Meaning::Variable(1))];
 /// let set = FormulaSet::new(formulas, names).map_err(|(_, error)| error)?;

@@ -125,7 +125,7 @@ impl Formula {
 /// Whether formulas already mean something by this name.
 ///
 /// ```
-/// use sensitol::internals::is_reserved;
+/// use sensitol::assembly::formula::parser::is_reserved;
 /// assert!(is_reserved("pi") && is_reserved("hypot") && !is_reserved("e") && !is_reserved("g"));
 /// ```
 pub fn is_reserved(name: &str) -> bool {

@@ -40,7 +40,7 @@ pub(super) enum Reference {
 ///
 /// ```
 /// use sensitol::assembly::formula::Formula;
-/// use sensitol::internals::{FormulaSet, Meaning};
+/// use sensitol::assembly::formula::set::{FormulaSet, Meaning};
 /// let formulas = vec![
 ///     ("gap".to_owned(), Formula::parse("height - 2*play")?),
 ///     ("height".to_owned(), Formula::parse("a^2")?),
@@ -216,7 +216,7 @@ impl FormulaSet {
     ///
     /// ```
     /// use sensitol::assembly::formula::Formula;
-    /// use sensitol::internals::{FormulaSet, Meaning};
+    /// use sensitol::assembly::formula::set::{FormulaSet, Meaning};
     /// let formulas = vec![("y".to_owned(), Formula::parse("a^2 - b")?)];
     /// let names = [("a", Meaning::Variable(0)), ("b", Meaning::Variable(1))];
     /// let set = FormulaSet::new(formulas, names).map_err(|(_, error)| error)?;

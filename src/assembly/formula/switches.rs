@@ -30,7 +30,7 @@ impl FormulaSet {
     /// ```
     /// use sensitol::assembly::SwitchKind;
     /// use sensitol::assembly::formula::Formula;
-    /// use sensitol::internals::{FormulaSet, Meaning};
+    /// use sensitol::assembly::formula::set::{FormulaSet, Meaning};
     /// let formulas = vec![("y".to_owned(), Formula::parse("a + max(b, 3)/a")?)];
     /// let set = FormulaSet::new(formulas, [("a", Meaning::Variable(0)), ("b", Meaning::Variable(1))]).unwrap();
     /// let found: Vec<_> = set.switches(&[0]).into_iter().map(|switch| (switch.kind, switch.text)).collect();
@@ -63,7 +63,7 @@ impl FormulaSet {
     ///
     /// ```
     /// use sensitol::assembly::formula::Formula;
-    /// use sensitol::internals::{FormulaSet, Meaning};
+    /// use sensitol::assembly::formula::set::{FormulaSet, Meaning};
     /// let formula = |text: &str| Formula::parse(text).map(|formula| (text.to_owned(), formula));
     /// let formulas = vec![formula("a*b/4 + (a - 1)^2")?, formula("a/b")?];
     /// let set = FormulaSet::new(formulas, [("a", Meaning::Variable(0)), ("b", Meaning::Variable(1))]).unwrap();

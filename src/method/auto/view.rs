@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 use super::atoms::{Bends, atoms};
 use super::chosen::{ChosenPoints, Probe};
 use super::screening::{self, Fit, Probed};
-use sensitol_numeric::distribution::StandardMoments;
 use crate::method::check::{SurrogateCheck, failed};
 use crate::method::hidden::hidden;
-use sensitol_numeric::moments::{Interactions, Moments};
 use crate::plan::{DifferencePlan, KnownAnswers, Mixed, Point};
+use sensitol_numeric::distribution::StandardMoments;
+use sensitol_numeric::moments::{Interactions, Moments};
 use sensitol_numeric::surrogate::{Surrogate, Univariate};
 
 /// Mixed derivatives by pair.

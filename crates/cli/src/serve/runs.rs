@@ -12,11 +12,11 @@ use tiny_http::Request;
 use super::answer::{Answer, Lines};
 use super::folder::Folder;
 use super::guard::Query;
-use sensitol::assembly::{Progress, Run};
 use crate::interrupt;
-use sensitol_study::{Externals, JournalPlace};
+use sensitol::assembly::{Progress, Run};
 use sensitol::summary::StopReason;
 use sensitol_report::task::{Task, TaskPlace};
+use sensitol_study::{Externals, JournalPlace};
 
 /// How often a page is asked whether it still listens.
 const BEAT: Duration = Duration::from_millis(500);

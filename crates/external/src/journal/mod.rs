@@ -26,10 +26,10 @@ use self::claims::{BEAT, Watch};
 use self::store::{Answer, Recalled};
 use crate::Settings;
 use crate::process::{Kept, Process, Recheck};
-use sensitol::assembly::{EvaluatorAccount, OutdatedJournal, ProcessFault};
 use sensitol::assembly::{
     AssemblyFunction, EvaluationError, ModelInfo, Points, Progress, Request, Responses, Run, Signature,
 };
+use sensitol::assembly::{EvaluatorAccount, OutdatedJournal, ProcessFault};
 use sensitol::summary::StopReason;
 
 /// How often it is looked whether another run has ended what it claimed.

@@ -2,9 +2,9 @@
 
 use std::collections::{HashMap, HashSet, VecDeque};
 
-use sensitol::assembly::{ProcessError, ProcessFault, StderrTail};
 use super::protocol::Line;
 use sensitol::assembly::{Points, Progress, Responses, Run};
+use sensitol::assembly::{ProcessError, ProcessFault, StderrTail};
 
 /// The work that is left of a batch.
 pub(super) struct Batch<'a> {

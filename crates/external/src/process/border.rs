@@ -1,8 +1,8 @@
 //! The border between a study and a program that has other units: a factor for every dimension and characteristic.
 
-use sensitol::assembly::ProcessFault;
 use super::protocol::{Hello, Line};
 use crate::settings::ForeignUnits;
+use sensitol::assembly::ProcessFault;
 use sensitol_numeric::unit::{SAME, Unit};
 
 /// Factors from the study's units to those of the program; all of them 1 where there are none.

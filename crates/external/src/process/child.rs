@@ -11,9 +11,9 @@ use std::time::{Duration, Instant};
 
 use process_wrap::std::{ChildWrapper, CommandWrap};
 
-use sensitol::assembly::{Exit, ProcessFault, Quoted, StderrTail};
 use super::protocol::Line;
 use crate::settings::Listener;
+use sensitol::assembly::{Exit, ProcessFault, Quoted, StderrTail};
 
 /// The longest line that is read: a hundred thousand characteristics fit into it.
 pub(super) const LONGEST: usize = 16 << 20;

@@ -3,17 +3,17 @@
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
-use sensitol::assembly::EvaluatorAccount;
 use super::batch::Batch;
 use super::border::Border;
 use super::child::{Child, Event, What};
-use sensitol::assembly::{ProcessError, ProcessFault, Quoted, StderrTail};
 use super::protocol::{Hello, Line, VERSION, request};
 use super::sentinel::{Reference, SENTINEL, interval, is_flip, values};
-use crate::settings::Settings;
 use super::suspicion::Answers;
 use super::worker::{Sent, Worker};
+use crate::settings::Settings;
+use sensitol::assembly::EvaluatorAccount;
 use sensitol::assembly::{ModelInfo, Points, Responses, Run};
+use sensitol::assembly::{ProcessError, ProcessFault, Quoted, StderrTail};
 
 /// How often a stop is looked for.
 const TICK: Duration = Duration::from_millis(50);

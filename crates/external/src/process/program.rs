@@ -2,11 +2,11 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use sensitol::assembly::EvaluatorAccount;
-use sensitol::assembly::ProcessError;
 use super::pool::Pool;
 use super::protocol::{Hello, VERSION};
 use crate::settings::{Greeting, Settings};
+use sensitol::assembly::EvaluatorAccount;
+use sensitol::assembly::ProcessError;
 use sensitol::assembly::{AssemblyFunction, EvaluationError, ModelInfo, Request, Responses, Run, Signature};
 
 /// An external program as assembly function.

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use sensitol::assembly::{ProcessFault, Quoted};
 use sensitol::assembly::ModelInfo;
+use sensitol::assembly::{ProcessFault, Quoted};
 
 /// The version that is spoken here.
 pub(super) const VERSION: u32 = 1;

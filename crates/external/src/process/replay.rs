@@ -5,11 +5,11 @@
 //! from the first one, a third child goes another way, one dimension after the other: two answers that agree are taken, three
 //! different ones are none. After any difference every point of the batch is walked to.
 
-use sensitol::assembly::{ProcessError, ProcessFault, StderrTail};
 use super::pool::Pool;
 use super::sentinel::{FLIP, agree};
 use super::suspicion::moved;
 use sensitol::assembly::{EvaluationError, NonRepeatable, Points, Responses, Run};
+use sensitol::assembly::{ProcessError, ProcessFault, StderrTail};
 
 /// Equal steps of a walk.
 const STEPS: usize = 3;

@@ -9,10 +9,10 @@ use std::f64::consts::PI;
 use super::gas;
 use super::jet::Peak;
 use super::{Block, Model, ModelInput, ModelOutput, Validity};
-use sensitol::assembly::{EvaluationError, Responses};
 use mechanics::{Alone, Angle, Centre, Curve, Effect, Loaded, Speed, Unfired, pressure};
 use search::{CYCLE, GAS_ANGLES, ROD_ANGLES, SAFETY, height_at, heights, maxima, pulled};
 use section::{Root, Section, shank};
+use sensitol::assembly::{EvaluationError, Responses};
 
 /// The inputs' places, in the order of `CONNECTING_ROD.inputs`.
 mod input {

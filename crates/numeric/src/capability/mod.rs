@@ -111,7 +111,9 @@ impl Capability {
     /// Source: ISO 22514-2 (2017), which calls the percentile forms Pp and Ppk by its method M2.
     ///
     /// ```
-    /// use sensitol::{Moments, SpecLimits, capability::{Capability, Law}};
+    /// use sensitol_numeric::capability::{Capability, Law};
+    /// use sensitol_numeric::characteristic::SpecLimits;
+    /// use sensitol_numeric::moments::Moments;
     /// let moments = Moments::new(6.0, 0.25, 0.0, 0.0);
     /// let limits = SpecLimits::new(Some(5.0), Some(7.0))?;
     /// let capability = Capability::of(&Law::fit(&moments)?, 6.0, 0.25, limits);
@@ -119,7 +121,7 @@ impl Capability {
     /// assert!((capability.cpk_percentile.unwrap() - 4.0 / 3.0).abs() < 1e-12);
     /// // 4 sigma on both sides.
     /// assert!((1e6 * (capability.below.unwrap() + capability.above.unwrap()) - 63.342).abs() < 1e-3);
-    /// # Ok::<(), sensitol::Error>(())
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn of(law: &Law, mean: f64, sigma: f64, limits: SpecLimits) -> Self {
         let (lower, upper) = (limits.lower(), limits.upper());

@@ -66,12 +66,12 @@ pub struct Pair {
 /// How some of the dimensions vary together; the others are independent of them and of each other.
 ///
 /// ```
-/// use sensitol::correlation::Pair;
-/// use sensitol::{Closure, Dimension, Problem};
+/// use sensitol_numeric::correlation::{Correlation, Pair};
+/// use sensitol_numeric::dimension::Dimension;
 /// let dimensions = [Dimension::normal("a", 10.0, 0.3)?, Dimension::uniform("b", 5.0, 0.1)?];
 /// let pair = Pair { between: ["a".into(), "b".into()], value: 0.4 };
-/// let gap = Problem::new(dimensions, Closure::scalar("gap", |x| x[0] - x[1]))?.correlated(&[pair])?;
-/// assert_eq!(gap.correlation().map(|correlation| correlation.of(0, 1)), Some(0.4));
+/// let correlation = Correlation::new(&dimensions, &[pair])?;
+/// assert_eq!(correlation.of(0, 1), 0.4);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -101,11 +101,7 @@ impl Correlation {
     /// # Errors
     /// When a pair names something that is not a dimension or does not vary, stands twice, or asks for what its distributions do
     /// not allow; and when no distribution has all of it together: the matrix must not have a negative eigenvalue.
-    pub fn with_blocks(
-        dimensions: &[Dimension],
-        pairs: &[Pair],
-        blocks: Vec<Block>,
-    ) -> Result<Self, CorrelationError> {
+    pub fn with_blocks(dimensions: &[Dimension], pairs: &[Pair], blocks: Vec<Block>) -> Result<Self, CorrelationError> {
         let pairs = resolved(dimensions, pairs)?;
         let of_blocks = blocks.iter().flat_map(|block| block.members.iter().copied());
         let mut members: Vec<usize> = pairs.iter().flat_map(|&(ends, _)| ends).chain(of_blocks).collect();

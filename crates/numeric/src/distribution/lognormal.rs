@@ -11,11 +11,11 @@ use super::{Distribution, DistributionError, Jacobi, Probability, Scaled, Standa
 /// normal.
 ///
 /// ```
-/// use sensitol::distribution::{Distribution, Lognormal};
+/// use sensitol_numeric::distribution::{Distribution, Lognormal};
 /// let runout = Lognormal::new(0.0, 1.0, 0.5)?;
 /// let v: f64 = 0.25;
 /// assert!((runout.standard_moments().skewness - (3.0 + v) * v.sqrt()).abs() < 1e-15);
-/// # Ok::<(), sensitol::distribution::DistributionError>(())
+/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lognormal {

@@ -19,7 +19,7 @@ const LEAST: usize = 7;
 /// a strong skewness has values that a normal law has not: they are named too, and it is for people to say what they are.
 ///
 /// ```
-/// use sensitol::internals::outliers;
+/// use sensitol_numeric::distribution::outliers::outliers;
 /// let mut values: Vec<f64> = (0..40).map(|i| 10.0 + 0.01 * f64::from(i % 7)).collect();
 /// values[3] = 10.9; // a slip of the pen
 /// assert_eq!(outliers(&values), [3]);

@@ -12,11 +12,11 @@ use super::{
 /// the other end.
 ///
 /// ```
-/// use sensitol::distribution::{Distribution, Triangular};
+/// use sensitol_numeric::distribution::{Distribution, Triangular};
 /// let slot = Triangular::new(9.9, 10.0, 10.1)?;
 /// assert!((slot.sigma() - 0.1 / 6f64.sqrt()).abs() < 1e-15);
 /// assert_eq!(slot.standard_moments().excess, -0.6);
-/// # Ok::<(), sensitol::distribution::DistributionError>(())
+/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Triangular {

@@ -22,9 +22,11 @@ use crate::parallel::prelude::*;
 ///
 /// ```
 /// use std::sync::Arc;
-/// use sensitol::SpecLimits;
-/// use sensitol::distribution::{Distribution, Normal};
-/// use sensitol::internals::{Interactions, LawOptions, SurfaceLaw, Surrogate, Univariate, joint_yield};
+/// use sensitol_numeric::characteristic::SpecLimits;
+/// use sensitol_numeric::distribution::{Distribution, Normal};
+/// use sensitol_numeric::law::{LawOptions, SurfaceLaw, joint_yield};
+/// use sensitol_numeric::moments::Interactions;
+/// use sensitol_numeric::surrogate::{Surrogate, Univariate};
 /// let inputs: Vec<Arc<dyn Distribution>> = vec![Arc::new(Normal::new(0.0, 1.0)?), Arc::new(Normal::new(0.0, 1.0)?)];
 /// let law = |slopes: [f64; 2]| {
 ///     let parts = slopes.map(|slope| Some(Univariate::of_coefficients(&[slope]))).to_vec();

@@ -203,8 +203,10 @@ impl Default for LawOptions {
 ///
 /// ```
 /// use std::sync::Arc;
-/// use sensitol::distribution::{Distribution, Uniform};
-/// use sensitol::internals::{Interactions, LawOptions, SurfaceLaw, Surrogate, Univariate};
+/// use sensitol_numeric::distribution::{Distribution, Uniform};
+/// use sensitol_numeric::law::{LawOptions, SurfaceLaw};
+/// use sensitol_numeric::moments::Interactions;
+/// use sensitol_numeric::surrogate::{Surrogate, Univariate};
 /// // Three uniform inputs: the probability beyond a limit d below the greatest value sqrt(27) is d^3/(6 (2 sqrt 3)^3).
 /// let uniform: Arc<dyn Distribution> = Arc::new(Uniform::new(-1.0, 1.0)?);
 /// let parts = vec![Some(Univariate::of_coefficients(&[1.0])); 3];

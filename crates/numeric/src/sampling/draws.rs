@@ -9,12 +9,12 @@ use faer::Mat;
 use super::joe_kuo::SOBOL_DIMENSIONS;
 use super::sobol::{Sobol, mixed, scrambled};
 use super::stream::Stream;
-use crate::points::Points;
 use crate::correlation::{Block, Correlation, JointLaw};
 use crate::dimension::Dimension;
 use crate::distribution::{Probability, behind_normal, standard_normal, ziggurat};
 use crate::elementary::{Work, on_this_processor};
 use crate::names::UnknownName;
+use crate::points::Points;
 
 /// How points are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

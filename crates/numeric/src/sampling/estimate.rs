@@ -77,7 +77,7 @@ pub fn one_error(value: f64, [low, high]: [f64; 2]) -> f64 {
 /// The 95 % interval of a share of which `hits` of `n` were seen (Wilson 1927): never empty, never outside 0 to 1.
 ///
 /// ```
-/// use sensitol::internals::wilson;
+/// use sensitol_numeric::sampling::wilson;
 /// let [low, high] = wilson(1000.0, 1000.0);
 /// assert!(low < 0.9963 && low > 0.996 && high == 1.0); // all of a thousand is not all
 /// ```

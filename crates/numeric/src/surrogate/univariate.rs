@@ -27,7 +27,7 @@ impl Univariate {
     /// in symmetric pairs, so that an even function has slope 0 to the last bit.
     ///
     /// ```
-    /// use sensitol::internals::Univariate;
+    /// use sensitol_numeric::surrogate::Univariate;
     /// let parabola = Univariate::through(&[(-1.0, 2.0), (2.0, 8.0)]).unwrap();
     /// assert_eq!((parabola.slope(), parabola.second(), parabola.degree()), (0.0, Some(4.0), 2));
     /// ```

@@ -1,8 +1,8 @@
 //! Charts as data.
 
 use super::Line;
-use sensitol_numeric::pearson::Pearson;
 use sensitol::simulation::Histogram;
+use sensitol_numeric::pearson::Pearson;
 
 /// A drawing.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,8 +2,8 @@
 
 use super::number::{beside, plain, significant};
 use super::{Cell, Columns, DataTable};
-use sensitol_numeric::pearson::Pearson;
 use sensitol::simulation::Histogram;
+use sensitol_numeric::pearson::Pearson;
 
 /// Characters of the longest bar of a histogram.
 const BAR: usize = 50;

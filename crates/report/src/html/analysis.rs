@@ -6,9 +6,9 @@ use super::terms::terms;
 use super::verdict::{JudgedCharacteristic, Together, Words, verdict};
 use super::what_if::WhatIf;
 use super::{Fact, evidence, fact, inputs, json, others, provenance, render, sure, tries};
-use sensitol::analysis::Analysis;
 use crate::document::html::{head, sections};
 use crate::document::number::{plain, plural};
+use sensitol::analysis::Analysis;
 use sensitol::method::Basis;
 use sensitol::summary::RunSummary;
 

@@ -7,14 +7,14 @@ use super::super::figures::{Figures, Named};
 use super::super::{DimensionReport, Report};
 use super::facts::facts;
 use super::pareto::pareto;
-use sensitol::analysis::{CharacteristicAnalysis, Sensitivity};
-use sensitol_numeric::capability::Law;
 use crate::document::number::{band, beside, estimated, plain, power_of_ten};
 use crate::document::svg::escaped;
 use crate::document::{Bar, Bars, Chart, Element, Extent, Fill, Line, Section, html};
-use sensitol_numeric::pearson::Pearson;
-use sensitol::verification::TailPoint;
 use crate::figures::FittedFigures;
+use sensitol::analysis::{CharacteristicAnalysis, Sensitivity};
+use sensitol::verification::TailPoint;
+use sensitol_numeric::capability::Law;
+use sensitol_numeric::pearson::Pearson;
 
 /// A shift of the mean below this part of sigma is none.
 const SEEN: f64 = 0.01;

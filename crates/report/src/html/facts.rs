@@ -4,12 +4,12 @@ use std::fmt::Write;
 
 use super::super::figures::{Figures, Named};
 use super::verdict::interval;
-use sensitol::analysis::CharacteristicAnalysis;
-use sensitol_numeric::capability::Capability;
+use crate::analysis_document::CharacteristicSections;
 use crate::document::number::index;
 use crate::document::svg::escaped;
-use crate::analysis_document::CharacteristicSections;
 use crate::statistics::CharacteristicStatistics;
+use sensitol::analysis::CharacteristicAnalysis;
+use sensitol_numeric::capability::Capability;
 
 /// The names of the first figures.
 const FIRST: [&str; 6] = ["Nominal", "Mean", "Mean − nominal", "Sigma", "Skewness", "Kurtosis"];

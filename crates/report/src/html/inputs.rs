@@ -6,9 +6,9 @@ use super::super::figures::Named;
 use super::super::statistics::part;
 use super::super::{DimensionReport, Report};
 use super::pareto::slope;
-use sensitol::analysis::{CharacteristicAnalysis, Sensitivity};
 use crate::document::number::{UNKNOWN, known, percent, percent_within, plain, plural, significant};
 use crate::document::svg::escaped;
+use sensitol::analysis::{CharacteristicAnalysis, Sensitivity};
 
 /// Dimensions that are shown before the others are folded.
 const ROWS: usize = 12;

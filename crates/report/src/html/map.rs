@@ -3,9 +3,9 @@
 use std::fmt::Write;
 
 use super::super::figures::Named;
-use sensitol::analysis::CharacteristicAnalysis;
 use crate::document::number::percent;
 use crate::document::svg::escaped;
+use sensitol::analysis::CharacteristicAnalysis;
 
 /// Dimensions of a map of interactions, the most influential first.
 const MAPPED: usize = 16;
@@ -23,8 +23,9 @@ pub(super) fn map(one: &CharacteristicAnalysis) -> Option<String> {
     if one.possible_interactions == 0 || strongest.max(left_out) < 5.0 * SEEN {
         return None;
     }
-    let own =
-        |row: &sensitol::analysis::Sensitivity| row.linear_share.map(|linear| linear + row.curvature_share.unwrap_or(0.0));
+    let own = |row: &sensitol::analysis::Sensitivity| {
+        row.linear_share.map(|linear| linear + row.curvature_share.unwrap_or(0.0))
+    };
     let mut rows: Vec<(&str, f64)> =
         one.sensitivities.iter().filter_map(|row| Some((row.dimension.as_str(), own(row)?))).collect();
     let in_pair = |name: &str| one.interactions.iter().any(|pair| pair.dimensions.contains(&name));

@@ -11,10 +11,10 @@ use crate::document::html::{head as summary, sections};
 use crate::document::number::{plain, plural, significant};
 use crate::document::svg::escaped;
 use crate::document::{Chart, Document, Element, Flow, Section};
+use sensitol::summary::RunSummary;
 use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::sampling::one_error;
 use sensitol_numeric::shape::finite;
-use sensitol::summary::RunSummary;
 use sensitol_numeric::verdict::Verdict;
 
 /// Values of a sweep that are named one by one.

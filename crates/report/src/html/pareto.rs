@@ -5,10 +5,10 @@ use std::fmt::Write;
 use super::super::figures::{Figures, Named};
 use super::super::statistics::derivative;
 use super::super::{DimensionReport, Report};
-use sensitol::analysis::{CharacteristicAnalysis, EstimatedShare, Sensitivity};
 use crate::document::number::{NEWS, UNKNOWN, percent, percent_within, short, within};
 use crate::document::svg::escaped;
 use crate::statistics::CharacteristicStatistics;
+use sensitol::analysis::{CharacteristicAnalysis, EstimatedShare, Sensitivity};
 
 /// A diagram of more rows than this folds those below `SMALL` of the variance into one.
 const ROWS: usize = 12;

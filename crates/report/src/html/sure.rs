@@ -3,12 +3,12 @@
 use std::fmt::Write;
 
 use super::super::figures::{Figures, Named};
-use sensitol::analysis::CharacteristicAnalysis;
 use crate::document::number::{beside, estimated, percent, plain, significant, uncertainty, yielded};
 use crate::document::svg::escaped;
+use sensitol::analysis::CharacteristicAnalysis;
 use sensitol::rare::RareCharacteristic;
-use sensitol_numeric::sampling::{Estimate, one_error};
 use sensitol::simulation::SimulatedCharacteristic;
+use sensitol_numeric::sampling::{Estimate, one_error};
 
 /// A figure and its error.
 pub(super) struct Row {

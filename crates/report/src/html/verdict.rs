@@ -7,19 +7,19 @@ use super::super::bars::worst_case;
 use super::super::figures::{Figures, Named};
 use super::super::statistics::part;
 use super::super::sweep::{SweptPointReport, SweptReport};
-use sensitol::analysis::CharacteristicAnalysis;
-use sensitol_numeric::capability::Capability;
+use crate::analysis_document::CharacteristicSections;
 use crate::document::number::{beside, index, plain, plural, significant, yielded};
 use crate::document::rejects::Rejects;
 use crate::document::svg::escaped;
+use crate::statistics::CharacteristicStatistics;
+use sensitol::analysis::CharacteristicAnalysis;
 use sensitol::rare::{Beyond, RareCharacteristic};
+use sensitol::simulation::{SimulatedCharacteristic, YieldEstimate};
+use sensitol_numeric::capability::Capability;
 use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::sampling::{Estimate, one_error};
 use sensitol_numeric::shape::finite;
-use sensitol::simulation::{SimulatedCharacteristic, YieldEstimate};
 use sensitol_numeric::verdict::{Judged, Verdict, about, share};
-use crate::analysis_document::CharacteristicSections;
-use crate::statistics::CharacteristicStatistics;
 
 /// Claims of one kind that a sentence makes.
 const NAMED: usize = 6;

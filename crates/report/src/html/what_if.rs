@@ -4,10 +4,10 @@ use serde::Serialize;
 
 use sensitol::allocation::{Curve, CurveKind, Priced};
 use sensitol::analysis::{Analysis, Branch, CharacteristicAnalysis, Fit, NoFit};
+use sensitol::problem::Problem;
 use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::distribution::StandardMoments;
 use sensitol_numeric::law::TabulatedInput;
-use sensitol::problem::Problem;
 use sensitol_numeric::surrogate::InputShape;
 
 /// An entry of the study's `[dimensions]`: its name, and its keys with their values as TOML.

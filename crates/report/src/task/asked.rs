@@ -3,20 +3,19 @@
 use serde::Deserialize;
 
 use super::found::{Shown, TaskReport};
+use crate::html::WhatIf;
+use crate::{About, AllocationReport, CompareReport, RareReport, Report, SimulationReport, SweepReport, WrittenAnew};
 use sensitol::allocation::{AllocationOptions, CostBasis, Goal, Status, allocate_with};
 use sensitol::analysis::analyze_with;
 use sensitol::assembly::Run;
 use sensitol::compare::{CompareOptions, compare_with};
-use sensitol_study::Error;
-use sensitol::method::{Options, registry::procedure};
+use sensitol::method::Options;
+use sensitol::method::registry::procedure;
 use sensitol::rare::{RareOptions, rare_with};
-use crate::html::WhatIf;
-use crate::{
-    About, AllocationReport, CompareReport, RareReport, Report, SimulationReport, SweepReport, WrittenAnew,
-};
 use sensitol::simulation::{Pace, Sampler, SimulationOptions, simulate_with};
-use sensitol_study::Study;
 use sensitol::sweep::sweep_with;
+use sensitol_study::Error;
+use sensitol_study::Study;
 
 /// Points of a simulation unless the caller says otherwise, as the command line has it.
 const SAMPLES: u64 = 100_000;

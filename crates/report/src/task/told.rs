@@ -10,8 +10,8 @@ use super::asked::{Asked, Counted, done};
 use super::faults::{of_engine, of_study};
 use super::found::TaskReport;
 use super::place::TaskPlace;
-use sensitol_study::Error;
 use sensitol_models::{ALL, Model};
+use sensitol_study::Error;
 use sensitol_study::{Study, StudyError, StudyText};
 
 /// A study, and what is asked of it.

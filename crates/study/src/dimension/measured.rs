@@ -8,10 +8,10 @@ use super::super::error::{Fault, StudyFault, fault};
 use super::super::file::DimensionEntry;
 use super::super::spanned::Spanned;
 use super::super::words::MEASURED_MODELS;
+use sensitol::warning::Warning;
 use sensitol_numeric::dimension::DimensionFault;
 use sensitol_numeric::distribution::{Distribution, DistributionError, Measured, PearsonLaw, Resample, outliers};
 use sensitol_numeric::names::nearest;
-use sensitol::warning::Warning;
 
 /// Fewer values are no sample: four moments of four values say nothing.
 const LEAST: usize = 5;

@@ -9,9 +9,9 @@ use super::super::spanned::Spanned;
 use super::super::values::NominalEntry;
 use super::spread::only_normal;
 use super::{built, conflict, distribution};
+use crate::zone::{OF_DISC, is_even};
 use sensitol_numeric::dimension::{Dimension, DimensionFault};
 use sensitol_numeric::distribution::{Beta, DistributionError};
-use crate::zone::{OF_DISC, is_even};
 
 /// The dimensions that a position of this name declares.
 pub(super) fn names(name: &str) -> [String; 2] {

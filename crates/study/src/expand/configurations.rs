@@ -1,9 +1,9 @@
 //! `[configurations]`: nominal values and constants of several sizes of one assembly.
 
 use super::{Expanded, Tree, Value, wrong_type};
-use sensitol_numeric::names::nearest;
 use crate::data::{Cells, Data};
 use crate::error::{Fault, Faults, StudyFault, fault};
+use sensitol_numeric::names::nearest;
 
 /// A size: names and what they are.
 struct Configuration {

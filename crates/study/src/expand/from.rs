@@ -2,9 +2,9 @@
 
 use super::geometry::{Shape, place, shape, takes_from};
 use super::{Expanded, OWN, Origin, Tree, Value, quoted, wrong_type};
-use sensitol_numeric::names::nearest;
 use crate::error::{Fault, Faults, StudyFault, fault};
 use crate::tree::Key;
+use sensitol_numeric::names::nearest;
 use sensitol_numeric::unit::Unit;
 
 /// The value that a dimension is relative to, before it is checked.

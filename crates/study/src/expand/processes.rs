@@ -3,10 +3,10 @@
 use std::ops::Range;
 
 use super::{Expanded, Tree, Value, wrong_type};
-use sensitol_numeric::names::nearest;
 use crate::data::Data;
 use crate::error::{Fault, Faults, StudyFault, fault};
 use crate::tree::Key;
+use sensitol_numeric::names::nearest;
 
 /// Keys of a process.
 const KEYS: [&str; 7] = ["cp", "cpk", "sigma", "sigmas", "side", "drift", "distribution"];

@@ -7,9 +7,9 @@ use super::columns::{LABELLED, ROLES, Role, role};
 use super::fault::{ImportFault, ImportProblem};
 use super::sheet::{Content, Sheet, address};
 use super::tolerance::{Written, written};
+use crate::table::{NumberFault, Style};
 use sensitol::assembly::formula::is_plain;
 use sensitol_numeric::labels::LABELS;
-use crate::table::{NumberFault, Style};
 
 /// Rows in which the header is sought.
 const HEADER: usize = 30;

@@ -2,10 +2,10 @@
 
 use super::line::{Diameter, Part, literal, names, place, unit_of};
 use super::{Expanded, Shape, shape};
-use sensitol_numeric::names::nearest;
 use crate::error::{Fault, Faults, StudyFault, fault};
 use crate::expand::{OWN, Origin, Tree, Value, quoted, wrong_type};
 use crate::tree::Key;
+use sensitol_numeric::names::nearest;
 
 const EXPECTED: &str =
     "a table such as { kind = \"fixed\", hole = \"h\", pin = \"p\", places = [\"hole_place\", \"thread\"] }";

@@ -3,11 +3,11 @@
 use super::line::{Diameter, Line, Part};
 use super::plain::{Of, Plain, key, number, pair, text};
 use super::size;
-use sensitol::assembly::formula::Formula;
-use sensitol_numeric::labels::LABELS;
 use crate::error::{Fault, StudyFault};
 use crate::expand::{Closing, Tree, quoted};
 use crate::tree::Key;
+use sensitol::assembly::formula::Formula;
+use sensitol_numeric::labels::LABELS;
 
 /// Where the pin lies in the hole.
 const LAWS: [&str; 6] = ["uniform", "contact", "+", "-", "disc", "rim"];

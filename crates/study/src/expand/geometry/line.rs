@@ -1,11 +1,11 @@
 //! A line of the study as it was written, and faults at its places.
 
-use sensitol::assembly::formula::{Formula, is_plain};
-use sensitol_numeric::names::nearest;
 use crate::decimal::{KEPT, decimal};
 use crate::error::{Fault, StudyFault, fault};
 use crate::expand::{OWN, Tree, Value, quoted, wrong_type};
 use crate::tree::Key;
+use sensitol::assembly::formula::{Formula, is_plain};
+use sensitol_numeric::names::nearest;
 use sensitol_numeric::unit::Unit;
 
 /// A line of `[dimensions]`, and the study around it.

@@ -20,11 +20,11 @@ mod zones;
 pub(super) use line::place;
 
 use super::{Expanded, Origin, Tree, Value};
-use sensitol_numeric::labels::LABELS;
 use crate::error::{Fault, Faults, StudyFault};
 use crate::tree::Key;
 use line::Line;
 use plain::Plain;
+use sensitol_numeric::labels::LABELS;
 
 /// The names that a line of `[dimensions]` declares.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

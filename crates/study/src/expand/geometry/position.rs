@@ -3,9 +3,9 @@
 use super::line::{Line, Part, literal};
 use super::plain::{Of, Plain, key, number, others, pair};
 use super::size;
-use sensitol_numeric::names::nearest;
 use crate::error::{Fault, StudyFault};
 use crate::expand::{Tree, Value, quoted, wrong_type};
+use sensitol_numeric::names::nearest;
 
 /// The plain lines of a position in a table; None of a plain zone.
 pub(super) fn plain(line: &Line<'_>) -> Result<Option<Plain>, Fault> {

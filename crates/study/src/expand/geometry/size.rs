@@ -1,12 +1,12 @@
 //! From where to where the sizes of features go.
 
 use super::line::{Line, as_number, unit_of};
-use sensitol::assembly::formula::{Formula, FormulaSet, Meaning};
 use crate::de;
 use crate::dimension;
 use crate::error::Faults;
 use crate::expand::Tree;
 use crate::file::DimensionEntry;
+use sensitol::assembly::formula::{Formula, FormulaSet, Meaning};
 
 /// Least and greatest size of a dimension, and its unit; None where it has no band. Faults of its line are told where it is
 /// read.
