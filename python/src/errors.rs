@@ -2,7 +2,7 @@
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use sensitol::Error;
+use sensitol_study::Error;
 use sensitol_study::StudyError;
 
 /// The exception of this name in `sensitol._errors`, with these attributes.

@@ -9,9 +9,10 @@ use std::time::{Duration, Instant};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList};
+use sensitol::StopReason;
 use sensitol::assembly::Run;
 use sensitol_report::task::{Asked, TaskReport, done};
-use sensitol::{Error, StopReason};
+use sensitol_study::Error;
 use sensitol_study::Study;
 
 use crate::host::{Answer, Call, Event};

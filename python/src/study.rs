@@ -10,9 +10,9 @@ use pyo3::prelude::*;
 use sensitol::assembly::Signature;
 use sensitol_external::Greeting;
 use sensitol_report::task::Asked;
-use sensitol_study::{Externals, JournalPlace, StudyText};
-use sensitol::Error;
+use sensitol_study::Error;
 use sensitol_study::StudyError;
+use sensitol_study::{Externals, JournalPlace, StudyText};
 use serde_json::json;
 
 use crate::errors::{of_engine, of_study};

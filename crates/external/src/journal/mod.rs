@@ -9,7 +9,7 @@
 //! too; a crash or a missed deadline is not: the next run tries again.
 
 mod claims;
-pub(crate) mod store;
+pub mod store;
 
 pub use store::{JournalError, JournalFault};
 pub use store::{KnownModel, Store, StoredAnswer};
