@@ -173,7 +173,6 @@ impl Serialize for Errors {
 
 /// One method, as it was run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[non_exhaustive]
 pub struct Ran {
     /// Which.
     #[serde(rename = "method")]
@@ -201,7 +200,6 @@ pub struct Ran {
 /// One method that was not run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[non_exhaustive]
 pub struct NotRun {
     /// Which.
     #[serde(rename = "method")]
@@ -253,7 +251,6 @@ impl fmt::Display for NotRunReason {
 
 /// The results of a comparison.
 #[derive(Debug, Clone, Serialize)]
-#[non_exhaustive]
 pub struct Comparison {
     /// The reference that all are measured by.
     pub reference: Simulation,

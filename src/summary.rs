@@ -54,7 +54,6 @@ impl fmt::Display for StopReason {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[non_exhaustive]
 pub struct RunSummary {
     /// Points sent to the model, those sent again included.
     pub evaluations: u64,

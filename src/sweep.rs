@@ -27,7 +27,6 @@ use sensitol_numeric::time::Instant;
 
 /// A problem along one of its dimensions.
 #[derive(Debug, Clone, Serialize)]
-#[non_exhaustive]
 pub struct Sweep {
     /// The place of the dimension among the problem's.
     pub dimension: usize,

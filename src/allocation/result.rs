@@ -105,7 +105,6 @@ pub struct Moved {
 /// The requirement of a characteristic, and its values.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[non_exhaustive]
 pub struct Kept {
     /// Index of the characteristic in the problem; reports name it.
     #[serde(skip)]
@@ -254,7 +253,6 @@ pub struct Proof {
 
 /// The results of an allocation. Unknown values are None.
 #[derive(Debug, Clone, Serialize)]
-#[non_exhaustive]
 pub struct Allocation {
     /// How it ended.
     pub status: Status,

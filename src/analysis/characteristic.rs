@@ -27,7 +27,6 @@ use sensitol_numeric::verdict::{self, Judged, Verdict};
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
-#[non_exhaustive]
 pub struct CharacteristicAnalysis {
     /// The characteristic, with its limits.
     #[serde(flatten)]
@@ -95,7 +94,7 @@ pub struct CharacteristicAnalysis {
     pub worst_case: Option<[f64; 2]>,
     /// The most that curvatures and interactions add to the worst case, by the surface; None where a curvature is missing.
     #[serde(skip)]
-    pub(crate) curved: Option<f64>,
+    pub curved: Option<f64>,
     /// The least and the greatest value in the box of the tolerance bands, where they were searched and found.
     #[serde(skip)]
     pub extremes: Option<Extremes>,
@@ -137,7 +136,6 @@ pub struct CharacteristicAnalysis {
 /// The effect of one dimension on a characteristic.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[non_exhaustive]
 pub struct Sensitivity {
     /// The dimension.
     pub dimension: String,

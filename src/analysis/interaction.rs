@@ -7,7 +7,6 @@ use serde::{Serialize, Serializer};
 /// The joint effect of two dimensions.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[non_exhaustive]
 pub struct Interaction<'a> {
     /// The two dimensions.
     pub dimensions: [&'a str; 2],

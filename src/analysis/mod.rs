@@ -14,7 +14,7 @@ mod interaction;
 mod interactions;
 mod interval;
 mod jumps;
-pub(crate) mod law_at;
+pub mod law_at;
 mod linear;
 mod outputs;
 mod recorded;
@@ -30,7 +30,7 @@ mod shorten;
 mod sobol;
 mod strides;
 mod surface;
-pub(crate) mod surface_law;
+pub mod surface_law;
 mod trust;
 mod unverified;
 mod verification;
@@ -85,7 +85,6 @@ use shares::Shares;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
-#[non_exhaustive]
 pub struct Analysis {
     /// The method that was run: for `auto`, what it stands for.
     #[cfg_attr(feature = "schema", schemars(with = "String"))]

@@ -203,7 +203,7 @@ impl Responses {
     }
 
     /// Rows whose answers were known already.
-    pub(crate) fn count_reused(&self) -> usize {
+    pub fn count_reused(&self) -> usize {
         self.reused
     }
 
@@ -213,7 +213,7 @@ impl Responses {
     }
 
     /// All values of one output, NaN where there is none.
-    pub(crate) fn column(&self, output: usize) -> &[f64] {
+    pub fn column(&self, output: usize) -> &[f64] {
         &self.values[output * self.rows..(output + 1) * self.rows]
     }
 

@@ -50,7 +50,7 @@ impl Switch {
     /// assert_eq!(switch.name("reach"), "`max(a, b)`");
     /// assert_eq!(switch.name("gap"), "`max(a, b)` in `reach`");
     /// ```
-    pub(crate) fn name(&self, output: &str) -> String {
+    pub fn name(&self, output: &str) -> String {
         match &self.formula {
             Some(formula) if formula != output => format!("`{}` in `{formula}`", self.text),
             Some(_) => format!("`{}`", self.text),

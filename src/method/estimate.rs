@@ -116,7 +116,7 @@ impl ErrorSource {
 
 impl ErrorEstimate {
     /// Its sources, in words.
-    pub(crate) fn basis(&self) -> String {
+    pub fn basis(&self) -> String {
         self.sources.iter().map(|source| source.words()).collect::<Vec<_>>().join("; ")
     }
 }

@@ -231,7 +231,7 @@ impl MethodError {
     }
 
     /// How many evaluations it would have taken, where that is why it cannot be run.
-    pub(crate) fn needed(&self) -> Option<u64> {
+    pub fn needed(&self) -> Option<u64> {
         match self {
             Self::OverBudget { needed, .. } => u64::try_from(*needed).ok(),
             Self::TooMany { needed, .. } => u64::try_from(*needed).ok(),

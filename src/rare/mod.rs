@@ -108,7 +108,6 @@ impl RareOptions {
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
-#[non_exhaustive]
 pub struct RareEvents {
     /// The method of the surrogate.
     #[serde(rename = "surrogate")]
@@ -150,7 +149,6 @@ pub struct RareEvents {
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
-#[non_exhaustive]
 pub struct RareCharacteristic {
     /// The characteristic, with its limits.
     #[serde(flatten)]
@@ -179,7 +177,6 @@ pub struct RareCharacteristic {
 /// The results beyond one limit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[non_exhaustive]
 pub struct Beyond {
     /// The limit.
     pub limit: f64,

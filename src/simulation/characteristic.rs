@@ -23,7 +23,6 @@ use sensitol_numeric::verdict::{self, Judged, Verdict};
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
-#[non_exhaustive]
 pub struct SimulatedCharacteristic {
     /// The characteristic, with its limits.
     #[serde(flatten)]

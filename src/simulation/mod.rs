@@ -170,7 +170,6 @@ const COSTLY: usize = 4096;
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
-#[non_exhaustive]
 pub struct Simulation {
     /// How points were drawn.
     #[serde(flatten, serialize_with = "through::<shape::SamplerShape, _, _>")]

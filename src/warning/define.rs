@@ -36,7 +36,7 @@ macro_rules! warnings {
 
         impl Warning {
             /// The codes of all warnings.
-            pub(crate) const CODES: &[&str] = &[$($code),*];
+            pub const CODES: &[&str] = &[$($code),*];
 
             /// The code of this kind of warning, which stays the same between versions.
             pub fn code(&self) -> &'static str {

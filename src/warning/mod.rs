@@ -6,7 +6,7 @@
 #[macro_use]
 mod define;
 mod advice;
-pub(crate) mod aggregate;
+pub mod aggregate;
 mod allocation;
 mod derivatives;
 mod distribution;

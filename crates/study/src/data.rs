@@ -155,7 +155,7 @@ impl DataFault {
 
 impl DataProblem {
     /// The text to write instead, where that can be said.
-    pub(crate) fn help(&self) -> Option<String> {
+    pub fn help(&self) -> Option<String> {
         let columns = |known: &[String]| {
             format!("its columns are {}", known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", "))
         };

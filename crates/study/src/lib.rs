@@ -171,7 +171,7 @@ pub struct Study {
 
 impl Study {
     /// Faults of a study that are told at once.
-    pub(crate) const MOST_FAULTS: usize = 20;
+    pub const MOST_FAULTS: usize = 20;
 
     /// Costs and requirements of the characteristics that its problem asks for.
     pub fn allocation_task(&self) -> AllocationTask {

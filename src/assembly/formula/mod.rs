@@ -20,7 +20,7 @@ mod error;
 mod functions;
 mod graph;
 mod hessian;
-pub(crate) mod interval;
+pub mod interval;
 pub mod jet;
 mod lexer;
 mod margins;

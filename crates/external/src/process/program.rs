@@ -36,7 +36,7 @@ impl Process {
     ///
     /// # Errors
     /// When it does not start, or does not serve the study.
-    pub(crate) fn adapter(&self, outputs: &[usize]) -> Result<ModelInfo, ProcessError> {
+    pub fn adapter(&self, outputs: &[usize]) -> Result<ModelInfo, ProcessError> {
         self.with_pool(outputs, |pool| pool.prepare().cloned())
     }
 

@@ -17,7 +17,7 @@ mod block;
 mod error;
 mod matrix;
 mod together;
-pub(crate) mod transform;
+pub mod transform;
 
 pub use block::{Atom, Block, JointLaw, Rows};
 pub use error::{CorrelationError, Refusal};
@@ -92,7 +92,7 @@ impl Correlation {
     ///
     /// # Errors
     /// See [`with_blocks`](Self::with_blocks).
-    pub(crate) fn new(dimensions: &[Dimension], pairs: &[Pair]) -> Result<Self, CorrelationError> {
+    pub fn new(dimensions: &[Dimension], pairs: &[Pair]) -> Result<Self, CorrelationError> {
         Self::with_blocks(dimensions, pairs, Vec::new())
     }
 

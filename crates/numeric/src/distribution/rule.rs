@@ -60,7 +60,7 @@ impl Jacobi {
     }
 
     /// How many coefficients of each kind there are.
-    pub(crate) fn order(&self) -> usize {
+    pub fn order(&self) -> usize {
         self.alpha.len()
     }
 

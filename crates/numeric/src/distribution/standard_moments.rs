@@ -48,7 +48,7 @@ impl StandardMoments {
     /// let m = StandardMoments::from_central(&[4.0, 0.0, 48.0, 0.0, 960.0, 0.0, 26880.0]);
     /// assert_eq!(m, StandardMoments::NORMAL);
     /// ```
-    pub(crate) fn from_central(central: &[f64; 7]) -> Self {
+    pub fn from_central(central: &[f64; 7]) -> Self {
         let sigma = central[0].sqrt();
         let standard = |order: usize| {
             let mut moment = central[order - 2];
@@ -89,7 +89,7 @@ impl StandardMoments {
     /// let m = StandardMoments::from_cumulants([2.0, 6.0, 24.0, 120.0, 720.0, 5040.0]);
     /// assert_eq!((m.kurtosis(), m.m5, m.m8), (9.0, 44.0, 14833.0));
     /// ```
-    pub(crate) fn from_cumulants([k3, k4, k5, k6, k7, k8]: [f64; 6]) -> Self {
+    pub fn from_cumulants([k3, k4, k5, k6, k7, k8]: [f64; 6]) -> Self {
         Self {
             skewness: k3,
             excess: k4,

@@ -76,7 +76,7 @@ impl Pearson {
     ///
     /// # Errors
     /// As [`new`](Self::new).
-    pub(crate) fn with_excess(mean: f64, sigma: f64, skewness: f64, excess: f64) -> Result<Self, PearsonError> {
+    pub fn with_excess(mean: f64, sigma: f64, skewness: f64, excess: f64) -> Result<Self, PearsonError> {
         Self::build(mean, sigma, skewness, [3.0, excess])
     }
 
@@ -163,7 +163,7 @@ impl Pearson {
     }
 
     /// Logarithm of the density.
-    pub(crate) fn log_pdf(&self, x: f64) -> f64 {
+    pub fn log_pdf(&self, x: f64) -> f64 {
         if x.is_nan() { f64::NAN } else { self.standard.log_pdf(self.z(x)) - libm::log(self.sigma) }
     }
 

@@ -1,0 +1,102 @@
+//! Text reports in brief: every characteristic in one line first, then no more than 25 lines of each, within 80 columns.
+
+use super::command::sensitol;
+
+/// Lines of a characteristic unless all is asked for.
+const MOST: usize = 25;
+
+fn text(arguments: &[&str]) -> String {
+    let output = sensitol(arguments).arg("-q").output().unwrap();
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// The parts of a report, each from a line at the margin, below an empty one, to the next.
+fn parts(report: &str) -> Vec<Vec<&str>> {
+    let (mut parts, mut before): (Vec<Vec<&str>>, &str) = (Vec::new(), "head");
+    for line in report.lines() {
+        if before.is_empty() && !line.starts_with(' ') {
+            parts.push(Vec::new());
+        }
+        parts.iter_mut().next_back().into_iter().for_each(|part| part.push(line));
+        before = line;
+    }
+    parts
+}
+
+#[test]
+fn the_verdict_comes_first_and_a_characteristic_fits_a_screen() {
+    let rod = "examples/connecting-rod/crank-angle.toml";
+    let cases: [(&[&str], &[&str]); 6] = [
+        (&["simulate", "examples/first-study/study.toml"], &["gap", "0.752", "MISSED"]),
+        (&["simulate", "examples/ishigami/study.toml", "--sobol", "--samples", "16384"], &["y"]),
+        (&["simulate", "examples/first-study/study.toml", "--rare"], &["gap", "MISSED"]),
+        (&["compare", "examples/shaft-and-bore/study.toml", "--samples", "65536"], &["clearance", "0.0436"]),
+        (&["sweep", rod, "--over", "theta=-180:180:73"], &["F_axial", ".."]),
+        (&["sweep", "examples/first-study/study.toml", "--over", "housing=50.1:50.3:5"], &["gap", "MISSED"]),
+    ];
+    for (arguments, words) in cases {
+        let report = text(arguments);
+        let table: Vec<&str> = report.lines().skip_while(|line| !line.is_empty()).skip(1).collect();
+        let first =
+            table.iter().take_while(|line| !line.is_empty()).find(|line| words.iter().all(|word| line.contains(word)));
+        assert!(first.is_some(), "{arguments:?}: no line of {words:?}\n{report}");
+        let all = text(&[arguments, &["-v"]].concat());
+        let parts = parts(&report);
+        assert!(!parts.is_empty(), "{arguments:?}\n{report}");
+        for part in parts {
+            assert!(part.len() <= MOST, "{arguments:?}: {} lines\n{report}", part.len());
+        }
+        assert!(all.len() >= report.len(), "{arguments:?}");
+        for line in report.lines().chain(all.lines()) {
+            assert!(line.chars().count() <= 80, "{arguments:?}: {line}");
+        }
+    }
+}
+
+/// All rows of a long sweep are there where all is asked for, and in CSV; in brief the worst one is.
+#[test]
+fn a_long_sweep_is_thinned() {
+    let folder = tempfile::tempdir().unwrap();
+    let tables = folder.path().to_str().unwrap();
+    let asked = ["sweep", "examples/first-study/study.toml", "--over", "housing=50.1:50.37:101"];
+    let brief = text(&[&asked[..], &["--csv", tables]].concat());
+    assert!(brief.contains("of 101 values; -v shows all"), "{brief}");
+    let csv = std::fs::read_to_string(folder.path().join("sweep.csv")).unwrap();
+    let yields: Vec<(f64, f64)> = {
+        let mut reader = csv::Reader::from_reader(csv.as_bytes());
+        let names = reader.headers().unwrap().clone();
+        let place = |name: &str| names.iter().position(|known| known == name).unwrap();
+        let (at, yield_) = (place("at"), place("yield"));
+        reader
+            .records()
+            .map(|row| row.unwrap())
+            .map(|row| (row[at].parse().unwrap(), row[yield_].parse().unwrap()))
+            .collect()
+    };
+    assert_eq!(yields.len(), 101);
+    let worst = yields.iter().copied().reduce(|a, b| if b.1 < a.1 { b } else { a }).unwrap().0;
+    let values = |report: &str| -> Vec<f64> {
+        report.lines().filter_map(|line| line.split_whitespace().next()?.parse().ok()).collect()
+    };
+    let shown = |report: &str, at: f64| values(report).iter().any(|value| (value - at).abs() < 1e-9);
+    assert!(shown(&brief, worst), "{worst}\n{brief}");
+    let all = text(&[&asked[..], &["-v"]].concat());
+    assert!(yields.iter().all(|&(at, _)| shown(&all, at)), "{all}");
+}
+
+/// An allocation begins with the characteristics before and after, each with its verdict.
+#[test]
+fn an_allocation_begins_with_what_is_kept() {
+    let report = text(&["allocate", "examples/first-study/study.toml"]);
+    let place = |words: &[&str]| {
+        let found = report.lines().position(|line| words.iter().all(|word| line.contains(word)));
+        found.unwrap_or_else(|| panic!("{words:?}\n{report}"))
+    };
+    let before = place(&["gap [mm]", "before", "MISSED"]);
+    assert!(before < place(&["housing", "±"]));
+    assert!(report.lines().nth(before + 1).unwrap().contains("met"), "{report}");
+    for words in ["KKT residual below", "shadow price of gap per 0.001 mm", "margin: tolerances can be scaled by"] {
+        assert!(report.contains(words), "{words}\n{report}");
+    }
+}

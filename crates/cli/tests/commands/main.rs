@@ -1,0 +1,28 @@
+//! Commands: output, exit codes, files.
+
+#[path = "../support/command.rs"]
+#[allow(dead_code, reason = "each test binary uses a part of it")]
+mod command;
+mod allocation_cli;
+mod brief;
+mod cli;
+mod difference;
+mod exit_codes;
+mod hosted;
+mod hostile;
+mod import;
+mod init;
+mod labels;
+mod memory;
+mod outputs;
+mod probabilities;
+mod probe;
+mod rare;
+mod sampled_cli;
+mod serve;
+mod several;
+mod sobol;
+mod sweep;
+mod verdicts;
+mod workbench;
+mod workbooks;

@@ -1,0 +1,141 @@
+//! Figures in the sentences of the documents are those that the program finds now: each sentence is written here with its
+//! figures left out, filled in, and sought on its page.
+
+use sensitol::simulation::{SimulationOptions, simulate};
+use serde_json::Value;
+
+use super::command::sensitol;
+use sensitol_testing::{repository, says};
+
+const TUTORIAL: &str = "docs/tutorial.md";
+const TRUST: &str = "docs/how-to/trust-a-result.md";
+const MEASURED: &str = "docs/how-to/measured-data.md";
+
+/// The JSON that a command prints.
+fn json(arguments: &[&str]) -> Value {
+    let output = sensitol(&[arguments, &["--json", "-q"]].concat()).output().unwrap();
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{arguments:?}: {error}"))
+}
+
+/// The first characteristic of a report.
+fn first(arguments: &[&str]) -> Value {
+    json(arguments)["characteristics"][0].clone()
+}
+
+#[track_caller]
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is not a number"))
+}
+
+#[test]
+fn the_tutorial_reads_its_output_right() {
+    let study = "examples/first-study/study.toml";
+    let report = json(&["analyze", study]);
+    let gap = &report["characteristics"][0];
+    let of = |key: &str| number(&gap[key]);
+    says(TUTORIAL, &format!("- {} evaluations instead of 100 000.", report["evaluations"]));
+    says(TUTORIAL, &format!("The mean is {:.4} mm above the nominal gap.", of("mean") - of("nominal")));
+    let [spacer, tilt] = ["spacer", "tilt"].map(|name| {
+        let all = report["dimensions"].as_array().unwrap();
+        let at = all.iter().position(|one| one["name"] == name).unwrap();
+        (all[at].clone(), gap["sensitivities"][at].clone())
+    });
+    let mean = number(&spacer.0["mean"]);
+    says(TUTORIAL, &format!("so its mean is {mean:.3}: that is {:.3} mm.", number(&spacer.0["nominal"]) - mean));
+    says(TUTORIAL, &format!("The tilt takes {:.4} mm away", -number(&tilt.1["mean_shift"])));
+    let normal = 100.0 * number(&gap["normal_fit"]["yield"]);
+    let fit = 100.0 * number(&gap["pearson_fit"]["yield"]);
+    says(TUTORIAL, &format!("- Yield {:.3} %, target missed.", 100.0 * of("yield")));
+    let both = format!("would say {normal:.2} %, a Pearson distribution with the same four moments {fit:.3} %:");
+    says(TUTORIAL, &format!("{both} kurtosis {:.2} instead of 3", of("kurtosis")));
+    let [low, high] = [0, 1].map(|end| number(&gap["worst_case"]["bounds"][end]));
+    says(TUTORIAL, &format!("- Worst case {low:.3} .. {high:.3}:"));
+    let bearing = gap["sensitivities"].as_array().unwrap().iter().find(|row| row["dimension"] == "bearing").unwrap();
+    let share = 100.0 * number(&bearing["linear_share"]);
+    says(TUTORIAL, &format!("{share:.0} % of the variance is the bearing's."));
+    says(TUTORIAL, &format!("The bearing has {share:.0} % of the variance."));
+
+    let rejects = |study: &str| {
+        let gap = first(&["simulate", study]);
+        number(&gap["ppm_below"]) + number(&gap["ppm_above"])
+    };
+    let (before, after) = (rejects(study), rejects("examples/first-study/tighter.toml"));
+    says(
+        TUTORIAL,
+        &format!(
+            "of 100 000 gaps {before:.0} ppm are out of limits, where the analysis says {:.0} ppm,",
+            of("ppm_below") + of("ppm_above")
+        ),
+    );
+    let tighter = first(&["analyze", "examples/first-study/tighter.toml"]);
+    let own = number(&tighter["ppm_below"]) + number(&tighter["ppm_above"]);
+    says(
+        TUTORIAL,
+        &format!("{own:.0} ppm by the analysis, and the model rejects {after:.0} ppm instead of {before:.0}."),
+    );
+    let warnings = report["warnings"].as_array().unwrap();
+    let fit = &warnings.iter().find(|one| one["code"] == "pearson-differs").unwrap()["data"];
+    says(TUTORIAL, &format!("({:.0} ppm), and the error of that yield is", 1e6 * number(&fit["rejected"])));
+    let error = 100.0 * number(&gap["error_estimate"]["yield"]);
+    says(TUTORIAL, &format!("the error of that yield is {error:.3} %."));
+}
+
+/// The requirements of the first study, the costs of its tolerances, and the model's answers on them.
+#[test]
+fn the_tutorials_requirements_were_tried() {
+    let study = std::fs::read_to_string(repository("examples/first-study/study.toml")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("study.toml");
+    let confirmed = |requires: &str| {
+        let changed = study.replace("target_yield = 0.9973", &format!("target_yield = 0.9973, {requires}"));
+        assert_ne!(changed, study);
+        std::fs::write(&path, changed).unwrap();
+        let output = sensitol(&["allocate", path.to_str().unwrap(), "--confirm", "100000", "-q"]).output().unwrap();
+        let text = String::from_utf8(output.stdout).unwrap();
+        let line = text.lines().find(|line| line.contains("points of the model keep the limits")).unwrap();
+        let percent = line.strip_prefix("gap: ").unwrap().split(' ').next().unwrap();
+        percent.parse::<f64>().unwrap()
+    };
+    let kept = format!("{:.2} %", confirmed("require = { yield = 0.9973 }"));
+    says(TUTORIAL, &format!("{kept} of the model's own assemblies keep the limits"));
+    let capable = json(&["allocate", "examples/first-study/capable.toml", "--confirm", "100000"]);
+    let more = number(&capable["cost_after"]) - number(&capable["cost_before"]);
+    says(TUTORIAL, &format!("the housing wider, and {more:.2} more buys a Cpk of 0.86."));
+    let kept = number(&capable["confirmation"]["characteristics"][0]["yield"]);
+    says(TUTORIAL, &format!("{:.2} % keep the limits.", 100.0 * kept));
+}
+
+#[test]
+fn the_tails_are_those_of_the_studies() {
+    let ppm = |one: &Value| [&one["ppm_below"], &one["ppm_above"]].map(|ppm| format!("{:.0}", number(ppm))).join(", ");
+    let analyzed = |study: &str| {
+        let one = first(&["analyze", study]);
+        (ppm(&one), format!("{} | {{}} | {}", ppm(&one["pearson_fit"]), ppm(&one["normal_fit"])))
+    };
+    let (own, others) = analyzed("examples/first-study/study.toml");
+    let rare = first(&["simulate", "examples/first-study/study.toml", "--rare"]);
+    let of_rare = |side: &str, digits: usize| {
+        let [value, error] = ["probability", "standard_error"].map(|key| 1e6 * number(&rare[side][key]));
+        format!("{value:.digits$} ± {error:.digits$}")
+    };
+    let model = format!("{}, {}", of_rare("below", 0), of_rare("above", 1));
+    says(TRUST, &format!("| {own} | {} |", others.replace("{}", &model)));
+    // By sampling of another program, as `tests/data/two-suppliers.info.json` tells.
+    let (own, others) = analyzed("examples/two-suppliers/study.toml");
+    let truth = ppm(&sensitol_testing::data("two-suppliers.json"));
+    says(TRUST, &format!("| {own} | {} |", others.replace("{}", &truth)));
+    // A thousand good points: Clopper and Pearson's bound, as `simulate` has it.
+    let least = 100.0 * 0.025_f64.powf(1e-3);
+    says(TRUST, &format!("A yield of 100 % in 1000 points means above {least:.1} %, no more."));
+    let study = sensitol_study::Study::read(&repository("examples/thermal-clearance/study.toml")).unwrap();
+    let sample = simulate(&study.problem, &SimulationOptions::default().with_samples(1000)).unwrap();
+    let [low, high] = sample.characteristics[0].yield_.as_ref().unwrap().interval;
+    assert!(high == 1.0 && (100.0 * low - least).abs() < 0.05, "{low} .. {high}");
+}
+
+#[test]
+fn one_chip_matters() {
+    let below = |study: &str| number(&first(&["analyze", study, "-m", "full"])["ppm_below"]);
+    let [chip, checked] = ["study", "checked"].map(|name| below(&format!("examples/measured-pin/{name}.toml")));
+    says(MEASURED, &format!("makes the rejects below the lower limit {chip:.0} ppm instead of {checked:.0}."));
+}

@@ -1,0 +1,182 @@
+//! `docs/reference/json-report.md`, made from the schema of reports.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use serde_json::Value;
+
+use super::command::sensitol;
+
+const INTRODUCTION: &str = "# JSON reports\n\n\
+    `--json` prints one object, or a list where a command says so. This page is made from the JSON Schema that `sensitol schema --report` prints.\n\n\
+    - Numbers have all their digits. An unknown value is `null`, never 0; no key is left out.\n\
+    - `schema` is the version of the shape. Keys are added without a new version; a key that changes its meaning or is removed raises it.\n\
+    - Several studies in one call give a list: each report has the key `study`, or it is `{ \"study\": .., \"error\": .. }`.\n\
+    - Exit codes are those of the text report: [commands](commands.md).\n\n";
+
+/// The page.
+pub fn json_report() -> String {
+    let output = sensitol(&["schema", "--report"]).output().unwrap();
+    let schema: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let mut page = Page { defs: &schema["$defs"], text: INTRODUCTION.to_owned(), done: Vec::new() };
+    for command in schema["anyOf"].as_array().unwrap() {
+        let name = name(command).unwrap();
+        // The same reports once more, in a list.
+        if name == "analyze-several" {
+            continue;
+        }
+        let of = page.resolved(command);
+        write!(page.text, "## {name}\n\n").unwrap();
+        if of["type"] == "array" {
+            page.text += "A list of objects.\n\n";
+        }
+        let objects = page.objects(of);
+        page.section(&objects, name);
+    }
+    page.text.trim_end().to_owned() + "\n"
+}
+
+/// The target of a reference.
+fn name(value: &Value) -> Option<&str> {
+    value["$ref"].as_str().map(|path| path.strip_prefix("#/$defs/").unwrap())
+}
+
+struct Page<'s> {
+    defs: &'s Value,
+    text: String,
+    /// Tables of keys that have been shown, and their headings.
+    done: Vec<(Vec<&'s Value>, String)>,
+}
+
+impl<'s> Page<'s> {
+    fn resolved(&self, mut value: &'s Value) -> &'s Value {
+        while let Some(name) = name(value) {
+            value = &self.defs[name];
+        }
+        value
+    }
+
+    /// The alternatives that a value is one of.
+    fn forms(&self, value: &'s Value) -> Vec<&'s Value> {
+        let value = self.resolved(value);
+        let parts = ["anyOf", "oneOf", "allOf"].iter().find_map(|key| value[*key].as_array());
+        parts.map_or(vec![value], |parts| parts.iter().flat_map(|part| self.forms(part)).collect())
+    }
+
+    /// The objects with keys of their own that a value may be, or is a list of.
+    fn objects(&self, value: &'s Value) -> Vec<&'s Value> {
+        let mut found = Vec::new();
+        for form in self.forms(value) {
+            if form.get("properties").is_some() {
+                found.push(form);
+            } else if let Some(within) = form.get("items").or(form.get("additionalProperties")) {
+                found.extend(self.objects(within));
+            }
+        }
+        found
+    }
+
+    /// A table of the keys that these objects have, and then the tables of those that are objects themselves.
+    fn section(&mut self, objects: &[&'s Value], path: &str) {
+        let mut keys: BTreeMap<&str, Vec<&'s Value>> = BTreeMap::new();
+        for object in objects {
+            for (key, value) in object["properties"].as_object().unwrap() {
+                keys.entry(key).or_default().push(value);
+            }
+        }
+        self.text += "| key | value | meaning |\n|---|---|---|\n";
+        let mut below = Vec::new();
+        for (key, values) in keys {
+            let mut kind = self.kind(&values);
+            let objects: Vec<&'s Value> = values.iter().copied().flat_map(|value| self.objects(value)).collect();
+            if !objects.is_empty() {
+                let heading = self.done.iter().find(|(known, _)| *known == objects).map(|(_, heading)| heading.clone());
+                let heading = heading.unwrap_or_else(|| {
+                    let heading = format!("{path}: {key}");
+                    self.done.push((objects.clone(), heading.clone()));
+                    below.push((heading.clone(), objects));
+                    heading
+                });
+                kind = kind.replacen("object", &format!("[object](#{})", anchor(&heading)), 1);
+            }
+            let about = self.about(values[0]);
+            writeln!(self.text, "| `{key}` | {kind} | {about} |").unwrap();
+        }
+        self.text.push('\n');
+        for (heading, objects) in below {
+            write!(self.text, "### {heading}\n\n").unwrap();
+            self.section(&objects, &heading);
+        }
+    }
+
+    /// The first paragraph of a description, in the words of JSON.
+    fn about(&self, value: &'s Value) -> String {
+        let text = value["description"].as_str().or_else(|| self.resolved(value)["description"].as_str());
+        let text = text.unwrap_or_default().split("\n\n").next().unwrap();
+        let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        without_links(&words).replace("None", "null").replace('|', "\\|")
+    }
+
+    /// The types that one of these values may have.
+    fn kind(&self, values: &[&'s Value]) -> String {
+        let mut kinds: Vec<String> = Vec::new();
+        for form in values.iter().copied().flat_map(|value| self.forms(value)) {
+            for kind in self.kinds(form) {
+                if !kinds.contains(&kind) {
+                    kinds.push(kind);
+                }
+            }
+        }
+        kinds.join(" or ")
+    }
+
+    fn kinds(&self, form: &'s Value) -> Vec<String> {
+        if let Some(word) = form.get("const") {
+            return vec![format!("`{word}`")];
+        }
+        if let Some(words) = form["enum"].as_array() {
+            return words.iter().map(|word| format!("`{word}`")).collect();
+        }
+        if form.get("properties").is_some() {
+            return vec!["object".to_owned()];
+        }
+        let types = match &form["type"] {
+            Value::String(one) => vec![one.as_str()],
+            Value::Array(several) => several.iter().map(|one| one.as_str().unwrap()).collect(),
+            _ => vec!["any"],
+        };
+        let named = |kind: &str| match kind {
+            "array" => {
+                let of = form.get("items").or_else(|| form["prefixItems"].get(0)).unwrap();
+                format!("list of {}", self.kind(&[of]))
+            }
+            "object" => format!("names, each with {}", self.kind(&[&form["additionalProperties"]])),
+            "integer" => "whole number".to_owned(),
+            "boolean" => "true or false".to_owned(),
+            "string" => "text".to_owned(),
+            other => other.to_owned(),
+        };
+        types.into_iter().map(named).collect()
+    }
+}
+
+/// The anchor of a heading, as code hosts and mdBook make it.
+fn anchor(heading: &str) -> String {
+    let kept = heading.to_lowercase().replace(' ', "-");
+    kept.chars().filter(|letter| letter.is_alphanumeric() || "-_".contains(*letter)).collect()
+}
+
+/// Links of rustdoc lead nowhere here: their text stays.
+fn without_links(text: &str) -> String {
+    let mut left = text;
+    let mut plain = String::new();
+    while let Some((before, after)) = left.split_once("[`") {
+        let Some((name, rest)) = after.split_once("`]") else { break };
+        write!(plain, "{before}`{name}`").unwrap();
+        left = match rest.strip_prefix('(').and_then(|target| target.split_once(')')) {
+            Some((_, rest)) => rest,
+            None => rest,
+        };
+    }
+    plain + left
+}

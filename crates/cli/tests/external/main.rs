@@ -1,0 +1,10 @@
+//! Commands with external models and their journal.
+
+#[path = "../support/command.rs"]
+#[allow(dead_code, reason = "each test binary uses a part of it")]
+mod command;
+mod history;
+mod journal;
+mod long_runs;
+#[cfg(unix)]
+mod storm;

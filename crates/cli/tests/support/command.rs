@@ -1,0 +1,38 @@
+//! The command `sensitol`, run by tests.
+
+use std::process::Command;
+use sensitol_testing::repository;
+
+
+/// Study of the four-cylinder engine.
+pub const ENGINE: &str = "examples/engine-balance/study.toml";
+
+/// A command of the program, run at the repository's root in a UTF-8 locale.
+pub fn sensitol(arguments: &[&str]) -> Command {
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("sensitol"));
+    command.args(arguments).current_dir(repository("")).env("LC_ALL", "C.UTF-8").env_remove("NO_COLOR");
+    command
+}
+
+/// Exit code, stdout and stderr in one text.
+pub fn run(arguments: &[&str]) -> String {
+    let output = sensitol(arguments).output().unwrap();
+    let part = |name: &str, bytes: &[u8]| match String::from_utf8(bytes.to_vec()).unwrap() {
+        empty if empty.is_empty() => String::new(),
+        text => format!("--- {name}\n{text}"),
+    };
+    let code = output.status.code().expect("no signal");
+    format!("exit {code}\n{}{}", part("stdout", &output.stdout), part("stderr", &output.stderr))
+}
+
+/// To twelve digits: the last ones are those of a machine's logarithm.
+pub fn rounded(value: &mut serde_json::Value) {
+    match value {
+        serde_json::Value::Number(number) if number.is_f64() => {
+            *value = format!("{:.11e}", number.as_f64().unwrap()).parse::<f64>().unwrap().into();
+        }
+        serde_json::Value::Array(items) => items.iter_mut().for_each(rounded),
+        serde_json::Value::Object(fields) => fields.values_mut().for_each(rounded),
+        _ => {}
+    }
+}

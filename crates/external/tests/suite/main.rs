@@ -1,0 +1,4 @@
+//! External programs as models.
+
+mod gradients;
+mod process;

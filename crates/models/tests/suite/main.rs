@@ -1,0 +1,3 @@
+//! Published models.
+
+mod models;

@@ -1,0 +1,9 @@
+//! Distributions, moments, Pearson system, samples and laws.
+
+mod distributions;
+mod fits;
+mod joint_yields;
+mod law;
+mod moments;
+mod pearson;
+mod sampling;

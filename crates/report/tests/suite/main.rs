@@ -1,0 +1,4 @@
+//! Reports of studies.
+
+mod conventions;
+mod correlation;

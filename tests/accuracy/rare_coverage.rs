@@ -1,0 +1,127 @@
+//! Whether the intervals of rare events hold the truth, where a surrogate does not know of the rejects.
+
+use sensitol::rare::{RareOptions, rare};
+use sensitol::{Characteristic, Closure, Problem, SpecLimits};
+use sensitol_testing::{data, standard};
+
+
+/// A published problem or another function of `n` standard normal variables, whose reject is a value below 0.
+struct Case {
+    name: &'static str,
+    n: usize,
+    function: fn(&[f64]) -> f64,
+}
+
+fn lognormal(mean: f64, sigma: f64, z: f64) -> f64 {
+    let square = (1.0 + (sigma / mean).powi(2)).ln();
+    (mean.ln() - 0.5 * square + square.sqrt() * z).exp()
+}
+
+/// The problems of tests/data/rare-events.json.
+const CASES: [Case; 14] = [
+    Case {
+        name: "four-branches",
+        n: 2,
+        function: |x| {
+            let (bend, half) = (3.0 + 0.1 * (x[0] - x[1]).powi(2), std::f64::consts::FRAC_1_SQRT_2);
+            let sum = (x[0] + x[1]) * half;
+            let apart = x[0] - x[1];
+            (bend - sum).min(bend + sum).min(apart + 7.0 * half).min(7.0 * half - apart)
+        },
+    },
+    Case {
+        name: "rp8",
+        n: 6,
+        function: |z| {
+            let strength = |j: usize| lognormal(120.0, 12.0, z[j]);
+            strength(0) + 2.0 * strength(1) + 2.0 * strength(2) + strength(3)
+                - 5.0 * (lognormal(50.0, 10.0, z[4]) + lognormal(40.0, 8.0, z[5]))
+        },
+    },
+    Case {
+        name: "rp22",
+        n: 2,
+        function: |x| 2.5 - (x[0] + x[1]) * std::f64::consts::FRAC_1_SQRT_2 + 0.1 * (x[0] - x[1]).powi(2),
+    },
+    Case {
+        name: "rp24",
+        n: 2,
+        function: |z| 2.5 - 0.2357 * 3.0 * (z[0] - z[1]) + 0.00463 * (3.0 * (z[0] + z[1])).powi(4),
+    },
+    Case { name: "rp25", n: 2, function: |x| (x[0] * x[0] - 8.0 * x[1] + 16.0).max(x[1] * x[1] - 16.0 * x[0] + 32.0) },
+    Case { name: "rp28", n: 2, function: |z| (78064.4 + 11709.7 * z[0]) * (0.0104 + 0.00156 * z[1]) - 146.14 },
+    Case { name: "rp33", n: 3, function: |x| (27f64.sqrt() - x[0] - x[1] - x[2]).min(3.0 - x[2]) },
+    Case {
+        name: "rp35",
+        n: 2,
+        function: |x| {
+            let first = 2.0 - x[1] + (-0.1 * x[0] * x[0]).exp() + (0.2 * x[0]).powi(4);
+            first.min(4.5 - x[0] * x[1])
+        },
+    },
+    Case { name: "rp107", n: 10, function: |x| 5.0 * 10f64.sqrt() - x.iter().sum::<f64>() },
+    Case {
+        name: "rp110",
+        n: 2,
+        function: |x| {
+            let first = if x[0] > 3.5 { 4.0 - x[0] } else { 0.85 - 0.1 * x[0] };
+            first.min(if x[1] > 2.0 { 0.5 - 0.1 * x[1] } else { 2.3 - x[1] })
+        },
+    },
+    Case { name: "wrap-far", n: 2, function: |x| (4.2 + x[1]).atan2(-50.0 + 0.5 * x[0]).to_degrees() - 160.0 },
+    Case { name: "step-rare", n: 2, function: |x| 8.0 - x[0] - if x[1] > 3.9 { 12.0 } else { 0.0 } },
+    Case { name: "max-rare", n: 2, function: |x| 4.5 - x[0] - 3.0 * (x[1] - 3.8).max(0.0) },
+    Case { name: "two-sides", n: 2, function: |x| (4.6 - x[0]).min(4.5 + x[1]) },
+];
+
+impl Case {
+    fn problem(&self) -> Problem {
+        let function = self.function;
+        let problem = Problem::new(standard(self.n), Closure::scalar("g", function)).unwrap();
+        problem.asking([Characteristic::new("g").with_limits(SpecLimits::new(Some(0.0), None).unwrap())]).unwrap()
+    }
+
+    fn truth(&self) -> f64 {
+        data("rare-events.json")[self.name]["probability"].as_f64().unwrap()
+    }
+
+    /// How many of 40 seeds have an interval that holds the truth, and the root of the mean square of their relative errors.
+    fn held(&self, samples: u64, until: Option<f64>) -> (usize, f64) {
+        let (problem, truth) = (self.problem(), self.truth());
+        let (mut held, mut square) = (0, 0.0);
+        for seed in 0..40 {
+            let mut options = RareOptions::default().with_samples(samples).with_seed(seed);
+            options.until = until;
+            let found = rare(&problem, &options).unwrap();
+            let below = found.characteristics[0].below.as_ref().unwrap();
+            let [low, high] = below.interval;
+            held += usize::from(low <= truth && truth <= high);
+            let value = below.probability.map_or(0.0, |probability| probability.value);
+            square += (value / truth - 1.0).powi(2) / 40.0;
+        }
+        (held, square.sqrt())
+    }
+}
+
+/// Of 40 intervals of 95 % at least 35 hold the truth but for 1 time in 20; those here are to be wider where they are unsure of themselves,
+/// so that it is 37. A root mean square above a quarter would say that the rejects were not found.
+#[test]
+fn intervals_hold_where_the_surrogate_does_not_know() {
+    let mut poor = Vec::new();
+    for case in &CASES {
+        let (held, error) = case.held(10_000, None);
+        eprintln!("{} {held} {error:.4}", case.name);
+        if held < 37 || error > 0.25 {
+            poor.push((case.name, held, error));
+        }
+    }
+    assert!(poor.is_empty(), "{poor:?}");
+}
+
+/// A stop when a standard error is small is a stop when it is too small, unless an independent stage confirms it.
+#[test]
+fn a_lucky_standard_error_is_no_reason_to_stop() {
+    let case = CASES.iter().find(|case| case.name == "rp33").unwrap();
+    let (held, error) = case.held(100_000, Some(0.05));
+    assert!(held >= 37, "{held} {error}");
+}
