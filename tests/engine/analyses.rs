@@ -8,7 +8,7 @@ use sensitol_study::Study;
 use sensitol_testing::densities::{Case, cases};
 use sensitol_testing::{close, data, relative, repository};
 
-fn dimension(case: &Case) -> Dimension {
+pub fn dimension(case: &Case) -> Dimension {
     Dimension::distributed("x", case.distribution.mean(), None, case.distribution.clone()).unwrap()
 }
 
@@ -120,7 +120,7 @@ fn five_points_beat_the_parabola_on_tails() {
 #[test]
 fn long_tails_are_warned_of_where_they_matter() {
     let codes = |line: &str, method: Method, f: fn(f64) -> f64| {
-        let problem = Problem::new([crate::studies::dimension(line).unwrap()], Closure::scalar("y", move |x| f(x[0])));
+        let problem = Problem::new([dimension(line).unwrap()], Closure::scalar("y", move |x| f(x[0])));
         let warnings = analyze(&problem.unwrap(), &method.into()).unwrap().warnings;
         warnings.iter().map(|warning| warning.code()).collect::<Vec<_>>()
     };
