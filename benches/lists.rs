@@ -1,7 +1,7 @@
 //! Lists of processes under additive rows: milliseconds of every generated problem, a line each, the median of five; `benches/run` sets them
 //! beside HiGHS.
 
-#[path = "../tests/suite/generated_lists.rs"]
+#[path = "../tests/allocation/generated_lists.rs"]
 mod generated_lists;
 
 use std::time::Instant;

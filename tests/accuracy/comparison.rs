@@ -6,9 +6,8 @@ use std::fmt::Write;
 use sensitol::simulation::{Sampler, SimulationOptions, simulate};
 use sensitol::{DerivativeSource, Method, Options, Problem, analyze};
 use sensitol_study::Study;
-use serde_json::Value;
 use sensitol_testing::{data, generated, repository};
-
+use serde_json::Value;
 
 const PAGE: &str = "docs/method-comparison.md";
 

@@ -7,7 +7,6 @@ use sensitol::{Analysis, CharacteristicAnalysis, Method, Options, analyze};
 use sensitol_study::Study;
 use sensitol_testing::{close, data, relative, repository};
 
-
 fn study(path: &str) -> Study {
     Study::read(&repository("examples").join(path)).unwrap()
 }

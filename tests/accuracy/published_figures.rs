@@ -3,11 +3,10 @@
 use serde_json::Value;
 
 use sensitol::assembly::{AssemblyFunction, Points, Request, Responses, Run};
-use sensitol_models::Model;
 use sensitol::{Method, Options, analyze};
+use sensitol_models::Model;
 use sensitol_study::Study;
 use sensitol_testing::{data, repository};
-
 
 /// A built-in model with some of its inputs set.
 struct At {

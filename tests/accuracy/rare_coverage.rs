@@ -4,7 +4,6 @@ use sensitol::rare::{RareOptions, rare};
 use sensitol::{Characteristic, Closure, Problem, SpecLimits};
 use sensitol_testing::{data, standard};
 
-
 /// A published problem or another function of `n` standard normal variables, whose reject is a value below 0.
 struct Case {
     name: &'static str,

@@ -11,11 +11,13 @@ use sensitol::correlation::Pair;
 
 use sensitol::method::registry::procedure;
 use sensitol::verification::{SampledFigures, Target, variance_shares, verify_by_checks, verify_by_sampling};
-use sensitol::{Characteristic, Closure, Dimension, Method, Options, Problem, SpecLimits, StopReason, Verdict, analyze, analyze_with};
+use sensitol::{
+    Characteristic, Closure, Dimension, Method, Options, Problem, SpecLimits, StopReason, Verdict, analyze,
+    analyze_with,
+};
 use sensitol_study::Study;
-use serde_json::{Value, json};
 use sensitol_testing::{costly, counted, repository};
-
+use serde_json::{Value, json};
 
 /// The smallest differences that can be felt, beyond which an error is one: of mean and sigma in sigmas, skewness, kurtosis, a
 /// share of the tails, a central share. The thresholds of the design by which the references were made.

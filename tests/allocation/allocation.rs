@@ -3,13 +3,16 @@
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rayon::prelude::*;
-use sensitol::allocation::{Allocation, AllocationOptions, AllocationTask, Curve, Kept, Offer, Priced, Status, allocate};
+use sensitol::allocation::{
+    Allocation, AllocationOptions, AllocationTask, Curve, Kept, Offer, Priced, Status, allocate,
+};
 
 use sensitol::simulation::{SimulationOptions, simulate};
-use sensitol::{Characteristic, Closure, Dimension, Method, Options, Problem, Requirement, SpecLimits, StopReason, Verdict};
+use sensitol::{
+    Characteristic, Closure, Dimension, Method, Options, Problem, Requirement, SpecLimits, StopReason, Verdict,
+};
 use sensitol_study::Study;
 use sensitol_testing::{relative, repository};
-
 
 /// Linear characteristics of normal dimensions about 0 with these half bands.
 fn linear<const K: usize>(slopes: [Vec<f64>; K], bands: &[f64], limits: [[f64; 2]; K]) -> Problem {

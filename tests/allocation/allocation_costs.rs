@@ -2,16 +2,16 @@
 //! scans of closed forms here.
 
 use sensitol::allocation::{Allocation, AllocationOptions, AllocationTask, Curve, Offer, Priced, Status, allocate};
-use sensitol_study::{Externals, StudyText};
-use sensitol::{Analysis, Characteristic, Closure, Dimension, Method, Options, Problem, Requirement, SpecLimits, Verdict, analyze};
+use sensitol::{
+    Analysis, Characteristic, Closure, Dimension, Method, Options, Problem, Requirement, SpecLimits, Verdict, analyze,
+};
 use sensitol_study::Study;
+use sensitol_study::{Externals, StudyText};
 use serde_json::Value;
 use statrs::distribution::{Continuous, ContinuousCDF, Normal};
-use sensitol_testing::problem;
-
 
 pub fn problem(name: &str) -> Value {
-    problem("allocation.json", name)
+    sensitol_testing::problem("allocation.json", name)
 }
 
 fn study(text: &str) -> Study {

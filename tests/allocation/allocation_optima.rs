@@ -5,11 +5,9 @@ use sensitol::allocation::{Allocation, AllocationOptions, Status, allocate};
 use sensitol::{Method, Options, Verdict};
 use sensitol_study::Study;
 use serde_json::Value;
-use sensitol_testing::problem;
-
 
 pub fn problem(name: &str) -> Value {
-    problem("allocation-optima.json", name)
+    sensitol_testing::problem("allocation-optima.json", name)
 }
 
 fn allocated(of: &Value) -> Allocation {

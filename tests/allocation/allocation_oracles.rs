@@ -1,15 +1,13 @@
 //! Allocation against optima that were found without the engine: `tests/data/allocation.json`, with how beside each.
 
-use sensitol::allocation::{Allocation, AllocationOptions, AllocationSolver, CostBasis, Goal, Status, allocate};
 use sensitol::Verdict;
+use sensitol::allocation::{Allocation, AllocationOptions, AllocationSolver, CostBasis, Goal, Status, allocate};
 use sensitol_study::Study;
 use serde_json::Value;
 use statrs::distribution::{Continuous, ContinuousCDF, Normal};
-use sensitol_testing::problem;
-
 
 pub fn problem(name: &str) -> Value {
-    problem("allocation.json", name)
+    sensitol_testing::problem("allocation.json", name)
 }
 
 fn allocated(of: &Value) -> Allocation {

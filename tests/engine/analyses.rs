@@ -1,6 +1,5 @@
 //! Distributions in analyses: exact moments of quadratics, nodes within the support, long tails.
 
-
 use sensitol::plan::{Nodes, Spread};
 use sensitol::{Closure, Dimension, Method, Problem, analyze};
 use sensitol_study::Study;
@@ -120,7 +119,8 @@ fn five_points_beat_the_parabola_on_tails() {
 #[test]
 fn long_tails_are_warned_of_where_they_matter() {
     let codes = |line: &str, method: Method, f: fn(f64) -> f64| {
-        let problem = Problem::new([dimension(line).unwrap()], Closure::scalar("y", move |x| f(x[0])));
+        let problem =
+            Problem::new([sensitol_testing::dimension(line).unwrap()], Closure::scalar("y", move |x| f(x[0])));
         let warnings = analyze(&problem.unwrap(), &method.into()).unwrap().warnings;
         warnings.iter().map(|warning| warning.code()).collect::<Vec<_>>()
     };

@@ -3,7 +3,6 @@
 use sensitol::{Characteristic, Closure, Dimension, Method, Options, Problem, ProblemError, SpecLimits, analyze};
 use sensitol_testing::{close, normals, relative, standard};
 
-
 fn codes(problem: &Problem, method: Method) -> Vec<&'static str> {
     analyze(problem, &method.into()).unwrap().warnings.iter().map(|warning| warning.code()).collect()
 }

@@ -9,10 +9,11 @@ use sensitol::distribution::Exponential;
 
 use sensitol::method::Accuracies;
 use sensitol::simulation::{Sampler, SimulationOptions, simulate};
-use sensitol::{Analysis, Characteristic, Closure, Dimension, Method, Options, Problem, SpecLimits, StopReason, analyze};
+use sensitol::{
+    Analysis, Characteristic, Closure, Dimension, Method, Options, Problem, SpecLimits, StopReason, analyze,
+};
 use sensitol_study::Study;
 use sensitol_testing::{Asked, close, normals, refusing, relative, repository, standard};
-
 
 /// The search itself, and the sample that it draws where it does not trust its surface: without the verification, which takes
 /// points of its own.

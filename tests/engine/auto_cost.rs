@@ -9,7 +9,6 @@ use sensitol::{Closure, Method, Options, Problem, analyze};
 use sensitol_study::Study;
 use sensitol_testing::{normals, repository, standard};
 
-
 /// Characteristics of examples, one by one, and functions of 5 to 100 inputs.
 fn cases() -> Vec<(String, Problem)> {
     let mut cases = Vec::new();

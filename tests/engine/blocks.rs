@@ -5,11 +5,10 @@ use std::f64::consts::PI;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use sensitol::simulation::{Sampler, SimulationOptions, simulate};
-use sensitol_study::StudyText;
 use sensitol::{Analysis, Method, analyze};
+use sensitol_study::StudyText;
 use sensitol_study::{Study, StudyError};
 use sensitol_testing::{case, close, faults, relative};
-
 
 fn read(text: &str, files: &[(&str, &str)]) -> Result<Study, StudyError> {
     let study = StudyText::toml("study.toml", text);

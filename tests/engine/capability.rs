@@ -13,7 +13,6 @@ use sensitol::{Closure, Dimension, Method, Moments, Problem, SpecLimits, analyze
 use sensitol_study::Study;
 use sensitol_testing::{normals, relative, repository};
 
-
 fn limits(lower: Option<f64>, upper: Option<f64>) -> SpecLimits {
     SpecLimits::new(lower, upper).unwrap()
 }

@@ -4,9 +4,11 @@ use sensitol::assembly::Run;
 use sensitol::correlation::Pair;
 
 use sensitol::method::MethodError;
-use sensitol::simulation::{Estimate, Sampler, Simulation, SimulationError, SimulationOptions, simulate, simulate_with};
-use sensitol_study::Study;
+use sensitol::simulation::{
+    Estimate, Sampler, Simulation, SimulationError, SimulationOptions, simulate, simulate_with,
+};
 use sensitol::{Characteristic, Closure, Dimension, Method, Options, Problem, SpecLimits, StopReason};
+use sensitol_study::Study;
 
 use super::simulation;
 use sensitol_testing::{Asked, refusing, relative, repository, standard};

@@ -7,7 +7,6 @@ use sensitol::assembly::formula::jet::Jet;
 use sensitol::assembly::formula::set::{FormulaSet, Meaning};
 use sensitol_testing::data;
 
-
 fn set(text: &str) -> FormulaSet {
     let names = [("x0", Meaning::Variable(0)), ("x1", Meaning::Variable(1)), ("x2", Meaning::Variable(2))];
     FormulaSet::new(vec![("y".to_owned(), Formula::parse(text).unwrap())], names).unwrap()

@@ -13,7 +13,6 @@ use sensitol::{Closure, Dimension, Method, Options, Problem, StopReason, analyze
 use sensitol_study::Study;
 use sensitol_testing::{Asked, close, normals, refusing, relative, repository, standard};
 
-
 fn searched(problem: &Problem, method: Method) -> Analysis {
     analyze(problem, &Options::from(method).with_extremes(true)).unwrap()
 }

@@ -6,7 +6,6 @@ use sensitol::assembly::formula::{FailureReason, Formula, FormulaError, FormulaF
 use sensitol::assembly::formula::set::{FormulaSet, Meaning};
 use sensitol_testing::close;
 
-
 /// The value of one formula of `x0`, `x1`, `x2` at one point.
 fn value(text: &str, x: [f64; 3]) -> f64 {
     let set = set(&[("y", text)]);

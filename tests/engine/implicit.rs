@@ -11,7 +11,6 @@ use sensitol::{DerivativeSource, Method, MethodError, Options, Problem, analyze}
 use sensitol_study::Study;
 use sensitol_testing::{close, data, repository};
 
-
 fn study(text: &str) -> Study {
     Study::from_toml(text, "study.toml").unwrap_or_else(|error| panic!("{error}"))
 }

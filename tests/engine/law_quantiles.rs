@@ -7,13 +7,14 @@ use sensitol::distribution::{Distribution, Measured, Normal, Triangular, Uniform
 
 use sensitol::analysis::law_at::law_at;
 use sensitol::analysis::surface_law::QUANTILES;
+use sensitol::{
+    Analysis, Characteristic, CharacteristicAnalysis, Closure, Dimension, Method, Options, Problem, SpecLimits, analyze,
+};
 use sensitol_numeric::distribution::rule::Rule;
 use sensitol_numeric::law::{LawOptions, LawTail, SurfaceLaw};
 use sensitol_numeric::moments::Interactions;
 use sensitol_numeric::surrogate::{Surrogate, Univariate};
-use sensitol::{Analysis, Characteristic, CharacteristicAnalysis, Closure, Dimension, Method, Options, Problem, SpecLimits, analyze};
 use sensitol_testing::relative;
-
 
 type Law = Arc<dyn Distribution>;
 

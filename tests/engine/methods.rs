@@ -11,7 +11,6 @@ use sensitol::warning::Advice;
 use sensitol::{Analysis, Closure, Dimension, Method, Options, Problem, analyze};
 use sensitol_testing::{close, normals, relative, standard};
 
-
 const SECOND_ORDER: [Method; 4] = [Method::SecondOrder, Method::SixN, Method::Full, Method::Classic];
 
 fn analysis(dimensions: Vec<Dimension>, method: Method, f: impl Fn(&[f64]) -> f64 + Send + Sync + 'static) -> Analysis {

@@ -3,11 +3,10 @@
 use sensitol::distribution::{CentralMoments, Normal, Uniform};
 
 use sensitol::method::registry::procedure;
-use sensitol::plan::{Nodes, Spread};
 use sensitol::method::{Pairs, Stencil};
+use sensitol::plan::{Nodes, Spread};
 use sensitol::{Analysis, Closure, Dimension, Method, Options, Problem, RunSummary, StopReason, analyze};
 use sensitol_testing::{Asked, close, normals, refusing, relative, standard};
-
 
 /// Evaluations of a black box of `n` dimensions, each of them seen to arrive and to arrive once.
 fn count(n: usize, options: &Options) -> usize {

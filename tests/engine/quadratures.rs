@@ -4,15 +4,18 @@ use std::sync::Arc;
 
 use proptest::prelude::*;
 use sensitol::correlation::Pair;
-use sensitol::distribution::{CentralMoments, Distribution, Exponential, Lognormal, Measured, Mixture, Normal, Part, Triangular, Uniform};
+use sensitol::distribution::{
+    CentralMoments, Distribution, Exponential, Lognormal, Measured, Mixture, Normal, Part, Triangular, Uniform,
+};
 
 use sensitol::method::registry::procedure;
+use sensitol::method::{Basis, MethodError, Pairs, Stencil};
+use sensitol::{
+    Analysis, Closure, DerivativeSource, Dimension, Method, Moments, Options, Problem, RunSummary, Warning, analyze,
+};
 use sensitol_numeric::distribution::rule::Rule;
 use sensitol_numeric::moments::Tables;
-use sensitol::method::{Basis, MethodError, Pairs, Stencil};
-use sensitol::{Analysis, Closure, DerivativeSource, Dimension, Method, Moments, Options, Problem, RunSummary, Warning, analyze};
 use sensitol_testing::{Asked, close, data, normals, refusing, relative, standard};
-
 
 const REDUCTIONS: [Method; 2] = [Method::DimensionReduction, Method::BivariateDimensionReduction];
 const QUADRATURES: [Method; 3] = [Method::DimensionReduction, Method::BivariateDimensionReduction, Method::ThreePoint];

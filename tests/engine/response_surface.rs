@@ -11,7 +11,6 @@ use sensitol::method::Basis;
 use sensitol::{Analysis, Closure, Dimension, Method, Options, Problem, Warning, analyze};
 use sensitol_testing::{Asked, close, refusing, relative, standard};
 
-
 fn analysis(dimensions: Vec<Dimension>, f: impl Fn(&[f64]) -> f64 + Send + Sync + 'static) -> Analysis {
     analyze(&Problem::new(dimensions, Closure::scalar("y", f)).unwrap(), &Method::ResponseSurface.into()).unwrap()
 }

@@ -4,11 +4,12 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use sensitol::assembly::Run;
 
-use sensitol::simulation::{Estimate, Sampler, Simulation, SimulationError, SimulationOptions, simulate, simulate_with};
-use sensitol_study::Study;
+use sensitol::simulation::{
+    Estimate, Sampler, Simulation, SimulationError, SimulationOptions, simulate, simulate_with,
+};
 use sensitol::{Characteristic, Closure, Problem, SpecLimits, StopReason};
+use sensitol_study::Study;
 use sensitol_testing::{data, normals, refusing, relative, repository, standard};
-
 
 const SEEDS: u64 = 200;
 /// The truth must lie within two standard errors in 90 to 99 % of runs (95.4 % if they are normal; 200 runs leave 1.5 %).

@@ -5,7 +5,6 @@ use sensitol::{Method, analyze};
 use sensitol_study::Study;
 use sensitol_testing::{close, data, relative};
 
-
 /// Probabilities to 1e-12, quantiles to 1e-12 sigma or of their own, as every distribution; moments that are infinite are NaN.
 #[test]
 fn tails_and_moments_at_any_degrees() {

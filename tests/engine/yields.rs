@@ -6,7 +6,6 @@ use sensitol::{CharacteristicAnalysis, analyze};
 use sensitol_study::Study;
 use sensitol_testing::relative;
 
-
 fn study(text: &str) -> Study {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("study.toml");

@@ -1,75 +1,69 @@
-//! The house keeps its shape: layers import downward only, and nothing prints outside the command line.
+//! Layers import downward only, nothing prints outside the command line, files and folders keep their size.
 
-use std::path::{Path, PathBuf};
-use sensitol_testing::repository;
+use std::collections::BTreeMap;
 
+use super::sources::{SourceFile, modules, sources};
 
-/// From the roof to the ground; what stands on one line does not import its neighbours.
-const LAYERS: &[&[&str]] = &[
-    &["main"],
-    &["cli", "internals"],
-    &["task"],
-    &["error"],
-    &["study", "report"],
-    &["document"],
-    &["compare", "rare", "sweep", "allocation"],
-    &["analysis", "probe"],
-    &["simulation"],
-    &["extremes"],
-    &["method"],
-    &["evaluation"],
-    &["verification"],
-    &["problem"],
-    &["plan"],
-    &["law"],
-    &["surrogate", "verdict"],
-    &["capability"],
-    &["moments"],
-    &["sampling"],
-    &["models", "journal"],
-    &["assembly"],
-    &["warning"],
-    &["correlation"],
-    &["dimension", "characteristic"],
-    &["distribution", "fits", "requirement", "inspection"],
-    &["pearson", "method_kind"],
-    &["names", "elementary", "summary", "time", "unit", "table", "labels"],
-    &["shape", "parallel", "short_sort"],
+/// The packages from the roof to the ground, as their manifests hold them: a package depends on those below it only.
+const PACKAGES: &[(&str, &[&str])] = &[
+    ("cli", &["report", "study", "external", "models", "engine", "numeric"]),
+    ("report", &["study", "models", "engine", "numeric"]),
+    ("study", &["external", "models", "engine", "numeric"]),
+    ("external", &["engine", "numeric"]),
+    ("models", &["engine", "numeric"]),
+    ("engine", &["numeric"]),
+    ("numeric", &[]),
 ];
 
-fn layer(module: &str) -> usize {
-    LAYERS
+/// The modules of the engine and of the mathematics below it, from the roof to the ground. Modules of one line do not import each other.
+const LAYERS: &[(&str, &[&[&str]])] = &[
+    (
+        "engine",
+        &[
+            &["error"],
+            &["compare", "rare", "sweep", "allocation"],
+            &["analysis", "probe"],
+            &["simulation"],
+            &["extremes"],
+            &["method"],
+            &["evaluation"],
+            &["verification"],
+            &["problem"],
+            &["plan"],
+            &["assembly"],
+            &["warning"],
+            &["method_kind"],
+            &["summary"],
+        ],
+    ),
+    (
+        "numeric",
+        &[
+            &["law"],
+            &["surrogate", "verdict"],
+            &["capability"],
+            &["moments"],
+            &["sampling"],
+            &["correlation"],
+            &["dimension", "characteristic"],
+            &["distribution", "fits", "requirement", "inspection"],
+            &["pearson"],
+            &["names", "elementary", "time", "unit", "labels", "points"],
+            &["shape", "parallel"],
+        ],
+    ),
+];
+
+fn layer(layers: &[&[&str]], module: &str) -> usize {
+    layers
         .iter()
         .position(|layer| layer.contains(&module))
         .unwrap_or_else(|| panic!("module `{module}` stands in no layer: add it to LAYERS"))
 }
 
-fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            sources(&path, found);
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            found.push(path);
-        }
-    }
-}
-
-/// Every source file with the top module that it belongs to, and its code without comments.
-fn files() -> Vec<(String, String, String)> {
-    let root = repository("src");
-    let mut paths = Vec::new();
-    sources(&root, &mut paths);
-    paths.sort();
-    let file = |path: PathBuf| {
-        let inner = path.strip_prefix(&root).unwrap().to_path_buf();
-        let module =
-            inner.components().next().unwrap().as_os_str().to_str().unwrap().trim_end_matches(".rs").to_owned();
-        let text = std::fs::read_to_string(&path).unwrap();
-        let code = text.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n");
-        (inner.display().to_string(), module, code)
-    };
-    paths.into_iter().map(file).collect()
+/// The library of a package as code names it.
+fn library(package: &str) -> String {
+    if package == "engine" { "sensitol".to_owned() } else { format!("sensitol_{package}") }
 }
 
 /// The top modules that `code` names by a path from the crate's root.
@@ -100,34 +94,35 @@ fn imports(code: &str) -> Vec<String> {
 }
 
 #[test]
+fn packages_depend_downward_only() {
+    let names: Vec<&str> = PACKAGES.iter().map(|(name, _)| *name).collect();
+    for file in sources() {
+        let allowed = PACKAGES.iter().find(|(name, _)| *name == file.package).expect("a package of the list").1;
+        for other in names.iter().filter(|name| **name != file.package && !allowed.contains(name)) {
+            let path = format!("{}::", library(other));
+            let named = file.code().match_indices(&path).any(|(at, _)| !file.code()[..at].ends_with(['_', ':']));
+            assert!(!named, "{} imports {other}", file.name());
+        }
+    }
+}
+
+#[test]
 fn layers_import_downward_only() {
     let mut wrong = Vec::new();
-    for (file, module, code) in files() {
-        if module == "lib" {
-            continue;
-        }
-        for import in imports(&code) {
-            if import != module && layer(&import) <= layer(&module) {
-                wrong.push(format!("{file} imports {import}"));
+    for (package, layers) in LAYERS {
+        for (module, code) in modules(package) {
+            let top = module.split('/').next().unwrap().to_owned();
+            if top == "lib" {
+                continue;
+            }
+            for import in imports(&code) {
+                if import != top && layer(layers, &import) <= layer(layers, &top) {
+                    wrong.push(format!("{package}: {module} imports {import}"));
+                }
             }
         }
     }
     assert!(wrong.is_empty(), "imports that do not lead downward: {wrong:#?}");
-}
-
-/// The table of the house in CONTRIBUTING.md: every module once, from the roof to the ground.
-#[test]
-fn the_table_of_the_house_is_the_list_of_layers() {
-    let text = std::fs::read_to_string(repository("CONTRIBUTING.md")).unwrap();
-    let house = text.split("## The house").nth(1).unwrap().split("\n## ").next().unwrap();
-    let cells = house.lines().filter_map(|line| line.strip_prefix("| `")?.split('|').next());
-    let shown: Vec<&str> = cells.flat_map(|cell| cell.split(',')).map(|name| name.trim().trim_matches('`')).collect();
-    let mut expected: Vec<&str> = LAYERS.concat();
-    assert!(shown.is_sorted_by_key(|module| layer(module)), "the table is not in the order of the layers: {shown:?}");
-    let mut sorted = shown.clone();
-    sorted.sort_unstable();
-    expected.sort_unstable();
-    assert_eq!(sorted, expected, "modules of the table and of the list");
 }
 
 #[test]
@@ -139,42 +134,49 @@ fn the_check_of_imports_sees_every_form() {
 
 #[test]
 fn nothing_prints_outside_the_command_line() {
-    for (file, module, code) in files() {
+    for file in sources() {
         for print in ["print!", "println!", "eprint!", "eprintln!", "dbg!", "io::stdout", "io::stderr"] {
-            assert!(module == "cli" || !code.contains(print), "{file} contains {print}");
+            assert!(file.package == "cli" || !file.code().contains(print), "{} contains {print}", file.name());
         }
     }
 }
 
-/// A solver that is exchanged is exchanged in one file: the minimisers have one, and the root of one unknown has another.
+/// A solver is exchanged in one file: the minimisers have one, and the root of one unknown has another.
 #[test]
 fn one_file_knows_each_solver() {
-    let knows = files().into_iter().filter(|(_, _, code)| code.contains("argmin::")).map(|(file, ..)| file);
-    assert_eq!(knows.collect::<Vec<_>>(), ["allocation/minimise.rs", "allocation/root.rs"]);
+    let knows = sources().into_iter().filter(|file| file.code().contains("argmin::")).map(|file| file.name());
+    assert_eq!(knows.collect::<Vec<_>>(), ["src/allocation/minimise.rs", "src/allocation/root.rs"]);
 }
 
 #[test]
-fn main_is_small_and_no_file_is_much_over_600_lines() {
-    for (file, _, _) in files() {
-        let lines = std::fs::read_to_string(repository("src").join(&file)).unwrap().lines().count();
-        let most = match file.as_str() {
-            "main.rs" => 40,
+fn no_file_is_much_over_600_lines() {
+    for file in sources() {
+        let lines = file.text.lines().count();
+        let most = match file.name().as_str() {
+            "crates/cli/src/main.rs" => 40,
             // One list of all warnings.
-            "warning/mod.rs" => 700,
+            "src/warning/mod.rs" => 700,
             _ => 640,
         };
-        assert!(lines <= most, "{file} has {lines} lines: split it by idea");
+        assert!(lines <= most, "{} has {lines} lines: split it by idea", file.name());
     }
 }
 
-#[test]
-fn a_library_user_compiles_no_command_line() {
-    let manifest = std::fs::read_to_string(repository("Cargo.toml")).unwrap();
-    for library in ["clap", "anstream", "annotate-snippets", "tempfile"] {
-        let dependencies = manifest.split("[dependencies]").nth(1).unwrap().split("\n[").next().unwrap();
-        let line = dependencies.lines().find(|line| line.starts_with(&format!("{library} "))).unwrap();
-        assert!(line.contains("optional = true"), "{library} is not optional");
+/// The files of every folder below a package.
+fn folders(files: &[SourceFile]) -> BTreeMap<String, usize> {
+    let mut found = BTreeMap::new();
+    for file in files {
+        let name = file.name();
+        let folder = name.rsplit_once('/').map_or("", |(folder, _)| folder).to_owned();
+        *found.entry(folder).or_default() += 1;
     }
+    found
+}
+
+#[test]
+fn no_folder_has_more_than_25_files() {
+    let large: Vec<(String, usize)> = folders(&sources()).into_iter().filter(|(_, files)| *files > 25).collect();
+    assert!(large.is_empty(), "folders to be split by job: {large:#?}");
 }
 
 /// The string literals of Rust code, raw and ordinary, without comments.
@@ -230,10 +232,10 @@ fn names_an_option(text: &str) -> bool {
 /// Other front ends have no options: what to do is an `Advice`, which each shows in its own words.
 #[test]
 fn the_library_names_no_option_of_the_command_line() {
-    let tests = |code: &str| code.split("#[cfg(test)]").next().unwrap_or_default().to_owned();
-    for (file, module, code) in files() {
-        for text in literals(&tests(&code)) {
-            assert!(module == "cli" || !names_an_option(&text), "{file} names an option of the command line: {text}");
+    for file in sources() {
+        for text in literals(&file.code()) {
+            let names = file.package != "cli" && names_an_option(&text);
+            assert!(!names, "{} names an option of the command line: {text}", file.name());
         }
     }
 }

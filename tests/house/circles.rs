@@ -1,36 +1,20 @@
 //! Files of one top module do not import each other in circles: each can be read after those that it imports.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
-use sensitol_testing::repository;
 
+use super::sources::{code, modules, packages};
 
 /// Modules by their path (`allocation/choose`, and `allocation` for its `mod.rs`), with their code without comments and tests.
-pub(super) struct Sources(pub(super) BTreeMap<String, String>);
+struct Sources(BTreeMap<String, String>);
 
 impl Sources {
-    pub(super) fn read() -> Self {
-        let root = repository("src");
-        let mut found = BTreeMap::new();
-        let mut folders = vec![root.clone()];
-        while let Some(folder) = folders.pop() {
-            for entry in std::fs::read_dir(folder).unwrap() {
-                let path = entry.unwrap().path();
-                if path.is_dir() {
-                    folders.push(path);
-                } else if path.extension().is_some_and(|extension| extension == "rs") {
-                    found.insert(
-                        module(path.strip_prefix(&root).unwrap()),
-                        code(&std::fs::read_to_string(&path).unwrap()),
-                    );
-                }
-            }
-        }
-        Self(found)
+    /// Modules of one package.
+    fn of(package: &str) -> Self {
+        Self(modules(package))
     }
 
     /// The module that a path leads to from this one, and the name that is taken of it; None where it leads out of the crate.
-    pub(super) fn resolved(&self, from: &str, path: &[String]) -> Option<(String, Option<String>)> {
+    fn resolved(&self, from: &str, path: &[String]) -> Option<(String, Option<String>)> {
         let mut at: Vec<&str> = from.split('/').collect();
         let mut rest = path.iter().map(String::as_str).peekable();
         match *rest.peek()? {
@@ -97,20 +81,8 @@ impl Sources {
     }
 }
 
-fn module(path: &Path) -> String {
-    let text = path.with_extension("").display().to_string().replace('\\', "/");
-    text.strip_suffix("/mod").unwrap_or(&text).to_owned()
-}
-
-pub(super) fn code(text: &str) -> String {
-    let lines: Vec<&str> = text.lines().filter(|line| !line.trim_start().starts_with("//")).collect();
-    // A module of tests stands at the end of its file; one that is a file of its own is declared above the others.
-    let tests = |pair: &[&str]| pair[0] == "#[cfg(test)]" && pair[1].ends_with('{');
-    lines[..lines.windows(2).position(tests).unwrap_or(lines.len())].join("\n")
-}
-
 /// The trees of all `use` items, and whether others may use what they name.
-pub(super) fn uses(code: &str) -> impl Iterator<Item = (bool, &str)> {
+fn uses(code: &str) -> impl Iterator<Item = (bool, &str)> {
     code.split(';').filter_map(|item| {
         let at = item.find("use ").filter(|&at| at == 0 || item[..at].ends_with([' ', '\n']))?;
         let line = item[..at].rsplit('\n').next().unwrap_or_default();
@@ -119,7 +91,7 @@ pub(super) fn uses(code: &str) -> impl Iterator<Item = (bool, &str)> {
 }
 
 /// The paths of a tree such as `a::{b, c::{d, e}}`.
-pub(super) fn paths(tree: &str) -> Vec<Vec<String>> {
+fn paths(tree: &str) -> Vec<Vec<String>> {
     let tree = tree.trim();
     if let Some(list) = tree.strip_prefix('{') {
         let mut found = Vec::new();
@@ -188,10 +160,11 @@ fn circles(imports: &BTreeMap<&str, BTreeSet<String>>) -> Vec<Vec<String>> {
 
 #[test]
 fn files_do_not_import_each_other_in_circles() {
-    let sources = Sources::read();
-    let imports = sources.imports();
-    let found = circles(&imports);
-    assert!(found.is_empty(), "circles of files: {found:#?}");
+    for package in packages() {
+        let sources = Sources::of(&package);
+        let found = circles(&sources.imports());
+        assert!(found.is_empty(), "circles of files in {package}: {found:#?}");
+    }
 }
 
 #[test]

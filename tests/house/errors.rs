@@ -1,11 +1,11 @@
 //! Errors: all of the library fit into one type, and names that mean nothing say what was meant.
 
 use sensitol::method::{Pairs, Stencil};
-use sensitol_models::Model;
 use sensitol::simulation::Sampler;
 use sensitol::{DerivativeSource, Error, Method, UnknownName};
-use sensitol_testing::repository;
+use sensitol_models::Model;
 
+use super::sources::sources;
 
 /// Every error type that a public function of the library returns, by its path.
 macro_rules! converts {
@@ -25,7 +25,6 @@ fn every_error_of_the_library_becomes_the_one() {
         sensitol::LimitsError,
         sensitol::MethodError,
         sensitol::ProblemError,
-        sensitol_study::StudyError,
         sensitol::allocation::AllocateError,
         sensitol::allocation::CostError,
         sensitol::RequirementError,
@@ -42,37 +41,35 @@ fn every_error_of_the_library_becomes_the_one() {
         sensitol::distribution::DistributionError,
         sensitol::fits::FitError,
         sensitol::inspection::InspectionError,
-        sensitol_external::journal::JournalError,
         sensitol::UnknownName,
         sensitol::pearson::PearsonError,
         sensitol::rare::RareError,
         sensitol::simulation::SamplingError,
         sensitol::simulation::SimulationError,
-        sensitol_study::RewriteError,
         sensitol::sweep::SweepError,
     ];
-    // None is forgotten: every public type of the sources that is called an error is in the list.
-    let mut folders = vec![repository("src")];
+    // Every public type of engine and mathematics that is called an error is in the list.
     let mut seen = 0;
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-                continue;
-            }
-            let text = std::fs::read_to_string(&path).unwrap_or_default();
-            let starts = ["pub enum ", "pub struct "].into_iter();
-            for name in starts.flat_map(|start| text.split(start).skip(1)) {
+    for file in sources().into_iter().filter(|file| ["engine", "numeric"].contains(&file.package.as_str())) {
+        for start in ["pub enum ", "pub struct "] {
+            for name in file.text.split(start).skip(1) {
                 let name: String = name.chars().take_while(|c| c.is_alphanumeric()).collect();
                 if name.ends_with("Error") && name != "Error" {
                     seen += 1;
-                    assert!(known.contains(&name.as_str()), "{name} of {path:?}");
+                    assert!(known.contains(&name.as_str()), "{name} of {}", file.name());
                 }
             }
         }
     }
     assert!(seen > 20, "the sources were read");
+}
+
+/// Errors of studies, and all of the engine's, become one error of the package that reads studies.
+#[test]
+fn errors_of_studies_become_one() {
+    let _: fn(sensitol_study::StudyError) -> sensitol_study::Error = sensitol_study::Error::from;
+    let _: fn(sensitol_study::RewriteError) -> sensitol_study::Error = sensitol_study::Error::from;
+    let _: fn(sensitol::MethodError) -> sensitol_study::Error = sensitol_study::Error::from;
 }
 
 /// The error says what the error of the part says.
@@ -90,7 +87,10 @@ fn names_are_read_back() {
         assert_eq!(method.name().parse(), Ok(method));
         assert_eq!(sensitol::method::registry::procedure(method).name(), method.name());
     }
-    assert_eq!(sensitol::method::registry::ALL.iter().map(|procedure| procedure.method()).collect::<Vec<_>>(), Method::ALL);
+    assert_eq!(
+        sensitol::method::registry::ALL.iter().map(|procedure| procedure.method()).collect::<Vec<_>>(),
+        Method::ALL
+    );
     for stencil in [Stencil::TwoPoint, Stencil::FourPoint] {
         assert_eq!(stencil.to_string().parse(), Ok(stencil));
     }

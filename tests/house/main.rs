@@ -2,7 +2,7 @@
 
 mod architecture;
 mod circles;
+mod constants;
 mod errors;
-mod public_items;
-mod tuning;
+mod sources;
 mod type_names;

@@ -3,7 +3,10 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use sensitol_numeric::distribution::{Beta, CurvilinearTrapezoid, Distribution, Drifting, Exponential, Gamma, Lognormal, Mixture, Normal, Part, Rayleigh, Student, Tabulated, Trapezoidal, Triangular, TruncatedNormal, UShaped, Uniform, Weibull};
+use sensitol_numeric::distribution::{
+    Beta, CurvilinearTrapezoid, Distribution, Drifting, Exponential, Gamma, Lognormal, Mixture, Normal, Part, Rayleigh,
+    Student, Tabulated, Trapezoidal, Triangular, TruncatedNormal, UShaped, Uniform, Weibull,
+};
 
 /// A distribution and its density, as a sum of pieces that are smooth inside: each an interval and a function of the distances
 /// from its two ends, the second infinite where there is none.

@@ -4,13 +4,11 @@ pub use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-
+use super::command::{ENGINE, rounded, run, sensitol};
 use sensitol_report::text;
 use sensitol_report::{About, Report, ToDocument};
 use sensitol_report::{Detail, Style};
-use super::command::{ENGINE, rounded, run, sensitol};
 use sensitol_testing::repository;
-
 
 #[test]
 fn analyze_prints_the_report() {

@@ -4,9 +4,9 @@
 use std::sync::{Arc, Mutex};
 
 use sensitol::assembly::Closure;
-use sensitol_study::{Externals, StudyText};
 use sensitol::{Method, analyze};
 use sensitol_study::Study;
+use sensitol_study::{Externals, StudyText};
 
 const GAP: &str = r#"
     [dimensions]

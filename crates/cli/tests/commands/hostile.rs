@@ -7,7 +7,6 @@ use std::process::{Command, Output, Stdio};
 
 use sensitol_study::Study;
 
-
 use super::command::sensitol;
 use sensitol_testing::{faults, parse};
 

@@ -1,11 +1,11 @@
 //! Commands: output, exit codes, files.
 
-#[path = "../support/command.rs"]
-#[allow(dead_code, reason = "each test binary uses a part of it")]
-mod command;
 mod allocation_cli;
 mod brief;
 mod cli;
+#[path = "../support/command.rs"]
+#[allow(dead_code, reason = "each test binary uses a part of it")]
+mod command;
 mod difference;
 mod exit_codes;
 mod hosted;

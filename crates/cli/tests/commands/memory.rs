@@ -6,7 +6,6 @@ use std::process::Command;
 use sensitol::Method;
 use sensitol_testing::repository;
 
-
 /// In kilobytes: 200 MB, of which the program itself takes some 20 in a test build.
 const ENOUGH: u64 = 200_000;
 /// Dimensions of a study as large as is promised.

@@ -5,8 +5,8 @@ use sensitol::correlation::Pair;
 use sensitol::distribution::Exponential;
 use sensitol::rare::{Beyond, RareError, RareEvents, RareOptions, rare, rare_with};
 use sensitol::simulation::{SimulationError, SimulationOptions, simulate};
-use sensitol_study::Study;
 use sensitol::{Characteristic, Closure, Dimension, Method, Options, Problem, SpecLimits, StopReason};
+use sensitol_study::Study;
 use serde_json::Value;
 
 use super::command::{run, sensitol};

@@ -6,9 +6,9 @@
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use sensitol::analysis::{CharacteristicAnalysis, EstimatedShare, IndexSource};
-use sensitol_numeric::sampling::rank_first;
 use sensitol::simulation::{IndexEstimate, SampledFactor, SimulationOptions, simulate};
 use sensitol::{Method, Options, analyze};
+use sensitol_numeric::sampling::rank_first;
 use serde_json::Value;
 
 use super::command::{run, sensitol};

@@ -6,7 +6,10 @@ use sensitol::assembly::Run;
 
 use sensitol::simulation::{SimulationOptions, simulate, simulate_with};
 use sensitol::warning::{Loss, Warning};
-use sensitol::{Characteristic, Closure, Dimension, Method, Problem, Requirement, SpecLimits, StopReason, Verdict, analyze, analyze_with};
+use sensitol::{
+    Characteristic, Closure, Dimension, Method, Problem, Requirement, SpecLimits, StopReason, Verdict, analyze,
+    analyze_with,
+};
 use serde_json::Value;
 
 use super::command::sensitol;

@@ -8,8 +8,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
 use rayon::prelude::*;
-use sensitol_study::Study;
 use sensitol::assembly::{Points, Request, Responses, Run};
+use sensitol_study::Study;
 use serde_json::Value;
 use toml::Table;
 

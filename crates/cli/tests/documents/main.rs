@@ -1,10 +1,10 @@
 //! Documents that the program writes or that quote it.
 
+mod book;
+mod claims;
 #[path = "../support/command.rs"]
 #[allow(dead_code, reason = "each test binary uses a part of it")]
 mod command;
-mod book;
-mod claims;
 mod docs;
 mod figures;
 mod help;

@@ -5,9 +5,8 @@ use std::fmt::Write;
 
 use clap::{Arg, Command};
 use sensitol_study::Study;
-use serde_json::Value;
 use sensitol_testing::{example_studies, repository};
-
+use serde_json::Value;
 
 /// A cell of a table: no line ends, no bars.
 fn cell(text: &str) -> String {

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use assert_cmd::Command;
 use sensitol_testing::repository;
 
-
 /// A pattern, why it is one, and how often it may still stand in documents and comments: a change lowers the number, and none raises it.
 struct Pattern {
     name: &'static str,

@@ -2,13 +2,13 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use sensitol_external::{Greeting, Settings};
-use sensitol_external::process::Process;
 use sensitol::assembly::{AssemblyFunction, Points, Request, Responses, Run, Signature};
+use sensitol_external::process::Process;
+use sensitol_external::{Greeting, Settings};
 
-use sensitol_external::journal::Journaled;
 use sensitol::probe::probe;
 use sensitol::{Dimension, Method, Options, Problem, Warning, analyze};
+use sensitol_external::journal::Journaled;
 
 use super::command::sensitol;
 use sensitol_testing::{child_in_c, repository};

@@ -6,14 +6,13 @@ use std::time::{Duration, Instant};
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use sensitol_external::{Greeting, Settings};
-use sensitol_external::process::Process;
 use sensitol::assembly::{AssemblyFunction, Points, Request, Responses, Run, Signature};
+use sensitol_external::process::Process;
+use sensitol_external::{Greeting, Settings};
 
 use sensitol_external::journal::store::{Store, StoredAnswer};
 use sensitol_external::journal::{JournalFault, Journaled};
 use sensitol_testing::{interrupt, repository};
-
 
 /// A study behind a slow child, in a folder of its own.
 struct Slow {

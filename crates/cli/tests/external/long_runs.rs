@@ -7,12 +7,10 @@ use std::time::Duration;
 
 use sensitol::StopReason;
 use sensitol::assembly::ProcessFault;
-use sensitol_external::{Greeting, Settings};
-use sensitol_external::process::Process;
 use sensitol::assembly::{AssemblyFunction, EvaluationError, Points, Request, Responses, Run, Signature};
+use sensitol_external::process::Process;
+use sensitol_external::{Greeting, Settings};
 use sensitol_testing::{child_in_c, repository};
-
-
 
 fn settings(mode: &str, more: &str) -> Settings {
     Settings::new([child_in_c(), mode.to_owned(), more.to_owned()]).with_sentinels(false).with_retries(0)

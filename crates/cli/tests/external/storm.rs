@@ -13,7 +13,6 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use sensitol_external::journal::store::Store;
 use sensitol_testing::repository;
 
-
 /// Signals without `SENSITOL_STORM`: each of the four three times.
 const SIGNALS: usize = 12;
 /// How long a process may take to end. A run without a terminal waits 10 s for what is under way, which here takes milliseconds.

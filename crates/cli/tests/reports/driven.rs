@@ -6,11 +6,12 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use assert_cmd::Command;
 use sensitol::assembly::formula::Formula;
-use sensitol::assembly::{AssemblyFunction, Composite, EvaluationError, Input, Parts, Points, Request, Responses, Run, Signature, Source};
+use sensitol::assembly::{
+    AssemblyFunction, Composite, EvaluationError, Input, Parts, Points, Request, Responses, Run, Signature, Source,
+};
 use sensitol::{Analysis, Dimension, Method, Options, Problem, analyze};
 use sensitol_study::Study;
 use sensitol_testing::{analysed, case, close, faults, parse, relative, repository};
-
 
 /// The values of the first characteristics at one point of the dimensions.
 fn at(study: &Study, point: &[f64]) -> Vec<Option<f64>> {

@@ -2,11 +2,10 @@
 
 use assert_cmd::Command;
 
-use sensitol_study::{Externals, StudyText};
 use sensitol::{Method, analyze};
 use sensitol_study::Study;
+use sensitol_study::{Externals, StudyText};
 use sensitol_testing::{analysed, case, close, faults, parse};
-
 
 /// Study, and the same written out: every figure is the same to the last digit.
 #[track_caller]

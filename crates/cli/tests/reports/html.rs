@@ -8,13 +8,13 @@ use std::process::Command;
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
+use sensitol::analysis::law_at::law_at;
 use sensitol::analysis::{LawFigure, Relocation};
 use sensitol::capability::{Capability, Law};
-use sensitol::analysis::law_at::law_at;
 
+use sensitol::{Analysis, Method, Options, analyze};
 use sensitol_report::html::{WhatIf, analyze_html};
 use sensitol_report::{About, CompareReport, Report, SimulationReport, ToDocument};
-use sensitol::{Analysis, Method, Options, analyze};
 use sensitol_study::Study;
 use serde_json::{Value, json};
 

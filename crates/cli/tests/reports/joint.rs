@@ -5,11 +5,10 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use sensitol::rare::{RareOptions, rare};
 use sensitol::simulation::{Sampler, SimulationOptions, simulate};
-use sensitol_study::StudyText;
 use sensitol::{Analysis, Method, Verdict, analyze};
+use sensitol_study::StudyText;
 use sensitol_study::{Study, StudyError};
 use sensitol_testing::{case, close, faults, relative};
-
 
 fn read(text: &str, files: &[(&str, &str)]) -> Result<Study, StudyError> {
     let study = StudyText::toml("study.toml", text);

@@ -3,13 +3,12 @@
 use std::path::Path;
 use std::process::Command;
 
+use sensitol::{Method, Options, analyze};
 use sensitol_report::csv::{csv_file_names, stack_csv};
 use sensitol_report::markdown;
 use sensitol_report::{About, Report, StackNote, TotalKind, csv_files, stack_document};
-use sensitol::{Method, Options, analyze};
 use sensitol_study::Study;
 use sensitol_testing::{close, relative, repository};
-
 
 fn report(text: &str, options: impl Into<Options>) -> Report {
     let study = Study::from_toml(text, "study.toml").unwrap();

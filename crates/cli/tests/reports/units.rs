@@ -1,10 +1,9 @@
 //! Units of formulas: warned of, checked, converted; the model's border; literals with units.
 
-use sensitol::assembly::{Points, Request, Responses, Run};
 use sensitol::Method;
+use sensitol::assembly::{Points, Request, Responses, Run};
 use sensitol_study::Study;
 use sensitol_testing::{analysed, close, example_studies, faults, parse, relative};
-
 
 /// mm, in and degrees in one formula.
 const MIXED: &str = "[dimensions]\narm = { nominal = 118, tolerance = 0.4, unit = \"mm\" }\nshim = { nominal = 0.625, tolerance = 0.003, unit = \"in\" }\n\

@@ -1,8 +1,7 @@
 //! The command `sensitol`, run by tests.
 
-use std::process::Command;
 use sensitol_testing::repository;
-
+use std::process::Command;
 
 /// Study of the four-cylinder engine.
 pub const ENGINE: &str = "examples/engine-balance/study.toml";

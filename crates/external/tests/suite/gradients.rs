@@ -1,13 +1,12 @@
 //! Derivatives that an external model sends: fewer evaluations, the same figures, and none on trust. The child is `tests/children/flips.c`.
 
-use sensitol_external::{Greeting, Settings};
-use sensitol_external::process::Process;
 use sensitol::assembly::{AssemblyFunction, EvaluationError, ModelInfo, Request, Responses, Run, Signature};
+use sensitol_external::process::Process;
+use sensitol_external::{Greeting, Settings};
 
-use sensitol_external::journal::Journaled;
 use sensitol::{Analysis, Dimension, Method, Options, Problem, analyze};
+use sensitol_external::journal::Journaled;
 use sensitol_testing::child_in_c;
-
 
 /// Without sentinels, whose evaluations would be counted too.
 fn process(mode: &str, n: usize) -> Process {

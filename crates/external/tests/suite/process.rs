@@ -6,16 +6,15 @@ use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-use sensitol::assembly::{Exit, ProcessFault};
-use sensitol_external::{Greeting, Settings};
-use sensitol_external::process::Process;
 use sensitol::assembly::{AssemblyFunction, EvaluationError, Points, Request, Responses, Run, Signature};
+use sensitol::assembly::{Exit, ProcessFault};
+use sensitol_external::process::Process;
+use sensitol_external::{Greeting, Settings};
 
 use sensitol::rare::{RareOptions, rare};
 use sensitol::simulation::{SimulationOptions, simulate};
 use sensitol::{Characteristic, Dimension, Problem, SpecLimits, StopReason};
 use sensitol_testing::repository;
-
 
 /// How long a test waits for what is sure to come, on however busy a machine.
 const PATIENCE: Duration = Duration::from_secs(60);

@@ -3,11 +3,10 @@
 use serde_json::Value;
 
 use sensitol::assembly::{AssemblyFunction, EvaluationError, Points, Request, Responses, Run};
-use sensitol_models::{self, Model};
 use sensitol::simulation::{SimulationOptions, simulate};
 use sensitol::{Dimension, Method, Options, Problem, analyze};
+use sensitol_models::{self, Model};
 use sensitol_testing::{data, relative};
-
 
 fn model(name: &str) -> &'static Model {
     name.parse().unwrap()

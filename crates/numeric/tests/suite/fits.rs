@@ -4,8 +4,6 @@ use proptest::prelude::*;
 use sensitol_numeric::fits::{FitError, deviations};
 use sensitol_testing::{data, repository};
 
-
-
 const SHAFTS: [&str; 28] = [
     "a", "b", "c", "cd", "d", "e", "ef", "f", "fg", "g", "h", "js", "j", "k", "m", "n", "p", "r", "s", "t", "u", "v",
     "x", "y", "z", "za", "zb", "zc",

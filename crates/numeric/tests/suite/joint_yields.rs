@@ -5,11 +5,11 @@ use std::sync::Arc;
 use sensitol_numeric::correlation::{Correlation, Pair};
 use sensitol_numeric::distribution::{Distribution, Normal, Probability, Uniform};
 
+use sensitol_numeric::characteristic::SpecLimits;
+use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::law::{LawOptions, SurfaceLaw, joint_yield};
 use sensitol_numeric::moments::Interactions;
 use sensitol_numeric::surrogate::{Surrogate, Univariate};
-use sensitol_numeric::characteristic::SpecLimits;
-use sensitol_numeric::dimension::Dimension;
 
 type Law = Arc<dyn Distribution>;
 

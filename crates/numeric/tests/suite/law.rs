@@ -2,19 +2,21 @@
 
 use std::sync::{Arc, LazyLock};
 
-use sensitol_numeric::dimension::Dimension;
-use sensitol_numeric::law::{Branch, LawError, LawFigure};
 use sensitol_numeric::correlation::{Correlation, Pair};
-use sensitol_numeric::distribution::{Beta, Distribution, Exponential, Gamma, Lognormal, Measured, Mixture, Normal, Part, Trapezoidal, Triangular, Uniform, Weibull};
+use sensitol_numeric::dimension::Dimension;
+use sensitol_numeric::distribution::{
+    Beta, Distribution, Exponential, Gamma, Lognormal, Measured, Mixture, Normal, Part, Trapezoidal, Triangular,
+    Uniform, Weibull,
+};
 use sensitol_numeric::law::LawTail;
+use sensitol_numeric::law::{Branch, LawError, LawFigure};
 
 use sensitol_numeric::distribution::rule::Rule;
 use sensitol_numeric::law::{LawOptions, SurfaceLaw};
 use sensitol_numeric::moments::Interactions;
 use sensitol_numeric::surrogate::{Inputs, Surrogate, Univariate, shapes};
-use serde_json::Value;
 use sensitol_testing::repository;
-
+use serde_json::Value;
 
 type Law = Arc<dyn Distribution>;
 

@@ -1,13 +1,12 @@
 //! Moments: against exact rationals, against enumeration, and by their properties.
 
 use proptest::prelude::*;
-use sensitol_numeric::moments::Moments;
 use sensitol_numeric::distribution::StandardMoments;
+use sensitol_numeric::moments::Moments;
 
 use sensitol_numeric::distribution::rule::Rule;
 use sensitol_numeric::moments::{Interactions, Term, contributions, of_quadratic};
 use sensitol_testing::{close, data, relative};
-
 
 /// A decimal, or a fraction as `p/q`, as a double.
 fn number(value: &serde_json::Value) -> f64 {

@@ -6,7 +6,6 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use sensitol_numeric::pearson::{Pearson, PearsonError, PearsonType};
 use sensitol_testing::repository;
 
-
 /// A member in 25 digits.
 struct Member {
     id: u64,

@@ -3,12 +3,11 @@
 use proptest::prelude::*;
 use sensitol_numeric::correlation::{Correlation, Pair};
 
-use sensitol_numeric::sampling::{Draws, Fine, Portion, SOBOL_DIMENSIONS, Scale, Sobol, Summary, wilson};
-use sensitol_numeric::sampling::{Sampler, SamplingError};
 use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::distribution::CentralMoments;
+use sensitol_numeric::sampling::{Draws, Fine, Portion, SOBOL_DIMENSIONS, Scale, Sobol, Summary, wilson};
+use sensitol_numeric::sampling::{Sampler, SamplingError};
 use sensitol_testing::{close, normals, relative};
-
 
 fn column(sobol: &Sobol, dimension: usize, key: Option<u64>, points: usize) -> Vec<f64> {
     let mut column = vec![0.0; points];

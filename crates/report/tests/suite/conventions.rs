@@ -1,12 +1,11 @@
 //! The capability that processes hold, and the inflations of the RSS: printed stacks, and every form by hand.
 
 use sensitol::distribution::{Distribution, Drifting};
-use sensitol_report::{About, Detail, Report, Style, ToDocument, TotalKind, text};
-use sensitol_study::StudyText;
 use sensitol::{CharacteristicAnalysis, Method, Options, analyze};
+use sensitol_report::{About, Detail, Report, Style, ToDocument, TotalKind, text};
 use sensitol_study::Study;
+use sensitol_study::StudyText;
 use sensitol_testing::{case, close, dimension, faults, parse, relative, repository};
-
 
 fn one(text: &str) -> CharacteristicAnalysis {
     let study = parse(text).unwrap_or_else(|error| panic!("{error}"));

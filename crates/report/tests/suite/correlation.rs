@@ -6,11 +6,10 @@ use sensitol::correlation::{Correlation, Pair, Refusal};
 use sensitol::distribution::{CentralMoments, Distribution, Exponential, Gamma, Normal, Triangular, Uniform};
 use sensitol_numeric::correlation::transform::Transform;
 
+use sensitol::{Characteristic, Closure, Dimension, Method, Moments, Problem, analyze};
 use sensitol_report::{About, Report};
 use sensitol_study::Study;
-use sensitol::{Characteristic, Closure, Dimension, Method, Moments, Problem, analyze};
 use sensitol_testing::{close, normals, relative, standard};
-
 
 fn pair(a: &str, b: &str, value: f64) -> Pair {
     Pair { between: [a.to_owned(), b.to_owned()], value }

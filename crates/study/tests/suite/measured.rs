@@ -9,14 +9,13 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use sensitol::analysis::Relocation;
 use sensitol::distribution::{Distribution, DistributionError, Jacobi, Measured, PearsonLaw, Probability};
 
+use sensitol::{Characteristic, Closure, Dimension, Method, Options, Problem, SpecLimits, analyze};
 use sensitol_numeric::distribution::outliers::{extreme, outliers};
 use sensitol_numeric::distribution::sample::{Resample, Sample};
 use sensitol_numeric::moments::Interactions;
 use sensitol_numeric::surrogate::{Inputs, Surrogate, Univariate};
-use sensitol::{Characteristic, Closure, Dimension, Method, Options, Problem, SpecLimits, analyze};
 use sensitol_study::{Study, StudyError};
 use sensitol_testing::{close, data, relative, repository};
-
 
 fn numbers(value: &serde_json::Value) -> Vec<f64> {
     value.as_array().unwrap().iter().map(|number| number.as_f64().unwrap()).collect()

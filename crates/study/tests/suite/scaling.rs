@@ -3,7 +3,6 @@
 use sensitol_numeric::dimension::Dimension;
 use sensitol_testing::{close, dimension, fields, relative};
 
-
 fn scaled(line: &str, factor: f64) -> Dimension {
     dimension(line).unwrap().scaled(factor).unwrap_or_else(|| panic!("{line} does not scale")).unwrap()
 }

@@ -2,9 +2,8 @@
 
 use jsonschema::Validator;
 use sensitol_study::Study;
-use serde_json::Value;
 use sensitol_testing::{example_studies, repository};
-
+use serde_json::Value;
 
 fn validator() -> Validator {
     let schema = sensitol_study::schema::schema();

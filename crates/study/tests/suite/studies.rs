@@ -1,10 +1,8 @@
 //! Study files: both formats, every form of a dimension, and every fault with its place and its help.
 
-
 use sensitol::{Dimension, Method, analyze};
 use sensitol_study::{Study, StudyError};
 use sensitol_testing::{INSTALLED, close, dimension, example_studies, faults, parse, relative};
-
 
 #[test]
 fn tolerances_become_distributions() {

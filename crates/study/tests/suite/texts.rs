@@ -1,11 +1,9 @@
 //! Studies in memory: text with the files that it names, as a page in a browser or a script has them.
 
-
-use sensitol_study::{DataProblem, StudyFault, StudyText};
 use sensitol::{Method, analyze};
 use sensitol_study::Study;
+use sensitol_study::{DataProblem, StudyFault, StudyText};
 use sensitol_testing::repository;
-
 
 fn file(path: &str) -> String {
     std::fs::read_to_string(repository(path)).unwrap()

@@ -6,7 +6,6 @@ use sensitol::{Closure, Dimension, Method, Problem, analyze, fits};
 use sensitol_study::Study;
 use sensitol_testing::{close, dimension, faults, parse, relative};
 
-
 #[test]
 fn a_fit_is_a_band() {
     for (line, nominal, class) in [

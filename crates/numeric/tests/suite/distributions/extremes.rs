@@ -5,10 +5,12 @@ use std::sync::Arc;
 use proptest::prelude::*;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
-use sensitol_numeric::distribution::{Beta, CurvilinearTrapezoid, Distribution, DistributionError, Exponential, Gamma, Jacobi, Lognormal, Mixture, Normal, Part, Rayleigh, StandardMoments, Student, Trapezoidal, Triangular, TruncatedNormal, UShaped, Uniform, Weibull};
+use sensitol_numeric::distribution::{
+    Beta, CurvilinearTrapezoid, Distribution, DistributionError, Exponential, Gamma, Jacobi, Lognormal, Mixture,
+    Normal, Part, Rayleigh, StandardMoments, Student, Trapezoidal, Triangular, TruncatedNormal, UShaped, Uniform,
+    Weibull,
+};
 use sensitol_testing::{close, data, fields, relative};
-
-
 
 fn numbers(value: &serde_json::Value) -> Vec<f64> {
     value.as_array().unwrap().iter().map(|value| value.as_f64().unwrap()).collect()

@@ -1,14 +1,14 @@
 //! Distributions: moments against integration of the density, Gauss rules, impossible parameters.
 
-
 mod drifting;
 mod extremes;
 
 use proptest::prelude::*;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
-use sensitol_numeric::distribution::{CentralMoments, Distribution, DistributionError, Jacobi, Normal, Probability, StandardMoments, Uniform};
-
+use sensitol_numeric::distribution::{
+    CentralMoments, Distribution, DistributionError, Jacobi, Normal, Probability, StandardMoments, Uniform,
+};
 
 use sensitol_testing::densities::{Case, cases};
 use sensitol_testing::{close, fields, relative};
