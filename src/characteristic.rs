@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::inspection::{Inspection, InspectionError};
 use crate::labels::Labels;
+use crate::power::Power;
 use crate::requirement::{Requirement, RequirementError};
 
 /// A key characteristic: its name, its unit, and the limits it should keep.
@@ -114,6 +115,16 @@ impl Characteristic {
         Ok(self)
     }
 
+    /// The same with everything in its unit times a power of two.
+    pub(crate) fn times(self, power: Power) -> Self {
+        Self {
+            limits: self.limits.times(power),
+            requirement: self.requirement.map(|requirement| requirement.times(power)),
+            inspection: self.inspection.map(|inspection| inspection.times(power)),
+            ..self
+        }
+    }
+
     /// The gauge by which its limits are inspected, where there is one.
     pub fn inspection(&self) -> Option<Inspection> {
         self.inspection
@@ -192,6 +203,15 @@ impl SpecLimits {
             (Some(lower), Some(upper)) if lower >= upper => Err(LimitsError::Swapped { lower, upper }),
             _ => Ok(Self { lower, upper }),
         }
+    }
+
+    /// The same limits times a power of two. One that no double holds is the greatest double: values beyond do not occur either. Two that both are 0
+    /// then stay apart.
+    pub(crate) fn times(self, power: Power) -> Self {
+        let times = |limit: f64| power.times(limit).clamp(-f64::MAX, f64::MAX);
+        let (lower, upper) = (self.lower.map(times), self.upper.map(times));
+        let upper = upper.map(|upper| if Some(upper) == lower { upper.next_up() } else { upper });
+        Self { lower, upper }
     }
 
     /// The lower limit, where there is one.

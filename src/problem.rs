@@ -6,7 +6,9 @@ use crate::assembly::{AssemblyFunction, Points, State, States};
 use crate::characteristic::Characteristic;
 use crate::correlation::{Block, Correlation, CorrelationError, Pair};
 use crate::dimension::Dimension;
+use crate::magnitude::Magnitudes;
 use crate::names::nearest;
+use crate::power::Power;
 use crate::summary::EvaluatorSummary;
 
 /// N dimensions, K characteristics, and the assembly function between them.
@@ -20,6 +22,8 @@ pub struct Problem {
     function: Arc<dyn AssemblyFunction>,
     /// Pairs of dimensions, by name, whose product the function is known to have.
     products: Arc<[(String, String)]>,
+    /// The sizes of the outputs, during a run that is about them.
+    magnitudes: Option<Magnitudes>,
 }
 
 /// Why dimensions, function and characteristics do not fit together.
@@ -118,6 +122,7 @@ impl Problem {
             outputs,
             function: Arc::new(function),
             products: Arc::new([]),
+            magnitudes: None,
         };
         problem.checked()
     }
@@ -191,6 +196,57 @@ impl Problem {
     #[cfg(feature = "study")]
     pub(crate) fn with_products(self, products: Vec<(String, String)>) -> Self {
         Self { products: products.into(), ..self }
+    }
+
+    /// As a run sees it first, which finds out how large the outputs are.
+    pub(crate) fn watched(&self) -> Self {
+        let magnitudes = Magnitudes::watching(self.function.signature().outputs.len());
+        let function = magnitudes.wrapped(Arc::clone(&self.function));
+        Self { function, magnitudes: Some(magnitudes), ..self.clone() }
+    }
+
+    /// With every output divided by its power of two, and the characteristics with it; `seen` are the magnitudes of the run that found them out.
+    pub(crate) fn divided(&self, powers: Vec<Power>, seen: &Magnitudes) -> Self {
+        let magnitudes = seen.known(powers);
+        let function = magnitudes.wrapped(Arc::clone(&self.function));
+        let divided = |(one, &output): (&Characteristic, &usize)| one.clone().times(magnitudes.power(output).inverse());
+        let characteristics = self.characteristics.iter().zip(&self.outputs).map(divided).collect();
+        Self { function, characteristics, magnitudes: Some(magnitudes), ..self.clone() }
+    }
+
+    /// The dimensions of another problem with characteristics and function of this one: what a run found, in the units in which it was asked.
+    pub(crate) fn restored(&self, found: &Self) -> Self {
+        Self {
+            function: Arc::clone(&self.function),
+            characteristics: self.characteristics.clone(),
+            magnitudes: self.magnitudes.clone(),
+            ..found.clone()
+        }
+    }
+
+    /// The sizes of the outputs, during a run that is about them.
+    pub(crate) fn magnitudes(&self) -> Option<&Magnitudes> {
+        self.magnitudes.as_ref()
+    }
+
+    /// The power of two by which a characteristic is divided.
+    pub(crate) fn power(&self, characteristic: usize) -> Power {
+        self.magnitudes.as_ref().map_or(Power::ONE, |of| of.power(self.outputs[characteristic]))
+    }
+
+    /// The power of two by which the characteristic of this name is divided; 1 where there is none.
+    pub(crate) fn power_of(&self, name: &str) -> Power {
+        let place = self.characteristics.iter().position(|one| one.name() == name);
+        place.map_or(Power::ONE, |place| self.power(place))
+    }
+
+    /// With another function for the outputs as they are undivided.
+    pub(crate) fn with_undivided(&self, function: Arc<dyn AssemblyFunction>) -> Self {
+        let function = match &self.magnitudes {
+            Some(magnitudes) => magnitudes.wrapped(function),
+            None => function,
+        };
+        self.with_function(function)
     }
 
     /// With another function of the same signature.

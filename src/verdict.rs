@@ -13,6 +13,7 @@ use serde::{Serialize, Serializer};
 
 use crate::capability;
 use crate::characteristic::{Characteristic, SpecLimits};
+use crate::power::Power;
 use crate::requirement::{Required, Requirement};
 use crate::shape::{ends, finite};
 
@@ -129,6 +130,19 @@ impl Judged {
     /// By a value and its interval.
     pub(crate) fn of(requirement: Requirement, value: Option<f64>, interval: Option<[f64; 2]>) -> Self {
         Self { requirement, value, interval, verdict: Verdict::of(requirement, interval) }
+    }
+
+    /// The same of a characteristic times a power of two.
+    pub(crate) fn times(self, power: Power) -> Self {
+        match self.requirement {
+            Requirement::Sigma(_) => Self {
+                requirement: self.requirement.times(power),
+                value: self.value.and_then(|value| power.checked(value)),
+                interval: self.interval.map(|interval| interval.map(|end| power.times(end))),
+                verdict: self.verdict,
+            },
+            _ => self,
+        }
     }
 
     /// The same by three errors on either side in place of two: many requirements are asked of a sample, each of them often just kept.

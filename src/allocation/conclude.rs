@@ -15,7 +15,7 @@ use super::solve::Setting;
 use super::solved::Solved;
 use super::station::{Station, prices};
 use super::task::{AllocateError, Goal};
-use crate::analysis::TRUSTED;
+use crate::analysis::{CharacteristicAnalysis, TRUSTED};
 use crate::problem::Problem;
 use crate::requirement::Requirement;
 use crate::short_sort::ShortSort;
@@ -165,8 +165,7 @@ impl Driver<'_> {
             }
         }
         if let (Some(samples), false) = (self.options.confirm, self.spent.stopped) {
-            let nominal: Vec<Option<f64>> = station.analysis.characteristics.iter().map(|one| one.nominal).collect();
-            self.confirm(allocation, &station.problem, &nominal, samples)?;
+            self.confirm(allocation, &station.problem, &station.analysis.characteristics, samples)?;
         }
         allocation.after = Some(self.completed(station.analysis, &station.findings, &station.problem));
         allocation.problem = station.problem;
@@ -201,7 +200,7 @@ impl Driver<'_> {
         &mut self,
         allocation: &mut Allocation,
         problem: &Problem,
-        nominal: &[Option<f64>],
+        analysed: &[CharacteristicAnalysis],
         samples: u64,
     ) -> Result<(), AllocateError> {
         let budget = self.options.analysis.budget.map_or(u64::MAX, |budget| budget as u64);
@@ -218,8 +217,8 @@ impl Driver<'_> {
         let cheap = !problem.function().signature().costly && self.options.analysis.budget.is_none();
         let worst = allocation.requirements.iter().any(|one| one.requirement == Requirement::WorstCase) && cheap;
         let in_box = match worst {
-            true => worst_in_box(problem, nominal, self.options.seed, self.run),
-            false => vec![None; nominal.len()],
+            true => worst_in_box(problem, analysed, self.options.seed, self.run),
+            false => vec![None; analysed.len()],
         };
         for one in &mut allocation.requirements {
             let found = &simulation.characteristics[one.characteristic];

@@ -55,6 +55,7 @@ mod reject_fit;
 mod rejects;
 mod remade;
 mod response;
+mod restore;
 mod result;
 mod root;
 mod run;

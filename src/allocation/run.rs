@@ -19,6 +19,7 @@ use super::station::{Station, required};
 use super::steps::Steps;
 use super::task::{AllocateError, AllocationOptions, AllocationTask, Goal};
 use crate::assembly::Run;
+use crate::evaluation::at_any_size;
 use crate::problem::Problem;
 use crate::sampling::{Draws, Sampler};
 use crate::simulation::SimulationError;
@@ -75,7 +76,10 @@ pub fn allocate_with(
         Draws::new(problem.dimensions(), problem.correlation(), Sampler::Random, options.seed)
             .map_err(SimulationError::from)?;
     }
-    Driver { task, options, run, spent: Spent::default() }.run(problem)
+    at_any_size(problem, run, |problem, run| {
+        let task = &task.divided(problem)?;
+        Driver { task, options, run, spent: Spent::default() }.run(problem)
+    })
 }
 
 impl Driver<'_> {

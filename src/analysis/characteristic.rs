@@ -18,6 +18,7 @@ use crate::extremes::{Extremes, ExtremesProof};
 use crate::method::{ErrorEstimate, Order, Outcome, Residual, estimate};
 use crate::moments::{Moments, Sampled};
 use crate::pearson::PearsonError;
+use crate::power::{Rescale, Rescaling, Wide, rescale};
 use crate::problem::Problem;
 use crate::requirement::Requirement;
 use crate::shape::{Four, through};
@@ -163,6 +164,23 @@ pub struct Sensitivity {
     pub first_order: Option<EstimatedShare>,
     /// Total Sobol' index: with every interaction in which it has a part.
     pub total: Option<EstimatedShare>,
+}
+
+rescale!(CharacteristicAnalysis {
+    nominal, moments, sampled, model_sampled, verification, surface_law, error_estimate, residual, law, coverage, inspection, sampling,
+    worst_case, curved, extremes, bounds, middle, rss, inflated_rss, mean_shift_rss, six_sigma, sensitivities, interactions,
+} without {
+    characteristic, yield_source, unfinished, without_value, capability, pearson, normal, interactions_remainder, possible_interactions,
+    left_out_share, indices, constant, density,
+});
+
+impl Rescale for Sensitivity {
+    fn rescale(&mut self, by: &mut Rescaling) {
+        self.first.rescale(by);
+        // That of the second derivative is in the characteristic's unit already, as the derivative itself.
+        self.rounding.iter_mut().for_each(|[first, _]| first.rescale(by));
+        self.mean_shift.rescale(by);
+    }
 }
 
 /// The distribution that has the moments; null where there is none.
@@ -343,7 +361,7 @@ impl CharacteristicAnalysis {
             worst_case: middle
                 .zip(linear)
                 .map(|(middle, linear)| [middle - linear.worst_case, middle + linear.worst_case]),
-            curved: curved(problem, outcome, c, &sensitivities),
+            curved: curved(problem, outcome, c),
             middle,
             rss: linear.map(|linear| linear.rss),
             inflated_rss: linear.map(|linear| linear.inflated_rss),
@@ -373,17 +391,17 @@ impl CharacteristicAnalysis {
 }
 
 /// `sum of |f_jj| h_j^2/2 + sum of |f_jk| h_j h_k` over the half bands `h`: no corner of a second-order surface lies farther from the linear one.
-fn curved(problem: &Problem, outcome: &Outcome, c: usize, sensitivities: &[Sensitivity]) -> Option<f64> {
+fn curved(problem: &Problem, outcome: &Outcome, c: usize) -> Option<f64> {
     let half = |d: usize| problem.dimensions()[d].half_band();
-    let own = |(d, one): (usize, &Sensitivity)| match half(d) {
+    let own = |d: usize| match half(d) {
         0.0 => Some(0.0),
-        half => Some(0.5 * one.second?.abs() * half * half),
+        half => Some(curvature(outcome, c, d)?.abs().times(0.5).times(half).times(half).value()),
     };
     let both = |index: usize| {
         let [j, k] = dimensions_of(outcome, index).map(half);
-        Some(mixed_of(outcome, c, index)?.abs() * j * k)
+        Some(mixed_of(outcome, c, index)?.abs().times(j).times(k).value())
     };
-    let own = sensitivities.iter().enumerate().map(own).sum::<Option<f64>>()?;
+    let own = (0..problem.dimensions().len()).map(own).sum::<Option<f64>>()?;
     Some(own + pairs_of(outcome, c).map(both).sum::<Option<f64>>()?)
 }
 
@@ -400,21 +418,46 @@ fn taken(limits: SpecLimits, from: f64, [below, above]: [f64; 2]) -> Option<f64>
     below.into_iter().chain(above).reduce(f64::max)
 }
 
+/// The exact first and second derivative by a dimension; None where one of them is unknown.
+fn exact_derivatives(outcome: &Outcome, c: usize, d: usize) -> Option<[Wide; 2]> {
+    let exact = outcome.fitted[c].exact.as_ref()?;
+    match outcome.plan.depends(c, d) {
+        true => exact.slope(d).zip(exact.curvature(d)).map(<[Wide; 2]>::from),
+        false => Some([Wide::of(0.0); 2]),
+    }
+}
+
+/// The second derivative by a dimension: exact where that is known, a difference elsewhere.
+pub(super) fn curvature(outcome: &Outcome, c: usize, d: usize) -> Option<Wide> {
+    if let Some([_, second]) = exact_derivatives(outcome, c, d) {
+        return Some(second);
+    }
+    let (plan, second) = (&outcome.plan, outcome.fitted[c].parts[d]?.second()?);
+    // A characteristic that cannot depend on a dimension has slope 0, evaluated or not.
+    Some(match plan.depends(c, d) {
+        true => Wide::of(second).over(plan.axis(d).scale).over(plan.axis(d).scale),
+        false => Wide::of(0.0),
+    })
+}
+
 fn sensitivity(problem: &Problem, outcome: &Outcome, c: usize, d: usize, shares: Option<&Shares>) -> Sensitivity {
     let (plan, dimension) = (&outcome.plan, &problem.dimensions()[d]);
     let part = outcome.fitted[c].parts[d];
     let axis = plan.axis(d);
     let scale = axis.scale;
-    let exact = outcome.fitted[c].exact.as_ref().and_then(|exact| match plan.depends(c, d) {
-        true => exact.first[d].zip(exact.second[d]),
-        false => Some((0.0, 0.0)),
-    });
+    let exact = exact_derivatives(outcome, c, d);
+    // Second derivatives by a dimension of extreme size are so only in the characteristic's own unit.
+    let in_unit = |second: Wide| second.times_power(problem.power(c)).checked();
     let rounding = outcome.fitted[c].centre.filter(|_| plan.depends(c, d)).and_then(|centre| {
         let slope = |step: f64| f64::EPSILON * centre.abs() / step;
+        let second = |factor: f64, step: f64| {
+            in_unit(Wide::of(f64::EPSILON * centre.abs()).over(step).times(factor).over(step)).unwrap_or(f64::NAN)
+        };
+        let nearest = axis.nearest_step();
         match exact {
-            Some(_) => Some([slope(scale), slope(scale) / scale]),
+            Some(_) => Some([slope(scale), second(1.0, scale)]),
             None if axis.slots.is_empty() => None,
-            None => Some([slope(axis.nearest_step()), 4.0 * slope(axis.nearest_step()) / axis.nearest_step()]),
+            None => Some([slope(nearest), second(4.0, nearest)]),
         }
     });
     // A characteristic that cannot depend on a dimension has slope 0, evaluated or not.
@@ -433,8 +476,8 @@ fn sensitivity(problem: &Problem, outcome: &Outcome, c: usize, d: usize, shares:
     };
     Sensitivity {
         dimension: dimension.name().to_owned(),
-        first: exact.map(|exact| exact.0).or(part.map(|part| per_unit(part.slope()))),
-        second: exact.map(|exact| exact.1).or_else(|| Some(per_unit(per_unit(part?.second()?)))),
+        first: exact.map(|[first, _]| first.value()).or(part.map(|part| per_unit(part.slope()))),
+        second: curvature(outcome, c, d).and_then(in_unit),
         exact: exact.is_some(),
         rounding,
         steps: match plan.depends(c, d) {

@@ -4,6 +4,8 @@ use std::fmt;
 
 use serde::{Serialize, Serializer};
 
+use crate::power::{Rescale, Rescaling};
+
 /// The joint effect of two dimensions.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
@@ -79,6 +81,13 @@ impl Row {
             share: known(self.share),
             mean_shift: known(self.mean_shift),
         }
+    }
+}
+
+impl Rescale for InteractionList {
+    fn rescale(&mut self, by: &mut Rescaling) {
+        // Mixed derivatives and their rounding are in the characteristic's unit already.
+        self.rows.iter_mut().for_each(|row| row.mean_shift.rescale(by));
     }
 }
 

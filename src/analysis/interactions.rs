@@ -5,6 +5,7 @@ use super::shares::Shares;
 use crate::method::Outcome;
 use crate::parallel::prelude::*;
 use crate::plan::Point;
+use crate::power::Wide;
 use crate::problem::Problem;
 
 /// The pairs on which a characteristic can depend, by their places among all that were examined.
@@ -20,11 +21,11 @@ pub(super) fn share_of(outcome: &Outcome, c: usize, index: usize, shares: Option
 }
 
 /// The mixed derivative of a pair of dimensions at the means: exact where that is known, a difference elsewhere.
-pub(super) fn mixed_of(outcome: &Outcome, c: usize, index: usize) -> Option<f64> {
-    let fitted = &outcome.fitted[c];
-    let exact = fitted.exact.as_ref().and_then(|exact| exact.mixed[index]);
-    let [j, k] = dimensions_of(outcome, index).map(|d| outcome.plan.axis(d).scale);
-    exact.or_else(|| fitted.mixed[index].map(|mixed| mixed.value / j / k))
+pub(super) fn mixed_of(outcome: &Outcome, c: usize, index: usize) -> Option<Wide> {
+    let (fitted, pair) = (&outcome.fitted[c], dimensions_of(outcome, index));
+    let exact = fitted.exact.as_ref().and_then(|exact| exact.interaction(index, pair));
+    let [j, k] = pair.map(|d| outcome.plan.axis(d).scale);
+    exact.or_else(|| fitted.mixed[index].map(|mixed| Wide::of(mixed.value).over(j).over(k)))
 }
 
 pub(super) fn dimensions_of(outcome: &Outcome, index: usize) -> [usize; 2] {
@@ -64,11 +65,14 @@ pub(super) fn listed(problem: &Problem, outcome: &Outcome, c: usize, shares: Opt
         };
         let step = |d: usize| if exact.is_some() { plan.axis(d).scale } else { 0.5 * plan.axis(d).nearest_step() };
         let missing = (exact.is_none() && mixed.is_none()).then(|| missing(outcome, c, &[j, k]));
-        let rounding = fitted.centre.map(|centre| f64::EPSILON * centre.abs() / step(j) / step(k));
+        // Mixed derivatives by dimensions of extreme size are so only in the characteristic's own unit.
+        let in_unit = |mixed: Wide| mixed.times_power(problem.power(c)).checked();
+        let rounding =
+            fitted.centre.and_then(|centre| in_unit(Wide::of(f64::EPSILON * centre.abs()).over(step(j)).over(step(k))));
         let known = |value: Option<f64>| value.unwrap_or(f64::NAN);
         Row {
             dimensions: [j, k].map(|d| d as u32),
-            mixed: known(mixed_of(outcome, c, index)),
+            mixed: known(mixed_of(outcome, c, index).and_then(in_unit)),
             missing,
             exact: exact.is_some(),
             rounding: known(rounding),

@@ -66,6 +66,7 @@ pub use yield_source::YieldSource;
 use serde::Serialize;
 
 use crate::assembly::Run;
+use crate::evaluation::{Restoration, Restore, at_any_size};
 use crate::extremes::{SearchedExtremes, enclose, search};
 use crate::law::SurfaceLaw;
 use crate::method::{
@@ -73,6 +74,7 @@ use crate::method::{
 };
 use crate::parallel::join;
 use crate::parallel::prelude::*;
+use crate::power::{Rescale, Rescaling};
 use crate::problem::Problem;
 use crate::requirement::Requirement;
 use crate::shape::through;
@@ -149,9 +151,44 @@ pub fn analyze(problem: &Problem, options: &Options) -> Result<Analysis, MethodE
 
 /// [`analyze`], telling of finished points and stopping when told to.
 pub fn analyze_with(problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Analysis, MethodError> {
-    let (mut analysis, findings) = analyze_keeping(problem, options, run)?;
-    analysis.complete(&findings, problem, options, run);
-    Ok(analysis)
+    at_any_size(problem, run, |problem, run| {
+        let (mut analysis, findings) = analyze_keeping(problem, options, run)?;
+        analysis.complete(&findings, problem, options, run);
+        Ok(analysis)
+    })
+}
+
+impl Restore for Analysis {
+    fn restore(&mut self, back: &Restoration<'_>) {
+        back.add_time(&mut self.run);
+        self.rescale(back);
+    }
+}
+
+impl Analysis {
+    /// Multiplies every figure in the unit of a characteristic.
+    pub(crate) fn rescale(&mut self, back: &Restoration<'_>) {
+        if back.is_nothing() {
+            return;
+        }
+        for (c, one) in self.characteristics.iter_mut().enumerate() {
+            let mut rescaling = Rescaling::by(back.power(c));
+            one.characteristic = back.problem.characteristics()[c].clone();
+            one.rescale(&mut rescaling);
+            // Values of the characteristic, densities per unit of it.
+            for [at, density, error] in one.density.iter_mut().flatten() {
+                at.rescale(&mut rescaling);
+                rescaling.divide(density);
+                rescaling.divide(error);
+            }
+            self.surface.characteristics[c].rescale(&mut rescaling);
+            let lost = Warning::Unrepresentable { characteristic: one.characteristic.name().to_owned() };
+            if rescaling.has_lost() && !self.warnings.contains(&lost) {
+                self.warnings.push(lost);
+            }
+        }
+        self.warnings.iter_mut().for_each(|warning| warning.rescale(|name| back.power_of(name)));
+    }
 }
 
 /// The findings of an analysis, for who goes on from there.

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::power::{Rescale, Rescaling, Unknown};
 use crate::shape::{Four, through};
 use crate::simulation::Histogram;
 use crate::verification::Share;
@@ -35,6 +36,17 @@ pub struct SampledModel {
     #[serde(skip)]
     pub(crate) ranks: Vec<(usize, Share)>,
 }
+
+impl Rescale for SampledModel {
+    fn rescale(&mut self, by: &mut Rescaling) {
+        let [mean, sigma, ..] = &mut self.standard_errors;
+        mean.rescale(by);
+        sigma.rescale(by);
+        self.histogram.rescale(by);
+    }
+}
+
+impl Unknown for SampledModel {}
 
 /// A share and its interval, as they are written.
 #[derive(Serialize)]

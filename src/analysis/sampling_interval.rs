@@ -2,6 +2,7 @@
 
 use serde::{Serialize, Serializer};
 
+use crate::power::rescale;
 use crate::shape::by_name;
 
 /// Intervals that cover the true results with a probability of `level`, as far as the size of measured samples decides.
@@ -48,6 +49,8 @@ pub struct SamplingInterval {
     #[cfg_attr(feature = "cli", schemars(with = "std::collections::BTreeMap<String, usize>"))]
     pub samples: Vec<(String, usize)>,
 }
+
+rescale!(SamplingInterval { mean, sigma } without { skewness, kurtosis, rejected, cpk, level, resamples, samples });
 
 /// The share within the limits from that outside.
 fn kept<S: Serializer>(rejected: &Option<[f64; 2]>, serializer: S) -> Result<S::Ok, S::Error> {

@@ -12,6 +12,7 @@ use crate::law::{Branch, LawError, LawFigure, LawOptions, LawTail, Sought, Surfa
 use crate::method::Outcome;
 use crate::moments::Interactions;
 use crate::pearson::Pearson;
+use crate::power::rescale;
 use crate::problem::Problem;
 use crate::surrogate::{Surrogate, Univariate};
 
@@ -70,6 +71,8 @@ pub struct SurfaceShares {
     /// reported.
     pub quantiles: Option<[LawFigure; 7]>,
 }
+
+rescale!(SurfaceShares { quantiles } without { branch, counted, steps, below, above });
 
 impl SurfaceShares {
     /// None where the moments do not follow from a surface, or nothing but moments is known of an input. Quantiles are sought from

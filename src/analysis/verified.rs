@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use serde::{Serialize, Serializer};
 
+use crate::power::{Rescale, Rescaling, Unknown};
 use crate::shape::{Four, Sides, through};
 use crate::verification::{FoundSwitch, Share, Tails, Verified, WeightedSample};
 
@@ -85,6 +86,20 @@ pub struct VarianceShare {
     /// With all interactions in which it has a part.
     pub total: Share,
 }
+
+impl Rescale for Verification {
+    fn rescale(&mut self, by: &mut Rescaling) {
+        let [mean, sigma, ..] = &mut self.figures;
+        mean.rescale(by);
+        sigma.rescale(by);
+        self.tails.rescale(by);
+        if let Some(sample) = &mut self.sample {
+            Arc::make_mut(sample).rescale(by);
+        }
+    }
+}
+
+impl Unknown for Verification {}
 
 impl Verification {
     /// In one line.

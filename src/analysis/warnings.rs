@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 
+use super::characteristic::curvature;
 use super::interactions::missing;
 use super::{CharacteristicAnalysis, Missing, trust};
 use crate::capability::Law;
@@ -60,6 +61,7 @@ pub(super) fn of(
     for (c, analysis) in characteristics.iter().enumerate() {
         warnings.extend(failed_points(problem, outcome, c));
         warnings.extend(overflow(outcome, c, analysis));
+        warnings.extend(unrepresentable(outcome, c, analysis));
         match outcome.basis {
             Basis::Exact | Basis::Differences => warnings.extend(lost(problem, outcome, c)),
             Basis::LeastSquares | Basis::Quadrature => warnings.extend(lost_moments(problem, outcome, c)),
@@ -131,6 +133,18 @@ fn overflow(outcome: &Outcome, c: usize, analysis: &CharacteristicAnalysis) -> O
     let largest = outcome.evaluated.known.values(c).chain(moments).fold(0.0, |most: f64, value| most.max(value.abs()));
     let characteristic = analysis.characteristic.name().to_owned();
     (largest > LARGEST).then_some(Warning::Overflow { characteristic, value: largest, limit: LARGEST })
+}
+
+/// Second derivatives that are known and that a double cannot hold: by dimensions of extreme size.
+fn unrepresentable(outcome: &Outcome, c: usize, analysis: &CharacteristicAnalysis) -> Option<Warning> {
+    let lost = analysis
+        .sensitivities
+        .iter()
+        .enumerate()
+        .any(|(d, one)| one.second.is_none() && curvature(outcome, c, d).is_some())
+        || analysis.interactions.iter().any(|pair| pair.mixed.is_none() && pair.missing.is_none());
+    let characteristic = analysis.characteristic.name().to_owned();
+    lost.then_some(Warning::Unrepresentable { characteristic })
 }
 
 /// A point in words: what is not at its mean.

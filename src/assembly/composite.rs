@@ -527,7 +527,17 @@ impl AssemblyFunction for Composite {
     }
 
     fn derivatives(&self, outputs: &[usize], directions: &Directions<'_>) -> Vec<Option<Derivatives>> {
-        self.exact(outputs, directions)
+        self.exact(outputs, directions, None)
+    }
+
+    fn derivatives_per(
+        &self,
+        outputs: &[usize],
+        directions: &Directions<'_>,
+        exponents: &[i32],
+    ) -> Vec<Option<Derivatives>> {
+        let ordinary = exponents.iter().all(|&exponent| exponent == 0);
+        self.exact(outputs, directions, Some(exponents).filter(|_| !ordinary))
     }
 
     fn sent(&self, points: &Points) -> Option<(Vec<Input>, Points)> {

@@ -43,6 +43,7 @@ pub use signature::{Input, Output, Signature};
 pub(crate) use states::{State, States};
 pub use switch::{Switch, SwitchKind, Switches};
 
+use crate::power::Power;
 use crate::warning::Warning;
 
 /// The black box: object-safe, batch first, told what is asked, with an error per point and output.
@@ -97,6 +98,21 @@ pub trait AssemblyFunction: Send + Sync {
     fn derivatives(&self, outputs: &[usize], directions: &Directions<'_>) -> Vec<Option<Derivatives>> {
         let _ = directions;
         vec![None; outputs.len()]
+    }
+
+    /// [`derivatives`](Self::derivatives) per unit of `2^exponent` of each input, so that those by inputs of extreme size are of ordinary size.
+    ///
+    /// Shapes: `exponents` has an element for every input. By default the derivatives per unit of 1, multiplied.
+    #[doc(hidden)]
+    fn derivatives_per(
+        &self,
+        outputs: &[usize],
+        directions: &Directions<'_>,
+        exponents: &[i32],
+    ) -> Vec<Option<Derivatives>> {
+        let unit = |input: usize| Power::of_exponent(exponents[input]);
+        let per = |found: Option<Derivatives>| found.map(|found| found.per(directions, &unit));
+        self.derivatives(outputs, directions).into_iter().map(per).collect()
     }
 
     /// The values that an external model is sent at these points, each point once, with the names of its inputs; None where it is

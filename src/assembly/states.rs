@@ -95,6 +95,24 @@ impl State {
     }
 }
 
+impl States {
+    /// Derivatives of outputs, each by what `derivatives` has of its state at the point there.
+    fn derivatives_of(
+        &self,
+        outputs: &[usize],
+        directions: &Directions<'_>,
+        derivatives: impl Fn(&State, &[usize], &Directions<'_>) -> Vec<Option<Derivatives>>,
+    ) -> Vec<Option<Derivatives>> {
+        let mut all = vec![None; outputs.len()];
+        for (state, asked, own) in self.by_state(outputs) {
+            let point: Vec<f64> = directions.point.iter().zip(&state.moved).map(|(x, by)| x + by).collect();
+            let found = derivatives(state, &own, &Directions { point: &point, ..*directions });
+            asked.into_iter().zip(found).for_each(|(place, found)| all[place] = found);
+        }
+        all
+    }
+}
+
 impl AssemblyFunction for States {
     fn signature(&self) -> &Signature {
         &self.signature
@@ -152,13 +170,18 @@ impl AssemblyFunction for States {
     }
 
     fn derivatives(&self, outputs: &[usize], directions: &Directions<'_>) -> Vec<Option<Derivatives>> {
-        let mut all = vec![None; outputs.len()];
-        for (state, asked, own) in self.by_state(outputs) {
-            let point: Vec<f64> = directions.point.iter().zip(&state.moved).map(|(x, by)| x + by).collect();
-            let found = state.function.derivatives(&own, &Directions { point: &point, ..*directions });
-            asked.into_iter().zip(found).for_each(|(place, found)| all[place] = found);
-        }
-        all
+        self.derivatives_of(outputs, directions, |state, own, there| state.function.derivatives(own, there))
+    }
+
+    fn derivatives_per(
+        &self,
+        outputs: &[usize],
+        directions: &Directions<'_>,
+        exponents: &[i32],
+    ) -> Vec<Option<Derivatives>> {
+        self.derivatives_of(outputs, directions, |state, own, there| {
+            state.function.derivatives_per(own, there, exponents)
+        })
     }
 
     fn switches(&self, output: usize) -> Option<Switches> {

@@ -8,6 +8,7 @@ use super::discretised::{Discretised, ORDER};
 use super::inverse::root;
 use super::probability::{checked, clamped};
 use super::{Distribution, DistributionError, Jacobi, Probability, Scaled, StandardMoments};
+use crate::power::Power;
 
 /// Values that come from one of several sources, each with its own distribution and its share.
 ///
@@ -65,7 +66,11 @@ impl Mixture {
         parts.iter_mut().for_each(|part| part.weight /= total);
         let first = parts[0].distribution.mean();
         let mean = first + weighted(&parts, |part| part.mean() - first);
-        let sigma = weighted(&parts, |part| (part.mean() - mean).powi(2) + part.sigma().powi(2)).sqrt();
+        // In a unit of their own, deviations of extreme size have squares.
+        let size = |part: &Part| (part.distribution.mean() - mean).abs().max(part.distribution.sigma());
+        let unit = Power::of(parts.iter().map(size).fold(0.0, f64::max));
+        let square = |deviation: f64| unit.inverse().times(deviation).powi(2);
+        let sigma = unit.times(weighted(&parts, |part| square(part.mean() - mean) + square(part.sigma())).sqrt());
         let moments = standard_moments(&parts, mean, sigma);
         if parts.iter().any(|part| !part.distribution.standard_moments().are_finite()) {
             let reason =

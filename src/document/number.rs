@@ -73,12 +73,14 @@ pub(crate) fn plain(value: f64) -> String {
 pub(crate) fn beside(value: f64, sigma: f64) -> String {
     match decimals(sigma, 5) {
         Some(decimals) if value.abs() < 1e9 => unsigned_zero(format!("{value:.decimals$}")),
-        _ => {
-            let ratio = libm::log10((value / sigma).abs().max(1.0)).floor();
-            let digits = if ratio.is_finite() { (ratio as usize + 5).min(17) } else { 6 };
-            significant(value, digits)
-        }
+        _ => significant(value, digits_beside(value, sigma)),
     }
+}
+
+/// As many significant digits as sigma has five of.
+fn digits_beside(value: f64, sigma: f64) -> usize {
+    let ratio = libm::log10((value / sigma).abs().max(1.0)).floor();
+    if ratio.is_finite() { (ratio as usize + 5).min(17) } else { 6 }
 }
 
 /// `-0.00` says no more than `0.00`.
@@ -195,6 +197,13 @@ pub(crate) fn carried(value: f64, sigma: f64, error: Option<f64>) -> String {
         (Some(of_sigma), Some(of_error)) if of_error < of_sigma && value.abs() < 1e9 => {
             unsigned_zero(format!("{value:.of_error$}"))
         }
+        (of_sigma, _) if of_sigma.is_none() || value.abs() >= 1e9 => {
+            // With an exponent, down to the second digit of the error.
+            let known = error.filter(|error| *error > 0.0 && error.is_finite());
+            let carried = known.map(|error| libm::log10(value.abs()).floor() - libm::log10(error).floor() + 2.0);
+            let digits = digits_beside(value, sigma);
+            significant(value, carried.map_or(digits, |carried| digits.min(carried.max(1.0) as usize)))
+        }
         _ => beside(value, sigma),
     }
 }
@@ -203,7 +212,14 @@ pub(crate) fn carried(value: f64, sigma: f64, error: Option<f64>) -> String {
 pub(crate) fn estimated(value: f64, error: Option<f64>) -> String {
     match error {
         Some(error) if error > 0.0 && error.is_finite() => {
-            let decimals = (1.0 - libm::log10(error).floor()).clamp(0.0, 15.0) as usize;
+            let decimals = 1.0 - libm::log10(error).floor();
+            let tiny = decimals > 15.0 && value.abs().max(error) < 1e-4;
+            if tiny || value.abs() >= 1e15 {
+                // With an exponent, down to the second digit of the error.
+                let digits = 2.0 + libm::log10((value / error).abs().max(1.0)).floor();
+                return significant(value, digits.min(17.0) as usize);
+            }
+            let decimals = decimals.clamp(0.0, 15.0) as usize;
             unsigned_zero(format!("{value:.decimals$}"))
         }
         Some(_) => plain(value),

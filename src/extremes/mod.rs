@@ -42,6 +42,7 @@ use serde::Serialize;
 
 use crate::assembly::Run;
 use crate::method::Outcome;
+use crate::power::rescale;
 use crate::problem::Problem;
 
 /// A gain of this part of the range is none.
@@ -90,6 +91,10 @@ pub struct ExtremesProof {
     /// Boxes on which the formulas were evaluated in interval arithmetic; they are no evaluations.
     pub boxes: usize,
 }
+
+rescale!(Extremes { least, greatest, proof } without { evaluations, failed, failure, ended });
+rescale!(Extreme { value } without { at });
+rescale!(ExtremesProof { bounds } without { proven, boxes });
 
 impl Extremes {
     /// Whether it is proven that no assembly lies beyond them.

@@ -58,6 +58,7 @@ use std::sync::Arc;
 
 use crate::correlation::Correlation;
 use crate::distribution::Distribution;
+use crate::power::{Rescale, Rescaling, Unknown};
 use crate::surrogate::{Inputs, Surrogate, shapes};
 
 use direction::Direction;
@@ -79,6 +80,19 @@ pub struct LawFigure {
     pub error: f64,
     /// Whether the number is 0 or 1 because no value of the surface lies beyond the limit, or within it.
     pub proven: bool,
+}
+
+impl Unknown for LawFigure {
+    fn is_unknown(&self) -> bool {
+        self.value.is_nan()
+    }
+}
+
+impl Rescale for LawFigure {
+    fn rescale(&mut self, by: &mut Rescaling) {
+        self.value.rescale(by);
+        self.error.rescale(by);
+    }
 }
 
 impl LawFigure {

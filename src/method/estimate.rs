@@ -6,10 +6,12 @@
 use serde::Serialize;
 
 use super::check::SurrogateCheck;
+use super::exact::units;
 use super::hidden::{hidden, ratio};
 use super::{Basis, Climbed, Order, Outcome};
 use crate::assembly::Directions;
 use crate::moments::{Interactions, Moments, Term, contributions};
+use crate::power::rescale;
 use crate::problem::Problem;
 use crate::surrogate::{Inputs, Surrogate, Univariate};
 
@@ -40,6 +42,8 @@ pub struct ErrorEstimate {
     /// Its basis.
     pub sources: Vec<ErrorSource>,
 }
+
+rescale!(ErrorEstimate { mean, sigma } without { skewness, kurtosis, yield_, sources });
 
 /// The basis of an estimate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -393,10 +397,15 @@ impl Estimate<'_> {
             left.iter().map(|&(j, k)| (plan.varying()[j], plan.varying()[k])).collect();
         let directions = Directions { point: &plan.centre(), inputs: &[], pairs: &dimensions };
         let outputs = [self.problem.outputs()[self.c]];
-        let derivatives = self.problem.function().derivatives(&outputs, &directions).into_iter().next()??;
-        let scaled = |(&(j, k), value): (&(usize, usize), &Option<f64>)| {
-            Some((j, k, plan.axis(j).scale * plan.axis(k).scale * (*value)?))
+        let units = units(&**plan);
+        let exponents: Vec<i32> = units.iter().map(|unit| unit.exponent()).collect();
+        let function = self.problem.function();
+        let derivatives = function.derivatives_per(&outputs, &directions, &exponents).into_iter().next()??;
+        let scale = |position: usize| {
+            let d = plan.varying()[position];
+            units[d].inverse().times(plan.axis(d).scale)
         };
+        let scaled = |(&(j, k), value): (&(usize, usize), &Option<f64>)| Some((j, k, scale(j) * scale(k) * (*value)?));
         left.iter().zip(&derivatives.mixed).map(scaled).collect()
     }
 

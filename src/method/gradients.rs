@@ -13,6 +13,7 @@ use super::{MethodError, Options};
 use crate::assembly::{Points, Request, Responses, Run};
 use crate::evaluation::Evaluated;
 use crate::plan::{AtNode, DifferencePlan, Mixed, Point};
+use crate::power::Power;
 use crate::problem::Problem;
 use crate::short_sort::ShortSort;
 use crate::surrogate::Univariate;
@@ -149,7 +150,8 @@ pub(super) fn slopes(
             }
         }
         let first = slopes.iter().map(|&slope| Some(slope)).collect();
-        Ok(Some(ExactDerivatives { first, second: vec![None; n], mixed: Vec::new() }))
+        let units = vec![Power::ONE; n];
+        Ok(Some(ExactDerivatives { first, second: vec![None; n], mixed: Vec::new(), units }))
     };
     (0..problem.characteristics().len()).map(of).collect()
 }

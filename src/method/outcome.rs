@@ -8,6 +8,7 @@ use super::{Basis, Climbed, ExactDerivatives, Method, Order};
 use crate::evaluation::Evaluated;
 use crate::moments::Moments;
 use crate::plan::{Mixed, Plan};
+use crate::power::rescale;
 use crate::surrogate::{Surrogate, Univariate};
 
 /// The outcome of a method.
@@ -135,3 +136,5 @@ pub struct Residual {
     /// Coefficients.
     pub coefficients: usize,
 }
+
+rescale!(Residual { standard_error, mean, sigma } without { points, coefficients });

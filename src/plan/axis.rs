@@ -2,6 +2,7 @@
 
 use super::nodes::{MovedNode, Nodes, Reaches, Spread, Tail};
 use crate::dimension::Dimension;
+use crate::power::Power;
 use crate::short_sort::ShortSort;
 
 /// A place on an axis: the value, and how many sigmas it really lies off the mean.
@@ -34,7 +35,7 @@ pub struct Axis {
 
 /// The replacements of a node at which the model failed: half its distance, then a quarter.
 const REPLACEMENTS: [f64; 2] = [0.5, 0.25];
-/// The step of a sensitivity without tolerance, relative to the larger of the nominal and 1.
+/// The step of a sensitivity without tolerance, relative to the larger of the nominal and 1; of a nominal of extreme size relative to itself.
 const SENSITIVITY_STEP: f64 = 1e-4;
 
 impl Axis {
@@ -112,7 +113,8 @@ impl Axis {
     /// The axis of a dimension that does not vary, for its sensitivity alone.
     pub(super) fn fixed(dimension: &Dimension, spread: Spread) -> Self {
         let nominal = dimension.nominal();
-        let scale = SENSITIVITY_STEP * nominal.abs().max(1.0);
+        // A nominal value of extreme size has a unit of its own.
+        let scale = SENSITIVITY_STEP * nominal.abs().max(Power::of(nominal).times(1.0));
         let mut axis = Self { mean: nominal, scale, ..Self::still(dimension) };
         match spread {
             Spread::Bare => {}

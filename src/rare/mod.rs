@@ -34,7 +34,7 @@ use serde::Serialize;
 
 use crate::assembly::{EvaluationError, NonRepeatable, Run};
 use crate::characteristic::Characteristic;
-use crate::evaluation::history;
+use crate::evaluation::{Restoration, Restore, at_any_size, history};
 use crate::method::{Method, MethodError, Options};
 use crate::problem::Problem;
 use crate::requirement::Requirement;
@@ -287,6 +287,37 @@ pub fn rare(problem: &Problem, options: &RareOptions) -> Result<RareEvents, Rare
 
 /// [`rare`], telling of its pace and stopping when told to.
 pub fn rare_with(
+    problem: &Problem,
+    options: &RareOptions,
+    run: &Run<'_>,
+    pace: &dyn Fn(Pace),
+) -> Result<RareEvents, RareError> {
+    at_any_size(problem, run, |problem, run| sought(problem, options, run, pace))
+}
+
+impl Restore for RareEvents {
+    fn restore(&mut self, back: &Restoration<'_>) {
+        back.add_time(&mut self.run);
+        for (c, one) in self.characteristics.iter_mut().enumerate() {
+            one.characteristic = back.problem.characteristics()[c].clone();
+            let limits = one.characteristic.limits();
+            for (side, limit) in [(&mut one.below, limits.lower()), (&mut one.above, limits.upper())] {
+                side.iter_mut().zip(limit).for_each(|(side, limit)| side.limit = limit);
+            }
+        }
+        self.warnings.iter_mut().for_each(|warning| warning.rescale(|name| back.power_of(name)));
+    }
+}
+
+impl Restore for RareError {
+    fn restore(&mut self, back: &Restoration<'_>) {
+        if let Self::Simulation(error) = self {
+            error.restore(back);
+        }
+    }
+}
+
+fn sought(
     problem: &Problem,
     options: &RareOptions,
     run: &Run<'_>,

@@ -382,7 +382,7 @@ impl CharacteristicAnalysis {
         let of_limits = |name: &str, text: String| if limited { [name.to_owned(), text] } else { Default::default() };
         let ([yield_, yields], [cpk, cpks]) =
             (of_limits("yield", range(kept, &share)), of_limits("Cpk", range(interval.cpk, &index)));
-        section.table(DataTable::untitled(
+        let table = DataTable::untitled(
             [
                 [
                     "mean".to_owned(),
@@ -402,7 +402,8 @@ impl CharacteristicAnalysis {
                 ],
             ]
             .map(|row| row.map(Cell::text)),
-        ));
+        );
+        section.table(table.labelled_by(&[2, 4]));
     }
 
     /// The dimensions that vary or do something, with what they do.

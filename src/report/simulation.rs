@@ -169,7 +169,7 @@ impl SimulatedCharacteristic {
             let [of, moment, moment_error] = left.next().unwrap_or_else(|| std::array::from_fn(|_| Cell::empty()));
             [of, moment, moment_error, name, value, error]
         });
-        DataTable::untitled(rows)
+        DataTable::untitled(rows).labelled_by(&[3])
     }
 
     fn estimates(&self) -> DataTable {

@@ -121,8 +121,8 @@ impl CharacteristicAnalysis {
         let rows: Vec<[Cell; 5]> = rows.map(|(cells, beside)| row(cells, beside)).collect();
         let linear_row =
             linear.map(|(name, ends)| row([Cell::empty(), Cell::empty(), Cell::empty()], (name, interval(ends, None))));
-        section
-            .table(DataTable::untitled(rows.into_iter().chain(linear_row)).at_most([ROWS, usize::MAX], String::new()));
+        let table = DataTable::untitled(rows.into_iter().chain(linear_row)).labelled_by(&[3]);
+        section.table(table.at_most([ROWS, usize::MAX], String::new()));
     }
 
     /// Whether its contributions are those of the model, in place of a surface that is not trusted.

@@ -1,6 +1,7 @@
 //! Estimates with their standard errors.
 
 use super::Summary;
+use crate::power::{Rescale, Rescaling, Unknown};
 
 /// A value that a sample estimates, and how uncertain it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -9,6 +10,19 @@ pub struct Estimate {
     pub value: f64,
     /// Its standard error; None where the sample does not tell.
     pub standard_error: Option<f64>,
+}
+
+impl Rescale for Estimate {
+    fn rescale(&mut self, by: &mut Rescaling) {
+        self.value.rescale(by);
+        self.standard_error.rescale(by);
+    }
+}
+
+impl Unknown for Estimate {
+    fn is_unknown(&self) -> bool {
+        self.value.is_nan()
+    }
 }
 
 /// Fewer values have no standard errors.

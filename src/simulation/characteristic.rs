@@ -13,6 +13,7 @@ use crate::assembly::EvaluationError;
 use crate::capability::{self, InspectionRisks, TAIL};
 use crate::characteristic::{Characteristic, SpecLimits};
 use crate::method::Method;
+use crate::power::rescale;
 use crate::requirement::Requirement;
 use crate::sampling::{Estimate, FEWEST, Fine, Summary, of_moments, wilson};
 use crate::shape::{millionths, text};
@@ -121,6 +122,11 @@ pub struct YieldEstimate {
 fn share<S: Serializer>(estimate: &Option<YieldEstimate>, serializer: S) -> Result<S::Ok, S::Error> {
     estimate.map(|estimate| estimate.value).serialize(serializer)
 }
+
+rescale!(SimulatedCharacteristic { mean, sigma, quantiles, range, histogram, inspection } without {
+    characteristic, samples, failed, error, skewness, kurtosis, yield_, below, above, cp, cpk, unfinished, control, indices,
+});
+rescale!(Histogram { edges } without { counts });
 
 /// How many values lie in which interval.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -26,9 +26,11 @@ use std::time::Duration;
 use serde::Serialize;
 
 use crate::assembly::{EvaluationError, NonRepeatable, Points, Request, Responses, Run, near_rows};
+use crate::evaluation::{Restoration, Restore, at_any_size};
 use crate::method::{Method, MethodError, Options, Outcome};
 use crate::parallel::prelude::*;
 use crate::parallel::{Rooms, join};
+use crate::power::{Rescale, Rescaling};
 use crate::problem::Problem;
 use crate::sampling::{Draws, Portion, Room};
 use crate::shape::through;
@@ -334,6 +336,15 @@ pub fn simulate_with(
     run: &Run<'_>,
     pace: &dyn Fn(Pace),
 ) -> Result<Simulation, SimulationError> {
+    at_any_size(problem, run, |problem, run| simulated(problem, options, run, pace))
+}
+
+fn simulated(
+    problem: &Problem,
+    options: &SimulationOptions,
+    run: &Run<'_>,
+    pace: &dyn Fn(Pace),
+) -> Result<Simulation, SimulationError> {
     if !(2..=MOST).contains(&options.samples) {
         return Err(SimulationError::Samples { samples: options.samples, most: MOST });
     }
@@ -358,7 +369,38 @@ pub fn simulate_with(
     })
 }
 
+impl Restore for Simulation {
+    fn restore(&mut self, back: &Restoration<'_>) {
+        back.add_time(&mut self.run);
+        self.rescale(back);
+    }
+}
+
+impl Restore for SimulationError {
+    fn restore(&mut self, back: &Restoration<'_>) {
+        if let Self::Method(error) = self {
+            error.restore(back);
+        }
+    }
+}
+
 impl Simulation {
+    /// Multiplies every figure in the unit of a characteristic.
+    pub(crate) fn rescale(&mut self, back: &Restoration<'_>) {
+        if back.is_nothing() {
+            return;
+        }
+        for (c, one) in self.characteristics.iter_mut().enumerate() {
+            let mut rescaling = Rescaling::by(back.power(c));
+            one.characteristic = back.problem.characteristics()[c].clone();
+            one.rescale(&mut rescaling);
+            if rescaling.has_lost() {
+                self.warnings.push(Warning::Unrepresentable { characteristic: one.characteristic.name().to_owned() });
+            }
+        }
+        self.warnings.iter_mut().for_each(|warning| warning.rescale(|name| back.power_of(name)));
+    }
+
     /// With Sobol' indices.
     fn with_indices(
         mut self,

@@ -28,6 +28,7 @@ pub use shape::{InputShape, shapes};
 pub use univariate::Univariate;
 
 use crate::moments::{Contributions, Interactions, Term, contributions, exact};
+use crate::power::rescale;
 
 /// One characteristic's surrogate over N dimensions.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,6 +40,8 @@ pub struct Surrogate {
     /// The products.
     pub interactions: Interactions,
 }
+
+rescale!(Surrogate { centre, parts, interactions } without {});
 
 impl Surrogate {
     /// Moments and contributions; None when a part is unknown, or an input's tail makes its variance infinite.

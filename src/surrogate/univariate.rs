@@ -2,6 +2,7 @@
 
 use super::InputShape;
 use crate::moments::Term;
+use crate::power::rescale;
 use crate::short_sort::ShortSort;
 
 /// `g(u) = c1 u + c2 u^2 + c3 u^3 + c4 u^4`, of the degree that the nodes allow.
@@ -10,6 +11,8 @@ pub struct Univariate {
     pub(super) coefficients: [f64; 4],
     pub(super) degree: usize,
 }
+
+rescale!(Univariate { coefficients } without { degree });
 
 impl Univariate {
     /// The highest degree.

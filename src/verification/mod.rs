@@ -39,6 +39,7 @@ use serde::Serialize;
 
 use crate::assembly::Run;
 use crate::correlation::factors;
+use crate::power::{Rescale, Rescaling, Unknown};
 use crate::problem::Problem;
 use crate::sampling::Normals;
 use crate::surrogate::Surrogate;
@@ -70,6 +71,19 @@ pub struct Verified {
     pub value: f64,
     /// Its estimated error.
     pub error: f64,
+}
+
+impl Rescale for Verified {
+    fn rescale(&mut self, by: &mut Rescaling) {
+        self.value.rescale(by);
+        self.error.rescale(by);
+    }
+}
+
+impl Unknown for Verified {
+    fn is_unknown(&self) -> bool {
+        self.value.is_nan()
+    }
 }
 
 /// The figures of one characteristic by sampling the model.

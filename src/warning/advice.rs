@@ -107,6 +107,8 @@ pub enum Advice {
     NearerDatum,
     /// Choose a larger unit, so that the values are smaller.
     LargerUnit,
+    /// Choose units in which values are of ordinary size.
+    OrdinaryUnit,
     /// Solve the model with a tighter tolerance.
     TightenSolver,
     /// Give each branch of the model a characteristic of its own.
@@ -185,6 +187,7 @@ impl fmt::Display for Advice {
             Self::SignedMeasure => "Let the model return a signed measure.",
             Self::NearerDatum => "Measure the characteristic from a nearer datum.",
             Self::LargerUnit => "Choose a larger unit, so that the values are smaller.",
+            Self::OrdinaryUnit => "Choose units in which the values are of ordinary size.",
             Self::TightenSolver => "Solve the model with a tighter tolerance.",
             Self::SplitBranches => "Give each branch a characteristic of its own.",
             Self::NearestFit => "Choose the nearest class, and write classes as processes where one is required.",

@@ -12,6 +12,7 @@ mod derivatives;
 mod distribution;
 mod measured;
 mod model;
+mod rescale;
 mod run;
 mod sample;
 mod study;
@@ -205,6 +206,11 @@ warnings! {
         value: f64,
         /// The size beyond which powers overflow.
         limit: f64,
+    };
+    /// Figures that a double-precision number cannot hold.
+    Unrepresentable = "unrepresentable" by model::unrepresentable {
+        /// The characteristic.
+        characteristic: String,
     };
     /// Values of a built-in model for which its formulas describe nothing real.
     OutsideModel = "outside-model" by model::outside_model {

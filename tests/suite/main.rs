@@ -9,6 +9,7 @@ mod allocation_made;
 mod allocation_optima;
 mod allocation_oracles;
 mod analysis;
+mod any_size;
 mod architecture;
 mod auto;
 mod auto_cost;

@@ -51,6 +51,7 @@ fn every() -> Vec<Warning> {
         Warning::NominalOutsideLimits { dimensions: names(1) },
         Warning::NominalOutsideLimits { dimensions: names(2) },
         Warning::Overflow { characteristic: characteristic(), value: 1.5e200, limit: 1e100 },
+        Warning::Unrepresentable { characteristic: characteristic() },
         Warning::OutsideModel { output: text("H_req"), reason: text("below 2 t the flanges of the section overlap") },
         Warning::UnitMismatch {
             formula: text("characteristics.gap.formula"),

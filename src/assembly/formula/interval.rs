@@ -4,6 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::functions::{Binary, Unary};
 use super::scalar::{Scalar, Verdict};
+use crate::power::Power;
 
 /// All values from `lower` to `upper`, both included; NaN where there is none.
 ///
@@ -108,6 +109,15 @@ impl Interval {
     /// Of an increasing function that a library computes.
     fn rising(&self, function: impl Fn(f64) -> f64) -> Self {
         Self { lower: down(function(self.lower)), upper: up(function(self.upper)), whole: true }.after(&[self])
+    }
+
+    /// Times a power of two: exact, and one step outwards where an end loses digits among the least doubles, or leaves the greatest.
+    pub(crate) fn times(&self, power: Power) -> Self {
+        let end = |end: f64, outwards: fn(f64) -> f64| match power.times(end) {
+            product if power.inverse().times(product) == end => product,
+            product => outwards(product),
+        };
+        Self { lower: end(self.lower, f64::next_down), upper: end(self.upper, f64::next_up), whole: self.whole }
     }
 
     pub(crate) fn negate(&self) -> Self {

@@ -44,7 +44,9 @@ const live = (() => {
     const fit = skewness === null ? null : pearson.law(mean, sigma, skewness, excess);
     const none = { below: null, above: null, rejected: null, yield: null, cp: null, cpk: null, met: null };
     const of_fit = fit === null ? none : limited(one, mean, sigma, fit.tails);
-    const here = { ...found, kurtosis: excess === null ? null : 3 + excess, shares, fit, pearson: of_fit.yield };
+    // Everything is in units of the scale.
+    const scale = one.scale ?? 1;
+    const here = { ...found, scale, kurtosis: excess === null ? null : 3 + excess, shares, fit, pearson: of_fit.yield };
     if (sigma === 0) {
       return { ...here, law: null, by: "surface", error: 0, ...limited(one, mean, sigma, (x) => [mean < x ? 1 : 0, mean > x ? 1 : 0]) };
     }

@@ -7,6 +7,7 @@ use crate::analysis::{Analysis, Branch, CharacteristicAnalysis, Fit, NoFit};
 use crate::dimension::Dimension;
 use crate::distribution::StandardMoments;
 use crate::law::TabulatedInput;
+use crate::power::Power;
 use crate::problem::Problem;
 use crate::surrogate::InputShape;
 
@@ -103,6 +104,9 @@ pub(super) struct Wanted {
     parts: Vec<[f64; 4]>,
     pairs: Pairs,
     unexplained: Option<f64>,
+    /// The power of two by which all of these and the limits are divided, so that their squares are doubles; left out where it is 1.
+    #[serde(skip_serializing_if = "is_one")]
+    scale: f64,
     /// Whether the page computes the law of its surface.
     law: bool,
     /// Shares below and above the limits by the law of its surface at the study's settings, to which the page adds what points of the surface
@@ -112,6 +116,10 @@ pub(super) struct Wanted {
     why_fit: Option<&'static str>,
     /// How far below and above its yield by that law the interval reaches within which it is known; None where that is not known.
     reach: Option<[f64; 2]>,
+}
+
+fn is_one(scale: &f64) -> bool {
+    *scale == 1.0
 }
 
 /// Products, column by column.
@@ -228,8 +236,10 @@ impl WhatIf {
         let characteristics = all.map(|(found, fit)| {
             let one = &found.characteristic;
             let limits = one.limits();
+            let power = fit.as_ref().map_or(Power::ONE, size);
             let empty = || (0.0, Vec::new(), Pairs::default(), None);
-            let (centre, parts, pairs, unexplained) = fit.as_ref().map_or_else(|_| empty(), contents);
+            let (centre, parts, pairs, unexplained) = fit.as_ref().map_or_else(|_| empty(), |fit| contents(fit, power));
+            let divided = limits.times(power.inverse());
             let why_fit = fit.as_ref().ok().and_then(|fit| why_fit(found, fit, &laws));
             let law = fit.is_ok() && why_fit.is_none();
             let of_surface = found.surface_law.as_ref().filter(|_| why_fit == Some(INTERACT));
@@ -239,14 +249,15 @@ impl WhatIf {
             Wanted {
                 name: one.name().to_owned(),
                 unit: one.unit().map(str::to_owned),
-                lower: limits.lower(),
-                upper: limits.upper(),
+                lower: divided.lower(),
+                upper: divided.upper(),
                 target: one.target_yield(),
                 why: fit.as_ref().err().map(ToString::to_string).or_else(|| endless(found)),
                 centre,
                 parts,
                 pairs,
                 unexplained,
+                scale: power.times(1.0),
                 law,
                 counted,
                 why_fit,
@@ -298,16 +309,26 @@ impl WhatIf {
     }
 }
 
-fn contents(fit: &Fit) -> (f64, Vec<[f64; 4]>, Pairs, Option<f64>) {
-    let Fit { surrogate, unexplained } = fit;
-    let parts = surrogate.parts.iter().flatten().map(|part| part.coefficients()).collect();
+/// The power of two of the largest coefficient of a surface.
+fn size(fit: &Fit) -> Power {
+    let Fit { surrogate, .. } = fit;
+    let parts = surrogate.parts.iter().flatten().map(|part| part.largest());
+    let products = surrogate.interactions.pairs().into_iter().map(|(.., product)| product.abs());
+    Power::of(parts.chain(products).fold(surrogate.centre.abs(), f64::max))
+}
+
+/// Centre, parts, products and unexplained variance of a surface, divided by a power of two.
+fn contents(fit: &Fit, power: Power) -> (f64, Vec<[f64; 4]>, Pairs, Option<f64>) {
+    let Fit { surrogate, unexplained_sigma } = fit;
+    let divided = |value: f64| power.inverse().times(value);
+    let parts = surrogate.parts.iter().flatten().map(|part| part.coefficients().map(divided)).collect();
     let mut pairs = Pairs::default();
     for (j, k, a) in surrogate.interactions.pairs() {
         pairs.j.push(j);
         pairs.k.push(k);
-        pairs.a.push(a);
+        pairs.a.push(divided(a));
     }
-    (surrogate.centre, parts, pairs, *unexplained)
+    (divided(surrogate.centre), parts, pairs, unexplained_sigma.map(|sigma| divided(sigma).powi(2)))
 }
 
 impl Cost {
