@@ -22,6 +22,7 @@ use crate::power::{Rescale, Rescaling, Wide, rescale};
 use crate::problem::Problem;
 use crate::requirement::Requirement;
 use crate::shape::{Four, through};
+use crate::surrogate::DerivativeOrigin;
 use crate::verdict::{self, Judged, Verdict};
 
 /// Moments, sensitivities and contributions of one characteristic. Unknown values are None.
@@ -126,6 +127,8 @@ pub struct CharacteristicAnalysis {
     pub interactions_remainder: Option<Remainder>,
     /// How many interactions it can have.
     pub possible_interactions: usize,
+    /// How many of them were examined, or are known from its formula.
+    pub examined_interactions: usize,
     /// The share of the variance that no contribution accounts for; None where it is unknown.
     pub left_out_share: Option<f64>,
     /// The source of the Sobol' indices of its [`sensitivities`](Self::sensitivities); None where it does not vary.
@@ -148,6 +151,8 @@ pub struct Sensitivity {
     pub second: Option<f64>,
     /// Whether both are exact rather than differences.
     pub exact: bool,
+    /// The source of its shares: `exact`, `evaluated`, or `screened` where an estimate has a part in them. None where it has no shares.
+    pub origin: Option<DerivativeOrigin>,
     /// The largest effect of a rounding error of the characteristic's own size on the two derivatives: at the steps taken, over a
     /// sigma where they are exact.
     pub rounding: Option<[f64; 2]>,
@@ -170,7 +175,7 @@ rescale!(CharacteristicAnalysis {
     nominal, moments, sampled, model_sampled, verification, surface_law, error_estimate, residual, law, coverage, inspection, sampling,
     worst_case, curved, extremes, bounds, middle, rss, inflated_rss, mean_shift_rss, six_sigma, sensitivities, interactions,
 } without {
-    characteristic, yield_source, unfinished, without_value, capability, pearson, normal, interactions_remainder, possible_interactions,
+    characteristic, yield_source, unfinished, without_value, capability, pearson, normal, interactions_remainder, possible_interactions, examined_interactions,
     left_out_share, indices, constant, density,
 });
 
@@ -313,9 +318,9 @@ impl CharacteristicAnalysis {
         let sensitivities: Vec<Sensitivity> =
             (0..problem.dimensions().len()).map(|d| sensitivity(problem, outcome, c, d, shares.as_ref())).collect();
         let pair_shares = || pairs_of(outcome, c).map(|index| share_of(outcome, c, index, shares.as_ref()));
-        let possible_interactions = plan.pairs_of(c);
+        let (possible_interactions, examined_interactions) = (plan.pairs_of(c), fitted.known_pairs);
         let complete = outcome.order == Order::Second
-            && pair_shares().count() == possible_interactions
+            && examined_interactions == possible_interactions
             && pair_shares().all(|share| share.is_some())
             && plan.varying().iter().all(|&d| fitted.parts[d].is_some_and(|part| part.degree() >= 2));
         let characteristic = problem.characteristics()[c].clone();
@@ -373,6 +378,7 @@ impl CharacteristicAnalysis {
             interactions: InteractionList::default(),
             interactions_remainder: None,
             possible_interactions,
+            examined_interactions,
             left_out_share,
             indices: None,
             error_estimate,
@@ -391,7 +397,11 @@ impl CharacteristicAnalysis {
 }
 
 /// `sum of |f_jj| h_j^2/2 + sum of |f_jk| h_j h_k` over the half bands `h`: no corner of a second-order surface lies farther from the linear one.
+/// None with an estimate in the place of a derivative: it bounds nothing.
 fn curved(problem: &Problem, outcome: &Outcome, c: usize) -> Option<f64> {
+    if outcome.fitted[c].screened > 0 {
+        return None;
+    }
     let half = |d: usize| problem.dimensions()[d].half_band();
     let own = |d: usize| match half(d) {
         0.0 => Some(0.0),
@@ -479,6 +489,7 @@ fn sensitivity(problem: &Problem, outcome: &Outcome, c: usize, d: usize, shares:
         first: exact.map(|[first, _]| first.value()).or(part.map(|part| per_unit(part.slope()))),
         second: curvature(outcome, c, d).and_then(in_unit),
         exact: exact.is_some(),
+        origin: origin(outcome, c, position),
         rounding,
         steps: match plan.depends(c, d) {
             true => plan.samples(&outcome.evaluated.known, c, d).unwrap_or_default(),
@@ -492,6 +503,15 @@ fn sensitivity(problem: &Problem, outcome: &Outcome, c: usize, d: usize, shares:
         mean_shift: curved(of(Shares::mean_shift)),
         first_order: None,
         total: None,
+    }
+}
+
+/// The source of the part that a varying dimension has in the surface, or in the variance where there is no surface.
+fn origin(outcome: &Outcome, c: usize, position: Option<usize>) -> Option<DerivativeOrigin> {
+    let (fitted, position) = (&outcome.fitted[c], position?);
+    match &fitted.integrated {
+        Some(integrated) => integrated.own[position].map(|_| DerivativeOrigin::Evaluated),
+        None => fitted.surrogate.as_ref()?.parts[position].map(|part| part.origin()),
     }
 }
 

@@ -7,13 +7,26 @@ use crate::parallel::prelude::*;
 use crate::plan::Point;
 use crate::power::Wide;
 use crate::problem::Problem;
+use crate::surrogate::DerivativeOrigin;
 
-/// The pairs on which a characteristic can depend, by their places among all that were examined.
+/// The pairs on which a characteristic can depend, by their places among all that are listed: those examined, and those whose
+/// interaction was estimated. Not pairs that were listed for another characteristic only.
 pub(super) fn pairs_of(outcome: &Outcome, c: usize) -> impl Iterator<Item = usize> + '_ {
-    (0..outcome.fitted[c].mixed.len().min(outcome.pairs.len())).filter(move |&index| {
+    let mixed = &outcome.fitted[c].mixed;
+    (0..mixed.len().min(outcome.pairs.len())).filter(move |&index| {
         let (j, k) = outcome.pairs[index];
-        outcome.plan.joint(c, j, k)
+        let assumed = mixed[index].is_some_and(|mixed| mixed.value == 0.0 && !mixed.origin.is_known());
+        outcome.plan.joint(c, j, k) && !assumed
     })
+}
+
+/// The source of the part that a pair has in the surface, or in the variance where there is no surface; None where it has none.
+pub(super) fn origin_of(outcome: &Outcome, c: usize, index: usize) -> Option<DerivativeOrigin> {
+    let fitted = &outcome.fitted[c];
+    match &fitted.integrated {
+        Some(integrated) => integrated.pairs.get(index)?.map(|_| DerivativeOrigin::Evaluated),
+        None => fitted.mixed[index].map(|mixed| mixed.origin),
+    }
 }
 
 pub(super) fn share_of(outcome: &Outcome, c: usize, index: usize, shares: Option<&Shares>) -> Option<f64> {
@@ -31,12 +44,6 @@ pub(super) fn mixed_of(outcome: &Outcome, c: usize, index: usize) -> Option<Wide
 pub(super) fn dimensions_of(outcome: &Outcome, index: usize) -> [usize; 2] {
     let (j, k) = outcome.pairs[index];
     [j, k].map(|position| outcome.plan.varying()[position])
-}
-
-/// Whether every mixed derivative that a characteristic can have is known.
-pub(super) fn knows_all_pairs(outcome: &Outcome, c: usize) -> bool {
-    let pairs = || pairs_of(outcome, c);
-    pairs().count() == outcome.plan.pairs_of(c) && pairs().all(|index| mixed_of(outcome, c, index).is_some())
 }
 
 /// Of the pairs on which the characteristic can depend, strongest first. Of a thousand dimensions the list takes as much memory as what it
@@ -75,6 +82,7 @@ pub(super) fn listed(problem: &Problem, outcome: &Outcome, c: usize, shares: Opt
             mixed: known(mixed_of(outcome, c, index).and_then(in_unit)),
             missing,
             exact: exact.is_some(),
+            origin: origin_of(outcome, c, index),
             rounding: known(rounding),
             share: known(share(index)),
             mean_shift: known(mean_shift),

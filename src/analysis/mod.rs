@@ -44,7 +44,7 @@ pub use crate::capability::{EstimatedShare, InspectionRisks};
 pub use crate::extremes::{Coordinate, Extreme, Extremes, ExtremesProof, Place};
 pub use crate::law::{Branch, LawError, LawFigure};
 pub use crate::moments::{Contributions, Sampled};
-pub use crate::surrogate::Relocation;
+pub use crate::surrogate::{DerivativeOrigin, Relocation};
 pub use crate::verification::{Crossing, FoundSwitch, OutputCorrelation, Share, Verified};
 pub use account::Account;
 pub use characteristic::{CharacteristicAnalysis, Sensitivity};

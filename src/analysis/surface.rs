@@ -26,6 +26,8 @@ pub struct Fit {
     pub surrogate: Surrogate,
     /// The standard deviation of a part beside it, of what checks found that it leaves out.
     pub unexplained_sigma: Option<f64>,
+    /// Products of the surrogate that are estimates without an evaluation of their own.
+    pub screened: usize,
 }
 
 /// Why the moments of a characteristic cannot be had at other tolerances.
@@ -46,7 +48,7 @@ pub enum NoFit {
     Unknown,
 }
 
-rescale!(Fit { surrogate, unexplained_sigma } without {});
+rescale!(Fit { surrogate, unexplained_sigma } without { screened });
 
 impl Surface {
     pub(super) fn of(outcome: &Outcome, characteristics: &[CharacteristicAnalysis]) -> Self {
@@ -65,7 +67,7 @@ impl Surface {
             let known = |surrogate: &&Surrogate| surrogate.parts.iter().all(Option::is_some) && one.moments.is_some();
             let surrogate = fitted.surrogate.as_ref().filter(known).ok_or(NoFit::Unknown)?.clone();
             let unexplained = outcome.climbed.as_ref().and_then(|climbed| climbed.unexplained(c));
-            Ok(Fit { surrogate, unexplained_sigma: unexplained.map(f64::sqrt) })
+            Ok(Fit { surrogate, unexplained_sigma: unexplained.map(f64::sqrt), screened: fitted.screened })
         };
         Self {
             varying: outcome.plan.varying().to_vec(),

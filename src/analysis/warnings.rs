@@ -77,7 +77,8 @@ pub(super) fn of(
     }
     let possible = outcome.plan.possible_pairs();
     // Pairs that `auto` did not examine show in its comparison with the model.
-    if outcome.order == Order::Second && outcome.climbed.is_none() && outcome.pairs.len() < possible {
+    let open = outcome.fitted.iter().enumerate().any(|(c, fitted)| fitted.known_pairs < outcome.plan.pairs_of(c));
+    if outcome.order == Order::Second && outcome.climbed.is_none() && outcome.pairs.len() < possible && open {
         warnings.push(Warning::PairsNotExamined { examined: outcome.pairs.len(), possible });
     }
     aggregated(warnings)

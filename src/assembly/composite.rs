@@ -15,8 +15,8 @@ use super::implicit::{Anchor, Assembler, AssemblyFailure, Conditions, Conditions
 use super::process::EvaluatorAccount;
 use super::responses::all_finite;
 use super::{
-    AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, Input, ModelInfo, Output, Points, Request,
-    Responses, Run, Signature, Switches, in_blocks,
+    AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, Input, ModelInfo, Output, Points, Polynomial,
+    Request, Responses, Run, Signature, Switches, in_blocks,
 };
 #[cfg(feature = "study")]
 use crate::unit::Unit;
@@ -558,6 +558,10 @@ impl AssemblyFunction for Composite {
 
     fn degree(&self, output: usize, varying: &[bool]) -> Option<u32> {
         self.degree_of(output, varying)
+    }
+
+    fn polynomial(&self, output: usize, centre: &[f64], scale: &[f64]) -> Option<Polynomial> {
+        self.polynomial_of(output, centre, scale)
     }
 
     fn account(&self) -> Option<EvaluatorAccount> {

@@ -18,6 +18,7 @@ mod error;
 pub mod formula;
 mod given;
 pub mod implicit;
+mod polynomial;
 pub mod process;
 mod request;
 mod responses;
@@ -35,6 +36,8 @@ pub use derivatives::{Derivatives, Directions};
 pub use error::{EvaluationError, NoColumn};
 pub(crate) use given::GivenAnswers;
 pub use given::Table;
+#[doc(hidden)]
+pub use polynomial::Polynomial;
 pub use request::{Points, Request};
 pub use responses::Responses;
 pub(crate) use responses::all_finite;
@@ -147,6 +150,16 @@ pub trait AssemblyFunction: Send + Sync {
     /// or that is not known. A certainty, which no evaluation gives.
     fn degree(&self, output: usize, varying: &[bool]) -> Option<u32> {
         let _ = (output, varying);
+        None
+    }
+
+    /// An output as a polynomial in `u`, where the inputs are `centre + scale u`: one with the scale 0 is fixed. None where it is not a
+    /// polynomial of at most the fourth degree, or that is not known. A certainty, which no evaluation gives.
+    ///
+    /// Shapes: `centre` and `scale` have a value for every input.
+    #[doc(hidden)]
+    fn polynomial(&self, output: usize, centre: &[f64], scale: &[f64]) -> Option<Polynomial> {
+        let _ = (output, centre, scale);
         None
     }
 

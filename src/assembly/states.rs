@@ -7,7 +7,7 @@ use super::process::EvaluatorAccount;
 use super::request::bits;
 use super::{
     AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, ModelInfo, NonRepeatable, Output, Points,
-    Request, Responses, Run, Signature, Switches,
+    Polynomial, Request, Responses, Run, Signature, Switches,
 };
 use crate::warning::Warning;
 
@@ -197,6 +197,12 @@ impl AssemblyFunction for States {
     fn degree(&self, output: usize, varying: &[bool]) -> Option<u32> {
         let (state, own) = self.of(output);
         state.function.degree(own, varying)
+    }
+
+    fn polynomial(&self, output: usize, centre: &[f64], scale: &[f64]) -> Option<Polynomial> {
+        let (state, own) = self.of(output);
+        let centre: Vec<f64> = centre.iter().zip(&state.moved).map(|(x, by)| x + by).collect();
+        state.function.polynomial(own, &centre, scale)
     }
 
     fn warnings(&self, outputs: &[usize]) -> Vec<Warning> {

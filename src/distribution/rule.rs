@@ -77,7 +77,7 @@ impl Jacobi {
     }
 
     /// Whether it describes its distribution whole: one of as many atoms as its order.
-    pub(super) fn is_whole(&self) -> bool {
+    pub(crate) fn is_whole(&self) -> bool {
         self.beta.last() == Some(&0.0)
     }
 

@@ -134,7 +134,7 @@ impl ExactDerivatives {
                 let d = plan.varying()[position];
                 self.units[d].inverse().times(plan.axis(d).scale)
             };
-            value.map(|value| Mixed { value: scale(j) * scale(k) * value, complete: true })
+            value.map(|value| Mixed::exact(scale(j) * scale(k) * value))
         };
         pairs.iter().zip(&self.mixed).map(in_sigmas).collect()
     }

@@ -22,6 +22,7 @@ mod narrow;
 mod options;
 mod order;
 mod outcome;
+mod polynomial_surface;
 mod principal;
 pub(crate) mod procedure;
 mod quadrature;
@@ -30,6 +31,7 @@ mod response_surface;
 mod rss;
 mod second_order;
 mod six_n;
+mod surface_proof;
 mod three_point;
 mod worst_case;
 
@@ -48,7 +50,7 @@ pub use options::{Accuracies, DerivativeSource, Options, Pairs};
 pub use order::Basis;
 pub(crate) use order::Order;
 pub use outcome::Residual;
-pub(crate) use outcome::{Fitted, Integrated, InteractionEffect, Lacking, MainEffect, Outcome};
+pub(crate) use outcome::{Fitted, Integrated, InteractionEffect, Lacking, MainEffect, Outcome, SurfaceProof};
 pub(crate) use procedure::Procedure;
 pub(crate) use registry::ALL;
 

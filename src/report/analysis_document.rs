@@ -3,17 +3,18 @@
 use super::figures::{Figures, Named};
 use super::head::{self, findings};
 use super::inspection::inspected;
+use super::interactions::{SHOWN, SHOWN_ON_PAGE};
 use super::output_correlation::{all_limits, together, together_table};
 use super::requirement::{judged, lines};
 use super::source::source;
 use super::stack::Stack;
 use super::statistics::{derivative, matters, part, size, total};
 use super::{DimensionReport, Report, bars};
-use crate::analysis::{CharacteristicAnalysis, EstimatedShare, IndexSource, Interaction, Sensitivity, SobolIndices};
+use crate::analysis::{CharacteristicAnalysis, EstimatedShare, IndexSource, Sensitivity, SobolIndices};
 use crate::capability::{Capability, Law, Quantiles, TAIL};
 use crate::correlation::Pair;
 use crate::document::number::{
-    NEWS, UNKNOWN, beside, index, known, limits, percent, plain, plural, shape, share, short, significant,
+    UNKNOWN, beside, index, known, limits, percent, plain, plural, shape, share, short, significant,
 };
 use crate::document::rejects::Rejects;
 use crate::document::{
@@ -25,10 +26,8 @@ use crate::method::Basis;
 use crate::pearson::Pearson;
 use crate::short_sort::ShortSort;
 
-/// Contributions and interactions that a terminal shows unless all are asked for, and interactions that a page shows.
+/// Contributions that a terminal shows unless all are asked for.
 const CONTRIBUTIONS: usize = 30;
-const INTERACTIONS: usize = 2;
-const INTERACTIONS_OF_PAGE: usize = 24;
 /// Dimensions that are named, rather than counted, in a sentence.
 const NAMED: usize = 8;
 const SAMPLES: usize = 3;
@@ -47,7 +46,7 @@ impl Report {
 
     /// The same with the interactions that a page or a terminal shows, where not all are asked for.
     pub(crate) fn brief_document(&self) -> Document {
-        self.with_pairs(INTERACTIONS.max(INTERACTIONS_OF_PAGE))
+        self.with_pairs(SHOWN.max(SHOWN_ON_PAGE))
     }
 
     fn with_pairs(&self, pairs: usize) -> Document {
@@ -109,6 +108,9 @@ impl Report {
         }
         section.detail(all);
         self.correlations(one, &mut section);
+        if one.has_negative_contributions() {
+            section.note("a contribution below 0 lowers the variance: it varies against the others");
+        }
         one.pairs(&mut section, pairs);
         // A page draws them.
         let mut left = Vec::new();
@@ -458,26 +460,8 @@ impl CharacteristicAnalysis {
             .at_most([CONTRIBUTIONS, usize::MAX], rest)
     }
 
-    /// The interactions examined: how many, what they make, and the strongest.
-    fn pairs(&self, section: &mut Section, pairs: usize) {
-        let (possible, examined) = (self.possible_interactions, self.examined());
-        self.together(section);
-        if let Some(of_model) = self.indices.as_ref().filter(|_| self.is_of_model()) {
-            section.note(self.of_model(of_model));
-        } else if possible > 0 && examined == 0 {
-            section.note(format!("interactions: none of {possible} examined"));
-        } else if possible > 0 {
-            let known: Option<Vec<f64>> = self.interactions.iter().map(|interaction| interaction.share).collect();
-            let sum = known.map(|shares| format!("{} %", percent(shares.iter().sum())));
-            let together = sum.unwrap_or_else(|| "an unknown part".to_owned());
-            section
-                .note(format!("interactions: {examined} of {possible} examined, {together} of the variance together"));
-        }
-        section.table(self.interaction_table(pairs));
-    }
-
     /// Dimensions that vary together, as one factor: without what they do to each other where the surface tells of each of them.
-    fn together(&self, section: &mut Section) {
+    pub(super) fn together(&self, section: &mut Section) {
         let Some(of) = &self.indices else { return };
         let percents =
             |index: Option<EstimatedShare>| known(index.map(|of| of.value), |share| format!("{} %", percent(share)));
@@ -494,7 +478,7 @@ impl CharacteristicAnalysis {
     }
 
     /// Where contributions come from that are not the surface's.
-    fn of_model(&self, of: &SobolIndices) -> String {
+    pub(super) fn of_model(&self, of: &SobolIndices) -> String {
         // An estimate below 0 is 0 within its error.
         let rest = of.interactions.map(|share| format!("{} %", percent(share.max(0.0))));
         match (of.source, rest) {
@@ -508,31 +492,6 @@ impl CharacteristicAnalysis {
                 format!("contributions by points of the model; interactions have {rest} of the variance")
             }
         }
-    }
-
-    pub(super) fn interaction_table(&self, rows: usize) -> DataTable {
-        let news = self.interactions.iter().filter(|pair| pair.share.is_none_or(|share| share >= NEWS)).count();
-        let trusted = !self.is_of_model();
-        let most = [if trusted { news.min(INTERACTIONS) } else { 0 }, news.min(INTERACTIONS_OF_PAGE)];
-        let both = |pair: &Interaction<'_>| {
-            let [a, b] = pair.dimensions;
-            Cell {
-                full: Some(format!("{a} × {b}")),
-                ..Cell::both(Value::Empty, format!("{} × {}", short(a), short(b)))
-            }
-        };
-        Columns::default()
-            .data("characteristic", |_| Cell::text(self.name()))
-            .data("dimension_a", |pair: &Interaction<'_>| Cell::text(pair.dimensions[0]))
-            .data("dimension_b", |pair| Cell::text(pair.dimensions[1]))
-            .named("", "pair", both)
-            .column("mixed", "mixed derivative", |pair| {
-                Cell::both(Value::Number(pair.mixed), derivative(pair.mixed, pair.rounding, 6))
-            })
-            .column("share", "share %", |pair| Cell::number(pair.share, percent))
-            .data("rounding", |pair| Cell::data(pair.rounding))
-            .table("interactions", self.interactions.iter().take(rows))
-            .at_most(most, String::new())
     }
 }
 

@@ -56,18 +56,18 @@ fn characteristic(json: &Value, one: &CharacteristicAnalysis) {
         normal: "/normal_fit", sampling: "/sampling_interval", worst_case: "/worst_case/linear",
         extremes: "/worst_case/extremes", bounds: "/worst_case/bounds", middle: "/middle", rss: "/rss", inflated_rss: "/inflated_rss",
         mean_shift_rss: "/mean_shift_rss", six_sigma: "/six_sigma", sensitivities: "/sensitivities/1", interactions: "/interactions/0", interactions_remainder: "/interactions_remainder",
-        possible_interactions: "/possible_interactions", left_out_share: "/left_out_share", constant: "/constant",
+        possible_interactions: "/possible_interactions", examined_interactions: "/examined_interactions", left_out_share: "/left_out_share", constant: "/constant",
         verification: "/verification", indices: "/sobol", inspection: "/inspection", coverage: "/coverage",
     });
     let sensitivity = json.pointer("/sensitivities/0").unwrap();
     complete!(sensitivity, &one.sensitivities[0] => Sensitivity {
-        dimension: "/dimension", first: "/first", second: "/second", exact: "/exact", rounding: "/rounding", steps: "/steps",
+        dimension: "/dimension", first: "/first", second: "/second", exact: "/exact", origin: "/origin", rounding: "/rounding", steps: "/steps",
         linear_share: "/linear_share", curvature_share: "/curvature_share", mean_shift: "/mean_shift",
         first_order: "/first_order", total: "/total",
     });
     let interaction = json.pointer("/interactions/0").unwrap();
     complete!(interaction, one.interactions.get(0).unwrap() => Interaction {
-        dimensions: "/dimensions", mixed: "/mixed", missing: "/missing", exact: "/exact", rounding: "/rounding",
+        dimensions: "/dimensions", mixed: "/mixed", missing: "/missing", exact: "/exact", origin: "/origin", rounding: "/rounding",
         share: "/share", mean_shift: "/mean_shift",
     });
 }

@@ -17,6 +17,7 @@ mod head;
 #[cfg(feature = "html")]
 pub mod html;
 mod inspection;
+mod interactions;
 mod labels;
 mod output_correlation;
 mod rare;

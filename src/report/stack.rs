@@ -11,8 +11,9 @@
 use std::fmt;
 
 use super::figures::{Figures, Named};
+use super::statistics::part;
 use super::{DimensionReport, Report};
-use crate::analysis::{CharacteristicAnalysis, Sensitivity};
+use crate::analysis::{CharacteristicAnalysis, DerivativeOrigin, Sensitivity};
 use crate::document::number::{UNKNOWN, beside, limits, percent, plain, short, significant};
 use crate::document::{Blocks, Cell, Columns, DataTable, Document, Line, Section, Tone, Value};
 use crate::method::Method;
@@ -104,6 +105,8 @@ pub enum StackNote {
         /// How many.
         count: usize,
     },
+    /// Parts of the squared RSS that are no contributions to the variance.
+    SharesOfRss,
     /// Dimensions whose slope is not known.
     SlopeUnknown {
         /// The dimensions.
@@ -261,6 +264,9 @@ fn notes(report: &Report, one: &CharacteristicAnalysis, rows: &[StackRow]) -> Ve
         notes.push(StackNote::SlopeUnknown { dimensions: lost });
     }
     notes.extend(shape(one, rows));
+    if has_other_contributions(one, rows) {
+        notes.push(StackNote::SharesOfRss);
+    }
     let unbanded = names(&|row| row.dimension.tolerance.is_none() && row.dimension.sigma > 0.0);
     if !unbanded.is_empty() {
         notes.push(StackNote::ThreeSigma { dimensions: unbanded });
@@ -287,6 +293,15 @@ fn notes(report: &Report, one: &CharacteristicAnalysis, rows: &[StackRow]) -> Ve
     notes
 }
 
+/// Whether a contribution to the variance is another part than that of the squared RSS, as they are printed.
+fn has_other_contributions(one: &CharacteristicAnalysis, rows: &[StackRow]) -> bool {
+    let apart = |row: &StackRow| {
+        let of_variance = one.sensitivities.iter().find(|of| of.dimension == row.dimension.name).and_then(part);
+        of_variance.zip(row.share).is_some_and(|(a, b)| percent(a) != percent(b))
+    };
+    rows.iter().any(apart)
+}
+
 /// The note on the characteristic's being linear; a derivative that rounding alone can make counts as none.
 fn shape(one: &CharacteristicAnalysis, rows: &[StackRow]) -> Option<StackNote> {
     let real = |value: Option<f64>, rounding: Option<f64>| match (value, rounding) {
@@ -297,7 +312,8 @@ fn shape(one: &CharacteristicAnalysis, rows: &[StackRow]) -> Option<StackNote> {
     let known = curved.clone().all(|row| row.curvature_share.is_some());
     let curvature: f64 = curved.clone().filter_map(|row| row.curvature_share).sum();
     let mean_shift: f64 = curved.clone().filter_map(|row| row.mean_shift).sum();
-    let joint = one.interactions.iter().filter(|pair| real(pair.mixed, pair.rounding));
+    let examined = one.interactions.iter().filter(|pair| pair.origin != Some(DerivativeOrigin::Screened));
+    let joint = examined.filter(|pair| real(pair.mixed, pair.rounding));
     let interactions: f64 = joint.clone().filter_map(|pair| pair.share).sum();
     let varying =
         |row: &Sensitivity| rows.iter().any(|of| of.dimension.name == row.dimension && of.dimension.sigma > 0.0);
@@ -308,7 +324,7 @@ fn shape(one: &CharacteristicAnalysis, rows: &[StackRow]) -> Option<StackNote> {
     if not_examined {
         return Some(StackNote::NotExamined);
     }
-    match one.possible_interactions.saturating_sub(one.interactions.len()) {
+    match one.possible_interactions.saturating_sub(one.examined_interactions) {
         0 => None,
         count => Some(StackNote::InteractionsNotExamined { count }),
     }
@@ -332,6 +348,9 @@ impl fmt::Display for StackNote {
                 let which = if *count == 1 { "one interaction".to_owned() } else { format!("{count} interactions") };
                 write!(f, "linear, unless an interaction says otherwise: {which} not examined (the method full examines all)")
             }
+            Self::SharesOfRss => f.write_str(
+                "RSS % is a dimension's part of the squared rss, by half tolerances; its contribution to the variance is another one",
+            ),
             Self::SlopeUnknown { dimensions } => write!(f, "without slope, so that the totals are unknown: {}", list(dimensions)),
             Self::ThreeSigma { dimensions } => write!(f, "3 sigma stands for a tolerance of {}", list(dimensions)),
             Self::Fixed { dimensions } => {
@@ -400,7 +419,7 @@ impl Stack {
             .named("", "unit", |row| Cell::optional(row.dimension.unit.as_deref()))
             .data("slope", |row| Cell::data(row.slope))
             .column("contribution", "effect", move |row| scaled(row.contribution))
-            .column("share", "contribution %", |row| Cell::number(row.share, percent))
+            .column("share", "RSS %", |row| Cell::number(row.share, percent))
             .data("from", |_| Cell::empty())
             .data("to", |_| Cell::empty())
             .data("within_limits", |_| Cell::empty())

@@ -244,7 +244,8 @@ pub(super) fn matters(row: &Sensitivity, dimension: &DimensionReport) -> bool {
 /// neither is known.
 pub(super) fn part(row: &Sensitivity) -> Option<f64> {
     let of_surface = row.linear_share.map(|linear| linear + row.curvature_share.unwrap_or(0.0));
-    of_surface.or(row.first_order.map(|index| index.value))
+    // An estimate below 0 is 0 within its error; a covariance below 0 is one.
+    of_surface.or(row.first_order.map(|index| index.value.max(0.0)))
 }
 
 /// The same with every interaction in which it has a part.

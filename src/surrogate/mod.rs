@@ -8,6 +8,7 @@
 
 mod chaos;
 mod correlated;
+mod derivative_origin;
 mod drawn;
 mod growth;
 mod inputs;
@@ -21,6 +22,7 @@ mod univariate;
 mod values;
 
 pub(crate) use chaos::{Chaos, DEPENDENT, Places, Sparse};
+pub use derivative_origin::DerivativeOrigin;
 pub use inputs::Inputs;
 pub(crate) use pooled::Pooled;
 pub use relocation::Relocation;

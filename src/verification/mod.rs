@@ -58,6 +58,18 @@ pub(crate) const fn most_points(core: usize) -> usize {
     sample::PILOT + (sides::MOST + 2) * sample::TAIL + core + BESIDE
 }
 
+/// Points in the core of the largest sample that takes no more than `most` evaluations of a characteristic, up to [`CORE`] and down to
+/// as many as a tail has; None where there are too few for that.
+pub(crate) fn core_within(problem: &Problem, c: usize, most: Option<usize>) -> Option<usize> {
+    let Some(most) = most else { return Some(CORE) };
+    // Without switches there are no seldom sides.
+    let switches = problem.function().switches(problem.outputs()[c]).map_or(0, |switches| switches.list.len());
+    let sides = if switches == 0 { sides::MOST } else { 0 };
+    let others = most_points(0) - sides * sample::TAIL;
+    let halved = std::iter::successors(Some(CORE), |core| Some(core / 2));
+    halved.take_while(|&core| core >= sample::TAIL).find(|&core| others + core <= most)
+}
+
 /// Evaluations that [`unexplained`] and then [`variance_shares_during`] over so many inputs take at most.
 pub(crate) fn most_points_of_shares(inputs: usize) -> usize {
     BESIDE + shares::most(inputs)

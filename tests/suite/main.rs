@@ -68,6 +68,7 @@ mod plans;
 mod probabilities;
 mod probe;
 mod process;
+mod proofs;
 mod public_items;
 mod published;
 mod published_figures;

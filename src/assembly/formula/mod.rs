@@ -17,6 +17,7 @@
 mod batch;
 mod cancel;
 mod error;
+mod expansion;
 mod functions;
 mod graph;
 mod hessian;

@@ -116,6 +116,9 @@ pub(super) struct Wanted {
     why_fit: Option<&'static str>,
     /// How far below and above its yield by that law the interval reaches within which it is known; None where that is not known.
     reach: Option<[f64; 2]>,
+    /// Interactions of its surface that are estimates.
+    #[serde(skip)]
+    pub(super) screened: usize,
 }
 
 fn is_one(scale: &f64) -> bool {
@@ -262,6 +265,7 @@ impl WhatIf {
                 counted,
                 why_fit,
                 reach: reach(found, law || counted.is_some()),
+                screened: fit.as_ref().map_or(0, |fit| fit.screened),
             }
         });
         let characteristics = characteristics.collect();
@@ -319,7 +323,7 @@ fn size(fit: &Fit) -> Power {
 
 /// Centre, parts, products and unexplained variance of a surface, divided by a power of two.
 fn contents(fit: &Fit, power: Power) -> (f64, Vec<[f64; 4]>, Pairs, Option<f64>) {
-    let Fit { surrogate, unexplained_sigma } = fit;
+    let Fit { surrogate, unexplained_sigma, .. } = fit;
     let divided = |value: f64| power.inverse().times(value);
     let parts = surrogate.parts.iter().flatten().map(|part| part.coefficients().map(divided)).collect();
     let mut pairs = Pairs::default();

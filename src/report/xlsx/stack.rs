@@ -71,7 +71,7 @@ impl Of {
             Self::Mean => "mean",
             Self::Deviation => "standard dev",
             Self::Effect => "effect",
-            Self::Share => "contribution %",
+            Self::Share => "RSS %",
         }
     }
 }
