@@ -17,7 +17,7 @@ const POINTS: usize = 1 << 13;
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// For every characteristic, analysed at these tolerances, what the points say of its worst case: the greatest part of a limit's room that one takes, from there on. None where
-/// none has a value, of positions, whose zones are no boxes, and of a characteristic without room.
+/// none has a value, of dimensions that share a zone, which is not a box, and of a characteristic without room.
 pub(super) fn worst_in_box(
     problem: &Problem,
     analysed: &[CharacteristicAnalysis],
@@ -26,7 +26,8 @@ pub(super) fn worst_in_box(
 ) -> Vec<Option<Judged>> {
     let dimensions = problem.dimensions();
     let nothing = vec![None; analysed.len()];
-    if dimensions.iter().any(|dimension| dimension.zone().is_some()) {
+    let blocks = problem.correlation().is_some_and(|of| !of.blocks().is_empty());
+    if blocks || dimensions.iter().any(|dimension| dimension.zone().is_some()) {
         return nothing;
     }
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);

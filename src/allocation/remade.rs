@@ -44,6 +44,7 @@ impl Responses {
                 unknown: one.unknown,
                 sampled: None,
                 worst: None,
+                over_zones: one.over_zones,
             }
         };
         Some(Self {
@@ -86,7 +87,7 @@ impl Responses {
 impl Constraint {
     /// Of a linear worst case the room, less what has no cost, and the factors of every group's `T`.
     pub(super) fn linear_room(&self, responses: &Responses, priced: &[Priced]) -> Option<(f64, Vec<f64>)> {
-        if responses.of[self.characteristic].worst.is_some() {
+        if !responses.has_linear_worst_case(self.characteristic) {
             return None;
         }
         let (constant, coefficients) = responses.worst_case(self.characteristic, priced, self.is_above())?;

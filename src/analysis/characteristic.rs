@@ -259,8 +259,8 @@ impl CharacteristicAnalysis {
         Judged::of(requirement, value, interval).unless(self.unfinished)
     }
 
-    /// The part of the room that the worst case takes, and within which that is known: by the slopes where the formula is proven to be linear;
-    /// between what was found and what interval arithmetic excludes where the formula has bounds; by the surface otherwise.
+    /// The part of the room that the worst case takes, and within which that is known: between values that exist and what interval arithmetic
+    /// excludes where the formula has bounds; by the slopes where it is proven to be linear; by the surface otherwise.
     fn worst_case_taken(&self) -> Option<(f64, Option<[f64; 2]>)> {
         let (nominal, linear) = self.nominal.zip(self.worst_case)?;
         let part = |[low, high]: [f64; 2], more: f64| {
@@ -268,14 +268,23 @@ impl CharacteristicAnalysis {
             taken(self.characteristic.limits(), nominal, reach)
         };
         let by_slopes = part(linear, 0.0)?;
-        if self.constant || self.is_proven_linear() {
+        if self.constant {
+            return Some((by_slopes, Some([by_slopes; 2])));
+        }
+        if let Some(proof) = self.proof().filter(|proof| proof.proven) {
+            let ([low, high], [below, above]) = (proof.bounds, proof.slack);
+            let most = part(proof.bounds, 0.0)?;
+            let reached = part([low + below, high - above], 0.0)?;
+            return Some((most, Some([reached.min(most), most])));
+        }
+        if self.is_proven_linear() {
             return Some((by_slopes, Some([by_slopes; 2])));
         }
         let found = self.extremes.as_ref().and_then(|found| part([found.least.value, found.greatest.value], 0.0));
         if let Some(proof) = self.proof() {
             let most = part(proof.bounds, 0.0)?;
-            let least = if proof.proven { most } else { found.unwrap_or(0.0).min(most) };
-            return Some((if proof.proven { most } else { found.unwrap_or(by_slopes) }, Some([least, most])));
+            let least = found.unwrap_or(0.0).min(most);
+            return Some((found.unwrap_or(by_slopes), Some([least, most])));
         }
         let around = self.curved.and_then(|curved| Some([part(linear, -curved)?, part(linear, curved)?]));
         Some(match found {

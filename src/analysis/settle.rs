@@ -175,10 +175,14 @@ fn kept_by_extremes(problem: &Problem, outcome: &Outcome, c: usize, one: &Charac
         let dimension = &problem.dimensions()[d];
         let [lower, upper] = dimension.reach().map(|deviation| dimension.nominal() + deviation);
         let slack = 4.0 * f64::EPSILON * dimension.nominal().abs().max(dimension.mean().abs());
-        dimension.distribution().is_some_and(|law| {
-            let [least, most] = law.support();
-            least >= lower - slack && most <= upper + slack
-        })
+        // Coordinates of a circle that vary independently of each other reach the corners of the box about it.
+        let blocks = |d: usize| problem.correlation().is_some_and(|of| of.block_of(d).is_some());
+        let alone = dimension.zone().is_none() || blocks(d);
+        alone
+            && dimension.distribution().is_some_and(|law| {
+                let [least, most] = law.support();
+                least >= lower - slack && most <= upper + slack
+            })
     };
     let inside = proof.bounds.iter().all(|&bound| limits.contains(bound));
     inside

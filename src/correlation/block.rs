@@ -73,6 +73,11 @@ impl Rows {
         self.standardised.first().map_or(0, Vec::len)
     }
 
+    /// The values of a member, in sigmas off its mean.
+    pub(crate) fn column(&self, coordinate: usize) -> &[f64] {
+        &self.standardised[coordinate]
+    }
+
     /// The row of a normal variable, which picks it by its probability.
     fn row(&self, z: f64) -> usize {
         let n = self.len();

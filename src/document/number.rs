@@ -77,10 +77,30 @@ pub(crate) fn beside(value: f64, sigma: f64) -> String {
     }
 }
 
-/// As many significant digits as sigma has five of.
+/// The significant digits of a number beside its sigma, where decimals do not show it.
 fn digits_beside(value: f64, sigma: f64) -> usize {
     let ratio = libm::log10((value / sigma).abs().max(1.0)).floor();
     if ratio.is_finite() { (ratio as usize + 5).min(17) } else { 6 }
+}
+
+/// The ends of an interval that no value leaves, shown as [`carried`] and rounded outward: no value lies beyond the printed numbers.
+///
+/// An end within a millionth of the last digit of a printed number is that number: the rounding of a sum moves nothing outward by a digit.
+pub(crate) fn outward(ends: [f64; 2], sigma: f64, error: Option<f64>) -> [String; 2] {
+    /// A part of the last digit.
+    const ROUNDING: f64 = 1e-6;
+    let shown = |value: f64, sign: f64| {
+        let last = match (decimals(sigma, 5), of_error(error)) {
+            (Some(of_sigma), of_error) if value.abs() < 1e9 => {
+                power_of_ten(-(of_error.map_or(of_sigma, |of_error| of_error.min(of_sigma)) as f64))
+            }
+            _ if value == 0.0 => 0.0,
+            _ => power_of_ten(libm::log10(value.abs()).floor() - digits_beside(value, sigma) as f64 + 1.0),
+        };
+        // To the nearest from half a digit farther out is outward.
+        carried(value + sign * (0.5 - ROUNDING) * last, sigma, error)
+    };
+    [shown(ends[0], -1.0), shown(ends[1], 1.0)]
 }
 
 /// `-0.00` says no more than `0.00`.

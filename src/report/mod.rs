@@ -28,6 +28,7 @@ mod stack;
 mod statistics;
 mod sweep;
 mod to_document;
+mod worst_case;
 #[cfg(feature = "xlsx")]
 mod xlsx;
 

@@ -12,9 +12,10 @@ use std::fmt;
 
 use super::figures::{Figures, Named};
 use super::statistics::part;
+use super::worst_case::KnownWorstCase;
 use super::{DimensionReport, Report};
 use crate::analysis::{CharacteristicAnalysis, DerivativeOrigin, Sensitivity};
-use crate::document::number::{UNKNOWN, beside, limits, percent, plain, short, significant};
+use crate::document::number::{UNKNOWN, beside, limits, outward, percent, plain, short, significant};
 use crate::document::{Blocks, Cell, Columns, DataTable, Document, Line, Section, Tone, Value};
 use crate::method::Method;
 
@@ -71,8 +72,12 @@ pub struct StackTotal {
 /// The ways of adding a stack up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TotalKind {
-    /// Everything at its worst end.
+    /// Everything at its worst end, where it is proven that slopes tell all of it.
     WorstCase,
+    /// The same by slopes alone, which is not a bound.
+    LinearWorstCase,
+    /// The proven worst case of a characteristic that is not linear; the last of all.
+    ProvenWorstCase,
     /// Root of the sum of squares.
     Rss,
     /// 1.5 times that, or by the factors of the study.
@@ -159,9 +164,12 @@ impl Stack {
         }
         let first_order = [Method::Rss, Method::WorstCase].contains(&report.analysis.method);
         let worst_case = one.worst_case.map(|[lower, upper]| 0.5 * (upper - lower));
+        let proven = one.proven_worst_case();
+        let linear = proven.as_ref().is_some_and(|proven| one.is_linear(proven));
+        let by_slopes = if linear { TotalKind::WorstCase } else { TotalKind::LinearWorstCase };
         let about_middle = |kind, half_width| StackTotal { kind, middle: one.middle, half_width };
         let mut totals = vec![
-            about_middle(TotalKind::WorstCase, worst_case),
+            about_middle(by_slopes, worst_case),
             about_middle(TotalKind::Rss, one.rss),
             about_middle(TotalKind::InflatedRss, one.inflated_rss),
             about_middle(TotalKind::MeanShiftRss, one.mean_shift_rss),
@@ -173,6 +181,10 @@ impl Stack {
         ];
         if let Some(effective) = one.six_sigma {
             totals.insert(4, about_middle(TotalKind::SixSigma, Some(SIGMAS * effective)));
+        }
+        if let Some(KnownWorstCase { ends: [lower, upper], .. }) = proven.filter(|_| !linear) {
+            let [middle, half_width] = [0.5 * (lower + upper), 0.5 * (upper - lower)].map(Some);
+            totals.push(StackTotal { kind: TotalKind::ProvenWorstCase, middle, half_width });
         }
         Self {
             characteristic: one.name().to_owned(),
@@ -209,6 +221,8 @@ impl TotalKind {
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::WorstCase => "worst case",
+            Self::LinearWorstCase => "linear worst case",
+            Self::ProvenWorstCase => "proven worst case",
             Self::Rss => "rss",
             Self::InflatedRss => "inflated rss",
             Self::MeanShiftRss => "mean-shift rss",
@@ -405,7 +419,15 @@ impl Stack {
     pub(super) fn tables(&self) -> [DataTable; 2] {
         let scale = self.totals.iter().filter_map(|total| total.half_width).fold(0.0, f64::max);
         let scaled = |value: Option<f64>| Cell::number(value, |value| beside(value, scale));
-        let end = |interval: Option<[f64; 2]>, end: usize| interval.map(|ends| ends[end]);
+        let shown_end = move |total: &StackTotal, end: usize| {
+            let interval = total.interval();
+            // No assembly lies beyond what is printed.
+            let proven = matches!(total.kind, TotalKind::WorstCase | TotalKind::ProvenWorstCase);
+            match interval.filter(|_| proven) {
+                Some(ends) => Cell::both(Value::Number(Some(ends[end])), outward(ends, scale, None)[end].clone()),
+                None => scaled(interval.map(|ends| ends[end])),
+            }
+        };
         let rows = Columns::default()
             .data("characteristic", |_| Cell::text(&self.characteristic))
             .data("row", |_| Cell::text("dimension"))
@@ -435,8 +457,8 @@ impl Stack {
             .data("slope", |_| Cell::empty())
             .data("contribution", |total| Cell::data(total.half_width))
             .data("share", |_| Cell::empty())
-            .column("from", "from", move |total| scaled(end(total.interval(), 0)))
-            .column("to", "to", move |total| scaled(end(total.interval(), 1)))
+            .column("from", "from", move |total| shown_end(total, 0))
+            .column("to", "to", move |total| shown_end(total, 1))
             .named("within_limits", "limits", |total| {
                 let keeps = self.keeps(total);
                 let line = match keeps {

@@ -81,6 +81,17 @@ impl Study {
     /// # Ok::<(), sensitol::StudyError>(())
     /// ```
     pub fn rewritten(&self, wanted: &Problem) -> Result<Rewritten, RewriteError> {
+        Ok(self.rewritten_and_read(wanted)?.0)
+    }
+
+    /// The dimensions of a problem with the digits that its tolerances and nominal values have in a file; None where they cannot be written.
+    pub(crate) fn written_dimensions(&self, wanted: &Problem) -> Option<Vec<Dimension>> {
+        let (_, read) = self.rewritten_and_read(wanted).ok()?;
+        Some(read.problem.dimensions().to_vec())
+    }
+
+    /// The text, and the study that it is.
+    fn rewritten_and_read(&self, wanted: &Problem) -> Result<(Rewritten, Self), RewriteError> {
         let tree = self.tree();
         let lines = tree.as_ref().and_then(|tree| tree.entry("dimensions"));
         let mut edits: Vec<(Range<usize>, String)> = Vec::new();
@@ -127,7 +138,7 @@ impl Study {
             }
         }
         let entries = read.entries(&changed);
-        Ok(Rewritten { text, entries, replaced_fits })
+        Ok((Rewritten { text, entries, replaced_fits }, read))
     }
 
     /// The dimension with the cost and the name of the process that makes this one so, where it says how its parts lie.

@@ -8,6 +8,7 @@ mod allocation_lists;
 mod allocation_made;
 mod allocation_optima;
 mod allocation_oracles;
+mod allocation_verdicts;
 mod analysis;
 mod any_size;
 mod architecture;

@@ -183,12 +183,12 @@ impl Interval {
         }
     }
 
-    pub(super) fn squared(&self) -> Self {
+    pub(crate) fn squared(&self) -> Self {
         let size = self.abs();
         size.multiply(&size)
     }
 
-    pub(super) fn sqrt(&self) -> Self {
+    pub(crate) fn sqrt(&self) -> Self {
         let x = self.within(0.0, f64::INFINITY);
         // The root of the upper end is rounded up if its square is too small.
         let upper = x.upper.sqrt();

@@ -3,13 +3,13 @@
 use std::fmt::Write;
 
 use super::super::WarningReport;
-use super::super::bars::worst_case;
 use super::super::figures::{Figures, Named};
 use super::super::statistics::part;
 use super::super::sweep::{SweptPointReport, SweptReport};
+use super::super::worst_case::{KnownWorstCase, WorstCaseKind};
 use crate::analysis::CharacteristicAnalysis;
 use crate::capability::Capability;
-use crate::document::number::{beside, index, plain, plural, significant, yielded};
+use crate::document::number::{index, plain, plural, significant, yielded};
 use crate::document::rejects::Rejects;
 use crate::document::svg::escaped;
 use crate::rare::{Beyond, RareCharacteristic};
@@ -50,9 +50,7 @@ pub(super) struct JudgedCharacteristic<'r> {
     ppm: [Option<f64>; 2],
     sides: Vec<String>,
     cpk: Option<f64>,
-    worst: Option<[f64; 2]>,
-    /// By which numbers are rounded.
-    scale: f64,
+    worst: Option<KnownWorstCase>,
     /// The dimension that makes most of the variance, and its share.
     driver: Option<(&'r str, f64)>,
 }
@@ -111,7 +109,6 @@ impl<'r> JudgedCharacteristic<'r> {
             sides: Vec::new(),
             cpk: None,
             worst: None,
-            scale: 0.0,
             driver: None,
         }
     }
@@ -134,8 +131,7 @@ impl<'r> JudgedCharacteristic<'r> {
             interval: one.yield_interval(),
             ppm: [one.ppm_below(), one.ppm_above()],
             cpk: one.capability.as_ref().and_then(|of: &Capability| of.cpk),
-            worst: worst_case(one).map(|(_, ends)| ends),
-            scale: one.scale(),
+            worst: one.known_worst_case(),
             driver: all.max_by(|a, b| a.1.total_cmp(&b.1)),
             ..Self::of(one, place).rejecting(one.rejects())
         }
@@ -544,8 +540,15 @@ impl Table {
             let _ = write!(cells, "<td class=\"n\">{}</td>", one.cpk.map(index).unwrap_or_default());
         }
         if self.worst {
-            let ends = one.worst.map(|ends| ends.map(|end| beside(end, one.scale)));
-            let ends = ends.map(|[low, high]| format!("{low} –<br>{high}")).unwrap_or_default();
+            let ends = one.worst.as_ref().map(|KnownWorstCase { kind, texts: [low, high], .. }| {
+                let known = match kind {
+                    WorstCaseKind::Proven => "",
+                    WorstCaseKind::Found => "<br><small>found</small>",
+                    WorstCaseKind::Linear => "<br><small>linear</small>",
+                };
+                format!("{low} –<br>{high}{known}")
+            });
+            let ends = ends.unwrap_or_default();
             let _ = write!(cells, "<td class=\"n\">{ends}</td>");
         }
         cells + "</tr>\n"
