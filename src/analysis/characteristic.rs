@@ -205,12 +205,18 @@ impl CharacteristicAnalysis {
         self.extremes.as_ref().map_or(self.bounds.as_ref(), |found| found.proof.as_ref())
     }
 
-    /// Within which the yield is known: the estimate and two of its errors, and down to 0 where there are assemblies without a value
-    /// and they were not counted. None where an error is unknown.
+    /// Within which the yield is known: the estimate and two of its errors, with what measured samples leave open, and down to 0 where
+    /// there are assemblies without a value and they were not counted. None where an error is unknown.
     pub fn yield_interval(&self) -> Option<[f64; 2]> {
         let value = self.capability?.yield_()?;
         let error = if self.constant { Some(0.0) } else { self.error_estimate.as_ref().and_then(|of| of.yield_) };
         let around = verdict::about(value, error)?;
+        let around = match &self.sampling {
+            Some(measured) => {
+                measured.rejected.map(|[low, high]| verdict::joined(value, around, [1.0 - high, 1.0 - low]))?
+            }
+            None => around,
+        };
         // How many assemblies have no value, only samples tell.
         let counted =
             self.verification.as_ref().filter(|of| of.kind == VerificationKind::Sample).and_then(|of| of.valid);
@@ -229,8 +235,8 @@ impl CharacteristicAnalysis {
     /// How a requirement is kept, whether or not it is the characteristic's own.
     ///
     /// The interval of a yield is [`yield_interval`](Self::yield_interval); that of a Cpk and of sigma follows from the estimated
-    /// errors of mean and sigma; rss is what it is by the slopes, without an error; the worst case lies between what was found and what
-    /// interval arithmetic excludes.
+    /// errors of mean and sigma, and from what measured samples leave open of them; rss is what it is by the slopes, without an error; the
+    /// worst case lies between what was found and what interval arithmetic excludes.
     pub(crate) fn judge(&self, requirement: Requirement) -> Judged {
         let limits = self.characteristic.limits();
         let error = |of: fn(&ErrorEstimate) -> Option<f64>| match self.constant {
@@ -239,16 +245,26 @@ impl CharacteristicAnalysis {
         };
         let (mean, sigma) = (error(|of| of.mean), error(|of| of.sigma));
         let part = |value: Option<f64>| (value, value.map(|value| [value; 2]));
+        // Of measured samples whose uncertainty is unknown there is no interval.
+        let measured =
+            |value: Option<f64>, own: Option<[f64; 2]>, of: fn(&SamplingInterval) -> Option<[f64; 2]>| match &self
+                .sampling
+            {
+                Some(sampling) => Some(verdict::joined(value?, own?, of(sampling)?)),
+                None => own,
+            };
         let (value, interval) = match requirement {
             Requirement::Yield(_) => (self.capability.and_then(|of| of.yield_()), self.yield_interval()),
-            Requirement::Cpk(_) => (
-                self.capability.and_then(|of| of.cpk),
-                self.moments.and_then(|of| verdict::of_cpk((of.mean(), mean), (of.sigma(), sigma), limits)),
-            ),
-            Requirement::Sigma(_) => (
-                self.moments.map(|of| of.sigma()),
-                self.moments.and_then(|of| verdict::about(of.sigma(), sigma)).map(|[low, high]| [low.max(0.0), high]),
-            ),
+            Requirement::Cpk(_) => {
+                let value = self.capability.and_then(|of| of.cpk);
+                let own = self.moments.and_then(|of| verdict::of_cpk((of.mean(), mean), (of.sigma(), sigma), limits));
+                (value, measured(value, own, |of| of.cpk))
+            }
+            Requirement::Sigma(_) => {
+                let value = self.moments.map(|of| of.sigma());
+                let own = value.and_then(|value| verdict::about(value, sigma));
+                (value, measured(value, own, |of| of.sigma).map(|[low, high]| [low.max(0.0), high]))
+            }
             Requirement::Rss => {
                 part(self.middle.zip(self.rss).and_then(|(middle, rss)| taken(limits, middle, [rss; 2])))
             }

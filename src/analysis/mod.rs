@@ -16,12 +16,12 @@ mod interval;
 mod jumps;
 pub(crate) mod law_at;
 mod linear;
+mod measured;
 mod outputs;
 mod recorded;
 mod remainder;
 mod remembered;
 mod sampled_model;
-mod sampling_interval;
 mod settle;
 mod shape;
 mod shapes;
@@ -44,6 +44,7 @@ pub use crate::capability::{EstimatedShare, InspectionRisks};
 pub use crate::extremes::{Coordinate, Extreme, Extremes, ExtremesProof, Place};
 pub use crate::law::{Branch, LawError, LawFigure};
 pub use crate::moments::{Contributions, Sampled};
+pub use crate::sampling::SamplingInterval;
 pub use crate::surrogate::{DerivativeOrigin, Relocation};
 pub use crate::verification::{Crossing, FoundSwitch, OutputCorrelation, Share, Verified};
 pub use account::Account;
@@ -52,7 +53,6 @@ pub use coverage_intervals::CoverageIntervals;
 pub use interaction::{Interaction, InteractionList, Missing};
 pub use remainder::Remainder;
 pub use sampled_model::SampledModel;
-pub use sampling_interval::SamplingInterval;
 pub use sobol::{FactorIndices, IndexSource, SobolIndices};
 pub use surface::{Fit, NoFit, Surface};
 pub use surface_law::SurfaceShares;
@@ -105,6 +105,9 @@ pub struct Analysis {
     /// limits, and where it is not known.
     #[serde(rename = "joint_yield")]
     pub joint: Option<Verified>,
+    /// Within which that share is known: two errors on either side, with what measured samples leave open; None where it is not known.
+    #[serde(rename = "joint_yield_interval")]
+    pub joint_interval: Option<[f64; 2]>,
     /// Whether that share reaches the target for all characteristics at once; None without such a target.
     #[cfg_attr(feature = "cli", schemars(with = "Option<crate::verdict::JudgedShape>"))]
     pub joint_requirement: Option<Judged>,
@@ -253,7 +256,7 @@ pub(crate) fn analyze_keeping(
     characteristics.iter_mut().for_each(|one| one.unfinished = spent.unfinished());
     let warnings = warnings::of(problem, &outcome, &characteristics, jumps.warnings);
     let account = Account::of(problem, &outcome, &characteristics, outcome.evaluated.evaluations);
-    let drawn = bootstrap::intervals(problem, &outcome, &mut characteristics, seed);
+    let drawn = measured::add_sampling_intervals(problem, &outcome, &mut characteristics, seed);
     let surface = Surface::of(&outcome, &characteristics);
     let analysis = Analysis {
         method: outcome.method,
@@ -268,6 +271,7 @@ pub(crate) fn analyze_keeping(
         basis: outcome.basis,
         surface,
         joint_requirement: joint_requirement(problem, options, joint, &characteristics),
+        joint_interval: joint.and_then(|joint| joint_interval(joint, &characteristics)),
         characteristics,
         joint,
         correlations: Vec::new(),
@@ -283,6 +287,7 @@ impl Analysis {
         let Findings { outcome, laws } = findings;
         if self.joint.is_none() {
             self.joint = settle::joint(&self.characteristics, laws);
+            self.joint_interval = self.joint.and_then(|joint| joint_interval(joint, &self.characteristics));
         }
         self.correlations = outputs::correlations(problem, outcome, options, &self.characteristics);
         // Last, because warnings and accounts read the contributions of a surface that is not trusted too.
@@ -291,7 +296,7 @@ impl Analysis {
     }
 }
 
-/// Whether the joint yield reaches its target: by its value and two errors on either side.
+/// Whether the joint yield reaches its target: by its value, two errors on either side, and what measured samples leave open.
 fn joint_requirement(
     problem: &Problem,
     options: &Options,
@@ -302,9 +307,19 @@ fn joint_requirement(
     if problem.characteristics().iter().filter(|one| one.limits().exist()).count() < 2 {
         return None;
     }
-    let interval = joint.and_then(|joint| verdict::about(joint.value, Some(joint.error))).map(verdict::share);
+    let interval = joint.and_then(|joint| joint_interval(joint, characteristics));
     let judged = Judged::of(requirement, joint.map(|joint| joint.value), interval);
     Some(judged.unless(characteristics.iter().any(|one| one.unfinished)))
+}
+
+/// Within which a joint yield is known; None where measured samples leave it unknown.
+fn joint_interval(joint: Verified, characteristics: &[CharacteristicAnalysis]) -> Option<[f64; 2]> {
+    let own = verdict::about(joint.value, Some(joint.error))?;
+    let interval = match settle::joint_sampling(characteristics, joint.value) {
+        Some(measured) => verdict::joined(joint.value, own, measured?),
+        None => own,
+    };
+    Some(verdict::share(interval))
 }
 
 /// The bounds of interval arithmetic, where a formula has them and the extremes were not searched.

@@ -2,17 +2,20 @@
 //!
 //! | source | when | its error |
 //! |---|---|---|
-//! | proof | nothing varies; the extremes are proven to keep the limits; or the formula's degree proves that the surface is the function, and the law of the surface is exact | that of the law |
+//! | proof | nothing varies; or no input is measured, and the extremes are proven to keep the limits, or the formula's degree proves that the surface is the function, and the law of the surface is exact | that of the law |
 //! | samples | points of the model itself, with the law of a surface as control where there is one | the sample's |
-//! | surface law | a surface, verified at check points or not at all | law and checks as the root of the sum of squares; without checks, what the errors of the moments move the tails |
+//! | surface law | a surface, verified at check points or not at all; a proven surface of measured inputs | law and checks as the root of the sum of squares; without checks, what the errors of the moments move the tails |
 //! | Pearson fit | moments are all that is known | what the errors of the moments move it |
 //!
 //! With the law of a surface as control a share is `P = P_law + mean(1_model - 1_surface)` over the sample: what model and surface
 //! agree on is exact, and only what they differ by is sampled.
+//!
+//! Measured inputs prove nothing: that their values keep the limits says so of these parts, and not of the process.
 
 use super::CharacteristicAnalysis;
 use super::coverage::covered;
 use super::inspected::inspected;
+use super::measured::samples_of;
 use super::surface_law::{SurfaceShares, density};
 use super::unverified::error_of_shares;
 use super::verified::{TRUSTED, Verification, VerificationKind};
@@ -117,6 +120,22 @@ pub(super) fn joint(characteristics: &[CharacteristicAnalysis], laws: &[Option<S
     Some(Verified { value: value.clamp(0.0, 1.0), error: square.sqrt() })
 }
 
+/// Within which measured samples leave the joint yield, of this value: no fewer assemblies are rejected than by one characteristic,
+/// and no more than by all of them one after the other. None without measured samples, and Some(None) where one leaves it unknown.
+pub(super) fn joint_sampling(characteristics: &[CharacteristicAnalysis], value: f64) -> Option<Option<[f64; 2]>> {
+    let limited = || characteristics.iter().filter(|one| one.characteristic.limits().exist());
+    limited().find(|one| one.sampling.is_some())?;
+    let (mut most, mut least) = (1.0 - value, 0.0f64);
+    for one in limited() {
+        let Some(measured) = &one.sampling else { continue };
+        let rejected = one.capability.and_then(|of| of.rejected());
+        let Some((rejected, [low, high])) = rejected.zip(measured.rejected) else { return Some(None) };
+        most += (high - rejected).max(0.0);
+        least = least.max(low);
+    }
+    Some(Some([1.0 - most, 1.0 - least.min(1.0 - value)]))
+}
+
 /// Whether two of them have limits, which can be kept together or not.
 pub(super) fn have_joint_yield(characteristics: &[CharacteristicAnalysis]) -> bool {
     characteristics.iter().filter(|one| one.characteristic.limits().exist()).count() > 1
@@ -153,7 +172,8 @@ fn proof(problem: &Problem, outcome: &Outcome, c: usize, one: &CharacteristicAna
         let own = one.pearson?;
         return Some(Rejected { source: YieldSource::Proof, beyond: [own.below, own.above], error: Some(0.0) });
     }
-    if kept_by_extremes(problem, outcome, c, one) {
+    let measured = !samples_of(problem, outcome, c).is_empty();
+    if !measured && kept_by_extremes(problem, outcome, c, one) {
         let beyond = [limits.lower().map(|_| 0.0), limits.upper().map(|_| 0.0)];
         return Some(Rejected { source: YieldSource::Proof, beyond, error: Some(0.0) });
     }
@@ -164,7 +184,8 @@ fn proof(problem: &Problem, outcome: &Outcome, c: usize, one: &CharacteristicAna
     // A limit outside of the proven range lies there by any rounding: the range has room for that.
     let rounding = if outside { 0.0 } else { one.error_estimate.as_ref()?.yield_? };
     let error = Some(libm::hypot(law.error(), rounding));
-    Some(Rejected { source: YieldSource::Proof, beyond: beyond.map(|of| of.map(|of| of.value)), error })
+    let source = if measured { YieldSource::SurfaceLaw } else { YieldSource::Proof };
+    Some(Rejected { source, beyond: beyond.map(|of| of.map(|of| of.value)), error })
 }
 
 /// Whether the proven extremes lie within the limits, and no input leaves the box in which they were searched.

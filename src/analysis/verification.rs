@@ -20,10 +20,10 @@ use crate::summary::RunSummary;
 use crate::surrogate::Surrogate;
 use crate::time::Instant;
 use crate::verification::{
-    Checked, CheckedFigures, Crossing, SampledFigures, Target, Verified, core_within, most_points,
-    most_points_of_shares, unexplained, variance_shares_during, verify_by_checks, verify_characteristic,
+    Checked, CheckedFigures, SampledFigures, Target, Verified, core_within, most_points, most_points_of_shares,
+    unexplained, variance_shares_during, verify_by_checks, verify_characteristic,
 };
-use crate::warning::{Change, Warning};
+use crate::warning::Warning;
 
 /// A sample is drawn again, larger, where it leaves more of a share open than this part of what a target lets be rejected: of 1e-4, 1e-5.
 const TARGET: f64 = 0.1;
@@ -36,8 +36,6 @@ const MATTERS: f64 = 0.01;
 const AGREES: f64 = 2.0;
 /// An error of sigma above this part of it says that the surface does not follow the model.
 const UNKNOWN: f64 = 0.1;
-/// A switch is worth a warning from one assembly in ten million on.
-const SELDOM: f64 = 1e-7;
 /// The share of the variance of a correlated dimension of which a method that integrates knows none: any between those from which on an
 /// input is not idle and from which on it gets check points of its own, 1e-4 and 0.03.
 const ORDINARY: f64 = 0.01;
@@ -322,19 +320,8 @@ pub(super) fn warnings(one: &CharacteristicAnalysis, wanted: Option<f64>) -> Vec
         let (failed, points) = (verification.failed, verification.points);
         warnings.push(Warning::DomainEdgeWithin { characteristic: characteristic(), failed, points });
     }
-    for found in verification.switches.iter().flatten().filter(|found| found.probability >= SELDOM) {
-        let (switch, probability) = (found.name.clone(), found.probability);
-        let change = match found.crossing {
-            Crossing::Kink => Change::Kink,
-            Crossing::Jump => Change::Jump,
-            Crossing::Edge => Change::Edge,
-            Crossing::Pole => {
-                warnings.push(Warning::Pole { characteristic: characteristic(), switch, probability });
-                continue;
-            }
-        };
-        warnings.push(Warning::Switch { characteristic: characteristic(), switch, change, probability });
-    }
+    let switches = verification.switches.iter().flatten();
+    warnings.extend(switches.filter_map(|found| found.warning(&characteristic(), None)));
     let Some(moments) = one.moments else { return warnings };
     let sigma = moments.sigma();
     let error = one.error_estimate.as_ref().and_then(|estimate| estimate.sigma);

@@ -16,13 +16,19 @@
 //! inputs vary and up to three times as wide, and beside switches that the model tells of. Rejects among them that the surrogate's
 //! components do not cover get components of their own: half-spaces at the likeliest point of the limit near them. So do rejects that
 //! a stage finds by its plain and wide points where no place is.
+//!
+//! No place is of use where rejects lie all around the means in many variables. Where the interval of the weighted points is wider than that
+//! of as many plain ones, the rest of the points are plain, and they alone make the estimate ([`plain`]): the result is never much worse
+//! than that of plain sampling.
 
 mod border;
 mod estimate;
 mod explore;
+mod measured;
 mod mixture;
 mod model;
 mod place;
+mod plain;
 mod search;
 mod shape;
 mod space;
@@ -38,7 +44,7 @@ use crate::evaluation::{Restoration, Restore, at_any_size, history};
 use crate::method::{Method, MethodError, Options};
 use crate::problem::Problem;
 use crate::requirement::Requirement;
-use crate::sampling::{Estimate, SamplingError};
+use crate::sampling::{Estimate, SamplingError, SamplingInterval};
 use crate::shape::{text, through};
 use crate::short_sort::ShortSort;
 use crate::simulation::{Pace, SimulationError, Surrogates};
@@ -174,6 +180,9 @@ pub struct RareCharacteristic {
     pub yield_: Option<f64>,
     /// 95 % interval of that.
     pub yield_interval: Option<[f64; 2]>,
+    /// How far the yield may be off because measured dimensions are known by samples; None where there are none.
+    #[serde(rename = "sampling_interval")]
+    pub sampling: Option<SamplingInterval>,
     /// Whether the search was stopped before all points were drawn: no verdict follows from the others.
     pub unfinished: bool,
 }
@@ -205,6 +214,9 @@ pub struct Beyond {
     pub plain_samples: Option<f64>,
     /// The most likely assembly at the limit, as the surrogate and rejects of the model show it; None where none is known.
     pub design_point: Option<DesignPoint>,
+    /// The plain points that make the estimate, where importance sampling was worse; told of as a warning.
+    #[serde(skip)]
+    pub(crate) plain_points: Option<u64>,
 }
 
 /// The most likely assembly at a limit.
@@ -340,7 +352,7 @@ fn sought(
     let mut model = Model::new(problem, &space, run);
     let places: Vec<Place> = targets.iter().enumerate().flat_map(|(index, target)| places(index, target)).collect();
     let places = correct(places, &targets, (options.samples / 4) as usize, &mut model);
-    let mut search = Search::new(&targets, places, options.samples);
+    let mut search = Search::new(&targets, places, (options.samples, options.seed));
     if !targets.is_empty() {
         let explored = Explored::new(&targets, &search.reached(), options.samples, !options.seed, &mut model);
         search.learn(&explored, (options.samples / 10) as usize, &mut model);
@@ -350,17 +362,24 @@ fn sought(
         let left = options.samples.saturating_sub(model.answered);
         let stage = match options.until {
             Some(_) => search.points.max(FIRST[0]),
-            None if search.stages < LEARNING => (options.samples / 5).clamp(FIRST[0], FIRST[1]),
+            // In many variables the first stage decides whether there is a second of its kind.
+            None if search.stages == 0 && search.has_many_variables() => {
+                (options.samples / 20).clamp(FIRST[0], FIRST[1])
+            }
+            None if search.stages < LEARNING && !search.is_plain() => (options.samples / 5).clamp(FIRST[0], FIRST[1]),
             None => left,
         };
-        done = search.stage(stage.min(left) as usize, options.seed, &mut model);
+        done = search.stage(stage.min(left) as usize, &mut model);
+        if search.stages >= LEARNING || search.has_many_variables() {
+            search.judge(model.answered);
+        }
         let shortfall = search.shortfall();
         reached = options.until.map(|wanted| shortfall <= wanted && search.confirmed(wanted));
         let more = options.until.map_or(f64::INFINITY, |wanted| (shortfall / wanted).powi(2).max(1.0));
         let expected = (search.points as f64 * more).min((search.points + left) as f64);
         pace(Pace { samples: search.points, expected, elapsed: begun.elapsed() });
         done |= model.answered >= options.samples || reached == Some(true) || run.stopped();
-        if !done && (search.stages <= LEARNING || options.until.is_some()) {
+        if !done && !search.is_plain() && (search.stages <= LEARNING || options.until.is_some()) {
             let left = options.samples - model.answered;
             search.follow((left / 4) as usize, &mut model);
         }
@@ -385,10 +404,12 @@ fn sought(
     let samples = search.points;
     let (joint, joint_interval) = search.within_all(problem).unzip();
     let joint = joint.flatten();
+    let characteristics = search.characteristics(&model, stopped.is_some());
+    let characteristics = measured::with_sampling(problem, &surrogates.outcome, characteristics);
+    let joint_interval = joint_interval.map(|interval| measured::joint(joint, interval, &characteristics));
     let joint_requirement = options.surrogate.target_joint_yield.filter(|_| joint_interval.is_some());
     let joint_requirement = joint_requirement
         .map(|target| Judged::of(Requirement::Yield(target), joint, joint_interval).unless(stopped.is_some()));
-    let characteristics = search.characteristics(&model, stopped.is_some());
     let run = RunSummary { stopped, evaluator: problem.evaluator(), ..drawn.and(&spent) };
     let warnings = warnings::of(&characteristics, samples, run.evaluations);
     Ok(RareEvents {

@@ -433,7 +433,7 @@ impl AllocationReport {
         let Some(confirmation) = &self.confirmation else { return };
         for one in &confirmation.characteristics {
             let Some(share) = one.yield_ else { continue };
-            let [low, high] = share.interval.map(yielded);
+            let [low, high] = one.yield_interval().unwrap_or(share.interval).map(yielded);
             let (name, value, points) = (short(one.name()), yielded(share.value), confirmation.samples);
             section.line(format!(
                 "{name}: {value} of {points} points of the model keep the limits, 95 % interval {low} .. {high}"

@@ -6,6 +6,7 @@ use super::inspection::inspected;
 use super::interactions::{SHOWN, SHOWN_ON_PAGE};
 use super::output_correlation::{all_limits, together, together_table};
 use super::requirement::{judged, lines};
+use super::sampling::sampled;
 use super::source::source;
 use super::stack::Stack;
 use super::statistics::{derivative, matters, part, size, total};
@@ -14,7 +15,7 @@ use crate::analysis::{CharacteristicAnalysis, EstimatedShare, IndexSource, Sensi
 use crate::capability::{Capability, Law, Quantiles, TAIL};
 use crate::correlation::Pair;
 use crate::document::number::{
-    UNKNOWN, beside, index, known, limits, percent, plain, plural, shape, share, short, significant,
+    UNKNOWN, beside, index, known, limits, percent, plain, plural, short, significant, yielded,
 };
 use crate::document::rejects::Rejects;
 use crate::document::{
@@ -24,13 +25,13 @@ use crate::document::{
 use crate::extremes::{Extreme, Place};
 use crate::method::Basis;
 use crate::pearson::Pearson;
+use crate::sampling::one_error;
 use crate::short_sort::ShortSort;
 
 /// Contributions that a terminal shows unless all are asked for.
 const CONTRIBUTIONS: usize = 30;
 /// Dimensions that are named, rather than counted, in a sentence.
 const NAMED: usize = 8;
-const SAMPLES: usize = 3;
 /// The heading of the contributions.
 pub(super) const SHARES: &str = "Contributions to the variance";
 /// A rejected share that the normal fit has wrong by more than this part is worth a line.
@@ -64,10 +65,16 @@ impl Report {
         document.gap();
         document.table(self.verdicts());
         if let Some(joint) = &self.analysis.joint {
-            let error = significant(100.0 * joint.error, 2);
-            let text = Rejects::all(1.0 - joint.value, Some(joint.error)).yield_text().unwrap_or_default();
+            let measured = self.analysis.characteristics.iter().any(|one| one.sampling.is_some());
+            let interval = self.analysis.joint_interval.filter(|_| measured);
+            let error = interval.map_or(joint.error, |interval| one_error(joint.value, interval));
+            let text = Rejects::all(1.0 - joint.value, Some(error)).yield_text().unwrap_or_default();
             let requirement = self.analysis.joint_requirement.as_ref();
-            document.note(all_limits(&text, &format!("± {error} %"), requirement));
+            let reach = match interval.map(|ends| ends.map(yielded)) {
+                Some([low, high]) => format!("95 % interval {low} to {high}"),
+                None => format!("± {} %", significant(100.0 * joint.error, 2)),
+            };
+            document.note(all_limits(&text, &reach, requirement));
         }
         if let Some(line) = together(&self.analysis.correlations) {
             document.wrapped(2, line);
@@ -93,7 +100,7 @@ impl Report {
         one.errors(&mut section);
         one.extremes(&mut section);
         one.distribution(&mut section);
-        one.sampling(&mut section);
+        one.sampling.iter().for_each(|of| sampled(&mut section, of, one.sigma().unwrap_or(0.0), one.limited()));
         let concerned = self.warnings.iter().filter(|warning| warning.characteristic.as_deref() == Some(one.name()));
         let codes: Vec<&str> = concerned.map(|warning| warning.code).collect();
         if !codes.is_empty() {
@@ -343,9 +350,12 @@ impl CharacteristicAnalysis {
         section.detail(detail);
     }
 
-    /// The rejects, with their error.
+    /// The rejects, with their error; that of measured samples is part of it.
     pub(super) fn rejects(&self) -> Rejects {
-        let error = self.error_estimate.as_ref().and_then(|estimate| estimate.yield_);
+        let error = match self.sampling.as_ref().and(self.yield_()) {
+            Some(value) => self.yield_interval().map(|interval| one_error(value, interval)),
+            None => self.error_estimate.as_ref().and_then(|estimate| estimate.yield_),
+        };
         let [below, above] = [|of: &Capability| of.below, |of: &Capability| of.above]
             .map(|side| self.capability.as_ref().and_then(side));
         Rejects::new(below, above, error)
@@ -360,52 +370,6 @@ impl CharacteristicAnalysis {
         };
         let seen = |ppm: Option<f64>| ppm.map(|ppm| if ppm < LEAST_PPM { 0.0 } else { ppm });
         far(seen(self.ppm_below()), seen(normal.ppm_below())) || far(seen(self.ppm_above()), seen(normal.ppm_above()))
-    }
-
-    /// The uncertainty by the size of measured samples: intervals beside one another, below what they belong to.
-    fn sampling(&self, section: &mut Section) {
-        let Some(interval) = &self.sampling else { return };
-        let samples = interval.samples.iter().take(SAMPLES);
-        let samples: Vec<String> = samples.map(|(name, count)| format!("{count} values of {}", short(name))).collect();
-        let more = interval.samples.len().saturating_sub(SAMPLES);
-        let more = if more > 0 { format!(" and {more} more samples") } else { String::new() };
-        let (level, samples) = (100.0 * interval.level, samples.join(", "));
-        section.gap();
-        section.note(format!("{level} % intervals for {samples}{more}, by {} resamples", interval.resamples));
-        let scale = self.sigma().unwrap_or(0.0);
-        let range = |ends: Option<[f64; 2]>, text: &dyn Fn(f64) -> String| match ends {
-            Some([low, high]) => format!("{} .. {}", text(low), text(high)),
-            None => "unknown".to_owned(),
-        };
-        let value = |ends| range(ends, &|value| beside(value, scale));
-        let of_shape = |ends| range(ends, &shape);
-        let kept = interval.rejected.map(|[low, high]| [high, low]);
-        let limited = self.limited();
-        let of_limits = |name: &str, text: String| if limited { [name.to_owned(), text] } else { Default::default() };
-        let ([yield_, yields], [cpk, cpks]) =
-            (of_limits("yield", range(kept, &share)), of_limits("Cpk", range(interval.cpk, &index)));
-        let table = DataTable::untitled(
-            [
-                [
-                    "mean".to_owned(),
-                    value(interval.mean),
-                    "skewness".to_owned(),
-                    of_shape(interval.skewness),
-                    yield_,
-                    yields,
-                ],
-                [
-                    "sigma".to_owned(),
-                    value(interval.sigma),
-                    "kurtosis".to_owned(),
-                    of_shape(interval.kurtosis),
-                    cpk,
-                    cpks,
-                ],
-            ]
-            .map(|row| row.map(Cell::text)),
-        );
-        section.table(table.labelled_by(&[2, 4]));
     }
 
     /// The dimensions that vary or do something, with what they do.

@@ -78,6 +78,7 @@ fn simulated(json: &Value, one: &SimulatedCharacteristic) {
         skewness: "/skewness", kurtosis: "/kurtosis", quantiles: "/distribution/quantiles", yield_: "/yield",
         below: "/ppm_below", above: "/ppm_above", cp: "/cp", cpk: "/cpk", unfinished: "/unfinished", range: "/range",
         histogram: "/histogram", control: "/control", indices: "/sobol", inspection: "/inspection",
+        sampling: "/sampling_interval", unsettled: "",
     });
 }
 
@@ -89,7 +90,8 @@ fn an_analysis_is_all_in_its_report() {
     // The surface is for pages that try other tolerances.
     complete!(json, &found => Analysis {
         method: "/method", varying: "/varying", run: "/evaluations", characteristics: "/characteristics/0",
-        joint: "/joint_yield", joint_requirement: "/joint_requirement", correlations: "/characteristic_correlation", account: "/account", basis: "/basis", surface: "", warnings: "/warnings",
+        joint: "/joint_yield", joint_interval: "/joint_yield_interval", joint_requirement: "/joint_requirement",
+        correlations: "/characteristic_correlation", account: "/account", basis: "/basis", surface: "", warnings: "/warnings",
     });
     characteristic(json.pointer("/characteristics/0").unwrap(), &found.characteristics[0]);
 }
@@ -118,13 +120,13 @@ fn samples_are_all_in_their_reports() {
     let one = of.pointer("/characteristics/0").unwrap();
     complete!(one, &found.characteristics[0] => RareCharacteristic {
         characteristic: "/name", failed: "/failed", error: "/error", below: "/below", above: "/above", yield_: "/yield",
-        yield_interval: "/yield_interval", unfinished: "/unfinished",
+        yield_interval: "/yield_interval", sampling: "/sampling_interval", unfinished: "/unfinished",
     });
     let above = one.pointer("/above").unwrap();
     complete!(above, found.characteristics[0].above.as_ref().unwrap() => Beyond {
         limit: "/limit", probability: "/probability", interval: "/interval", bounds: "/bounds", hits: "/hits",
         effective_samples: "/effective_samples", greatest_part: "/greatest_part", plain_samples: "/plain_samples",
-        design_point: "/design_point",
+        design_point: "/design_point", plain_points: "",
     });
 }
 

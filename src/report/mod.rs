@@ -22,6 +22,7 @@ mod labels;
 mod output_correlation;
 mod rare;
 mod requirement;
+mod sampling;
 mod simulation;
 mod source;
 mod stack;

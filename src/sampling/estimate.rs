@@ -1,5 +1,7 @@
 //! Estimates with their standard errors.
 
+use statrs::distribution::{Beta, ContinuousCDF};
+
 use super::Summary;
 use crate::power::{Rescale, Rescaling, Unknown};
 
@@ -39,7 +41,7 @@ pub(crate) const FEWEST: u64 = 10;
 /// ```
 ///
 /// A kurtosis of 10 or more needs its eighth moment, which a sample of less than a million hardly has: there the standard
-/// error is too small.
+/// error is too small, and [`settled`](super::settled) leaves it out.
 pub(crate) fn of_moments(summary: &Summary) -> [Option<Estimate>; 4] {
     let n = summary.count() as f64;
     if summary.count() == 0 {
@@ -105,5 +107,42 @@ pub fn wilson(hits: f64, n: f64) -> [f64; 2] {
     let half = Z * ((share * (1.0 - share) + 0.25 * square) / n).sqrt() / (1.0 + square);
     let low = if hits == 0.0 { 0.0 } else { (middle - half).max(0.0) };
     let high = if hits == n { 1.0 } else { (middle + half).min(1.0) };
+    [low, high]
+}
+
+/// The 95 % interval of a share of which `hits` of `n` were seen: exact, whatever the share is. `hits` may be the mean of several counts, and
+/// need not be whole.
+///
+/// Source: Clopper and Pearson, Biometrika 26 (1934).
+///
+/// ```
+/// use sensitol::internals::clopper_pearson;
+/// // None of 195 leaves 1 - 0.025^(1/195).
+/// let [low, high] = clopper_pearson(0.0, 195.0);
+/// assert!(low == 0.0 && (high - 0.018739).abs() < 1e-6);
+/// // Of 1 of 10 tables have 0.25 % to 44.5 %.
+/// let [low, high] = clopper_pearson(1.0, 10.0);
+/// assert!((low - 0.00253).abs() < 1e-5 && (high - 0.44502).abs() < 1e-5);
+/// ```
+pub fn clopper_pearson(hits: f64, n: f64) -> [f64; 2] {
+    /// The probability beyond either end, and the hits below which the lower end is 0 in double precision.
+    const SIDE: f64 = 0.025;
+    const NONE: f64 = 1e-3;
+    if n.is_nan() || n <= 0.0 {
+        return [0.0, 1.0];
+    }
+    let hits = hits.clamp(0.0, n);
+    let quantile = |a: f64, b: f64, p: f64| Beta::new(a, b).map_or(f64::NAN, |law| law.inverse_cdf(p));
+    // In closed form at the ends, where a shape would be 0.
+    let low = match hits {
+        none if none < NONE => 0.0,
+        all if all >= n => libm::pow(SIDE, 1.0 / n),
+        _ => quantile(hits, n - hits + 1.0, SIDE),
+    };
+    let high = match hits {
+        0.0 => 1.0 - libm::pow(SIDE, 1.0 / n),
+        all if all >= n => 1.0,
+        _ => quantile(hits + 1.0, n - hits, 1.0 - SIDE),
+    };
     [low, high]
 }

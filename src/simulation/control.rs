@@ -95,7 +95,7 @@ impl<'p> Control<'p> {
     }
 
     /// For every characteristic how far its surrogate lies above its centre at these points; empty where it has none.
-    fn rises(&self, points: &Points) -> Vec<Vec<f64>> {
+    pub(super) fn rises(&self, points: &Points) -> Vec<Vec<f64>> {
         let inputs = self.problem.standardised(points, self.outcome.plan.varying());
         let rises = |twin: &Option<Twin>| twin.as_ref().and_then(|twin| twin.surrogate.rises(&inputs));
         self.twins.iter().map(|twin| rises(twin).unwrap_or_default()).collect()

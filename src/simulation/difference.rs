@@ -19,7 +19,7 @@ use faer::{Mat, Side};
 use super::control::{Outside, Twin, sides};
 use super::replicate::of_replicates;
 use crate::moments::Sampled;
-use crate::sampling::{Estimate, FEWEST, Joint, wilson};
+use crate::sampling::{Estimate, FEWEST, Joint, LargestShare, LargestTerms, wilson};
 
 /// Powers of the surrogate that serve as controls.
 const CONTROLS: usize = 4;
@@ -42,6 +42,8 @@ pub(super) struct Difference {
     only: [u64; 2],
     /// How few points carry the sums of `v^k`, and those of `n_k - t^k`.
     carried: [Carried; 2],
+    /// The largest of the `n_k - t^k`.
+    largest: [LargestTerms; CONTROLS],
 }
 
 /// Sums of the squares and the fourth powers of four terms: `(sum r^2)^2 / sum r^4` points carry a sum (Kish 1965).
@@ -82,7 +84,7 @@ impl Difference {
                 difference.lost += 1;
                 let [p1, p2, p3, p4] = powers;
                 rows.push([-1.0, -p1, -p2, -p3, -p4, p1, p2, p3, p4]);
-                difference.carried[1].count(powers);
+                difference.count(powers);
                 continue;
             }
             let d = ((value - twin.centre) - rise) / twin.moments.sigma;
@@ -93,7 +95,7 @@ impl Difference {
             let [p1, p2, p3, p4] = powers;
             rows.push([0.0, d1, d2, d3, d4, p1, p2, p3, p4]);
             difference.carried[0].count([v, v * v, v * v * v, v * v * v * v]);
-            difference.carried[1].count(differences);
+            difference.count(differences);
             let (model, surrogate) = (sides(&twin.limits, value), twin.sides(rise));
             for (side, moved) in difference.moved.iter_mut().enumerate() {
                 *moved += i64::from(model[side]) - i64::from(surrogate[side]);
@@ -108,7 +110,14 @@ impl Difference {
         difference
     }
 
+    /// Counts the differences of one point.
+    fn count(&mut self, differences: [f64; CONTROLS]) {
+        self.carried[1].count(differences);
+        self.largest.iter_mut().zip(differences).for_each(|(largest, difference)| largest.add(difference));
+    }
+
     pub(super) fn merge(&mut self, other: &Self) {
+        self.largest.iter_mut().zip(&other.largest).for_each(|(own, more)| own.merge(more));
         self.sums.merge(&other.sums);
         self.lost += other.lost;
         (0..2).for_each(|side| {
@@ -215,6 +224,18 @@ fn standardised(differences: &[f64; 4], twin: &Twin) -> [Option<(f64, [f64; 4])>
 /// a sum may be off, whatever the replicates say.
 pub(super) fn carried(replicates: &[&Difference]) -> [[f64; CONTROLS]; 2] {
     pooled(replicates).carried.map(|carried| carried.points())
+}
+
+/// How much the largest differences have of the sum of squares that each moment rests on, and the mean square.
+pub(super) fn largest(replicates: &[&Difference]) -> [(LargestShare, f64); CONTROLS] {
+    pooled(replicates).largest.map(|terms| (terms.share(), terms.mean()))
+}
+
+/// The squares of `n_k - t^k` at one point, k = 1 to 4, where the model has this value and the surrogate this rise.
+pub(super) fn squares(value: f64, rise: f64, twin: &Twin) -> [f64; CONTROLS] {
+    let t = (rise - (twin.moments.mean - twin.centre)) / twin.moments.sigma;
+    let v = t + ((value - twin.centre) - rise) / twin.moments.sigma;
+    std::array::from_fn(|k| (v.powi(k as i32 + 1) - t.powi(k as i32 + 1)).powi(2))
 }
 
 /// A moment with the surrogate as control.

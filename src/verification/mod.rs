@@ -37,7 +37,7 @@ pub(crate) use weighted::WeightedSample;
 
 use serde::Serialize;
 
-use crate::assembly::Run;
+use crate::assembly::{Points, Run};
 use crate::correlation::factors;
 use crate::power::{Rescale, Rescaling, Unknown};
 use crate::problem::Problem;
@@ -178,6 +178,53 @@ pub(crate) fn seldom_points(problem: &Problem, c: usize, varying: &[usize], seed
     let point =
         |space: strata::HalfSpace| space.direction.iter().map(|part| part * (space.from + sides::BEFORE)).collect();
     found.half_spaces.into_iter().map(point).collect()
+}
+
+/// The switches of a characteristic, and points beyond those that are seldom met.
+pub(crate) struct SeldomSides {
+    pub(crate) switches: Vec<FoundSwitch>,
+    /// Points of the half-spaces that hold the seldom sides, with the values there, NaN where there is none.
+    pub(crate) points: Points,
+    pub(crate) values: Vec<f64>,
+    /// Their sum is the probability of the half-spaces.
+    pub(crate) weights: Vec<f64>,
+}
+
+/// Looks for the switches of a characteristic whose values spread by `scale`; None where the model is costly, or does not tell its switches, and
+/// where the run was stopped.
+///
+/// Evaluations: 256 for every half-space, six at most. The margins of switches, and some values beside them, are read besides.
+pub(crate) fn seldom_sides(
+    problem: &Problem,
+    c: usize,
+    (seed, scale): (u64, f64),
+    run: &Run<'_>,
+) -> Option<SeldomSides> {
+    /// Points of a half-space: a tenth of what its part of a moment is.
+    const WITHIN: usize = 1 << 8;
+    let function = problem.function();
+    let told = function.switches(problem.outputs()[c]).filter(|told| !told.list.is_empty());
+    told.filter(|_| !function.signature().costly)?;
+    let model = Model::new(problem, c).during(run);
+    let normals = Normals::new(model.len(), seed);
+    let found = sides::sides(&model, &normals, if scale > 0.0 { scale } else { 1.0 });
+    let mut all: Columns = vec![Vec::new(); model.len()];
+    let mut weights = Vec::new();
+    for (index, space) in found.half_spaces.iter().enumerate() {
+        let mut z = normals.columns((1 << 34) + index as u64, WITHIN);
+        let own = space.enter(&mut z);
+        // A point counts in the first half-space that holds it.
+        let mut held = vec![false; WITHIN];
+        for earlier in &found.half_spaces[..index] {
+            held.iter_mut().zip(earlier.holds(&z)).for_each(|(held, by)| *held |= by);
+        }
+        for (all, column) in all.iter_mut().zip(z) {
+            all.extend(column.iter().zip(&held).filter(|(_, held)| !**held).map(|(z, _)| *z));
+        }
+        weights.extend(own.iter().zip(&held).filter(|(_, held)| !**held).map(|(weight, _)| weight / WITHIN as f64));
+    }
+    let (points, values) = model.points_and_values(&all);
+    (!model.stopped()).then(|| SeldomSides { switches: found.switches.unwrap_or_default(), points, values, weights })
 }
 
 /// The share of a characteristic's variance that a surface over the dimensions at `varying` leaves unexplained, by 1024 points of the

@@ -48,6 +48,8 @@ pub enum Advice {
     SamplePlainly,
     /// Draw more points.
     MorePoints,
+    /// Analyse the study, whose sample lies along the tails.
+    Analyze,
     /// Take differences over a shorter step.
     SmallerStep {
         /// Along this dimension; None for all.
@@ -160,6 +162,7 @@ impl fmt::Display for Advice {
             Self::SampleRareEvents => "Sample the model by importance sampling.",
             Self::SamplePlainly => "Sample without importance sampling.",
             Self::MorePoints => "Draw more points.",
+            Self::Analyze => "Analyse the study, which samples the tails by themselves.",
             Self::SmallerStep { dimension: None } => "Use a smaller step.",
             Self::UseDifferences => "Take derivatives from differences.",
             Self::IncludeFixedDimensions => "Ask for the sensitivities of all dimensions.",

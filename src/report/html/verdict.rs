@@ -17,7 +17,7 @@ use crate::requirement::Requirement;
 use crate::sampling::{Estimate, one_error};
 use crate::shape::finite;
 use crate::simulation::{SimulatedCharacteristic, YieldEstimate};
-use crate::verdict::{Judged, Verdict, about, share};
+use crate::verdict::{Judged, Verdict};
 
 /// Claims of one kind that a sentence makes.
 const NAMED: usize = 6;
@@ -139,15 +139,14 @@ impl<'r> JudgedCharacteristic<'r> {
 
     /// Of a simulation.
     pub(super) fn simulated(place: usize, one: &'r SimulatedCharacteristic) -> Self {
-        let error = one.yield_.map(|share| one_error(share.value, share.interval));
         Self {
             verdict: one.verdict(),
             asked: asked(one.requirements()),
             yield_: one.yield_(),
-            interval: one.yield_.map(|share| share.interval),
+            interval: one.yield_interval(),
             ppm: [one.ppm_below(), one.ppm_above()],
             cpk: one.cpk,
-            ..Self::of(one, place).rejecting(Rejects::new(one.below, one.above, error))
+            ..Self::of(one, place).rejecting(Rejects::new(one.below, one.above, one.yield_error()))
         }
     }
 
@@ -184,7 +183,6 @@ impl<'r> JudgedCharacteristic<'r> {
             let (a, b) = (rank(a), rank(b));
             a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
         })?;
-        let error = worst.error_estimate.as_ref().and_then(|estimate| estimate.yield_);
         let target = worst.requirements.iter().find_map(|judged| match judged.requirement {
             Requirement::Yield(target) => Some(target),
             _ => None,
@@ -196,7 +194,7 @@ impl<'r> JudgedCharacteristic<'r> {
             asked: asked(worst.requirements.clone()),
             at: format!("at {parameter} = {}", plain(worst.at)),
             yield_: worst.yield_,
-            interval: worst.yield_.and_then(|value| about(value, error)).map(share),
+            interval: worst.yield_interval,
             ppm: [worst.ppm_below, worst.ppm_above],
             ..Self::named(&one.name, [one.lower, one.upper], place).rejecting(worst.rejects())
         })
