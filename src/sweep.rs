@@ -302,6 +302,10 @@ impl AssemblyFunction for Gatherer {
         self.function().bounds(output, region)
     }
 
+    fn magnitudes(&self, outputs: &[usize], point: &[f64]) -> Vec<Option<f64>> {
+        self.function().magnitudes(outputs, point)
+    }
+
     fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
         let rows = request.points.rows();
         // Others than all outputs are not what is kept in mind.

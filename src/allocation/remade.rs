@@ -30,7 +30,7 @@ impl Responses {
             let surrogate = one.surrogate.as_ref().map(|surrogate| surrogate.relocated(&moved));
             let law = match (&surrogate, &of_inputs) {
                 (Some(surrogate), Some(inputs_of)) if laws && one.limits.exist() => {
-                    law_over(surrogate, inputs_of, inputs.correlation()).ok()
+                    law_over(surrogate, inputs_of, inputs.correlation(), one.rounding).ok()
                 }
                 _ => None,
             };
@@ -40,6 +40,7 @@ impl Responses {
                 slopes: one.slopes.clone(),
                 depends: one.depends.clone(),
                 limits: one.limits,
+                rounding: one.rounding,
                 law,
                 unknown: one.unknown,
                 sampled: None,

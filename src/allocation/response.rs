@@ -59,6 +59,8 @@ pub(super) struct Response {
     /// Whether it can depend on each dimension.
     pub(super) depends: Vec<bool>,
     pub(super) limits: SpecLimits,
+    /// By how much rounding may move a value of it.
+    pub(super) rounding: f64,
     /// The law of the surface, where a yield comes from one.
     pub(super) law: Option<SurfaceLaw>,
     pub(super) unknown: Unknown,
@@ -110,6 +112,7 @@ impl Responses {
                     slopes: (0..n).map(slope).collect(),
                     depends,
                     limits,
+                    rounding: problem.kept_limits(c).rounding(),
                     law: by_law.then(|| surface_law(problem, outcome, c)?.ok()).flatten(),
                     unknown: Unknown::of(found, by_law),
                     sampled: None,
@@ -213,7 +216,7 @@ impl Responses {
                 *law = Arc::clone(self.dimensions[d].scaled(factors[d])?.ok()?.law()?);
             }
         }
-        law_over(&surrogate, &laws, inputs.correlation()).ok()
+        law_over(&surrogate, &laws, inputs.correlation(), self.of[c].rounding).ok()
     }
 
     /// Factors of all dimensions when the groups have these half bands.

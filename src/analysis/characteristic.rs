@@ -21,7 +21,7 @@ use crate::pearson::PearsonError;
 use crate::power::{Rescale, Rescaling, Wide, rescale};
 use crate::problem::Problem;
 use crate::requirement::Requirement;
-use crate::shape::{Four, through};
+use crate::shape::{Four, RejectIntervals, through};
 use crate::surrogate::DerivativeOrigin;
 use crate::verdict::{self, Judged, Verdict};
 
@@ -76,6 +76,11 @@ pub struct CharacteristicAnalysis {
     #[serde(flatten, serialize_with = "through::<CapabilityShape, _, _>")]
     #[cfg_attr(feature = "cli", schemars(with = "CapabilityShape"))]
     pub capability: Option<Capability>,
+    /// The 95 % intervals of the shares below and above the limits, each by itself: 0 to 0 where a proof excludes a side, None without that
+    /// limit and where it is not known.
+    #[serde(flatten, serialize_with = "through::<RejectIntervals, _, _>")]
+    #[cfg_attr(feature = "cli", schemars(with = "RejectIntervals"))]
+    pub reject_intervals: [Option<[f64; 2]>; 2],
     /// How the distribution with its moments keeps them: the Pearson fit.
     #[serde(rename = "pearson_fit")]
     #[cfg_attr(feature = "cli", schemars(with = "Option<CapabilityShape>"))]
@@ -175,7 +180,7 @@ rescale!(CharacteristicAnalysis {
     nominal, moments, sampled, model_sampled, verification, surface_law, error_estimate, residual, law, coverage, inspection, sampling,
     worst_case, curved, extremes, bounds, middle, rss, inflated_rss, mean_shift_rss, six_sigma, sensitivities, interactions,
 } without {
-    characteristic, yield_source, unfinished, without_value, capability, pearson, normal, interactions_remainder, possible_interactions, examined_interactions,
+    characteristic, yield_source, unfinished, without_value, capability, pearson, normal, reject_intervals, interactions_remainder, possible_interactions, examined_interactions,
     left_out_share, indices, constant, density,
 });
 
@@ -353,7 +358,10 @@ impl CharacteristicAnalysis {
         let sampled = shares.as_ref().and_then(Shares::sampled);
         let law = moments.map(|moments| Law::fit(&moments));
         let capability = |law: &Law| {
-            moments.map(|moments| Capability::of(law, moments.mean(), moments.sigma(), characteristic.limits()))
+            moments.map(|moments| {
+                let (limits, kept) = (characteristic.limits(), problem.kept_limits(c));
+                Capability::of_kept(law, moments.mean(), moments.sigma(), limits, kept)
+            })
         };
         let normal = moments.and_then(|moments| capability(&Law::normal(&moments).ok()?));
         let error_estimate = moments.and_then(|moments| {
@@ -383,6 +391,7 @@ impl CharacteristicAnalysis {
             residual: fitted.residual,
             capability: law.as_ref().and_then(|law| capability(law.as_ref().ok()?)),
             normal,
+            reject_intervals: [None; 2],
             law,
             sampling: None,
             coverage: None,

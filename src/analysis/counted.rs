@@ -51,8 +51,9 @@ pub(super) fn counted(
 ) -> Option<Counted> {
     let values = points(problem, outcome, (c, seed))?;
     let limits = problem.characteristics()[c].limits();
-    let below = limits.lower().map(|lower| values.partition_point(|&y| y < lower));
-    let above = limits.upper().map(|upper| values.len() - values.partition_point(|&y| y <= upper));
+    let kept = problem.kept_limits(c);
+    let below = limits.lower().map(|_| values.partition_point(|&y| kept.broken(y)[0]));
+    let above = limits.upper().map(|_| values.len() - values.partition_point(|&y| !kept.broken(y)[1]));
     let share = |count: usize| {
         LawFigure::counted(count as f64 / values.len() as f64, error(count as f64, values.len()) / values.len() as f64)
     };

@@ -18,5 +18,5 @@ pub fn law_at(
     let inputs = surface.varying.iter().map(|&d| problem.dimensions()[d].law().cloned()).collect::<Option<_>>()?;
     let (surrogate, inputs) =
         with(&fit.surrogate.relocated(moved), inputs, fit.unexplained_sigma.map(|sigma| sigma * sigma));
-    Some(law_over(&surrogate, &inputs, None))
+    Some(law_over(&surrogate, &inputs, None, problem.kept_limits(characteristic).rounding()))
 }

@@ -37,14 +37,17 @@ pub(super) fn add_sampling_intervals(
         let measured = |d: usize| samples.iter().any(|sample| sample.dimensions.contains(&d));
         let depended = outcome.plan.varying().iter().filter(|&&d| outcome.plan.depends(c, d));
         let alone = samples.iter().all(|sample| sample.is_empirical) && depended.clone().all(|&d| measured(d));
-        one.sampling = Some(SamplingInterval {
+        let interval = SamplingInterval {
             rejected: rejected(one, &samples, alone, resampled.as_ref()),
             samples: (samples.iter())
                 .flat_map(|sample| sample.dimensions.iter().map(|&d| (d, sample.size)))
                 .map(|(d, size)| (problem.dimensions()[d].name().to_owned(), size))
                 .collect(),
             ..by_resamples(resampled)
-        });
+        };
+        let sides = one.capability.map_or([None; 2], |of| [of.below, of.above]);
+        one.reject_intervals = interval.of_sides(sides, one.reject_intervals);
+        one.sampling = Some(interval);
     }
     drawn
 }

@@ -250,7 +250,7 @@ pub(crate) fn analyze_keeping(
     for (c, (one, shares)) in characteristics.iter_mut().zip(shares).enumerate() {
         one.interactions = interactions::listed(problem, &outcome, c, shares.as_ref());
     }
-    let joint = options.target_joint_yield.and_then(|_| settle::joint(&characteristics, &laws));
+    let joint = options.target_joint_yield.and_then(|_| settle::joint(problem, options, &characteristics, &laws));
     let spent = spent(&outcome, options).and(&fallback.run).and(&jumps.run).and(&verified);
     // The extremes say nothing of a share.
     characteristics.iter_mut().for_each(|one| one.unfinished = spent.unfinished());
@@ -286,7 +286,7 @@ impl Analysis {
         let begun = Instant::now();
         let Findings { outcome, laws } = findings;
         if self.joint.is_none() {
-            self.joint = settle::joint(&self.characteristics, laws);
+            self.joint = settle::joint(problem, options, &self.characteristics, laws);
             self.joint_interval = self.joint.and_then(|joint| joint_interval(joint, &self.characteristics));
         }
         self.correlations = outputs::correlations(problem, outcome, options, &self.characteristics);

@@ -30,6 +30,9 @@ pub struct SampledModel {
     pub yield_: Option<(f64, [f64; 2])>,
     /// Its shares below the lower and above the upper limit; None without that limit.
     pub beyond: [Option<f64>; 2],
+    /// The 95 % intervals of these shares.
+    #[serde(skip)]
+    pub(crate) intervals: [Option<[f64; 2]>; 2],
     /// The sample, counted in some tens of intervals.
     pub histogram: Option<Histogram>,
     /// First-order indices of the dimensions, by the ranks of the sample; empty where the model is cheap enough to be asked anew.

@@ -109,6 +109,7 @@ fn proven(outcome: &Outcome, c: usize, one: &mut CharacteristicAnalysis) -> bool
         figures: [None; 4],
         yield_: None,
         beyond: [None; 2],
+        point: 0.0,
         difference: None,
         switches: Some(Vec::new()),
         unseen: None,
@@ -184,6 +185,7 @@ fn sample(
         figures: [found.mean, found.sigma, found.skewness, found.kurtosis],
         yield_: found.yield_,
         beyond: found.beyond,
+        point: found.point,
         difference: found.difference,
         switches: found.switches.filter(|found| {
             !found.is_empty() || problem.function().switches(problem.outputs()[c]).is_some_and(|of| of.complete)
@@ -301,6 +303,7 @@ fn judge(one: &mut CharacteristicAnalysis, checked: &Checked, found: &CheckedFig
         figures: [None; 4],
         yield_: found.yield_,
         beyond: found.beyond,
+        point: 0.0,
         difference: None,
         switches: None,
         unseen: Some(checked.unseen()),

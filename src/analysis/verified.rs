@@ -57,6 +57,9 @@ pub struct Verification {
     /// The shares beyond the lower and the upper limit.
     #[serde(skip)]
     pub beyond: [Option<Verified>; 2],
+    /// The weight of one point of a sample.
+    #[serde(skip)]
+    pub(crate) point: f64,
     /// How much more of the model than of its surface lies within the limits, below and above them; None without a sample of both.
     pub difference: Option<[Verified; 3]>,
     /// The switches that are met; None where the model does not tell where it changes its form.

@@ -408,6 +408,22 @@ impl AssemblyFunction for Composite {
         }
     }
 
+    /// Of formulas of the dimensions alone.
+    fn magnitudes(&self, outputs: &[usize], point: &[f64]) -> Vec<Option<f64>> {
+        let alone = |&output: &usize| {
+            let Needs { answers, unknowns, .. } = self.needs(self.outputs[output]);
+            match self.outputs[output] {
+                Origin::Formula(formula) if answers.is_empty() && !unknowns => Some(formula),
+                _ => None,
+            }
+        };
+        let formulas: Vec<Option<usize>> = outputs.iter().map(alone).collect();
+        let known: Vec<usize> = formulas.iter().flatten().copied().collect();
+        let mut magnitudes = self.formulas.magnitudes(&known, |index| point[index]).into_iter();
+        let of = |formula: Option<usize>| formula.and_then(|_| magnitudes.next()).filter(|terms| terms.is_finite());
+        formulas.into_iter().map(of).collect()
+    }
+
     fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
         let origins = self.origins(request.outputs);
         let needs: Vec<Needs> = origins.iter().map(|&origin| self.needs(origin)).collect();

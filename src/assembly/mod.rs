@@ -71,6 +71,13 @@ pub trait AssemblyFunction: Send + Sync {
         None
     }
 
+    /// The sums of the magnitudes of the terms of `outputs` at a point, in the order asked: an output is rounded by parts of them. None for
+    /// an output of which the function does not know its terms, and where it has no value. This is not an evaluation.
+    fn magnitudes(&self, outputs: &[usize], point: &[f64]) -> Vec<Option<f64>> {
+        let _ = point;
+        vec![None; outputs.len()]
+    }
+
     /// Answers `request.points` for `request.outputs` into `out`, whose rows are the points and whose columns are the asked
     /// outputs in the order asked.
     ///

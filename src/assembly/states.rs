@@ -132,6 +132,16 @@ impl AssemblyFunction for States {
         state.function.bounds(own, &moved)
     }
 
+    fn magnitudes(&self, outputs: &[usize], point: &[f64]) -> Vec<Option<f64>> {
+        let mut found = vec![None; outputs.len()];
+        for (state, asked, own) in self.by_state(outputs) {
+            let moved: Vec<f64> = point.iter().zip(&state.moved).map(|(x, by)| x + by).collect();
+            let magnitudes = state.function.magnitudes(&own, &moved);
+            asked.into_iter().zip(magnitudes).for_each(|(place, magnitude)| found[place] = magnitude);
+        }
+        found
+    }
+
     fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
         let mut spent = 0;
         for (state, asked, own) in self.by_state(request.outputs) {

@@ -28,6 +28,7 @@ mod answers;
 mod climb;
 mod model;
 mod proof;
+mod sides;
 mod start;
 mod task;
 mod zone;
@@ -35,6 +36,7 @@ mod zone;
 pub use crate::warning::Ended;
 pub use answers::Spent;
 pub(crate) use model::{Model, Region};
+pub(crate) use sides::keeps_by_proof;
 
 use answers::Answers;
 use climb::Climb;

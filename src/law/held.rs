@@ -42,6 +42,7 @@ impl HeldTail {
         if y.is_nan() || y <= least || y >= most {
             return own();
         }
+        let y = law.beyond(y, self.tail);
         match (&self.kind, &law.kind) {
             (HeldKind::Line(line), Kind::Exact(inversion)) => inversion.tail_along(y, line).unwrap_or_else(own),
             (HeldKind::Points(held), Kind::Sampled(sampled)) => sampled.tail_held(y, held).unwrap_or_else(own),

@@ -113,7 +113,8 @@ impl ResponseSurface {
         for &d in &varying {
             let axis = Axis::varying(&dimensions[d], Spread::Pair, options.step);
             let far: Vec<f64> = axis.slots.iter().map(|slot| axis.nodes[slot[0] as usize].x).collect();
-            near.push([0, far.len() - 1].map(|side| axis.mean + (far[side] - axis.mean) / 3f64.sqrt()));
+            let nearer = |side: usize| axis.nearest_value(axis.mean + (far[side] - axis.mean) / 3f64.sqrt());
+            near.push([0, far.len() - 1].map(nearer));
             design.steps(d, far.iter().copied());
             design.take_notes(d, axis);
             for x in far {

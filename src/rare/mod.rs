@@ -432,11 +432,11 @@ fn targets<'a>(problem: &Problem, surrogates: &'a Surrogates, space: &'a Space<'
     let mut targets = Vec::new();
     for (c, characteristic) in problem.characteristics().iter().enumerate() {
         let Some(known) = surrogates.known.get(c).and_then(Option::as_ref) else { continue };
-        let limits = characteristic.limits();
-        for (side, limit) in [(-1.0, limits.lower()), (1.0, limits.upper())] {
-            let Some(limit) = limit else { continue };
+        let (limits, [lower, upper]) = (characteristic.limits(), problem.kept_limits(c).ends());
+        for (side, given, limit) in [(-1.0, limits.lower(), lower), (1.0, limits.upper(), upper)] {
+            let Some(given) = given else { continue };
             let (surrogate, sigma) = (&known.surrogate, known.moments.sigma);
-            let target = Target { space, characteristic: c, side, kept: false, limit, surrogate, sigma };
+            let target = Target { space, characteristic: c, side, kept: false, given, limit, surrogate, sigma };
             let middle = target.margins(&vec![vec![0.0]; space.len()]);
             targets.push(Target { kept: middle.first().is_some_and(|&margin| margin > 0.0), ..target });
         }

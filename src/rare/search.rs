@@ -418,7 +418,7 @@ impl<'a> Search<'a> {
                 Some(value * (1.0 - value) / error / error).filter(|samples| samples.is_finite())
             };
             Some(Beyond {
-                limit: self.targets[index].limit,
+                limit: self.targets[index].given,
                 probability: found.probability,
                 interval: found.interval,
                 bounds: found.bounds,

@@ -358,7 +358,7 @@ impl CharacteristicAnalysis {
         };
         let [below, above] = [|of: &Capability| of.below, |of: &Capability| of.above]
             .map(|side| self.capability.as_ref().and_then(side));
-        Rejects::new(below, above, error)
+        Rejects::new(below, above, error).within(self.reject_intervals)
     }
 
     /// Whether the normal fit rejects visibly more or fewer, on either side.

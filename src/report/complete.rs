@@ -52,7 +52,7 @@ fn characteristic(json: &Value, one: &CharacteristicAnalysis) {
     complete!(json, one => CharacteristicAnalysis {
         characteristic: "/name", nominal: "/nominal", moments: "/kurtosis", sampled: "/surrogate_sampling",
         model_sampled: "/model_sampling", surface_law: "/surface_law", density: "", curved: "", yield_source: "/yield_source", pearson: "/pearson_fit", unfinished: "/unfinished", without_value: "/without_value",
-        error_estimate: "/error_estimate", residual: "/least_squares", law: "/distribution", capability: "/cpk",
+        error_estimate: "/error_estimate", residual: "/least_squares", law: "/distribution", capability: "/cpk", reject_intervals: "/ppm_above_interval",
         normal: "/normal_fit", sampling: "/sampling_interval", worst_case: "/worst_case/linear",
         extremes: "/worst_case/extremes", bounds: "/worst_case/bounds", middle: "/middle", rss: "/rss", inflated_rss: "/inflated_rss",
         mean_shift_rss: "/mean_shift_rss", six_sigma: "/six_sigma", sensitivities: "/sensitivities/1", interactions: "/interactions/0", interactions_remainder: "/interactions_remainder",
@@ -76,7 +76,7 @@ fn simulated(json: &Value, one: &SimulatedCharacteristic) {
     complete!(json, one => SimulatedCharacteristic {
         characteristic: "/name", samples: "/samples", failed: "/failed", error: "/error", mean: "/mean", sigma: "/sigma",
         skewness: "/skewness", kurtosis: "/kurtosis", quantiles: "/distribution/quantiles", yield_: "/yield",
-        below: "/ppm_below", above: "/ppm_above", cp: "/cp", cpk: "/cpk", unfinished: "/unfinished", range: "/range",
+        below: "/ppm_below", above: "/ppm_above", reject_intervals: "/ppm_below_interval", cp: "/cp", cpk: "/cpk", unfinished: "/unfinished", range: "/range",
         histogram: "/histogram", control: "/control", indices: "/sobol", inspection: "/inspection",
         sampling: "/sampling_interval", unsettled: "",
     });

@@ -33,7 +33,8 @@ impl<'r> Glance<'r> {
             sigma: text(one.sigma, of_sigma),
             cpk: one.cpk,
             yield_: one.yield_.map_or_else(String::new, |share| {
-                let text = Rejects::new(one.below, one.above, one.yield_error()).with_error();
+                let rejects = Rejects::new(one.below, one.above, one.yield_error());
+                let text = rejects.within(one.reject_intervals).with_error();
                 text.unwrap_or_else(|| yielded(share.value))
             }),
             verdict: verdict(&one.requirements()),

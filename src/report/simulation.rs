@@ -132,7 +132,7 @@ impl SimulatedCharacteristic {
     fn kept(&self, section: &mut Section, yield_: YieldEstimate) {
         let [low, high] = self.yield_interval().unwrap_or(yield_.interval).map(yielded);
         let target = judged(self.target(), self.verdict());
-        let rejects = Rejects::new(self.below, self.above, self.yield_error());
+        let rejects = Rejects::new(self.below, self.above, self.yield_error()).within(self.reject_intervals);
         let text = rejects.yield_text().unwrap_or_else(|| yielded(yield_.value));
         section.note(Line::from(format!("yield {text}, 95 % interval {low} to {high}")).and(target));
         if let Some([low, high]) = self.yield_bounds() {
@@ -191,6 +191,7 @@ impl SimulatedCharacteristic {
         let quantiles = QUANTILES.into_iter().zip(self.quantiles).map(|(name, estimate)| (name, estimate, None));
         let seen = if self.samples == 0 { 0 } else { moments.len() + QUANTILES.len() };
         let plain = |value: Option<f64>| value.map(|value| Estimate { value, standard_error: None });
+        let millionths = |interval: Option<[f64; 2]>| interval.map(|ends| ends.map(|end| 1e6 * end));
         let risk = |name: &'static str, share: fn(&InspectionRisks) -> Option<EstimatedShare>| {
             let of = self.inspection.as_ref()?;
             Some((name, share(of).map(|of| Estimate { value: of.value, standard_error: of.error }), None))
@@ -203,8 +204,8 @@ impl SimulatedCharacteristic {
         ];
         let rest: [Row; 3] = [
             ("yield", plain(self.yield_()), self.yield_interval()),
-            ("ppm_below", plain(self.ppm_below()), None),
-            ("ppm_above", plain(self.ppm_above()), None),
+            ("ppm_below", plain(self.ppm_below()), millionths(self.reject_intervals[0])),
+            ("ppm_above", plain(self.ppm_above()), millionths(self.reject_intervals[1])),
         ];
         let error = |row: &Row| row.1.and_then(|estimate| estimate.standard_error);
         Columns::default()

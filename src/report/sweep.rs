@@ -18,6 +18,7 @@ use crate::document::{
 };
 use crate::method::ErrorEstimate;
 use crate::problem::Problem;
+use crate::shape::{RejectIntervals, through};
 use crate::summary::RunSummary;
 use crate::sweep::Sweep;
 use crate::verdict::{Judged, Verdict};
@@ -105,6 +106,10 @@ pub(crate) struct SweptPointReport {
     pub(crate) ppm_below: Option<f64>,
     /// Rejected above the upper limit.
     pub(crate) ppm_above: Option<f64>,
+    /// The intervals of both.
+    #[serde(flatten, serialize_with = "through::<RejectIntervals, _, _>")]
+    #[cfg_attr(feature = "cli", schemars(with = "RejectIntervals"))]
+    pub(crate) reject_intervals: [Option<[f64; 2]>; 2],
     /// Whether the target yield is met; null where that is not known, and without one.
     pub(crate) met: Option<bool>,
     /// The same in a word.
@@ -366,6 +371,7 @@ impl SweptPointReport {
             yield_source: analysis.and_then(|one| one.yield_source),
             ppm_below: of(Figures::ppm_below),
             ppm_above: of(Figures::ppm_above),
+            reject_intervals: analysis.map_or([None; 2], |one| one.reject_intervals),
             met: analysis.and_then(CharacteristicAnalysis::met),
             verdict: analysis.and_then(CharacteristicAnalysis::verdict),
             requirements: analysis.map_or(Vec::new(), CharacteristicAnalysis::requirements),

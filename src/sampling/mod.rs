@@ -17,7 +17,7 @@ mod summary;
 pub use draws::{Draws, Portion, Sampler, SamplingError};
 pub(crate) use draws::{Room, tails};
 pub use estimate::{Estimate, clopper_pearson, wilson};
-pub(crate) use estimate::{FEWEST, of_moments, one_error};
+pub(crate) use estimate::{FEWEST, of_moments, one_error, weighted_interval};
 pub use fine::{Fine, Scale};
 pub use joe_kuo::SOBOL_DIMENSIONS;
 pub(crate) use joint::Joint;

@@ -12,14 +12,17 @@ use super::seldom::Seldom;
 use super::shape::value;
 use crate::assembly::EvaluationError;
 use crate::capability::{self, InspectionRisks, TAIL};
-use crate::characteristic::{Characteristic, SpecLimits};
+use crate::characteristic::{Characteristic, KeptLimits, SpecLimits};
+use crate::extremes::keeps_by_proof;
 use crate::method::Method;
 use crate::power::rescale;
+use crate::problem::Problem;
 use crate::requirement::Requirement;
 use crate::sampling::{
-    Estimate, FEWEST, Fine, LargestShare, SamplingInterval, Summary, of_moments, one_error, settled, wilson,
+    Estimate, FEWEST, Fine, LargestShare, SamplingInterval, Summary, clopper_pearson, of_moments, one_error, settled,
+    wilson,
 };
-use crate::shape::{millionths, text};
+use crate::shape::{RejectIntervals, millionths, text, through};
 use crate::verdict::{self, Judged, Verdict};
 use crate::warning::Warning;
 
@@ -72,6 +75,11 @@ pub struct SimulatedCharacteristic {
     #[serde(rename = "ppm_above", serialize_with = "millionths")]
     #[cfg_attr(feature = "cli", schemars(description = "Assemblies above the upper limit, per million."))]
     pub above: Option<f64>,
+    /// The 95 % intervals of the shares below and above, each by its own count; 0 to 0 where a proof excludes a side, None without that limit
+    /// or any value.
+    #[serde(flatten, serialize_with = "through::<RejectIntervals, _, _>")]
+    #[cfg_attr(feature = "cli", schemars(with = "RejectIntervals"))]
+    pub reject_intervals: [Option<[f64; 2]>; 2],
     /// Width of the limits by six sigma; None unless there are two, and where nothing varies.
     pub cp: Option<f64>,
     /// Distance of the nearer limit by three sigma.
@@ -144,7 +152,8 @@ fn share<S: Serializer>(estimate: &Option<YieldEstimate>, serializer: S) -> Resu
 }
 
 rescale!(SimulatedCharacteristic { mean, sigma, quantiles, range, histogram, inspection, sampling } without {
-    characteristic, samples, failed, error, skewness, kurtosis, yield_, below, above, cp, cpk, unfinished, control, indices, unsettled,
+    characteristic, samples, failed, error, skewness, kurtosis, yield_, below, above, reject_intervals, cp, cpk, unfinished, control, indices,
+    unsettled,
 });
 rescale!(Histogram { edges } without { counts });
 
@@ -181,7 +190,7 @@ fn finite(estimate: Option<Estimate>) -> Option<Estimate> {
 }
 
 impl SimulatedCharacteristic {
-    pub(super) fn of(characteristic: &Characteristic, evidence: &Evidence<'_>) -> Self {
+    pub(super) fn of((characteristic, kept): (&Characteristic, KeptLimits), evidence: &Evidence<'_>) -> Self {
         let count = evidence.count;
         let all = &evidence.all;
         let fine = pooled(&count.replicates);
@@ -208,7 +217,7 @@ impl SimulatedCharacteristic {
         let value = |estimate: Option<Estimate>| estimate.map(|estimate| estimate.value);
         let spread = value(sigma).filter(|&sigma| sigma > 0.0);
         let width = limits.lower().zip(limits.upper()).map(|(lower, upper)| upper - lower);
-        let inspection = inspected(characteristic, count, fine.as_ref());
+        let inspection = inspected(characteristic, kept, count, fine.as_ref());
         Self {
             cp: width.zip(spread).map(|(width, sigma)| width / (6.0 * sigma)),
             cpk: value(mean).zip(spread).and_then(|(mean, sigma)| capability::cpk(mean, sigma, limits)),
@@ -224,6 +233,10 @@ impl SimulatedCharacteristic {
             yield_: evidence.yield_of(limits),
             below: limits.lower().and_then(|_| share(0)),
             above: limits.upper().and_then(|_| share(1)),
+            reject_intervals: [
+                limits.lower().and_then(|_| evidence.interval_of(0)),
+                limits.upper().and_then(|_| evidence.interval_of(1)),
+            ],
             histogram: range.zip(fine).zip(low.zip(high)).map(|((range, fine), (low, high))| {
                 let (edges, counts) = fine.histogram(range, [low, high], BINS);
                 Histogram { edges, counts }
@@ -244,13 +257,25 @@ impl SimulatedCharacteristic {
         }
     }
 
-    /// With what measured samples leave open.
-    pub(super) fn with_sampling(self, sampling: Option<SamplingInterval>) -> Self {
-        Self { sampling, ..self }
+    /// With what measured samples leave open, of all rejects and of each side.
+    pub(super) fn with_sampling(self, sampling: SamplingInterval) -> Self {
+        let sides = [self.below, self.above];
+        let reject_intervals = sampling.of_sides(sides, self.reject_intervals);
+        Self { sampling: Some(sampling), reject_intervals, ..self }
     }
 }
 
 impl SimulatedCharacteristic {
+    /// With the proof that a side beyond which no point lies has no rejects, where interval arithmetic has one.
+    pub(super) fn with_proof(mut self, problem: &Problem, c: usize) -> Self {
+        let open = [self.below == Some(0.0), self.above == Some(0.0)];
+        let proven = keeps_by_proof(problem, c, open);
+        for (interval, proven) in self.reject_intervals.iter_mut().zip(proven) {
+            *interval = if proven { Some([0.0; 2]) } else { *interval };
+        }
+        self
+    }
+
     /// How a requirement is kept, whether or not it is the characteristic's own: by the interval of the yield, where points without
     /// a value may all be rejected ones, or by two standard errors of mean and sigma, with what measured samples leave open of Cpk and
     /// sigma. Of rss and worst case a sample knows nothing.
@@ -472,13 +497,35 @@ impl<'a> Evidence<'a> {
         shares(differences, twin.outside.as_ref()?, REJECTED * differences.len() as u64)
     }
 
+    /// The interval of the share below (0) or above (1) the limits by its own count; None where no value is known.
+    fn interval_of(&self, side: usize) -> Option<[f64; 2]> {
+        let (known, replicates) = (self.all.count(), &self.count.replicates);
+        if let Some(shares) = self.shares() {
+            return Some(shares.intervals[side]);
+        }
+        let outside: u64 = replicates.iter().map(|replicate| replicate.outside[side]).sum();
+        let value = outside as f64 / known as f64;
+        let few = outside.min(known - outside) < REJECTED * replicates.len() as u64;
+        let scatter = of_replicates(replicates.iter().map(|replicate| {
+            let n = replicate.summary.count();
+            (n > 0).then(|| replicate.outside[side] as f64 / n as f64)
+        }));
+        match scatter {
+            _ if known == 0 => None,
+            Some(error) if !few && error > 0.0 => {
+                Some([(value - 2.0 * error).max(0.0), (value + 2.0 * error).min(1.0)])
+            }
+            _ => Some(clopper_pearson(outside as f64, known as f64)),
+        }
+    }
+
     /// The share within the limits; None where there are none, or no value is known.
     pub(super) fn yield_of(&self, limits: SpecLimits) -> Option<YieldEstimate> {
         let (known, answered, replicates) = (self.all.count(), self.answered, &self.count.replicates);
         if !limits.exist() || known == 0 {
             return None;
         }
-        if let Some(Shares { outside, interval }) = self.shares() {
+        if let Some(Shares { outside, interval, .. }) = self.shares() {
             let value = (1.0 - outside[0] - outside[1]).max(0.0);
             let within = value * known as f64;
             let bounds = [within, within + (answered - known) as f64].map(|most| most / answered as f64);

@@ -3,13 +3,13 @@
 use super::difference::Difference;
 use super::groups::GroupSums;
 use crate::assembly::EvaluationError;
-use crate::characteristic::SpecLimits;
+use crate::characteristic::KeptLimits;
 use crate::sampling::{Fine, LargestPoints, Scale, Summary};
 
 /// The limits and the scale by which a portion is counted.
 #[derive(Clone, Copy)]
 pub(super) struct Lens {
-    pub(super) limits: SpecLimits,
+    pub(super) limits: KeptLimits,
     /// Known after the first batch.
     pub(super) scale: Option<Scale>,
 }

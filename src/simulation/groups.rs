@@ -160,7 +160,7 @@ pub(super) struct GroupSums(pub(super) Vec<Vec<Group>>);
 impl GroupSums {
     /// Of values, NaN where there is none, and the group of every point by sample.
     pub(super) fn of(of: &MeasuredGroups<'_>, groups: &[Vec<usize>], out: &Responses, c: usize) -> Self {
-        let limits = of.problem.characteristics()[c].limits();
+        let limits = of.problem.kept_limits(c);
         let sums = |(one, groups): (&Grouped<'_>, &Vec<usize>)| {
             let mut sums = vec![Group::default(); one.groups];
             for (&value, &group) in out.column(c).iter().zip(groups) {

@@ -103,11 +103,7 @@ impl Column {
         Self {
             summary: Summary::of(&values),
             largest: LargestPoints::of(&values),
-            // A value on a limit keeps it.
-            outside: [
-                lens.limits.lower().map_or(0, |lower| count(&|value| value < lower)),
-                lens.limits.upper().map_or(0, |upper| count(&|value| value > upper)),
-            ],
+            outside: [0, 1].map(|side| count(&|value| lens.limits.broken(value)[side])),
             difference: beside
                 .map_or_else(Difference::default, |(twin, rises)| Difference::of(out.column(output), rises, twin)),
             groups: GroupSums::default(),
@@ -160,7 +156,7 @@ impl<'a> Tally<'a> {
         Self {
             problem,
             control,
-            lenses: characteristics.iter().map(|one| Lens { limits: one.limits(), scale: None }).collect(),
+            lenses: (0..characteristics.len()).map(|c| Lens { limits: problem.kept_limits(c), scale: None }).collect(),
             counts: characteristics.iter().map(|_| count()).collect(),
             together: Together::default(),
             seldom: None,
@@ -291,7 +287,8 @@ impl<'a> Tally<'a> {
     }
 
     fn characteristic(&self, c: usize, count: &Count) -> SimulatedCharacteristic {
-        SimulatedCharacteristic::of(&self.problem.characteristics()[c], &self.evidence(c, count))
+        let limited = (&self.problem.characteristics()[c], self.lenses[c].limits);
+        SimulatedCharacteristic::of(limited, &self.evidence(c, count))
     }
 
     /// The surrogate that stands beside this characteristic.
@@ -308,8 +305,10 @@ impl<'a> Tally<'a> {
     ) -> Simulation {
         let of = |(c, count): (usize, &Count)| {
             let found = SimulatedCharacteristic { unfinished: stopped.is_some(), ..self.characteristic(c, count) };
-            let interval = measured.and_then(|measured| measured.interval(c, &found, &count.groups));
-            found.with_sampling(interval)
+            match measured.and_then(|measured| measured.interval(c, &found, &count.groups)) {
+                Some(interval) => found.with_sampling(interval),
+                None => found.with_proof(self.problem, c),
+            }
         };
         let characteristics: Vec<SimulatedCharacteristic> = self.counts.iter().enumerate().map(of).collect();
         let joint = together::joint(&self.together, options.sampler, self.answered)

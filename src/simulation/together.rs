@@ -109,11 +109,9 @@ impl Work for Groups<'_> {
         if limited.len() > 1 {
             let (mut known, mut kept) = (vec![1.0; out.rows()], vec![1.0; out.rows()]);
             for &c in &limited {
-                let lower = lenses[c].limits.lower().unwrap_or(f64::NEG_INFINITY);
-                let upper = lenses[c].limits.upper().unwrap_or(f64::INFINITY);
                 for ((known, kept), &value) in known.iter_mut().zip(&mut kept).zip(columns[c]) {
                     *known = if value.is_nan() { 0.0 } else { *known };
-                    *kept = if value >= lower && value <= upper { *kept } else { 0.0 };
+                    *kept = if lenses[c].limits.contains(value) { *kept } else { 0.0 };
                 }
             }
             groups.known = by_group(&known).map(|count| count as u64);

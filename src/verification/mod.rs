@@ -26,7 +26,7 @@ pub(crate) use costly::CONFIDENCE;
 pub use costly::{Checked, CheckedFigures, MOST_CHECKS, Target, unseen, verify_by_checks};
 pub(crate) use figures::{MOMENTS, carried_by, effective, jackknife, standard, student, totals};
 pub use outputs::OutputCorrelation;
-pub(crate) use outputs::output_correlations;
+pub(crate) use outputs::{common_rejects, output_correlations};
 pub(crate) use residual::{OVERLOOKED, OVERLOOKED_BY, TOO_SMALL};
 pub(crate) use sample::REPLICATES;
 pub use shares::Share;
@@ -116,6 +116,8 @@ pub struct SampledFigures {
     pub yield_: Option<Verified>,
     /// The share below the lower limit, and above the upper one.
     pub beyond: [Option<Verified>; 2],
+    /// The weight of one point: what no point shows may be as much.
+    pub point: f64,
     /// How much more of the model than of its surface lies within the limits, below and above them; None where no surface was given,
     /// and where some points have no value.
     pub difference: Option<[Verified; 3]>,
@@ -314,7 +316,7 @@ pub(crate) fn verify_characteristic(
 ) -> Option<SampledFigures> {
     let model = Model::new(problem, c).during(run);
     let limits = problem.characteristics()[c].limits();
-    let [low, high] = [limits.lower().unwrap_or(f64::NEG_INFINITY), limits.upper().unwrap_or(f64::INFINITY)];
+    let [low, high] = problem.kept_limits(c).ends();
     if model.len() == 0 {
         return Some(constant(&model, [low, high])).filter(|_| !model.stopped());
     }
@@ -338,6 +340,7 @@ pub(crate) fn verify_characteristic(
         kurtosis: known(3).filter(|_| varies),
         yield_: known(4).filter(|_| limits.exist()),
         beyond: [known(5).filter(|_| limits.lower().is_some()), known(6).filter(|_| limits.upper().is_some())],
+        point: sample.point(),
         difference: sample.difference(&[[low, high], beyond[0], beyond[1]]),
         valid: Verified { value: figures.valid.0, error: figures.valid.1 },
         switches: sides.switches,
@@ -364,6 +367,7 @@ fn constant(model: &Model<'_>, [low, high]: [f64; 2]) -> SampledFigures {
             share(value < low).filter(|_| known && limited[0]),
             share(value > high).filter(|_| known && limited[1]),
         ],
+        point: 0.0,
         difference: None,
         valid: Verified { value: f64::from(u8::from(known)), error: 0.0 },
         switches: None,

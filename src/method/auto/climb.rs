@@ -318,7 +318,8 @@ impl<'p> Climb<'p> {
                         let (mean, sigma) = (dimension.mean(), dimension.sigma());
                         let [lower, upper] = dimension.distribution().map_or([mean; 2], |law| law.support());
                         let edge = |edge: f64| mean + WITHIN * (edge - mean);
-                        (d, (mean + side * FAR_OUT * part / size * sigma).clamp(edge(lower), edge(upper)))
+                        let x = (mean + side * FAR_OUT * part / size * sigma).clamp(edge(lower), edge(upper));
+                        (d, self.plan.axis(d).nearest_value(x))
                     });
                     let at: Vec<(usize, f64)> = at.collect();
                     self.plan.point_at(at)

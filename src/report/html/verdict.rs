@@ -146,7 +146,8 @@ impl<'r> JudgedCharacteristic<'r> {
             interval: one.yield_interval(),
             ppm: [one.ppm_below(), one.ppm_above()],
             cpk: one.cpk,
-            ..Self::of(one, place).rejecting(Rejects::new(one.below, one.above, one.yield_error()))
+            ..Self::of(one, place)
+                .rejecting(Rejects::new(one.below, one.above, one.yield_error()).within(one.reject_intervals))
         }
     }
 

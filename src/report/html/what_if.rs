@@ -97,6 +97,8 @@ pub(super) struct Wanted {
     pub(super) unit: Option<String>,
     lower: Option<f64>,
     upper: Option<f64>,
+    /// By how much rounding may put a value beyond a limit on which it lies.
+    rounding: f64,
     target: Option<f64>,
     /// Why nothing can be tried; null where it can.
     pub(super) why: Option<String>,
@@ -163,7 +165,12 @@ const INTERACT: &str = "dimensions interact that are not normal";
 
 /// Why the page shows the Pearson fit of a characteristic; None where it computes the law of its surface, which it does for sums of
 /// single inputs and products of normal ones.
-fn why_fit(found: &CharacteristicAnalysis, fit: &Fit, laws: &[Option<TabulatedInput>]) -> Option<&'static str> {
+fn why_fit(
+    found: &CharacteristicAnalysis,
+    fit: &Fit,
+    laws: &[Option<TabulatedInput>],
+    has_atoms: &dyn Fn(usize) -> bool,
+) -> Option<&'static str> {
     let Fit { surrogate, .. } = fit;
     let counts = |j: &usize| {
         surrogate.parts[*j].is_some_and(|part| part.largest() > 0.0)
@@ -173,7 +180,8 @@ fn why_fit(found: &CharacteristicAnalysis, fit: &Fit, laws: &[Option<TabulatedIn
     if counting().any(|j| laws[j].is_none()) {
         return Some("the distribution of a dimension is not in the page");
     }
-    if counting().all(|j| laws[j].as_ref().is_some_and(TabulatedInput::is_discrete)) {
+    // Sums over a contour halve the values that have a probability of their own.
+    if counting().all(has_atoms) {
         return Some("every dimension has a few values only");
     }
     let parabola = |j: usize| parabola(fit, j, laws[j].as_ref().is_some_and(TabulatedInput::is_normal));
@@ -235,15 +243,19 @@ impl WhatIf {
             Tried::of(&problem.dimensions()[d], index(shape, law))
         };
         let dimensions = surface.varying.iter().zip(&surface.shapes).zip(&laws).map(dimension).collect();
-        let all = analysis.characteristics.iter().zip(&fits);
-        let characteristics = all.map(|(found, fit)| {
+        let has_atoms = |j: usize| {
+            let law = problem.dimensions()[surface.varying[j]].law().and_then(|law| law.probability());
+            law.is_some_and(|law| !law.atoms().is_empty())
+        };
+        let all = analysis.characteristics.iter().zip(&fits).enumerate();
+        let characteristics = all.map(|(c, (found, fit))| {
             let one = &found.characteristic;
             let limits = one.limits();
             let power = fit.as_ref().map_or(Power::ONE, size);
             let empty = || (0.0, Vec::new(), Pairs::default(), None);
             let (centre, parts, pairs, unexplained) = fit.as_ref().map_or_else(|_| empty(), |fit| contents(fit, power));
             let divided = limits.times(power.inverse());
-            let why_fit = fit.as_ref().ok().and_then(|fit| why_fit(found, fit, &laws));
+            let why_fit = fit.as_ref().ok().and_then(|fit| why_fit(found, fit, &laws, &has_atoms));
             let law = fit.is_ok() && why_fit.is_none();
             let of_surface = found.surface_law.as_ref().filter(|_| why_fit == Some(INTERACT));
             let counted = of_surface
@@ -254,6 +266,7 @@ impl WhatIf {
                 unit: one.unit().map(str::to_owned),
                 lower: divided.lower(),
                 upper: divided.upper(),
+                rounding: power.inverse().times(problem.kept_limits(c).rounding()),
                 target: one.target_yield(),
                 why: fit.as_ref().err().map(ToString::to_string).or_else(|| endless(found)),
                 centre,
