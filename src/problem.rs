@@ -205,7 +205,7 @@ impl Problem {
     pub(crate) fn watched(&self) -> Self {
         let magnitudes = Magnitudes::watching(self.function.signature().outputs.len());
         let function = magnitudes.wrapped(Arc::clone(&self.function));
-        Self { function, magnitudes: Some(magnitudes), ..self.clone() }
+        Self { function, magnitudes: Some(magnitudes), kept: OnceLock::new(), ..self.clone() }
     }
 
     /// With every output divided by its power of two, and the characteristics with it; `seen` are the magnitudes of the run that found them out.
@@ -214,7 +214,7 @@ impl Problem {
         let function = magnitudes.wrapped(Arc::clone(&self.function));
         let divided = |(one, &output): (&Characteristic, &usize)| one.clone().times(magnitudes.power(output).inverse());
         let characteristics = self.characteristics.iter().zip(&self.outputs).map(divided).collect();
-        Self { function, characteristics, magnitudes: Some(magnitudes), ..self.clone() }
+        Self { function, characteristics, magnitudes: Some(magnitudes), kept: OnceLock::new(), ..self.clone() }
     }
 
     /// The dimensions of another problem with characteristics and function of this one: what a run found, in the units in which it was asked.
@@ -223,6 +223,7 @@ impl Problem {
             function: Arc::clone(&self.function),
             characteristics: self.characteristics.clone(),
             magnitudes: self.magnitudes.clone(),
+            kept: OnceLock::new(),
             ..found.clone()
         }
     }
@@ -379,7 +380,8 @@ impl Problem {
         let of = |(c, one): (usize, &Characteristic)| {
             let sides = [up[c], down[c]].into_iter().flatten().reduce(f64::min);
             let terms = middle[c].into_iter().chain(sides).reduce(f64::max);
-            KeptLimits::new(one.limits(), terms.unwrap_or_else(|| self.inputs_in_unit_of(one)))
+            let inputs = || self.power(c).inverse().times(self.inputs_in_unit_of(one));
+            KeptLimits::new(one.limits(), terms.unwrap_or_else(inputs))
         };
         self.characteristics.iter().enumerate().map(of).collect()
     }

@@ -9,6 +9,8 @@
 
 use std::collections::BTreeMap;
 
+use crate::power::Power;
+
 /// The highest degree that is expanded: surfaces hold powers up to this one.
 pub(crate) const DEGREE: usize = 4;
 /// Terms of a polynomial at the most: all of a quadratic in a thousand inputs.
@@ -120,6 +122,14 @@ impl Polynomial {
             }
         }
         product.is_small().then_some(product)
+    }
+
+    /// Returns every coefficient multiplied by a power of two, which rounds nothing.
+    pub(crate) fn times_power(mut self, power: Power) -> Self {
+        for of in self.terms.values_mut() {
+            (of.value, of.error) = (power.times(of.value), power.times(of.error));
+        }
+        self
     }
 
     /// Returns every coefficient divided by a number.

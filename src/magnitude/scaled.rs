@@ -5,8 +5,8 @@ use std::sync::Arc;
 use super::store::Store;
 use crate::assembly::process::EvaluatorAccount;
 use crate::assembly::{
-    AssemblyFunction, Bounds, Composite, Derivatives, Directions, EvaluationError, Input, ModelInfo, Points, Request,
-    Responses, Run, Signature, Switches,
+    AssemblyFunction, Bounds, Composite, Derivatives, Directions, EvaluationError, Input, ModelInfo, Points,
+    Polynomial, Request, Responses, Run, Signature, Switches,
 };
 use crate::power::Power;
 use crate::warning::Warning;
@@ -45,6 +45,11 @@ impl AssemblyFunction for ScaledFunction {
         let bounds = self.function.bounds(output, region)?;
         let power = self.powers[output].inverse();
         Some(if power.is_one() { bounds } else { bounds.times(power) })
+    }
+
+    fn magnitudes(&self, outputs: &[usize], point: &[f64]) -> Vec<Option<f64>> {
+        let sizes = self.function.magnitudes(outputs, point).into_iter().zip(outputs);
+        sizes.map(|(size, &output)| Some(self.powers[output].inverse().times(size?))).collect()
     }
 
     fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
@@ -101,6 +106,11 @@ impl AssemblyFunction for ScaledFunction {
 
     fn degree(&self, output: usize, varying: &[bool]) -> Option<u32> {
         self.function.degree(output, varying)
+    }
+
+    fn polynomial(&self, output: usize, centre: &[f64], scale: &[f64]) -> Option<Polynomial> {
+        let polynomial = self.function.polynomial(output, centre, scale)?;
+        Some(polynomial.times_power(self.powers[output].inverse()))
     }
 
     fn account(&self) -> Option<EvaluatorAccount> {

@@ -6,8 +6,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::store::Store;
 use crate::assembly::process::EvaluatorAccount;
 use crate::assembly::{
-    AssemblyFunction, Bounds, Composite, Derivatives, Directions, EvaluationError, Input, ModelInfo, Points, Request,
-    Responses, Run, Signature, Switches,
+    AssemblyFunction, Bounds, Composite, Derivatives, Directions, EvaluationError, Input, ModelInfo, Points,
+    Polynomial, Request, Responses, Run, Signature, Switches,
 };
 use crate::power::Power;
 use crate::time::Instant;
@@ -159,6 +159,14 @@ impl AssemblyFunction for WatchedFunction {
         exponents: &[i32],
     ) -> Vec<Option<Derivatives>> {
         self.function.derivatives_per(outputs, directions, exponents)
+    }
+
+    fn magnitudes(&self, outputs: &[usize], point: &[f64]) -> Vec<Option<f64>> {
+        self.function.magnitudes(outputs, point)
+    }
+
+    fn polynomial(&self, output: usize, centre: &[f64], scale: &[f64]) -> Option<Polynomial> {
+        self.function.polynomial(output, centre, scale)
     }
 
     fn sent(&self, points: &Points) -> Option<(Vec<Input>, Points)> {
