@@ -1,8 +1,7 @@
 //! Estimates with their standard errors.
 
-use statrs::distribution::{Beta, ContinuousCDF};
-
 use super::Summary;
+use super::critical::beta_quantile;
 use crate::power::{Rescale, Rescaling, Unknown};
 
 /// A value that a sample estimates, and how uncertain it is.
@@ -132,18 +131,17 @@ pub fn clopper_pearson(hits: f64, n: f64) -> [f64; 2] {
         return [0.0, 1.0];
     }
     let hits = hits.clamp(0.0, n);
-    let quantile = |a: f64, b: f64, p: f64| Beta::new(a, b).map_or(f64::NAN, |law| law.inverse_cdf(p));
     // In closed form at the ends, where a shape would be 0; shares of many points are small beside 1.
     let unseen = -libm::expm1(libm::log(SIDE) / n);
     let low = match hits {
         none if none < NONE => 0.0,
         all if all >= n => 1.0 - unseen,
-        _ => quantile(hits, n - hits + 1.0, SIDE),
+        _ => beta_quantile(hits, n - hits + 1.0, SIDE),
     };
     let high = match hits {
         0.0 => unseen,
         all if all >= n => 1.0,
-        _ => quantile(hits + 1.0, n - hits, 1.0 - SIDE),
+        _ => beta_quantile(hits + 1.0, n - hits, 1.0 - SIDE),
     };
     [low, high]
 }

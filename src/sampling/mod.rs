@@ -1,5 +1,6 @@
 //! Points of the inputs' joint distribution, random or quasi-random, and what is estimated from them.
 
+mod critical;
 mod draws;
 mod estimate;
 mod fine;
@@ -14,6 +15,7 @@ mod sobol;
 mod stream;
 mod summary;
 
+pub(crate) use critical::student_quantile;
 pub use draws::{Draws, Portion, Sampler, SamplingError};
 pub(crate) use draws::{Room, tails};
 pub use estimate::{Estimate, clopper_pearson, wilson};

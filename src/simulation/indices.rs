@@ -11,14 +11,13 @@
 //! error, and stays as it is.
 
 use serde::Serialize;
-use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::{Pace, REPLICATES, SimulationError};
 use crate::assembly::{Request, Responses, Run};
 use crate::correlation::factors;
 use crate::parallel::prelude::*;
 use crate::problem::Problem;
-use crate::sampling::Normals;
+use crate::sampling::{Normals, student_quantile};
 use crate::summary::RunSummary;
 use crate::time::Instant;
 use crate::verification::{CONFIDENCE, Columns, Space, jackknife, totals};
@@ -219,8 +218,7 @@ fn estimated(
     };
     let (values, errors) = (figures(&all), jackknife(figures, &rows));
     let freedom = (REPLICATES - 1) as f64;
-    let times =
-        StudentsT::new(0.0, 1.0, freedom).map_or(f64::INFINITY, |law| law.inverse_cdf(0.5 * (1.0 + CONFIDENCE)));
+    let times = student_quantile(0.5 * (1.0 + CONFIDENCE), freedom);
     let estimate = |index: usize| {
         let (value, standard_error) = (values[index], errors[index]);
         let half = times * standard_error;

@@ -12,12 +12,10 @@
 //! Hoeffding's decomposition (1948), by which a mean over several samples is asymptotically normal. The noise of a group's own mean
 //! adds at most a fiftieth of the variance, because a group has fifty points or more.
 
-use statrs::distribution::{ContinuousCDF, StudentsT};
-
 use super::SimulatedCharacteristic;
 use super::groups::{Group, GroupSums, Grouped, MeasuredGroups};
 use crate::characteristic::SpecLimits;
-use crate::sampling::{MeasuredBasis, SamplingInterval};
+use crate::sampling::{MeasuredBasis, SamplingInterval, student_quantile};
 use crate::verdict::{including, share};
 use crate::verification::CONFIDENCE;
 
@@ -43,7 +41,7 @@ impl MeasuredGroups<'_> {
         let fewest = own.iter().map(|(one, _)| one.sample.size).min()?;
         let (mean, sigma) = (found.mean?.value, found.sigma?.value);
         // Two standard errors of as few values reach farther than those of many.
-        let wide = StudentsT::new(0.0, 1.0, (fewest.max(2) - 1) as f64).ok()?.inverse_cdf(0.5 * (1.0 + CONFIDENCE));
+        let wide = student_quantile(0.5 * (1.0 + CONFIDENCE), (fewest.max(2) - 1) as f64);
         let correlated = own.iter().any(|(one, _)| one.sample.is_correlated);
         let error = |of: &dyn Fn(&Group) -> f64| {
             let variance = own.iter().map(|(one, groups)| variance(groups, of) / one.divisor).sum::<f64>();
