@@ -6,6 +6,7 @@
 
 use std::rc::Rc;
 
+use super::choose_made::remade;
 use super::constraint::Constraint;
 use super::driver::{Chosen, Driver, Ended};
 use super::result::{Allocation, AllocationSolver, Proof, Status};
@@ -15,6 +16,7 @@ use super::task::{AllocateError, Goal};
 use super::trial::{Trial, is_offered};
 use super::unknown::Unknown;
 use super::verified_search::{Tolerances, VerifiedSearch};
+use crate::dimension::Dimension;
 use crate::problem::Problem;
 use crate::requirement::Requirement;
 use crate::verdict::Verdict;
@@ -66,7 +68,8 @@ impl Driver<'_> {
     pub(super) fn start(&mut self, problem: &Problem, station: &Rc<Station>) -> AllocationStart {
         let at: Vec<f64> = self.task.priced.iter().map(|group| group.tightest_member(problem)).collect();
         let held = self.holding(problem);
-        let offered = held.is_some() && is_offered(&self.task.priced, &at);
+        let made = held.as_ref().is_some_and(|offers| is_made(problem, &remade(problem, &self.task.priced, offers)));
+        let offered = made && is_offered(&self.task.priced, &at);
         let offers = held.unwrap_or_else(|| vec![0; at.len()]);
         let known = self.stations_are_trials() || !self.is_cheap(problem);
         let tolerances = (at, offers);
@@ -326,6 +329,15 @@ fn ended_at(
     let last = Some((solved, trial.offers.clone(), proof));
     let ended = Ended { agreed: false, within_budget: true, at_rest: None };
     SearchEnd { station, last, constraints, ended, trial: Some(trial), is_start }
+}
+
+/// Whether dimensions as their processes make them are those of the problem: a process with the same tolerance may make parts that lie otherwise.
+fn is_made(problem: &Problem, made: &[(usize, Dimension)]) -> bool {
+    made.iter().all(|(d, made)| {
+        let own = &problem.dimensions()[*d];
+        let same = |a: f64, b: f64| (a - b).abs() <= SAME * a.abs().max(own.half_band());
+        same(own.mean(), made.mean()) && same(own.sigma(), made.sigma()) && same(own.half_band(), made.half_band())
+    })
 }
 
 /// The status of an end that is not kept.
