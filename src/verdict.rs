@@ -198,6 +198,21 @@ pub fn joined(value: f64, [low, high]: [f64; 2], other: [f64; 2]) -> [f64; 2] {
     [value - below, value + above]
 }
 
+/// The 95 % intervals of the rejects of either side, widened by the interval that measured samples leave to all rejects; None where that is unknown.
+pub(crate) fn sides_with_samples(
+    sides: [Option<f64>; 2],
+    intervals: [Option<[f64; 2]>; 2],
+    rejected: Option<[f64; 2]>,
+) -> [Option<[f64; 2]>; 2] {
+    let all: f64 = sides.iter().flatten().sum();
+    [0, 1].map(|side| {
+        let ([low, high], value) = (rejected?, sides[side]?);
+        // Each side may have all that is open.
+        let open = [value - (all - low).max(0.0), value + (high - all).max(0.0)];
+        Some(share(joined(value, intervals[side]?, open)))
+    })
+}
+
 /// The yield when this share of all assemblies has no value, and may be rejected: all of it, or none.
 ///
 /// `lost` is None where assemblies without a value were met and how many there are is unknown.

@@ -8,9 +8,9 @@ use std::rc::Rc;
 
 use super::choose_made::remade;
 use super::constraint::Constraint;
-use super::driver::{Chosen, Driver, Ended};
+use super::driver::{Driver, Ended};
 use super::result::{Allocation, AllocationSolver, Proof, Status};
-use super::solved::{Solved, Starts};
+use super::solved::{Chosen, Solved, Starts};
 use super::station::{Seen, Station};
 use super::task::{AllocateError, Goal};
 use super::trial::{Trial, is_offered};

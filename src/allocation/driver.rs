@@ -9,9 +9,7 @@ use super::constraint::{Constraint, kept};
 use super::corners::Places;
 use super::cost::Priced;
 use super::response::Responses;
-use super::result::Proof;
 use super::sampled::SampledCorrection;
-use super::solved::Solved;
 use super::station::{Seen, Station};
 use super::task::{AllocateError, AllocationOptions, AllocationTask, Goal};
 use super::unknown::Unknown;
@@ -73,9 +71,6 @@ pub(super) struct Driver<'a> {
     pub(super) written: Option<AsWritten<'a>>,
     pub(super) spent: Spent,
 }
-
-/// Tolerances, the offer of every group, and what proves them.
-pub(super) type Chosen = (Solved, Vec<usize>, Proof);
 
 /// How near is near enough: every round asks the model.
 #[derive(Clone, Copy)]

@@ -78,6 +78,7 @@ mod unknown;
 mod vector;
 mod verified_search;
 mod worst;
+mod worst_reach;
 mod written_cost;
 mod yield_room;
 

@@ -9,16 +9,14 @@ use super::choose_made;
 use super::conclude::doubts;
 use super::constraint::Constraint;
 use super::cost::Priced;
-use super::driver::{
-    AsWritten, Chosen, Driver, Ended, Near, ROUNDS, Spent, kept_within, unit, with_choice, with_tolerances,
-};
+use super::driver::{AsWritten, Driver, Ended, Near, ROUNDS, Spent, kept_within, unit, with_choice, with_tolerances};
 use super::joint::joint;
 use super::machines::choose;
 use super::result::{Allocation, Attainable, JointKept, Proof, Status};
 use super::sampled::SampledCorrection;
 use super::scaling::loosest;
 use super::solve::{Setting, tightened};
-use super::solved::Solved;
+use super::solved::{Chosen, Solved};
 use super::station::{Seen, Station, required};
 use super::steps::Steps;
 use super::task::{AllocateError, AllocationOptions, AllocationTask, Goal};

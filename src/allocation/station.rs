@@ -3,11 +3,11 @@
 use std::rc::Rc;
 
 use super::constraint::Constraint;
-use super::driver::Chosen;
 use super::response::Responses;
 use super::result::{Kept, ShadowPrice};
 use super::solve::Setting;
-use super::solved::Solved;
+
+use super::solved::{Chosen, Solved};
 use crate::analysis::{Analysis, Findings};
 use crate::problem::Problem;
 use crate::requirement::Requirement;

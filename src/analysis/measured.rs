@@ -10,7 +10,7 @@ use crate::capability::Capability;
 use crate::method::Outcome;
 use crate::problem::Problem;
 use crate::sampling::{MeasuredBasis, MeasuredSample};
-use crate::verdict::{including, share};
+use crate::verdict::{including, share, sides_with_samples};
 use crate::verification::CONFIDENCE;
 
 /// The measured samples on which a characteristic depends.
@@ -46,7 +46,7 @@ pub(super) fn add_sampling_intervals(
             ..by_resamples(resampled)
         };
         let sides = one.capability.map_or([None; 2], |of| [of.below, of.above]);
-        one.reject_intervals = interval.of_sides(sides, one.reject_intervals);
+        one.reject_intervals = sides_with_samples(sides, one.reject_intervals, interval.rejected);
         one.sampling = Some(interval);
     }
     drawn

@@ -35,6 +35,9 @@ use crate::sampling::{one_error, weighted_interval};
 use crate::verdict;
 use crate::verification::{Verified, common_rejects};
 
+/// The error of a joint yield by laws above which points of the model are asked too.
+const CORRECTED: f64 = 1e-3;
+
 /// A share beyond each limit, and how far it may be off.
 struct Rejected {
     source: YieldSource,
@@ -172,15 +175,25 @@ pub(super) fn joint(
     for &c in &limited {
         let one = &characteristics[c];
         rejects.push(one.capability?.rejected()?);
+        let exact = one.verification.as_ref().is_some_and(|of| matches!(of.kind, VerificationKind::Exact { .. }));
         square += match one.yield_source? {
+            // Limits outside of the proven range have no error; neither have those of an exact surface of measured inputs.
             YieldSource::Proof => one.error_estimate.as_ref().and_then(|of| of.yield_).unwrap_or(0.0),
+            YieldSource::SurfaceLaw if exact => one.error_estimate.as_ref().and_then(|of| of.yield_).unwrap_or(0.0),
             _ => one.error_estimate.as_ref()?.yield_?,
         }
         .powi(2);
     }
     let [least, most] = joint_bounds(&rejects);
     let by_laws = by_laws(characteristics, laws, &limited);
-    let found = by_laws.or_else(|| by_points(problem, options, characteristics, &limited, &rejects));
+    let found = match by_laws {
+        Some(found) if found.error <= CORRECTED => by_laws,
+        // A surface that keeps other values than the model says little of what they have in common.
+        _ => {
+            let by_points = by_points(problem, options, characteristics, &limited, &rejects);
+            by_laws.into_iter().chain(by_points).min_by(|a, b| a.error.total_cmp(&b.error))
+        }
+    };
     let middle = || Verified { value: 0.5 * (least + most), error: 0.5 * (most - least) };
     let Verified { value, error } = found.unwrap_or_else(middle);
     Some(Verified { value: value.max(least).min(most), error: (error * error + square).sqrt() })

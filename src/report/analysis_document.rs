@@ -244,7 +244,7 @@ impl CharacteristicAnalysis {
             }
         }
         if self.surface_law.is_some_and(|law| law.steps) && self.sigma().is_some_and(|sigma| sigma > 0.0) {
-            section.note("the surface law is a step function: all that varies are measured values");
+            section.note("the surface law is a step function: all that varies has single values");
         }
         if let Some(points) = self.surface_law.as_ref().and_then(|law| law.counted) {
             section.note(format!("the surface law is counted at {points} points of the surface"));

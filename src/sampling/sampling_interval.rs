@@ -4,7 +4,6 @@ use serde::{Serialize, Serializer};
 
 use crate::power::rescale;
 use crate::shape::by_name;
-use crate::verdict;
 
 /// Intervals that cover the true results with a probability of `level`, as far as the size of measured samples decides.
 ///
@@ -60,19 +59,6 @@ pub struct SamplingInterval {
 }
 
 rescale!(SamplingInterval { mean, sigma } without { skewness, kurtosis, rejected, cpk, level, resamples, samples });
-
-impl SamplingInterval {
-    /// The 95 % intervals of the rejects of either side, widened by what the samples leave open of all rejects; None where that is unknown.
-    pub(crate) fn of_sides(&self, sides: [Option<f64>; 2], intervals: [Option<[f64; 2]>; 2]) -> [Option<[f64; 2]>; 2] {
-        let all: f64 = sides.iter().flatten().sum();
-        [0, 1].map(|side| {
-            let ([low, high], share) = (self.rejected?, sides[side]?);
-            // Each side may have all that is open.
-            let open = [share - (all - low).max(0.0), share + (high - all).max(0.0)];
-            Some(verdict::share(verdict::joined(share, intervals[side]?, open)))
-        })
-    }
-}
 
 /// The share within the limits from that outside.
 fn kept<S: Serializer>(rejected: &Option<[f64; 2]>, serializer: S) -> Result<S::Ok, S::Error> {

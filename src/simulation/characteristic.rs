@@ -260,7 +260,7 @@ impl SimulatedCharacteristic {
     /// With what measured samples leave open, of all rejects and of each side.
     pub(super) fn with_sampling(self, sampling: SamplingInterval) -> Self {
         let sides = [self.below, self.above];
-        let reject_intervals = sampling.of_sides(sides, self.reject_intervals);
+        let reject_intervals = verdict::sides_with_samples(sides, self.reject_intervals, sampling.rejected);
         Self { sampling: Some(sampling), reject_intervals, ..self }
     }
 }

@@ -223,7 +223,12 @@ pub(super) fn carried(replicates: &[&Difference]) -> [[f64; CONTROLS]; 2] {
 
 /// How much the largest differences have of the sum of squares that each moment rests on, and the mean square.
 pub(super) fn largest(replicates: &[&Difference]) -> [(LargestShare, f64); CONTROLS] {
-    pooled(replicates).largest.map(|terms| (terms.share(), terms.mean()))
+    /// Squares of differences that rounding makes, in units of sigma: which of them are the largest says nothing.
+    const ROUNDING: f64 = 1e-20;
+    pooled(replicates).largest.map(|terms| match terms.mean() {
+        rounding if rounding <= ROUNDING => (LargestShare::default(), rounding),
+        mean => (terms.share(), mean),
+    })
 }
 
 /// The squares of `n_k - t^k` at one point, k = 1 to 4, where the model has this value and the surrogate this rise.

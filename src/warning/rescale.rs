@@ -17,6 +17,7 @@ impl Warning {
             }
             Self::HeavyPoint { characteristic, limit, .. }
             | Self::NothingBeyond { characteristic, limit, .. }
+            | Self::PlainFallback { characteristic, limit, .. }
             | Self::PlainSampling { characteristic, limit, .. } => times(characteristic, limit),
             Self::NotProven { characteristic, bounds: Some((bounds, _)), .. } => {
                 bounds.iter_mut().for_each(|end| times(characteristic, end));
