@@ -306,7 +306,7 @@ fn blocks_and_correlated_samples_are_counted_too() {
     std::fs::write(folder.path().join("lot.csv"), format!("a;b\n{}\n", text.join("\n"))).unwrap();
     let path = folder.path().join("study.toml");
     let study = format!(
-        "[dimensions]\na = {{ measured = \"lot.csv\" }}\nb = {{ measured = \"lot.csv\" }}\n[characteristics]\ny = {{ formula = \"a + b\", upper = {}, target_yield = 0.999 }}\n",
+        "[dimensions]\na = {{ measured = \"lot.csv\", column = \"a\" }}\nb = {{ measured = \"lot.csv\", column = \"b\" }}\n[characteristics]\ny = {{ formula = \"a + b\", upper = {}, target_yield = 0.999 }}\n",
         1.5 * upper
     );
     std::fs::write(&path, study).unwrap();
