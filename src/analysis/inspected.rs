@@ -8,7 +8,13 @@ use crate::law::SurfaceLaw;
 use crate::verification::WeightedSample;
 
 /// Of a characteristic whose yield is settled; None without an inspection, and where nothing is known of its distribution.
-pub(super) fn inspected(one: &CharacteristicAnalysis, surface: Option<&SurfaceLaw>) -> Option<InspectionRisks> {
+///
+/// `points` of the surface, in ascending order, take the place of a law that is refuted.
+pub(super) fn inspected(
+    one: &CharacteristicAnalysis,
+    surface: Option<&SurfaceLaw>,
+    points: Option<&[f64]>,
+) -> Option<InspectionRisks> {
     let inspection = one.characteristic.inspection()?;
     let limits = one.characteristic.limits();
     let fit = one.law.as_ref().and_then(|law| law.as_ref().ok());
@@ -25,6 +31,12 @@ pub(super) fn inspected(one: &CharacteristicAnalysis, surface: Option<&SurfaceLa
             let exact = |limits: SpecLimits, guard: f64| of_point(at, limits, inspection.gauge(), guard);
             let guard = guard(inspection, limits, &Tails { below: &below, above: &above });
             Some(told(one, inspection, guard, guard.map(|guard| (exact(limits, guard), [Some(0.0); 2]))))
+        }
+        (None, Some(_)) if let Some(points) = points.filter(|_| one.surface_law.is_some_and(|law| law.refuted.is_some())) => {
+            let share = |count: usize| count as f64 / points.len() as f64;
+            let below = |x: f64| share(points.partition_point(|&y| y < x));
+            let above = |x: f64| share(points.len() - points.partition_point(|&y| y <= x));
+            Some(by(one, inspection, limits, &Tails { below: &below, above: &above }, None))
         }
         (None, Some(fit)) => {
             let (below, above) = (|x: f64| fit.below(x), |x: f64| fit.above(x));
@@ -68,7 +80,8 @@ fn by(
             return (risks, [error.map(|error| error + risks.error); 2]);
         };
         let found = of_sample(sample, limits, gauge, guard);
-        if one.surface_law.is_none() {
+        // Points of the model have the say beside a count of the surface.
+        if one.surface_law.is_none_or(|law| law.refuted.is_some()) {
             (risks.false_accept, risks.false_reject) = (found[0].value, found[1].value);
         }
         let errors = [found[0].error_of(risks.false_accept), found[1].error_of(risks.false_reject)];

@@ -18,7 +18,7 @@ use crate::moments::Moments;
 use crate::parallel::prelude::*;
 use crate::problem::Problem;
 use crate::summary::RunSummary;
-use crate::surrogate::Surrogate;
+use crate::surrogate::{Surrogate, Univariate};
 use crate::time::Instant;
 use crate::verification::{
     CORE, Checked, CheckedFigures, Crossing, SampledFigures, Target, Verified, most_points, most_points_of_shares,
@@ -80,20 +80,30 @@ pub(super) fn verify(
     (RunSummary { stopped, ..RunSummary::default() }, Vec::new())
 }
 
-/// Whether the formula's own degree proves that the surface is the function; then its errors are roundings.
+/// Whether the formula's own powers prove that the surface is the function; then its errors are roundings.
+///
+/// A surface has powers of single inputs as far as its nodes show them, and products of two inputs.
 fn proven(problem: &Problem, outcome: &Outcome, c: usize, one: &mut CharacteristicAnalysis) -> bool {
     let varying: Vec<bool> = problem.dimensions().iter().map(|dimension| dimension.sigma() > 0.0).collect();
-    let Some(degree) = problem.function().degree(problem.outputs()[c], &varying).filter(|&degree| degree <= 2) else {
+    let (function, output) = (problem.function(), problem.outputs()[c]);
+    let Some(degree) = function.degree(output, &varying).filter(|&degree| degree as usize <= Univariate::DEGREE) else {
         return false;
     };
+    // Terms of a parabola have single inputs or two.
+    let powers = if degree > 2 { function.term_powers(output, &varying) } else { None };
+    let highest = |d: usize| powers.as_ref().map_or(degree, |powers| powers.highest(d)).max(2) as usize;
+    if degree > 2 && powers.as_ref().is_none_or(|powers| powers.mixed() > 2) {
+        return false;
+    }
     let (fitted, plan) = (&outcome.fitted[c], &outcome.plan);
     let surrogate = fitted.surrogate.as_ref().filter(|surrogate| surrogate.parts.iter().all(Option::is_some));
     let (Some(surrogate), Some(moments)) = (surrogate, one.moments) else { return false };
     let exact = fitted.integrated.is_none() && one.sampled.is_none() && one.model_sampled.is_none();
     let order = if outcome.order == Order::First { 1 } else { 2 };
     let parts = plan.varying().iter().filter(|&&d| plan.depends(c, d));
-    let bent = |&d: &usize| fitted.parts[d].is_some_and(|part| part.degree() >= 2);
-    let complete = degree < 2 || order == 2 && knows_all_pairs(outcome, c) && parts.clone().all(bent);
+    let known = |&d: &usize| fitted.parts[d].is_some_and(|part| part.degree() >= highest(d));
+    let products = powers.as_ref().is_some_and(|powers| powers.mixed() < 2) || knows_all_pairs(outcome, c);
+    let complete = degree < 2 || order == 2 && products && parts.clone().all(known);
     if !exact || !complete || one.without_value > 0 {
         return false;
     }

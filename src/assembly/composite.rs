@@ -16,7 +16,7 @@ use super::process::EvaluatorAccount;
 use super::responses::all_finite;
 use super::{
     AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, Input, ModelInfo, Output, Points, Request,
-    Responses, Run, Signature, Switches, in_blocks,
+    Responses, Run, Signature, Switches, in_blocks, TermPowers,
 };
 #[cfg(feature = "study")]
 use crate::unit::Unit;
@@ -548,6 +548,10 @@ impl AssemblyFunction for Composite {
 
     fn degree(&self, output: usize, varying: &[bool]) -> Option<u32> {
         self.degree_of(output, varying)
+    }
+
+    fn term_powers(&self, output: usize, varying: &[bool]) -> Option<TermPowers> {
+        self.term_powers_of(output, varying)
     }
 
     fn account(&self) -> Option<EvaluatorAccount> {

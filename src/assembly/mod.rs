@@ -25,6 +25,7 @@ mod run;
 mod signature;
 mod states;
 mod switch;
+mod term_powers;
 
 pub use account::{ModelInfo, NonRepeatable};
 pub(crate) use blocks::{in_blocks, in_ranges, near_rows};
@@ -42,6 +43,7 @@ pub use run::{Progress, Run};
 pub use signature::{Input, Output, Signature};
 pub(crate) use states::{State, States};
 pub use switch::{Switch, SwitchKind, Switches};
+pub use term_powers::TermPowers;
 
 use crate::warning::Warning;
 
@@ -132,6 +134,14 @@ pub trait AssemblyFunction: Send + Sync {
     fn degree(&self, output: usize, varying: &[bool]) -> Option<u32> {
         let _ = (output, varying);
         None
+    }
+
+    /// Bounds on the powers of an output's terms as a polynomial in the inputs that `varying` flags, the others fixed; None where it is not one,
+    /// or that is not known. As certain as [`degree`](Self::degree).
+    fn term_powers(&self, output: usize, varying: &[bool]) -> Option<TermPowers> {
+        let degree = self.degree(output, varying)?;
+        let inputs = (0..varying.len()).filter(|&input| varying[input]);
+        Some(TermPowers::of_degree(degree, inputs))
     }
 
     /// The account of the processes of an external model so far; None for a function without any.

@@ -7,7 +7,7 @@ use super::process::EvaluatorAccount;
 use super::request::bits;
 use super::{
     AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, ModelInfo, NonRepeatable, Output, Points,
-    Request, Responses, Run, Signature, Switches,
+    Request, Responses, Run, Signature, Switches, TermPowers,
 };
 use crate::warning::Warning;
 
@@ -174,6 +174,11 @@ impl AssemblyFunction for States {
     fn degree(&self, output: usize, varying: &[bool]) -> Option<u32> {
         let (state, own) = self.of(output);
         state.function.degree(own, varying)
+    }
+
+    fn term_powers(&self, output: usize, varying: &[bool]) -> Option<TermPowers> {
+        let (state, own) = self.of(output);
+        state.function.term_powers(own, varying)
     }
 
     fn warnings(&self, outputs: &[usize]) -> Vec<Warning> {

@@ -22,6 +22,7 @@ mod complex;
 mod contour;
 mod derivative;
 mod direction;
+mod exact;
 mod forms;
 mod hats;
 mod held;
@@ -29,6 +30,7 @@ mod input;
 mod inversion;
 mod joint;
 mod panels;
+mod perturbed_form;
 mod points;
 mod polynomial;
 mod quadrant;
@@ -54,19 +56,20 @@ pub(crate) use quantile::Sought;
 #[cfg(feature = "html")]
 pub(crate) use tabulated::TabulatedInput;
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use crate::correlation::Correlation;
 use crate::distribution::Distribution;
 use crate::surrogate::{Inputs, Surrogate, shapes};
 
 use direction::Direction;
+use exact::Exact;
 use inversion::Inversion;
 use sampled::Sampled;
 use single::Single;
 use steps::Steps;
 use surface::Surface;
-use transform::Transform;
+use transform::{Summed, Transform};
 use zones::{Straightened, Zone, straightened};
 
 /// A number and what its computation leaves uncertain.
@@ -241,7 +244,7 @@ enum Kind {
     /// One value.
     Point(f64),
     Steps(Steps),
-    Exact(Box<Inversion>),
+    Exact(Box<Exact>),
     Single(Box<Single>),
     Sampled(Box<Sampled>),
 }
@@ -298,14 +301,21 @@ impl SurfaceLaw {
         if let Some(position) = surface.inputs.iter().position(|input| input.falls_as_a_power()) {
             return Err(LawError::LongTail { position });
         }
-        let (transform, left) = Transform::of(&surface, &surface.components(), options.trees);
+        let components = surface.components();
+        let summed = if options.trees { Summed::Trees } else { Summed::Perturbed };
+        let (transform, mut left) = Transform::of(&surface, &components, summed);
+        let mut inversion = Inversion::new(transform, surface.centre);
+        if !inversion.is_resolved() {
+            let (transform, others) = Transform::of(&surface, &components, Summed::Singles);
+            (inversion, left) = (Inversion::new(transform, surface.centre), others);
+        }
         if left.is_empty() {
-            let inversion = Inversion::new(transform, surface.centre);
             let moments = [inversion.mean(), inversion.sigma()];
-            return with(Kind::Exact(Box::new(inversion)), moments);
+            let exact = Exact { inversion, points: OnceLock::new(), options: *options };
+            return with(Kind::Exact(Box::new(exact)), moments);
         }
         let [mean, sigma] = moments(surrogate, inputs, correlation.as_ref())?;
-        let sampled = Sampled::of(&surface, transform, &left, sigma, options).ok_or(LawError::NoEigenvalues)?;
+        let sampled = Sampled::of(&surface, inversion.transform, &left, sigma, options).ok_or(LawError::NoEigenvalues)?;
         with(Kind::Sampled(Box::new(sampled)), [mean, sigma])
     }
 
@@ -337,7 +347,7 @@ impl SurfaceLaw {
         match &self.kind {
             Kind::Point(_) => LawFigure::proven(0.0),
             Kind::Steps(steps) => steps.tail(y, tail),
-            Kind::Exact(inversion) => inversion.tail(y, tail),
+            Kind::Exact(exact) => exact.tail(&self.surface, y, tail),
             Kind::Single(single) => single.tail(y, tail),
             Kind::Sampled(sampled) => sampled.tail(y, tail, self.mean),
         }
@@ -354,7 +364,7 @@ impl SurfaceLaw {
         }
         match &self.kind {
             Kind::Point(_) | Kind::Steps(_) => LawFigure::proven(0.0),
-            Kind::Exact(inversion) => inversion.density(y),
+            Kind::Exact(exact) => exact.density(&self.surface, y),
             Kind::Single(single) => single.density(y),
             Kind::Sampled(sampled) => sampled.density(y, self.mean),
         }
@@ -461,4 +471,20 @@ fn moments(
     let inputs = Inputs::new(shapes(inputs.iter().map(|law| law.as_ref())), correlation.cloned());
     let found = surrogate.contributions(&inputs).ok_or(LawError::NoVariance)?;
     Ok([found.moments.mean(), found.moments.sigma()])
+}
+#[cfg(feature = "probe")]
+#[path = "/tmp/b/mini/probe.rs"]
+pub mod probe;
+#[cfg(feature = "probe")]
+impl SurfaceLaw {
+    pub fn describe(&self) {
+        match &self.kind {
+            Kind::Exact(i) => println!("exact {}", i.inversion.describe()),
+            Kind::Sampled(s) => s.describe(),
+            _ => {}
+        }
+    }
+    pub fn debug(&self, y: f64) {
+        if let Kind::Sampled(s) = &self.kind { for tail in [LawTail::Lower, LawTail::Upper] { s.debug(y, tail); } }
+    }
 }
