@@ -1,5 +1,7 @@
 //! How a characteristic is measured before it is accepted: with a gauge that errs, within limits that are tightened by a guard band.
 
+use crate::power::Power;
+
 /// A gauge and its guard bands.
 ///
 /// A part is accepted where its measured value, which is normal about the true one with sigma `gauge`, lies within the limits, tightened by
@@ -104,6 +106,16 @@ impl Inspection {
     /// Its guard bands.
     pub fn guard(&self) -> Guard {
         self.guard
+    }
+
+    /// The same of a characteristic times a power of two.
+    pub(crate) fn times(self, power: Power) -> Self {
+        let times = |width: f64| power.times(width).min(f64::MAX);
+        let guard = match self.guard {
+            Guard::Width(width) => Guard::Width(times(width)),
+            rate @ Guard::FalseAccept(_) => rate,
+        };
+        Self { gauge: times(self.gauge), guard }
     }
 
     /// For these limits, the lower and the upper one.

@@ -24,7 +24,9 @@ pub use crate::plan::{Nodes, Plan, Spread, corners};
 pub use crate::report::csv::{csv_file_names, csv_tables, stack_csv};
 #[cfg(feature = "html")]
 pub use crate::report::html::{WhatIf, analyze_html};
-pub use crate::sampling::{Draws, Fine, Portion, SOBOL_DIMENSIONS, Scale, Sobol, Summary, rank_first, wilson};
+pub use crate::sampling::{
+    Draws, Fine, Portion, SOBOL_DIMENSIONS, Scale, Sobol, Summary, clopper_pearson, rank_first, wilson,
+};
 #[cfg(feature = "cli")]
 pub use crate::study::schema::schema;
 pub use crate::surrogate::{InputShape, Inputs, Surrogate, Univariate, shapes};

@@ -13,6 +13,7 @@ use serde::{Serialize, Serializer};
 
 use crate::capability;
 use crate::characteristic::{Characteristic, SpecLimits};
+use crate::power::Power;
 use crate::requirement::{Required, Requirement};
 use crate::shape::{ends, finite};
 
@@ -131,6 +132,19 @@ impl Judged {
         Self { requirement, value, interval, verdict: Verdict::of(requirement, interval) }
     }
 
+    /// The same of a characteristic times a power of two.
+    pub(crate) fn times(self, power: Power) -> Self {
+        match self.requirement {
+            Requirement::Sigma(_) => Self {
+                requirement: self.requirement.times(power),
+                value: self.value.and_then(|value| power.checked(value)),
+                interval: self.interval.map(|interval| interval.map(|end| power.times(end))),
+                verdict: self.verdict,
+            },
+            _ => self,
+        }
+    }
+
     /// The same by three errors on either side in place of two: many requirements are asked of a sample, each of them often just kept.
     pub(crate) fn widely(self) -> Self {
         let Self { requirement, value, interval, .. } = self;
@@ -173,6 +187,15 @@ pub fn share([low, high]: [f64; 2]) -> [f64; 2] {
 /// An interval that holds another value too: of what contradicts the estimate.
 pub fn including([low, high]: [f64; 2], other: f64) -> [f64; 2] {
     [low.min(other), high.max(other)]
+}
+
+/// An interval of an estimate to which an independent error belongs that leaves `other` open: the distances of the ends add as
+/// squares (Zou and Donner 2008).
+pub fn joined(value: f64, [low, high]: [f64; 2], other: [f64; 2]) -> [f64; 2] {
+    let apart = |from: f64, to: f64| (to - from).max(0.0);
+    let below = libm::hypot(apart(low, value), apart(other[0], value));
+    let above = libm::hypot(apart(value, high), apart(value, other[1]));
+    [value - below, value + above]
 }
 
 /// The yield when this share of all assemblies has no value, and may be rejected: all of it, or none.
@@ -227,6 +250,14 @@ mod tests {
     fn what_has_no_value_only_lowers_a_yield() {
         assert_eq!(losing([0.9, 0.95], None), [0.0, 0.95]);
         assert_eq!(losing([0.8, 0.9], Some(0.5)), [0.4, 0.9]);
+    }
+
+    /// Three below by one error and four by another are five; the other side has only one of them.
+    #[test]
+    fn independent_errors_add_as_squares() {
+        assert_eq!(joined(10.0, [7.0, 10.0], [6.0, 12.0]), [5.0, 12.0]);
+        // An interval that does not hold the estimate reaches no farther than it.
+        assert_eq!(joined(10.0, [9.0, 11.0], [10.5, 10.5]), [9.0, 10.0 + libm::hypot(1.0, 0.5)]);
     }
 
     /// Two errors of sigma reach 0: no Cpk is too good to be.

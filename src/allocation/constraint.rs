@@ -468,6 +468,11 @@ fn by_room(own: f64, room: f64) -> f64 {
 }
 
 impl Linearised {
+    /// Of a part of a requirement that is used, by its slopes.
+    pub(super) fn of_uses(value: f64, slopes: Vec<f64>, linear: bool) -> Self {
+        Self { value, slopes, linear }
+    }
+
     /// Of something that grows as the squares of the tolerances.
     pub(super) fn of_squares(value: f64, slopes: Vec<f64>) -> Self {
         Self { value, slopes, linear: false }

@@ -16,7 +16,7 @@ use super::cost::Priced;
 use super::reject_fit::RejectFit;
 use super::sampled::SampledCorrection;
 use super::unknown::Unknown;
-use super::worst::WorstCase;
+use super::worst::{NO_CORRECTION, WorstCase, WorstCaseCorrection, correction, is_off};
 use crate::analysis::{Analysis, CharacteristicAnalysis, law_over, surface_law};
 use crate::characteristic::SpecLimits;
 use crate::dimension::Dimension;
@@ -59,6 +59,8 @@ pub(super) struct Response {
     /// Whether it can depend on each dimension.
     pub(super) depends: Vec<bool>,
     pub(super) limits: SpecLimits,
+    /// By how much rounding may move a value of it.
+    pub(super) rounding: f64,
     /// The law of the surface, where a yield comes from one.
     pub(super) law: Option<SurfaceLaw>,
     pub(super) unknown: Unknown,
@@ -66,6 +68,8 @@ pub(super) struct Response {
     pub(super) sampled: Option<SampledCorrection>,
     /// The worst case, where it is required; None where the slopes tell all of it.
     pub(super) worst: Option<WorstCase>,
+    /// The corrections of the linear worst case below and above, where dimensions share a zone.
+    pub(super) over_zones: [WorstCaseCorrection; 2],
 }
 
 /// Differences smaller than this part are rounding.
@@ -108,12 +112,14 @@ impl Responses {
                     slopes: (0..n).map(slope).collect(),
                     depends,
                     limits,
+                    rounding: problem.kept_limits(c).rounding(),
                     law: by_law.then(|| surface_law(problem, outcome, c)?.ok()).flatten(),
                     unknown: Unknown::of(found, by_law),
                     sampled: None,
                     worst: (requirements[c] == Some(Requirement::WorstCase))
-                        .then(|| worst_case(&dimensions, &varying, &reach, fitted.surrogate.as_ref(), found))
+                        .then(|| worst_case(problem, &varying, &reach, fitted.surrogate.as_ref(), found))
                         .flatten(),
+                    over_zones: [NO_CORRECTION; 2],
                 }
             })
             .collect();
@@ -133,6 +139,11 @@ impl Responses {
             reject_fits,
             joint_unknown: 0.0,
         };
+        for (c, found) in analysis.characteristics.iter().enumerate() {
+            if requirements[c] == Some(Requirement::WorstCase) && shares_a_zone(problem, &all.varying) {
+                all.of[c].over_zones = all.zone_corrections(c, found).unwrap_or([NO_CORRECTION; 2]);
+            }
+        }
         if let Some([low, _]) = analysis.joint_requirement.and_then(|of| of.interval) {
             let ones = vec![1.0; n];
             let own = all.rejects(&all.limited()).share(&all, &ones, None);
@@ -205,7 +216,7 @@ impl Responses {
                 *law = Arc::clone(self.dimensions[d].scaled(factors[d])?.ok()?.law()?);
             }
         }
-        law_over(&surrogate, &laws, inputs.correlation()).ok()
+        law_over(&surrogate, &laws, inputs.correlation(), self.of[c].rounding).ok()
     }
 
     /// Factors of all dimensions when the groups have these half bands.
@@ -371,7 +382,35 @@ impl Responses {
                 None => constant += radius,
             }
         }
-        Some((constant, coefficients))
+        let (factor, more) = self.of[characteristic].over_zones[usize::from(above)];
+        coefficients.iter_mut().for_each(|coefficient| *coefficient *= factor);
+        Some((factor * constant + more, coefficients))
+    }
+
+    /// Whether the slopes tell all of the worst case of a characteristic.
+    pub(super) fn has_linear_worst_case(&self, characteristic: usize) -> bool {
+        let of = &self.of[characteristic];
+        of.worst.is_none() && !of.over_zones.iter().any(is_off)
+    }
+
+    /// The corrections of the linear worst case below and above to the one that the analysis has over the zones; None where that is unknown.
+    fn zone_corrections(
+        &self,
+        characteristic: usize,
+        found: &CharacteristicAnalysis,
+    ) -> Option<[WorstCaseCorrection; 2]> {
+        let nominal = found.nominal?;
+        let proof = found.proof().filter(|proof| proof.proven).map(|proof| proof.bounds);
+        let [low, high] = proof.or(found.worst_case.filter(|_| found.is_proven_linear()))?;
+        let all = self.every_dimension();
+        let of = |above: bool, truth: f64| {
+            let (constant, coefficients) = self.worst_case(characteristic, &all, above)?;
+            let half = |group: &Priced| self.dimensions[group.members[0]].half_band();
+            let wide = all.iter().zip(&coefficients).map(|(group, coefficient)| coefficient * half(group));
+            let by = correction(constant + wide.sum::<f64>(), truth);
+            Some(if is_off(&by) { by } else { NO_CORRECTION })
+        };
+        Some([of(false, nominal - low)?, of(true, high - nominal)?])
     }
 
     /// The nominal value and how far the worst case lies beyond it, above or below, with nominals moved by `shifts`, in sigmas.
@@ -515,17 +554,24 @@ impl Responses {
     }
 }
 
+/// Whether some of these dimensions share a zone, so that the box of their bands is not what they reach.
+fn shares_a_zone(problem: &Problem, varying: &[usize]) -> bool {
+    let block = |d: usize| problem.correlation().is_some_and(|of| of.block_of(d).is_some());
+    varying.iter().any(|&d| problem.dimensions()[d].zone().is_some() || block(d))
+}
+
 /// The worst case of a characteristic of which the slopes do not tell it: a curved surface, or a formula that interval arithmetic knows
-/// better. Circular zones stay with the slopes.
+/// better. Where dimensions share a zone the slopes are corrected, as a search of the box would leave it.
 fn worst_case(
-    dimensions: &[Dimension],
+    problem: &Problem,
     varying: &[usize],
     reach: &[Reach],
     surrogate: Option<&Surrogate>,
     found: &CharacteristicAnalysis,
 ) -> Option<WorstCase> {
     let surrogate = surrogate?;
-    let linear = found.is_proven_linear() || varying.iter().any(|&d| dimensions[d].zone().is_some());
+    let dimensions = problem.dimensions();
+    let linear = found.is_proven_linear() || shares_a_zone(problem, varying);
     let reached = found.nominal.zip(found.proof()).map(|(nominal, proof)| {
         let [low, high] = proof.bounds;
         [nominal - low, high - nominal]

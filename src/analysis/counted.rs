@@ -1,6 +1,6 @@
 //! The shares beyond the limits, the quantiles and the density counted at points of a surface, whose law could not be computed or is refuted.
 
-use crate::characteristic::SpecLimits;
+use crate::characteristic::{KeptLimits, SpecLimits};
 use crate::law::{LawFigure, LawTail, QUANTILE};
 use crate::method::Outcome;
 use crate::parallel::prelude::*;
@@ -68,9 +68,13 @@ pub(super) fn points(
 }
 
 /// Counts of one characteristic beyond its limits, and its quantiles at these probabilities, by values in ascending order.
-pub(super) fn counted(values: &[f64], limits: SpecLimits, quantiles: [(LawTail, f64); 7]) -> Counted {
-    let below = limits.lower().map(|lower| values.partition_point(|&y| y < lower));
-    let above = limits.upper().map(|upper| values.len() - values.partition_point(|&y| y <= upper));
+pub(super) fn counted(
+    values: &[f64],
+    (limits, kept): (SpecLimits, KeptLimits),
+    quantiles: [(LawTail, f64); 7],
+) -> Counted {
+    let below = limits.lower().map(|_| values.partition_point(|&y| kept.broken(y)[0]));
+    let above = limits.upper().map(|_| values.len() - values.partition_point(|&y| !kept.broken(y)[1]));
     let share = |count: usize| {
         LawFigure::counted(count as f64 / values.len() as f64, error(count as f64, values.len()) / values.len() as f64)
     };
@@ -91,7 +95,8 @@ pub(super) fn density(values: &[f64], places: usize) -> Option<Vec<[f64; 3]>> {
     let step = (to - from) / places as f64;
     let at = |place: usize| {
         let y = from + step * place as f64;
-        let count = values.partition_point(|&own| own < y + 0.5 * step) - values.partition_point(|&own| own < y - 0.5 * step);
+        let count =
+            values.partition_point(|&own| own < y + 0.5 * step) - values.partition_point(|&own| own < y - 0.5 * step);
         let of = |count: f64| count / (n as f64 * step);
         [y, of(count as f64), of(error(count as f64, n))]
     };

@@ -13,6 +13,7 @@ use serde::{Serialize, Serializer};
 use super::verified::{Verification, VerificationKind};
 use crate::characteristic::SpecLimits;
 use crate::law::{LawFigure, LawTail};
+use crate::power::rescale;
 
 /// Standard errors of a count that bound it: a right law fails in one of 500 million tests.
 const ERRORS: f64 = 6.0;
@@ -54,6 +55,8 @@ pub struct LawRefutation {
     /// Standard error of that share.
     pub error: f64,
 }
+
+rescale!(LawRefutation { limit } without { test, law, counted, error });
 
 /// Quantiles of a law that give no intervals.
 pub(super) enum FaultyQuantiles {

@@ -15,6 +15,7 @@ use crate::law::{Branch, LawError, LawFigure, LawOptions, LawTail, Sought, Surfa
 use crate::method::Outcome;
 use crate::moments::Interactions;
 use crate::pearson::Pearson;
+use crate::power::rescale;
 use crate::problem::Problem;
 use crate::surrogate::{Surrogate, Univariate};
 
@@ -76,6 +77,8 @@ pub struct SurfaceShares {
     pub quantiles: Option<[LawFigure; 7]>,
 }
 
+rescale!(SurfaceShares { refuted, quantiles } without { branch, counted, steps, below, above });
+
 /// The law of a characteristic's surface that has passed its tests, or points of the surface in its place: the one source of its shares,
 /// quantiles, intervals and density.
 pub(super) struct GuardedLaw {
@@ -115,18 +118,14 @@ impl GuardedLaw {
         let beside = request.verification.is_some_and(|of| of.kind == VerificationKind::Sample);
         let (surrogate, inputs) = surface(problem, outcome, c, unexplained.filter(|_| !beside))?;
         let correlation = outcome.plan.inputs().correlation();
-        if has_too_many_atoms(&surrogate, &inputs, correlation) {
-            return Self::counted(request, None);
-        }
-        let points = points(&surrogate);
-        // Without limits a tail has no call for twelve digits: quantiles of trees of products are those of points.
+        let options = options(problem, c, &surrogate);
         let limits = problem.characteristics()[c].limits();
-        let whole = match law(&surrogate, &inputs, correlation, (points, limits.exist())) {
-            Ok(law) => law,
-            Err(LawError::NoVariance | LawError::NoEigenvalues | LawError::LongTail { .. }) => {
+        let whole = match known_law(&surrogate, &inputs, correlation, &options) {
+            Some(Ok(law)) => law,
+            None | Some(Err(LawError::NoVariance | LawError::NoEigenvalues | LawError::LongTail { .. })) => {
                 return Self::counted(request, None);
             }
-            Err(_) => return None,
+            Some(Err(_)) => return None,
         };
         let (below, above) = (limits.lower().map(|y| whole.below(y)), limits.upper().map(|y| whole.above(y)));
         let known = |figure: &LawFigure| figure.value.is_finite() && figure.error.is_finite();
@@ -136,7 +135,7 @@ impl GuardedLaw {
         let full = match unexplained.filter(|_| beside) {
             Some(_) => {
                 let (surrogate, inputs) = surface(problem, outcome, c, unexplained)?;
-                law(&surrogate, &inputs, correlation, (points, limits.exist())).ok()
+                SurfaceLaw::of(&surrogate, &inputs, correlation, &options).ok()
             }
             None => None,
         };
@@ -153,7 +152,7 @@ impl GuardedLaw {
     fn counted(request: LawRequest<'_>, refuted: Option<LawRefutation>) -> Option<Self> {
         let LawRequest { problem, outcome, c, seed, .. } = request;
         let points = counted::points(problem, outcome, (c, seed), (counted::POINTS, None))?;
-        let limits = problem.characteristics()[c].limits();
+        let limits = (problem.characteristics()[c].limits(), problem.kept_limits(c));
         let Counted { beyond: [below, above], quantiles, points: count } = counted::counted(&points, limits, QUANTILES);
         let (branch, counted, quantiles) = (Branch::Sampled, Some(count), Some(quantiles));
         let shares = SurfaceShares { branch, counted, refuted, steps: false, below, above, quantiles };
@@ -282,16 +281,38 @@ fn has_too_many_atoms(
 /// The law of a characteristic's surface itself; None where there is no surface, or nothing but moments is known of an input.
 pub(crate) fn surface_law(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Result<SurfaceLaw, LawError>> {
     let (surrogate, inputs) = surface(problem, outcome, c, None)?;
-    Some(law_over(&surrogate, &inputs, outcome.plan.inputs().correlation()))
+    let rounding = problem.kept_limits(c).rounding();
+    Some(law_over(&surrogate, &inputs, outcome.plan.inputs().correlation(), rounding))
 }
 
-/// The law of a surface over these inputs, with as many points as reports take.
+/// The law of a surface; None where measured values are too many for a contour and their sums for a list.
+fn known_law(
+    surrogate: &Surrogate,
+    inputs: &[Arc<dyn Distribution>],
+    correlation: Option<&Correlation>,
+    options: &LawOptions,
+) -> Option<Result<SurfaceLaw, LawError>> {
+    match has_too_many_atoms(surrogate, inputs, correlation) {
+        true => SurfaceLaw::of_list(surrogate, inputs, correlation, options).map(Ok),
+        false => Some(SurfaceLaw::of(surrogate, inputs, correlation, options)),
+    }
+}
+
+/// Without limits a tail has no call for twelve digits: quantiles of trees of products are those of points.
+fn options(problem: &Problem, c: usize, surrogate: &Surrogate) -> LawOptions {
+    let (trees, kept) = (problem.characteristics()[c].limits().exist(), problem.kept_limits(c));
+    LawOptions { points: points(surrogate), trees, rounding: kept.rounding(), ..LawOptions::default() }
+}
+
+/// The law of a surface over these inputs, with as many points as reports take, whose values rounding moves by no more than this.
 pub(crate) fn law_over(
     surrogate: &Surrogate,
     inputs: &[Arc<dyn Distribution>],
     correlation: Option<&Correlation>,
+    rounding: f64,
 ) -> Result<SurfaceLaw, LawError> {
-    law(surrogate, inputs, correlation, (points(surrogate), true))
+    let options = LawOptions { points: points(surrogate), trees: true, rounding, ..LawOptions::default() };
+    SurfaceLaw::of(surrogate, inputs, correlation, &options)
 }
 
 /// A surface and the distributions of its inputs, beside a variance that it leaves out.
@@ -325,15 +346,6 @@ pub(super) fn with(
         surrogate.interactions = Interactions::of_pairs(inputs.len(), surrogate.interactions.pairs());
     }
     (surrogate, inputs)
-}
-
-fn law(
-    surrogate: &Surrogate,
-    inputs: &[Arc<dyn Distribution>],
-    correlation: Option<&Correlation>,
-    (points, trees): (usize, bool),
-) -> Result<SurfaceLaw, LawError> {
-    SurfaceLaw::of(surrogate, inputs, correlation, &LawOptions { points, trees, ..LawOptions::default() })
 }
 
 /// The density at places from one far quantile to the other, `[y, density, error]`; None where its values are steps, and where points are

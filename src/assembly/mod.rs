@@ -18,6 +18,7 @@ mod error;
 pub mod formula;
 mod given;
 pub mod implicit;
+mod polynomial;
 pub mod process;
 mod request;
 mod responses;
@@ -25,7 +26,6 @@ mod run;
 mod signature;
 mod states;
 mod switch;
-mod term_powers;
 
 pub use account::{ModelInfo, NonRepeatable};
 pub(crate) use blocks::{in_blocks, in_ranges, near_rows};
@@ -36,6 +36,8 @@ pub use derivatives::{Derivatives, Directions};
 pub use error::{EvaluationError, NoColumn};
 pub(crate) use given::GivenAnswers;
 pub use given::Table;
+#[doc(hidden)]
+pub use polynomial::Polynomial;
 pub use request::{Points, Request};
 pub use responses::Responses;
 pub(crate) use responses::all_finite;
@@ -43,8 +45,8 @@ pub use run::{Progress, Run};
 pub use signature::{Input, Output, Signature};
 pub(crate) use states::{State, States};
 pub use switch::{Switch, SwitchKind, Switches};
-pub use term_powers::TermPowers;
 
+use crate::power::Power;
 use crate::warning::Warning;
 
 /// The black box: object-safe, batch first, told what is asked, with an error per point and output.
@@ -67,6 +69,13 @@ pub trait AssemblyFunction: Send + Sync {
     fn bounds(&self, output: usize, region: &[[f64; 2]]) -> Option<Bounds> {
         let _ = (output, region);
         None
+    }
+
+    /// The sums of the magnitudes of the terms of `outputs` at a point, in the order asked: an output is rounded by parts of them. None for
+    /// an output of which the function does not know its terms, and where it has no value. This is not an evaluation.
+    fn magnitudes(&self, outputs: &[usize], point: &[f64]) -> Vec<Option<f64>> {
+        let _ = point;
+        vec![None; outputs.len()]
     }
 
     /// Answers `request.points` for `request.outputs` into `out`, whose rows are the points and whose columns are the asked
@@ -99,6 +108,21 @@ pub trait AssemblyFunction: Send + Sync {
     fn derivatives(&self, outputs: &[usize], directions: &Directions<'_>) -> Vec<Option<Derivatives>> {
         let _ = directions;
         vec![None; outputs.len()]
+    }
+
+    /// [`derivatives`](Self::derivatives) per unit of `2^exponent` of each input, so that those by inputs of extreme size are of ordinary size.
+    ///
+    /// Shapes: `exponents` has an element for every input. By default the derivatives per unit of 1, multiplied.
+    #[doc(hidden)]
+    fn derivatives_per(
+        &self,
+        outputs: &[usize],
+        directions: &Directions<'_>,
+        exponents: &[i32],
+    ) -> Vec<Option<Derivatives>> {
+        let unit = |input: usize| Power::of_exponent(exponents[input]);
+        let per = |found: Option<Derivatives>| found.map(|found| found.per(directions, &unit));
+        self.derivatives(outputs, directions).into_iter().map(per).collect()
     }
 
     /// The values that an external model is sent at these points, each point once, with the names of its inputs; None where it is
@@ -136,12 +160,14 @@ pub trait AssemblyFunction: Send + Sync {
         None
     }
 
-    /// Bounds on the powers of an output's terms as a polynomial in the inputs that `varying` flags, the others fixed; None where it is not one,
-    /// or that is not known. As certain as [`degree`](Self::degree).
-    fn term_powers(&self, output: usize, varying: &[bool]) -> Option<TermPowers> {
-        let degree = self.degree(output, varying)?;
-        let inputs = (0..varying.len()).filter(|&input| varying[input]);
-        Some(TermPowers::of_degree(degree, inputs))
+    /// An output as a polynomial in `u`, where the inputs are `centre + scale u`: one with the scale 0 is fixed. None where it is not a
+    /// polynomial of at most the fourth degree, or that is not known. A certainty, which no evaluation gives.
+    ///
+    /// Shapes: `centre` and `scale` have a value for every input.
+    #[doc(hidden)]
+    fn polynomial(&self, output: usize, centre: &[f64], scale: &[f64]) -> Option<Polynomial> {
+        let _ = (output, centre, scale);
+        None
     }
 
     /// The account of the processes of an external model so far; None for a function without any.

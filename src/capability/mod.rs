@@ -14,7 +14,7 @@ use std::sync::LazyLock;
 
 use serde::{Serialize, Serializer};
 
-use crate::characteristic::SpecLimits;
+use crate::characteristic::{KeptLimits, SpecLimits};
 use crate::pearson::Pearson;
 
 /// Half of the share that six sigma of a normal leave out: 1 - 0.9973 on both sides.
@@ -133,6 +133,14 @@ impl Capability {
             cpk_percentile,
             ..Self::of_moments(mean, sigma, limits)
         }
+    }
+
+    /// The same, where a value that does not vary keeps a limit as computed values do.
+    pub(crate) fn of_kept(law: &Law, mean: f64, sigma: f64, limits: SpecLimits, kept: KeptLimits) -> Self {
+        let capability = Self::of(law, mean, sigma, limits);
+        let Law::Point { at } = law else { return capability };
+        let [below, above] = kept.broken(*at).map(|broken| f64::from(u8::from(broken)));
+        Self { below: limits.lower().map(|_| below), above: limits.upper().map(|_| above), ..capability }
     }
 
     /// The figures that follow from mean and sigma alone: Cp and Cpk.

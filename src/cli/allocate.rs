@@ -9,11 +9,12 @@ use super::output::{Look, json};
 use super::progress::Bar;
 use super::running::{Clock, confirmed, externals, kept, on_threads};
 use super::{interrupt, study};
-use crate::allocation::{Allocation, AllocationOptions, AllocationTask, CostBasis, Goal, Status, allocate_with};
+use crate::allocation::{Allocation, AllocationOptions, AllocationTask, CostBasis, Goal, Status, allocate_written};
 use crate::assembly::{Progress, Run};
 use crate::document::svg::svg;
 use crate::document::terminal::text;
 use crate::method::Options;
+use crate::problem::Problem;
 use crate::report::html::allocate_html;
 use crate::report::{AllocationReport, WrittenAnew, csv_tables};
 use crate::study::{NamedFile, Rewritten, Study};
@@ -82,7 +83,9 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
         _ if incomplete && !allocation.run.unfinished() => Exit::NoResult,
         Status::Optimal | Status::LocalOptimum | Status::AlmostOptimal if refuted => Exit::Missed,
         Status::Optimal | Status::LocalOptimum | Status::AlmostOptimal => Exit::Done,
-        Status::Infeasible | Status::NoFeasiblePointFound | Status::OutOfTime => Exit::NotAllocated,
+        Status::Infeasible | Status::NoFeasiblePointFound | Status::Inconclusive | Status::OutOfTime => {
+            Exit::NotAllocated
+        }
     };
     Ok(confirmed(exit, &allocation.run))
 }
@@ -140,7 +143,8 @@ fn allocate(
     let bar = plan.map(|plan| Bar::new(2 * plan.cost().0, look.quiet));
     let show = |more: Progress| bar.iter().for_each(|bar| bar.show(more));
     let run = Run::to_the_end().stopping_when(&stop).abandoning_when(&interrupt::abandoned).showing(&show);
-    let result = on_threads(threads, || allocate_with(&study.problem, task, options, &run));
+    let written = |problem: &Problem| study.written_dimensions(problem);
+    let result = on_threads(threads, || allocate_written(&study.problem, task, options, &run, &written));
     if let Some(bar) = bar {
         bar.clear();
     }

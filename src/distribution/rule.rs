@@ -77,7 +77,7 @@ impl Jacobi {
     }
 
     /// Whether it describes its distribution whole: one of as many atoms as its order.
-    pub(super) fn is_whole(&self) -> bool {
+    pub(crate) fn is_whole(&self) -> bool {
         self.beta.last() == Some(&0.0)
     }
 
@@ -145,10 +145,14 @@ impl Rule {
     /// The rule with the mean and one node on either side that match moments 1 to 4; where one of these would lie outside
     /// the support, the Gauss rule of three nodes, which matches five.
     ///
-    /// The nodes are `s/2 +- sqrt(f - 3 s^2/4)` with skewness `s` and kurtosis `f`. A distribution of two atoms has these two.
+    /// The nodes are `s/2 +- sqrt(f - 3 s^2/4)` with skewness `s` and kurtosis `f`. A distribution of two or three atoms has these.
     ///
     /// Source: Seo and Kwak (2002), equations for the levels and weights of an input.
     pub fn three_point(distribution: &dyn Distribution) -> Self {
+        let all = distribution.jacobi(3);
+        if all.is_whole() {
+            return all.gauss();
+        }
         let (mean, sigma) = (distribution.mean(), distribution.sigma());
         let [lower, upper] = distribution.support().map(|edge| (edge - mean) / sigma);
         let matched = distribution.jacobi(2).gauss_with_mean();

@@ -70,9 +70,8 @@ pub(super) fn exact_derivatives(law: &Inversion, surface: &Surface, y: f64, tail
             }
         }
         for form in &transform.perturbed {
-            let ratios = |surface: &Surface| {
-                Some(form_ratios(&PerturbedForm::of(surface, &form.members)?, contour, count))
-            };
+            let ratios =
+                |surface: &Surface| Some(form_ratios(&PerturbedForm::of(surface, &form.members)?, contour, count));
             by_differences(&form.members, surface, ratios, &mut changes);
         }
         for tree in &transform.trees {

@@ -307,7 +307,8 @@ fn swinging(surface: &Surface, block: &[usize], axes: &Mat<f64>, steepest: &[f64
     }
     let vector: Vec<f64> = (0..m).map(|a| eigen.U()[(a, m - 1)]).collect();
     // Of the two signs that in which the largest component is positive.
-    let largest = vector.iter().fold(0.0f64, |largest, d| if d.abs() > largest.abs() * (1.0 + 1e-9) { *d } else { largest });
+    let largest =
+        vector.iter().fold(0.0f64, |largest, d| if d.abs() > largest.abs() * (1.0 + 1e-9) { *d } else { largest });
     Some((vector.iter().map(|d| d * largest.signum()).collect(), most))
 }
 

@@ -42,7 +42,8 @@ impl Exact {
     /// Density per unit of `y`.
     pub(super) fn density(&self, surface: &Arc<Surface>, y: f64) -> LawFigure {
         let own = self.inversion.density(y);
-        let poor = own.value.is_nan() || own.error.is_nan() || own.error > POOR * own.value.max(PEAK / self.inversion.sigma());
+        let poor =
+            own.value.is_nan() || own.error.is_nan() || own.error > POOR * own.value.max(PEAK / self.inversion.sigma());
         let better = |points: &Sampled| better(own, points.density(y, self.inversion.mean()));
         if poor { self.points(surface).map_or(own, better) } else { own }
     }

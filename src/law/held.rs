@@ -43,6 +43,7 @@ impl HeldTail {
         if y.is_nan() || y <= least || y >= most {
             return own();
         }
+        let y = law.beyond(y, self.tail);
         match (&self.kind, &law.kind) {
             (HeldKind::Line(line), Kind::Exact(exact)) => {
                 exact.inversion.tail_along(y, line).filter(|figure| !is_poor(*figure)).unwrap_or_else(own)

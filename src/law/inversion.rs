@@ -50,6 +50,8 @@ pub(super) struct Inversion {
     pub(super) transform: Transform,
     /// Of the surface: limits are counted from it.
     centre: f64,
+    /// Values with a probability of their own, about the centre, ascending: they are left out of the sums, which would halve them.
+    jumps: Vec<(f64, f64)>,
     sides: [Side; 2],
 }
 
@@ -61,15 +63,21 @@ enum Quantity {
 }
 
 impl Inversion {
-    #[cfg(feature = "probe")]
-    pub(super) fn describe(&self) -> String {
-        let t = &self.transform;
-        format!("forms {} hats {} singles {} perturbed {} trees {} domain {:?} vertex {:?} resolved {}", t.forms.blocks.len(), t.hats.inputs.len(), t.singles.len(), t.perturbed.len(), t.trees.len(), t.domain.map(|d| d * t.sigma), t.vertex, self.is_resolved())
-    }
-
     pub(super) fn new(transform: Transform, centre: f64) -> Self {
         let sides = [LawTail::Lower, LawTail::Upper].map(|tail| Side::new(tail, &transform));
-        Self { transform, centre, sides }
+        Self { transform, centre, jumps: Vec::new(), sides }
+    }
+
+    /// With these values, each with a probability of its own.
+    pub(super) fn with_jumps(self, jumps: impl Iterator<Item = (f64, f64)>) -> Self {
+        let jumps = jumps.map(|(y, weight)| (y - self.centre, weight)).collect();
+        Self { jumps, ..self }
+    }
+
+    /// The probability of the values strictly beyond a limit that is counted from the centre.
+    fn jumps_beyond(&self, y: f64, tail: LawTail) -> f64 {
+        let beyond = |at: f64| tail.sign() * (at - y) > 0.0;
+        self.jumps.iter().filter(|(at, _)| beyond(*at)).map(|(_, weight)| weight).sum()
     }
 
     pub(super) fn mean(&self) -> f64 {
@@ -92,10 +100,12 @@ impl Inversion {
             return true;
         }
         let good = |figure: &LawFigure| figure.value.is_finite() && figure.error <= RESOLVED * figure.value;
-        let sum = |y: f64, tail: LawTail| self.sum(y, tail, Quantity::LawTail(tail));
+        let sum = |y: f64, tail: LawTail| self.with_jumps_beyond(self.sum(y, tail, Quantity::LawTail(tail)), y, tail);
         let sides = [LawTail::Lower, LawTail::Upper];
         let halves = sides.map(|tail| sum(self.transform.mean, tail));
-        let whole: f64 = halves.iter().map(|half| half.value).sum();
+        let middle: f64 =
+            self.jumps.iter().filter(|(at, _)| *at == self.transform.mean).map(|(_, weight)| weight).sum();
+        let whole: f64 = halves.iter().map(|half| half.value).sum::<f64>() + middle;
         let [low, high] = self.transform.domain;
         let limit = |tail: LawTail, tilt: f64| {
             let theta = tail.sign() * tilt / self.sigma();
@@ -120,10 +130,14 @@ impl Inversion {
             return LawFigure::new(value, 4.0 * f64::EPSILON * value * (1.0 + z * z));
         }
         let outward = tail.sign() * (y - self.transform.mean) / self.sigma();
-        match outward < -CENTRAL {
-            true => self.sum(y, tail.other(), Quantity::LawTail(tail.other())).complement(),
-            false => self.sum(y, tail, Quantity::LawTail(tail)),
-        }
+        let own = if outward < -CENTRAL { tail.other() } else { tail };
+        let found = self.with_jumps_beyond(self.sum(y, own, Quantity::LawTail(own)), y, own);
+        if own == tail { found } else { found.complement() }
+    }
+
+    /// A tail of what has a density, and the values beyond the limit.
+    fn with_jumps_beyond(&self, smooth: LawFigure, y: f64, tail: LawTail) -> LawFigure {
+        LawFigure::new((smooth.value + self.jumps_beyond(y, tail)).min(1.0), smooth.error)
     }
 
     /// Density per unit of `y`.
@@ -157,7 +171,7 @@ impl Inversion {
         // The window before the last one, so that two are compared again.
         points.set(window.points / 2);
         let (density, _) = self.along(contour, y, Quantity::Density, Extent::Fixed(window));
-        [value, density]
+        [self.with_jumps_beyond(value, y, tail), density]
     }
 
     /// Whether the law is a normal distribution.
@@ -195,7 +209,7 @@ impl Inversion {
         };
         let mut previous = f64::NAN;
         let (sum, off, largest, window) = loop {
-            let terms = terms(contour, transform, y, quantity, count);
+            let terms = self.terms(contour, y, quantity, count);
             if terms.len() < FEWEST {
                 // Sums over nodes resolve next to nothing of the contour.
                 return (LawFigure::new(f64::NAN, f64::INFINITY), Window { points: FIRST, smooth: true });
@@ -257,6 +271,7 @@ impl Inversion {
         let y = y - self.centre;
         let contour = Contour::fixed(&self.transform, line.theta, line.step, line.bend);
         let (found, _) = self.along(&contour, y, Quantity::LawTail(line.tail), Extent::Fixed(line.window));
+        let found = self.with_jumps_beyond(found, y, line.tail);
         Some(if line.complement { found.complement() } else { found })
     }
 
@@ -272,7 +287,7 @@ impl Inversion {
         let contour = self.side(line.tail).contour(&self.transform, y);
         // A derivative decays more slowly than what it is of.
         let count = 2 * line.window.points;
-        let terms = terms(&contour, &self.transform, y, Quantity::LawTail(line.tail), count);
+        let terms = weighed(&contour, contour.integrand(&self.transform, y, count), Quantity::LawTail(line.tail));
         let sign = if line.complement { -1.0 } else { 1.0 };
         let level = sign * libm::exp(contour.log - contour.theta * y) * contour.step / PI;
         let of = |change: &Vec<Complex>| {
@@ -283,6 +298,24 @@ impl Inversion {
             LawFigure::new(level * whole, level.abs() * ((whole - half).abs() + 1e-11 * whole.abs()))
         };
         changes(&contour, terms.len()).iter().map(of).collect()
+    }
+}
+
+impl Inversion {
+    /// The terms of the sum at the first points, the first one halved, without the values that have a probability of their own:
+    ///
+    /// ```text
+    /// M(s) - sum_k p_k exp(s y_k)
+    /// ```
+    fn terms(&self, contour: &Contour, y: f64, quantity: Quantity, count: usize) -> Vec<Complex> {
+        let mut terms = contour.integrand(&self.transform, y, count);
+        for &(at, weight) in &self.jumps {
+            let weight = weight * libm::exp(contour.theta * at - contour.log);
+            for (index, term) in terms.iter_mut().enumerate() {
+                *term = *term - Complex::cis(contour.step * index as f64 * (at - y)) * weight;
+            }
+        }
+        weighed(contour, terms, quantity)
     }
 }
 
@@ -315,9 +348,8 @@ pub(super) struct Line {
     window: Window,
 }
 
-/// The terms of the sum at the first points, the first one halved.
-fn terms(contour: &Contour, transform: &Transform, y: f64, quantity: Quantity, count: usize) -> Vec<Complex> {
-    let mut terms = contour.integrand(transform, y, count);
+/// Values of the integrand as the terms of the sum: the first one halved.
+fn weighed(contour: &Contour, mut terms: Vec<Complex>, quantity: Quantity) -> Vec<Complex> {
     for (index, term) in terms.iter_mut().enumerate() {
         let s = contour.s(index);
         if let Quantity::LawTail(tail) = quantity {

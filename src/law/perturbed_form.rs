@@ -147,17 +147,6 @@ impl PerturbedForm {
         self.expansion(theta).map_or(f64::NAN, |about| about.log)
     }
 
-    #[cfg(feature = "probe")]
-    pub(super) fn debug(&self, theta: f64, s: Complex) {
-        let about = self.expansion(theta).unwrap();
-        let tilt = about.tilt(s);
-        let scale = libm::exp(tilt.closed.re - about.log);
-        let mut before = Complex::ZERO;
-        print!("   stays {} scale {scale:e} means {:?} c {:?} powers {:?}: ", tilt.slopes.is_some(), &tilt.means[..2], tilt.factor[0][0], about.powers);
-        for level in 0..NODES.len() { let next = about.expectation(&tilt, level); print!("{:.1e} ", scale * (next - before).abs()); before = next; }
-        println!("{before:?}");
-    }
-
     fn expansion(&self, theta: f64) -> Option<Arc<Expansion>> {
         let mut known = self.expansions.lock().unwrap_or_else(PoisonError::into_inner);
         known.entry(theta.to_bits()).or_insert_with(|| self.expanded(theta).map(Arc::new)).clone()
@@ -227,9 +216,7 @@ impl PerturbedForm {
     /// `L x`.
     fn mixed(&self, x: &[f64]) -> Vec<f64> {
         match &self.factor {
-            Some(factor) => {
-                (0..x.len()).map(|a| x.iter().enumerate().map(|(b, x)| factor[(a, b)] * x).sum()).collect()
-            }
+            Some(factor) => (0..x.len()).map(|a| x.iter().enumerate().map(|(b, x)| factor[(a, b)] * x).sum()).collect(),
             None => x.to_vec(),
         }
     }

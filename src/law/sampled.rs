@@ -99,20 +99,6 @@ enum Quantity {
 }
 
 impl Sampled {
-    #[cfg(feature = "probe")]
-    pub(super) fn describe(&self) {
-        println!("sampled: direction {:?} slopes {:?} members {:?} only {:?}", self.direction.coordinate(), self.direction.slopes(), self.direction.members(), self.only());
-        if let Some((_, law)) = &self.others { println!("  others {}", law.describe()); }
-        if let Some(c) = &self.control { println!("  control {} {:?} {:?}", c.law.describe(), c.surface.parts, c.surface.neighbours); }
-    }
-    #[cfg(feature = "probe")]
-    pub(super) fn debug(&self, y: f64, tail: LawTail) {
-        let off = y - self.surface.centre;
-        let exact = self.exact(y, Quantity::LawTail(tail));
-        let plain = self.estimates(&self.direction, &self.sample(None), off, Quantity::LawTail(tail), exact);
-        println!("  {y} {tail:?} exact {exact:?} plain {:?} beside {:?} chosen {:?}", plain.alone, plain.beside, self.chosen(y, tail, Quantity::LawTail(tail)).0.map(|(r, p)| (r, p.modes.len())));
-    }
-
     /// Of the components that are left when the transform has taken those that it can.
     pub(super) fn of(
         surface: &Arc<Surface>,

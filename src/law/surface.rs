@@ -149,6 +149,27 @@ impl Surface {
         self.centre + own + self.products().map(|(j, k, b)| b * z[j] * z[k]).sum::<f64>()
     }
 
+    /// What these inputs add to the centre, with the products among them; `members` ascending.
+    pub(super) fn value_of(&self, members: &[usize], z: &[f64]) -> f64 {
+        let own = |&j: &usize| {
+            let within = |(k, _): &&(usize, f64)| *k > j && members.binary_search(k).is_ok();
+            let products: f64 = self.neighbours[j].iter().filter(within).map(|&(k, b)| b * z[j] * z[k]).sum();
+            value(&self.parts[j], z[j]) + products
+        };
+        members.iter().map(own).sum()
+    }
+
+    /// The sum of the magnitudes of the centre and of all parts and products, each where it is largest among the values of its inputs that
+    /// have a probability of their own.
+    pub(super) fn magnitude(&self) -> f64 {
+        let farthest: Vec<f64> =
+            self.inputs.iter().map(|input| input.atoms.iter().map(|(z, _)| z.abs()).fold(0.0, f64::max)).collect();
+        let part = |(part, z): (&Quartic, &f64)| part.iter().rev().fold(0.0, |sum, c| sum * z + c.abs());
+        let parts: f64 = self.parts.iter().zip(&farthest).map(part).sum();
+        let products: f64 = self.products().map(|(j, k, b)| (b * farthest[j] * farthest[k]).abs()).sum();
+        self.centre.abs() + parts + products
+    }
+
     /// The surface itself at some points: a column for every input.
     pub(super) fn values(&self, z: &[&[f64]], points: usize) -> Vec<f64> {
         on_this_processor(Values { surface: self, z, points })

@@ -226,7 +226,8 @@ impl Transform {
         for (single, &log) in self.singles.iter().zip(logs) {
             single.multiply(theta, log, from, step, out);
         }
-        let forms = self.perturbed.iter().fold(out.len(), |resolved, form| resolved.min(form.multiply(theta, &points, out)));
+        let forms =
+            self.perturbed.iter().fold(out.len(), |resolved, form| resolved.min(form.multiply(theta, &points, out)));
         self.trees.iter().fold(forms, |resolved, tree| resolved.min(tree.multiply(theta, from, step, out)))
     }
 

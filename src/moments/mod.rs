@@ -34,6 +34,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 
 use crate::distribution::StandardMoments;
+use crate::power::rescale;
 use crate::shape::Four;
 use assemble::Assembly;
 
@@ -44,6 +45,9 @@ pub struct Moments {
     sigma: f64,
     shape: Option<(f64, f64)>,
 }
+
+rescale!(Moments { mean, sigma } without { shape });
+rescale!(Sampled { sigma } without { samples, skewness, kurtosis });
 
 impl From<&Option<Moments>> for Four<Option<f64>> {
     fn from(moments: &Option<Moments>) -> Self {
@@ -149,9 +153,9 @@ impl Contributions {
         }
     }
 
-    /// The same beside an independent part with this variance, of which nothing else is known: taken to be normal.
-    pub(crate) fn beside(self, variance: f64) -> Self {
-        let sigma = libm::hypot(self.moments.sigma(), variance.sqrt());
+    /// The same beside an independent part with this standard deviation, of which nothing else is known: taken to be normal.
+    pub(crate) fn beside(self, sigma: f64) -> Self {
+        let sigma = libm::hypot(self.moments.sigma(), sigma);
         if sigma == self.moments.sigma() {
             return self;
         }

@@ -32,6 +32,7 @@ pub use shape::PearsonType;
 
 use rand::RngExt;
 
+use crate::power::rescale;
 use standard::Standard;
 
 /// A member of the Pearson system.
@@ -54,6 +55,8 @@ pub struct Pearson {
     kurtosis: [f64; 2],
     standard: Standard,
 }
+
+rescale!(Pearson { mean, sigma } without { skewness, kurtosis, standard });
 
 /// Laws with the same moments are the same.
 impl PartialEq for Pearson {

@@ -1,6 +1,6 @@
 //! The figures that documents ask of every result of a characteristic.
 
-use crate::analysis::{CharacteristicAnalysis, Missing};
+use crate::analysis::{CharacteristicAnalysis, DerivativeOrigin, Interaction, Missing};
 use crate::capability::{Capability, Law, Quantiles};
 use crate::characteristic::Characteristic;
 use crate::moments::Moments;
@@ -146,9 +146,16 @@ impl CharacteristicAnalysis {
         self.law.as_ref()?.as_ref().ok()
     }
 
-    /// How many interactions were examined: not those whose points a stopped run left open.
+    /// The number of interactions whose points were evaluated, and of those that the formula gives: not those that a stopped run left
+    /// open, nor those that were estimated.
     pub(super) fn examined(&self) -> usize {
-        self.interactions.iter().filter(|pair| pair.missing != Some(Missing::NotEvaluated)).count()
+        let failed = self.interactions.iter().filter(|pair| pair.missing == Some(Missing::Failed)).count();
+        self.examined_interactions + failed
+    }
+
+    /// The interactions that were estimated.
+    pub(super) fn screened(&self) -> impl Iterator<Item = Interaction<'_>> {
+        self.interactions.iter().filter(|pair| pair.origin == Some(DerivativeOrigin::Screened))
     }
 
     /// Its quantiles: by the law of its surface, where there is one, by the Pearson fit elsewhere.

@@ -17,16 +17,19 @@ mod head;
 #[cfg(feature = "html")]
 pub mod html;
 mod inspection;
+mod interactions;
 mod labels;
 mod output_correlation;
 mod rare;
 mod requirement;
+mod sampling;
 mod simulation;
 mod source;
 mod stack;
 mod statistics;
 mod sweep;
 mod to_document;
+mod worst_case;
 #[cfg(feature = "xlsx")]
 mod xlsx;
 

@@ -70,7 +70,7 @@ impl Univariate {
         let second = c2 + d * (3.0 * c3 + d * 6.0 * c4);
         let third = c3 + d * 4.0 * c4;
         let coefficients = [r * first, r * r * second, r * r * r * third, r * r * r * r * c4];
-        (constant, Self { coefficients, degree: self.degree })
+        (constant, Self { coefficients, ..*self })
     }
 
     /// With this much added to the factor of the square.

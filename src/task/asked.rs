@@ -3,12 +3,13 @@
 use serde::Deserialize;
 
 use super::found::{Shown, TaskReport};
-use crate::allocation::{AllocationOptions, CostBasis, Goal, Status, allocate_with};
+use crate::allocation::{AllocationOptions, CostBasis, Goal, Status, allocate_written};
 use crate::analysis::analyze_with;
 use crate::assembly::Run;
 use crate::compare::{CompareOptions, compare_with};
 use crate::error::Error;
 use crate::method::{Options, registry::procedure};
+use crate::problem::Problem;
 use crate::rare::{RareOptions, rare_with};
 use crate::report::html::WhatIf;
 use crate::report::{
@@ -209,7 +210,8 @@ pub fn done(study: &Study, asked: &Asked, run: &Run<'_>, counted: Counted<'_>) -
             });
             let goal = goal.zip(*cost_limit).map_or(Goal::LeastCost, |(goal, limit)| goal.within(limit));
             let task = study.allocation_task().relative_or_default(problem, basis, !recentre.is_empty()).towards(goal);
-            let found = allocate_with(problem, &task, &options, run).map_err(boxed)?;
+            let in_file = |problem: &Problem| study.written_dimensions(problem);
+            let found = allocate_written(problem, &task, &options, run, &in_file).map_err(boxed)?;
             // A run that was stopped before the model had its say is not a study yet.
             let confirmed = found.after.is_some() && found.status != Status::OutOfTime;
             let anew = confirmed.then(|| study.rewritten(&found.problem));

@@ -141,12 +141,11 @@ pub fn verify_by_checks(
         .map(|c| {
             let model = answers.column(c);
             let failed = model.iter().filter(|y| y.is_nan()).count();
-            let limits = problem.characteristics()[c].limits();
             let nothing = CheckedFigures { failed, ..CheckedFigures::nothing() };
             let known = surfaces[c].as_ref().zip(wishes[c].as_ref()).zip(targets[c].surrogate);
             let Some(((surface, wish), surrogate)) = known else { return nothing };
             let at: Option<Vec<f64>> = values(surrogate, &standardised);
-            let [low, high] = [limits.lower().unwrap_or(f64::NEG_INFINITY), limits.upper().unwrap_or(f64::INFINITY)];
+            let [low, high] = problem.kept_limits(c).ends();
             let within = [[low, high], [low, f64::INFINITY], [f64::NEG_INFINITY, high]];
             let judged = at.and_then(|at| judge(&design, wish, surface, model, &at, &within));
             let of_shares = |judged: &Judged| {

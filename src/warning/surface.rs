@@ -137,7 +137,24 @@ pub(super) fn under_resolved(
     say(format!("{known} {why}")).advise(Advice::RaiseBudget).advise(Advice::Sample { points: None })
 }
 
-pub(super) fn switch(characteristic: &str, switch: &str, change: &Change, probability: &f64) -> Text {
+pub(super) fn switch(
+    characteristic: &str,
+    switch: &str,
+    change: &Change,
+    probability: &f64,
+    points: &Option<f64>,
+) -> Text {
+    if let Some(points) = points {
+        let does = match change {
+            Change::Kink => "bends",
+            Change::Jump => "jumps",
+            Change::Edge => "has no value beyond a limit",
+        };
+        let (beyond, points) = (part(*probability), significant(*points, 2));
+        return say(format!(
+            "`{characteristic}` {does} at {switch}, with {beyond} of the assemblies beyond: about {points} points of the sample."
+        ));
+    }
     let (does, means) = match change {
         Change::Kink => ("bends", "No polynomial follows a kink."),
         Change::Jump => ("jumps", "No polynomial follows a jump."),

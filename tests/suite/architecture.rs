@@ -26,7 +26,7 @@ const LAYERS: &[&[&str]] = &[
     &["capability"],
     &["moments"],
     &["sampling"],
-    &["models", "journal"],
+    &["models", "journal", "magnitude"],
     &["assembly"],
     &["warning"],
     &["correlation"],
@@ -34,7 +34,7 @@ const LAYERS: &[&[&str]] = &[
     &["distribution", "fits", "requirement", "inspection"],
     &["pearson", "method_kind"],
     &["names", "elementary", "summary", "time", "unit", "table", "labels"],
-    &["shape", "parallel", "short_sort"],
+    &["shape", "parallel", "short_sort", "power"],
 ];
 
 fn layer(module: &str) -> usize {

@@ -465,3 +465,202 @@ fn positions_keep_their_circle() {
         assert!(extreme.at[0].x.hypot(extreme.at[1].x) <= 0.1 * (1.0 + 1e-12));
     }
 }
+
+/// The function of a zone's two coordinates and of one dimension more.
+type Planar = fn(f64, f64, f64) -> f64;
+
+/// Formulas with extremes on the edge of a zone and within it, of which every one rises or falls with `a`.
+const PLANAR: [(&str, Planar); 6] = [
+    ("a + x + y", |a, x, y| a + x + y),
+    ("a + x - 0.4*y + x*y", |a, x, y| a + x - 0.4 * y + x * y),
+    ("a + x^2 + 3*y^2 - x*y", |a, x, y| a + x * x + 3.0 * y * y - x * y),
+    ("2*a + sin(7*x)*cos(5*y)", |a, x, y| 2.0 * a + (7.0 * x).sin() * (5.0 * y).cos()),
+    ("a*exp(x) + abs(y - 0.05)", |a, x, y| a * x.exp() + (y - 0.05).abs()),
+    ("a + hypot(x + 0.1, y)", |a, x, y| a + (x + 0.1).hypot(y)),
+];
+
+/// Points of a zone of half widths 0.2 and 0.3, as near to each other as 1e-4 along its edge.
+fn zone(law: &str) -> Vec<[f64; 2]> {
+    let turn = |angle: f64, radius: f64| [0.2 * radius * angle.cos(), 0.3 * radius * angle.sin()];
+    let angles = |count: usize| (0..count).map(move |k| std::f64::consts::TAU * k as f64 / count as f64);
+    match law {
+        "rim" => angles(20_000).map(|angle| turn(angle, 1.0)).collect(),
+        "disc" => {
+            let inner = (0..200).flat_map(|r| angles(400).map(move |angle| turn(angle, r as f64 / 200.0)));
+            angles(20_000).map(|angle| turn(angle, 1.0)).chain(inner).collect()
+        }
+        _ => {
+            let grid =
+                (-200..=200).flat_map(|i| (-200..=200).map(move |j| [f64::from(i) / 200.0, f64::from(j) / 200.0]));
+            let within = |[x, y]: &[f64; 2]| x.abs() + y.abs() <= 1.0;
+            let edge = (0..=5000).flat_map(|k| {
+                let x = f64::from(k) / 5000.0;
+                [[x, 1.0 - x], [-x, 1.0 - x], [x, x - 1.0], [-x, x - 1.0]]
+            });
+            grid.filter(within).chain(edge).map(|[x, y]| [0.2 * x, 0.3 * y]).collect()
+        }
+    }
+}
+
+/// Coordinates that share a zone stay within it, in a proof too: no point of it lies beyond the proven ends, and some lie next to them. Within a disc
+/// the samples are 1e-3 apart, where a value at rest is off by the square of that.
+#[test]
+fn a_proof_over_a_zone_is_that_of_its_points() {
+    for law in ["disc", "rim", "diamond"] {
+        let points = zone(law);
+        for (formula, value) in PLANAR {
+            let text = format!(
+                "[dimensions]\na = {{ nominal = 1, tolerance = 0.1 }}\nx = {{ nominal = 0, tolerance = 0.2 }}\n\
+                 y = {{ nominal = 0, tolerance = 0.3 }}\n[[joint]]\nof = [\"x\", \"y\"]\nlaw = \"{law}\"\n\
+                 [characteristics]\nf = {{ formula = \"{formula}\" }}\n"
+            );
+            let study = Study::from_toml(&text, "zone.toml").unwrap();
+            let of = |a: f64| points.iter().map(move |[x, y]| value(a, *x, *y));
+            let least = of(0.9).fold(f64::INFINITY, f64::min);
+            let greatest = of(1.1).fold(f64::NEG_INFINITY, f64::max);
+            let one = analyze(&study.problem, &study.options).unwrap().characteristics.remove(0);
+            let bounds = one.bounds.unwrap();
+            let searched = searched(&study.problem, Method::Full).characteristics.remove(0).extremes.unwrap();
+            for (what, proof) in [("bounds", &bounds), ("extremes", searched.proof.as_ref().unwrap())] {
+                let [low, high] = proof.bounds;
+                assert!(proof.proven, "{law}, {formula}, {what}: {proof:?}");
+                assert!(
+                    low <= least + 1e-12 && greatest <= high + 1e-12,
+                    "{law}, {formula}, {what}: {proof:?} {least} {greatest}"
+                );
+                assert!(
+                    least - low < 2e-5 && high - greatest < 2e-5,
+                    "{law}, {formula}, {what}: {proof:?} {least} {greatest}"
+                );
+            }
+        }
+    }
+}
+
+/// Columns of one file without tolerances of their own are the rows that were measured; with a drawing's tolerance every value of the band can be.
+#[test]
+fn measured_rows_are_the_worst_case_of_their_columns() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(5);
+    let rows: Vec<[f64; 2]> = (0..60)
+        .map(|_| {
+            let x: f64 = rng.random_range(-0.2..0.2);
+            [x, 0.7 * x + rng.random_range(-0.05..0.05)]
+        })
+        .collect();
+    let lines: Vec<String> = rows.iter().map(|[x, y]| format!("{x},{y}")).collect();
+    std::fs::write(folder.path().join("rows.csv"), format!("x,y\n{}\n", lines.join("\n"))).unwrap();
+    let of = |tolerances: [&str; 2], formula: &str| {
+        let [x, y] = tolerances;
+        let text = format!(
+            "[dimensions]\na = {{ nominal = 1, tolerance = 0.1 }}\nx = {{ measured = \"rows.csv\", column = \"x\"{x} }}\n\
+             y = {{ measured = \"rows.csv\", column = \"y\"{y} }}\n[characteristics]\nf = {{ formula = \"{formula}\" }}\n"
+        );
+        let path = folder.path().join("study.toml");
+        std::fs::write(&path, text).unwrap();
+        let study = Study::read(&path).unwrap();
+        let bounds = analyze(&study.problem, &study.options).unwrap().characteristics.remove(0).bounds.unwrap();
+        assert!(bounds.proven, "{formula}: {bounds:?}");
+        bounds.bounds
+    };
+    let cases: [(&str, Planar); 3] = [
+        ("a + x - y", |a, x, y| a + x - y),
+        ("a + x*y - x", |a, x, y| a + x * y - x),
+        ("a*cos(x) + 3*y^2", |a, x, y| a * x.cos() + 3.0 * y * y),
+    ];
+    for (formula, value) in cases {
+        let [low, high] = of(["", ""], formula);
+        let ends = |a: f64| rows.iter().map(move |[x, y]| value(a, *x, *y));
+        let (least, greatest) = (ends(0.9).fold(f64::INFINITY, f64::min), ends(1.1).fold(f64::NEG_INFINITY, f64::max));
+        close(low, least, 1e-6, 1.0);
+        close(high, greatest, 1e-6, 1.0);
+    }
+    let bands = [", nominal = 0, tolerance = 0.2", ", nominal = 0, tolerance = 0.2"];
+    let [low, high] = of(bands, "a + x - y");
+    close(low, 0.9 - 0.4, 1e-9, 1.0);
+    close(high, 1.1 + 0.4, 1e-9, 1.0);
+}
+
+/// The worst case that a terminal shows, and its name.
+fn shown(study: &str) -> Vec<(String, [f64; 2])> {
+    let mut command = assert_cmd::Command::new(assert_cmd::cargo::cargo_bin!("sensitol"));
+    let output = command.args(["analyze", "-q", study]).output().unwrap();
+    let text = String::from_utf8(output.stdout).unwrap();
+    let of = |line: &str| {
+        let at = ["proven worst case", "linear worst case", "worst case"]
+            .iter()
+            .find_map(|name| Some((name, line.find(name)?)));
+        let (name, at) = at?;
+        let (low, high) = line[at + name.len()..].trim().split_once(" .. ")?;
+        Some(((*name).to_owned(), [low.parse().ok()?, high.parse().ok()?]))
+    };
+    text.lines().filter_map(of).collect()
+}
+
+/// Proven ends are rounded outward: nothing lies beyond the printed numbers, which are off by a digit at most. A linear worst case beside a
+/// product is not conservative, and not shown.
+#[test]
+fn printed_ends_are_proven() {
+    let study = Study::read(&repository("tests/data/worst-case-label.toml")).unwrap();
+    let corners = among(&study.problem, &vertices(&study.problem));
+    let shown = shown(&repository("tests/data/worst-case-label.toml").display().to_string());
+    let names: Vec<&str> = shown.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(names, ["worst case", "proven worst case"], "a linear one, and one that is not");
+    for ((name, [low, high]), [least, greatest]) in shown.iter().zip(corners) {
+        // What rounding moves by a millionth of the last digit is not outside.
+        assert!(*low <= least + 1e-13 && greatest <= high + 1e-13, "{name}: {low} .. {high}, {least} .. {greatest}");
+        assert!(least - low <= 1.01e-7 && high - greatest <= 1.01e-7, "{name}: {low} .. {high}, {least} .. {greatest}");
+    }
+}
+
+/// The same of formulas at random points, at any scale.
+#[test]
+fn no_value_lies_beyond_printed_ends() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("study.toml").display().to_string();
+    for scale in [1e-9, 1e-3, 1.0, 777.0, 3e7, 2e12] {
+        for formula in ["a*b - c", "sin(a) + b*c", "a/(2 + b) + c^3"] {
+            let text = format!(
+                "[dimensions]\na = {{ nominal = 0.3, tolerance = 0.137 }}\nb = {{ nominal = 0.7, tolerance = 0.211 }}\n\
+                 c = {{ nominal = 0.1, tolerance = 0.0531 }}\n[characteristics]\ny = {{ formula = \"{scale:e}*({formula})\" }}\n"
+            );
+            std::fs::write(&path, &text).unwrap();
+            let study = Study::read(std::path::Path::new(&path)).unwrap();
+            let mut points = vertices(&study.problem);
+            points.extend(random(&study.problem, 20_000));
+            let [least, greatest] = among(&study.problem, &points)[0];
+            let found = shown(&path);
+            let [(name, [low, high])] = &found[..] else { panic!("{found:?}") };
+            assert!(name.ends_with("worst case") && name != "linear worst case", "{name}");
+            let slack = 1e-9 * scale;
+            assert!(*low <= least + slack && greatest <= high + slack, "{text}{low} .. {high}, {least} .. {greatest}");
+            // Corners are the extremes of these: no more than two units of the last of five digits of sigma.
+            assert!(
+                least - low <= 4e-5 * scale && high - greatest <= 4e-5 * scale,
+                "{text}{low} .. {high}, {least} .. {greatest}"
+            );
+        }
+    }
+}
+
+/// A worst case that is required holds over the zone: the cheapest tolerances use all of the room, by the closed form of a disc.
+#[test]
+fn a_required_worst_case_is_that_of_the_zone() {
+    use sensitol::allocation::{AllocationOptions, Status, allocate};
+    let text = "[dimensions]\na = { nominal = 1, tolerance = 0.05 }\nh = { nominal = [0, 0], position = 0.1 }\n[characteristics]\n\
+                y = { formula = \"a + h_x + h_y + 0.5*h_x*h_y\", upper = 1.2, require = \"worst-case\" }\n[costs]\n\
+                a = { model = \"reciprocal\", b = 0.1 }\nh = { model = \"reciprocal\", b = 0.1 }\n";
+    let study = Study::from_toml(text, "zone.toml").unwrap();
+    let options = AllocationOptions::default().with_analysis(study.options.clone());
+    let found = allocate(&study.problem, &study.allocation_task(), &options).unwrap();
+    let half = |name: &str| {
+        let all = found.problem.dimensions();
+        all.iter().find(|dimension| dimension.name() == name).unwrap().half_band()
+    };
+    let (a, r) = (half("a"), half("h_x"));
+    // Greatest where both coordinates are r/sqrt 2.
+    let greatest = 1.0 + a + 2f64.sqrt() * r + 0.25 * r * r;
+    assert!(greatest <= 1.2 + 1e-6 && greatest > 1.2 - 1e-3, "{greatest}");
+    assert!(!matches!(found.status, Status::Optimal | Status::NoFeasiblePointFound), "{:?}", found.status);
+    assert!(found.cost_after.unwrap() < found.cost_before.unwrap());
+}

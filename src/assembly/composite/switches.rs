@@ -1,7 +1,7 @@
 //! Where the outputs of a composition change their form, and their degree.
 
 use super::{Composite, Origin, SolvedRows, Source};
-use crate::assembly::{Points, Run, Switch, SwitchKind, Switches, TermPowers};
+use crate::assembly::{Points, Polynomial, Run, Switch, SwitchKind, Switches};
 use crate::parallel::prelude::*;
 
 /// Rows whose unknowns one task finds.
@@ -98,51 +98,40 @@ impl Composite {
         Some(margins)
     }
 
+    /// An output as a polynomial, where it is a formula of dimensions alone.
+    pub(super) fn polynomial_of(&self, output: usize, centre: &[f64], scale: &[f64]) -> Option<Polynomial> {
+        let dimensions = self.signature.inputs.len();
+        let Origin::Formula(formula) = self.outputs[output] else { return None };
+        let variable =
+            |index: usize| (index < dimensions).then(|| Polynomial::input(index, centre[index], scale[index]));
+        self.formulas.polynomial(formula, &variable)
+    }
+
     pub(super) fn degree_of(&self, output: usize, varying: &[bool]) -> Option<u32> {
+        let of_answer = |output: usize| {
+            let model = self.model.as_ref()?;
+            let dimensions = self.signature.inputs.len();
+            let of_source = |source: &Source| match *source {
+                Source::Dimension(dimension) => Some(u32::from(varying[dimension])),
+                Source::Fixed(_) => Some(0),
+                Source::Formula(formula) => {
+                    self.formulas.degree(formula, |index| (index < dimensions).then(|| u32::from(varying[index])))
+                }
+            };
+            let degrees = model.inputs.iter().map(of_source).collect::<Option<Vec<u32>>>()?;
+            let own = model.function.degree(output, &degrees.iter().map(|&degree| degree > 0).collect::<Vec<_>>())?;
+            own.checked_mul(degrees.into_iter().max().unwrap_or(0).max(1))
+        };
         let (dimensions, given) = (self.signature.inputs.len(), self.given());
         let variable = |index: usize| match index.checked_sub(dimensions) {
             None => Some(u32::from(varying[index])),
-            Some(output) if index < given => self.degree_of_answer(output, varying),
-            Some(_) => None,
-        };
-        match self.outputs[output] {
-            Origin::Formula(formula) => self.formulas.degree(formula, variable),
-            Origin::Model(output) => self.degree_of_answer(output, varying),
-            Origin::Unknown(_) => None,
-        }
-    }
-
-    pub(super) fn term_powers_of(&self, output: usize, varying: &[bool]) -> Option<TermPowers> {
-        let (dimensions, given) = (self.signature.inputs.len(), self.given());
-        let varies = || (0..dimensions).filter(|&input| varying[input]);
-        // Of an answer of the model no more than its degree is known.
-        let of_answer = |output: usize| Some(TermPowers::of_degree(self.degree_of_answer(output, varying)?, varies()));
-        let variable = |index: usize| match index.checked_sub(dimensions) {
-            None if varying[index] => Some(TermPowers::of_input(index)),
-            None => Some(TermPowers::default()),
             Some(output) if index < given => of_answer(output),
             Some(_) => None,
         };
         match self.outputs[output] {
-            Origin::Formula(formula) => self.formulas.term_powers(formula, variable),
+            Origin::Formula(formula) => self.formulas.degree(formula, variable),
             Origin::Model(output) => of_answer(output),
             Origin::Unknown(_) => None,
         }
-    }
-
-    /// The degree of an answer of the model in the dimensions that vary.
-    fn degree_of_answer(&self, output: usize, varying: &[bool]) -> Option<u32> {
-        let model = self.model.as_ref()?;
-        let dimensions = self.signature.inputs.len();
-        let of_source = |source: &Source| match *source {
-            Source::Dimension(dimension) => Some(u32::from(varying[dimension])),
-            Source::Fixed(_) => Some(0),
-            Source::Formula(formula) => {
-                self.formulas.degree(formula, |index| (index < dimensions).then(|| u32::from(varying[index])))
-            }
-        };
-        let degrees = model.inputs.iter().map(of_source).collect::<Option<Vec<u32>>>()?;
-        let own = model.function.degree(output, &degrees.iter().map(|&degree| degree > 0).collect::<Vec<_>>())?;
-        own.checked_mul(degrees.into_iter().max().unwrap_or(0).max(1))
     }
 }

@@ -22,7 +22,7 @@ use super::graph::{Graph, GraphNode, NodeId};
 use super::margins::Margins;
 use super::program::{Program, guards};
 use super::set::FormulaSet;
-use crate::assembly::{Switch, SwitchKind, TermPowers};
+use crate::assembly::{Switch, SwitchKind};
 
 impl FormulaSet {
     /// The places at which some formulas change their form, those of the formulas that they use included, each once.
@@ -99,54 +99,6 @@ impl FormulaSet {
             degrees.push(degree);
         }
         degrees[root as usize]
-    }
-
-    /// Bounds on the powers of a formula's terms as a polynomial, of which `variable` gives those of its variables; None where it is not one.
-    ///
-    /// Cost: as [`degree`](Self::degree), times the variables.
-    ///
-    /// ```
-    /// use sensitol::assembly::TermPowers;
-    /// use sensitol::assembly::formula::Formula;
-    /// use sensitol::internals::{FormulaSet, Meaning};
-    /// let formulas = vec![("y".to_owned(), Formula::parse("a^4/10 - 2*a*b + b^3")?)];
-    /// let set = FormulaSet::new(formulas, [("a", Meaning::Variable(0)), ("b", Meaning::Variable(1))]).unwrap();
-    /// let powers = set.term_powers(0, |variable| Some(TermPowers::of_input(variable))).unwrap();
-    /// assert_eq!((powers.highest(0), powers.highest(1), powers.mixed()), (4, 3, 2));
-    /// # Ok::<(), sensitol::assembly::formula::FormulaError>(())
-    /// ```
-    pub fn term_powers(
-        &self,
-        formula: usize,
-        variable: impl Fn(usize) -> Option<TermPowers>,
-    ) -> Option<TermPowers> {
-        let root = self.roots[formula];
-        let mut all: Vec<Option<TermPowers>> = Vec::with_capacity(root as usize + 1);
-        for &node in &self.graph.nodes()[..=root as usize] {
-            let of = |operand: NodeId| all[operand as usize].as_ref();
-            let still = |operands: &[NodeId]| {
-                operands.iter().all(|&operand| of(operand).is_some_and(TermPowers::is_constant)).then(TermPowers::default)
-            };
-            let powers = match node {
-                GraphNode::Constant(_) => Some(TermPowers::default()),
-                GraphNode::Variable(index) => variable(index),
-                GraphNode::Unary(Unary::Negate, a) => of(a).cloned(),
-                GraphNode::Unary(_, a) => still(&[a]),
-                GraphNode::Binary(Binary::Add | Binary::Subtract, a, b) => of(a).zip(of(b)).map(|(a, b)| a.plus(b)),
-                GraphNode::Binary(Binary::Multiply, a, b) => of(a).zip(of(b)).and_then(|(a, b)| a.times(b)),
-                GraphNode::Binary(Binary::Divide, a, b) => of(a).filter(|_| still(&[b]).is_some()).cloned(),
-                GraphNode::Binary(Binary::Power, a, b) => {
-                    let whole = self.graph.constant_value(b).filter(|b| (0.0..1e6).contains(b) && b.fract() == 0.0);
-                    still(&[a, b]).or_else(|| of(a)?.power(whole? as u32))
-                }
-                GraphNode::Binary(_, a, b) => still(&[a, b]),
-                GraphNode::If(condition, a, b) => {
-                    of(a).zip(of(b)).filter(|_| still(&[condition]).is_some()).map(|(a, b)| a.plus(b))
-                }
-            };
-            all.push(powers);
-        }
-        all.swap_remove(root as usize)
     }
 
     fn prepared(&self, formulas: &[usize]) -> Arc<Margins> {

@@ -3,13 +3,13 @@
 use std::fmt::Write;
 
 use super::super::WarningReport;
-use super::super::bars::worst_case;
 use super::super::figures::{Figures, Named};
 use super::super::statistics::part;
 use super::super::sweep::{SweptPointReport, SweptReport};
+use super::super::worst_case::{KnownWorstCase, WorstCaseKind};
 use crate::analysis::CharacteristicAnalysis;
 use crate::capability::Capability;
-use crate::document::number::{beside, index, plain, plural, significant, yielded};
+use crate::document::number::{index, plain, plural, significant, yielded};
 use crate::document::rejects::Rejects;
 use crate::document::svg::escaped;
 use crate::rare::{Beyond, RareCharacteristic};
@@ -17,7 +17,7 @@ use crate::requirement::Requirement;
 use crate::sampling::{Estimate, one_error};
 use crate::shape::finite;
 use crate::simulation::{SimulatedCharacteristic, YieldEstimate};
-use crate::verdict::{Judged, Verdict, about, share};
+use crate::verdict::{Judged, Verdict};
 
 /// Claims of one kind that a sentence makes.
 const NAMED: usize = 6;
@@ -50,9 +50,7 @@ pub(super) struct JudgedCharacteristic<'r> {
     ppm: [Option<f64>; 2],
     sides: Vec<String>,
     cpk: Option<f64>,
-    worst: Option<[f64; 2]>,
-    /// By which numbers are rounded.
-    scale: f64,
+    worst: Option<KnownWorstCase>,
     /// The dimension that makes most of the variance, and its share.
     driver: Option<(&'r str, f64)>,
 }
@@ -111,7 +109,6 @@ impl<'r> JudgedCharacteristic<'r> {
             sides: Vec::new(),
             cpk: None,
             worst: None,
-            scale: 0.0,
             driver: None,
         }
     }
@@ -134,8 +131,7 @@ impl<'r> JudgedCharacteristic<'r> {
             interval: one.yield_interval(),
             ppm: [one.ppm_below(), one.ppm_above()],
             cpk: one.capability.as_ref().and_then(|of: &Capability| of.cpk),
-            worst: worst_case(one).map(|(_, ends)| ends),
-            scale: one.scale(),
+            worst: one.known_worst_case(),
             driver: all.max_by(|a, b| a.1.total_cmp(&b.1)),
             ..Self::of(one, place).rejecting(one.rejects())
         }
@@ -143,15 +139,15 @@ impl<'r> JudgedCharacteristic<'r> {
 
     /// Of a simulation.
     pub(super) fn simulated(place: usize, one: &'r SimulatedCharacteristic) -> Self {
-        let error = one.yield_.map(|share| one_error(share.value, share.interval));
         Self {
             verdict: one.verdict(),
             asked: asked(one.requirements()),
             yield_: one.yield_(),
-            interval: one.yield_.map(|share| share.interval),
+            interval: one.yield_interval(),
             ppm: [one.ppm_below(), one.ppm_above()],
             cpk: one.cpk,
-            ..Self::of(one, place).rejecting(Rejects::new(one.below, one.above, error))
+            ..Self::of(one, place)
+                .rejecting(Rejects::new(one.below, one.above, one.yield_error()).within(one.reject_intervals))
         }
     }
 
@@ -188,7 +184,6 @@ impl<'r> JudgedCharacteristic<'r> {
             let (a, b) = (rank(a), rank(b));
             a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
         })?;
-        let error = worst.error_estimate.as_ref().and_then(|estimate| estimate.yield_);
         let target = worst.requirements.iter().find_map(|judged| match judged.requirement {
             Requirement::Yield(target) => Some(target),
             _ => None,
@@ -200,7 +195,7 @@ impl<'r> JudgedCharacteristic<'r> {
             asked: asked(worst.requirements.clone()),
             at: format!("at {parameter} = {}", plain(worst.at)),
             yield_: worst.yield_,
-            interval: worst.yield_.and_then(|value| about(value, error)).map(share),
+            interval: worst.yield_interval,
             ppm: [worst.ppm_below, worst.ppm_above],
             ..Self::named(&one.name, [one.lower, one.upper], place).rejecting(worst.rejects())
         })
@@ -544,8 +539,15 @@ impl Table {
             let _ = write!(cells, "<td class=\"n\">{}</td>", one.cpk.map(index).unwrap_or_default());
         }
         if self.worst {
-            let ends = one.worst.map(|ends| ends.map(|end| beside(end, one.scale)));
-            let ends = ends.map(|[low, high]| format!("{low} –<br>{high}")).unwrap_or_default();
+            let ends = one.worst.as_ref().map(|KnownWorstCase { kind, texts: [low, high], .. }| {
+                let known = match kind {
+                    WorstCaseKind::Proven => "",
+                    WorstCaseKind::Found => "<br><small>found</small>",
+                    WorstCaseKind::Linear => "<br><small>linear</small>",
+                };
+                format!("{low} –<br>{high}{known}")
+            });
+            let ends = ends.unwrap_or_default();
             let _ = write!(cells, "<td class=\"n\">{ends}</td>");
         }
         cells + "</tr>\n"

@@ -6,6 +6,7 @@ mod drifting;
 mod extremes;
 mod scaling;
 mod student;
+mod units;
 
 use proptest::prelude::*;
 use rand::SeedableRng;
