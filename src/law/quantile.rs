@@ -23,8 +23,8 @@ pub(super) fn quantile(law: &SurfaceLaw, tail: LawTail, p: f64) -> LawFigure {
     let open = Cell::new(0.0);
     let gap = |u: f64| {
         let figure = law.tail(mean + sign * u, tail);
-        // A small part of what the tail itself leaves open is no difference.
-        open.set(if figure.value > 0.0 { OPEN * figure.error / figure.value } else { 0.0 });
+        // A small part of what the tail itself leaves open is no difference. Next to nothing beside a large error is one.
+        open.set(OPEN * figure.error / figure.value.max(p));
         libm::log(figure.value.max(1e-305) / p)
     };
     let [least, most] = law.range();
@@ -140,16 +140,17 @@ fn near(law: &SurfaceLaw, side: &Together<'_>, sought: &Sought) -> LawFigure {
         } else {
             high = at
         }
-        slope = match (own_slope, last) {
-            (Some(own), _) if own * sign < 0.0 && own.is_finite() => own,
-            (_, Some((before, there))) if (here - there) * (at - before) * sign < 0.0 => (here - there) / (at - before),
-            _ => slope,
-        };
+        let own = own_slope.filter(|own| own * sign < 0.0 && own.is_finite());
+        let secant = last.map(|(before, there)| (here - there) / (at - before)).filter(|secant| secant * sign < 0.0);
+        let measured = own.or(secant);
+        slope = measured.unwrap_or(slope);
         let step = -here / slope;
-        let known = (value.error / value.value / slope).abs();
+        let known = (value.error / value.value.max(p) / slope).abs();
         open = if known.is_finite() { known } else { open };
         let close = (NEAR * sigma).max(if open.is_finite() { OPEN * open } else { 0.0 });
-        if here == 0.0 || step.abs() <= close {
+        // The slope of another law says nothing of how close a place is: next to a corner it may be infinite.
+        let close_enough = step.abs() <= close && (measured.is_some() || here.abs() <= NEAR);
+        if here == 0.0 || close_enough {
             return LawFigure::new((at + step).clamp(low, high), open + close);
         }
         if high - low <= close {

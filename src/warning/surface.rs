@@ -195,13 +195,19 @@ pub(super) fn surface_law_refuted(
     counted: &f64,
     error: &f64,
 ) -> Text {
-    let fails = if *test == "monotone" { "has quantiles that fall" } else { "contradicts points" };
+    let fails = if *test == "monotone" { "has quantiles or shares that fall" } else { "contradicts points" };
     let [law, counted, error] = [law, counted, error].map(|share| ppm(*share));
     say(format!(
-        "The surface law of `{characteristic}` {fails}: it has {law} ppm below {limit}, where {counted} ± {error} ppm of the points lie. Yield, \
-         quantiles and coverage intervals come from points."
+        "The surface law of `{characteristic}` {fails}: it has {law} ppm below {}, where {counted} ± {error} ppm of the points lie. Points take \
+         its place for yield, quantiles and coverage intervals.",
+        short(*limit)
     ))
     .advise(Advice::Sample { points: None })
+}
+
+/// A number with six digits.
+fn short(number: f64) -> f64 {
+    format!("{number:.5e}").parse().unwrap_or(number)
 }
 
 /// Parts per million without decimals.

@@ -122,13 +122,12 @@ struct Case {
 
 impl Case {
     fn of(number: u64) -> Self {
-        let mut random = Random(std::env::var("LAW_SEED").map_or(1000, |s| s.parse().unwrap()) + number);
+        let mut random = Random(1000 + number);
         let n = 1 + (number % 6) as usize;
         // A third of the surfaces are of normal inputs only, and a third have half of them.
         let normal = [1.0, 0.5, 0.0][(number / 6 % 3) as usize];
-        let inputs: Vec<usize> = (0..n)
-            .map(|_| if random.share() < normal { 0 } else { random.below(INPUTS.len()) })
-            .collect();
+        let inputs: Vec<usize> =
+            (0..n).map(|_| if random.share() < normal { 0 } else { random.below(INPUTS.len()) }).collect();
         let degree = 2 + (number / 18 % 3) as usize;
         let part = |random: &mut Random| {
             let mut part = vec![
@@ -246,46 +245,73 @@ fn faults(case: &Case, law: &SurfaceLaw) -> Vec<String> {
             LawTail::Upper => [counted(&values, inner)[1], counted(&values, outer)[1]],
         };
         let error = error_of_count(p);
-        check(least - error <= p && p <= most + error, format!("{tail:?} {p}: {quantile:?}, counted {least} .. {most}"));
+        check(
+            least - error <= p && p <= most + error,
+            format!("{tail:?} {p}: {quantile:?}, counted {least} .. {most}"),
+        );
     }
     faults
 }
 
+/// The law of a case is right, or refused for a reason; the branch that it takes.
+fn checked(case: &Case) -> Result<Option<Branch>, String> {
+    let mut options = LawOptions::default();
+    options.points = LAW_POINTS;
+    let law = match SurfaceLaw::of(&case.surrogate, &case.laws(), None, &options) {
+        Ok(law) => law,
+        // An input whose tail falls as a power has no transform, and a surface of which no part is left has no variance.
+        Err(LawError::LongTail { .. } | LawError::NoVariance) => return Ok(None),
+        Err(error) => return Err(format!("{}: {error}", case.number)),
+    };
+    let faults = faults(case, &law);
+    if faults.is_empty() {
+        return Ok(Some(law.branch()));
+    }
+    let names: Vec<&str> = case.inputs.iter().map(|&input| INPUTS[input].0.name()).collect();
+    let (number, surrogate, branch) = (case.number, &case.surrogate, law.branch());
+    Err(format!("{number} {names:?} {surrogate:?} {branch:?}:\n  {}", faults.join("\n  ")))
+}
+
+/// Checks every second case, from this one on.
+fn check(first: u64) {
+    let found: Vec<_> = (first..CASES).step_by(2).map(|number| checked(&Case::of(number))).collect();
+    let failed: Vec<&String> = found.iter().filter_map(|found| found.as_ref().err()).collect();
+    assert!(failed.is_empty(), "{} laws fail:\n{failed:#?}", failed.len());
+    // All branches are among the surfaces.
+    for branch in [Branch::Exact, Branch::Single, Branch::Sampled] {
+        let count = found.iter().filter(|found| **found == Ok(Some(branch))).count();
+        assert!(count > 10, "{branch:?}: {count}");
+    }
+}
+
 #[test]
-fn laws_of_random_surfaces_agree_with_counts() {
-    let mut failed = Vec::new();
-    let mut branches = [0; 3];
-    for number in 0..CASES {
-        let case = Case::of(number);
-        if std::env::var("LAW_CASE").is_ok_and(|of| !of.split(',').any(|one| one == number.to_string())) {
-            continue;
-        }
-        let start = std::time::Instant::now();
-        let mut options = LawOptions::default();
-        options.points = LAW_POINTS;
-        let law = match SurfaceLaw::of(&case.surrogate, &case.laws(), None, &options) {
-            Ok(law) => law,
-            // An input whose tail falls as a power has no transform; a surface of which no part is left has no variance.
-            Err(LawError::LongTail { .. } | LawError::NoVariance) => continue,
-            Err(error) => panic!("{number}: {error}"),
-        };
-        branches[match law.branch() {
-            Branch::Exact => 0,
-            Branch::Single => 1,
-            _ => 2,
-        }] += 1;
-        if std::env::var("LAW_CASE").is_ok() { println!("{:?}", case.surrogate); law.describe(); let v = case.values(); for share in SHARES { law.debug(v[(share * POINTS as f64) as usize]); } }
-        let made = start.elapsed();
-        let faults = faults(&case, &law);
-        if std::env::var("SENSITOL_LAW_TABLE").is_ok() {
-            println!("{number} {:?} {:?} {:?} {:?} {:?}", case.inputs, law.branch(), start.elapsed(), made, faults);
-        }
-        if !faults.is_empty() {
-            let names: Vec<&str> = case.inputs.iter().map(|&input| INPUTS[input].0.name()).collect();
-            failed.push(format!("{} {names:?} {:?} {:?}:\n  {}", case.number, case.surrogate, law.branch(), faults.join("\n  ")));
+fn laws_of_even_random_surfaces_agree_with_counts() {
+    check(0);
+}
+
+#[test]
+fn laws_of_odd_random_surfaces_agree_with_counts() {
+    check(1);
+}
+
+/// The tail of a corner that a thin normal input rounds is known with few digits far beyond it: no quantile is found there.
+#[test]
+fn quantiles_beside_a_corner_are_those_of_the_law() {
+    let part = Some(Univariate::of_coefficients(&[0.0, -0.5, 0.0, 2e-5]));
+    for thin in [1e-4, 1e-3, 0.01, 0.1] {
+        let parts = vec![part, part, Some(Univariate::of_coefficients(&[thin]))];
+        let surrogate = Surrogate { centre: 5.0, parts, interactions: Interactions::of_pairs(3, vec![(0, 1, -1.0)]) };
+        let case = Case { number: CASES, surrogate, inputs: vec![0; 3] };
+        let law = SurfaceLaw::of(&case.surrogate, &case.laws(), None, &LawOptions::default()).unwrap();
+        let values = case.values();
+        let mut before = f64::NEG_INFINITY;
+        for p in [0.3, 0.1, 0.025, 0.01, 1.35e-3, 1e-4] {
+            let found = law.quantile(LawTail::Upper, p);
+            let counted = counted(&values, found.value)[1];
+            assert!((counted - p).abs() <= error_of_count(p), "{thin}, {p}: {found:?}, counted {counted}");
+            assert!(found.error <= 0.5 * thin, "{thin}, {p}: {found:?}");
+            assert!(found.value > before, "{thin}, {p}: {found:?} after {before}");
+            before = found.value;
         }
     }
-    assert!(failed.is_empty(), "{} of {CASES} laws fail:\n{}", failed.len(), failed.join("\n"));
-    // All branches are among the surfaces.
-    assert!(branches.iter().all(|&count| count > 20), "{branches:?}");
 }
