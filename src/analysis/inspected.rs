@@ -8,10 +8,13 @@ use crate::law::SurfaceLaw;
 use crate::verification::WeightedSample;
 
 /// Of a characteristic whose yield is settled; None without an inspection, and where nothing is known of its distribution.
+///
+/// `points` of the surface, in ascending order, take the place of a law that is refuted.
 pub(super) fn inspected(
     one: &CharacteristicAnalysis,
     kept: KeptLimits,
     surface: Option<&SurfaceLaw>,
+    points: Option<&[f64]>,
 ) -> Option<InspectionRisks> {
     let inspection = one.characteristic.inspection()?;
     let limits = one.characteristic.limits();
@@ -32,6 +35,14 @@ pub(super) fn inspected(
             let exact = |guard: f64| of_point(at, kept, inspection.gauge(), guard);
             let guard = guard(inspection, limits, &Tails { below: &below, above: &above });
             Some(told(one, inspection, guard, guard.map(|guard| (exact(guard), [Some(0.0); 2]))))
+        }
+        (None, Some(_))
+            if let Some(points) = points.filter(|_| one.surface_law.is_some_and(|law| law.refuted.is_some())) =>
+        {
+            let share = |count: usize| count as f64 / points.len() as f64;
+            let below = |x: f64| share(points.partition_point(|&y| y < x));
+            let above = |x: f64| share(points.len() - points.partition_point(|&y| y <= x));
+            Some(by(one, inspection, (limits, kept), &Tails { below: &below, above: &above }, None))
         }
         (None, Some(fit)) => {
             let (below, above) = (|x: f64| fit.below(x), |x: f64| fit.above(x));
@@ -75,7 +86,8 @@ fn by(
             return (risks, [error.map(|error| error + risks.error); 2]);
         };
         let found = of_sample(sample, kept, gauge, guard);
-        if one.surface_law.is_none() {
+        // Points of the model have the say beside a count of the surface.
+        if one.surface_law.is_none_or(|law| law.refuted.is_some()) {
             (risks.false_accept, risks.false_reject) = (found[0].value, found[1].value);
         }
         let errors = [found[0].error_of(risks.false_accept), found[1].error_of(risks.false_reject)];

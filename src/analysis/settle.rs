@@ -7,6 +7,7 @@
 //! | surface law | a surface, verified at check points or not at all; a proven surface of measured inputs | law and checks as the root of the sum of squares; without checks, what the errors of the moments move the tails |
 //! | Pearson fit | moments are all that is known | what the errors of the moments move it |
 //!
+//! The law of a surface is tested before it is used (`law_guard`): where points contradict it, these take its place, and a sample has no control.
 //! With the law of a surface as control a share is `P = P_law + mean(1_model - 1_surface)` over the sample: what model and surface
 //! agree on is exact, and only what they differ by is sampled.
 //!
@@ -20,7 +21,7 @@ use super::coverage::covered;
 use super::errors::of_sides;
 use super::inspected::inspected;
 use super::measured::samples_of;
-use super::surface_law::{SurfaceShares, density};
+use super::surface_law::{GuardedLaw, LawRequest, SurfaceShares};
 use super::unverified::error_of_shares;
 use super::verified::{TRUSTED, Verification, VerificationKind};
 use super::yield_source::YieldSource;
@@ -87,10 +88,9 @@ impl Rejected {
     }
 }
 
-/// The law of a surface, where it answers, with its shares and its density where that is wanted.
+/// The law of a surface after its tests, with its density where that is asked for.
 pub(super) struct SharesByLaw {
-    shares: SurfaceShares,
-    law: Option<SurfaceLaw>,
+    law: GuardedLaw,
     density: Option<Vec<[f64; 3]>>,
 }
 
@@ -101,16 +101,24 @@ pub(super) fn laws(
     options: &Options,
     characteristics: &[CharacteristicAnalysis],
 ) -> Vec<Option<SharesByLaw>> {
-    let seed = options.seed.unwrap_or(Options::SEED);
     let of = |(c, one): (usize, &CharacteristicAnalysis)| {
         let surface = one.moments.is_some() && follows_from_a_surface(one);
-        let beside = (is_sampled(one), seed);
-        let (shares, law) = surface.then(|| SurfaceShares::of(problem, outcome, c, fit(one), beside)).flatten()?;
-        let drawn = law.as_ref().filter(|_| options.densities);
-        let density = drawn.and_then(|law| density(law, shares.quantiles.as_ref()));
-        Some(SharesByLaw { shares, law, density })
+        let request = request(problem, outcome, options, (c, one));
+        let law = surface.then(|| GuardedLaw::of(request)).flatten()?;
+        let density = options.densities.then(|| law.density()).flatten();
+        Some(SharesByLaw { law, density })
     };
     characteristics.par_iter().enumerate().map(of).collect()
+}
+
+fn request<'a>(
+    problem: &'a Problem,
+    outcome: &'a Outcome,
+    options: &Options,
+    (c, one): (usize, &'a CharacteristicAnalysis),
+) -> LawRequest<'a> {
+    let seed = options.seed.unwrap_or(Options::SEED);
+    LawRequest { problem, outcome, c, seed, fit: fit(one), verification: one.verification.as_ref() }
 }
 
 /// Decides for every characteristic what its yield comes from, and sets capability and the error of the yield accordingly; the
@@ -122,7 +130,6 @@ pub(super) fn settle(
     characteristics: &mut [CharacteristicAnalysis],
     found: Vec<Option<SharesByLaw>>,
 ) -> Vec<Option<SurfaceLaw>> {
-    let seed = options.seed.unwrap_or(Options::SEED);
     let mut laws: Vec<Option<SurfaceLaw>> = Vec::new();
     for ((c, one), found) in characteristics.iter_mut().enumerate().zip(found) {
         one.pearson = one.capability;
@@ -130,12 +137,17 @@ pub(super) fn settle(
         if one.moments.is_none() {
             continue;
         }
-        if let Some(SharesByLaw { shares, law, density }) = found {
-            (one.surface_law, laws[c], one.density) = (Some(shares), law, density);
+        let (mut guarded, density) = found.map_or((None, None), |SharesByLaw { law, density }| (Some(law), density));
+        one.density = density;
+        if let Some(probability) = options.coverage {
+            one.coverage = covered(one, guarded.as_ref(), probability).unwrap_or_else(|faulty| {
+                guarded = GuardedLaw::without(request(problem, outcome, options, (c, one)), &faulty);
+                covered(one, guarded.as_ref(), probability).unwrap_or(None)
+            });
         }
-        one.coverage = options.coverage.and_then(|probability| {
-            covered(problem, outcome, (c, seed), one, (probability, follows_from_a_surface(one)))
-        });
+        one.surface_law = guarded.as_ref().map(|law| law.shares);
+        let points = guarded.as_mut().and_then(|law| law.points.take());
+        laws[c] = guarded.and_then(|law| law.law);
         let Some(found) = rejected(problem, outcome, c, one, laws[c].as_ref()) else { continue };
         let proven = proven_sides(problem, outcome, options, c, one, &found);
         let found = found.excluding(proven).bounded();
@@ -146,7 +158,7 @@ pub(super) fn settle(
             one.error_estimate =
                 Some(ErrorEstimate { yield_: found.error.filter(|error| error.is_finite()), ..estimate });
         }
-        one.inspection = inspected(one, problem.kept_limits(c), laws[c].as_ref());
+        one.inspection = inspected(one, problem.kept_limits(c), laws[c].as_ref(), points.as_deref());
     }
     laws
 }
@@ -384,7 +396,9 @@ fn samples(one: &CharacteristicAnalysis) -> Option<Rejected> {
         errors: verification.beyond.map(|of| of.map(|of| of.error)),
         intervals: verification.beyond.map(|of| of.map(|of| interval(of.value, of.error))),
     };
-    let (Some([within, differences @ ..]), Some(law)) = (verification.difference, &one.surface_law) else {
+    // Counts of the surface are no control: the sample counts as well.
+    let control = one.surface_law.as_ref().filter(|law| law.counted.is_none());
+    let (Some([within, differences @ ..]), Some(law)) = (verification.difference, control) else {
         return Some(plain());
     };
     let error = libm::hypot(within.error, law.error());

@@ -4,8 +4,11 @@ use std::sync::Arc;
 
 use serde::{Serialize, Serializer};
 
-use super::counted::{Counted, counted};
+use super::counted::{self, Counted};
+use super::law_guard::{FaultyQuantiles, LawGuard, LawRefutation, LawTest, by_sample};
+use super::verified::{Verification, VerificationKind};
 use crate::capability::{Law, Quantiles, TAIL};
+use crate::characteristic::SpecLimits;
 use crate::correlation::Correlation;
 use crate::distribution::{Distribution, Normal};
 use crate::law::{Branch, LawError, LawFigure, LawOptions, LawTail, Sought, SurfaceLaw};
@@ -59,8 +62,10 @@ const FEW_PLACES: usize = 96;
 pub struct SurfaceShares {
     /// How the law is computed.
     pub branch: Branch,
-    /// Points of the surface at which its law was counted, because it could not be computed; None where it was.
+    /// Points of the surface at which its law was counted, because it could not be computed or is refuted; None where it was computed.
     pub counted: Option<usize>,
+    /// The contradiction for which points took the place of a law; None where there is none.
+    pub refuted: Option<LawRefutation>,
     /// Whether it is a step function: every input that counts has measured values only.
     pub steps: bool,
     /// The share below the lower limit; None without one.
@@ -72,26 +77,45 @@ pub struct SurfaceShares {
     pub quantiles: Option<[LawFigure; 7]>,
 }
 
-rescale!(SurfaceShares { quantiles } without { branch, counted, steps, below, above });
+rescale!(SurfaceShares { refuted, quantiles } without { branch, counted, steps, below, above });
 
-impl SurfaceShares {
-    /// None where the moments do not follow from a surface, or nothing but moments is known of an input. Quantiles are sought from
-    /// those of `fit`. With the law itself, where it answers.
+/// The law of a characteristic's surface that has passed its tests, or points of the surface in its place: the one source of its shares,
+/// quantiles, intervals and density.
+pub(super) struct GuardedLaw {
+    pub(super) shares: SurfaceShares,
+    /// Returns shares beyond limits; None where points take its place.
+    pub(super) law: Option<SurfaceLaw>,
+    /// Has the quantiles, where these include a variance that the other one leaves out.
+    full: Option<SurfaceLaw>,
+    /// Points in its place, ascending.
+    pub(super) points: Option<Vec<f64>>,
+}
+
+/// A characteristic whose law is asked for: its place, the seed of points, and its verification.
+#[derive(Clone, Copy)]
+pub(super) struct LawRequest<'a> {
+    pub(super) problem: &'a Problem,
+    pub(super) outcome: &'a Outcome,
+    pub(super) c: usize,
+    pub(super) seed: u64,
+    pub(super) fit: Option<&'a Law>,
+    pub(super) verification: Option<&'a Verification>,
+}
+
+impl GuardedLaw {
+    /// Returns None if the moments do not follow from a surface, or nothing but moments is known of an input. Quantiles are sought from those
+    /// of the fit.
     ///
-    /// A variance that the surface leaves out is a normal input beside it; not in the shares where a sample of the model is `beside`,
-    /// which knows what is left out.
-    pub(super) fn of(
-        problem: &Problem,
-        outcome: &Outcome,
-        c: usize,
-        fit: Option<&Law>,
-        (beside, seed): (bool, u64),
-    ) -> Option<(Self, Option<SurfaceLaw>)> {
-        let fitted = &outcome.fitted[c];
-        if fitted.integrated.is_some() {
+    /// A variance that the surface leaves out is a normal input beside it. A sample of the model has it already: then only quantiles include it.
+    pub(super) fn of(request: LawRequest<'_>) -> Option<Self> {
+        let LawRequest { problem, outcome, c, .. } = request;
+        if outcome.fitted[c].integrated.is_some() {
             return None;
         }
-        let unexplained = outcome.climbed.as_ref().and_then(|climbed| climbed.unexplained(c));
+        // Of a surface that is proven to be the function nothing is left out but rounding.
+        let exact = request.verification.is_some_and(|of| matches!(of.kind, VerificationKind::Exact { .. }));
+        let unexplained = outcome.climbed.as_ref().and_then(|climbed| climbed.unexplained(c)).filter(|_| !exact);
+        let beside = request.verification.is_some_and(|of| of.kind == VerificationKind::Sample);
         let (surrogate, inputs) = surface(problem, outcome, c, unexplained.filter(|_| !beside))?;
         let correlation = outcome.plan.inputs().correlation();
         let options = options(problem, c, &surrogate);
@@ -99,14 +123,14 @@ impl SurfaceShares {
         let whole = match known_law(&surrogate, &inputs, correlation, &options) {
             Some(Ok(law)) => law,
             None | Some(Err(LawError::NoVariance | LawError::NoEigenvalues | LawError::LongTail { .. })) => {
-                return Some((Self::counted(problem, outcome, c, seed)?, None));
+                return Self::counted(request, None);
             }
             Some(Err(_)) => return None,
         };
         let (below, above) = (limits.lower().map(|y| whole.below(y)), limits.upper().map(|y| whole.above(y)));
         let known = |figure: &LawFigure| figure.value.is_finite() && figure.error.is_finite();
         if ![below, above].iter().flatten().all(known) {
-            return Some((Self::counted(problem, outcome, c, seed)?, None));
+            return Self::counted(request, None);
         }
         let full = match unexplained.filter(|_| beside) {
             Some(_) => {
@@ -115,24 +139,78 @@ impl SurfaceShares {
             }
             None => None,
         };
-        let of_quantiles = full.as_ref().unwrap_or(&whole);
-        let quantiles = quantiles(of_quantiles, fit);
-        Some((
-            Self { branch: whole.branch(), counted: None, steps: whole.is_step_function(), below, above, quantiles },
-            Some(whole),
-        ))
+        let quantiles = quantiles(full.as_ref().unwrap_or(&whole), request.fit);
+        let (branch, steps) = (whole.branch(), whole.is_step_function());
+        let shares = SurfaceShares { branch, counted: None, refuted: None, steps, below, above, quantiles };
+        match shares.refutation(request, limits, unexplained) {
+            Some(refutation) => Self::counted(request, Some(refutation)),
+            None => Some(Self { shares, law: Some(whole), full, points: None }),
+        }
     }
 
-    fn counted(problem: &Problem, outcome: &Outcome, c: usize, seed: u64) -> Option<Self> {
-        let Counted { beyond: [below, above], quantiles, points } = counted(problem, outcome, (c, seed), QUANTILES)?;
-        Some(Self {
-            branch: Branch::Sampled,
-            counted: Some(points),
-            steps: false,
-            below,
-            above,
-            quantiles: Some(quantiles),
-        })
+    /// Points in place of a law that could not be computed, or is refuted.
+    fn counted(request: LawRequest<'_>, refuted: Option<LawRefutation>) -> Option<Self> {
+        let LawRequest { problem, outcome, c, seed, .. } = request;
+        let points = counted::points(problem, outcome, (c, seed), (counted::POINTS, None))?;
+        let limits = (problem.characteristics()[c].limits(), problem.kept_limits(c));
+        let Counted { beyond: [below, above], quantiles, points: count } = counted::counted(&points, limits, QUANTILES);
+        let (branch, counted, quantiles) = (Branch::Sampled, Some(count), Some(quantiles));
+        let shares = SurfaceShares { branch, counted, refuted, steps: false, below, above, quantiles };
+        Some(Self { shares, law: None, full: None, points: Some(points) })
+    }
+
+    /// Returns the law of the quantiles.
+    fn of_quantiles(&self) -> Option<&SurfaceLaw> {
+        self.full.as_ref().or(self.law.as_ref())
+    }
+
+    /// Quantiles with these tails and probabilities, at most one half each, by a law that has passed its tests; None where one of them is unknown.
+    pub(super) fn quantiles(&self, fit: Option<&Law>, of: &[(LawTail, f64)]) -> Option<Vec<LawFigure>> {
+        let law = self.of_quantiles()?;
+        let found = law.quantiles(&sought(law, fit, of)).into_iter();
+        found.map(|figure| Some(figure).filter(|figure| figure.value.is_finite())).collect()
+    }
+
+    /// Returns the density as a table, `[y, density, error]`; None where values are steps.
+    pub(super) fn density(&self) -> Option<Vec<[f64; 3]>> {
+        match (&self.law, &self.points) {
+            (Some(law), _) => density(law, self.shares.quantiles.as_ref()),
+            (None, Some(points)) if self.shares.refuted.is_some() => counted::density(points, FEW_PLACES),
+            (None, _) => None,
+        }
+    }
+
+    /// Points in place of a law whose quantiles give no coverage intervals.
+    pub(super) fn without(request: LawRequest<'_>, faulty: &FaultyQuantiles) -> Option<Self> {
+        let mut counted = Self::counted(request, None)?;
+        if let (FaultyQuantiles::Fall(p, y), Some(points)) = (faulty, &counted.points) {
+            counted.shares.refuted = Some(LawGuard::new(points).refutation(LawTest::Monotone, *y, *p));
+        }
+        Some(counted)
+    }
+}
+
+impl SurfaceShares {
+    /// Tests shares and quantiles by points of the surface and by the sample of the model.
+    fn refutation(
+        &self,
+        request: LawRequest<'_>,
+        limits: SpecLimits,
+        unexplained: Option<f64>,
+    ) -> Option<LawRefutation> {
+        let LawRequest { problem, outcome, c, seed, verification, .. } = request;
+        let by_sample = verification.and_then(|of| by_sample(of, limits, [self.below, self.above]));
+        if by_sample.is_some() {
+            return by_sample;
+        }
+        let points = counted::points(problem, outcome, (c, seed), (counted::TESTED, unexplained))?;
+        let guard = LawGuard::new(&points);
+        let quantiles: Vec<_> = self.quantiles.iter().flat_map(|all| QUANTILES.into_iter().zip(*all)).collect();
+        let tails = [(limits.lower(), LawTail::Lower, self.below), (limits.upper(), LawTail::Upper, self.above)];
+        let tail = |(limit, tail, share): (Option<f64>, LawTail, Option<LawFigure>)| {
+            guard.tail((limit?, tail), share?, &quantiles)
+        };
+        guard.quantiles(&quantiles).or_else(|| tails.into_iter().find_map(tail))
     }
 
     /// The numerical error of the share within the limits.
@@ -207,14 +285,6 @@ pub(crate) fn surface_law(problem: &Problem, outcome: &Outcome, c: usize) -> Opt
     Some(law_over(&surrogate, &inputs, outcome.plan.inputs().correlation(), rounding))
 }
 
-/// The law of a characteristic's surface beside what it leaves out, as its quantiles are reported; None as [`surface_law`].
-pub(super) fn full_law(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Result<SurfaceLaw, LawError>> {
-    let unexplained = outcome.climbed.as_ref().and_then(|climbed| climbed.unexplained(c));
-    let (surrogate, inputs) = surface(problem, outcome, c, unexplained)?;
-    let correlation = outcome.plan.inputs().correlation();
-    known_law(&surrogate, &inputs, correlation, &options(problem, c, &surrogate))
-}
-
 /// The law of a surface; None where measured values are too many for a contour and their sums for a list.
 fn known_law(
     surrogate: &Surrogate,
@@ -280,7 +350,7 @@ pub(super) fn with(
 
 /// The density at places from one far quantile to the other, `[y, density, error]`; None where its values are steps, and where points are
 /// drawn of which none can be integrated.
-pub(super) fn density(law: &SurfaceLaw, quantiles: Option<&[LawFigure; 7]>) -> Option<Vec<[f64; 3]>> {
+fn density(law: &SurfaceLaw, quantiles: Option<&[LawFigure; 7]>) -> Option<Vec<[f64; 3]>> {
     if law.is_step_function() {
         return None;
     }
@@ -313,12 +383,6 @@ fn quantiles(law: &SurfaceLaw, fit: Option<&Law>) -> Option<[LawFigure; 7]> {
     found.try_into().ok().filter(|_| known)
 }
 
-/// Quantiles with these tails and probabilities, at most one half each; None where one of them is unknown.
-pub(super) fn quantiles_at(law: &SurfaceLaw, fit: Option<&Law>, of: &[(LawTail, f64)]) -> Option<Vec<f64>> {
-    let found = law.quantiles(&sought(law, fit, of)).into_iter();
-    found.map(|figure| Some(figure.value).filter(|value| value.is_finite())).collect()
-}
-
 fn sought(law: &SurfaceLaw, fit: Option<&Law>, of: &[(LawTail, f64)]) -> Vec<Sought> {
     let normal = || Pearson::normal(law.mean(), law.sigma()).ok();
     let start = match fit {
@@ -342,8 +406,11 @@ fn sought(law: &SurfaceLaw, fit: Option<&Law>, of: &[(LawTail, f64)]) -> Vec<Sou
 pub(super) struct SurfaceLawShape {
     /// `exact`, `single` or `sampled`: how it is computed.
     branch: &'static str,
-    /// Points of the surface at which the law was counted, where it could not be computed; null where it was.
+    /// Points of the surface at which the law was counted, where it could not be computed or is refuted; null where it was computed.
     counted_points: Option<usize>,
+    /// The contradiction for which points took the place of the law; null where there is none.
+    #[cfg_attr(feature = "cli", schemars(with = "Option<super::law_guard::LawRefutationShape>"))]
+    refuted: Option<LawRefutation>,
     /// Whether the law is a step function, because every input that counts has measured values only.
     step_function: bool,
     /// The share within the limits; null without any.
@@ -369,6 +436,7 @@ impl Serialize for SurfaceShares {
                 Branch::Sampled => "sampled",
             },
             counted_points: self.counted,
+            refuted: self.refuted,
             step_function: self.steps,
             yield_: self.yield_(),
             ppm_below: ppm(self.below),

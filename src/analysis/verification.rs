@@ -194,7 +194,11 @@ fn sample(
         shares,
         tails: found.sample.as_ref().filter(|_| limits.exist()).map(|sample| sample.tails(sides)),
         replaced,
-        sample: found.sample.filter(|_| one.characteristic.inspection().is_some()).map(Arc::new),
+        // For the risks of an inspection, and for coverage intervals.
+        sample: found
+            .sample
+            .filter(|_| one.characteristic.inspection().is_some() || options.coverage.is_some())
+            .map(Arc::new),
     });
     true
 }

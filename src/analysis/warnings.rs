@@ -4,6 +4,7 @@ use std::collections::HashSet;
 
 use super::characteristic::curvature;
 use super::interactions::missing;
+use super::law_guard::LawRefutation;
 use super::{CharacteristicAnalysis, Missing, trust};
 use crate::capability::Law;
 use crate::dimension::Dimension;
@@ -73,6 +74,7 @@ pub(super) fn of(
         warnings.extend(trust::of(problem, outcome, c, analysis));
         let wanted = outcome.climbed.as_ref().map(|climbed| climbed.accuracy);
         warnings.extend(super::verification::warnings(analysis, wanted));
+        warnings.extend(refuted_law(analysis));
         warnings.extend(not_proven(analysis));
     }
     let possible = outcome.plan.possible_pairs();
@@ -329,6 +331,13 @@ fn doubtful(outcome: &Outcome, c: usize, analysis: &CharacteristicAnalysis) -> V
         }
     }
     warnings
+}
+
+/// A law of the surface that points contradict.
+fn refuted_law(analysis: &CharacteristicAnalysis) -> Option<Warning> {
+    let LawRefutation { test, limit, law, counted, error } = analysis.surface_law?.refuted?;
+    let characteristic = analysis.characteristic.name().to_owned();
+    Some(Warning::SurfaceLawRefuted { characteristic, test: test.name(), limit, law, counted, error })
 }
 
 /// Extremes that were searched only.

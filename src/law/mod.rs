@@ -22,6 +22,7 @@ mod complex;
 mod contour;
 mod derivative;
 mod direction;
+mod exact;
 mod forms;
 mod hats;
 mod held;
@@ -29,6 +30,7 @@ mod input;
 mod inversion;
 mod joint;
 mod panels;
+mod perturbed_form;
 mod points;
 mod polynomial;
 mod quadrant;
@@ -54,7 +56,7 @@ pub(crate) use quantile::Sought;
 #[cfg(feature = "html")]
 pub(crate) use tabulated::TabulatedInput;
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use crate::characteristic::{KeptLimits, SpecLimits};
 use crate::correlation::Correlation;
@@ -63,12 +65,13 @@ use crate::power::{Rescale, Rescaling, Unknown};
 use crate::surrogate::{Inputs, Surrogate, shapes};
 
 use direction::Direction;
+use exact::Exact;
 use inversion::Inversion;
 use sampled::Sampled;
 use single::Single;
 use steps::Steps;
 use surface::Surface;
-use transform::Transform;
+use transform::{Summed, Transform};
 use zones::{Straightened, Zone, straightened};
 
 /// A number and what its computation leaves uncertain.
@@ -265,7 +268,7 @@ enum Kind {
     /// One value.
     Point(f64),
     Steps(Steps),
-    Exact(Box<Inversion>),
+    Exact(Box<Exact>),
     Single(Box<Single>),
     Sampled(Box<Sampled>),
 }
@@ -327,14 +330,25 @@ impl SurfaceLaw {
         if let Some(position) = surface.inputs.iter().position(|input| input.falls_as_a_power()) {
             return Err(LawError::LongTail { position });
         }
-        let (transform, left) = Transform::of(&surface, &surface.components(), options.trees);
+        let components = surface.components();
+        let summed = if options.trees { Summed::Trees } else { Summed::Perturbed };
+        let jumps = jumps.unwrap_or_default();
+        let inverted = |summed: Summed| {
+            let (transform, left) = Transform::of(&surface, &components, summed);
+            (Inversion::new(transform, surface.centre).with_jumps(jumps.iter().copied()), left)
+        };
+        let (mut inversion, mut left) = inverted(summed);
+        if !inversion.is_resolved() {
+            (inversion, left) = inverted(Summed::Singles);
+        }
         if left.is_empty() {
-            let inversion = Inversion::new(transform, surface.centre).with_jumps(jumps.into_iter().flatten());
             let moments = [inversion.mean(), inversion.sigma()];
-            return with(Kind::Exact(Box::new(inversion)), moments);
+            let exact = Exact { inversion, points: OnceLock::new(), options: *options };
+            return with(Kind::Exact(Box::new(exact)), moments);
         }
         let [mean, sigma] = moments(surrogate, inputs, correlation.as_ref())?;
-        let sampled = Sampled::of(&surface, transform, &left, sigma, options).ok_or(LawError::NoEigenvalues)?;
+        let sampled =
+            Sampled::of(&surface, inversion.transform, &left, sigma, options).ok_or(LawError::NoEigenvalues)?;
         with(Kind::Sampled(Box::new(sampled)), [mean, sigma])
     }
 
@@ -397,8 +411,8 @@ impl SurfaceLaw {
         match &self.kind {
             Kind::Point(_) => LawFigure::proven(0.0),
             Kind::Steps(steps) => steps.tail(y, tail),
-            Kind::Exact(inversion) => {
-                let found = inversion.tail(y, tail);
+            Kind::Exact(exact) => {
+                let found = exact.tail(&self.surface, y, tail);
                 // A sum over a contour halves a jump at the limit.
                 LawFigure { error: found.error + self.jump, ..found }
             }
@@ -429,7 +443,7 @@ impl SurfaceLaw {
         }
         match &self.kind {
             Kind::Point(_) | Kind::Steps(_) => LawFigure::proven(0.0),
-            Kind::Exact(inversion) => inversion.density(y),
+            Kind::Exact(exact) => exact.density(&self.surface, y),
             Kind::Single(single) => single.density(y),
             Kind::Sampled(sampled) => sampled.density(y, self.mean),
         }

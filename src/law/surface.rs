@@ -215,6 +215,29 @@ impl Surface {
         Self { centre: *centre, inputs, parts, neighbours, correlated, places }
     }
 
+    /// The same surface with the nearest parabola in place of every higher part of a normal input: `z^3` as `3 z`, `z^4` as `6 z^2 - 3`.
+    /// Constants stay in the parts.
+    pub(super) fn with_normal_parabolas(&self) -> Self {
+        let parabola = |(part, input): (&Quartic, &Arc<Input>)| match (input.is_normal(), *part) {
+            (true, [c0, c1, c2, c3, c4]) => [c0 - 3.0 * c4, c1 + 3.0 * c3, c2 + 6.0 * c4, 0.0, 0.0],
+            (false, part) => part,
+        };
+        let parts = self.parts.iter().zip(&self.inputs).map(parabola).collect();
+        Self { parts, ..self.clone() }
+    }
+
+    /// The variance of the difference to another surface over the same inputs, as far as these are uncorrelated: of parts of normal inputs by
+    /// Hermite polynomials, and of products.
+    pub(super) fn squared_distance(&self, other: &Self) -> f64 {
+        let parts: f64 = (0..self.len())
+            .map(|j| {
+                let [_, c1, c2, c3, c4] = std::array::from_fn(|k| self.parts[j][k] - other.parts[j][k]);
+                (c1 + 3.0 * c3).powi(2) + 2.0 * (c2 + 6.0 * c4).powi(2) + 6.0 * c3 * c3 + 24.0 * c4 * c4
+            })
+            .sum();
+        parts + self.products().map(|(j, k, b)| (b - other.product(j, k)).powi(2)).sum::<f64>()
+    }
+
     /// The surface where one input varies by this factor more.
     pub(super) fn scaled(&self, input: usize, by: f64) -> Self {
         let mut scaled = self.clone();

@@ -509,6 +509,21 @@ warnings! {
         /// The error of that.
         error: f64,
     };
+    /// The law of the surface fails a test, and points take its place.
+    SurfaceLawRefuted = "surface-law-refuted" by surface::surface_law_refuted {
+        /// The characteristic.
+        characteristic: String,
+        /// The failed test: `monotone` or `count`.
+        test: &'static str,
+        /// The limit at which it failed.
+        limit: f64,
+        /// Share of assemblies below the limit by the law.
+        law: f64,
+        /// Share of points below the limit.
+        counted: f64,
+        /// Standard error of that share.
+        error: f64,
+    };
     /// The estimated error is larger than the wanted accuracy.
     UnderResolved = "under-resolved" by surface::under_resolved {
         /// The characteristic.

@@ -187,6 +187,34 @@ pub(super) fn figure_off(characteristic: &str, figure: &&'static str, value: &f6
     .advise(Advice::UseMethod { methods: vec![Method::Auto] })
 }
 
+pub(super) fn surface_law_refuted(
+    characteristic: &str,
+    test: &&'static str,
+    limit: &f64,
+    law: &f64,
+    counted: &f64,
+    error: &f64,
+) -> Text {
+    let fails = if *test == "monotone" { "has quantiles or shares that fall" } else { "contradicts points" };
+    let [law, counted, error] = [law, counted, error].map(|share| ppm(*share));
+    say(format!(
+        "The surface law of `{characteristic}` {fails}: it has {law} ppm below {}, where {counted} ± {error} ppm of the points lie. Points take \
+         its place for yield, quantiles and coverage intervals.",
+        short(*limit)
+    ))
+    .advise(Advice::Sample { points: None })
+}
+
+/// A number with six digits.
+fn short(number: f64) -> f64 {
+    format!("{number:.5e}").parse().unwrap_or(number)
+}
+
+/// Parts per million without decimals.
+fn ppm(share: f64) -> String {
+    format!("{:.0}", 1e6 * share)
+}
+
 /// A share as percent, or as parts per million where it is small.
 fn part(share: f64) -> String {
     if share < 1e-3 {

@@ -58,6 +58,8 @@ mod journal;
 mod labels;
 mod law;
 mod law_quantiles;
+mod law_random;
+mod law_studies;
 mod long_runs;
 mod measured;
 mod measured_yields;
