@@ -11,7 +11,7 @@
 use serde::{Serialize, Serializer};
 
 use super::verified::{Verification, VerificationKind};
-use crate::characteristic::SpecLimits;
+use crate::characteristic::{KeptLimits, SpecLimits};
 use crate::law::{LawFigure, LawTail};
 use crate::power::rescale;
 
@@ -69,11 +69,15 @@ pub(super) enum FaultyQuantiles {
 /// Points of a surface in ascending order, by which its law is tested.
 pub(super) struct LawGuard<'a> {
     points: &'a [f64],
+    /// By how much rounding may move a value, on a limit or at a quantile.
+    rounding: f64,
 }
 
 impl<'a> LawGuard<'a> {
-    pub(super) fn new(points: &'a [f64]) -> Self {
-        Self { points }
+    /// With values that rounding moves by no more than this, or than parts of the points.
+    pub(super) fn new(points: &'a [f64], rounding: f64) -> Self {
+        let largest = points.first().into_iter().chain(points.last()).fold(0.0, |largest: f64, y| largest.max(y.abs()));
+        Self { points, rounding: rounding.max(KeptLimits::rounding_of(largest)) }
     }
 
     /// Tests the quantiles, in ascending order of their probabilities.
@@ -86,7 +90,8 @@ impl<'a> LawGuard<'a> {
             return Some(self.refutation(LawTest::Monotone, figure.value, below_of(*of)));
         }
         quantiles.iter().find_map(|&((tail, p), figure)| {
-            let [outer, inner] = [figure.value - figure.error, figure.value + figure.error];
+            let reach = figure.error + self.rounding;
+            let [outer, inner] = [figure.value - reach, figure.value + reach];
             // With a step at the quantile the probability lies between the shares beyond it and at it.
             let [least, most] = match tail {
                 LawTail::Lower => [self.share(outer, tail), self.share(inner, tail)],
@@ -105,15 +110,16 @@ impl<'a> LawGuard<'a> {
         share: LawFigure,
         quantiles: &[((LawTail, f64), LawFigure)],
     ) -> Option<LawRefutation> {
-        let counted = self.share(limit, tail);
+        // A value that only rounding separates from the limit keeps it.
+        let counted = self.share(limit + tail.sign() * self.rounding, tail);
         let room = ERRORS * self.error(counted.max(share.value)) + FEW / self.points.len() as f64 + share.error;
         let law = if tail == LawTail::Lower { share.value } else { 1.0 - share.value };
         // The share below the limit lies between those of the quantiles on either side.
         let crosses = |&((of, p), figure): &((LawTail, f64), LawFigure)| {
             let p = below_of((of, p));
             let rounding = share.error + NEAR * p.min(1.0 - p);
-            figure.value + figure.error < limit && law < p - rounding
-                || figure.value - figure.error > limit && law > p + rounding
+            let reach = figure.error + self.rounding;
+            figure.value + reach < limit && law < p - rounding || figure.value - reach > limit && law > p + rounding
         };
         let test = match (quantiles.iter().any(crosses), (share.value - counted).abs() <= room) {
             (_, false) => LawTest::Count,
@@ -219,7 +225,7 @@ mod tests {
     #[test]
     fn a_right_law_passes() {
         let points = even();
-        let guard = LawGuard::new(&points);
+        let guard = LawGuard::new(&points, 0.0);
         let quantiles = with([0.05, 0.5, 0.95]);
         assert_eq!(guard.quantiles(&quantiles), None);
         assert_eq!(guard.tail((0.2, LawTail::Lower), figure(0.2), &quantiles), None);
@@ -229,7 +235,7 @@ mod tests {
     #[test]
     fn quantiles_that_fall_are_refuted() {
         let points = even();
-        let found = LawGuard::new(&points).quantiles(&with([0.05, 0.5, 0.49])).unwrap();
+        let found = LawGuard::new(&points, 0.0).quantiles(&with([0.05, 0.5, 0.49])).unwrap();
         assert_eq!((found.test, found.limit, found.law), (LawTest::Monotone, 0.49, 0.95));
         assert!((found.counted - 0.49).abs() < 1e-12);
     }
@@ -238,7 +244,7 @@ mod tests {
     #[test]
     fn shares_that_points_contradict_are_refuted() {
         let points = even();
-        let guard = LawGuard::new(&points);
+        let guard = LawGuard::new(&points, 0.0);
         assert_eq!(guard.quantiles(&with([0.05, 0.54, 0.95])).unwrap().test, LawTest::Count);
         let found = guard.tail((0.3, LawTail::Upper), figure(0.66), &with([0.05, 0.5, 0.95])).unwrap();
         assert_eq!((found.test, found.limit), (LawTest::Count, 0.3));
@@ -250,7 +256,7 @@ mod tests {
     #[test]
     fn a_tail_that_crosses_a_quantile_is_refuted() {
         let points = even();
-        let found = LawGuard::new(&points).tail((0.06, LawTail::Lower), figure(0.049), &with([0.05, 0.5, 0.95]));
+        let found = LawGuard::new(&points, 0.0).tail((0.06, LawTail::Lower), figure(0.049), &with([0.05, 0.5, 0.95]));
         assert_eq!(found.unwrap().test, LawTest::Monotone);
     }
 }

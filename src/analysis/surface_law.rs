@@ -142,7 +142,9 @@ impl GuardedLaw {
         let quantiles = quantiles(full.as_ref().unwrap_or(&whole), request.fit);
         let (branch, steps) = (whole.branch(), whole.is_step_function());
         let shares = SurfaceShares { branch, counted: None, refuted: None, steps, below, above, quantiles };
-        match shares.refutation(request, limits, unexplained) {
+        // A list of all values with their probabilities is a count itself.
+        let refuted = if steps { None } else { shares.refutation(request, limits, (unexplained, full.is_some())) };
+        match refuted {
             Some(refutation) => Self::counted(request, Some(refutation)),
             None => Some(Self { shares, law: Some(whole), full, points: None }),
         }
@@ -184,19 +186,20 @@ impl GuardedLaw {
     pub(super) fn without(request: LawRequest<'_>, faulty: &FaultyQuantiles) -> Option<Self> {
         let mut counted = Self::counted(request, None)?;
         if let (FaultyQuantiles::Fall(p, y), Some(points)) = (faulty, &counted.points) {
-            counted.shares.refuted = Some(LawGuard::new(points).refutation(LawTest::Monotone, *y, *p));
+            counted.shares.refuted = Some(LawGuard::new(points, 0.0).refutation(LawTest::Monotone, *y, *p));
         }
         Some(counted)
     }
 }
 
 impl SurfaceShares {
-    /// Tests shares and quantiles by points of the surface and by the sample of the model.
+    /// Tests shares and quantiles by points of the surface and by the sample of the model. Quantiles with an unexplained variance that the
+    /// shares leave to that sample are tested `apart` from them.
     fn refutation(
         &self,
         request: LawRequest<'_>,
         limits: SpecLimits,
-        unexplained: Option<f64>,
+        (unexplained, apart): (Option<f64>, bool),
     ) -> Option<LawRefutation> {
         let LawRequest { problem, outcome, c, seed, verification, .. } = request;
         let by_sample = verification.and_then(|of| by_sample(of, limits, [self.below, self.above]));
@@ -204,13 +207,16 @@ impl SurfaceShares {
             return by_sample;
         }
         let points = counted::points(problem, outcome, (c, seed), (counted::TESTED, unexplained))?;
-        let guard = LawGuard::new(&points);
+        let guard = LawGuard::new(&points, problem.kept_limits(c).rounding());
         let quantiles: Vec<_> = self.quantiles.iter().flat_map(|all| QUANTILES.into_iter().zip(*all)).collect();
         let tails = [(limits.lower(), LawTail::Lower, self.below), (limits.upper(), LawTail::Upper, self.above)];
         let tail = |(limit, tail, share): (Option<f64>, LawTail, Option<LawFigure>)| {
             guard.tail((limit?, tail), share?, &quantiles)
         };
-        guard.quantiles(&quantiles).or_else(|| tails.into_iter().find_map(tail))
+        match guard.quantiles(&quantiles) {
+            None if !apart => tails.into_iter().find_map(tail),
+            found => found,
+        }
     }
 
     /// The numerical error of the share within the limits.

@@ -133,7 +133,7 @@ pub enum LawTail {
 
 impl LawTail {
     /// 1 above, -1 below.
-    fn sign(self) -> f64 {
+    pub(crate) fn sign(self) -> f64 {
         match self {
             Self::Lower => -1.0,
             Self::Upper => 1.0,

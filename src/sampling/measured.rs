@@ -91,10 +91,12 @@ impl MeasuredSample {
     }
 
     /// As an input of a characteristic of whose variance it has this share; all of it where that is not a number, and where it is
-    /// correlated with others.
+    /// correlated with others, which leaves open what a count of its values leaves open.
     pub(crate) fn with_share(&self, share: f64) -> MeasuredInput {
         let share = if share.is_nan() || self.is_correlated { 1.0 } else { share.clamp(0.0, 1.0) };
-        MeasuredInput { size: self.size, share, reach: self.reach }
+        // How far a part and all that follows it may lie from the mean is unknown: one that was not measured is rejected.
+        let reach = if self.is_correlated { f64::INFINITY } else { self.reach };
+        MeasuredInput { size: self.size, share, reach }
     }
 }
 

@@ -409,13 +409,16 @@ struct Watch {
     share: LargestShare,
     /// Whether a seldom side adds more to it than all points do.
     lacks_a_side: bool,
+    /// The standard error that the seldom sides make in a sample of as many random points, whether or not it meets them.
+    of_sides: f64,
 }
 
 impl Watch {
     /// With the standard error that the sum supports.
     fn settled(self, estimate: Estimate) -> Estimate {
         let estimate = settled(estimate, self.share);
-        Estimate { standard_error: estimate.standard_error.filter(|_| !self.lacks_a_side), ..estimate }
+        let known = estimate.standard_error.filter(|_| !self.lacks_a_side);
+        Estimate { standard_error: known.map(|error| libm::hypot(error, self.of_sides)), ..estimate }
     }
 }
 
@@ -433,14 +436,23 @@ impl<'a> Evidence<'a> {
         let powers = seldom.filter(|_| sigma > 0.0).map_or([0.0; 4], |seldom| seldom.powers(mean, sigma));
         let standardised = self.all.standardised();
         let shares = self.count.largest().shares(&self.all);
+        // The mean is in the unit of the values, and half of the square of sigma.
+        let of_sides = |power: f64, i: usize, sigma: f64| {
+            [sigma, 0.5 * sigma, 1.0, 1.0][i] * (power / self.all.count().max(1) as f64).sqrt()
+        };
         let plain = std::array::from_fn(|i| Watch {
+            of_sides: of_sides(powers[i], i, sigma),
             share: shares[i],
             lacks_a_side: standardised.is_some_and(|moments| powers[i] > moments[2 * i + 2]),
         });
         let controlled = self.beside.as_ref().map_or([Watch::default(); 4], |(twin, differences)| {
             let squares = seldom.map_or([0.0; 4], |seldom| seldom.differences(twin));
             let largest = largest(differences);
-            std::array::from_fn(|i| Watch { share: largest[i].0, lacks_a_side: squares[i] > largest[i].1 })
+            std::array::from_fn(|i| Watch {
+                of_sides: of_sides(squares[i], i, twin.moments.sigma),
+                share: largest[i].0,
+                lacks_a_side: squares[i] > largest[i].1,
+            })
         });
         self.watched = Some(Watched { plain, controlled, seldom });
         self

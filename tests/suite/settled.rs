@@ -189,8 +189,8 @@ fn switches_are_told() {
     };
     assert_eq!(codes("max(a, b - 3)"), ["switch"]);
     assert_eq!(codes("a + b^2"), [""; 0]);
-    // Six sigmas from 0: the moments that its poles decide have no standard error.
-    assert!(codes("a/b").contains(&"pole") && codes("a/b").contains(&"unsettled-moments"), "{:?}", codes("a/b"));
+    // Six sigmas from 0, too seldom for a warning of its own: the moments that the pole decides have no standard error.
+    assert_eq!(codes("a/b"), ["unsettled-moments"]);
     // A costly model tells nothing, and nothing is asked of it.
     let problem = Problem::new(standard(2), Closure::scalar("y", |x| x[0].max(x[1]))).unwrap();
     let found = simulate(&problem, &SimulationOptions::default().with_samples(2000)).unwrap();
