@@ -35,7 +35,7 @@ pub(super) struct SearchEnd {
     pub(super) station: Rc<Station>,
     /// None where nothing but nominal values was to be chosen.
     pub(super) last: Option<Chosen>,
-    /// What was required, the levels that are sought for a cost included.
+    /// The requirements, the levels that are sought for a cost included.
     pub(super) constraints: Vec<Constraint>,
     pub(super) ended: Ended,
     /// How it keeps what is required, where that was tried.
@@ -169,7 +169,7 @@ impl Driver<'_> {
             let Some(station) = self.station(end.station.problem.clone())? else { break };
             match self.search(allocation, Rc::new(station), &constraints, &at)? {
                 Some(next) if next.ended.within_budget && !self.spent.stopped => end = self.with_trial(next),
-                // What was found without is all that there is.
+                // The end found without is all that there is.
                 _ => {
                     allocation.attainable = None;
                     break;

@@ -107,7 +107,7 @@ fn allocate_as(
         let task = &task.divided(problem)?;
         let required = match task.goal {
             Goal::LeastCost => required_of(problem, &task.requirements),
-            // What is sought for a cost takes the place of the other requirements.
+            // The level sought for a cost takes the place of the other requirements.
             _ => task.requirements.iter().enumerate().filter_map(|(c, one)| Some((c, (*one)?))).collect(),
         };
         Driver { task, options, run, required, written, spent: Spent::default() }.run(problem)

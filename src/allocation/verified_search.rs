@@ -186,10 +186,11 @@ impl<'s, 'a> VerifiedSearch<'s, 'a> {
     /// Goes towards tolerances to which derivatives lead, as far as everything is kept.
     fn approach(&mut self, aim: Option<&Tolerances>) {
         let Some((best, (at, offers))) = self.best.as_ref().zip(aim) else { return };
-        if best.offers == *offers && self.driver.held_cost(at, offers) < best.cost {
-            if let Some(outside) = self.trial(at, offers).map(|trial| self.remembered(trial)) {
-                self.interpolate(outside, APPROACH);
-            }
+        if best.offers == *offers
+            && self.driver.held_cost(at, offers) < best.cost
+            && let Some(outside) = self.trial(at, offers).map(|trial| self.remembered(trial))
+        {
+            self.interpolate(outside, APPROACH);
         }
     }
 
@@ -388,7 +389,7 @@ impl<'s, 'a> VerifiedSearch<'s, 'a> {
     }
 }
 
-/// What a trial tells of its tolerances.
+/// The findings of a trial about its tolerances.
 #[derive(Clone)]
 struct Measured {
     at: Vec<f64>,

@@ -24,7 +24,7 @@ pub(super) type WorstCaseCorrection = (f64, f64);
 /// Nothing is corrected.
 pub(super) const NO_CORRECTION: WorstCaseCorrection = (1.0, 0.0);
 
-/// What makes of a reach that was found the true one.
+/// The factor and the addition that make a reach that was found the true one.
 pub(super) fn correction(found: f64, truth: f64) -> WorstCaseCorrection {
     let factor = truth / found;
     let near = found > 0.0 && (1.0 / NEAR..=NEAR).contains(&factor);

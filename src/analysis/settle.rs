@@ -149,7 +149,7 @@ pub(super) fn settle(
         let points = guarded.as_mut().and_then(|law| law.points.take());
         laws[c] = guarded.and_then(|law| law.law);
         let Some(found) = rejected(problem, outcome, c, one, laws[c].as_ref()) else { continue };
-        let proven = proven_sides(problem, outcome, options, c, one, &found);
+        let proven = proven_sides(problem, outcome, c, one, &found);
         let found = found.excluding(proven).bounded();
         one.reject_intervals = found.intervals;
         one.yield_source = one.characteristic.limits().exist().then_some(found.source);
@@ -169,7 +169,7 @@ pub(super) fn settle(
 /// P(all kept) = 1 - sum of all rejects + E[(number of broken limits - 1)+]
 /// ```
 ///
-/// The rejects are those of each characteristic's own source. What they have in common is by the laws of the surfaces where these are trusted,
+/// The rejects are those of each characteristic's own source. Their common part is by the laws of the surfaces where these are trusted,
 /// by points of a cheap model elsewhere, and anything that the rejects allow where neither is at hand: half of that is its error then.
 /// None with fewer than two characteristics with limits, and where the rejects of one or their error are not known.
 pub(super) fn joint(
@@ -359,7 +359,6 @@ fn kept_by_extremes(problem: &Problem, outcome: &Outcome, c: usize, one: &Charac
 fn proven_sides(
     problem: &Problem,
     outcome: &Outcome,
-    options: &Options,
     c: usize,
     one: &CharacteristicAnalysis,
     found: &Rejected,
@@ -368,13 +367,12 @@ fn proven_sides(
         return [false; 2];
     }
     let known = kept_by_extremes(problem, outcome, c, one);
-    let sought = options.verification(problem.function().signature()) > 0;
     let open = |side: usize| match found.intervals[side] {
         _ if known[side] || found.beyond[side].is_none() => false,
         Some([low, high]) => low <= 0.0 && high > 0.0,
         None => true,
     };
-    let more = if sought { keeps_by_proof(problem, c, [open(0), open(1)]) } else { [false; 2] };
+    let more = keeps_by_proof(problem, c, [open(0), open(1)]);
     [0, 1].map(|side| known[side] || more[side])
 }
 

@@ -10,7 +10,7 @@ use crate::summary::{RunSummary, StopReason};
 /// Axes along which the size of an output is looked for.
 const AXES: usize = 64;
 
-/// What a run ends with: results, or the reason why there are none.
+/// The end of a run: results, or the reason why there are none.
 pub(crate) trait Restore {
     /// Returns to the units of the problem as it was given.
     fn restore(&mut self, back: &Restoration<'_>);

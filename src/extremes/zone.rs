@@ -40,7 +40,7 @@ enum ZoneShape {
     Rows(Vec<Vec<f64>>),
 }
 
-/// What some coordinates of a characteristic share.
+/// The zone or block that some coordinates of a characteristic share.
 #[derive(PartialEq)]
 enum Shared<'p> {
     Block(usize),

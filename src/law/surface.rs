@@ -149,7 +149,7 @@ impl Surface {
         self.centre + own + self.products().map(|(j, k, b)| b * z[j] * z[k]).sum::<f64>()
     }
 
-    /// What these inputs add to the centre, with the products among them; `members` ascending.
+    /// The part that these inputs add to the centre, with the products among them; `members` ascending.
     pub(super) fn value_of(&self, members: &[usize], z: &[f64]) -> f64 {
         let own = |&j: &usize| {
             let within = |(k, _): &&(usize, f64)| *k > j && members.binary_search(k).is_ok();

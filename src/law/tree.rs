@@ -26,7 +26,7 @@ const MOST: usize = 1 << 22;
 const EFFORT: f64 = (1u64 << 27) as f64;
 
 /// Products from which on a transform that has not begun to vanish never will in time: this part of it, by the inverse square of the products.
-const CHEAP: f64 = (1u64 << 17) as f64;
+const CHEAP: f64 = (1u64 << 20) as f64;
 const HOPELESS: f64 = 0.02;
 /// Sigmas of its neighbours that an input's nodes resolve the products with; half of them may add to the weight of a node.
 const REACH: f64 = 8.0;

@@ -65,7 +65,7 @@ pub struct Fitted {
     pub proof: Option<SurfaceProof>,
 }
 
-/// What is known of a surface that is the function itself.
+/// Knowledge about a surface that is the function itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SurfaceProof {
     /// The degree of the polynomial.

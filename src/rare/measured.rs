@@ -1,4 +1,4 @@
-//! What measured samples leave open of a yield, beside the points of the model.
+//! The part of a yield that measured samples leave open, beside the points of the model.
 //!
 //! Importance sampling knows the rejects of the rows at hand to a few percent. That is the rejects of the process only as far as its rows
 //! are ([`MeasuredBasis`]); the shares of the samples in the variance are those of the surrogate.
@@ -55,7 +55,7 @@ fn sampling(
 ) -> Option<SamplingInterval> {
     let plan = &outcome.plan;
     let depends = |d: &usize| plan.depends(c, *d);
-    let own: Vec<&MeasuredSample> = samples.iter().filter(|of| of.dimensions.iter().any(|d| depends(d))).collect();
+    let own: Vec<&MeasuredSample> = samples.iter().filter(|of| of.dimensions.iter().any(&depends)).collect();
     if own.is_empty() || one.yield_interval.is_none() {
         return None;
     }

@@ -190,8 +190,11 @@ impl<'a> Search<'a> {
     }
 
     /// Falls back to plain points for every target whose interval is wider than that of a plain sample of as many points as were
-    /// evaluated.
+    /// evaluated, where many variables hide the places. With few variables wide intervals are caution, and places are found.
     pub(super) fn judge(&mut self, evaluated: u64) {
+        if !self.has_many_variables() {
+            return;
+        }
         for (falls_back, weighed) in self.falls_back.iter_mut().zip(&self.weighed) {
             let Some(found) = weighed.found() else { continue };
             let value = found.probability.map_or(0.0, |probability| probability.value);

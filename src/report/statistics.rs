@@ -221,7 +221,7 @@ impl<'r> Contributor<'r> {
 
 /// Whether a dimension does something here.
 fn does(row: &Row<'_>) -> bool {
-    part(row.0) != Some(0.0) || effect(row) != Some(0.0)
+    part(row.0) != Some(0.0) || effect(row) != Some(0.0) || total(row.0).is_some_and(|total| total > 0.0)
 }
 
 /// How far the characteristic moves where this dimension alone goes to the end of its band that moves it more, by slope and curvature.

@@ -27,6 +27,9 @@ fn variance(groups: &[Group], of: impl Fn(&Group) -> f64) -> f64 {
     known().map(|group| group.count * (of(group) - mean).powi(2)).sum::<f64>() / total
 }
 
+/// The error of a figure that is the mean of a function of the group; None where it is unknown.
+type GroupError<'a> = &'a dyn Fn(&dyn Fn(&Group) -> f64) -> Option<f64>;
+
 impl MeasuredGroups<'_> {
     /// The intervals of a characteristic that measured samples leave open; None where it depends on none.
     pub(super) fn interval(
@@ -81,7 +84,7 @@ impl MeasuredGroups<'_> {
         c: usize,
         found: &SimulatedCharacteristic,
         own: &[(&Grouped<'_>, &Vec<Group>)],
-        error: &dyn Fn(&dyn Fn(&Group) -> f64) -> Option<f64>,
+        error: GroupError<'_>,
     ) -> Option<[f64; 2]> {
         let rejected = 1.0 - found.yield_?.value;
         let (mean, square) = (found.mean?.value, found.sigma?.value.powi(2));

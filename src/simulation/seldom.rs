@@ -38,13 +38,13 @@ impl Seldom {
         self.sides.values.len() as u64
     }
 
-    /// What the sides add to the means of the 2nd, 4th, 6th and 8th powers of deviations, in units of sigma.
+    /// The parts that the sides add to the means of the 2nd, 4th, 6th and 8th powers of deviations, in units of sigma.
     pub(super) fn powers(&self, mean: f64, sigma: f64) -> [f64; 4] {
         let of = |order: i32| self.sum(|_, value| ((value - mean) / sigma).powi(order));
         [of(2), of(4), of(6), of(8)]
     }
 
-    /// What they add to the mean squares of the differences to a surrogate.
+    /// The parts that they add to the mean squares of the differences to a surrogate.
     pub(super) fn differences(&self, twin: &Twin) -> [f64; 4] {
         let of =
             |k: usize| self.sum(|row, value| self.rises.get(row).map_or(0.0, |&rise| squares(value, rise, twin)[k]));

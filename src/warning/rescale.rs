@@ -16,6 +16,7 @@ impl Warning {
                 [value, model, error].into_iter().for_each(|figure| times(characteristic, figure));
             }
             Self::HeavyPoint { characteristic, limit, .. }
+            | Self::SurfaceLawRefuted { characteristic, limit, .. }
             | Self::NothingBeyond { characteristic, limit, .. }
             | Self::PlainFallback { characteristic, limit, .. }
             | Self::PlainSampling { characteristic, limit, .. } => times(characteristic, limit),

@@ -53,7 +53,7 @@ pub(super) fn unsettled_moments(
     let why = match switch {
         Some(switch) => format!("Assemblies beyond {switch} decide the {first}, and the sample hardly has any of them"),
         None => format!(
-            "The largest point carries {:.0} % of the sum that the error of the {first} rests on, and the ten largest {:.0} %",
+            "The largest point carries {:.0} % of the sum behind the error of the {first}, and the ten largest {:.0} %",
             100.0 * largest,
             100.0 * ten_largest
         ),

@@ -232,7 +232,6 @@ fn kinks_of_values_on_a_grid_are_counted_by_points() {
 /// unit says that a black box adds parts in it.
 #[test]
 fn a_difference_of_large_values_is_on_its_limit() {
-    assert!(100.01 - 100.0 > 0.01);
     let text = "[dimensions]\na = { nominal = 100.005, tolerance = 0.005, distribution = \"two-point\" }\n\
                 b = { nominal = 99.995, tolerance = 0.005, distribution = \"two-point\" }\n\
                 [characteristics]\ngap = { formula = \"a - b\", lower = 0, upper = 0.01 }\n";
@@ -266,7 +265,6 @@ fn a_constant_on_its_limit_keeps_it() {
     let text = "[dimensions]\na = { nominal = 0.1 }\nb = { nominal = 0.2 }\nx = { nominal = 1, tolerance = 0.1 }\n\
                 [characteristics]\nsum = { formula = \"a + b\", upper = 0.3 }\nnothing = { formula = \"a + b - 0.3\", upper = 0 }\n\
                 y = { formula = \"x\" }\n";
-    assert!(0.1 + 0.2 > 0.3);
     let problem = Study::from_text(StudyText::toml("study.toml", text)).unwrap().problem;
     let found = analyze(&problem, &Method::SecondOrder.into()).unwrap();
     let sampled = simulate(&problem, &SimulationOptions::default().with_samples(100)).unwrap();

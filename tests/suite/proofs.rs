@@ -77,7 +77,7 @@ impl Shape {
     /// `E u^k`: normal `(k-1)!!`; uniform `3^(k/2)/(k+1)`; symmetric triangular `6^(k/2) 2/((k+1)(k+2))`; exponential the number of
     /// permutations of k without a fixed point; two points 1.
     fn moments(self) -> Vec<Double> {
-        let even = |k: usize, value: Double| if k % 2 == 0 { value } else { Double::ZERO };
+        let even = |k: usize, value: Double| if k.is_multiple_of(2) { value } else { Double::ZERO };
         let half = |base: f64, k: usize| Double::of(base).power(k / 2);
         let mut derangements = vec![1.0, 0.0];
         (2..=HIGHEST).for_each(|k| derangements.push((k as f64 - 1.0) * (derangements[k - 1] + derangements[k - 2])));

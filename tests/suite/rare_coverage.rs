@@ -141,7 +141,8 @@ fn a_hundred_variables_are_no_worse_than_plain_points() {
     const RADIUS: f64 = 12.435_6;
     let truth = beyond_a_sphere(RADIUS);
     assert!((truth - 377e-6).abs() < 2e-6, "{truth}");
-    let functions: [(&str, fn(&[f64]) -> f64, f64); 3] = [
+    type Function = fn(&[f64]) -> f64;
+    let functions: [(&str, Function, f64); 3] = [
         ("sphere", |x| x.iter().map(|x| x * x).sum(), RADIUS * RADIUS),
         ("distance", |x| x.iter().map(|x| x * x).sum::<f64>().sqrt(), RADIUS),
         ("fourth power of it", |x| x.iter().map(|x| x * x).sum::<f64>().powi(2) / 1e4, RADIUS.powi(4) / 1e4),

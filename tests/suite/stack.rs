@@ -114,8 +114,9 @@ fn notes_say_what_a_stack_leaves_out() {
         }
         other => panic!("{other:?}"),
     }
+    // The interaction has a part of the variance, and none of the squared RSS.
     match &notes(&with(two, "a*b"), full())[..] {
-        [StackNote::Curved { share, mean_shift }] => {
+        [StackNote::Curved { share, mean_shift }, StackNote::SharesOfRss] => {
             relative(*share, 1e-4 / (0.04 + 0.09 + 1e-4), 1e-9);
             assert_eq!(*mean_shift, 0.0);
         }

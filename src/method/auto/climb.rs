@@ -196,7 +196,7 @@ impl<'p> Climb<'p> {
     }
 
     /// Pairs whose interactions the formulas of all characteristics give.
-    pub(super) fn from_formulas(&self) -> usize {
+    pub(super) fn pairs_by_formulas(&self) -> usize {
         match self.bought.polynomials.iter().all(Option::is_some) {
             true => self.plan.possible_pairs(),
             false => 0,

@@ -198,7 +198,7 @@ fn outcome(problem: &Problem, options: &Options, climb: &Climb<'_>, evaluated: &
         direct: climb.bought.direct.len(),
         probes: climb.bought.judging.len() + climb.bought.fitted.len(),
         checks: climb.bought.checks.iter().flatten().filter(|point| known.tried(point)).count(),
-        from_formulas: climb.from_formulas(),
+        from_formulas: climb.pairs_by_formulas(),
         all_pairs: (0..problem.characteristics().len()).all(|c| climb.knows_all_pairs(c)),
         noise: of(|view| view.noise),
         tails: of(|view| view.tail),

@@ -53,7 +53,7 @@ struct Draft {
     unscreened: Option<f64>,
 }
 
-/// What one characteristic has answered so far.
+/// The answers of one characteristic so far.
 #[derive(Clone, Copy)]
 struct Answers<'a> {
     plan: &'a DifferencePlan,
