@@ -383,7 +383,7 @@ impl Constraint {
         responses.correction(self.characteristic, least, &room, &|moments| self.room(moments, target)?.slopes())
     }
 
-    /// The largest sigma that keeps it, with this mean and shape; None where none does, and where it is no matter of the mean.
+    /// The largest sigma that keeps it, with this mean and shape; None where none does, and where it does not depend on the mean.
     pub(super) fn room(&self, moments: &Moments, target: f64) -> Option<Room> {
         let (below, above) =
             (self.limits.lower().map(|l| moments.mean() - l), self.limits.upper().map(|u| u - moments.mean()));

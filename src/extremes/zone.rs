@@ -180,7 +180,7 @@ impl Zone {
         self.places.iter().zip(ends).for_each(|(&place, end)| region[place] = end);
     }
 
-    /// Whether a dimension is free to take either end of a box, whatever the others are: it is no coordinate, or the whole box lies within.
+    /// Whether a dimension is free to take either end of a box, whatever the others are: it is not a coordinate of a zone, or the whole box lies within.
     pub(super) fn frees(&self, place: usize, region: &[[f64; 2]]) -> bool {
         !self.places.contains(&place)
             || match self.shape {

@@ -23,7 +23,7 @@ pub(super) fn quantile(law: &SurfaceLaw, tail: LawTail, p: f64) -> LawFigure {
     let open = Cell::new(0.0);
     let gap = |u: f64| {
         let figure = law.tail(mean + sign * u, tail);
-        // A small part of what the tail itself leaves open is no difference. Next to nothing beside a large error is one.
+        // A small part of what the tail itself leaves open is not a difference. Next to nothing beside a large error is one.
         open.set(OPEN * figure.error / figure.value.max(p));
         libm::log(figure.value.max(1e-305) / p)
     };

@@ -219,9 +219,10 @@ impl<'r> Contributor<'r> {
     }
 }
 
-/// Whether a dimension does something here.
+/// Whether a dimension does something here; by the model, where the surface is not trusted, its interactions may be all of it.
 fn does(row: &Row<'_>) -> bool {
-    part(row.0) != Some(0.0) || effect(row) != Some(0.0) || total(row.0).is_some_and(|total| total > 0.0)
+    let of_model = total(row.0).filter(|_| row.0.linear_share.is_none());
+    part(row.0) != Some(0.0) || effect(row) != Some(0.0) || of_model.is_some_and(|total| total > 0.0)
 }
 
 /// How far the characteristic moves where this dimension alone goes to the end of its band that moves it more, by slope and curvature.

@@ -147,7 +147,7 @@ pub fn clopper_pearson(hits: f64, n: f64) -> [f64; 2] {
 }
 
 /// The 95 % interval of a share by weighted points: that of Clopper and Pearson with as many points as would scatter as much (Korn and Graubard
-/// 1998). The share that no point shows is no more than none of so many points as `one` is the weight of a single one shows.
+/// 1998). The share that no point shows is at most that of none of so many points as `one` is the weight of a single one shows.
 ///
 /// `scatter` is the standard error by what the points differ by; where it is 0, all of them agree.
 ///

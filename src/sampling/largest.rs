@@ -145,7 +145,7 @@ impl LargestShare {
         Self { largest: largest.min(1.0), watched: watched.min(1.0) }
     }
 
-    /// By how much a standard error that rests on the sum grows; None where it has not settled. A sum that is no number has not.
+    /// By how much a standard error that rests on the sum grows; None where it has not settled. A sum without a value has not.
     pub(crate) fn widening(self) -> Option<f64> {
         (self.watched < UNSETTLED).then(|| ((1.0 - COMMON) / (1.0 - self.watched)).max(1.0))
     }
