@@ -18,7 +18,7 @@
 //! a stage finds by its plain and wide points where no place is.
 //!
 //! No place is of use where rejects lie all around the means in many variables. Where the interval of the weighted points is wider than that
-//! of as many plain ones, the rest of the points are plain, and they alone make the estimate ([`plain`]): the result is never much worse
+//! of as many plain ones, the rest of the points are plain, and they alone make the estimate (`plain`): the result is never much worse
 //! than that of plain sampling.
 
 mod border;
