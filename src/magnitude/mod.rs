@@ -6,6 +6,47 @@
 //! alike. Its results are multiplied again at the end. Division by a power of two is exact, so that every figure has the digits that it has in another
 //! unit. A function of ordinary size is left as it is.
 
+/// Methods of an assembly function that the size of outputs leaves as they are, forwarded to `self.function`.
+macro_rules! forward_unscaled {
+    () => {
+        fn signature(&self) -> &Signature {
+            self.function.signature()
+        }
+
+        fn prepare(&self, outputs: &[usize]) -> Result<Option<ModelInfo>, EvaluationError> {
+            self.function.prepare(outputs)
+        }
+
+        fn sent(&self, points: &Points) -> Option<(Vec<Input>, Points)> {
+            self.function.sent(points)
+        }
+
+        fn driven(&self) -> Option<&Composite> {
+            self.function.driven()
+        }
+
+        fn switches(&self, output: usize) -> Option<Switches> {
+            self.function.switches(output)
+        }
+
+        fn margins(&self, output: usize, points: &Points) -> Option<Vec<Vec<f64>>> {
+            self.function.margins(output, points)
+        }
+
+        fn degree(&self, output: usize, varying: &[bool]) -> Option<u32> {
+            self.function.degree(output, varying)
+        }
+
+        fn account(&self) -> Option<EvaluatorAccount> {
+            self.function.account()
+        }
+
+        fn warnings(&self, outputs: &[usize]) -> Vec<Warning> {
+            self.function.warnings(outputs)
+        }
+    };
+}
+
 mod scaled;
 mod store;
 mod watch;

@@ -103,13 +103,7 @@ impl WatchedFunction {
 }
 
 impl AssemblyFunction for WatchedFunction {
-    fn signature(&self) -> &Signature {
-        self.function.signature()
-    }
-
-    fn prepare(&self, outputs: &[usize]) -> Result<Option<ModelInfo>, EvaluationError> {
-        self.function.prepare(outputs)
-    }
+    forward_unscaled!();
 
     fn bounds(&self, output: usize, region: &[[f64; 2]]) -> Option<Bounds> {
         self.function.bounds(output, region)
@@ -167,33 +161,5 @@ impl AssemblyFunction for WatchedFunction {
 
     fn polynomial(&self, output: usize, centre: &[f64], scale: &[f64]) -> Option<Polynomial> {
         self.function.polynomial(output, centre, scale)
-    }
-
-    fn sent(&self, points: &Points) -> Option<(Vec<Input>, Points)> {
-        self.function.sent(points)
-    }
-
-    fn driven(&self) -> Option<&Composite> {
-        self.function.driven()
-    }
-
-    fn switches(&self, output: usize) -> Option<Switches> {
-        self.function.switches(output)
-    }
-
-    fn margins(&self, output: usize, points: &Points) -> Option<Vec<Vec<f64>>> {
-        self.function.margins(output, points)
-    }
-
-    fn degree(&self, output: usize, varying: &[bool]) -> Option<u32> {
-        self.function.degree(output, varying)
-    }
-
-    fn account(&self) -> Option<EvaluatorAccount> {
-        self.function.account()
-    }
-
-    fn warnings(&self, outputs: &[usize]) -> Vec<Warning> {
-        self.function.warnings(outputs)
     }
 }
