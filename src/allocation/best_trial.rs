@@ -1,4 +1,4 @@
-//! Where an allocation ends: the cheapest tolerances that keep everything by the analysis itself, those of the study among them.
+//! End of an allocation: the cheapest tolerances that keep everything by the analysis itself, those of the study among them.
 //!
 //! A search ends where derivatives say. Its end is tried ([`Trial`]); what it misses by little is required more strictly, and searched again;
 //! and where derivatives lead astray a [search by trials](super::verified_search) goes on. The tolerances before are a trial too, so that an
@@ -23,7 +23,7 @@ use crate::verdict::Verdict;
 
 /// Searches again with stricter requirements, at most.
 const STRICTER: usize = 3;
-/// By how much more than a trial misses a requirement it is made stricter: what is left is a part of 10^3 of that.
+/// Factor by which a requirement is made stricter than a trial misses it; a thousandth of the miss is left.
 const MARGIN: f64 = 1.01;
 /// Costs that differ by a smaller part are the same.
 const SAME: f64 = 1e-9;
@@ -33,14 +33,14 @@ const BACK: [f64; 4] = [1e-4, 1e-3, 1e-2, 1e-1];
 /// The end of a search.
 pub(super) struct SearchEnd {
     pub(super) station: Rc<Station>,
-    /// None where nothing but nominal values was to be chosen.
+    /// Tolerances found; None where only nominal values were to be chosen.
     pub(super) last: Option<Chosen>,
     /// The requirements, the levels that are sought for a cost included.
     pub(super) constraints: Vec<Constraint>,
     pub(super) ended: Ended,
-    /// How it keeps what is required, where that was tried.
+    /// Trial of the tolerances found, where one was made.
     pub(super) trial: Option<Trial>,
-    /// Whether it is the study's own tolerances and nominal values.
+    /// True of the study's own tolerances and nominal values.
     pub(super) is_start: bool,
 }
 
@@ -48,7 +48,7 @@ pub(super) struct SearchEnd {
 pub(super) struct AllocationStart {
     pub(super) station: Rc<Station>,
     pub(super) trial: Option<Trial>,
-    /// Whether the costs have them among what they offer.
+    /// True where the costs offer these tolerances.
     pub(super) offered: bool,
 }
 
@@ -87,7 +87,7 @@ impl Driver<'_> {
         AllocationStart { station: Rc::clone(station), trial, offered }
     }
 
-    /// The end to report, of the end of a search and of the start. None where nothing was found; the status says why.
+    /// Returns the better of the end of a search and the start. None where nothing was found; the status says why.
     pub(super) fn best_end(
         &mut self,
         allocation: &mut Allocation,
@@ -218,7 +218,7 @@ impl Driver<'_> {
         true
     }
 
-    /// Whether the start keeps everything as `analyze --check` has it; of a costly model that is asked where the search found nothing better.
+    /// Returns whether the start keeps everything by `analyze --check`. A costly model is analysed only where the search found nothing better.
     fn start_is_kept(&mut self, start: &AllocationStart, end: Option<&SearchEnd>) -> bool {
         let problem = &start.station.problem;
         if self.is_cheap(problem) || self.stations_are_trials() {
@@ -227,8 +227,7 @@ impl Driver<'_> {
         if end.is_some_and(|end| end.is_kept() && !self.dearer_than_start(start, end)) {
             return true;
         }
-        self.checked(problem)
-            .is_some_and(|(analysis, _)| self.judged_by(&analysis).iter().all(|one| one.verdict == Verdict::Met))
+        self.checked(problem).is_some_and(|(analysis, _)| self.keeps_everything(&analysis))
     }
 
     fn dearer_than_start(&self, start: &AllocationStart, end: &SearchEnd) -> bool {
@@ -236,7 +235,7 @@ impl Driver<'_> {
         costs.is_some_and(|(end, start)| end.cost > start.cost * (1.0 + SAME))
     }
 
-    /// Of a costly model the cheapest station that kept everything, if that is not the end and a trial says so too.
+    /// Returns the cheapest station of a costly model that kept everything, unless it is the end or its trial misses a requirement.
     fn tried_again(&mut self, seen: Option<Seen>, end: Option<&SearchEnd>) -> Option<Trial> {
         let Seen { station, chosen: (solved, offers, _), .. } = seen?;
         if end.is_some_and(|end| Rc::ptr_eq(&end.station, &station)) {
@@ -331,7 +330,7 @@ fn ended_at(
     SearchEnd { station, last, constraints, ended, trial: Some(trial), is_start }
 }
 
-/// Whether dimensions as their processes make them are those of the problem: a process with the same tolerance may make parts that lie otherwise.
+/// Returns whether the processes make the dimensions of the problem. Two processes of one tolerance may differ in mean and sigma.
 fn is_made(problem: &Problem, made: &[(usize, Dimension)]) -> bool {
     made.iter().all(|(d, made)| {
         let own = &problem.dimensions()[*d];

@@ -28,7 +28,6 @@ use crate::sampling::{Draws, Sampler};
 use crate::simulation::SimulationError;
 use crate::summary::RunSummary;
 use crate::time::Instant;
-use crate::verdict::Verdict;
 
 /// The factor up to which derivatives are trusted when they say that nothing is possible, and by which tolerances may move in a
 /// step after the model has failed farther out.
@@ -361,8 +360,7 @@ impl Driver<'_> {
         let Some(loss) = self.loss_at(station) else { return };
         let cost = self.held_cost(&chosen.0.at, &chosen.1) + loss;
         let cheaper = self.spent.seen.as_ref().is_none_or(|seen| cost < seen.cost);
-        let kept = || self.judged_by(&station.analysis).iter().all(|one| one.verdict == Verdict::Met);
-        if cheaper && kept() {
+        if cheaper && self.keeps_everything(&station.analysis) {
             self.spent.seen = Some(Seen { station: Rc::clone(station), chosen: chosen.clone(), cost });
         }
     }

@@ -6,7 +6,6 @@ use super::constraint::Constraint;
 use super::response::Responses;
 use super::result::{Kept, ShadowPrice};
 use super::solve::Setting;
-
 use super::solved::{Chosen, Solved};
 use crate::analysis::{Analysis, Findings};
 use crate::problem::Problem;

@@ -109,6 +109,11 @@ impl Driver<'_> {
         self.required.iter().map(of).chain(joint).collect()
     }
 
+    /// Whether an analysis keeps all that is required.
+    pub(super) fn keeps_everything(&self, analysis: &Analysis) -> bool {
+        self.judged_by(analysis).iter().all(|one| one.verdict == Verdict::Met)
+    }
+
     /// A trial of tolerances that were analysed.
     pub(super) fn trial_of(
         &self,
@@ -161,7 +166,7 @@ impl Driver<'_> {
         let Some(dimensions) = written(problem) else { return true };
         let Ok(problem) = problem.clone().with_dimensions(dimensions) else { return true };
         match self.checked(&problem) {
-            Some((analysis, _)) => self.judged_by(&analysis).iter().all(|one| one.verdict == Verdict::Met),
+            Some((analysis, _)) => self.keeps_everything(&analysis),
             None => true,
         }
     }

@@ -240,7 +240,11 @@ fn sizes(base: f64, long: bool) -> Vec<Units> {
 /// Takes out the warning that figures have no place among doubles, of analyses within the results too: whether it was there.
 fn take_word(value: &mut Value) -> bool {
     match value {
-        Value::Object(all) => all.values_mut().filter_map(|value| take_word(value).then_some(())).count() > 0,
+        Value::Object(all) => {
+            let mut said = false;
+            all.values_mut().for_each(|value| said |= take_word(value));
+            said
+        }
         Value::Array(all) => {
             let before = all.len();
             all.retain(|one| one.get("code").is_none_or(|code| code != "unrepresentable"));
