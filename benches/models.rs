@@ -28,7 +28,7 @@ fn evaluations(c: &mut Criterion) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     for &(name, outputs, rows) in CASES {
         let model = name.parse::<&Model>().unwrap();
-        let column = |(d, input): (usize, &models::ModelInput)| -> Vec<f64> {
+        let column = |(d, input): (usize, &sensitol_models::ModelInput)| -> Vec<f64> {
             let whole = name.starts_with("inline") && input.name == "n";
             let off = |row: usize| if whole { 0.0 } else { 1e-3 * ((row * (d + 3)) as f64).sin() };
             (0..rows).map(|row| input.nominal * (1.0 + off(row))).collect()

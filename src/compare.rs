@@ -7,11 +7,13 @@ use serde::{Serialize, Serializer};
 
 use crate::analysis::{Analysis, CharacteristicAnalysis, analyze_with};
 use crate::assembly::Run;
+use crate::evaluation::{Restoration, Restore, at_any_size};
 use crate::method::{self, Method, Options, Procedure};
 use crate::problem::Problem;
 use crate::simulation::{ROWS, SimulatedCharacteristic, Simulation, SimulationError, SimulationOptions, simulate_with};
 use crate::summary::RunSummary;
 use sensitol_numeric::parallel::threads;
+use sensitol_numeric::power::{Rescale, Rescaling, rescale};
 use sensitol_numeric::sampling::{Estimate, Sampler, one_error};
 use sensitol_numeric::shape::seconds;
 use sensitol_numeric::time::Instant;
@@ -119,6 +121,8 @@ pub struct Figures {
     #[serde(rename = "yield")]
     pub yield_: Option<f64>,
 }
+
+rescale!(Figures { mean, sigma } without { skewness, kurtosis, yield_ });
 
 /// How far a method is off the reference: the mean in sigmas, sigma relative, the others as they are.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
@@ -296,6 +300,29 @@ pub fn compare(problem: &Problem, options: &CompareOptions) -> Result<Comparison
 
 /// [`compare`], stopping when told to.
 pub fn compare_with(problem: &Problem, options: &CompareOptions, run: &Run<'_>) -> Result<Comparison, CompareError> {
+    at_any_size(problem, run, |problem, run| compared(problem, options, run))
+}
+
+impl Restore for Comparison {
+    fn restore(&mut self, back: &Restoration<'_>) {
+        back.add_time(&mut self.run);
+        self.reference.rescale(back);
+        for ran in &mut self.ran {
+            for (c, figures) in ran.figures.iter_mut().enumerate() {
+                figures.rescale(&mut Rescaling::by(back.power(c)));
+            }
+        }
+    }
+}
+
+impl Restore for CompareError {
+    fn restore(&mut self, back: &Restoration<'_>) {
+        let Self::Reference(error) = self;
+        error.restore(back);
+    }
+}
+
+fn compared(problem: &Problem, options: &CompareOptions, run: &Run<'_>) -> Result<Comparison, CompareError> {
     let begun = Instant::now();
     let costly = problem.function().signature().costly;
     let samples = options.reference.unwrap_or(if costly { COSTLY_REFERENCE } else { REFERENCE });
@@ -374,7 +401,11 @@ impl Comparer<'_> {
                 self.refuse(contender, cost, NotRunReason::Stopped);
             }
             Ok(analysis) => self.ran.push(of_analysis(contender, &analysis, begun.elapsed())),
-            Err(error) => self.refuse(contender, cost, impossible(&error)),
+            Err(mut error) => {
+                // A sentence has the figures of the problem as it was given.
+                error.rescale(|name| self.problem.power_of(name));
+                self.refuse(contender, cost, impossible(&error));
+            }
         }
     }
 

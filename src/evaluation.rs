@@ -1,7 +1,9 @@
 //! Evaluates what a plan asks for, and keeps count.
 
+mod any_size;
 pub mod history;
 
+pub(crate) use any_size::{Restoration, Restore, at_any_size};
 pub use history::history;
 
 use std::collections::HashMap;

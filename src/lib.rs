@@ -81,6 +81,7 @@ pub mod compare;
 pub mod error;
 pub mod evaluation;
 pub mod extremes;
+mod magnitude;
 pub mod method;
 pub mod method_kind;
 pub mod plan;

@@ -11,6 +11,7 @@ use crate::assembly::EvaluatorAccount;
 use crate::assembly::{EvaluationError, ModelInfo, Points, Request, Responses, Run};
 use crate::problem::Problem;
 use crate::summary::RunSummary;
+use sensitol_numeric::power::Power;
 use sensitol_numeric::time::Instant;
 
 /// Points in the two passes that must agree.
@@ -430,13 +431,16 @@ fn level(values: &[f64]) -> Option<f64> {
     let mut differences = values.to_vec();
     let mut levels: Vec<(f64, bool)> = Vec::new();
     let mut gamma = 1.0;
+    // In a unit of their own, differences of extreme size have squares.
+    let unit = Power::of(values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max));
     for order in 1..values.len() {
         differences = differences.windows(2).map(|pair| pair[1] - pair[0]).collect();
         let k = order as f64;
         gamma *= 0.5 * k / (2.0 * k - 1.0);
-        let mean_square = differences.iter().map(|d| d * d).sum::<f64>() / differences.len() as f64;
+        let square = |d: &f64| unit.inverse().times(*d).powi(2);
+        let mean_square = differences.iter().map(square).sum::<f64>() / differences.len() as f64;
         let both_signs = differences.iter().any(|&d| d > 0.0) && differences.iter().any(|&d| d < 0.0);
-        levels.push(((gamma * mean_square).sqrt(), both_signs));
+        levels.push((unit.times((gamma * mean_square).sqrt()), both_signs));
     }
     if values.windows(2).all(|pair| pair[0] == pair[1]) {
         return None;

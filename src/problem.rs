@@ -1,13 +1,16 @@
 //! The problem: dimensions, an assembly function, and the characteristics asked of it.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use crate::assembly::{AssemblyFunction, Points, State, States};
+use crate::magnitude::Magnitudes;
 use crate::summary::EvaluatorSummary;
 use sensitol_numeric::characteristic::Characteristic;
+use sensitol_numeric::characteristic::KeptLimits;
 use sensitol_numeric::correlation::{Block, Correlation, CorrelationError, Pair};
 use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::names::nearest;
+use sensitol_numeric::power::Power;
 
 /// N dimensions, K characteristics, and the assembly function between them.
 #[derive(Clone)]
@@ -20,6 +23,10 @@ pub struct Problem {
     function: Arc<dyn AssemblyFunction>,
     /// Pairs of dimensions, by name, whose product the function is known to have.
     products: Arc<[(String, String)]>,
+    /// The sizes of the outputs, during a run that is about them.
+    magnitudes: Option<Magnitudes>,
+    /// For every characteristic its limits as computed values keep them, made when first asked for.
+    kept: OnceLock<Vec<KeptLimits>>,
 }
 
 /// Why dimensions, function and characteristics do not fit together.
@@ -118,6 +125,8 @@ impl Problem {
             outputs,
             function: Arc::new(function),
             products: Arc::new([]),
+            magnitudes: None,
+            kept: OnceLock::new(),
         };
         problem.checked()
     }
@@ -175,7 +184,7 @@ impl Problem {
 
     /// With another dimension of the same name and kind in one place, and another function of the same signature.
     pub(crate) fn replacing(&self, place: usize, dimension: Dimension, function: Arc<dyn AssemblyFunction>) -> Self {
-        let mut problem = Self { function, ..self.clone() };
+        let mut problem = self.with_function(function);
         // Correlation is of standardised variables: it does not see where a dimension is.
         problem.dimensions[place] = dimension;
         problem
@@ -192,9 +201,61 @@ impl Problem {
         Self { products: products.into(), ..self }
     }
 
+    /// As a run sees it first, which finds out how large the outputs are.
+    pub(crate) fn watched(&self) -> Self {
+        let magnitudes = Magnitudes::watching(self.function.signature().outputs.len());
+        let function = magnitudes.wrapped(Arc::clone(&self.function));
+        Self { function, magnitudes: Some(magnitudes), kept: OnceLock::new(), ..self.clone() }
+    }
+
+    /// With every output divided by its power of two, and the characteristics with it; `seen` are the magnitudes of the run that found them out.
+    pub(crate) fn divided(&self, powers: Vec<Power>, seen: &Magnitudes) -> Self {
+        let magnitudes = seen.known(powers);
+        let function = magnitudes.wrapped(Arc::clone(&self.function));
+        let divided = |(one, &output): (&Characteristic, &usize)| one.clone().times(magnitudes.power(output).inverse());
+        let characteristics = self.characteristics.iter().zip(&self.outputs).map(divided).collect();
+        Self { function, characteristics, magnitudes: Some(magnitudes), kept: OnceLock::new(), ..self.clone() }
+    }
+
+    /// The dimensions of another problem with characteristics and function of this one: what a run found, in the units in which it was asked.
+    pub(crate) fn restored(&self, found: &Self) -> Self {
+        Self {
+            function: Arc::clone(&self.function),
+            characteristics: self.characteristics.clone(),
+            magnitudes: self.magnitudes.clone(),
+            kept: OnceLock::new(),
+            ..found.clone()
+        }
+    }
+
+    /// The sizes of the outputs, during a run that is about them.
+    pub(crate) fn magnitudes(&self) -> Option<&Magnitudes> {
+        self.magnitudes.as_ref()
+    }
+
+    /// The power of two by which a characteristic is divided.
+    pub(crate) fn power(&self, characteristic: usize) -> Power {
+        self.magnitudes.as_ref().map_or(Power::ONE, |of| of.power(self.outputs[characteristic]))
+    }
+
+    /// The power of two by which the characteristic of this name is divided; 1 where there is none.
+    pub(crate) fn power_of(&self, name: &str) -> Power {
+        let place = self.characteristics.iter().position(|one| one.name() == name);
+        place.map_or(Power::ONE, |place| self.power(place))
+    }
+
+    /// With another function for the outputs as they are undivided.
+    pub(crate) fn with_undivided(&self, function: Arc<dyn AssemblyFunction>) -> Self {
+        let function = match &self.magnitudes {
+            Some(magnitudes) => magnitudes.wrapped(function),
+            None => function,
+        };
+        self.with_function(function)
+    }
+
     /// With another function of the same signature.
     pub(crate) fn with_function(&self, function: Arc<dyn AssemblyFunction>) -> Self {
-        Self { function, ..self.clone() }
+        Self { function, kept: OnceLock::new(), ..self.clone() }
     }
 
     /// With other dimensions of the same names: other tolerances, other nominal values; what is correlated stays so.
@@ -219,7 +280,7 @@ impl Problem {
             all.filter(|ends| !of_blocks(ends)).map(pair).filter(|pair| pair.value != 0.0).collect()
         });
         let blocks = self.correlation.as_ref().map_or(Vec::new(), |correlation| correlation.blocks().to_vec());
-        self.dimensions = dimensions;
+        (self.dimensions, self.kept) = (dimensions, OnceLock::new());
         self.jointly(&pairs, blocks)
     }
 
@@ -262,7 +323,8 @@ impl Problem {
         Self { characteristics, outputs, function, ..self.clone() }.checked()
     }
 
-    fn checked(self) -> Result<Self, ProblemError> {
+    fn checked(mut self) -> Result<Self, ProblemError> {
+        self.kept = OnceLock::new();
         if self.characteristics.is_empty() {
             return Err(ProblemError::NoCharacteristic);
         }
@@ -293,6 +355,40 @@ impl Problem {
     /// The characteristics asked for, in order.
     pub fn characteristics(&self) -> &[Characteristic] {
         &self.characteristics
+    }
+
+    /// The limits of a characteristic as computed values keep them.
+    pub fn kept_limits(&self, characteristic: usize) -> KeptLimits {
+        self.kept.get_or_init(|| self.all_kept_limits())[characteristic]
+    }
+
+    /// The terms of a characteristic are those at the means, or one sigma off them, where a sum about 0 has some: on the side where they are
+    /// smaller, so that an exponential far out does not count.
+    fn all_kept_limits(&self) -> Vec<KeptLimits> {
+        let at = |sigmas: f64| {
+            let value = |dimension: &Dimension| {
+                let [least, most] = dimension.distribution().map_or([dimension.mean(); 2], |law| law.support());
+                (dimension.mean() + sigmas * dimension.sigma()).clamp(least, most)
+            };
+            self.function.magnitudes(&self.outputs, &self.dimensions.iter().map(value).collect::<Vec<f64>>())
+        };
+        let limited = self.characteristics.iter().any(|one| one.limits().exist());
+        let nothing = || vec![None; self.outputs.len()];
+        let [middle, up, down] = [0.0, 1.0, -1.0].map(|sigmas| if limited { at(sigmas) } else { nothing() });
+        let of = |(c, one): (usize, &Characteristic)| {
+            let sides = [up[c], down[c]].into_iter().flatten().reduce(f64::min);
+            let terms = middle[c].into_iter().chain(sides).reduce(f64::max);
+            let inputs = || self.power(c).inverse().times(self.inputs_in_unit_of(one));
+            KeptLimits::new(one.limits(), terms.unwrap_or_else(inputs))
+        };
+        self.characteristics.iter().enumerate().map(of).collect()
+    }
+
+    /// The largest input in the unit of a characteristic whose terms are unknown: of a stack in millimetres the largest part. 0 without unit.
+    fn inputs_in_unit_of(&self, characteristic: &Characteristic) -> f64 {
+        let same = |dimension: &&Dimension| dimension.unit().is_some() && dimension.unit() == characteristic.unit();
+        let size = |dimension: &Dimension| dimension.mean().abs() + dimension.sigma();
+        self.dimensions.iter().filter(same).map(size).fold(0.0, f64::max)
     }
 
     /// The assembly function.

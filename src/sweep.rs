@@ -16,7 +16,7 @@ use crate::assembly::{
     AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, ModelInfo, Points, Request, Responses, Run,
     Signature,
 };
-use crate::evaluation::BATCH;
+use crate::evaluation::{BATCH, Restoration, Restore, at_any_size};
 use crate::method::{MethodError, Options};
 use crate::problem::Problem;
 use crate::summary::RunSummary;
@@ -108,6 +108,31 @@ pub fn sweep(problem: &Problem, dimension: &str, values: &[f64], options: &Optio
 
 /// [`sweep`], stopping when told to; what is not done then is None.
 pub fn sweep_with(
+    problem: &Problem,
+    dimension: &str,
+    values: &[f64],
+    options: &Options,
+    run: &Run<'_>,
+) -> Result<Sweep, SweepError> {
+    at_any_size(problem, run, |problem, run| swept(problem, dimension, values, options, run))
+}
+
+impl Restore for Sweep {
+    fn restore(&mut self, back: &Restoration<'_>) {
+        back.add_time(&mut self.run);
+        self.analyses.iter_mut().flatten().for_each(|analysis| analysis.rescale(back));
+    }
+}
+
+impl Restore for SweepError {
+    fn restore(&mut self, back: &Restoration<'_>) {
+        if let Self::Method(error) = self {
+            error.restore(back);
+        }
+    }
+}
+
+fn swept(
     problem: &Problem,
     dimension: &str,
     values: &[f64],
@@ -276,6 +301,10 @@ impl AssemblyFunction for Gatherer {
         self.function().bounds(output, region)
     }
 
+    fn magnitudes(&self, outputs: &[usize], point: &[f64]) -> Vec<Option<f64>> {
+        self.function().magnitudes(outputs, point)
+    }
+
     fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
         let rows = request.points.rows();
         // Others than all outputs are not what is kept in mind.
@@ -311,6 +340,15 @@ impl AssemblyFunction for Gatherer {
 
     fn derivatives(&self, outputs: &[usize], directions: &Directions<'_>) -> Vec<Option<Derivatives>> {
         self.function().derivatives(outputs, directions)
+    }
+
+    fn derivatives_per(
+        &self,
+        outputs: &[usize],
+        directions: &Directions<'_>,
+        exponents: &[i32],
+    ) -> Vec<Option<Derivatives>> {
+        self.function().derivatives_per(outputs, directions, exponents)
     }
 
     fn account(&self) -> Option<EvaluatorAccount> {

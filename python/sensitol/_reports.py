@@ -17,6 +17,8 @@ class Account(Record):
     """Evaluations of the search, those of such a sample excepted."""
     examined: int
     """Interactions that were examined one by one."""
+    from_formulas: int
+    """Interactions that the formulas give, in every characteristic."""
     full_evaluations: int
     """Evaluations that every second derivative would take, `N² + N + 1`."""
     possible_interactions: int
@@ -41,7 +43,7 @@ class Advice(Record):
     without the name of any option.
     """
 
-    action: Literal['use-method', 'raise-budget', 'check-limits', 'set-budget', 'raise-time-limit', 'limit-time', 'sample', 'sample-rare-events', 'sample-plainly', 'more-points', 'smaller-step', 'use-differences', 'include-fixed-dimensions', 'leave-out-correlation', 'use-formula', 'check-names', 'check-units', 'write-direction-as-rim', 'check-nominal', 'check-position', 'check-inputs', 'check-configuration', 'check-moments', 'check-column', 'find-missing-values', 'remove-wrong-values', 'measure-more', 'measure-finer', 'repair-model', 'read-model-log', 'name-model-files', 'keep-defined', 'reset-model', 'signed-measure', 'nearer-datum', 'larger-unit', 'tighten-solver', 'split-branches', 'nearest-fit', 'require-more', 'analyze-written-study', 'write-costs', 'name-movable-dimensions', 'write-missing-points', 'append-answers', 'analyze-stages', 'edit-study']
+    action: Literal['use-method', 'raise-budget', 'check-limits', 'set-budget', 'raise-time-limit', 'limit-time', 'sample', 'sample-rare-events', 'sample-plainly', 'more-points', 'analyze', 'smaller-step', 'use-differences', 'include-fixed-dimensions', 'leave-out-correlation', 'use-formula', 'check-names', 'check-units', 'write-direction-as-rim', 'check-nominal', 'check-position', 'check-inputs', 'check-configuration', 'check-moments', 'check-column', 'find-missing-values', 'remove-wrong-values', 'measure-more', 'measure-finer', 'repair-model', 'read-model-log', 'name-model-files', 'keep-defined', 'reset-model', 'signed-measure', 'nearer-datum', 'larger-unit', 'ordinary-unit', 'tighten-solver', 'split-branches', 'nearest-fit', 'require-more', 'analyze-written-study', 'write-costs', 'name-movable-dimensions', 'write-missing-points', 'append-answers', 'analyze-stages', 'edit-study']
     methods: Optional[List[str]]
     """The methods."""
     points: Optional[int]
@@ -164,7 +166,9 @@ class AllocationResult(Result):
     method: str
     """The method by which derivatives were taken."""
     model_points: int
-    """Points of a cheap model by which moments were corrected and worst cases followed, beside the evaluations."""
+    """Points of a cheap model by which moments were corrected, worst cases followed and tolerances tried, beside the
+    evaluations.
+    """
     proof: Proof
     """The evidence that nothing is cheaper."""
     recentred: List[AllocationResultRecentred]
@@ -187,8 +191,10 @@ class AllocationResult(Result):
     """Shadow prices of limits and required sigmas."""
     stages: int
     """Batches in which points were sent."""
-    status: Literal['optimal', 'local-optimum', 'almost-optimal', 'infeasible', 'no-feasible-point-found', 'out-of-time']
-    """`optimal`, `local-optimum`, `almost-optimal`, `infeasible`, `no-feasible-point-found` or `out-of-time`."""
+    status: Literal['optimal', 'local-optimum', 'almost-optimal', 'infeasible', 'no-feasible-point-found', 'inconclusive', 'out-of-time']
+    """`optimal`, `local-optimum`, `almost-optimal`, `infeasible`, `no-feasible-point-found`, `inconclusive` or `out-
+    of-time`.
+    """
     stopped: Optional[Literal['time-limit', 'budget', 'interrupted', 'requested']]
     """Why it ended early; None where it did not."""
     study_sha256: str
@@ -367,6 +373,10 @@ class AnalysisResult(Result):
     """The share of assemblies that keep the limits of all characteristics at once, and its error; None with fewer
     than two that have limits, and where it is not known.
     """
+    joint_yield_interval: Optional[List[float]]
+    """Within which that share is known: two errors on either side, with what measured samples leave open; None where
+    it is not known.
+    """
     method: str
     """The method that was run: for `auto`, what it stands for."""
     retried: int
@@ -473,6 +483,8 @@ class CharacteristicResult(Fitted):
     """The number of its drawing."""
     error_estimate: Optional[ErrorEstimate]
     """How far these results may be off; None without moments."""
+    examined_interactions: int
+    """How many of them were examined, or are known from its formula."""
     feature: Optional[str]
     """The feature of the part, or its number on the drawing."""
     inflated_rss: Optional[float]
@@ -519,8 +531,14 @@ class CharacteristicResult(Fitted):
     """How many interactions it can have."""
     ppm_above: Optional[float]
     """Assemblies above the upper limit, per million."""
+    ppm_above_interval: Optional[List[float]]
+    """The same above the upper limit."""
     ppm_below: Optional[float]
     """Assemblies below the lower limit, per million."""
+    ppm_below_interval: Optional[List[float]]
+    """The 95 % interval of the assemblies below the lower limit by themselves, per million; 0 to 0 where a proof
+    excludes them, null where it is not known.
+    """
     requirements: List[Judged]
     """Everything that is required of it, the target yield included."""
     revision: Optional[str]
@@ -949,6 +967,10 @@ class Interaction(Record):
     """Why it is missing; None where it is not."""
     mixed: Optional[float]
     """Mixed second derivative at the means; None where it is missing."""
+    origin: Optional[Literal['exact', 'evaluated', 'screened']]
+    """The source of its share: `exact`, `evaluated`, or `screened` where it is an estimate without an evaluation of
+    its own. None where it has no share.
+    """
     rounding: Optional[float]
     """The largest effect of rounding errors of the characteristic's own size on it."""
     share: Optional[float]
@@ -1035,6 +1057,21 @@ class Law(Record):
     """Its type."""
 
 
+class LawRefutation(Record):
+    """A refutation as it is written."""
+
+    counted: float
+    """Share of points below the limit."""
+    error: float
+    """Standard error of that share."""
+    law: float
+    """Share of assemblies below the limit by the law."""
+    limit: float
+    """The limit at which the law failed."""
+    test: str
+    """`monotone` (quantiles or shares fall) or `count` (points contradict a share)."""
+
+
 class NotRun(Record):
     """One method that was not run."""
 
@@ -1110,7 +1147,7 @@ class Proof(Record):
     """The cost of the next cheapest optimum that one of them ended at; None where there was no other."""
     reached: Optional[int]
     """How many of them ended at the tolerances found."""
-    solver: Optional[Literal['dual-newton', 'separable', 'sequential-quadratic', 'augmented-lagrangian', 'branch-and-bound', 'root']]
+    solver: Optional[Literal['dual-newton', 'separable', 'sequential-quadratic', 'augmented-lagrangian', 'branch-and-bound', 'root', 'verified-search']]
     """The solver that found the tolerances; None where none were found."""
     starts: Optional[int]
     """Searches from different tolerances, where there may be several optima; None where one search is enough."""
@@ -1145,6 +1182,8 @@ class RareCharacteristic(Record):
     """Everything that is required of it, the target yield included."""
     revision: Optional[str]
     """The revision of the drawing."""
+    sampling_interval: Optional[SamplingInterval]
+    """How far the yield may be off because measured dimensions are known by samples; None where there are none."""
     target_yield: Optional[float]
     """The share of assemblies that must keep the limits."""
     unfinished: bool
@@ -1374,14 +1413,20 @@ class SampledModel(Record):
 
 class SamplingInterval(Record):
     """Intervals that cover the true results with a probability of `level`, as far as the size of measured samples
-    decides. By the bias-corrected and accelerated bootstrap (Efron 1987) of all measured dimensions on which the
-    characteristic depends, with the surrogate kept. An interval is None where the result itself is unknown, or
-    where some resample has none: a resample without variation has no skewness, and a Pearson law fitted to it may
-    have infinite moments. Coverage of the nominal 95 %, measured over 300 samples each of a normal law and of one
-    with skewness 1.2: | | | normal, 50 values | 200 | skewed, 50 values | 200 | |---|---|--:|--:|--:|--:| |
-    linear | mean | 92 % | 96 % | 94 % | 94 % | | | sigma | 93 % | 93 % | 87 % | 91 % | | quadratic | mean | 93 %
-    | 93 % | 92 % | 91 % | | | sigma | 86 % | 90 % | 78 % | 84 % | Of skewness and kurtosis the intervals are too
-    narrow by far in samples of this size: a sample seldom has the rare values that decide them.
+    decides. Mean, sigma, skewness, kurtosis and Cpk: by the bias-corrected and accelerated bootstrap (Efron 1987)
+    of all measured dimensions on which the characteristic depends, with the surrogate kept. An interval is None
+    where the result itself is unknown, where there is no surrogate, and where some resample has none: a resample
+    without variation has no skewness, and a Pearson law fitted to it may have infinite moments. Of a simulation:
+    mean, sigma and Cpk by the variances that rows of the samples make of them among its points, as far as normal
+    distributions go; skewness and kurtosis have none. The share outside the limits: by the rows themselves. Where
+    all that varies is measured, it is the interval of a count among as many rows as the smallest sample has
+    (Clopper and Pearson 1934). Where other dimensions vary too, a row counts as far as it decides a reject, one
+    further part may lie five sigmas out, and the interval holds that of the bootstrap. Coverage of the nominal 95
+    % by the bootstrap, measured over 300 samples each of a normal law and of one with skewness 1.2: | | | normal,
+    50 values | 200 | skewed, 50 values | 200 | |---|---|--:|--:|--:|--:| | linear | mean | 92 % | 96 % | 94 % |
+    94 % | | | sigma | 93 % | 93 % | 87 % | 91 % | | quadratic | mean | 93 % | 93 % | 92 % | 91 % | | | sigma | 86
+    % | 90 % | 78 % | 84 % | Of skewness and kurtosis the intervals are too narrow by far in samples of this size:
+    a sample seldom has the rare values that decide them.
     """
 
     cpk: Optional[List[float]]
@@ -1393,7 +1438,7 @@ class SamplingInterval(Record):
     mean: Optional[List[float]]
     """Of the mean."""
     resamples: int
-    """How many resamples they come from."""
+    """How many resamples they come from; 0 where the samples were not drawn anew."""
     samples: Dict[str, int]
     """The measured dimensions that the characteristic depends on, with the number of values of each."""
     sigma: Optional[List[float]]
@@ -1423,6 +1468,10 @@ class Sensitivity(Record):
     """Share of the variance that the best straight line through its own part explains."""
     mean_shift: Optional[float]
     """How far its curvature moves the mean."""
+    origin: Optional[Literal['exact', 'evaluated', 'screened']]
+    """The source of its shares: `exact`, `evaluated`, or `screened` where an estimate has a part in them. None where
+    it has no shares.
+    """
     rounding: Optional[List[float]]
     """The largest effect of a rounding error of the characteristic's own size on the two derivatives: at the steps
     taken, over a sigma where they are exact.
@@ -1485,8 +1534,14 @@ class SimulatedCharacteristic(Record):
     """The part that it belongs to."""
     ppm_above: Optional[float]
     """Assemblies above the upper limit, per million."""
+    ppm_above_interval: Optional[List[float]]
+    """The same above the upper limit."""
     ppm_below: Optional[float]
     """Assemblies below the lower limit, per million."""
+    ppm_below_interval: Optional[List[float]]
+    """The 95 % interval of the assemblies below the lower limit by themselves, per million; 0 to 0 where a proof
+    excludes them, null where it is not known.
+    """
     range: Optional[List[float]]
     """The least and the greatest value seen."""
     requirements: List[Judged]
@@ -1495,6 +1550,8 @@ class SimulatedCharacteristic(Record):
     """The revision of the drawing."""
     samples: int
     """Points at which it has a value."""
+    sampling_interval: Optional[SamplingInterval]
+    """How far the results may be off because measured dimensions are known by samples; None where there are none."""
     sigma: Optional[float]
     """Standard deviation."""
     skewness: Optional[float]
@@ -1517,6 +1574,8 @@ class SimulatedCharacteristic(Record):
     """The share of assemblies within the limits; None without any limit."""
     yield_bounds: Optional[List[float]]
     """If all points without a value are rejected, and if none is; null where every point has one."""
+    yield_interval: Optional[List[float]]
+    """95 % interval of the yield, with what measured samples leave open; null without limits."""
 
 
 class SimulationResult(Result):
@@ -1610,7 +1669,7 @@ class StandardErrors(Record):
     skewness: Optional[float]
     """Third standardised moment."""
     yield_: Optional[List[float]]
-    """95 % interval."""
+    """95 % interval, as far as the number of points decides."""
 
 
 class SurfaceLaw(Record):
@@ -1619,13 +1678,17 @@ class SurfaceLaw(Record):
     branch: str
     """`exact`, `single` or `sampled`: how it is computed."""
     counted_points: Optional[int]
-    """Points of the surface at which the law was counted, where it could not be computed; null where it was."""
+    """Points of the surface at which the law was counted, where it could not be computed or is refuted; null where
+    it was computed.
+    """
     ppm_above: Optional[float]
     """Assemblies above the upper limit, per million."""
     ppm_below: Optional[float]
     """Assemblies below the lower limit, per million."""
     quantiles: Optional[Dict[str, float]]
     """Quantiles; null where one of them is unknown."""
+    refuted: Optional[LawRefutation]
+    """The contradiction for which points took the place of the law; null where there is none."""
     step_function: bool
     """Whether the law is a step function, because every input that counts has measured values only."""
     yield_: Optional[float]
@@ -1714,8 +1777,14 @@ class SweptPoint(Record):
     """With every dimension at its nominal value."""
     ppm_above: Optional[float]
     """Rejected above the upper limit."""
+    ppm_above_interval: Optional[List[float]]
+    """The same above the upper limit."""
     ppm_below: Optional[float]
     """Rejected below the lower limit, in parts per million."""
+    ppm_below_interval: Optional[List[float]]
+    """The 95 % interval of the assemblies below the lower limit by themselves, per million; 0 to 0 where a proof
+    excludes them, null where it is not known.
+    """
     quantiles: Dict[str, Optional[float]]
     """By the law of the surface where there is one, by the Pearson fit elsewhere."""
     requirements: List[Judged]
@@ -1730,6 +1799,8 @@ class SweptPoint(Record):
     """The same in a word."""
     yield_: Optional[float]
     """Share of assemblies within the limits."""
+    yield_interval: Optional[List[float]]
+    """Within which that is known, measured samples included; null where it is not known."""
     yield_source: Optional[Literal['proof', 'samples', 'surface-law', 'pearson']]
     """Its source; null without limits."""
 
@@ -1855,7 +1926,7 @@ class YieldEstimate(Record):
     bounds: List[float]
     """If every point without a value is rejected, and if none is."""
     interval: List[float]
-    """95 % interval of that."""
+    """95 % interval of that, as far as the number of points decides."""
     value: float
     """Among the points that have a value."""
 
@@ -1882,16 +1953,17 @@ _INNER: Dict[str, Dict[str, type]] = {
     "InspectionRisks": {"accepted": EstimatedShare, "bad_among_accepted": EstimatedShare, "false_accept": EstimatedShare, "false_reject": EstimatedShare},
     "JointKept": {"sampled": JointKeptSampled},
     "NotRun": {"reason": NotRunReason},
-    "RareCharacteristic": {"above": Beyond, "below": Beyond, "requirements": Judged},
+    "RareCharacteristic": {"above": Beyond, "below": Beyond, "requirements": Judged, "sampling_interval": SamplingInterval},
     "RareResult": {"characteristics": RareCharacteristic, "correlation": Pair, "dimensions": DimensionResult, "evaluator": EvaluatorSummary, "joint_requirement": Judged, "warnings": ReportedWarning},
     "ReportedWarning": {"advice": Advice},
     "RunSummary": {"evaluator": EvaluatorSummary},
     "SampledFactor": {"first_order": IndexEstimate, "total": IndexEstimate},
     "SampledModel": {"histogram": Histogram},
     "Sensitivity": {"first_order": EstimatedShare, "total": EstimatedShare},
-    "SimulatedCharacteristic": {"control": Control, "distribution": Empirical, "histogram": Histogram, "inspection": InspectionRisks, "requirements": Judged, "sobol": SampledFactor, "standard_error": StandardErrors},
+    "SimulatedCharacteristic": {"control": Control, "distribution": Empirical, "histogram": Histogram, "inspection": InspectionRisks, "requirements": Judged, "sampling_interval": SamplingInterval, "sobol": SampledFactor, "standard_error": StandardErrors},
     "SimulationResult": {"characteristic_correlation": OutputCorrelation, "characteristics": SimulatedCharacteristic, "correlation": Pair, "dimensions": DimensionResult, "evaluator": EvaluatorSummary, "joint_requirement": Judged, "joint_yield": YieldEstimate, "warnings": ReportedWarning},
     "SobolIndices": {"factors": FactorIndices},
+    "SurfaceLaw": {"refuted": LawRefutation},
     "SweepResult": {"characteristics": SweptCharacteristic, "evaluator": EvaluatorSummary, "parameter": Parameter, "warnings": ReportedWarning},
     "SweptCharacteristic": {"points": SweptPoint},
     "SweptPoint": {"error_estimate": ErrorEstimate, "requirements": Judged},

@@ -5,6 +5,7 @@
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
+use crate::analysis::CharacteristicAnalysis;
 use crate::assembly::{Points, Request, Responses, Run};
 use crate::problem::Problem;
 use sensitol_numeric::requirement::Requirement;
@@ -12,20 +13,21 @@ use sensitol_numeric::verdict::Judged;
 
 /// Half of the points are corners.
 const POINTS: usize = 1 << 13;
-/// The rounding of a value as a part of its greatest input: some additions.
+/// The rounding of a value as a part of the greatest of its terms, a dimension times its slope: some additions.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// For every characteristic what the points say of its worst case: the greatest part of a limit's room that one takes, from there on. None where
-/// none has a value, of positions, whose zones are no boxes, and of a characteristic without room.
+/// For every characteristic, analysed at these tolerances, what the points say of its worst case: the greatest part of a limit's room that one takes, from there on. None where
+/// none has a value, of dimensions that share a zone, which is not a box, and of a characteristic without room.
 pub(super) fn worst_in_box(
     problem: &Problem,
-    nominal: &[Option<f64>],
+    analysed: &[CharacteristicAnalysis],
     seed: u64,
     run: &Run<'_>,
 ) -> Vec<Option<Judged>> {
     let dimensions = problem.dimensions();
-    let nothing = vec![None; nominal.len()];
-    if dimensions.iter().any(|dimension| dimension.zone().is_some()) {
+    let nothing = vec![None; analysed.len()];
+    let blocks = problem.correlation().is_some_and(|of| !of.blocks().is_empty());
+    if blocks || dimensions.iter().any(|dimension| dimension.zone().is_some()) {
         return nothing;
     }
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);
@@ -43,12 +45,14 @@ pub(super) fn worst_in_box(
     let outputs = problem.outputs();
     let mut answers = Responses::open(POINTS, outputs.len());
     problem.function().evaluate(&Request::values(&points, outputs), run, &mut answers);
-    let of = |(c, nominal): (usize, &Option<f64>)| {
-        let nominal = (*nominal)?;
+    let of = |(c, one): (usize, &CharacteristicAnalysis)| {
+        let nominal = one.nominal?;
+        let slopes: Vec<f64> = one.sensitivities.iter().map(|of| of.first.unwrap_or(0.0)).collect();
         let limits = problem.characteristics()[c].limits();
         let part = |(row, value): (usize, f64)| {
-            // A value that is a sum of inputs is rounded as the greatest of them is: a corner that lies on a limit is not beyond it.
-            let size = (0..dimensions.len()).fold(value.abs(), |size, d| size.max(points.column(d)[row].abs()));
+            // A value that is a sum is rounded as the greatest of its terms is: a corner that lies on a limit is not beyond it.
+            let term = |(d, slope): (usize, &f64)| (slope * points.column(d)[row]).abs();
+            let size = slopes.iter().enumerate().map(term).fold(value.abs(), f64::max);
             let rise = (value - nominal).signum() * ((value - nominal).abs() - ROUNDING * size).max(0.0);
             let above = limits.upper().map(|upper| rise / (upper - nominal));
             let below = limits.lower().map(|lower| rise / (lower - nominal));
@@ -60,5 +64,5 @@ pub(super) fn worst_in_box(
             limits.lower().is_none_or(|lower| lower < nominal) && limits.upper().is_none_or(|upper| upper > nominal);
         inside.then(|| Judged::of(Requirement::WorstCase, Some(most), Some([most, f64::INFINITY])))
     };
-    nominal.iter().enumerate().map(of).collect()
+    analysed.iter().enumerate().map(of).collect()
 }

@@ -223,7 +223,7 @@ impl<'s, 'a> Judge<'s, 'a> {
         let exact = |one: &Constraint| {
             let responses = self.setting.responses;
             one.characteristics(responses).into_iter().all(|c| match one.requirement {
-                Requirement::WorstCase => responses.of[c].worst.is_none(),
+                Requirement::WorstCase => responses.has_linear_worst_case(c),
                 Requirement::Rss => true,
                 _ => responses.is_straight(c),
             })

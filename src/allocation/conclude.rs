@@ -1,10 +1,11 @@
 //! The conclusions from the tolerances that a search ended at: status, prices, the front, and what a sample of the model says.
 
+use super::best_trial::{SearchEnd, status_of_missed};
 use super::box_sample::worst_in_box;
 use super::choose::Choice;
 use super::constraint::Constraint;
 use super::cost::{Offer, Priced};
-use super::driver::{Chosen, Driver, Ended, cost, kept_within, unit, with_choice};
+use super::driver::{Driver, cost, kept_within, unit, with_choice};
 use super::front::front;
 use super::joint::joint;
 use super::machines::choose;
@@ -15,12 +16,14 @@ use super::solve::Setting;
 use super::solved::Solved;
 use super::station::{Station, prices};
 use super::task::{AllocateError, Goal};
-use crate::analysis::TRUSTED;
+use super::trial::Trial;
+use crate::analysis::{Analysis, CharacteristicAnalysis, Findings, TRUSTED};
 use crate::problem::Problem;
 use crate::simulation::{SimulationOptions, simulate_with};
 use crate::summary::StopReason;
 use crate::warning::Warning;
 use sensitol_numeric::requirement::Requirement;
+use sensitol_numeric::verdict::worst;
 use sensitol_numeric::verdict::{Judged, Verdict};
 
 /// A residual up to which tolerances are called optimal.
@@ -36,11 +39,10 @@ impl Driver<'_> {
         &mut self,
         allocation: &mut Allocation,
         original: &Problem,
-        station: Station,
-        last: Option<Chosen>,
-        constraints: &[Constraint],
-        ended: Ended,
+        end: SearchEnd,
     ) -> Result<(), AllocateError> {
+        let SearchEnd { station, last, constraints, ended, trial, is_start } = end;
+        let constraints = &constraints[..];
         allocation.moved = moved(original, &station.problem);
         if last.is_none() && allocation.moved.is_empty() {
             let finished = self.task.priced.is_empty() && ended.agreed;
@@ -65,6 +67,12 @@ impl Driver<'_> {
             allocation.cost_after = Some(cost).filter(|cost| cost.is_finite());
             allocation.loss[1] = loss.filter(|_| !self.task.losses.is_empty());
             allocation.tolerances = self.allocated(original, &solved.at, offers);
+            if is_start {
+                // Nothing has changed, whatever process holds it.
+                (allocation.cost_after, allocation.loss[1]) = (allocation.cost_before, allocation.loss[0]);
+                allocation.tolerances = self.unchanged(original);
+                allocation.tolerances.iter_mut().for_each(|one| one.cost_after = one.cost_before);
+            }
             let free = self.task.priced.iter().all(|group| group.offers.len() == 1);
             // Of a level that is sought, and of proportions that are fixed, multipliers are not what a limit costs.
             if free && self.task.goal == Goal::LeastCost && !self.task.basis.is_proportion() {
@@ -76,17 +84,21 @@ impl Driver<'_> {
                 self.price_bounds(allocation, &setting, solved);
             }
         }
-        let judged = |one: &Kept| station.analysis.characteristics[one.characteristic].judge(one.requirement);
+        let analysis = trial.as_ref().map_or(&station.analysis, |trial| &trial.analysis);
+        let judged = |one: &Kept| analysis.characteristics[one.characteristic].judge(one.requirement);
         let judged: Vec<Judged> = allocation.requirements.iter().map(judged).collect();
-        let joint_now = allocation.joint_requirement.as_ref().and(station.analysis.joint_requirement);
-        let missed = judged.iter().chain(&joint_now).any(|judged| judged.verdict == Verdict::Missed);
+        let joint_now = allocation.joint_requirement.as_ref().and(analysis.joint_requirement);
+        let verdict = worst(judged.iter().chain(&joint_now).map(|judged| judged.verdict)).unwrap_or(Verdict::Met);
+        // Where no error is known nothing could be met, and nothing is said against it.
+        let open = trial.as_ref().is_some_and(|trial| !trial.is_kept() && !trial.is_unknown());
+        let open = open && self.task.goal == Goal::LeastCost || verdict == Verdict::Missed;
         let reached = ended.within_budget && !self.spent.stopped;
         allocation.confirmed = reached;
         allocation.status = match &last {
             _ if self.spent.stopped => Status::OutOfTime,
             // Nothing but nominal values was to be chosen: what they cannot do, tolerances must.
             None if !met => Status::Infeasible,
-            Some(_) if missed && ended.within_budget => Status::NoFeasiblePointFound,
+            Some(_) | None if open && ended.within_budget => status_of_missed(verdict),
             None if ended.agreed => Status::Optimal,
             None => Status::AlmostOptimal,
             Some((solved, _, proof)) => {
@@ -125,7 +137,7 @@ impl Driver<'_> {
                     joint: one.is_joint(),
                     best: match one.is_joint() {
                         true => joint_now.and_then(|joint| joint.value),
-                        false => station.analysis.characteristics[one.characteristic].judge(one.requirement).value,
+                        false => analysis.characteristics[one.characteristic].judge(one.requirement).value,
                     },
                     because: Vec::new(),
                     together: false,
@@ -134,7 +146,7 @@ impl Driver<'_> {
         }
         // A budget that ended before the model was asked at these tolerances leaves nothing to say of them.
         if let (false, Some((solved, offers, _))) = (ended.within_budget, &last) {
-            allocation.problem = with_choice(station.problem, &self.task.priced, &solved.at, offers)?;
+            allocation.problem = with_choice(station.problem.clone(), &self.task.priced, &solved.at, offers)?;
             return Ok(());
         }
         allocation.requirements.iter_mut().zip(judged).for_each(|(one, judged)| one.after = Some(judged));
@@ -146,7 +158,9 @@ impl Driver<'_> {
                 Setting { responses, priced, constraints, losses, setups, stopped: &stopped, anywhere: false };
             allocation.cost_unrounded = unrounded(&setting, solved);
         }
-        allocation.loosest_after = loosest(&station.responses, constraints);
+        // Derivatives that lead elsewhere do not tell how much is left.
+        let followed = allocation.proof.solver != Some(AllocationSolver::VerifiedSearch);
+        allocation.loosest_after = loosest(&station.responses, constraints).filter(|_| followed);
         allocation.joint[1] = joint(&station.problem, &station.responses, self.options.seed);
         if let (Some(points), Some(solved), false) = (self.options.front, solved, self.spent.stopped) {
             let (responses, priced) = (&station.responses, &self.task.priced);
@@ -164,12 +178,24 @@ impl Driver<'_> {
             }
         }
         if let (Some(samples), false) = (self.options.confirm, self.spent.stopped) {
-            let nominal: Vec<Option<f64>> = station.analysis.characteristics.iter().map(|one| one.nominal).collect();
-            self.confirm(allocation, &station.problem, &nominal, samples)?;
+            self.confirm(allocation, &station.problem, &analysis.characteristics, samples)?;
         }
-        allocation.after = Some(self.completed(station.analysis, &station.findings, &station.problem));
-        allocation.problem = station.problem;
+        allocation.after = Some(match &trial {
+            Some(trial) => self.completed_trial(trial, &station.findings),
+            None => self.completed(station.analysis.clone(), &station.findings, &station.problem),
+        });
+        allocation.problem = station.problem.clone();
         Ok(())
+    }
+
+    /// The analysis of a trial, with the results that are reported and no search reads.
+    pub(super) fn completed_trial(&self, trial: &Trial, of_station: &Findings) -> Analysis {
+        let Some(findings) = &trial.findings else {
+            return self.completed(trial.analysis.clone(), of_station, &trial.problem);
+        };
+        let mut analysis = trial.analysis.clone();
+        analysis.complete(findings, &trial.problem, &self.options.analysis, self.run);
+        analysis
     }
 
     /// Whether what keeps the conditions of an optimum is one: nothing can cost less than every tolerance at its loosest, or no choice does;
@@ -200,7 +226,7 @@ impl Driver<'_> {
         &mut self,
         allocation: &mut Allocation,
         problem: &Problem,
-        nominal: &[Option<f64>],
+        analysed: &[CharacteristicAnalysis],
         samples: u64,
     ) -> Result<(), AllocateError> {
         let budget = self.options.analysis.budget.map_or(u64::MAX, |budget| budget as u64);
@@ -217,8 +243,8 @@ impl Driver<'_> {
         let cheap = !problem.function().signature().costly && self.options.analysis.budget.is_none();
         let worst = allocation.requirements.iter().any(|one| one.requirement == Requirement::WorstCase) && cheap;
         let in_box = match worst {
-            true => worst_in_box(problem, nominal, self.options.seed, self.run),
-            false => vec![None; nominal.len()],
+            true => worst_in_box(problem, analysed, self.options.seed, self.run),
+            false => vec![None; analysed.len()],
         };
         for one in &mut allocation.requirements {
             let found = &simulation.characteristics[one.characteristic];

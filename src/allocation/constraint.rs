@@ -382,7 +382,7 @@ impl Constraint {
         responses.correction(self.characteristic, least, &room, &|moments| self.room(moments, target)?.slopes())
     }
 
-    /// The largest sigma that keeps it, with this mean and shape; None where none does, and where it is no matter of the mean.
+    /// The largest sigma that keeps it, with this mean and shape; None where none does, and where it does not depend on the mean.
     pub(super) fn room(&self, moments: &Moments, target: f64) -> Option<Room> {
         let (below, above) =
             (self.limits.lower().map(|l| moments.mean() - l), self.limits.upper().map(|u| u - moments.mean()));
@@ -467,6 +467,11 @@ fn by_room(own: f64, room: f64) -> f64 {
 }
 
 impl Linearised {
+    /// Of a part of a requirement that is used, by its slopes.
+    pub(super) fn of_uses(value: f64, slopes: Vec<f64>, linear: bool) -> Self {
+        Self { value, slopes, linear }
+    }
+
     /// Of something that grows as the squares of the tolerances.
     pub(super) fn of_squares(value: f64, slopes: Vec<f64>) -> Self {
         Self { value, slopes, linear: false }

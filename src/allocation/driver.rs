@@ -9,10 +9,8 @@ use super::constraint::{Constraint, kept};
 use super::corners::Places;
 use super::cost::Priced;
 use super::response::Responses;
-use super::result::Proof;
 use super::sampled::SampledCorrection;
-use super::solved::Solved;
-use super::station::Station;
+use super::station::{Seen, Station};
 use super::task::{AllocateError, AllocationOptions, AllocationTask, Goal};
 use super::unknown::Unknown;
 use crate::analysis::{Analysis, CharacteristicAnalysis, Findings, analyze_keeping};
@@ -37,6 +35,11 @@ pub(super) struct Spent {
     /// The greatest uncertainties since rounds have [settled](SETTLED), of every characteristic and of the joint yield.
     unknown: Vec<Unknown>,
     joint_unknown: f64,
+    /// By how much more is required because trials missed it, of every characteristic and of the joint yield.
+    stricter: Vec<Unknown>,
+    joint_stricter: f64,
+    /// The cheapest station that kept everything.
+    pub(super) seen: Option<Seen>,
     /// Where formulas were found to reach farthest, by characteristic.
     places: BTreeMap<usize, [Places; 2]>,
     /// Points of a cheap model beside the evaluations.
@@ -47,15 +50,27 @@ pub(super) struct Spent {
 /// be left for each other again and again.
 const SETTLED: usize = 4;
 
+impl Spent {
+    /// Requires so much more from the next station on.
+    pub(super) fn require_more(&mut self, more: &[Unknown], joint: f64) {
+        self.stricter.resize(more.len(), Unknown::default());
+        self.stricter.iter_mut().zip(more).for_each(|(all, more)| *all = all.and(*more));
+        self.joint_stricter += joint;
+    }
+}
+
+/// The dimensions of a problem as they stand in the file of its study.
+pub(crate) type AsWritten<'a> = &'a dyn Fn(&Problem) -> Option<Vec<Dimension>>;
+
 pub(super) struct Driver<'a> {
     pub(super) task: &'a AllocationTask,
     pub(super) options: &'a AllocationOptions,
     pub(super) run: &'a Run<'a>,
+    /// Everything that is required of characteristics.
+    pub(super) required: Vec<(usize, Requirement)>,
+    pub(super) written: Option<AsWritten<'a>>,
     pub(super) spent: Spent,
 }
-
-/// Tolerances, the offer of every group, and what proves them.
-pub(super) type Chosen = (Solved, Vec<usize>, Proof);
 
 /// How near is near enough: every round asks the model.
 #[derive(Clone, Copy)]
@@ -134,6 +149,10 @@ impl Driver<'_> {
             self.spent.joint_unknown = self.spent.joint_unknown.max(responses.joint_unknown);
             responses.joint_unknown = self.spent.joint_unknown;
         }
+        for (one, more) in responses.of.iter_mut().zip(&self.spent.stricter) {
+            one.unknown = one.unknown.and(*more);
+        }
+        responses.joint_unknown += self.spent.joint_stricter;
         self.correct(&problem, &analysis, &mut responses);
         if !problem.function().signature().costly {
             let Spent { places, points, .. } = &mut self.spent;

@@ -46,7 +46,7 @@ pub(super) fn joint(problem: &Problem, responses: &Responses, seed: u64) -> Opti
         let mut keeps = vec![true; ROWS];
         for (k, &c) in limits.iter().enumerate() {
             let rises = surrogates[k].rises(&columns)?;
-            let limits = problem.characteristics()[c].limits();
+            let limits = problem.kept_limits(c);
             let values = rises.iter().map(|rise| surrogates[k].centre + rise);
             keeps.iter_mut().zip(values).for_each(|(keeps, value)| *keeps &= limits.contains(value));
         }

@@ -24,6 +24,7 @@
 mod augmented;
 mod bands;
 mod basis;
+mod best_trial;
 mod box_sample;
 mod branch;
 mod choice;
@@ -55,6 +56,7 @@ mod reject_fit;
 mod rejects;
 mod remade;
 mod response;
+mod restore;
 mod result;
 mod root;
 mod run;
@@ -71,9 +73,12 @@ mod station;
 mod steps;
 mod task;
 mod together;
+mod trial;
 mod unknown;
 mod vector;
+mod verified_search;
 mod worst;
+mod worst_reach;
 mod written_cost;
 mod yield_room;
 
@@ -90,6 +95,7 @@ pub use result::{
     Allocated, Allocation, AllocationSolver, Attainable, Bound, FrontPoint, JointKept, Kept, Moved, Proof, ShadowPrice,
     Status,
 };
+pub use run::allocate_written;
 pub use run::{allocate, allocate_with};
 pub use setup::SetUp;
 pub use shape::FrontRequirement;

@@ -1,6 +1,9 @@
 //! Tolerances in fixed proportions: one factor is chosen.
 
+use std::rc::Rc;
+
 use super::basis::{CostBasis, unit};
+use super::best_trial::SearchEnd;
 use super::constraint::{Constraint, kept};
 use super::driver::{Driver, Ended, Near, ROUNDS, cost, with_tolerances};
 use super::result::{Allocation, AllocationSolver, Proof, Status};
@@ -14,18 +17,17 @@ impl Driver<'_> {
     pub(super) fn in_proportion(
         &mut self,
         allocation: &mut Allocation,
-        first: Station,
+        first: Rc<Station>,
         constraints: &[Constraint],
-    ) -> Result<(), AllocateError> {
-        let original = allocation.problem.clone();
-        let near = Near::of(&original);
+    ) -> Result<Option<SearchEnd>, AllocateError> {
+        let near = Near::of(&allocation.problem);
         let priced = &self.task.priced;
         let members: Vec<usize> = priced.iter().flat_map(|group| group.members.iter().copied()).collect();
         let mut at = self.proportions(&first);
         let mut ended = Ended { agreed: false, within_budget: true, at_rest: None };
         let mut station = match self.station(with_tolerances(first.problem.clone(), priced, &at)?)? {
             Some(there) => there,
-            None => return Ok(()),
+            None => return Ok(None),
         };
         for _ in 0..ROUNDS {
             if self.spent.stopped || !station.answers(constraints) {
@@ -38,7 +40,7 @@ impl Driver<'_> {
                     break;
                 }
                 allocation.status = Status::NoFeasiblePointFound;
-                return Ok(());
+                return Ok(None);
             };
             // The first factor is only as near as its search; later ones must agree.
             if (factor - 1.0).abs() <= near.agree && factor >= 1.0 {
@@ -67,7 +69,8 @@ impl Driver<'_> {
             at,
         };
         let proof = Proof { solver: Some(AllocationSolver::Root), ..Proof::default() };
-        self.conclude(allocation, &original, station, Some((solved, offers, proof)), constraints, ended)
+        let (last, constraints) = (Some((solved, offers, proof)), constraints.to_vec());
+        Ok(Some(SearchEnd { station: Rc::new(station), last, constraints, ended, trial: None, is_start: false }))
     }
 
     /// Half bands in the proportions of the basis, of the same geometric mean as the present ones.

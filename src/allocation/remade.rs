@@ -30,7 +30,7 @@ impl Responses {
             let surrogate = one.surrogate.as_ref().map(|surrogate| surrogate.relocated(&moved));
             let law = match (&surrogate, &of_inputs) {
                 (Some(surrogate), Some(inputs_of)) if laws && one.limits.exist() => {
-                    law_over(surrogate, inputs_of, inputs.correlation()).ok()
+                    law_over(surrogate, inputs_of, inputs.correlation(), one.rounding).ok()
                 }
                 _ => None,
             };
@@ -40,10 +40,12 @@ impl Responses {
                 slopes: one.slopes.clone(),
                 depends: one.depends.clone(),
                 limits: one.limits,
+                rounding: one.rounding,
                 law,
                 unknown: one.unknown,
                 sampled: None,
                 worst: None,
+                over_zones: one.over_zones,
             }
         };
         Some(Self {
@@ -86,7 +88,7 @@ impl Responses {
 impl Constraint {
     /// Of a linear worst case the room, less what has no cost, and the factors of every group's `T`.
     pub(super) fn linear_room(&self, responses: &Responses, priced: &[Priced]) -> Option<(f64, Vec<f64>)> {
-        if responses.of[self.characteristic].worst.is_some() {
+        if !responses.has_linear_worst_case(self.characteristic) {
             return None;
         }
         let (constant, coefficients) = responses.worst_case(self.characteristic, priced, self.is_above())?;

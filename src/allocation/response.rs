@@ -6,17 +6,15 @@
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::sync::atomic::AtomicU64;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::bands::{Reach, Scaling};
-use super::corners::{Band, Corners, Places};
 use super::correction::{About, Correction, Follows};
 use super::cost::Priced;
 use super::reject_fit::RejectFit;
 use super::sampled::SampledCorrection;
 use super::unknown::Unknown;
-use super::worst::WorstCase;
+use super::worst::{NO_CORRECTION, WorstCase, WorstCaseCorrection, correction, is_off};
 use crate::analysis::{Analysis, CharacteristicAnalysis, law_over, surface_law};
 use crate::method::Outcome;
 use crate::problem::Problem;
@@ -59,6 +57,8 @@ pub(super) struct Response {
     /// Whether it can depend on each dimension.
     pub(super) depends: Vec<bool>,
     pub(super) limits: SpecLimits,
+    /// By how much rounding may move a value of it.
+    pub(super) rounding: f64,
     /// The law of the surface, where a yield comes from one.
     pub(super) law: Option<SurfaceLaw>,
     pub(super) unknown: Unknown,
@@ -66,6 +66,8 @@ pub(super) struct Response {
     pub(super) sampled: Option<SampledCorrection>,
     /// The worst case, where it is required; None where the slopes tell all of it.
     pub(super) worst: Option<WorstCase>,
+    /// The corrections of the linear worst case below and above, where dimensions share a zone.
+    pub(super) over_zones: [WorstCaseCorrection; 2],
 }
 
 /// Differences smaller than this part are rounding.
@@ -108,12 +110,14 @@ impl Responses {
                     slopes: (0..n).map(slope).collect(),
                     depends,
                     limits,
+                    rounding: problem.kept_limits(c).rounding(),
                     law: by_law.then(|| surface_law(problem, outcome, c)?.ok()).flatten(),
                     unknown: Unknown::of(found, by_law),
                     sampled: None,
                     worst: (requirements[c] == Some(Requirement::WorstCase))
-                        .then(|| worst_case(&dimensions, &varying, &reach, fitted.surrogate.as_ref(), found))
+                        .then(|| worst_case(problem, &varying, &reach, fitted.surrogate.as_ref(), found))
                         .flatten(),
+                    over_zones: [NO_CORRECTION; 2],
                 }
             })
             .collect();
@@ -133,6 +137,11 @@ impl Responses {
             reject_fits,
             joint_unknown: 0.0,
         };
+        for (c, found) in analysis.characteristics.iter().enumerate() {
+            if requirements[c] == Some(Requirement::WorstCase) && shares_a_zone(problem, &all.varying) {
+                all.of[c].over_zones = all.zone_corrections(c, found).unwrap_or([NO_CORRECTION; 2]);
+            }
+        }
         if let Some([low, _]) = analysis.joint_requirement.and_then(|of| of.interval) {
             let ones = vec![1.0; n];
             let own = all.rejects(&all.limited()).share(&all, &ones, None);
@@ -205,7 +214,7 @@ impl Responses {
                 *law = Arc::clone(self.dimensions[d].scaled(factors[d])?.ok()?.law()?);
             }
         }
-        law_over(&surrogate, &laws, inputs.correlation()).ok()
+        law_over(&surrogate, &laws, inputs.correlation(), self.of[c].rounding).ok()
     }
 
     /// Factors of all dimensions when the groups have these half bands.
@@ -371,31 +380,35 @@ impl Responses {
                 None => constant += radius,
             }
         }
-        Some((constant, coefficients))
+        let (factor, more) = self.of[characteristic].over_zones[usize::from(above)];
+        coefficients.iter_mut().for_each(|coefficient| *coefficient *= factor);
+        Some((factor * constant + more, coefficients))
     }
 
-    /// The nominal value and how far the worst case lies beyond it, above or below, with nominals moved by `shifts`, in sigmas.
-    pub(super) fn worst_reach(
+    /// Whether the slopes tell all of the worst case of a characteristic.
+    pub(super) fn has_linear_worst_case(&self, characteristic: usize) -> bool {
+        let of = &self.of[characteristic];
+        of.worst.is_none() && !of.over_zones.iter().any(is_off)
+    }
+
+    /// The corrections of the linear worst case below and above to the one that the analysis has over the zones; None where that is unknown.
+    fn zone_corrections(
         &self,
         characteristic: usize,
-        factors: &[f64],
-        shifts: &[f64],
-        above: bool,
-    ) -> Option<(f64, f64)> {
-        let of = &self.of[characteristic];
-        let nominal = of.nominal?;
-        if let Some(worst) = &of.worst {
-            return Some((nominal, worst.reach_moved(factors, shifts, above).0));
-        }
+        found: &CharacteristicAnalysis,
+    ) -> Option<[WorstCaseCorrection; 2]> {
+        let nominal = found.nominal?;
+        let proof = found.proof().filter(|proof| proof.proven).map(|proof| proof.bounds);
+        let [low, high] = proof.or(found.worst_case.filter(|_| found.is_proven_linear()))?;
         let all = self.every_dimension();
-        let (constant, coefficients) = self.worst_case(characteristic, &all, above)?;
-        let wide = |(group, coefficient): (&Priced, &f64)| {
-            let d = group.members[0];
-            coefficient * factors[d] * self.dimensions[d].half_band()
+        let of = |above: bool, truth: f64| {
+            let (constant, coefficients) = self.worst_case(characteristic, &all, above)?;
+            let half = |group: &Priced| self.dimensions[group.members[0]].half_band();
+            let wide = all.iter().zip(&coefficients).map(|(group, coefficient)| coefficient * half(group));
+            let by = correction(constant + wide.sum::<f64>(), truth);
+            Some(if is_off(&by) { by } else { NO_CORRECTION })
         };
-        let reach = constant + all.iter().zip(&coefficients).map(wide).sum::<f64>();
-        let moved = |(d, slope): (usize, &f64)| slope * shifts[d] * self.dimensions[d].sigma();
-        Some((nominal + of.slopes.as_ref()?.iter().enumerate().map(moved).sum::<f64>(), reach))
+        Some([of(false, nominal - low)?, of(true, high - nominal)?])
     }
 
     /// The value of a linear model with every dimension in the middle of its band: about it lies the rss, as an analysis has it. With nominals
@@ -518,17 +531,24 @@ impl Responses {
     }
 }
 
+/// Whether some of these dimensions share a zone, so that the box of their bands is not what they reach.
+fn shares_a_zone(problem: &Problem, varying: &[usize]) -> bool {
+    let block = |d: usize| problem.correlation().is_some_and(|of| of.block_of(d).is_some());
+    varying.iter().any(|&d| problem.dimensions()[d].zone().is_some() || block(d))
+}
+
 /// The worst case of a characteristic of which the slopes do not tell it: a curved surface, or a formula that interval arithmetic knows
-/// better. Circular zones stay with the slopes.
+/// better. Where dimensions share a zone the slopes are corrected, as a search of the box would leave it.
 fn worst_case(
-    dimensions: &[Dimension],
+    problem: &Problem,
     varying: &[usize],
     reach: &[Reach],
     surrogate: Option<&Surrogate>,
     found: &CharacteristicAnalysis,
 ) -> Option<WorstCase> {
     let surrogate = surrogate?;
-    let linear = found.is_proven_linear() || varying.iter().any(|&d| dimensions[d].zone().is_some());
+    let dimensions = problem.dimensions();
+    let linear = found.is_proven_linear() || shares_a_zone(problem, varying);
     let reached = found.nominal.zip(found.proof()).map(|(nominal, proof)| {
         let [low, high] = proof.bounds;
         [nominal - low, high - nominal]
@@ -556,33 +576,6 @@ pub(super) fn is_straight(surrogate: &Surrogate) -> bool {
 
 pub(super) fn shapes_of(dimension: &Dimension) -> Option<InputShape> {
     shapes(dimension.distribution()).pop()
-}
-
-impl Responses {
-    /// Follows the formula itself in the worst cases that its surface does not tell, from the places that earlier stations know, which it
-    /// adds to; `asked` counts its values.
-    pub(super) fn follow_corners(
-        &mut self,
-        problem: &Problem,
-        known: &mut BTreeMap<usize, [Places; 2]>,
-        asked: &Arc<AtomicU64>,
-    ) {
-        let band = |d: usize| {
-            let Reach { middle, half, lean } = self.reach[d];
-            Band { dimension: d, middle, half, lean, sigma: self.dimensions[d].sigma() }
-        };
-        let bands: Vec<Band> = self.varying.iter().map(|&d| band(d)).collect();
-        for (c, of) in self.of.iter_mut().enumerate() {
-            let Some((worst, nominal)) = of.worst.as_mut().filter(|worst| worst.is_off()).zip(of.nominal) else {
-                continue;
-            };
-            let places = known.remove(&c).unwrap_or_default();
-            if let Some(corners) = Corners::of(problem, c, nominal, bands.clone(), worst.places(), places, asked) {
-                known.insert(c, corners.places());
-                worst.follow(corners);
-            }
-        }
-    }
 }
 
 impl Responses {

@@ -34,6 +34,8 @@ pub enum Status {
     Infeasible,
     /// The search ended at tolerances that miss a requirement; that no others keep it is not proven.
     NoFeasiblePointFound,
+    /// The search ended at tolerances of which it is not known whether they keep a requirement: its interval holds values on both sides.
+    Inconclusive,
     /// Stopped before it was known.
     OutOfTime,
 }
@@ -47,6 +49,7 @@ impl Status {
             Self::AlmostOptimal => "almost-optimal",
             Self::Infeasible => "infeasible",
             Self::NoFeasiblePointFound => "no-feasible-point-found",
+            Self::Inconclusive => "inconclusive",
             Self::OutOfTime => "out-of-time",
         }
     }
@@ -218,6 +221,8 @@ pub enum AllocationSolver {
     BranchAndBound,
     /// The root of one unknown, by which tolerances in fixed proportions are multiplied.
     Root,
+    /// Trials by the analysis itself, where derivatives do not follow the model.
+    VerifiedSearch,
 }
 
 /// The evidence that nothing is cheaper.
@@ -314,7 +319,7 @@ pub struct Allocation {
     pub run: RunSummary,
     /// How often derivatives were taken.
     pub rounds: usize,
-    /// Points of a cheap model by which moments were corrected and worst cases followed, beside the evaluations.
+    /// Points of a cheap model by which moments were corrected, worst cases followed and tolerances tried, beside the evaluations.
     pub model_points: u64,
     /// Where what was found is in doubt: tolerances that the model was not asked at, requirements that a sample refutes.
     pub warnings: Vec<Warning>,

@@ -1,24 +1,28 @@
 //! From a problem with costs to tolerances that the model confirms.
 
+use std::rc::Rc;
 use std::sync::atomic::Ordering;
 
+use super::best_trial::SearchEnd;
 use super::choose::{Choice, within_bounds};
 use super::choose_made;
 use super::conclude::doubts;
 use super::constraint::Constraint;
 use super::cost::Priced;
-use super::driver::{Chosen, Driver, Ended, Near, ROUNDS, Spent, kept_within, unit, with_choice, with_tolerances};
+use super::driver::{AsWritten, Driver, Ended, Near, ROUNDS, Spent, kept_within, unit, with_choice, with_tolerances};
 use super::joint::joint;
 use super::machines::choose;
 use super::result::{Allocation, Attainable, JointKept, Proof, Status};
 use super::sampled::SampledCorrection;
 use super::scaling::loosest;
 use super::solve::{Setting, tightened};
-use super::solved::Solved;
-use super::station::{Station, required};
+use super::solved::{Chosen, Solved};
+use super::station::{Seen, Station, required};
 use super::steps::Steps;
 use super::task::{AllocateError, AllocationOptions, AllocationTask, Goal};
+use super::trial::required_of;
 use crate::assembly::Run;
+use crate::evaluation::at_any_size;
 use crate::problem::Problem;
 use crate::simulation::SimulationError;
 use crate::summary::RunSummary;
@@ -33,8 +37,8 @@ const DEARER: f64 = 1e-8;
 
 /// Allocates tolerances.
 ///
-/// Evaluations: one analysis at the present tolerances, one at those found, and one for every time that the two disagree; `confirm`
-/// more by Monte Carlo.
+/// Evaluations: one analysis at the present tolerances, one at those found, and one for every time that the two disagree; one by
+/// [`Method::Auto`](crate::Method::Auto) at those found where that is the method, for its verdict; `confirm` more by Monte Carlo.
 ///
 /// # Errors
 /// When task, options and problem do not fit; nothing is evaluated then. Requirements that cannot be kept are no error but a
@@ -70,18 +74,48 @@ pub fn allocate_with(
     options: &AllocationOptions,
     run: &Run<'_>,
 ) -> Result<Allocation, AllocateError> {
+    allocate_as(problem, task, options, run, None)
+}
+
+/// [`allocate_with`], with the dimensions of a problem as they would stand in the file of its study: what is found keeps everything as it is
+/// written, too.
+pub fn allocate_written(
+    problem: &Problem,
+    task: &AllocationTask,
+    options: &AllocationOptions,
+    run: &Run<'_>,
+    written: AsWritten<'_>,
+) -> Result<Allocation, AllocateError> {
+    allocate_as(problem, task, options, run, Some(written))
+}
+
+fn allocate_as(
+    problem: &Problem,
+    task: &AllocationTask,
+    options: &AllocationOptions,
+    run: &Run<'_>,
+    written: Option<AsWritten<'_>>,
+) -> Result<Allocation, AllocateError> {
     task.check(problem, options)?;
     if options.confirm.is_some() {
         Draws::new(problem.dimensions(), problem.correlation(), Sampler::Random, options.seed)
             .map_err(SimulationError::from)?;
     }
-    Driver { task, options, run, spent: Spent::default() }.run(problem)
+    at_any_size(problem, run, |problem, run| {
+        let task = &task.divided(problem)?;
+        let required = match task.goal {
+            Goal::LeastCost => required_of(problem, &task.requirements),
+            // The level sought for a cost takes the place of the other requirements.
+            _ => task.requirements.iter().enumerate().filter_map(|(c, one)| Some((c, (*one)?))).collect(),
+        };
+        Driver { task, options, run, required, written, spent: Spent::default() }.run(problem)
+    })
 }
 
 impl Driver<'_> {
     fn run(mut self, problem: &Problem) -> Result<Allocation, AllocateError> {
         let begun = Instant::now();
-        let first = self.analysed(problem.clone())?;
+        let first = Rc::new(self.analysed(problem.clone())?);
         let constraints = self.constraints(problem, &self.task.requirements);
         for constraint in &constraints {
             let known = first.analysis.characteristics[constraint.characteristic].moments.is_some();
@@ -94,10 +128,15 @@ impl Driver<'_> {
             self.task.priced.iter().map(|group| problem.dimensions()[group.members[0]].half_band()).collect();
         let loosest_before = loosest(&first.responses, &constraints);
         let joint_before = joint(problem, &first.responses, self.options.seed);
+        let start = self.start(problem, &first);
+        let own = start.trial.as_ref().map_or(&first.analysis, |trial| &trial.analysis);
         let mut allocation = Allocation {
             status: Status::OutOfTime,
             problem: problem.clone(),
-            before: self.completed(first.analysis.clone(), &first.findings, problem),
+            before: match &start.trial {
+                Some(trial) => self.completed_trial(trial, &first.findings),
+                None => self.completed(first.analysis.clone(), &first.findings, problem),
+            },
             after: None,
             confirmed: false,
             cost_before: self.cost_to_hold(problem).and_then(|held| Some(held + self.loss_at(&first)?)),
@@ -109,9 +148,9 @@ impl Driver<'_> {
             cost_basis: self.task.basis,
             tolerances: self.unchanged(problem),
             moved: Vec::new(),
-            requirements: required(&self.task.requirements, &first),
+            requirements: required(&self.required, own),
             joint_requirement: self.task.joint_target(problem, self.options).and_then(|_| {
-                let before = first.analysis.joint_requirement?;
+                let before = own.joint_requirement?;
                 Some(JointKept { requirement: before.requirement, before, after: None, sampled: None })
             }),
             prices: Vec::new(),
@@ -128,7 +167,10 @@ impl Driver<'_> {
             warnings: Vec::new(),
         };
         if !self.spent.stopped {
-            self.search(&mut allocation, first, &constraints, &before)?;
+            let end = self.search(&mut allocation, first, &constraints, &before)?;
+            if let Some(end) = self.best_end(&mut allocation, start, end)? {
+                self.conclude(&mut allocation, problem, end)?;
+            }
         }
         let stopped = (self.spent.stopped || self.run.stopped()).then(|| self.run.why_open());
         let (wall, seed) = (begun.elapsed(), Some(self.options.seed));
@@ -141,22 +183,23 @@ impl Driver<'_> {
         Ok(allocation)
     }
 
-    fn search(
+    /// Follows derivatives from a station. None where nothing was found; the status says why.
+    pub(super) fn search(
         &mut self,
         allocation: &mut Allocation,
-        first: Station,
+        first: Rc<Station>,
         constraints: &[Constraint],
         before: &[f64],
-    ) -> Result<(), AllocateError> {
+    ) -> Result<Option<SearchEnd>, AllocateError> {
         if self.task.basis.is_proportion() {
             return self.in_proportion(allocation, first, constraints);
         }
-        let original = allocation.problem.clone();
-        let near = Near::of(&original);
+        let original = &allocation.problem.clone();
+        let near = Near::of(original);
         let mut station = first;
         let mut at = before.to_vec();
         let mut last: Option<Chosen> = None;
-        let mut haven: Option<(Station, Vec<f64>, Option<Chosen>)> = None;
+        let mut haven: Option<(Rc<Station>, Vec<f64>, Option<Chosen>)> = None;
         let mut haven_cost = f64::INFINITY;
         let mut steps = Steps::default();
         let free = self.task.priced.iter().all(|group| group.offers.len() == 1);
@@ -180,7 +223,7 @@ impl Driver<'_> {
                         next = with_tolerances(next, &self.task.priced, &at)?;
                     }
                     match self.station(next)? {
-                        Some(there) if !self.spent.stopped => station = there,
+                        Some(there) if !self.spent.stopped => station = Rc::new(there),
                         there => {
                             within_budget = there.is_some();
                             break;
@@ -203,11 +246,11 @@ impl Driver<'_> {
                 Setting { responses, priced: &priced, constraints, losses, setups, stopped: &stopped, anywhere };
             let levels = match self.task.goal {
                 Goal::LeastCost => None,
-                _ => match self.levelled(&setting, &original, &at) {
+                _ => match self.levelled(&setting, original, &at) {
                     Some(levels) => Some(levels),
                     None => {
                         allocation.status = Status::NoFeasiblePointFound;
-                        return Ok(());
+                        return Ok(None);
                     }
                 },
             };
@@ -235,7 +278,7 @@ impl Driver<'_> {
                 Choice::Infeasible(_, tight) if !at_tightest && farthest(&at, &tight) > libm::log(REACH) => {
                     (at, at_tightest, last) = (tight, true, None);
                     match self.station(with_tolerances(next, &self.task.priced, &at)?)? {
-                        Some(there) if !self.spent.stopped => station = there,
+                        Some(there) if !self.spent.stopped => station = Rc::new(there),
                         there => {
                             within_budget = there.is_some();
                             break;
@@ -252,9 +295,9 @@ impl Driver<'_> {
                     };
                     let proven = exact && self.options.recentre.is_empty();
                     allocation.status = if proven { Status::Infeasible } else { Status::NoFeasiblePointFound };
-                    let unit = unit(&original, attainable.characteristic);
+                    let unit = unit(original, attainable.characteristic);
                     allocation.attainable = Some(Attainable { unit, ..attainable });
-                    return Ok(());
+                    return Ok(None);
                 }
                 Choice::Stopped => {
                     self.spent.stopped = true;
@@ -290,9 +333,10 @@ impl Driver<'_> {
             let from = std::mem::replace(&mut at, solved.at.clone());
             match self.station(with_choice(next, &self.task.priced, &at, &offers)?)? {
                 Some(there) if self.spent.stopped || there.answers(constraints) => {
-                    let left = (std::mem::replace(&mut station, there), from, last.take());
+                    let left = (std::mem::replace(&mut station, Rc::new(there)), from, last.take());
                     (haven, haven_cost) = if safe { (Some(left), cost_here) } else { (haven, haven_cost) };
                     last = Some((solved, offers, proof));
+                    self.see(&station, last.as_ref());
                 }
                 // The model fails so far out: shorter steps from where it did not.
                 Some(_) => (at, reach) = (from, shorter(reach)),
@@ -305,7 +349,19 @@ impl Driver<'_> {
                 break;
             }
         }
-        self.conclude(allocation, &original, station, last, &current, Ended { agreed, within_budget, at_rest })
+        let ended = Ended { agreed, within_budget, at_rest };
+        Ok(Some(SearchEnd { station, last, constraints: current, ended, trial: None, is_start: false }))
+    }
+
+    /// Remembers the cheapest station that keeps everything.
+    fn see(&mut self, station: &Rc<Station>, last: Option<&Chosen>) {
+        let Some(chosen) = last.filter(|_| self.task.goal == Goal::LeastCost && !self.spent.stopped) else { return };
+        let Some(loss) = self.loss_at(station) else { return };
+        let cost = self.held_cost(&chosen.0.at, &chosen.1) + loss;
+        let cheaper = self.spent.seen.as_ref().is_none_or(|seen| cost < seen.cost);
+        if cheaper && self.keeps_everything(&station.analysis) {
+            self.spent.seen = Some(Seen { station: Rc::clone(station), chosen: chosen.clone(), cost });
+        }
     }
 }
 

@@ -87,7 +87,7 @@ impl Setting<'_> {
     /// Whether sums of powers are exactly what is required.
     pub(super) fn is_exact(&self) -> bool {
         let exact = |one: &Constraint| match one.requirement {
-            Requirement::WorstCase => self.responses.of[one.characteristic].worst.is_none(),
+            Requirement::WorstCase => self.responses.has_linear_worst_case(one.characteristic),
             _ => !one.is_joint() && self.responses.is_plain(one.characteristic),
         };
         self.constraints.iter().all(exact) && self.losses.iter().all(|loss| loss.is_exact(self.responses))
@@ -97,7 +97,7 @@ impl Setting<'_> {
     /// straight surfaces, roots of sums of squares with any correlation, and squares of deviations about means that stay.
     pub(super) fn is_convex(&self) -> bool {
         let rows = self.constraints.iter().all(|one| match one.requirement {
-            Requirement::WorstCase => self.responses.of[one.characteristic].worst.is_none(),
+            Requirement::WorstCase => self.responses.has_linear_worst_case(one.characteristic),
             _ => !one.is_joint() && self.responses.is_norm(one.characteristic),
         });
         rows && self.losses.iter().all(|loss| loss.is_exact(self.responses)) && self.costs_are_convex()

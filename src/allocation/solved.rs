@@ -1,6 +1,7 @@
 //! Where a search for the cheapest tolerances ended, and what the ends of several have in common.
 
 use super::constraint::kept;
+use super::result::Proof;
 
 /// Ends whose costs differ by a smaller part are one.
 const SAME_END: f64 = 1e-6;
@@ -107,3 +108,6 @@ fn cheaper(found: &Solved, best: Option<&Solved>) -> bool {
         (!kept(best.value) && found.value < best.value) || (kept(found.value) && found.cost < best.cost * (1.0 - 1e-9))
     })
 }
+
+/// Tolerances, the offer of every group, and what proves them.
+pub(super) type Chosen = (Solved, Vec<usize>, Proof);

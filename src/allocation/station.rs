@@ -1,10 +1,12 @@
 //! The model's answer at some tolerances, held against what is required.
 
+use std::rc::Rc;
+
 use super::constraint::Constraint;
 use super::response::Responses;
 use super::result::{Kept, ShadowPrice};
 use super::solve::Setting;
-use super::solved::Solved;
+use super::solved::{Chosen, Solved};
 use crate::analysis::{Analysis, Findings};
 use crate::problem::Problem;
 use sensitol_numeric::requirement::Requirement;
@@ -28,14 +30,20 @@ impl Station {
     }
 }
 
+/// A station that kept everything by its own analysis, with its cost.
+pub(super) struct Seen {
+    pub(super) station: Rc<Station>,
+    pub(super) chosen: Chosen,
+    pub(super) cost: f64,
+}
+
 /// Every requirement, with nothing known of it after.
-pub(super) fn required(requirements: &[Option<Requirement>], station: &Station) -> Vec<Kept> {
-    let of = |(characteristic, one): (usize, &Option<Requirement>)| {
-        let requirement = (*one)?;
-        let before = station.analysis.characteristics[characteristic].judge(requirement);
-        Some(Kept { characteristic, requirement, before, after: None, sampled: None })
+pub(super) fn required(requirements: &[(usize, Requirement)], before: &Analysis) -> Vec<Kept> {
+    let of = |&(characteristic, requirement): &(usize, Requirement)| {
+        let before = before.characteristics[characteristic].judge(requirement);
+        Kept { characteristic, requirement, before, after: None, sampled: None }
     };
-    requirements.iter().enumerate().filter_map(of).collect()
+    requirements.iter().map(of).collect()
 }
 
 /// A part of a limit's distance by which it is moved, to see what that costs.

@@ -323,6 +323,17 @@ pub enum AllocateError {
         /// The characteristic.
         characteristic: String,
     },
+    /// A loss whose cost of a deviation is not a number.
+    #[error(
+        "the loss of `{characteristic}` has k = {k}, and k times the square of its values lies outside the range of double-precision numbers: choose \
+         a unit in which the values are of ordinary size"
+    )]
+    LossOutOfRange {
+        /// The characteristic.
+        characteristic: String,
+        /// Cost per square of the unit, as given.
+        k: f64,
+    },
     /// Bounds of a nominal value that hold nothing.
     #[error(
         "the bounds of the nominal value of `{name}` must be two numbers, the lower first, of a dimension that may move, not {low} and {high}"
@@ -454,6 +465,27 @@ impl AllocationTask {
             }
         }
         Ok(())
+    }
+
+    /// The task for a problem whose characteristics are divided by powers of two.
+    ///
+    /// # Errors
+    /// When the cost of a deviation leaves the range of doubles.
+    pub(super) fn divided(&self, problem: &Problem) -> Result<Self, AllocateError> {
+        let mut task = self.clone();
+        for (c, required) in task.requirements.iter_mut().enumerate() {
+            *required = required.map(|required| required.times(problem.power(c).inverse()));
+        }
+        for loss in &mut task.losses {
+            let power = problem.power(loss.characteristic);
+            let out_of_range = || AllocateError::LossOutOfRange {
+                characteristic: problem.characteristics()[loss.characteristic].name().to_owned(),
+                k: loss.k,
+            };
+            loss.k = power.squared().checked(loss.k).ok_or_else(out_of_range)?;
+            loss.target = power.inverse().times(loss.target).clamp(-f64::MAX, f64::MAX);
+        }
+        Ok(task)
     }
 
     /// The share of assemblies that must keep the limits of all characteristics at once; what is sought for a cost takes its place.

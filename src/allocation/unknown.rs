@@ -29,6 +29,11 @@ impl Unknown {
         }
     }
 
+    /// Both together.
+    pub(super) fn and(self, other: Self) -> Self {
+        Self { yield_: self.yield_ + other.yield_, cpk: self.cpk + other.cpk, sigma: self.sigma + other.sigma }
+    }
+
     /// The greater of two, each by itself.
     pub(super) fn most(self, other: Self) -> Self {
         Self { yield_: self.yield_.max(other.yield_), cpk: self.cpk.max(other.cpk), sigma: self.sigma.max(other.sigma) }

@@ -18,6 +18,24 @@ use sensitol_numeric::surrogate::Surrogate;
 /// A true worst case farther off than by this factor is not a correction but another function: the difference is added.
 const NEAR: f64 = 2.0;
 
+/// A factor, and what is added.
+pub(super) type WorstCaseCorrection = (f64, f64);
+
+/// Nothing is corrected.
+pub(super) const NO_CORRECTION: WorstCaseCorrection = (1.0, 0.0);
+
+/// The factor and the addition that make a reach that was found the true one.
+pub(super) fn correction(found: f64, truth: f64) -> WorstCaseCorrection {
+    let factor = truth / found;
+    let near = found > 0.0 && (1.0 / NEAR..=NEAR).contains(&factor);
+    if near { (factor, 0.0) } else { (1.0, truth - found) }
+}
+
+/// Whether a correction is more than what the bounds of a true worst case leave open.
+pub(super) fn is_off(&(factor, more): &WorstCaseCorrection) -> bool {
+    (factor - 1.0).abs() > SURE || more != 0.0
+}
+
 /// The worst case of one characteristic about a station.
 pub(super) struct WorstCase {
     /// The surface in sigmas, and the same upside down: each is least where the characteristic reaches farthest below and above.
@@ -29,7 +47,7 @@ pub(super) struct WorstCase {
     /// The surface at the means less the nominal value.
     rise: f64,
     /// The corrections from the surface's reach below and above to the true one: a factor, and what is added.
-    corrections: [(f64, f64); 2],
+    corrections: [WorstCaseCorrection; 2],
     /// The true worst case below and above the nominal value at the station.
     reached: Option<[f64; 2]>,
     /// The formula itself, where the surface is not it.
@@ -59,7 +77,7 @@ impl WorstCase {
         let surface = Model { base: vec![0.0; n], scale: vec![1.0; n], parts, products };
         let sides = [surface.clone(), surface.negated()];
         let (varying, rise) = (varying.to_vec(), surrogate.centre - nominal);
-        let mut worst = Self { sides, bands, varying, rise, corrections: [(1.0, 0.0); 2], reached, corners: None };
+        let mut worst = Self { sides, bands, varying, rise, corrections: [NO_CORRECTION; 2], reached, corners: None };
         worst.correct();
         Some(worst)
     }
@@ -67,21 +85,15 @@ impl WorstCase {
     /// Corrects what is found at the station to the true worst case there.
     fn correct(&mut self) {
         let Some(reached) = self.reached else { return };
-        self.corrections = [(1.0, 0.0); 2];
+        self.corrections = [NO_CORRECTION; 2];
         let ones = vec![1.0; self.varying.iter().max().map_or(0, |&last| last + 1)];
-        let of = |above: bool| {
-            let (found, truth) = (self.reach(&ones, above).0, reached[usize::from(above)]);
-            let factor = truth / found;
-            let near = found > 0.0 && (1.0 / NEAR..=NEAR).contains(&factor);
-            if near { (factor, 0.0) } else { (1.0, truth - found) }
-        };
+        let of = |above: bool| correction(self.reach(&ones, above).0, reached[usize::from(above)]);
         self.corrections = [of(false), of(true)];
     }
 
     /// Whether the true worst case is known, and the surface is off.
     pub(super) fn is_off(&self) -> bool {
-        let off = |&(factor, more): &(f64, f64)| (factor - 1.0).abs() > SURE || more != 0.0;
-        self.reached.is_some() && self.corrections.iter().any(off)
+        self.reached.is_some() && self.corrections.iter().any(is_off)
     }
 
     /// The places of the surface's extremes below and above, by coordinates of the bands in `[-1, 1]`.

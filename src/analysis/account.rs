@@ -30,6 +30,8 @@ pub struct Account {
     pub possible_interactions: usize,
     /// Interactions that were examined one by one.
     pub examined: usize,
+    /// Interactions that the formulas give, in every characteristic.
+    pub from_formulas: usize,
     /// Probes that move all dimensions, of one point each or two, by which interactions were sought.
     pub probes: usize,
     /// Points that check the surrogate.
@@ -75,6 +77,7 @@ impl Account {
             refined: names(&climbed.refined),
             possible_interactions: plan.possible_pairs(),
             examined: climbed.direct,
+            from_formulas: climbed.from_formulas,
             probes: climbed.probes,
             checks: climbed.checks,
             samples: characteristics.iter().filter_map(|one| one.model_sampled.as_ref()).map(|one| one.samples).max(),
@@ -111,6 +114,10 @@ impl fmt::Display for Account {
         let possible = self.possible_interactions;
         parts.push(match (self.probes, self.examined) {
             _ if possible == 0 => "no interactions possible".to_owned(),
+            (0, 0) if self.from_formulas == possible && self.straight.len() == self.varying => {
+                "no interactions, by the formulas".to_owned()
+            }
+            (0, 0) if self.from_formulas == possible => format!("all {possible} interactions by the formulas"),
             (0, 0) if self.rest != ClimbEnd::Reached => format!("no interaction of {possible} examined"),
             (0, 0) => format!("no interactions of {possible} needed"),
             (0, direct) => format!("{direct} of {possible} interactions examined one by one"),

@@ -9,8 +9,8 @@ use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
+use super::CharacteristicAnalysis;
 use super::interval::{acceleration, bca};
-use super::{CharacteristicAnalysis, SamplingInterval};
 use crate::method::Outcome;
 use crate::problem::Problem;
 use crate::verification::CONFIDENCE;
@@ -21,7 +21,6 @@ use sensitol_numeric::distribution::{Distribution, Resample, Reweighted, Standar
 use sensitol_numeric::moments::Moments;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::surrogate::{InputShape, Inputs, Pooled, Relocation, Surrogate};
-use sensitol_numeric::verdict::including;
 
 /// As many resamples as an end of the interval needs to be known to a tenth of its width or so;
 const RESAMPLES: usize = 1000;
@@ -46,7 +45,6 @@ type Figures = [f64; FIGURES];
 struct Measurement<'p> {
     /// Among the varying dimensions.
     positions: Vec<usize>,
-    names: Vec<&'p str>,
     kind: MeasurementKind<'p>,
 }
 
@@ -106,41 +104,44 @@ impl Measurement<'_> {
     }
 }
 
-/// Fills in the intervals of every characteristic that depends on a measured dimension; whether there is one. Not where
+/// Intervals from resamples: mean, sigma, skewness, kurtosis, rejected share and Cpk.
+pub(super) struct ResampledIntervals {
+    pub(super) intervals: [Option<[f64; 2]>; FIGURES],
+    pub(super) resamples: usize,
+}
+
+/// The intervals of every characteristic that depends on a measured dimension. None for any other one, without a surface, and where
 /// dimensions are correlated otherwise than by rows and zones.
 ///
-/// The numbers depend on the seed alone, not on the number of threads.
-pub(super) fn intervals(
+/// The rejects are those of the Pearson fit. The numbers depend on the seed alone, not on the number of threads.
+pub(super) fn resampled_intervals(
     problem: &Problem,
     outcome: &Outcome,
-    characteristics: &mut [CharacteristicAnalysis],
+    characteristics: &[CharacteristicAnalysis],
     seed: u64,
-) -> bool {
+) -> Vec<Option<ResampledIntervals>> {
     let plan = &outcome.plan;
     let correlation = plan.inputs().correlation();
+    let mut found: Vec<Option<ResampledIntervals>> = characteristics.iter().map(|_| None).collect();
     if correlation.is_some_and(|correlation| correlation.without_blocks().is_some()) {
         // A resample of one dimension would leave those that vary with it where they are; `warnings` tells of it.
-        return false;
+        return found;
     }
-    let name = |position: usize| problem.dimensions()[plan.varying()[position]].name();
     let of_blocks = correlation.iter().flat_map(|correlation| correlation.blocks().iter().enumerate());
     let of_blocks = of_blocks.filter_map(|(index, block)| {
         let JointLaw::Rows(rows) = &block.law else { return None };
-        let names = block.members.iter().map(|&position| name(position)).collect();
         let kind = MeasurementKind::Rows { block: index, rows: rows.len() };
-        Some(Measurement { positions: block.members.clone(), names, kind })
+        Some(Measurement { positions: block.members.clone(), kind })
     });
     let alone = plan.varying().iter().enumerate().filter_map(|(position, &d)| {
         let in_block = correlation.is_some_and(|correlation| correlation.block_of(position).is_some());
         let law = problem.dimensions()[d].distribution().filter(|_| !in_block).and_then(Distribution::measured)?;
-        let kind = MeasurementKind::One(law);
-        Some(Measurement { positions: vec![position], names: vec![name(position)], kind })
+        Some(Measurement { positions: vec![position], kind: MeasurementKind::One(law) })
     });
     let measured: Vec<Measurement<'_>> = of_blocks.chain(alone).collect();
-    let depends_on = |c: usize, one: &Measurement<'_>| {
-        one.positions.iter().any(|&position| plan.depends(c, plan.varying()[position]))
+    let concerned = |c: usize| {
+        measured.iter().flat_map(|one| &one.positions).any(|&position| plan.depends(c, plan.varying()[position]))
     };
-    let concerned = |c: usize| measured.iter().any(|one| depends_on(c, one));
     let targets: Vec<Target<'_>> = (characteristics.iter().enumerate())
         .filter(|&(c, analysis)| analysis.moments.is_some() && concerned(c))
         .filter_map(|(index, analysis)| {
@@ -155,7 +156,7 @@ pub(super) fn intervals(
         })
         .collect();
     if targets.is_empty() {
-        return false;
+        return found;
     }
     let setting = Setting { inputs: plan.inputs(), measured: &measured, targets: &targets };
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);
@@ -163,7 +164,7 @@ pub(super) fn intervals(
     let resampled = setting.resampled(&mut rng);
     let left_out = setting.left_out(&groups);
     for (t, target) in targets.iter().enumerate() {
-        let analysis = &mut characteristics[target.index];
+        let analysis = &characteristics[target.index];
         let estimate = {
             let moments = analysis.moments.expect("a target has moments");
             // As the resamples: by the Pearson fit.
@@ -176,35 +177,10 @@ pub(super) fn intervals(
                 .collect();
             bca(estimate[figure], &mut values, acceleration(&influences), CONFIDENCE)
         };
-        let depends = |one: &&Measurement<'_>| depends_on(target.index, one);
-        let samples = (measured.iter().filter(depends))
-            .flat_map(|one| one.names.iter().map(|name| ((*name).to_owned(), one.len())));
-        analysis.sampling = Some(SamplingInterval {
-            mean: interval(0),
-            sigma: interval(1),
-            skewness: interval(2),
-            kurtosis: interval(3),
-            rejected: interval(4).map(|of_fit| {
-                let rejected = |of: Option<Capability>| of.and_then(|of| of.rejected());
-                match (rejected(analysis.pearson), rejected(analysis.capability)) {
-                    (Some(fit), Some(printed)) => in_proportion(of_fit, fit, printed),
-                    _ => of_fit,
-                }
-            }),
-            cpk: interval(5),
-            level: CONFIDENCE,
-            resamples: resampled.len(),
-            samples: samples.collect(),
-        });
+        let intervals = std::array::from_fn(interval);
+        found[target.index] = Some(ResampledIntervals { intervals, resamples: resampled.len() });
     }
-    true
-}
-
-/// The interval of the rejects of the Pearson fit, by which resamples are judged, as one of the rejects that are reported: both ends
-/// in the same proportion, so that the size of the sample leaves as many times more and fewer open.
-fn in_proportion([low, high]: [f64; 2], fit: f64, reported: f64) -> [f64; 2] {
-    let by = reported / fit;
-    if by.is_finite() && by > 0.0 { [low * by, (high * by).min(1.0)] } else { including([low, high], reported) }
+    found
 }
 
 /// A characteristic whose intervals are wanted.

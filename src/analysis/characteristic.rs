@@ -19,8 +19,10 @@ use sensitol_numeric::capability::{Capability, CapabilityShape, EstimatedShare, 
 use sensitol_numeric::characteristic::{Characteristic, SpecLimits};
 use sensitol_numeric::moments::{Moments, Sampled};
 use sensitol_numeric::pearson::PearsonError;
+use sensitol_numeric::power::{Rescale, Rescaling, Wide, rescale};
 use sensitol_numeric::requirement::Requirement;
-use sensitol_numeric::shape::{Four, through};
+use sensitol_numeric::shape::{Four, RejectIntervals, through};
+use sensitol_numeric::surrogate::DerivativeOrigin;
 use sensitol_numeric::verdict::{self, Judged, Verdict};
 
 /// Moments, sensitivities and contributions of one characteristic. Unknown values are None.
@@ -73,6 +75,11 @@ pub struct CharacteristicAnalysis {
     #[serde(flatten, serialize_with = "through::<CapabilityShape, _, _>")]
     #[cfg_attr(feature = "schema", schemars(with = "CapabilityShape"))]
     pub capability: Option<Capability>,
+    /// The 95 % intervals of the shares below and above the limits, each by itself: 0 to 0 where a proof excludes a side, None without that
+    /// limit and where it is not known.
+    #[serde(flatten, serialize_with = "through::<RejectIntervals, _, _>")]
+    #[cfg_attr(feature = "schema", schemars(with = "RejectIntervals"))]
+    pub reject_intervals: [Option<[f64; 2]>; 2],
     /// How the distribution with its moments keeps them: the Pearson fit.
     #[serde(rename = "pearson_fit")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<CapabilityShape>"))]
@@ -124,6 +131,8 @@ pub struct CharacteristicAnalysis {
     pub interactions_remainder: Option<Remainder>,
     /// How many interactions it can have.
     pub possible_interactions: usize,
+    /// How many of them were examined, or are known from its formula.
+    pub examined_interactions: usize,
     /// The share of the variance that no contribution accounts for; None where it is unknown.
     pub left_out_share: Option<f64>,
     /// The source of the Sobol' indices of its [`sensitivities`](Self::sensitivities); None where it does not vary.
@@ -145,6 +154,8 @@ pub struct Sensitivity {
     pub second: Option<f64>,
     /// Whether both are exact rather than differences.
     pub exact: bool,
+    /// The source of its shares: `exact`, `evaluated`, or `screened` where an estimate has a part in them. None where it has no shares.
+    pub origin: Option<DerivativeOrigin>,
     /// The largest effect of a rounding error of the characteristic's own size on the two derivatives: at the steps taken, over a
     /// sigma where they are exact.
     pub rounding: Option<[f64; 2]>,
@@ -161,6 +172,23 @@ pub struct Sensitivity {
     pub first_order: Option<EstimatedShare>,
     /// Total Sobol' index: with every interaction in which it has a part.
     pub total: Option<EstimatedShare>,
+}
+
+rescale!(CharacteristicAnalysis {
+    nominal, moments, sampled, model_sampled, verification, surface_law, error_estimate, residual, law, coverage, inspection, sampling,
+    worst_case, curved, extremes, bounds, middle, rss, inflated_rss, mean_shift_rss, six_sigma, sensitivities, interactions,
+} without {
+    characteristic, yield_source, unfinished, without_value, capability, pearson, normal, reject_intervals, interactions_remainder, possible_interactions, examined_interactions,
+    left_out_share, indices, constant, density,
+});
+
+impl Rescale for Sensitivity {
+    fn rescale(&mut self, by: &mut Rescaling) {
+        self.first.rescale(by);
+        // That of the second derivative is in the characteristic's unit already, as the derivative itself.
+        self.rounding.iter_mut().for_each(|[first, _]| first.rescale(by));
+        self.mean_shift.rescale(by);
+    }
 }
 
 /// The distribution that has the moments; null where there is none.
@@ -180,12 +208,18 @@ impl CharacteristicAnalysis {
         self.extremes.as_ref().map_or(self.bounds.as_ref(), |found| found.proof.as_ref())
     }
 
-    /// Within which the yield is known: the estimate and two of its errors, and down to 0 where there are assemblies without a value
-    /// and they were not counted. None where an error is unknown.
+    /// Within which the yield is known: the estimate and two of its errors, with what measured samples leave open, and down to 0 where
+    /// there are assemblies without a value and they were not counted. None where an error is unknown.
     pub fn yield_interval(&self) -> Option<[f64; 2]> {
         let value = self.capability?.yield_()?;
         let error = if self.constant { Some(0.0) } else { self.error_estimate.as_ref().and_then(|of| of.yield_) };
         let around = verdict::about(value, error)?;
+        let around = match &self.sampling {
+            Some(measured) => {
+                measured.rejected.map(|[low, high]| verdict::joined(value, around, [1.0 - high, 1.0 - low]))?
+            }
+            None => around,
+        };
         // How many assemblies have no value, only samples tell.
         let counted =
             self.verification.as_ref().filter(|of| of.kind == VerificationKind::Sample).and_then(|of| of.valid);
@@ -204,8 +238,8 @@ impl CharacteristicAnalysis {
     /// How a requirement is kept, whether or not it is the characteristic's own.
     ///
     /// The interval of a yield is [`yield_interval`](Self::yield_interval); that of a Cpk and of sigma follows from the estimated
-    /// errors of mean and sigma; rss is what it is by the slopes, without an error; the worst case lies between what was found and what
-    /// interval arithmetic excludes.
+    /// errors of mean and sigma, and from what measured samples leave open of them; rss is what it is by the slopes, without an error; the
+    /// worst case lies between what was found and what interval arithmetic excludes.
     pub(crate) fn judge(&self, requirement: Requirement) -> Judged {
         let limits = self.characteristic.limits();
         let error = |of: fn(&ErrorEstimate) -> Option<f64>| match self.constant {
@@ -214,16 +248,26 @@ impl CharacteristicAnalysis {
         };
         let (mean, sigma) = (error(|of| of.mean), error(|of| of.sigma));
         let part = |value: Option<f64>| (value, value.map(|value| [value; 2]));
+        // Of measured samples whose uncertainty is unknown there is no interval.
+        let measured =
+            |value: Option<f64>, own: Option<[f64; 2]>, of: fn(&SamplingInterval) -> Option<[f64; 2]>| match &self
+                .sampling
+            {
+                Some(sampling) => Some(verdict::joined(value?, own?, of(sampling)?)),
+                None => own,
+            };
         let (value, interval) = match requirement {
             Requirement::Yield(_) => (self.capability.and_then(|of| of.yield_()), self.yield_interval()),
-            Requirement::Cpk(_) => (
-                self.capability.and_then(|of| of.cpk),
-                self.moments.and_then(|of| verdict::of_cpk((of.mean(), mean), (of.sigma(), sigma), limits)),
-            ),
-            Requirement::Sigma(_) => (
-                self.moments.map(|of| of.sigma()),
-                self.moments.and_then(|of| verdict::about(of.sigma(), sigma)).map(|[low, high]| [low.max(0.0), high]),
-            ),
+            Requirement::Cpk(_) => {
+                let value = self.capability.and_then(|of| of.cpk);
+                let own = self.moments.and_then(|of| verdict::of_cpk((of.mean(), mean), (of.sigma(), sigma), limits));
+                (value, measured(value, own, |of| of.cpk))
+            }
+            Requirement::Sigma(_) => {
+                let value = self.moments.map(|of| of.sigma());
+                let own = value.and_then(|value| verdict::about(value, sigma));
+                (value, measured(value, own, |of| of.sigma).map(|[low, high]| [low.max(0.0), high]))
+            }
             Requirement::Rss => {
                 part(self.middle.zip(self.rss).and_then(|(middle, rss)| taken(limits, middle, [rss; 2])))
             }
@@ -234,8 +278,8 @@ impl CharacteristicAnalysis {
         Judged::of(requirement, value, interval).unless(self.unfinished)
     }
 
-    /// The part of the room that the worst case takes, and within which that is known: by the slopes where the formula is proven to be linear;
-    /// between what was found and what interval arithmetic excludes where the formula has bounds; by the surface otherwise.
+    /// The part of the room that the worst case takes, and within which that is known: between values that exist and what interval arithmetic
+    /// excludes where the formula has bounds; by the slopes where it is proven to be linear; by the surface otherwise.
     fn worst_case_taken(&self) -> Option<(f64, Option<[f64; 2]>)> {
         let (nominal, linear) = self.nominal.zip(self.worst_case)?;
         let part = |[low, high]: [f64; 2], more: f64| {
@@ -243,14 +287,23 @@ impl CharacteristicAnalysis {
             taken(self.characteristic.limits(), nominal, reach)
         };
         let by_slopes = part(linear, 0.0)?;
-        if self.constant || self.is_proven_linear() {
+        if self.constant {
+            return Some((by_slopes, Some([by_slopes; 2])));
+        }
+        if let Some(proof) = self.proof().filter(|proof| proof.proven) {
+            let ([low, high], [below, above]) = (proof.bounds, proof.slack);
+            let most = part(proof.bounds, 0.0)?;
+            let reached = part([low + below, high - above], 0.0)?;
+            return Some((most, Some([reached.min(most), most])));
+        }
+        if self.is_proven_linear() {
             return Some((by_slopes, Some([by_slopes; 2])));
         }
         let found = self.extremes.as_ref().and_then(|found| part([found.least.value, found.greatest.value], 0.0));
         if let Some(proof) = self.proof() {
             let most = part(proof.bounds, 0.0)?;
-            let least = if proof.proven { most } else { found.unwrap_or(0.0).min(most) };
-            return Some((if proof.proven { most } else { found.unwrap_or(by_slopes) }, Some([least, most])));
+            let least = found.unwrap_or(0.0).min(most);
+            return Some((found.unwrap_or(by_slopes), Some([least, most])));
         }
         let around = self.curved.and_then(|curved| Some([part(linear, -curved)?, part(linear, curved)?]));
         Some(match found {
@@ -261,7 +314,7 @@ impl CharacteristicAnalysis {
     }
 
     /// Whether the formula's own degree proves that the slopes tell everything.
-    pub(crate) fn is_proven_linear(&self) -> bool {
+    pub fn is_proven_linear(&self) -> bool {
         let kind = self.verification.as_ref().map(|of| of.kind);
         matches!(kind, Some(VerificationKind::Exact { degree: 0 | 1 }))
     }
@@ -293,9 +346,9 @@ impl CharacteristicAnalysis {
         let sensitivities: Vec<Sensitivity> =
             (0..problem.dimensions().len()).map(|d| sensitivity(problem, outcome, c, d, shares.as_ref())).collect();
         let pair_shares = || pairs_of(outcome, c).map(|index| share_of(outcome, c, index, shares.as_ref()));
-        let possible_interactions = plan.pairs_of(c);
+        let (possible_interactions, examined_interactions) = (plan.pairs_of(c), fitted.known_pairs);
         let complete = outcome.order == Order::Second
-            && pair_shares().count() == possible_interactions
+            && examined_interactions == possible_interactions
             && pair_shares().all(|share| share.is_some())
             && plan.varying().iter().all(|&d| fitted.parts[d].is_some_and(|part| part.degree() >= 2));
         let characteristic = problem.characteristics()[c].clone();
@@ -303,7 +356,10 @@ impl CharacteristicAnalysis {
         let sampled = shares.as_ref().and_then(Shares::sampled);
         let law = moments.map(|moments| Law::fit(&moments));
         let capability = |law: &Law| {
-            moments.map(|moments| Capability::of(law, moments.mean(), moments.sigma(), characteristic.limits()))
+            moments.map(|moments| {
+                let (limits, kept) = (characteristic.limits(), problem.kept_limits(c));
+                Capability::of_kept(law, moments.mean(), moments.sigma(), limits, kept)
+            })
         };
         let normal = moments.and_then(|moments| capability(&Law::normal(&moments).ok()?));
         let error_estimate = moments.and_then(|moments| {
@@ -333,6 +389,7 @@ impl CharacteristicAnalysis {
             residual: fitted.residual,
             capability: law.as_ref().and_then(|law| capability(law.as_ref().ok()?)),
             normal,
+            reject_intervals: [None; 2],
             law,
             sampling: None,
             coverage: None,
@@ -341,7 +398,7 @@ impl CharacteristicAnalysis {
             worst_case: middle
                 .zip(linear)
                 .map(|(middle, linear)| [middle - linear.worst_case, middle + linear.worst_case]),
-            curved: curved(problem, outcome, c, &sensitivities),
+            curved: curved(problem, outcome, c),
             middle,
             rss: linear.map(|linear| linear.rss),
             inflated_rss: linear.map(|linear| linear.inflated_rss),
@@ -353,6 +410,7 @@ impl CharacteristicAnalysis {
             interactions: InteractionList::default(),
             interactions_remainder: None,
             possible_interactions,
+            examined_interactions,
             left_out_share,
             indices: None,
             error_estimate,
@@ -371,17 +429,21 @@ impl CharacteristicAnalysis {
 }
 
 /// `sum of |f_jj| h_j^2/2 + sum of |f_jk| h_j h_k` over the half bands `h`: no corner of a second-order surface lies farther from the linear one.
-fn curved(problem: &Problem, outcome: &Outcome, c: usize, sensitivities: &[Sensitivity]) -> Option<f64> {
+/// None with an estimate in the place of a derivative: it bounds nothing.
+fn curved(problem: &Problem, outcome: &Outcome, c: usize) -> Option<f64> {
+    if outcome.fitted[c].screened > 0 {
+        return None;
+    }
     let half = |d: usize| problem.dimensions()[d].half_band();
-    let own = |(d, one): (usize, &Sensitivity)| match half(d) {
+    let own = |d: usize| match half(d) {
         0.0 => Some(0.0),
-        half => Some(0.5 * one.second?.abs() * half * half),
+        half => Some(curvature(outcome, c, d)?.abs().times(0.5).times(half).times(half).value()),
     };
     let both = |index: usize| {
         let [j, k] = dimensions_of(outcome, index).map(half);
-        Some(mixed_of(outcome, c, index)?.abs() * j * k)
+        Some(mixed_of(outcome, c, index)?.abs().times(j).times(k).value())
     };
-    let own = sensitivities.iter().enumerate().map(own).sum::<Option<f64>>()?;
+    let own = (0..problem.dimensions().len()).map(own).sum::<Option<f64>>()?;
     Some(own + pairs_of(outcome, c).map(both).sum::<Option<f64>>()?)
 }
 
@@ -398,21 +460,46 @@ fn taken(limits: SpecLimits, from: f64, [below, above]: [f64; 2]) -> Option<f64>
     below.into_iter().chain(above).reduce(f64::max)
 }
 
+/// The exact first and second derivative by a dimension; None where one of them is unknown.
+fn exact_derivatives(outcome: &Outcome, c: usize, d: usize) -> Option<[Wide; 2]> {
+    let exact = outcome.fitted[c].exact.as_ref()?;
+    match outcome.plan.depends(c, d) {
+        true => exact.slope(d).zip(exact.curvature(d)).map(<[Wide; 2]>::from),
+        false => Some([Wide::of(0.0); 2]),
+    }
+}
+
+/// The second derivative by a dimension: exact where that is known, a difference elsewhere.
+pub(super) fn curvature(outcome: &Outcome, c: usize, d: usize) -> Option<Wide> {
+    if let Some([_, second]) = exact_derivatives(outcome, c, d) {
+        return Some(second);
+    }
+    let (plan, second) = (&outcome.plan, outcome.fitted[c].parts[d]?.second()?);
+    // A characteristic that cannot depend on a dimension has slope 0, evaluated or not.
+    Some(match plan.depends(c, d) {
+        true => Wide::of(second).over(plan.axis(d).scale).over(plan.axis(d).scale),
+        false => Wide::of(0.0),
+    })
+}
+
 fn sensitivity(problem: &Problem, outcome: &Outcome, c: usize, d: usize, shares: Option<&Shares>) -> Sensitivity {
     let (plan, dimension) = (&outcome.plan, &problem.dimensions()[d]);
     let part = outcome.fitted[c].parts[d];
     let axis = plan.axis(d);
     let scale = axis.scale;
-    let exact = outcome.fitted[c].exact.as_ref().and_then(|exact| match plan.depends(c, d) {
-        true => exact.first[d].zip(exact.second[d]),
-        false => Some((0.0, 0.0)),
-    });
+    let exact = exact_derivatives(outcome, c, d);
+    // Second derivatives by a dimension of extreme size are so only in the characteristic's own unit.
+    let in_unit = |second: Wide| second.times_power(problem.power(c)).checked();
     let rounding = outcome.fitted[c].centre.filter(|_| plan.depends(c, d)).and_then(|centre| {
         let slope = |step: f64| f64::EPSILON * centre.abs() / step;
+        let second = |factor: f64, step: f64| {
+            in_unit(Wide::of(f64::EPSILON * centre.abs()).over(step).times(factor).over(step)).unwrap_or(f64::NAN)
+        };
+        let nearest = axis.nearest_step();
         match exact {
-            Some(_) => Some([slope(scale), slope(scale) / scale]),
+            Some(_) => Some([slope(scale), second(1.0, scale)]),
             None if axis.slots.is_empty() => None,
-            None => Some([slope(axis.nearest_step()), 4.0 * slope(axis.nearest_step()) / axis.nearest_step()]),
+            None => Some([slope(nearest), second(4.0, nearest)]),
         }
     });
     // A characteristic that cannot depend on a dimension has slope 0, evaluated or not.
@@ -431,9 +518,10 @@ fn sensitivity(problem: &Problem, outcome: &Outcome, c: usize, d: usize, shares:
     };
     Sensitivity {
         dimension: dimension.name().to_owned(),
-        first: exact.map(|exact| exact.0).or(part.map(|part| per_unit(part.slope()))),
-        second: exact.map(|exact| exact.1).or_else(|| Some(per_unit(per_unit(part?.second()?)))),
+        first: exact.map(|[first, _]| first.value()).or(part.map(|part| per_unit(part.slope()))),
+        second: curvature(outcome, c, d).and_then(in_unit),
         exact: exact.is_some(),
+        origin: origin(outcome, c, position),
         rounding,
         steps: match plan.depends(c, d) {
             true => plan.samples(&outcome.evaluated.known, c, d).unwrap_or_default(),
@@ -447,6 +535,15 @@ fn sensitivity(problem: &Problem, outcome: &Outcome, c: usize, d: usize, shares:
         mean_shift: curved(of(Shares::mean_shift)),
         first_order: None,
         total: None,
+    }
+}
+
+/// The source of the part that a varying dimension has in the surface, or in the variance where there is no surface.
+fn origin(outcome: &Outcome, c: usize, position: Option<usize>) -> Option<DerivativeOrigin> {
+    let (fitted, position) = (&outcome.fitted[c], position?);
+    match &fitted.integrated {
+        Some(integrated) => integrated.own[position].map(|_| DerivativeOrigin::Evaluated),
+        None => fitted.surrogate.as_ref()?.parts[position].map(|part| part.origin()),
     }
 }
 

@@ -1,14 +1,14 @@
 //! Intervals that hold a given share of assemblies: the coverage intervals of measurement uncertainty.
 
+use std::cell::Cell;
+
 use super::characteristic::CharacteristicAnalysis;
-use super::counted::points;
 use super::coverage_intervals::CoverageIntervals;
-use super::surface_law::{full_law, quantiles_at};
+use super::law_guard::FaultyQuantiles;
+use super::surface_law::{GuardedLaw, QUANTILES};
 use super::yield_source::YieldSource;
-use crate::method::Outcome;
-use crate::problem::Problem;
 use sensitol_numeric::capability::Law;
-use sensitol_numeric::law::LawTail;
+use sensitol_numeric::law::{LawFigure, LawTail};
 use sensitol_numeric::pearson::Pearson;
 
 /// Splits of the share outside that are compared in one round,
@@ -18,42 +18,75 @@ const ROUNDS: usize = 4;
 /// An interval that is shorter by less than this part is not: quantiles are known to 1e-7 sigma.
 const SHORTER: f64 = 1e-6;
 
-/// The intervals of a characteristic, at no evaluation; `surface` where its moments follow from one. None where nothing is known of its distribution.
+/// The intervals of a characteristic, at no evaluation; None where nothing is known of its distribution.
+///
+/// `law` is that of the surface, where the moments follow from one.
+///
+/// # Errors
+/// When the quantiles of the law give no intervals: points have to take its place.
 pub(super) fn covered(
-    problem: &Problem,
-    outcome: &Outcome,
-    (c, seed): (usize, u64),
     one: &CharacteristicAnalysis,
-    (probability, surface): (f64, bool),
-) -> Option<CoverageIntervals> {
+    law: Option<&GuardedLaw>,
+    probability: f64,
+) -> Result<Option<CoverageIntervals>, FaultyQuantiles> {
     if !(0.5..1.0).contains(&probability) {
-        return None;
+        return Ok(None);
     }
-    let with = |source: YieldSource, [equal_tails, shortest]: [[f64; 2]; 2]| CoverageIntervals {
-        probability,
-        equal_tails,
-        shortest,
-        source,
+    let with = |source: YieldSource, [equal_tails, shortest]: [[f64; 2]; 2]| {
+        Some(CoverageIntervals { probability, equal_tails, shortest, source })
     };
     let fit = one.law.as_ref().and_then(|law| law.as_ref().ok());
     if let Some(Law::Point { at }) = fit {
-        return Some(with(YieldSource::Proof, [[*at; 2]; 2]));
+        return Ok(with(YieldSource::Proof, [[*at; 2]; 2]));
     }
-    if surface {
-        let law = full_law(problem, outcome, c).and_then(Result::ok);
-        let by_law = law.and_then(|law| intervals(probability, |sought| quantiles_at(&law, fit, sought)));
-        let found = by_law.or_else(|| of_points(&points(problem, outcome, (c, seed))?, probability));
+    if let Some(law) = law {
+        let found = match &law.points {
+            Some(points) => of_points(points, probability),
+            None => Some(by_law(law, fit, probability)?),
+        };
         if let Some(found) = found {
-            return Some(with(YieldSource::SurfaceLaw, found));
+            return Ok(with(YieldSource::SurfaceLaw, found));
         }
     }
     let sample = one.verification.as_ref().and_then(|of| of.sample.as_deref());
     if let Some(found) = sample.and_then(|sample| of_weighted(&sample.sorted(), probability)) {
-        return Some(with(YieldSource::Samples, found));
+        return Ok(with(YieldSource::Samples, found));
     }
-    let Some(Law::Pearson(fit)) = fit else { return None };
-    intervals(probability, |sought| Some(sought.iter().map(|&of| of_pearson(fit, of)).collect()))
-        .map(|found| with(YieldSource::Pearson, found))
+    let Some(Law::Pearson(fit)) = fit else { return Ok(None) };
+    let found = intervals(probability, |sought| Some(sought.iter().map(|&of| of_pearson(fit, of)).collect()));
+    Ok(found.and_then(|found| with(YieldSource::Pearson, found)))
+}
+
+/// The intervals by a law whose quantiles rise.
+fn by_law(law: &GuardedLaw, fit: Option<&Law>, probability: f64) -> Result<[[f64; 2]; 2], FaultyQuantiles> {
+    let fallen = Cell::new(None);
+    let found = intervals(probability, |sought| {
+        let found = law.quantiles(fit, sought)?;
+        // Beside those that are tested by points.
+        let tested = law.shares.quantiles.iter().flat_map(|all| QUANTILES.into_iter().zip(*all));
+        let all = sought.iter().copied().zip(found.iter().copied()).chain(tested);
+        fallen.set(fallen.get().or(falls(all.collect())));
+        Some(found.iter().map(|figure| figure.value).collect())
+    });
+    match (fallen.get(), found) {
+        (Some((p, y)), _) => Err(FaultyQuantiles::Fall(p, y)),
+        (None, found) => found.ok_or(FaultyQuantiles::Unknown),
+    }
+}
+
+/// The first probability whose quantile lies below that of a smaller one by more than their errors, with its quantile.
+fn falls(quantiles: Vec<((LawTail, f64), LawFigure)>) -> Option<(f64, f64)> {
+    let below = |((tail, p), figure): ((LawTail, f64), LawFigure)| match tail {
+        LawTail::Lower => (p, figure),
+        LawTail::Upper => (1.0 - p, figure),
+    };
+    let mut all: Vec<(f64, LawFigure)> = quantiles.into_iter().map(below).collect();
+    all.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    let falls = |pair: &&[(f64, LawFigure)]| {
+        let [(_, low), (_, high)] = [pair[0], pair[1]];
+        low.value > high.value + low.error + high.error
+    };
+    all.windows(2).find(falls).map(|pair| (pair[1].0, pair[1].1.value))
 }
 
 fn of_pearson(fit: &Pearson, (tail, p): (LawTail, f64)) -> f64 {

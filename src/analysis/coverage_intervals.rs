@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::yield_source::YieldSource;
+use sensitol_numeric::power::rescale;
 
 /// Two intervals that hold a share `p` of all assemblies.
 ///
@@ -20,3 +21,5 @@ pub struct CoverageIntervals {
     /// Where they come from: a surface that is trusted, else points of the model, else the Pearson fit.
     pub source: YieldSource,
 }
+
+rescale!(CoverageIntervals { equal_tails, shortest } without { probability, source });

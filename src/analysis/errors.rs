@@ -8,9 +8,21 @@ use sensitol_numeric::moments::Moments;
 /// How far the rejected share moves when each moment is off by its error, one after the other, as the root of the sum of
 /// squares; None where an error is unknown, there are no limits, or no law has such moments.
 pub(super) fn of_yield(estimate: &ErrorEstimate, moments: &Moments, limits: SpecLimits) -> Option<f64> {
+    limits.exist().then(|| of_shares(estimate, moments, limits)).flatten().map(|[all, ..]| all)
+}
+
+/// The same of the shares below and above the limits.
+pub(super) fn of_sides(estimate: &ErrorEstimate, moments: &Moments, limits: SpecLimits) -> [Option<f64>; 2] {
+    let of = of_shares(estimate, moments, limits);
+    [of.map(|[_, below, _]| below), of.map(|[.., above]| above)]
+}
+
+/// Of all rejects, of those below and of those above.
+fn of_shares(estimate: &ErrorEstimate, moments: &Moments, limits: SpecLimits) -> Option<[f64; 3]> {
     let rejected = |moments: Moments| {
         let law = Law::fit(&moments).ok()?;
-        Capability::of(&law, moments.mean(), moments.sigma(), limits).rejected()
+        let of = Capability::of(&law, moments.mean(), moments.sigma(), limits);
+        Some([of.rejected(), of.below, of.above].map(|share| share.unwrap_or(0.0)))
     };
     let (mean, sigma, skewness, excess) = (moments.mean(), moments.sigma(), moments.skewness()?, moments.excess()?);
     let here = rejected(*moments)?;
@@ -31,9 +43,10 @@ pub(super) fn of_yield(estimate: &ErrorEstimate, moments: &Moments, limits: Spec
     let (up, down) = (moved(1.0), moved(-1.0));
     let part = |(up, down): (&Moments, &Moments)| {
         // A moment at the border of what is possible has one side only.
-        let off = [*up, *down].into_iter().filter_map(rejected).map(|other| (other - here).abs());
-        off.reduce(f64::max)
+        let off = [*up, *down].into_iter().filter_map(rejected);
+        let off = off.map(|other| std::array::from_fn(|share| (other[share] - here[share]).abs()));
+        off.reduce(|a: [f64; 3], b| std::array::from_fn(|share| a[share].max(b[share])))
     };
-    let parts: Option<Vec<f64>> = up.iter().zip(&down).map(part).collect();
-    Some(parts?.into_iter().fold(0.0, libm::hypot))
+    let parts: Vec<[f64; 3]> = up.iter().zip(&down).map(part).collect::<Option<_>>()?;
+    Some(std::array::from_fn(|share| parts.iter().map(|part| part[share]).fold(0.0, libm::hypot)))
 }

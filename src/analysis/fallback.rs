@@ -225,6 +225,7 @@ fn replace(
         standard_errors,
         yield_: found.yield_.map(|share| (share.value, share.interval)),
         beyond: [found.below, found.above],
+        intervals: found.reject_intervals,
         histogram: found.histogram.clone(),
         ranks,
     };

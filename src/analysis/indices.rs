@@ -113,7 +113,7 @@ fn of_surface(one: &CharacteristicAnalysis, factors: &[Vec<usize>]) -> Vec<Pair>
         Some(row.linear_share? + curvature?)
     };
     let index = |value: f64| EstimatedShare { value, error: one.share_error(value) };
-    let complete = left.is_some() || one.interactions.len() == one.possible_interactions;
+    let complete = left.is_some() || one.examined_interactions == one.possible_interactions;
     let mut holders: HashMap<&str, usize> = HashMap::new();
     for (place, factor) in factors.iter().enumerate() {
         holders.extend(factor.iter().map(|&d| (one.sensitivities[d].dimension.as_str(), place)));

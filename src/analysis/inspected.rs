@@ -3,12 +3,20 @@
 use super::{CharacteristicAnalysis, YieldSource};
 use crate::verification::WeightedSample;
 use sensitol_numeric::capability::{EstimatedShare, InspectionRisks, Law, Risks, Tails, acceptance, guard_for};
+use sensitol_numeric::characteristic::KeptLimits;
 use sensitol_numeric::characteristic::SpecLimits;
 use sensitol_numeric::inspection::{Guard, Inspection};
 use sensitol_numeric::law::SurfaceLaw;
 
 /// Of a characteristic whose yield is settled; None without an inspection, and where nothing is known of its distribution.
-pub(super) fn inspected(one: &CharacteristicAnalysis, surface: Option<&SurfaceLaw>) -> Option<InspectionRisks> {
+///
+/// `points` of the surface, in ascending order, take the place of a law that is refuted.
+pub(super) fn inspected(
+    one: &CharacteristicAnalysis,
+    kept: KeptLimits,
+    surface: Option<&SurfaceLaw>,
+    points: Option<&[f64]>,
+) -> Option<InspectionRisks> {
     let inspection = one.characteristic.inspection()?;
     let limits = one.characteristic.limits();
     let fit = one.law.as_ref().and_then(|law| law.as_ref().ok());
@@ -17,18 +25,29 @@ pub(super) fn inspected(one: &CharacteristicAnalysis, surface: Option<&SurfaceLa
     match (surface, fit) {
         (Some(surface), _) => {
             let (below, above) = (|x: f64| surface.below(x).value, |x: f64| surface.above(x).value);
-            Some(by(one, inspection, limits, &Tails { below: &below, above: &above }, surface_error(one)))
+            Some(by(one, inspection, (limits, kept), &Tails { below: &below, above: &above }, surface_error(one)))
         }
         (None, Some(Law::Point { at })) => {
-            let (below, above) = (|x: f64| f64::from(u8::from(*at < x)), |x: f64| f64::from(u8::from(*at > x)));
-            let at = *at;
-            let exact = |limits: SpecLimits, guard: f64| of_point(at, limits, inspection.gauge(), guard);
+            // A value that keeps a limit but for rounding is on it.
+            let [least, most] = [limits.lower(), limits.upper()];
+            let on = |at: f64| at.max(least.unwrap_or(at)).min(most.unwrap_or(at));
+            let at = if kept.contains(*at) { on(*at) } else { *at };
+            let (below, above) = (|x: f64| f64::from(u8::from(at < x)), |x: f64| f64::from(u8::from(at > x)));
+            let exact = |guard: f64| of_point(at, kept, inspection.gauge(), guard);
             let guard = guard(inspection, limits, &Tails { below: &below, above: &above });
-            Some(told(one, inspection, guard, guard.map(|guard| (exact(limits, guard), [Some(0.0); 2]))))
+            Some(told(one, inspection, guard, guard.map(|guard| (exact(guard), [Some(0.0); 2]))))
+        }
+        (None, Some(_))
+            if let Some(points) = points.filter(|_| one.surface_law.is_some_and(|law| law.refuted.is_some())) =>
+        {
+            let share = |count: usize| count as f64 / points.len() as f64;
+            let below = |x: f64| share(points.partition_point(|&y| y < x));
+            let above = |x: f64| share(points.len() - points.partition_point(|&y| y <= x));
+            Some(by(one, inspection, (limits, kept), &Tails { below: &below, above: &above }, None))
         }
         (None, Some(fit)) => {
             let (below, above) = (|x: f64| fit.below(x), |x: f64| fit.above(x));
-            Some(by(one, inspection, limits, &Tails { below: &below, above: &above }, None))
+            Some(by(one, inspection, (limits, kept), &Tails { below: &below, above: &above }, None))
         }
         (None, None) => None,
     }
@@ -51,7 +70,7 @@ fn guard(inspection: Inspection, limits: SpecLimits, tails: &Tails<'_>) -> Optio
 fn by(
     one: &CharacteristicAnalysis,
     inspection: Inspection,
-    limits: SpecLimits,
+    (limits, kept): (SpecLimits, KeptLimits),
     tails: &Tails<'_>,
     proven: Option<f64>,
 ) -> InspectionRisks {
@@ -67,8 +86,9 @@ fn by(
             let error = proven.or(one.error_estimate.as_ref().and_then(|of| of.yield_));
             return (risks, [error.map(|error| error + risks.error); 2]);
         };
-        let found = of_sample(sample, limits, gauge, guard);
-        if one.surface_law.is_none() {
+        let found = of_sample(sample, kept, gauge, guard);
+        // Points of the model have the say beside a count of the surface.
+        if one.surface_law.is_none_or(|law| law.refuted.is_some()) {
             (risks.false_accept, risks.false_reject) = (found[0].value, found[1].value);
         }
         let errors = [found[0].error_of(risks.false_accept), found[1].error_of(risks.false_reject)];
@@ -80,7 +100,7 @@ fn by(
 /// The same means over points of the model.
 fn of_sample(
     sample: &WeightedSample,
-    limits: SpecLimits,
+    limits: KeptLimits,
     gauge: f64,
     guard: f64,
 ) -> [crate::verification::Verified; 2] {
@@ -90,7 +110,7 @@ fn of_sample(
     sample.shares([&bad, &good])
 }
 
-fn of_point(x: f64, limits: SpecLimits, gauge: f64, guard: f64) -> Risks {
+fn of_point(x: f64, limits: KeptLimits, gauge: f64, guard: f64) -> Risks {
     let accepted = acceptance(x, limits, gauge, guard);
     let good = limits.contains(x);
     Risks {

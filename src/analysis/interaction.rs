@@ -4,6 +4,8 @@ use std::fmt;
 
 use serde::{Serialize, Serializer};
 
+use sensitol_numeric::power::{Rescale, Rescaling};
+use sensitol_numeric::surrogate::DerivativeOrigin;
 /// The joint effect of two dimensions.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -16,6 +18,9 @@ pub struct Interaction<'a> {
     pub missing: Option<Missing>,
     /// Whether it is exact rather than a difference.
     pub exact: bool,
+    /// The source of its share: `exact`, `evaluated`, or `screened` where it is an estimate without an evaluation of its own. None where
+    /// it has no share.
+    pub origin: Option<DerivativeOrigin>,
     /// The largest effect of rounding errors of the characteristic's own size on it.
     pub rounding: Option<f64>,
     /// Share of the variance.
@@ -61,6 +66,7 @@ pub(super) struct Row {
     pub(super) mixed: f64,
     pub(super) missing: Option<Missing>,
     pub(super) exact: bool,
+    pub(super) origin: Option<DerivativeOrigin>,
     pub(super) rounding: f64,
     pub(super) share: f64,
     pub(super) mean_shift: f64,
@@ -74,10 +80,18 @@ impl Row {
             mixed: known(self.mixed),
             missing: self.missing,
             exact: self.exact,
+            origin: self.origin,
             rounding: known(self.rounding),
             share: known(self.share),
             mean_shift: known(self.mean_shift),
         }
+    }
+}
+
+impl Rescale for InteractionList {
+    fn rescale(&mut self, by: &mut Rescaling) {
+        // Mixed derivatives and their rounding are in the characteristic's unit already.
+        self.rows.iter_mut().for_each(|row| row.mean_shift.rescale(by));
     }
 }
 

@@ -6,13 +6,27 @@ use crate::method::Outcome;
 use crate::plan::Point;
 use crate::problem::Problem;
 use sensitol_numeric::parallel::prelude::*;
+use sensitol_numeric::power::Wide;
+use sensitol_numeric::surrogate::DerivativeOrigin;
 
-/// The pairs on which a characteristic can depend, by their places among all that were examined.
+/// The pairs on which a characteristic can depend, by their places among all that are listed: those examined, and those whose
+/// interaction was estimated. Not pairs that were listed for another characteristic only.
 pub(super) fn pairs_of(outcome: &Outcome, c: usize) -> impl Iterator<Item = usize> + '_ {
-    (0..outcome.fitted[c].mixed.len().min(outcome.pairs.len())).filter(move |&index| {
+    let mixed = &outcome.fitted[c].mixed;
+    (0..mixed.len().min(outcome.pairs.len())).filter(move |&index| {
         let (j, k) = outcome.pairs[index];
-        outcome.plan.joint(c, j, k)
+        let assumed = mixed[index].is_some_and(|mixed| mixed.value == 0.0 && !mixed.origin.is_known());
+        outcome.plan.joint(c, j, k) && !assumed
     })
+}
+
+/// The source of the part that a pair has in the surface, or in the variance where there is no surface; None where it has none.
+pub(super) fn origin_of(outcome: &Outcome, c: usize, index: usize) -> Option<DerivativeOrigin> {
+    let fitted = &outcome.fitted[c];
+    match &fitted.integrated {
+        Some(integrated) => integrated.pairs.get(index)?.map(|_| DerivativeOrigin::Evaluated),
+        None => fitted.mixed[index].map(|mixed| mixed.origin),
+    }
 }
 
 pub(super) fn share_of(outcome: &Outcome, c: usize, index: usize, shares: Option<&Shares>) -> Option<f64> {
@@ -20,22 +34,16 @@ pub(super) fn share_of(outcome: &Outcome, c: usize, index: usize, shares: Option
 }
 
 /// The mixed derivative of a pair of dimensions at the means: exact where that is known, a difference elsewhere.
-pub(super) fn mixed_of(outcome: &Outcome, c: usize, index: usize) -> Option<f64> {
-    let fitted = &outcome.fitted[c];
-    let exact = fitted.exact.as_ref().and_then(|exact| exact.mixed[index]);
-    let [j, k] = dimensions_of(outcome, index).map(|d| outcome.plan.axis(d).scale);
-    exact.or_else(|| fitted.mixed[index].map(|mixed| mixed.value / j / k))
+pub(super) fn mixed_of(outcome: &Outcome, c: usize, index: usize) -> Option<Wide> {
+    let (fitted, pair) = (&outcome.fitted[c], dimensions_of(outcome, index));
+    let exact = fitted.exact.as_ref().and_then(|exact| exact.interaction(index, pair));
+    let [j, k] = pair.map(|d| outcome.plan.axis(d).scale);
+    exact.or_else(|| fitted.mixed[index].map(|mixed| Wide::of(mixed.value).over(j).over(k)))
 }
 
 pub(super) fn dimensions_of(outcome: &Outcome, index: usize) -> [usize; 2] {
     let (j, k) = outcome.pairs[index];
     [j, k].map(|position| outcome.plan.varying()[position])
-}
-
-/// Whether every mixed derivative that a characteristic can have is known.
-pub(super) fn knows_all_pairs(outcome: &Outcome, c: usize) -> bool {
-    let pairs = || pairs_of(outcome, c);
-    pairs().count() == outcome.plan.pairs_of(c) && pairs().all(|index| mixed_of(outcome, c, index).is_some())
 }
 
 /// Of the pairs on which the characteristic can depend, strongest first. Of a thousand dimensions the list takes as much memory as what it
@@ -64,13 +72,17 @@ pub(super) fn listed(problem: &Problem, outcome: &Outcome, c: usize, shares: Opt
         };
         let step = |d: usize| if exact.is_some() { plan.axis(d).scale } else { 0.5 * plan.axis(d).nearest_step() };
         let missing = (exact.is_none() && mixed.is_none()).then(|| missing(outcome, c, &[j, k]));
-        let rounding = fitted.centre.map(|centre| f64::EPSILON * centre.abs() / step(j) / step(k));
+        // Mixed derivatives by dimensions of extreme size are so only in the characteristic's own unit.
+        let in_unit = |mixed: Wide| mixed.times_power(problem.power(c)).checked();
+        let rounding =
+            fitted.centre.and_then(|centre| in_unit(Wide::of(f64::EPSILON * centre.abs()).over(step(j)).over(step(k))));
         let known = |value: Option<f64>| value.unwrap_or(f64::NAN);
         Row {
             dimensions: [j, k].map(|d| d as u32),
-            mixed: known(mixed_of(outcome, c, index)),
+            mixed: known(mixed_of(outcome, c, index).and_then(in_unit)),
             missing,
             exact: exact.is_some(),
+            origin: origin_of(outcome, c, index),
             rounding: known(rounding),
             share: known(share(index)),
             mean_shift: known(mean_shift),

@@ -16,6 +16,7 @@ pub fn law_at(
 ) -> Option<Result<SurfaceLaw, LawError>> {
     let fit = surface.characteristics[characteristic].as_ref().ok()?;
     let inputs = surface.varying.iter().map(|&d| problem.dimensions()[d].law().cloned()).collect::<Option<_>>()?;
-    let (surrogate, inputs) = with(&fit.surrogate.relocated(moved), inputs, fit.unexplained);
-    Some(law_over(&surrogate, &inputs, None))
+    let (surrogate, inputs) =
+        with(&fit.surrogate.relocated(moved), inputs, fit.unexplained_sigma.map(|sigma| sigma * sigma));
+    Some(law_over(&surrogate, &inputs, None, problem.kept_limits(characteristic).rounding()))
 }

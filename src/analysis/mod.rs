@@ -15,13 +15,14 @@ mod interactions;
 mod interval;
 mod jumps;
 pub mod law_at;
+mod law_guard;
 mod linear;
+mod measured;
 mod outputs;
 mod recorded;
 mod remainder;
 mod remembered;
 mod sampled_model;
-mod sampling_interval;
 mod settle;
 mod shape;
 mod shapes;
@@ -46,12 +47,14 @@ pub use account::Account;
 pub use characteristic::{CharacteristicAnalysis, Sensitivity};
 pub use coverage_intervals::CoverageIntervals;
 pub use interaction::{Interaction, InteractionList, Missing};
+pub use law_guard::{LawRefutation, LawTest};
 pub use remainder::Remainder;
 pub use sampled_model::SampledModel;
-pub use sampling_interval::SamplingInterval;
 pub use sensitol_numeric::capability::{EstimatedShare, InspectionRisks};
 pub use sensitol_numeric::law::{Branch, LawError, LawFigure};
 pub use sensitol_numeric::moments::{Contributions, Sampled};
+pub use sensitol_numeric::sampling::SamplingInterval;
+pub use sensitol_numeric::surrogate::DerivativeOrigin;
 pub use sensitol_numeric::surrogate::Relocation;
 pub use sobol::{FactorIndices, IndexSource, SobolIndices};
 pub use surface::{Fit, NoFit, Surface};
@@ -65,6 +68,7 @@ pub use yield_source::YieldSource;
 use serde::Serialize;
 
 use crate::assembly::Run;
+use crate::evaluation::{Restoration, Restore, at_any_size};
 use crate::extremes::{SearchedExtremes, enclose, search};
 use crate::method::{
     Basis, ClimbEnd, DerivativeSource, Method, MethodError, Narrow, Narrowed, Options, Outcome, climb_until,
@@ -75,6 +79,7 @@ use crate::warning::Warning;
 use sensitol_numeric::law::SurfaceLaw;
 use sensitol_numeric::parallel::join;
 use sensitol_numeric::parallel::prelude::*;
+use sensitol_numeric::power::{Rescale, Rescaling};
 use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::shape::through;
 use sensitol_numeric::time::Instant;
@@ -101,6 +106,9 @@ pub struct Analysis {
     /// limits, and where it is not known.
     #[serde(rename = "joint_yield")]
     pub joint: Option<Verified>,
+    /// Within which that share is known: two errors on either side, with what measured samples leave open; None where it is not known.
+    #[serde(rename = "joint_yield_interval")]
+    pub joint_interval: Option<[f64; 2]>,
     /// Whether that share reaches the target for all characteristics at once; None without such a target.
     #[cfg_attr(feature = "schema", schemars(with = "Option<sensitol_numeric::verdict::JudgedShape>"))]
     pub joint_requirement: Option<Judged>,
@@ -147,9 +155,44 @@ pub fn analyze(problem: &Problem, options: &Options) -> Result<Analysis, MethodE
 
 /// [`analyze`], telling of finished points and stopping when told to.
 pub fn analyze_with(problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Analysis, MethodError> {
-    let (mut analysis, findings) = analyze_keeping(problem, options, run)?;
-    analysis.complete(&findings, problem, options, run);
-    Ok(analysis)
+    at_any_size(problem, run, |problem, run| {
+        let (mut analysis, findings) = analyze_keeping(problem, options, run)?;
+        analysis.complete(&findings, problem, options, run);
+        Ok(analysis)
+    })
+}
+
+impl Restore for Analysis {
+    fn restore(&mut self, back: &Restoration<'_>) {
+        back.add_time(&mut self.run);
+        self.rescale(back);
+    }
+}
+
+impl Analysis {
+    /// Multiplies every figure in the unit of a characteristic.
+    pub(crate) fn rescale(&mut self, back: &Restoration<'_>) {
+        if back.is_nothing() {
+            return;
+        }
+        for (c, one) in self.characteristics.iter_mut().enumerate() {
+            let mut rescaling = Rescaling::by(back.power(c));
+            one.characteristic = back.problem.characteristics()[c].clone();
+            one.rescale(&mut rescaling);
+            // Values of the characteristic, densities per unit of it.
+            for [at, density, error] in one.density.iter_mut().flatten() {
+                at.rescale(&mut rescaling);
+                rescaling.divide(density);
+                rescaling.divide(error);
+            }
+            self.surface.characteristics[c].rescale(&mut rescaling);
+            let lost = Warning::Unrepresentable { characteristic: one.characteristic.name().to_owned() };
+            if rescaling.has_lost() && !self.warnings.contains(&lost) {
+                self.warnings.push(lost);
+            }
+        }
+        self.warnings.iter_mut().for_each(|warning| warning.rescale(|name| back.power_of(name)));
+    }
 }
 
 /// The findings of an analysis, for who goes on from there.
@@ -208,13 +251,13 @@ pub(crate) fn analyze_keeping(
     for (c, (one, shares)) in characteristics.iter_mut().zip(shares).enumerate() {
         one.interactions = interactions::listed(problem, &outcome, c, shares.as_ref());
     }
-    let joint = options.target_joint_yield.and_then(|_| settle::joint(&characteristics, &laws));
+    let joint = options.target_joint_yield.and_then(|_| settle::joint(problem, options, &characteristics, &laws));
     let spent = spent(&outcome, options).and(&fallback.run).and(&jumps.run).and(&verified);
     // The extremes say nothing of a share.
     characteristics.iter_mut().for_each(|one| one.unfinished = spent.unfinished());
     let warnings = warnings::of(problem, &outcome, &characteristics, jumps.warnings);
     let account = Account::of(problem, &outcome, &characteristics, outcome.evaluated.evaluations);
-    let drawn = bootstrap::intervals(problem, &outcome, &mut characteristics, seed);
+    let drawn = measured::add_sampling_intervals(problem, &outcome, &mut characteristics, seed);
     let surface = Surface::of(&outcome, &characteristics);
     let analysis = Analysis {
         method: outcome.method,
@@ -229,6 +272,7 @@ pub(crate) fn analyze_keeping(
         basis: outcome.basis,
         surface,
         joint_requirement: joint_requirement(problem, options, joint, &characteristics),
+        joint_interval: joint.and_then(|joint| joint_interval(joint, &characteristics)),
         characteristics,
         joint,
         correlations: Vec::new(),
@@ -243,7 +287,8 @@ impl Analysis {
         let begun = Instant::now();
         let Findings { outcome, laws } = findings;
         if self.joint.is_none() {
-            self.joint = settle::joint(&self.characteristics, laws);
+            self.joint = settle::joint(problem, options, &self.characteristics, laws);
+            self.joint_interval = self.joint.and_then(|joint| joint_interval(joint, &self.characteristics));
         }
         self.correlations = outputs::correlations(problem, outcome, options, &self.characteristics);
         // Last, because warnings and accounts read the contributions of a surface that is not trusted too.
@@ -252,7 +297,7 @@ impl Analysis {
     }
 }
 
-/// Whether the joint yield reaches its target: by its value and two errors on either side.
+/// Whether the joint yield reaches its target: by its value, two errors on either side, and what measured samples leave open.
 fn joint_requirement(
     problem: &Problem,
     options: &Options,
@@ -263,9 +308,19 @@ fn joint_requirement(
     if problem.characteristics().iter().filter(|one| one.limits().exist()).count() < 2 {
         return None;
     }
-    let interval = joint.and_then(|joint| verdict::about(joint.value, Some(joint.error))).map(verdict::share);
+    let interval = joint.and_then(|joint| joint_interval(joint, characteristics));
     let judged = Judged::of(requirement, joint.map(|joint| joint.value), interval);
     Some(judged.unless(characteristics.iter().any(|one| one.unfinished)))
+}
+
+/// Within which a joint yield is known; None where measured samples leave it unknown.
+fn joint_interval(joint: Verified, characteristics: &[CharacteristicAnalysis]) -> Option<[f64; 2]> {
+    let own = verdict::about(joint.value, Some(joint.error))?;
+    let interval = match settle::joint_sampling(characteristics, joint.value) {
+        Some(measured) => verdict::joined(joint.value, own, measured?),
+        None => own,
+    };
+    Some(verdict::share(interval))
 }
 
 /// The bounds of interval arithmetic, where a formula has them and the extremes were not searched.

@@ -54,6 +54,10 @@ impl AssemblyFunction for Recorded {
         self.problem.function().signature()
     }
 
+    fn magnitudes(&self, outputs: &[usize], point: &[f64]) -> Vec<Option<f64>> {
+        self.problem.function().magnitudes(outputs, point)
+    }
+
     fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
         self.problem.function().evaluate(request, run, out);
         if request.outputs != self.problem.outputs() {

@@ -35,6 +35,10 @@ impl AssemblyFunction for Remembered {
         self.problem.function().signature()
     }
 
+    fn magnitudes(&self, outputs: &[usize], point: &[f64]) -> Vec<Option<f64>> {
+        self.problem.function().magnitudes(outputs, point)
+    }
+
     fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
         let model = self.problem.function();
         if request.outputs != self.problem.outputs() {

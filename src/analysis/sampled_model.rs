@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::simulation::Histogram;
 use crate::verification::Share;
+use sensitol_numeric::power::{Rescale, Rescaling, Unknown};
 use sensitol_numeric::shape::{Four, through};
 
 /// Points of the model in place of a surrogate that was not trusted.
@@ -29,12 +30,26 @@ pub struct SampledModel {
     pub yield_: Option<(f64, [f64; 2])>,
     /// Its shares below the lower and above the upper limit; None without that limit.
     pub beyond: [Option<f64>; 2],
+    /// The 95 % intervals of these shares.
+    #[serde(skip)]
+    pub(crate) intervals: [Option<[f64; 2]>; 2],
     /// The sample, counted in some tens of intervals.
     pub histogram: Option<Histogram>,
     /// First-order indices of the dimensions, by the ranks of the sample; empty where the model is cheap enough to be asked anew.
     #[serde(skip)]
     pub(crate) ranks: Vec<(usize, Share)>,
 }
+
+impl Rescale for SampledModel {
+    fn rescale(&mut self, by: &mut Rescaling) {
+        let [mean, sigma, ..] = &mut self.standard_errors;
+        mean.rescale(by);
+        sigma.rescale(by);
+        self.histogram.rescale(by);
+    }
+}
+
+impl Unknown for SampledModel {}
 
 /// A share and its interval, as they are written.
 #[derive(Serialize)]

@@ -2,42 +2,96 @@
 //!
 //! | source | when | its error |
 //! |---|---|---|
-//! | proof | nothing varies; the extremes are proven to keep the limits; or the formula's degree proves that the surface is the function, and the law of the surface is exact | that of the law |
+//! | proof | nothing varies; or no input is measured, and the extremes are proven to keep the limits, or the formula's degree proves that the surface is the function, and the law of the surface is exact | that of the law |
 //! | samples | points of the model itself, with the law of a surface as control where there is one | the sample's |
-//! | surface law | a surface, verified at check points or not at all | law and checks as the root of the sum of squares; without checks, what the errors of the moments move the tails |
+//! | surface law | a surface, verified at check points or not at all; a proven surface of measured inputs | law and checks as the root of the sum of squares; without checks, what the errors of the moments move the tails |
 //! | Pearson fit | moments are all that is known | what the errors of the moments move it |
 //!
+//! The law of a surface is tested before it is used (`law_guard`): where points contradict it, these take its place, and a sample has no control.
 //! With the law of a surface as control a share is `P = P_law + mean(1_model - 1_surface)` over the sample: what model and surface
 //! agree on is exact, and only what they differ by is sampled.
+//!
+//! Measured inputs prove nothing: that their values keep the limits says so of these parts, and not of the process.
+//!
+//! Each side of the limits has an interval of its own: by its own error, of a sample by as many points as would scatter as much, and 0 to 0
+//! where a proof excludes the side, whatever the other one does.
 
 use super::CharacteristicAnalysis;
 use super::coverage::covered;
+use super::errors::of_sides;
 use super::inspected::inspected;
-use super::surface_law::{SurfaceShares, density};
+use super::measured::samples_of;
+use super::surface_law::{GuardedLaw, LawRequest, SurfaceShares};
 use super::unverified::error_of_shares;
 use super::verified::{TRUSTED, Verification, VerificationKind};
 use super::yield_source::YieldSource;
+use crate::extremes::keeps_by_proof;
 use crate::method::{ErrorEstimate, Options, Outcome};
 use crate::problem::Problem;
-use crate::verification::Verified;
+use crate::verification::{Verified, common_rejects};
 use sensitol_numeric::capability::{Capability, Law, percentiles};
 use sensitol_numeric::characteristic::SpecLimits;
 use sensitol_numeric::law::{Branch, SurfaceLaw, joint_yield};
+use sensitol_numeric::law::{LawFigure, joint_bounds};
 use sensitol_numeric::parallel::prelude::*;
-use sensitol_numeric::sampling::one_error;
+use sensitol_numeric::sampling::{one_error, weighted_interval};
+use sensitol_numeric::verdict;
 
-/// A share beyond each limit, and the error of all of it.
+/// The error of a joint yield by laws above which points of the model are asked too.
+const CORRECTED: f64 = 1e-3;
+
+/// A share beyond each limit, and how far it may be off.
 struct Rejected {
     source: YieldSource,
     beyond: [Option<f64>; 2],
-    /// None where it is unknown.
+    /// The error of all rejects; None where it is unknown.
     error: Option<f64>,
+    /// The error of either side; None where it is unknown.
+    errors: [Option<f64>; 2],
+    /// The 95 % interval of either side; None where it is unknown.
+    intervals: [Option<[f64; 2]>; 2],
 }
 
-/// The law of a surface, where it answers, with its shares and its density where that is wanted.
+impl Rejected {
+    /// With intervals of two errors on either side.
+    fn new(source: YieldSource, beyond: [Option<f64>; 2], error: Option<f64>, errors: [Option<f64>; 2]) -> Self {
+        let interval = |side: usize| Some(verdict::share(verdict::about(beyond[side]?, errors[side])?));
+        Self { source, beyond, error, errors, intervals: [interval(0), interval(1)] }
+    }
+
+    /// Without the rejects of the sides that are proven to have none.
+    fn excluding(mut self, proven: [bool; 2]) -> Self {
+        let limited = self.beyond.map(|share| share.is_some());
+        let excluded = [0, 1].map(|side| limited[side] && proven[side]);
+        for side in (0..2).filter(|&side| excluded[side]) {
+            (self.beyond[side], self.errors[side], self.intervals[side]) = (Some(0.0), Some(0.0), Some([0.0; 2]));
+        }
+        // The error of all rejects is then that of the other side.
+        match excluded {
+            [false, false] => {}
+            _ if excluded == limited => (self.source, self.error) = (YieldSource::Proof, Some(0.0)),
+            [true, _] => self.error = self.errors[1].or(self.error),
+            [_, true] => self.error = self.errors[0].or(self.error),
+        }
+        self
+    }
+
+    /// With no side that may have more rejects than all of them together.
+    fn bounded(mut self) -> Self {
+        let all: f64 = self.beyond.iter().flatten().sum();
+        if let Some([_, most]) = verdict::about(all, self.error) {
+            for (interval, share) in self.intervals.iter_mut().zip(self.beyond) {
+                let ends = interval.zip(share).map(|([low, high], share)| [low, high.min(most).max(share)]);
+                *interval = ends;
+            }
+        }
+        self
+    }
+}
+
+/// The law of a surface after its tests, with its density where that is asked for.
 pub(super) struct SharesByLaw {
-    shares: SurfaceShares,
-    law: Option<SurfaceLaw>,
+    law: GuardedLaw,
     density: Option<Vec<[f64; 3]>>,
 }
 
@@ -48,16 +102,24 @@ pub(super) fn laws(
     options: &Options,
     characteristics: &[CharacteristicAnalysis],
 ) -> Vec<Option<SharesByLaw>> {
-    let seed = options.seed.unwrap_or(Options::SEED);
     let of = |(c, one): (usize, &CharacteristicAnalysis)| {
         let surface = one.moments.is_some() && follows_from_a_surface(one);
-        let beside = (is_sampled(one), seed);
-        let (shares, law) = surface.then(|| SurfaceShares::of(problem, outcome, c, fit(one), beside)).flatten()?;
-        let drawn = law.as_ref().filter(|_| options.densities);
-        let density = drawn.and_then(|law| density(law, shares.quantiles.as_ref()));
-        Some(SharesByLaw { shares, law, density })
+        let request = request(problem, outcome, options, (c, one));
+        let law = surface.then(|| GuardedLaw::of(request)).flatten()?;
+        let density = options.densities.then(|| law.density()).flatten();
+        Some(SharesByLaw { law, density })
     };
     characteristics.par_iter().enumerate().map(of).collect()
+}
+
+fn request<'a>(
+    problem: &'a Problem,
+    outcome: &'a Outcome,
+    options: &Options,
+    (c, one): (usize, &'a CharacteristicAnalysis),
+) -> LawRequest<'a> {
+    let seed = options.seed.unwrap_or(Options::SEED);
+    LawRequest { problem, outcome, c, seed, fit: fit(one), verification: one.verification.as_ref() }
 }
 
 /// Decides for every characteristic what its yield comes from, and sets capability and the error of the yield accordingly; the
@@ -69,7 +131,6 @@ pub(super) fn settle(
     characteristics: &mut [CharacteristicAnalysis],
     found: Vec<Option<SharesByLaw>>,
 ) -> Vec<Option<SurfaceLaw>> {
-    let seed = options.seed.unwrap_or(Options::SEED);
     let mut laws: Vec<Option<SurfaceLaw>> = Vec::new();
     for ((c, one), found) in characteristics.iter_mut().enumerate().zip(found) {
         one.pearson = one.capability;
@@ -77,44 +138,134 @@ pub(super) fn settle(
         if one.moments.is_none() {
             continue;
         }
-        if let Some(SharesByLaw { shares, law, density }) = found {
-            (one.surface_law, laws[c], one.density) = (Some(shares), law, density);
+        let (mut guarded, density) = found.map_or((None, None), |SharesByLaw { law, density }| (Some(law), density));
+        one.density = density;
+        if let Some(probability) = options.coverage {
+            one.coverage = covered(one, guarded.as_ref(), probability).unwrap_or_else(|faulty| {
+                guarded = GuardedLaw::without(request(problem, outcome, options, (c, one)), &faulty);
+                covered(one, guarded.as_ref(), probability).unwrap_or(None)
+            });
         }
-        one.coverage = options.coverage.and_then(|probability| {
-            covered(problem, outcome, (c, seed), one, (probability, follows_from_a_surface(one)))
-        });
+        one.surface_law = guarded.as_ref().map(|law| law.shares);
+        let points = guarded.as_mut().and_then(|law| law.points.take());
+        laws[c] = guarded.and_then(|law| law.law);
         let Some(found) = rejected(problem, outcome, c, one, laws[c].as_ref()) else { continue };
+        let proven = proven_sides(problem, outcome, c, one, &found);
+        let found = found.excluding(proven).bounded();
+        one.reject_intervals = found.intervals;
         one.yield_source = one.characteristic.limits().exist().then_some(found.source);
         one.capability = capability(one, found.beyond);
         if let Some(estimate) = one.error_estimate.take() {
             one.error_estimate =
                 Some(ErrorEstimate { yield_: found.error.filter(|error| error.is_finite()), ..estimate });
         }
-        one.inspection = inspected(one, laws[c].as_ref());
+        one.inspection = inspected(one, problem.kept_limits(c), laws[c].as_ref(), points.as_deref());
     }
     laws
 }
 
-/// The share of assemblies that keep the limits of all characteristics, `1 - sum of all rejects + E[(number of broken limits - 1)+]`: the rejects by their sources, what they have in common by the laws of
-/// the surfaces. None with fewer than two characteristics with limits, and where a law or an error is not known.
-pub(super) fn joint(characteristics: &[CharacteristicAnalysis], laws: &[Option<SurfaceLaw>]) -> Option<Verified> {
+/// The share of assemblies that keep the limits of all characteristics:
+///
+/// ```text
+/// P(all kept) = 1 - sum of all rejects + E[(number of broken limits - 1)+]
+/// ```
+///
+/// The rejects are those of each characteristic's own source. Their common part is by the laws of the surfaces where these are trusted,
+/// by points of a cheap model elsewhere, and anything that the rejects allow where neither is at hand: half of that is its error then.
+/// None with fewer than two characteristics with limits, and where the rejects of one or their error are not known.
+pub(super) fn joint(
+    problem: &Problem,
+    options: &Options,
+    characteristics: &[CharacteristicAnalysis],
+    laws: &[Option<SurfaceLaw>],
+) -> Option<Verified> {
     if !have_joint_yield(characteristics) {
         return None;
     }
-    let limited = || characteristics.iter().zip(laws).filter(|(one, _)| one.characteristic.limits().exist());
-    let laws: Vec<(&SurfaceLaw, SpecLimits)> =
-        limited().map(|(one, law)| Some((law.as_ref()?, one.characteristic.limits()))).collect::<Option<_>>()?;
-    let by_laws = joint_yield(&laws);
-    let (mut value, mut square) = (by_laws.value, by_laws.error.powi(2));
-    for (one, _) in limited() {
-        value += one.surface_law?.rejected()? - one.capability?.rejected()?;
+    let limited: Vec<usize> =
+        (0..characteristics.len()).filter(|&c| characteristics[c].characteristic.limits().exist()).collect();
+    let (mut rejects, mut square) = (Vec::new(), 0.0);
+    for &c in &limited {
+        let one = &characteristics[c];
+        rejects.push(one.capability?.rejected()?);
+        let exact = one.verification.as_ref().is_some_and(|of| matches!(of.kind, VerificationKind::Exact { .. }));
         square += match one.yield_source? {
+            // Limits outside of the proven range have no error; neither have those of an exact surface of measured inputs.
             YieldSource::Proof => one.error_estimate.as_ref().and_then(|of| of.yield_).unwrap_or(0.0),
+            YieldSource::SurfaceLaw if exact => one.error_estimate.as_ref().and_then(|of| of.yield_).unwrap_or(0.0),
             _ => one.error_estimate.as_ref()?.yield_?,
         }
         .powi(2);
     }
-    Some(Verified { value: value.clamp(0.0, 1.0), error: square.sqrt() })
+    let [least, most] = joint_bounds(&rejects);
+    let by_laws = by_laws(characteristics, laws, &limited);
+    let found = match by_laws {
+        Some(found) if found.error <= CORRECTED => by_laws,
+        // A surface that keeps other values than the model says little of what they have in common.
+        _ => {
+            let by_points = by_points(problem, options, characteristics, &limited, &rejects);
+            by_laws.into_iter().chain(by_points).min_by(|a, b| a.error.total_cmp(&b.error))
+        }
+    };
+    let middle = || Verified { value: 0.5 * (least + most), error: 0.5 * (most - least) };
+    let Verified { value, error } = found.unwrap_or_else(middle);
+    Some(Verified { value: value.max(least).min(most), error: (error * error + square).sqrt() })
+}
+
+/// By the laws of the surfaces, corrected by what the rejects of each are by its own source: by as much what they have in common may be off.
+/// None without a law of each, and where a sample of the model refutes one of the surfaces.
+fn by_laws(
+    characteristics: &[CharacteristicAnalysis],
+    laws: &[Option<SurfaceLaw>],
+    limited: &[usize],
+) -> Option<Verified> {
+    let refuted = |one: &CharacteristicAnalysis| {
+        is_sampled(one) && one.verification.as_ref().and_then(|of| of.left).is_none_or(|left| left > TRUSTED)
+    };
+    if limited.iter().any(|&c| refuted(&characteristics[c])) {
+        return None;
+    }
+    let law = |&c: &usize| Some((laws.get(c)?.as_ref()?, characteristics[c].characteristic.limits()));
+    let laws: Vec<(&SurfaceLaw, SpecLimits)> = limited.iter().map(law).collect::<Option<_>>()?;
+    let found = joint_yield(&laws);
+    let (mut value, mut error) = (found.value, found.error);
+    for one in limited.iter().map(|&c| &characteristics[c]) {
+        let corrected = one.surface_law?.rejected()? - one.capability?.rejected()?;
+        (value, error) = (value + corrected, libm::hypot(error, corrected));
+    }
+    Some(Verified { value, error })
+}
+
+/// By points of a cheap model, where others are evaluated for its verification or nothing is said of a budget; None of a costly one.
+fn by_points(
+    problem: &Problem,
+    options: &Options,
+    characteristics: &[CharacteristicAnalysis],
+    limited: &[usize],
+    rejects: &[f64],
+) -> Option<Verified> {
+    let free = options.budget.is_none() || characteristics.iter().any(is_sampled);
+    if problem.function().signature().costly || !free {
+        return None;
+    }
+    let common = common_rejects(problem, limited, options.seed.unwrap_or(Options::SEED))?;
+    Some(Verified { value: 1.0 - rejects.iter().sum::<f64>() + common.value, error: common.error })
+}
+
+/// Within which measured samples leave the joint yield, of this value: no fewer assemblies are rejected than by one characteristic,
+/// and no more than by all of them one after the other. None without measured samples, and Some(None) where one leaves it unknown.
+pub(super) fn joint_sampling(characteristics: &[CharacteristicAnalysis], value: f64) -> Option<Option<[f64; 2]>> {
+    let limited = || characteristics.iter().filter(|one| one.characteristic.limits().exist());
+    limited().find(|one| one.sampling.is_some())?;
+    let (mut most, mut least) = (1.0 - value, 0.0f64);
+    for one in limited() {
+        let Some(measured) = &one.sampling else { continue };
+        let rejected = one.capability.and_then(|of| of.rejected());
+        let Some((rejected, [low, high])) = rejected.zip(measured.rejected) else { return Some(None) };
+        most += (high - rejected).max(0.0);
+        least = least.max(low);
+    }
+    Some(Some([1.0 - most, 1.0 - least.min(1.0 - value)]))
 }
 
 /// Whether two of them have limits, which can be kept together or not.
@@ -149,13 +300,14 @@ fn rejected(
 
 fn proof(problem: &Problem, outcome: &Outcome, c: usize, one: &CharacteristicAnalysis) -> Option<Rejected> {
     let limits = one.characteristic.limits();
+    let exactly = |beyond| Rejected::new(YieldSource::Proof, beyond, Some(0.0), [Some(0.0); 2]);
     if one.constant {
         let own = one.pearson?;
-        return Some(Rejected { source: YieldSource::Proof, beyond: [own.below, own.above], error: Some(0.0) });
+        return Some(exactly([own.below, own.above]));
     }
-    if kept_by_extremes(problem, outcome, c, one) {
-        let beyond = [limits.lower().map(|_| 0.0), limits.upper().map(|_| 0.0)];
-        return Some(Rejected { source: YieldSource::Proof, beyond, error: Some(0.0) });
+    let measured = !samples_of(problem, outcome, c).is_empty();
+    if !measured && limits.exist() && kept_by_extremes(problem, outcome, c, one) == [true; 2] {
+        return Some(exactly([limits.lower().map(|_| 0.0), limits.upper().map(|_| 0.0)]));
     }
     let exact = one.verification.as_ref().is_some_and(|of| matches!(of.kind, VerificationKind::Exact { .. }));
     let law = one.surface_law.as_ref().filter(|law| exact && law.branch != Branch::Sampled)?;
@@ -164,48 +316,110 @@ fn proof(problem: &Problem, outcome: &Outcome, c: usize, one: &CharacteristicAna
     // A limit outside of the proven range lies there by any rounding: the range has room for that.
     let rounding = if outside { 0.0 } else { one.error_estimate.as_ref()?.yield_? };
     let error = Some(libm::hypot(law.error(), rounding));
-    Some(Rejected { source: YieldSource::Proof, beyond: beyond.map(|of| of.map(|of| of.value)), error })
+    let source = if measured { YieldSource::SurfaceLaw } else { YieldSource::Proof };
+    let of_moments = by_moments(one);
+    let errors = [0, 1].map(|side| match beyond[side]? {
+        LawFigure { proven: true, .. } => Some(0.0),
+        figure => Some(libm::hypot(figure.error, of_moments[side]?)),
+    });
+    Some(Rejected::new(source, beyond.map(|of| of.map(|of| of.value)), error, errors))
 }
 
-/// Whether the proven extremes lie within the limits, and no input leaves the box in which they were searched.
-fn kept_by_extremes(problem: &Problem, outcome: &Outcome, c: usize, one: &CharacteristicAnalysis) -> bool {
-    let limits = one.characteristic.limits();
-    let Some(proof) = one.proof().filter(|_| limits.exist()) else { return false };
+/// The errors of the shares below and above that the errors of the moments make.
+fn by_moments(one: &CharacteristicAnalysis) -> [Option<f64>; 2] {
+    let known = one.error_estimate.as_ref().zip(one.moments.as_ref());
+    known.map_or([None; 2], |(estimate, moments)| of_sides(estimate, moments, one.characteristic.limits()))
+}
+
+/// Whether the proven extremes keep the lower and the upper limit, where no input leaves the box in which they were searched; true without
+/// that limit.
+fn kept_by_extremes(problem: &Problem, outcome: &Outcome, c: usize, one: &CharacteristicAnalysis) -> [bool; 2] {
+    let Some(proof) = one.proof() else { return [false; 2] };
     let bounded = |&d: &usize| {
         let dimension = &problem.dimensions()[d];
         let [lower, upper] = dimension.reach().map(|deviation| dimension.nominal() + deviation);
         let slack = 4.0 * f64::EPSILON * dimension.nominal().abs().max(dimension.mean().abs());
-        dimension.distribution().is_some_and(|law| {
-            let [least, most] = law.support();
-            least >= lower - slack && most <= upper + slack
-        })
+        // Coordinates of a circle that vary independently of each other reach the corners of the box about it.
+        let blocks = |d: usize| problem.correlation().is_some_and(|of| of.block_of(d).is_some());
+        let alone = dimension.zone().is_none() || blocks(d);
+        alone
+            && dimension.distribution().is_some_and(|law| {
+                let [least, most] = law.support();
+                least >= lower - slack && most <= upper + slack
+            })
     };
-    let inside = proof.bounds.iter().all(|&bound| limits.contains(bound));
-    inside
-        && one.without_value == 0
-        && outcome.plan.varying().iter().filter(|&&d| outcome.plan.depends(c, d)).all(bounded)
+    let all =
+        one.without_value == 0 && outcome.plan.varying().iter().filter(|&&d| outcome.plan.depends(c, d)).all(bounded);
+    let kept = problem.kept_limits(c);
+    [0, 1].map(|side| all && !kept.broken(proof.bounds[side])[side])
+}
+
+/// Whether no assembly is below the lower limit, and none above the upper one, by interval arithmetic.
+///
+/// Beside the bounds at hand a side is sought a proof for where its rejects are not told apart from none.
+fn proven_sides(
+    problem: &Problem,
+    outcome: &Outcome,
+    c: usize,
+    one: &CharacteristicAnalysis,
+    found: &Rejected,
+) -> [bool; 2] {
+    if one.constant || one.without_value > 0 || !samples_of(problem, outcome, c).is_empty() {
+        return [false; 2];
+    }
+    let known = kept_by_extremes(problem, outcome, c, one);
+    let open = |side: usize| match found.intervals[side] {
+        _ if known[side] || found.beyond[side].is_none() => false,
+        Some([low, high]) => low <= 0.0 && high > 0.0,
+        None => true,
+    };
+    let more = keeps_by_proof(problem, c, [open(0), open(1)]);
+    [0, 1].map(|side| known[side] || more[side])
 }
 
 fn samples(one: &CharacteristicAnalysis) -> Option<Rejected> {
     let source = YieldSource::Samples;
     if let Some(sampled) = &one.model_sampled {
         let (value, interval) = sampled.yield_?;
-        return Some(Rejected { source, beyond: sampled.beyond, error: Some(one_error(value, interval)) });
+        let error = |side: usize| Some(one_error(sampled.beyond[side]?, sampled.intervals[side]?));
+        let (error, errors) = (Some(one_error(value, interval)), [error(0), error(1)]);
+        return Some(Rejected { source, beyond: sampled.beyond, error, errors, intervals: sampled.intervals });
     }
     let verification = one.verification.as_ref().filter(|of| of.kind == VerificationKind::Sample)?;
-    let own = verification.yield_?;
-    let plain = || Rejected { source, beyond: verification.beyond.map(value), error: Some(own.error) };
-    let (Some([within, differences @ ..]), Some(law)) = (verification.difference, &one.surface_law) else {
+    let (own, point) = (verification.yield_?, verification.point);
+    let interval = |share: f64, error: f64| weighted_interval(share, scatter(error, point), point);
+    let plain = || Rejected {
+        source,
+        beyond: verification.beyond.map(value),
+        error: Some(own.error),
+        errors: verification.beyond.map(|of| of.map(|of| of.error)),
+        intervals: verification.beyond.map(|of| of.map(|of| interval(of.value, of.error))),
+    };
+    // Counts of the surface are no control: the sample counts as well.
+    let control = one.surface_law.as_ref().filter(|law| law.counted.is_none());
+    let (Some([within, differences @ ..]), Some(law)) = (verification.difference, control) else {
         return Some(plain());
     };
     let error = libm::hypot(within.error, law.error());
-    let with = |share: Option<f64>, difference: Verified| share.map(|share| share + difference.value);
-    let beyond =
-        [with(law.below.map(|of| of.value), differences[0]), with(law.above.map(|of| of.value), differences[1])];
+    let of_law = [law.below, law.above];
+    let beyond = [0, 1].map(|side| of_law[side].map(|of| of.value + differences[side].value));
+    let errors = [0, 1].map(|side| of_law[side].map(|of| libm::hypot(of.error, differences[side].error)));
+    // By what model and surface differ, and what no point shows of that.
+    let [_, unseen] = weighted_interval(0.0, 0.0, point);
+    let reach = |side: usize| {
+        let scattered = libm::hypot(scatter(differences[side].error, point), of_law[side]?.error);
+        Some(libm::hypot(verdict::ERRORS * scattered, unseen))
+    };
+    let interval = |side: usize| Some(verdict::share([beyond[side]? - reach(side)?, beyond[side]? + reach(side)?]));
     match error < own.error && beyond.iter().flatten().all(|&share| share >= 0.0) {
-        true => Some(Rejected { source, beyond, error: Some(error) }),
+        true => Some(Rejected { source, beyond, error: Some(error), errors, intervals: [interval(0), interval(1)] }),
         false => Some(plain()),
     }
+}
+
+/// The part of a sample's error by which its points differ, without what no point shows.
+fn scatter(error: f64, point: f64) -> f64 {
+    (error * error - point * point).max(0.0).sqrt()
 }
 
 fn value(of: Option<Verified>) -> Option<f64> {
@@ -214,27 +428,27 @@ fn value(of: Option<Verified>) -> Option<f64> {
 
 fn surface(one: &CharacteristicAnalysis, whole: Option<&SurfaceLaw>) -> Option<Rejected> {
     let law = one.surface_law.as_ref().filter(|_| one.characteristic.limits().exist())?;
-    let beyond = [law.below, law.above].map(|of| of.map(|of| of.value));
+    let beyond = [law.below, law.above];
     let checked = one.verification.as_ref().filter(|of| of.kind == VerificationKind::Checks);
-    let surface = match checked {
-        Some(of) => of.yield_.map(|of| of.error),
+    let (surface, sides) = match checked {
+        Some(of) => (of.yield_.map(|of| of.error), of.beyond.map(|of| of.map(|of| of.error))),
         None => {
             let of_fit = one.error_estimate.as_ref().and_then(|of| of.yield_);
-            let of_tails = whole.and_then(|whole| error_of_shares(one, whole));
-            of_fit.map(|of_fit| of_fit.max(of_tails.unwrap_or(0.0)))
+            let of_tails = whole.and_then(|whole| error_of_shares(one, whole)).unwrap_or([0.0; 2]);
+            let [below, above] = by_moments(one);
+            let sides = [below.map(|of| of.max(of_tails[0])), above.map(|of| of.max(of_tails[1]))];
+            (of_fit.map(|of_fit| of_fit.max(libm::hypot(of_tails[0], of_tails[1]))), sides)
         }
     };
-    Some(Rejected {
-        source: YieldSource::SurfaceLaw,
-        beyond,
-        error: surface.map(|error| libm::hypot(error, law.error())),
-    })
+    let errors = [0, 1].map(|side| Some(libm::hypot(sides[side]?, beyond[side]?.error)));
+    let error = surface.map(|error| libm::hypot(error, law.error()));
+    Some(Rejected::new(YieldSource::SurfaceLaw, beyond.map(|of| of.map(|of| of.value)), error, errors))
 }
 
 fn pearson(one: &CharacteristicAnalysis) -> Option<Rejected> {
     let own = one.pearson?;
     let error = one.error_estimate.as_ref().and_then(|of| of.yield_);
-    Some(Rejected { source: YieldSource::Pearson, beyond: [own.below, own.above], error })
+    Some(Rejected::new(YieldSource::Pearson, [own.below, own.above], error, by_moments(one)))
 }
 
 /// How the best law keeps the limits: shares beyond them by the source, quantiles by the surface law where there is one.

@@ -21,7 +21,7 @@ impl Shares {
     /// Beside an independent part with this variance.
     pub(super) fn beside(self, variance: Option<f64>) -> Self {
         match (self, variance) {
-            (Self::Surrogate(contributions), Some(variance)) => Self::Surrogate(contributions.beside(variance)),
+            (Self::Surrogate(contributions), Some(variance)) => Self::Surrogate(contributions.beside(variance.sqrt())),
             (shares, _) => shares,
         }
     }

@@ -254,6 +254,7 @@ impl<'p> Strides<'p> {
                 standard_errors: [0, 1, 2, 3].map(|i| Some(best.errors[i])),
                 yield_: limits.exist().then(|| (share(MOMENTS + 2), around(MOMENTS + 2))),
                 beyond: [limits.lower().map(|_| share(MOMENTS)), limits.upper().map(|_| share(MOMENTS + 1))],
+                intervals: [limits.lower().map(|_| around(MOMENTS)), limits.upper().map(|_| around(MOMENTS + 1))],
                 histogram: histogram(&valid),
                 ranks: self.ranks(c, &values),
             },
@@ -341,10 +342,8 @@ impl<'p> Strides<'p> {
             return None;
         }
         let limits = self.problem.characteristics()[c].limits();
-        let sides = |y: f64| {
-            [limits.lower().is_some_and(|lower| y < lower), limits.upper().is_some_and(|upper| y > upper)]
-                .map(|side| f64::from(u8::from(side)))
-        };
+        let kept = self.problem.kept_limits(c);
+        let sides = |y: f64| kept.broken(y).map(|side| f64::from(u8::from(side)));
         // The powers of a value, and the two sides of the limits.
         const TERMS: usize = MOMENTS + 2;
         let terms = |y: f64| {

@@ -3,6 +3,7 @@
 use super::CharacteristicAnalysis;
 use crate::method::Outcome;
 use sensitol_numeric::moments::Contributions;
+use sensitol_numeric::power::rescale;
 use sensitol_numeric::surrogate::{InputShape, Inputs, Relocation, Surrogate};
 
 /// The surrogates of all characteristics over the dimensions that vary.
@@ -22,8 +23,10 @@ pub struct Surface {
 pub struct Fit {
     /// The surrogate.
     pub surrogate: Surrogate,
-    /// A variance beside it, of what checks found that it leaves out.
-    pub unexplained: Option<f64>,
+    /// The standard deviation of a part beside it, of what checks found that it leaves out.
+    pub unexplained_sigma: Option<f64>,
+    /// Products of the surrogate that are estimates without an evaluation of their own.
+    pub screened: usize,
 }
 
 /// Why the moments of a characteristic cannot be had at other tolerances.
@@ -44,6 +47,8 @@ pub enum NoFit {
     Unknown,
 }
 
+rescale!(Fit { surrogate, unexplained_sigma } without { screened });
+
 impl Surface {
     pub(super) fn of(outcome: &Outcome, characteristics: &[CharacteristicAnalysis]) -> Self {
         let inputs = outcome.plan.inputs();
@@ -61,7 +66,7 @@ impl Surface {
             let known = |surrogate: &&Surrogate| surrogate.parts.iter().all(Option::is_some) && one.moments.is_some();
             let surrogate = fitted.surrogate.as_ref().filter(known).ok_or(NoFit::Unknown)?.clone();
             let unexplained = outcome.climbed.as_ref().and_then(|climbed| climbed.unexplained(c));
-            Ok(Fit { surrogate, unexplained })
+            Ok(Fit { surrogate, unexplained_sigma: unexplained.map(f64::sqrt), screened: fitted.screened })
         };
         Self {
             varying: outcome.plan.varying().to_vec(),
@@ -94,8 +99,8 @@ impl Surface {
     pub fn at(&self, characteristic: usize, moved: &[Relocation]) -> Option<Contributions> {
         let fit = self.characteristics[characteristic].as_ref().ok()?;
         let found = fit.surrogate.relocated(moved).contributions(&Inputs::independent(self.shapes.clone()))?;
-        Some(match fit.unexplained {
-            Some(variance) => found.beside(variance),
+        Some(match fit.unexplained_sigma {
+            Some(sigma) => found.beside(sigma),
             None => found,
         })
     }

@@ -4,15 +4,19 @@ use std::sync::Arc;
 
 use serde::{Serialize, Serializer};
 
-use super::counted::{Counted, counted};
+use super::counted::{self, Counted};
+use super::law_guard::{FaultyQuantiles, LawGuard, LawRefutation, LawTest, by_sample};
+use super::verified::{Verification, VerificationKind};
 use crate::method::Outcome;
 use crate::problem::Problem;
 use sensitol_numeric::capability::{Law, Quantiles, TAIL};
+use sensitol_numeric::characteristic::SpecLimits;
 use sensitol_numeric::correlation::Correlation;
 use sensitol_numeric::distribution::{Distribution, Normal};
 use sensitol_numeric::law::{Branch, LawError, LawFigure, LawOptions, LawTail, Sought, SurfaceLaw};
 use sensitol_numeric::moments::Interactions;
 use sensitol_numeric::pearson::Pearson;
+use sensitol_numeric::power::rescale;
 use sensitol_numeric::surrogate::{Surrogate, Univariate};
 
 /// The probabilities of the quantiles of reports, lowest first, each by the tail that it leaves.
@@ -58,8 +62,10 @@ const FEW_PLACES: usize = 96;
 pub struct SurfaceShares {
     /// How the law is computed.
     pub branch: Branch,
-    /// Points of the surface at which its law was counted, because it could not be computed; None where it was.
+    /// Points of the surface at which its law was counted, because it could not be computed or is refuted; None where it was computed.
     pub counted: Option<usize>,
+    /// The contradiction for which points took the place of a law; None where there is none.
+    pub refuted: Option<LawRefutation>,
     /// Whether it is a step function: every input that counts has measured values only.
     pub steps: bool,
     /// The share below the lower limit; None without one.
@@ -71,69 +77,146 @@ pub struct SurfaceShares {
     pub quantiles: Option<[LawFigure; 7]>,
 }
 
-impl SurfaceShares {
-    /// None where the moments do not follow from a surface, or nothing but moments is known of an input. Quantiles are sought from
-    /// those of `fit`. With the law itself, where it answers.
+rescale!(SurfaceShares { refuted, quantiles } without { branch, counted, steps, below, above });
+
+/// The law of a characteristic's surface that has passed its tests, or points of the surface in its place: the one source of its shares,
+/// quantiles, intervals and density.
+pub(super) struct GuardedLaw {
+    pub(super) shares: SurfaceShares,
+    /// Returns shares beyond limits; None where points take its place.
+    pub(super) law: Option<SurfaceLaw>,
+    /// Has the quantiles, where these include a variance that the other one leaves out.
+    full: Option<SurfaceLaw>,
+    /// Points in its place, ascending.
+    pub(super) points: Option<Vec<f64>>,
+}
+
+/// A characteristic whose law is asked for: its place, the seed of points, and its verification.
+#[derive(Clone, Copy)]
+pub(super) struct LawRequest<'a> {
+    pub(super) problem: &'a Problem,
+    pub(super) outcome: &'a Outcome,
+    pub(super) c: usize,
+    pub(super) seed: u64,
+    pub(super) fit: Option<&'a Law>,
+    pub(super) verification: Option<&'a Verification>,
+}
+
+impl GuardedLaw {
+    /// Returns None if the moments do not follow from a surface, or nothing but moments is known of an input. Quantiles are sought from those
+    /// of the fit.
     ///
-    /// A variance that the surface leaves out is a normal input beside it; not in the shares where a sample of the model is `beside`,
-    /// which knows what is left out.
-    pub(super) fn of(
-        problem: &Problem,
-        outcome: &Outcome,
-        c: usize,
-        fit: Option<&Law>,
-        (beside, seed): (bool, u64),
-    ) -> Option<(Self, Option<SurfaceLaw>)> {
-        let fitted = &outcome.fitted[c];
-        if fitted.integrated.is_some() {
+    /// A variance that the surface leaves out is a normal input beside it. A sample of the model has it already: then only quantiles include it.
+    pub(super) fn of(request: LawRequest<'_>) -> Option<Self> {
+        let LawRequest { problem, outcome, c, .. } = request;
+        if outcome.fitted[c].integrated.is_some() {
             return None;
         }
-        let unexplained = outcome.climbed.as_ref().and_then(|climbed| climbed.unexplained(c));
+        // Of a surface that is proven to be the function nothing is left out but rounding.
+        let exact = request.verification.is_some_and(|of| matches!(of.kind, VerificationKind::Exact { .. }));
+        let unexplained = outcome.climbed.as_ref().and_then(|climbed| climbed.unexplained(c)).filter(|_| !exact);
+        let beside = request.verification.is_some_and(|of| of.kind == VerificationKind::Sample);
         let (surrogate, inputs) = surface(problem, outcome, c, unexplained.filter(|_| !beside))?;
         let correlation = outcome.plan.inputs().correlation();
-        if has_too_many_atoms(&surrogate, &inputs, correlation) {
-            return Some((Self::counted(problem, outcome, c, seed)?, None));
-        }
-        let points = points(&surrogate);
-        // Without limits a tail has no call for twelve digits: quantiles of trees of products are those of points.
+        let options = options(problem, c, &surrogate);
         let limits = problem.characteristics()[c].limits();
-        let whole = match law(&surrogate, &inputs, correlation, (points, limits.exist())) {
-            Ok(law) => law,
-            Err(LawError::NoVariance | LawError::NoEigenvalues | LawError::LongTail { .. }) => {
-                return Some((Self::counted(problem, outcome, c, seed)?, None));
+        let whole = match known_law(&surrogate, &inputs, correlation, &options) {
+            Some(Ok(law)) => law,
+            None | Some(Err(LawError::NoVariance | LawError::NoEigenvalues | LawError::LongTail { .. })) => {
+                return Self::counted(request, None);
             }
-            Err(_) => return None,
+            Some(Err(_)) => return None,
         };
         let (below, above) = (limits.lower().map(|y| whole.below(y)), limits.upper().map(|y| whole.above(y)));
         let known = |figure: &LawFigure| figure.value.is_finite() && figure.error.is_finite();
         if ![below, above].iter().flatten().all(known) {
-            return Some((Self::counted(problem, outcome, c, seed)?, None));
+            return Self::counted(request, None);
         }
         let full = match unexplained.filter(|_| beside) {
             Some(_) => {
                 let (surrogate, inputs) = surface(problem, outcome, c, unexplained)?;
-                law(&surrogate, &inputs, correlation, (points, limits.exist())).ok()
+                SurfaceLaw::of(&surrogate, &inputs, correlation, &options).ok()
             }
             None => None,
         };
-        let of_quantiles = full.as_ref().unwrap_or(&whole);
-        let quantiles = quantiles(of_quantiles, fit);
-        Some((
-            Self { branch: whole.branch(), counted: None, steps: whole.is_step_function(), below, above, quantiles },
-            Some(whole),
-        ))
+        let quantiles = quantiles(full.as_ref().unwrap_or(&whole), request.fit);
+        let (branch, steps) = (whole.branch(), whole.is_step_function());
+        let shares = SurfaceShares { branch, counted: None, refuted: None, steps, below, above, quantiles };
+        // A list of all values with their probabilities is a count itself.
+        let refuted = if steps { None } else { shares.refutation(request, limits, (unexplained, full.is_some())) };
+        match refuted {
+            Some(refutation) => Self::counted(request, Some(refutation)),
+            None => Some(Self { shares, law: Some(whole), full, points: None }),
+        }
     }
 
-    fn counted(problem: &Problem, outcome: &Outcome, c: usize, seed: u64) -> Option<Self> {
-        let Counted { beyond: [below, above], quantiles, points } = counted(problem, outcome, (c, seed), QUANTILES)?;
-        Some(Self {
-            branch: Branch::Sampled,
-            counted: Some(points),
-            steps: false,
-            below,
-            above,
-            quantiles: Some(quantiles),
-        })
+    /// Points in place of a law that could not be computed, or is refuted.
+    fn counted(request: LawRequest<'_>, refuted: Option<LawRefutation>) -> Option<Self> {
+        let LawRequest { problem, outcome, c, seed, .. } = request;
+        let points = counted::points(problem, outcome, (c, seed), (counted::POINTS, None))?;
+        let limits = (problem.characteristics()[c].limits(), problem.kept_limits(c));
+        let Counted { beyond: [below, above], quantiles, points: count } = counted::counted(&points, limits, QUANTILES);
+        let (branch, counted, quantiles) = (Branch::Sampled, Some(count), Some(quantiles));
+        let shares = SurfaceShares { branch, counted, refuted, steps: false, below, above, quantiles };
+        Some(Self { shares, law: None, full: None, points: Some(points) })
+    }
+
+    /// Returns the law of the quantiles.
+    fn of_quantiles(&self) -> Option<&SurfaceLaw> {
+        self.full.as_ref().or(self.law.as_ref())
+    }
+
+    /// Quantiles with these tails and probabilities, at most one half each, by a law that has passed its tests; None where one of them is unknown.
+    pub(super) fn quantiles(&self, fit: Option<&Law>, of: &[(LawTail, f64)]) -> Option<Vec<LawFigure>> {
+        let law = self.of_quantiles()?;
+        let found = law.quantiles(&sought(law, fit, of)).into_iter();
+        found.map(|figure| Some(figure).filter(|figure| figure.value.is_finite())).collect()
+    }
+
+    /// Returns the density as a table, `[y, density, error]`; None where values are steps.
+    pub(super) fn density(&self) -> Option<Vec<[f64; 3]>> {
+        match (&self.law, &self.points) {
+            (Some(law), _) => density(law, self.shares.quantiles.as_ref()),
+            (None, Some(points)) if self.shares.refuted.is_some() => counted::density(points, FEW_PLACES),
+            (None, _) => None,
+        }
+    }
+
+    /// Points in place of a law whose quantiles give no coverage intervals.
+    pub(super) fn without(request: LawRequest<'_>, faulty: &FaultyQuantiles) -> Option<Self> {
+        let mut counted = Self::counted(request, None)?;
+        if let (FaultyQuantiles::Fall(p, y), Some(points)) = (faulty, &counted.points) {
+            counted.shares.refuted = Some(LawGuard::new(points, 0.0).refutation(LawTest::Monotone, *y, *p));
+        }
+        Some(counted)
+    }
+}
+
+impl SurfaceShares {
+    /// Tests shares and quantiles by points of the surface and by the sample of the model. Quantiles with an unexplained variance that the
+    /// shares leave to that sample are tested `apart` from them.
+    fn refutation(
+        &self,
+        request: LawRequest<'_>,
+        limits: SpecLimits,
+        (unexplained, apart): (Option<f64>, bool),
+    ) -> Option<LawRefutation> {
+        let LawRequest { problem, outcome, c, seed, verification, .. } = request;
+        let by_sample = verification.and_then(|of| by_sample(of, limits, [self.below, self.above]));
+        if by_sample.is_some() {
+            return by_sample;
+        }
+        let points = counted::points(problem, outcome, (c, seed), (counted::TESTED, unexplained))?;
+        let guard = LawGuard::new(&points, problem.kept_limits(c).rounding());
+        let quantiles: Vec<_> = self.quantiles.iter().flat_map(|all| QUANTILES.into_iter().zip(*all)).collect();
+        let tails = [(limits.lower(), LawTail::Lower, self.below), (limits.upper(), LawTail::Upper, self.above)];
+        let tail = |(limit, tail, share): (Option<f64>, LawTail, Option<LawFigure>)| {
+            guard.tail((limit?, tail), share?, &quantiles)
+        };
+        match guard.quantiles(&quantiles) {
+            None if !apart => tails.into_iter().find_map(tail),
+            found => found,
+        }
     }
 
     /// The numerical error of the share within the limits.
@@ -204,28 +287,38 @@ fn has_too_many_atoms(
 /// The law of a characteristic's surface itself; None where there is no surface, or nothing but moments is known of an input.
 pub(crate) fn surface_law(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Result<SurfaceLaw, LawError>> {
     let (surrogate, inputs) = surface(problem, outcome, c, None)?;
-    Some(law_over(&surrogate, &inputs, outcome.plan.inputs().correlation()))
+    let rounding = problem.kept_limits(c).rounding();
+    Some(law_over(&surrogate, &inputs, outcome.plan.inputs().correlation(), rounding))
 }
 
-/// The law of a characteristic's surface beside what it leaves out, as its quantiles are reported; None as [`surface_law`].
-pub(super) fn full_law(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Result<SurfaceLaw, LawError>> {
-    let unexplained = outcome.climbed.as_ref().and_then(|climbed| climbed.unexplained(c));
-    let (surrogate, inputs) = surface(problem, outcome, c, unexplained)?;
-    let correlation = outcome.plan.inputs().correlation();
-    if has_too_many_atoms(&surrogate, &inputs, correlation) {
-        return None;
+/// The law of a surface; None where measured values are too many for a contour and their sums for a list.
+fn known_law(
+    surrogate: &Surrogate,
+    inputs: &[Arc<dyn Distribution>],
+    correlation: Option<&Correlation>,
+    options: &LawOptions,
+) -> Option<Result<SurfaceLaw, LawError>> {
+    match has_too_many_atoms(surrogate, inputs, correlation) {
+        true => SurfaceLaw::of_list(surrogate, inputs, correlation, options).map(Ok),
+        false => Some(SurfaceLaw::of(surrogate, inputs, correlation, options)),
     }
-    let limits = problem.characteristics()[c].limits();
-    Some(law(&surrogate, &inputs, correlation, (points(&surrogate), limits.exist())))
 }
 
-/// The law of a surface over these inputs, with as many points as reports take.
+/// Without limits a tail has no call for twelve digits: quantiles of trees of products are those of points.
+fn options(problem: &Problem, c: usize, surrogate: &Surrogate) -> LawOptions {
+    let (trees, kept) = (problem.characteristics()[c].limits().exist(), problem.kept_limits(c));
+    LawOptions { points: points(surrogate), trees, rounding: kept.rounding(), ..LawOptions::default() }
+}
+
+/// The law of a surface over these inputs, with as many points as reports take, whose values rounding moves by no more than this.
 pub(crate) fn law_over(
     surrogate: &Surrogate,
     inputs: &[Arc<dyn Distribution>],
     correlation: Option<&Correlation>,
+    rounding: f64,
 ) -> Result<SurfaceLaw, LawError> {
-    law(surrogate, inputs, correlation, (points(surrogate), true))
+    let options = LawOptions { points: points(surrogate), trees: true, rounding, ..LawOptions::default() };
+    SurfaceLaw::of(surrogate, inputs, correlation, &options)
 }
 
 /// A surface and the distributions of its inputs, beside a variance that it leaves out.
@@ -261,18 +354,9 @@ pub(super) fn with(
     (surrogate, inputs)
 }
 
-fn law(
-    surrogate: &Surrogate,
-    inputs: &[Arc<dyn Distribution>],
-    correlation: Option<&Correlation>,
-    (points, trees): (usize, bool),
-) -> Result<SurfaceLaw, LawError> {
-    SurfaceLaw::of(surrogate, inputs, correlation, &LawOptions { points, trees, ..LawOptions::default() })
-}
-
 /// The density at places from one far quantile to the other, `[y, density, error]`; None where its values are steps, and where points are
 /// drawn of which none can be integrated.
-pub(super) fn density(law: &SurfaceLaw, quantiles: Option<&[LawFigure; 7]>) -> Option<Vec<[f64; 3]>> {
+fn density(law: &SurfaceLaw, quantiles: Option<&[LawFigure; 7]>) -> Option<Vec<[f64; 3]>> {
     if law.is_step_function() {
         return None;
     }
@@ -305,12 +389,6 @@ fn quantiles(law: &SurfaceLaw, fit: Option<&Law>) -> Option<[LawFigure; 7]> {
     found.try_into().ok().filter(|_| known)
 }
 
-/// Quantiles with these tails and probabilities, at most one half each; None where one of them is unknown.
-pub(super) fn quantiles_at(law: &SurfaceLaw, fit: Option<&Law>, of: &[(LawTail, f64)]) -> Option<Vec<f64>> {
-    let found = law.quantiles(&sought(law, fit, of)).into_iter();
-    found.map(|figure| Some(figure.value).filter(|value| value.is_finite())).collect()
-}
-
 fn sought(law: &SurfaceLaw, fit: Option<&Law>, of: &[(LawTail, f64)]) -> Vec<Sought> {
     let normal = || Pearson::normal(law.mean(), law.sigma()).ok();
     let start = match fit {
@@ -334,8 +412,11 @@ fn sought(law: &SurfaceLaw, fit: Option<&Law>, of: &[(LawTail, f64)]) -> Vec<Sou
 pub(super) struct SurfaceLawShape {
     /// `exact`, `single` or `sampled`: how it is computed.
     branch: &'static str,
-    /// Points of the surface at which the law was counted, where it could not be computed; null where it was.
+    /// Points of the surface at which the law was counted, where it could not be computed or is refuted; null where it was computed.
     counted_points: Option<usize>,
+    /// The contradiction for which points took the place of the law; null where there is none.
+    #[cfg_attr(feature = "schema", schemars(with = "Option<super::law_guard::LawRefutationShape>"))]
+    refuted: Option<LawRefutation>,
     /// Whether the law is a step function, because every input that counts has measured values only.
     step_function: bool,
     /// The share within the limits; null without any.
@@ -361,6 +442,7 @@ impl Serialize for SurfaceShares {
                 Branch::Sampled => "sampled",
             },
             counted_points: self.counted,
+            refuted: self.refuted,
             step_function: self.steps,
             yield_: self.yield_(),
             ppm_below: ppm(self.below),

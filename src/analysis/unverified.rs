@@ -12,19 +12,19 @@
 use super::CharacteristicAnalysis;
 use sensitol_numeric::law::{LawTail, SurfaceLaw};
 
-/// The error of the share outside of the limits; None where the error of a moment is not known.
-pub(super) fn error_of_shares(one: &CharacteristicAnalysis, law: &SurfaceLaw) -> Option<f64> {
+/// The errors of the shares below and above the limits, 0 without that limit; None where the error of a moment is not known.
+pub(super) fn error_of_shares(one: &CharacteristicAnalysis, law: &SurfaceLaw) -> Option<[f64; 2]> {
     let estimate = one.error_estimate.as_ref()?;
     let errors = [estimate.mean?, estimate.sigma?, estimate.skewness?, estimate.kurtosis?];
     let limits = one.characteristic.limits();
     let sides = [(limits.lower(), LawTail::Lower), (limits.upper(), LawTail::Upper)];
-    let moved = sides.iter().filter_map(|&(limit, tail)| {
-        let limit = limit?;
+    let moved = |(limit, tail): (Option<f64>, LawTail)| {
+        let Some(limit) = limit else { return 0.0 };
         let shift = shift(limit, [law.mean(), law.sigma()], errors);
         let towards = limit + (law.mean() - limit).clamp(-shift, shift);
-        Some((law.tail(towards, tail).value - law.tail(limit, tail).value).abs())
-    });
-    Some(moved.fold(0.0, libm::hypot))
+        (law.tail(towards, tail).value - law.tail(limit, tail).value).abs()
+    };
+    Some(sides.map(moved))
 }
 
 /// How far the errors of mean, sigma, skewness and kurtosis move the quantile that lies at a limit.

@@ -8,18 +8,17 @@ use std::sync::Arc;
 
 use super::CharacteristicAnalysis;
 use super::errors::of_yield;
-use super::interactions::knows_all_pairs;
 use super::verified::{TRUSTED, UNTRUSTED, VarianceShare, Verification, VerificationKind};
 use super::wanted::{MORE, PART};
 use crate::assembly::{EvaluationError, NonRepeatable, Run};
-use crate::method::{ErrorEstimate, ErrorSource, Method, Options, Order, Outcome, interpolated};
+use crate::method::{ErrorEstimate, ErrorSource, Method, Options, Outcome, interpolated};
 use crate::problem::Problem;
 use crate::summary::RunSummary;
 use crate::verification::{
-    CORE, Checked, CheckedFigures, Crossing, SampledFigures, Target, Verified, most_points, most_points_of_shares,
+    Checked, CheckedFigures, SampledFigures, Target, Verified, core_within, most_points, most_points_of_shares,
     unexplained, variance_shares_during, verify_by_checks, verify_characteristic,
 };
-use crate::warning::{Change, Warning};
+use crate::warning::Warning;
 use sensitol_numeric::capability::{Capability, Law};
 use sensitol_numeric::moments::Moments;
 use sensitol_numeric::parallel::prelude::*;
@@ -37,8 +36,6 @@ const MATTERS: f64 = 0.01;
 const AGREES: f64 = 2.0;
 /// An error of sigma above this part of it says that the surface does not follow the model.
 const UNKNOWN: f64 = 0.1;
-/// A switch is worth a warning from one assembly in ten million on.
-const SELDOM: f64 = 1e-7;
 /// The share of the variance of a correlated dimension of which a method that integrates knows none: any between those from which on an
 /// input is not idle and from which on it gets check points of its own, 1e-4 and 0.03.
 const ORDINARY: f64 = 0.01;
@@ -61,57 +58,50 @@ pub(super) fn verify(
         return Default::default();
     }
     let open: Vec<usize> =
-        (0..characteristics.len()).filter(|&c| !proven(problem, outcome, c, &mut characteristics[c])).collect();
+        (0..characteristics.len()).filter(|&c| !proven(outcome, c, &mut characteristics[c])).collect();
     if open.is_empty() {
         return Default::default();
     }
     // A budget that does not reach for a sample of each characteristic reaches for check points.
     let each = left.map(|left| left / open.len());
-    if costly || each.is_some_and(|each| each < most_points(CORE)) {
+    let cores: Option<Vec<usize>> = open.iter().map(|&c| core_within(problem, c, each)).collect();
+    let Some(cores) = cores.filter(|_| !costly) else {
         return check(problem, outcome, options, most.min(left.unwrap_or(usize::MAX)), (&open, characteristics), run);
-    }
+    };
     let seed = options.seed.unwrap_or(Options::SEED);
     // A long formula takes a while for each of some 45 000 points: what is left has no verification, and the report says so.
     let one = |(c, one): (usize, &mut CharacteristicAnalysis)| {
-        !open.contains(&c) || sample(problem, outcome, (options, each), c, one, (seed, run))
+        let core = open.binary_search(&c).map(|place| cores[place]);
+        core.map_or(true, |core| sample(problem, outcome, (options, each), (c, core), one, (seed, run)))
     };
     let done: Vec<bool> = characteristics.par_iter_mut().enumerate().map(one).collect();
     let stopped = done.contains(&false).then(|| run.why_open());
     (RunSummary { stopped, ..RunSummary::default() }, Vec::new())
 }
 
-/// Whether the formula's own degree proves that the surface is the function; then its errors are roundings.
-fn proven(problem: &Problem, outcome: &Outcome, c: usize, one: &mut CharacteristicAnalysis) -> bool {
-    let varying: Vec<bool> = problem.dimensions().iter().map(|dimension| dimension.sigma() > 0.0).collect();
-    let Some(degree) = problem.function().degree(problem.outputs()[c], &varying).filter(|&degree| degree <= 2) else {
-        return false;
-    };
-    let (fitted, plan) = (&outcome.fitted[c], &outcome.plan);
-    let surrogate = fitted.surrogate.as_ref().filter(|surrogate| surrogate.parts.iter().all(Option::is_some));
-    let (Some(surrogate), Some(moments)) = (surrogate, one.moments) else { return false };
-    let exact = fitted.integrated.is_none() && one.sampled.is_none() && one.model_sampled.is_none();
-    let order = if outcome.order == Order::First { 1 } else { 2 };
-    let parts = plan.varying().iter().filter(|&&d| plan.depends(c, d));
-    let bent = |&d: &usize| fitted.parts[d].is_some_and(|part| part.degree() >= 2);
-    let complete = degree < 2 || order == 2 && knows_all_pairs(outcome, c) && parts.clone().all(bent);
-    if !exact || !complete || one.without_value > 0 {
+/// Whether the surface is proven to be the function; then its errors are roundings.
+fn proven(outcome: &Outcome, c: usize, one: &mut CharacteristicAnalysis) -> bool {
+    let (Some(proof), Some(moments)) = (outcome.fitted[c].proof, one.moments) else { return false };
+    let sampled = one.sampled.is_some() || one.model_sampled.is_some();
+    if sampled || one.without_value > 0 {
         return false;
     }
-    let rounding = ROUNDINGS * f64::EPSILON * surrogate.centre.abs() * (surrogate.parts.len() as f64 + 1.0).sqrt();
-    let part = if moments.sigma() > 0.0 { rounding / moments.sigma() } else { 0.0 };
+    let sigma = moments.sigma();
+    let [of_mean, of_sigma] = [proof.mean, proof.sigma + f64::EPSILON * sigma].map(|rounding| ROUNDINGS * rounding);
+    let part = if sigma > 0.0 { of_sigma / sigma } else { 0.0 };
     let known = |error: f64| moments.skewness().is_some().then_some(error);
     let estimate = ErrorEstimate {
-        mean: Some(rounding),
-        sigma: Some(rounding),
+        mean: Some(of_mean),
+        sigma: Some(of_sigma),
         skewness: known(4.0 * part),
         kurtosis: known(8.0 * part),
         yield_: None,
-        sources: vec![ErrorSource::Proven { degree }],
+        sources: vec![ErrorSource::Proven { degree: proof.degree }],
     };
     let yield_ = of_yield(&estimate, &moments, one.characteristic.limits());
     one.error_estimate = Some(ErrorEstimate { yield_, ..estimate });
     one.verification = Some(Verification {
-        kind: VerificationKind::Exact { degree },
+        kind: VerificationKind::Exact { degree: proof.degree },
         points: 0,
         failed: 0,
         valid: None,
@@ -119,6 +109,7 @@ fn proven(problem: &Problem, outcome: &Outcome, c: usize, one: &mut Characterist
         figures: [None; 4],
         yield_: None,
         beyond: [None; 2],
+        point: 0.0,
         difference: None,
         switches: Some(Vec::new()),
         unseen: None,
@@ -130,17 +121,16 @@ fn proven(problem: &Problem, outcome: &Outcome, c: usize, one: &mut Characterist
     true
 }
 
-/// Verifies one characteristic by a sample, with no more evaluations than are left for it; false where the run was stopped before there
+/// Verifies one characteristic by a sample with `core` points in its core, with no more evaluations than are left for it; false where the run was stopped before there
 /// was one.
 fn sample(
     problem: &Problem,
     outcome: &Outcome,
     (options, left): (&Options, Option<usize>),
-    c: usize,
+    (c, mut core): (usize, usize),
     one: &mut CharacteristicAnalysis,
     (seed, run): (u64, &Run<'_>),
 ) -> bool {
-    let mut core = CORE;
     let surrogate = outcome.fitted[c].surrogate.as_ref();
     let beside = surrogate.map(|surrogate| (outcome.plan.varying(), surrogate));
     let Some(mut found) = verify_characteristic(problem, c, (seed, core), beside, run) else { return false };
@@ -195,6 +185,7 @@ fn sample(
         figures: [found.mean, found.sigma, found.skewness, found.kurtosis],
         yield_: found.yield_,
         beyond: found.beyond,
+        point: found.point,
         difference: found.difference,
         switches: found.switches.filter(|found| {
             !found.is_empty() || problem.function().switches(problem.outputs()[c]).is_some_and(|of| of.complete)
@@ -203,7 +194,11 @@ fn sample(
         shares,
         tails: found.sample.as_ref().filter(|_| limits.exist()).map(|sample| sample.tails(sides)),
         replaced,
-        sample: found.sample.filter(|_| one.characteristic.inspection().is_some()).map(Arc::new),
+        // For the risks of an inspection, and for coverage intervals.
+        sample: found
+            .sample
+            .filter(|_| one.characteristic.inspection().is_some() || options.coverage.is_some())
+            .map(Arc::new),
     });
     true
 }
@@ -312,6 +307,7 @@ fn judge(one: &mut CharacteristicAnalysis, checked: &Checked, found: &CheckedFig
         figures: [None; 4],
         yield_: found.yield_,
         beyond: found.beyond,
+        point: 0.0,
         difference: None,
         switches: None,
         unseen: Some(checked.unseen()),
@@ -331,19 +327,8 @@ pub(super) fn warnings(one: &CharacteristicAnalysis, wanted: Option<f64>) -> Vec
         let (failed, points) = (verification.failed, verification.points);
         warnings.push(Warning::DomainEdgeWithin { characteristic: characteristic(), failed, points });
     }
-    for found in verification.switches.iter().flatten().filter(|found| found.probability >= SELDOM) {
-        let (switch, probability) = (found.name.clone(), found.probability);
-        let change = match found.crossing {
-            Crossing::Kink => Change::Kink,
-            Crossing::Jump => Change::Jump,
-            Crossing::Edge => Change::Edge,
-            Crossing::Pole => {
-                warnings.push(Warning::Pole { characteristic: characteristic(), switch, probability });
-                continue;
-            }
-        };
-        warnings.push(Warning::Switch { characteristic: characteristic(), switch, change, probability });
-    }
+    let switches = verification.switches.iter().flatten();
+    warnings.extend(switches.filter_map(|found| found.warning(&characteristic(), None)));
     let Some(moments) = one.moments else { return warnings };
     let sigma = moments.sigma();
     let error = one.error_estimate.as_ref().and_then(|estimate| estimate.sigma);

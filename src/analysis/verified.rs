@@ -5,6 +5,7 @@ use std::sync::Arc;
 use serde::{Serialize, Serializer};
 
 use crate::verification::{FoundSwitch, Share, Tails, Verified, WeightedSample};
+use sensitol_numeric::power::{Rescale, Rescaling, Unknown};
 use sensitol_numeric::shape::{Four, Sides, through};
 
 /// How figures were verified.
@@ -56,6 +57,9 @@ pub struct Verification {
     /// The shares beyond the lower and the upper limit.
     #[serde(skip)]
     pub beyond: [Option<Verified>; 2],
+    /// The weight of one point of a sample.
+    #[serde(skip)]
+    pub(crate) point: f64,
     /// How much more of the model than of its surface lies within the limits, below and above them; None without a sample of both.
     pub difference: Option<[Verified; 3]>,
     /// The switches that are met; None where the model does not tell where it changes its form.
@@ -85,6 +89,20 @@ pub struct VarianceShare {
     /// With all interactions in which it has a part.
     pub total: Share,
 }
+
+impl Rescale for Verification {
+    fn rescale(&mut self, by: &mut Rescaling) {
+        let [mean, sigma, ..] = &mut self.figures;
+        mean.rescale(by);
+        sigma.rescale(by);
+        self.tails.rescale(by);
+        if let Some(sample) = &mut self.sample {
+            Arc::make_mut(sample).rescale(by);
+        }
+    }
+}
+
+impl Unknown for Verification {}
 
 impl Verification {
     /// In one line.

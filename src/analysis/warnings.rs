@@ -2,7 +2,9 @@
 
 use std::collections::HashSet;
 
+use super::characteristic::curvature;
 use super::interactions::missing;
+use super::law_guard::LawRefutation;
 use super::{CharacteristicAnalysis, Missing, trust};
 use crate::evaluation::history;
 use crate::method::{Basis, Lacking, Order, Outcome};
@@ -60,6 +62,7 @@ pub(super) fn of(
     for (c, analysis) in characteristics.iter().enumerate() {
         warnings.extend(failed_points(problem, outcome, c));
         warnings.extend(overflow(outcome, c, analysis));
+        warnings.extend(unrepresentable(outcome, c, analysis));
         match outcome.basis {
             Basis::Exact | Basis::Differences => warnings.extend(lost(problem, outcome, c)),
             Basis::LeastSquares | Basis::Quadrature => warnings.extend(lost_moments(problem, outcome, c)),
@@ -71,11 +74,13 @@ pub(super) fn of(
         warnings.extend(trust::of(problem, outcome, c, analysis));
         let wanted = outcome.climbed.as_ref().map(|climbed| climbed.accuracy);
         warnings.extend(super::verification::warnings(analysis, wanted));
+        warnings.extend(refuted_law(analysis));
         warnings.extend(not_proven(analysis));
     }
     let possible = outcome.plan.possible_pairs();
     // Pairs that `auto` did not examine show in its comparison with the model.
-    if outcome.order == Order::Second && outcome.climbed.is_none() && outcome.pairs.len() < possible {
+    let open = outcome.fitted.iter().enumerate().any(|(c, fitted)| fitted.known_pairs < outcome.plan.pairs_of(c));
+    if outcome.order == Order::Second && outcome.climbed.is_none() && outcome.pairs.len() < possible && open {
         warnings.push(Warning::PairsNotExamined { examined: outcome.pairs.len(), possible });
     }
     aggregated(warnings)
@@ -131,6 +136,18 @@ fn overflow(outcome: &Outcome, c: usize, analysis: &CharacteristicAnalysis) -> O
     let largest = outcome.evaluated.known.values(c).chain(moments).fold(0.0, |most: f64, value| most.max(value.abs()));
     let characteristic = analysis.characteristic.name().to_owned();
     (largest > LARGEST).then_some(Warning::Overflow { characteristic, value: largest, limit: LARGEST })
+}
+
+/// Second derivatives that are known and that a double cannot hold: by dimensions of extreme size.
+fn unrepresentable(outcome: &Outcome, c: usize, analysis: &CharacteristicAnalysis) -> Option<Warning> {
+    let lost = analysis
+        .sensitivities
+        .iter()
+        .enumerate()
+        .any(|(d, one)| one.second.is_none() && curvature(outcome, c, d).is_some())
+        || analysis.interactions.iter().any(|pair| pair.mixed.is_none() && pair.missing.is_none());
+    let characteristic = analysis.characteristic.name().to_owned();
+    lost.then_some(Warning::Unrepresentable { characteristic })
 }
 
 /// A point in words: what is not at its mean.
@@ -314,6 +331,13 @@ fn doubtful(outcome: &Outcome, c: usize, analysis: &CharacteristicAnalysis) -> V
         }
     }
     warnings
+}
+
+/// A law of the surface that points contradict.
+fn refuted_law(analysis: &CharacteristicAnalysis) -> Option<Warning> {
+    let LawRefutation { test, limit, law, counted, error } = analysis.surface_law?.refuted?;
+    let characteristic = analysis.characteristic.name().to_owned();
+    Some(Warning::SurfaceLawRefuted { characteristic, test: test.name(), limit, law, counted, error })
 }
 
 /// Extremes that were searched only.

@@ -1,6 +1,7 @@
 //! Certain bounds of an output over a box.
 
 use super::formula::Interval;
+use sensitol_numeric::power::Power;
 
 /// An enclosure of an output over a box, and of its first derivatives.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,6 +14,11 @@ pub struct Bounds {
 }
 
 impl Bounds {
+    /// Of the output times a power of two.
+    pub(crate) fn times(&self, power: Power) -> Self {
+        Self { value: self.value.times(power), slopes: self.slopes.iter().map(|slope| slope.times(power)).collect() }
+    }
+
     /// Of the output with its sign changed.
     pub(crate) fn negated(&self) -> Self {
         Self { value: self.value.negate(), slopes: self.slopes.iter().map(Interval::negate).collect() }

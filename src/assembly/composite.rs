@@ -14,8 +14,8 @@ use super::formula::{Role, UnitFinding};
 use super::implicit::{Anchor, Assembler, AssemblyFailure, Conditions, ConditionsError};
 use super::responses::all_finite;
 use super::{
-    AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, Input, ModelInfo, Output, Points, Request,
-    Responses, Run, Signature, Switches, in_blocks,
+    AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, Input, ModelInfo, Output, Points, Polynomial,
+    Request, Responses, Run, Signature, Switches, in_blocks,
 };
 use crate::warning::Warning;
 use sensitol_numeric::unit::Unit;
@@ -402,6 +402,22 @@ impl AssemblyFunction for Composite {
         }
     }
 
+    /// Of formulas of the dimensions alone.
+    fn magnitudes(&self, outputs: &[usize], point: &[f64]) -> Vec<Option<f64>> {
+        let alone = |&output: &usize| {
+            let Needs { answers, unknowns, .. } = self.needs(self.outputs[output]);
+            match self.outputs[output] {
+                Origin::Formula(formula) if answers.is_empty() && !unknowns => Some(formula),
+                _ => None,
+            }
+        };
+        let formulas: Vec<Option<usize>> = outputs.iter().map(alone).collect();
+        let known: Vec<usize> = formulas.iter().flatten().copied().collect();
+        let mut magnitudes = self.formulas.magnitudes(&known, |index| point[index]).into_iter();
+        let of = |formula: Option<usize>| formula.and_then(|_| magnitudes.next()).filter(|terms| terms.is_finite());
+        formulas.into_iter().map(of).collect()
+    }
+
     fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
         let origins = self.origins(request.outputs);
         let needs: Vec<Needs> = origins.iter().map(|&origin| self.needs(origin)).collect();
@@ -521,7 +537,17 @@ impl AssemblyFunction for Composite {
     }
 
     fn derivatives(&self, outputs: &[usize], directions: &Directions<'_>) -> Vec<Option<Derivatives>> {
-        self.exact(outputs, directions)
+        self.exact(outputs, directions, None)
+    }
+
+    fn derivatives_per(
+        &self,
+        outputs: &[usize],
+        directions: &Directions<'_>,
+        exponents: &[i32],
+    ) -> Vec<Option<Derivatives>> {
+        let ordinary = exponents.iter().all(|&exponent| exponent == 0);
+        self.exact(outputs, directions, Some(exponents).filter(|_| !ordinary))
     }
 
     fn sent(&self, points: &Points) -> Option<(Vec<Input>, Points)> {
@@ -542,6 +568,10 @@ impl AssemblyFunction for Composite {
 
     fn degree(&self, output: usize, varying: &[bool]) -> Option<u32> {
         self.degree_of(output, varying)
+    }
+
+    fn polynomial(&self, output: usize, centre: &[f64], scale: &[f64]) -> Option<Polynomial> {
+        self.polynomial_of(output, centre, scale)
     }
 
     fn account(&self) -> Option<EvaluatorAccount> {

@@ -19,6 +19,7 @@ mod evaluator_account;
 pub mod formula;
 mod given;
 pub mod implicit;
+mod polynomial;
 mod process_error;
 mod request;
 mod responses;
@@ -37,6 +38,8 @@ pub use error::{EvaluationError, NoColumn};
 pub use evaluator_account::{EvaluatorAccount, OutdatedJournal};
 pub use given::GivenAnswers;
 pub use given::Table;
+#[doc(hidden)]
+pub use polynomial::Polynomial;
 pub use process_error::{Exit, ProcessError, ProcessFault, Quoted, StderrTail};
 pub use request::{Points, Request};
 pub use responses::Responses;
@@ -47,6 +50,7 @@ pub(crate) use states::{State, States};
 pub use switch::{Switch, SwitchKind, Switches};
 
 use crate::warning::Warning;
+use sensitol_numeric::power::Power;
 
 /// The black box: object-safe, batch first, told what is asked, with an error per point and output.
 pub trait AssemblyFunction: Send + Sync {
@@ -68,6 +72,13 @@ pub trait AssemblyFunction: Send + Sync {
     fn bounds(&self, output: usize, region: &[[f64; 2]]) -> Option<Bounds> {
         let _ = (output, region);
         None
+    }
+
+    /// The sums of the magnitudes of the terms of `outputs` at a point, in the order asked: an output is rounded by parts of them. None for
+    /// an output of which the function does not know its terms, and where it has no value. This is not an evaluation.
+    fn magnitudes(&self, outputs: &[usize], point: &[f64]) -> Vec<Option<f64>> {
+        let _ = point;
+        vec![None; outputs.len()]
     }
 
     /// Answers `request.points` for `request.outputs` into `out`, whose rows are the points and whose columns are the asked
@@ -102,6 +113,21 @@ pub trait AssemblyFunction: Send + Sync {
         vec![None; outputs.len()]
     }
 
+    /// [`derivatives`](Self::derivatives) per unit of `2^exponent` of each input, so that those by inputs of extreme size are of ordinary size.
+    ///
+    /// Shapes: `exponents` has an element for every input. By default the derivatives per unit of 1, multiplied.
+    #[doc(hidden)]
+    fn derivatives_per(
+        &self,
+        outputs: &[usize],
+        directions: &Directions<'_>,
+        exponents: &[i32],
+    ) -> Vec<Option<Derivatives>> {
+        let unit = |input: usize| Power::of_exponent(exponents[input]);
+        let per = |found: Option<Derivatives>| found.map(|found| found.per(directions, &unit));
+        self.derivatives(outputs, directions).into_iter().map(per).collect()
+    }
+
     /// The values that an external model is sent at these points, each point once, with the names of its inputs; None where it is
     /// sent the points themselves. This is not an evaluation.
     fn sent(&self, points: &Points) -> Option<(Vec<Input>, Points)> {
@@ -134,6 +160,16 @@ pub trait AssemblyFunction: Send + Sync {
     /// or that is not known. A certainty, which no evaluation gives.
     fn degree(&self, output: usize, varying: &[bool]) -> Option<u32> {
         let _ = (output, varying);
+        None
+    }
+
+    /// An output as a polynomial in `u`, where the inputs are `centre + scale u`: one with the scale 0 is fixed. None where it is not a
+    /// polynomial of at most the fourth degree, or that is not known. A certainty, which no evaluation gives.
+    ///
+    /// Shapes: `centre` and `scale` have a value for every input.
+    #[doc(hidden)]
+    fn polynomial(&self, output: usize, centre: &[f64], scale: &[f64]) -> Option<Polynomial> {
+        let _ = (output, centre, scale);
         None
     }
 

@@ -6,6 +6,7 @@ use std::time::Duration;
 use super::EvaluationError;
 use super::NonRepeatable;
 use crate::summary::RunSummary;
+use sensitol_numeric::power::Power;
 
 /// Answers of a batch: a column per asked output, and an error wherever there is no value.
 ///
@@ -245,6 +246,19 @@ impl Responses {
         self.values[start..start + self.rows].iter_mut().for_each(|value| *value *= factor);
         let of_output = self.gradients.iter_mut().filter(|((_, of), _)| *of == output);
         of_output.for_each(|(_, gradient)| gradient.iter_mut().for_each(|slope| *slope *= factor));
+    }
+
+    /// Multiplies an output, and its slopes, by a power of two. A value that becomes infinite is an error.
+    pub(crate) fn multiply_by(&mut self, output: usize, power: Power) {
+        let start = output * self.rows;
+        let column = &mut self.values[start..start + self.rows];
+        column.iter_mut().for_each(|value| *value = power.times(*value));
+        let infinite: Vec<usize> = (0..self.rows).filter(|&row| self.values[start + row].is_infinite()).collect();
+        for row in infinite {
+            self.fail(row, output, EvaluationError::NotFinite { value: self.values[start + row] });
+        }
+        let of_output = self.gradients.iter_mut().filter(|((_, of), _)| *of == output);
+        of_output.for_each(|(_, gradient)| gradient.iter_mut().for_each(|slope| *slope = power.times(*slope)));
     }
 
     /// Takes over the answers of the rows from `first` on.

@@ -7,7 +7,7 @@ use super::evaluator_account::EvaluatorAccount;
 use super::request::bits;
 use super::{
     AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, ModelInfo, NonRepeatable, Output, Points,
-    Request, Responses, Run, Signature, Switches,
+    Polynomial, Request, Responses, Run, Signature, Switches,
 };
 use crate::warning::Warning;
 
@@ -95,6 +95,24 @@ impl State {
     }
 }
 
+impl States {
+    /// Derivatives of outputs, each by what `derivatives` has of its state at the point there.
+    fn derivatives_of(
+        &self,
+        outputs: &[usize],
+        directions: &Directions<'_>,
+        derivatives: impl Fn(&State, &[usize], &Directions<'_>) -> Vec<Option<Derivatives>>,
+    ) -> Vec<Option<Derivatives>> {
+        let mut all = vec![None; outputs.len()];
+        for (state, asked, own) in self.by_state(outputs) {
+            let point: Vec<f64> = directions.point.iter().zip(&state.moved).map(|(x, by)| x + by).collect();
+            let found = derivatives(state, &own, &Directions { point: &point, ..*directions });
+            asked.into_iter().zip(found).for_each(|(place, found)| all[place] = found);
+        }
+        all
+    }
+}
+
 impl AssemblyFunction for States {
     fn signature(&self) -> &Signature {
         &self.signature
@@ -112,6 +130,16 @@ impl AssemblyFunction for States {
         let (state, own) = self.of(output);
         let moved: Vec<[f64; 2]> = region.iter().zip(&state.moved).map(|(ends, by)| ends.map(|end| end + by)).collect();
         state.function.bounds(own, &moved)
+    }
+
+    fn magnitudes(&self, outputs: &[usize], point: &[f64]) -> Vec<Option<f64>> {
+        let mut found = vec![None; outputs.len()];
+        for (state, asked, own) in self.by_state(outputs) {
+            let moved: Vec<f64> = point.iter().zip(&state.moved).map(|(x, by)| x + by).collect();
+            let magnitudes = state.function.magnitudes(&own, &moved);
+            asked.into_iter().zip(magnitudes).for_each(|(place, magnitude)| found[place] = magnitude);
+        }
+        found
     }
 
     fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
@@ -152,13 +180,18 @@ impl AssemblyFunction for States {
     }
 
     fn derivatives(&self, outputs: &[usize], directions: &Directions<'_>) -> Vec<Option<Derivatives>> {
-        let mut all = vec![None; outputs.len()];
-        for (state, asked, own) in self.by_state(outputs) {
-            let point: Vec<f64> = directions.point.iter().zip(&state.moved).map(|(x, by)| x + by).collect();
-            let found = state.function.derivatives(&own, &Directions { point: &point, ..*directions });
-            asked.into_iter().zip(found).for_each(|(place, found)| all[place] = found);
-        }
-        all
+        self.derivatives_of(outputs, directions, |state, own, there| state.function.derivatives(own, there))
+    }
+
+    fn derivatives_per(
+        &self,
+        outputs: &[usize],
+        directions: &Directions<'_>,
+        exponents: &[i32],
+    ) -> Vec<Option<Derivatives>> {
+        self.derivatives_of(outputs, directions, |state, own, there| {
+            state.function.derivatives_per(own, there, exponents)
+        })
     }
 
     fn switches(&self, output: usize) -> Option<Switches> {
@@ -174,6 +207,12 @@ impl AssemblyFunction for States {
     fn degree(&self, output: usize, varying: &[bool]) -> Option<u32> {
         let (state, own) = self.of(output);
         state.function.degree(own, varying)
+    }
+
+    fn polynomial(&self, output: usize, centre: &[f64], scale: &[f64]) -> Option<Polynomial> {
+        let (state, own) = self.of(output);
+        let centre: Vec<f64> = centre.iter().zip(&state.moved).map(|(x, by)| x + by).collect();
+        state.function.polynomial(own, &centre, scale)
     }
 
     fn warnings(&self, outputs: &[usize]) -> Vec<Warning> {

@@ -4,8 +4,9 @@
 //! the support of the distribution. The
 //! derivatives that the method has found say where the extremes should be; the assembly function itself says where they are.
 //!
-//! Coordinates of one position keep their circular zone, not the box about it; a proof for them would have to too, and is none.
-//! Correlation plays no part: the worst case is what can be, however rarely.
+//! Coordinates that share a zone stay within it: the disc of a position, a disc, rim or diamond of `[[joint]]`, and the rows of columns
+//! that were measured on the same parts, where no drawing gives them a tolerance. Correlation plays no part: the worst case is what can
+//! be, however rarely.
 //!
 //! 1. The surrogate is minimised and maximised over the box by coordinate search from several starts, which costs nothing.
 //!    The extremes that it finds, the vertices of the signs of the slopes, and two points elsewhere are evaluated.
@@ -27,12 +28,15 @@ mod answers;
 mod climb;
 mod model;
 mod proof;
+mod sides;
 mod start;
 mod task;
+mod zone;
 
 pub use crate::warning::Ended;
 pub use answers::Spent;
 pub(crate) use model::{Model, Region};
+pub(crate) use sides::keeps_by_proof;
 
 use answers::Answers;
 use climb::Climb;
@@ -43,6 +47,7 @@ use serde::Serialize;
 use crate::assembly::Run;
 use crate::method::Outcome;
 use crate::problem::Problem;
+use sensitol_numeric::power::rescale;
 
 /// A gain of this part of the range is none.
 const GAIN: f64 = 1e-10;
@@ -87,9 +92,15 @@ pub struct ExtremesProof {
     pub bounds: [f64; 2],
     /// Whether both of its ends are as near to the extremes as makes no difference.
     pub proven: bool,
+    /// How far either end may lie beyond a value that exists.
+    pub slack: [f64; 2],
     /// Boxes on which the formulas were evaluated in interval arithmetic; they are no evaluations.
     pub boxes: usize,
 }
+
+rescale!(Extremes { least, greatest, proof } without { evaluations, failed, failure, ended });
+rescale!(Extreme { value } without { at });
+rescale!(ExtremesProof { bounds, slack } without { proven, boxes });
 
 impl Extremes {
     /// Whether it is proven that no assembly lies beyond them.
@@ -174,17 +185,17 @@ pub fn search(problem: &Problem, outcome: &Outcome, budget: Option<usize>, run: 
 
 /// An interval that no assembly of a characteristic leaves, by interval arithmetic alone; None where its function has no bounds.
 ///
-/// `proven` says that values within `allowed` of both ends exist. Ends after 1000 boxes a side, fewer where there are more than ten
+/// `proven` says that values within `near` of both ends exist. Ends after 1000 boxes a side, fewer where there are more than ten
 /// dimensions. No evaluation.
 pub(crate) fn enclose(
     problem: &Problem,
     outcome: &Outcome,
     c: usize,
-    allowed: f64,
+    near: f64,
     run: &Run<'_>,
 ) -> Option<ExtremesProof> {
     Task::of(problem, outcome, c)
-        .enclose(problem, allowed, run)
+        .enclose(problem, near, run)
         .filter(|proof| proof.bounds.iter().all(|end| end.is_finite()))
 }
 

@@ -6,6 +6,7 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
+use super::zone::{EDGE, Zone};
 use crate::assembly::Bounds;
 use crate::assembly::formula::Interval;
 
@@ -25,72 +26,17 @@ pub(super) struct Least {
     pub(super) better: Option<Vec<f64>>,
 }
 
-/// Circular zones of some dimensions: a box counts as far as it lies within them.
-#[derive(Clone, Copy)]
-pub(super) struct Zones<'z> {
-    /// The dimensions of every zone.
-    pub(super) places: &'z [Vec<usize>],
-    /// The bands of all dimensions, whose ends are those of the zones.
-    pub(super) bands: &'z [[f64; 2]],
-}
-
-/// A box that is farther outside than rounding is left out.
-const EDGE: f64 = 1e-12;
-
-impl Zones<'_> {
-    /// Nothing is left out.
-    pub(super) const NONE: Self = Self { places: &[], bands: &[] };
-
-    /// Least and greatest distance of a box from the middle of a zone, in its radii.
-    fn reach(&self, zone: &[usize], region: &[[f64; 2]]) -> [f64; 2] {
-        let of = |&d: &usize| {
-            let [lower, upper] = self.bands[d];
-            let (centre, half) = (middle(lower, upper), 0.5 * (upper - lower));
-            let ends = region[d].map(|x| (x - centre) / half);
-            let near = if ends[0] <= 0.0 && ends[1] >= 0.0 { 0.0 } else { ends[0].abs().min(ends[1].abs()) };
-            [near, ends[0].abs().max(ends[1].abs())]
-        };
-        zone.iter().map(of).fold([0.0; 2], |[near, far], [a, b]| [libm::hypot(near, a), libm::hypot(far, b)])
-    }
-
-    fn leave_out(&self, region: &[[f64; 2]]) -> bool {
-        self.places.iter().any(|zone| self.reach(zone, region)[0] > 1.0 + EDGE)
-    }
-
-    /// The place on the edge of a zone in the direction of one outside; the point itself where it is within all zones.
-    fn nearest(&self, point: &[f64]) -> Vec<f64> {
-        let region: Region = point.iter().map(|&x| [x, x]).collect();
-        let mut within = point.to_vec();
-        for zone in self.places {
-            let radius = self.reach(zone, &region)[1];
-            if radius > 1.0 {
-                for &d in zone {
-                    let centre = middle(self.bands[d][0], self.bands[d][1]);
-                    within[d] = centre + (point[d] - centre) / (radius * (1.0 + EDGE));
-                }
-            }
-        }
-        within
-    }
-
-    /// Whether every place along a dimension of a box is within its zone.
-    fn free(&self, d: usize, region: &[[f64; 2]]) -> bool {
-        let of = |zone: &&Vec<usize>| zone.contains(&d);
-        self.places.iter().filter(of).all(|zone| self.reach(zone, region)[1] <= 1.0)
-    }
-}
-
 /// How often a box that has lost dimensions is looked at again before it is split.
 const AGAIN: usize = 4;
 
-/// Bounds the least value of `bounds` over `region`, until it is certain to be no more than `allowed` below `best`, or `limit`
-/// boxes have been looked at, or `stop` says so.
+/// Bounds the least value of `bounds` over the part of `region` within all `zones`, until it is certain to be no more than `allowed`
+/// below `best`, or `limit` boxes have been looked at, or `stop` says so.
 ///
 /// A dimension along which the value only rises or only falls is held at the end where it is least, where no zone ends before.
 pub(super) fn least(
     bounds: &dyn Fn(&[[f64; 2]]) -> Bounds,
     region: &[[f64; 2]],
-    zones: Zones<'_>,
+    zones: &[Zone],
     best: f64,
     allowed: f64,
     limit: usize,
@@ -115,7 +61,7 @@ pub(super) fn least(
 
 struct Search<'b> {
     bounds: &'b dyn Fn(&[[f64; 2]]) -> Bounds,
-    zones: Zones<'b>,
+    zones: &'b [Zone],
     best: f64,
     allowed: f64,
     stop: &'b dyn Fn() -> bool,
@@ -134,9 +80,10 @@ struct Open {
 impl Search<'_> {
     /// None when nothing in the box has a value.
     fn examine(&mut self, mut region: Region, above: f64) -> Option<Open> {
-        if self.zones.leave_out(&region) {
+        if self.zones.iter().any(|zone| zone.leaves_out(&region)) {
             return None;
         }
+        self.zones.iter().for_each(|zone| zone.shrink(&mut region));
         let mut found = self.look(&region);
         for _ in 0..AGAIN {
             if found.value.is_empty() {
@@ -150,27 +97,78 @@ impl Search<'_> {
         }
         let middle: Vec<f64> = region.iter().map(|&[lower, upper]| middle(lower, upper)).collect();
         let at = self.look(&middle.iter().map(|&x| [x, x]).collect::<Region>()).value;
-        let within = self.zones.nearest(&middle);
-        let place = |point: &[f64]| point.iter().map(|&x| [x, x]).collect::<Region>();
-        let reached = if within == middle { at } else { self.look(&place(&within)).value };
-        if reached.upper() < self.best - self.allowed {
-            self.best = reached.upper();
-            self.better = Some(within);
+        let mut within = middle.clone();
+        self.zones.iter().for_each(|zone| zone.enter(&mut within, EDGE));
+        match within == middle {
+            true => self.reach(within, at),
+            false => self.try_point(within),
         }
         let mut lower = above.max(found.value.lower());
         let mut swing = vec![f64::INFINITY; region.len()];
         if found.value.is_whole() {
-            let mut about = at;
-            for (d, slope) in found.slopes.iter().enumerate() {
-                let [from, to] =
-                    region[d].map(|x| Interval::between(x, x).subtract(&Interval::between(middle[d], middle[d])));
-                let change = slope.multiply(&Interval::between(from.lower(), to.upper()));
-                about = about.add(&change);
-                swing[d] = change.upper() - change.lower();
-            }
+            let changes: Vec<Interval> =
+                (0..region.len()).map(|d| change(&region, &middle, &found.slopes, d)).collect();
+            swing = changes.iter().map(|change| change.upper() - change.lower()).collect();
+            let about = changes.iter().fold(at, |about, change| about.add(change));
             lower = lower.max(about.lower());
+            if !self.zones.is_empty() {
+                lower = lower.max(self.over_zones(&region, &middle, at, (&found.slopes, &changes)));
+            }
         }
         Some(Open { lower, region, swing })
+    }
+
+    /// The bound of a tangent plane at the middle of a box over the zones, and of how far slopes differ from its own.
+    fn over_zones(
+        &mut self,
+        region: &[[f64; 2]],
+        middle: &[f64],
+        at: Interval,
+        (slopes, changes): (&[Interval], &[Interval]),
+    ) -> f64 {
+        let mut about = at;
+        let mut lowest = middle.to_vec();
+        let zones = self.zones;
+        for (d, change) in changes.iter().enumerate() {
+            if !zones.iter().any(|zone| zone.places().contains(&d)) {
+                about = about.add(change);
+                let falls = slopes[d].lower() + slopes[d].upper() > 0.0;
+                lowest[d] = region[d][usize::from(!falls)];
+            }
+        }
+        for zone in zones {
+            let own = |&d: &usize| 0.5 * slopes[d].lower() + 0.5 * slopes[d].upper();
+            let plane: Vec<f64> = zone.places().iter().map(own).collect();
+            if !plane.iter().all(|slope| slope.is_finite()) {
+                return f64::NEG_INFINITY;
+            }
+            for (&d, &slope) in zone.places().iter().zip(&plane) {
+                let apart = slopes[d].subtract(&Interval::between(slope, slope));
+                about = about.add(&apart.multiply(&offsets(region[d], middle[d])));
+            }
+            let (bound, place) = zone.lowest(&plane, middle, region);
+            // No row lies within.
+            if place.is_empty() {
+                return f64::INFINITY;
+            }
+            about = about.add(&Interval::between(bound, bound));
+            zone.places().iter().zip(place).for_each(|(&d, x)| lowest[d] = x);
+        }
+        self.try_point(lowest);
+        about.lower()
+    }
+
+    /// The value at a point within all zones, which may be less than what was believed to be the least.
+    fn try_point(&mut self, point: Vec<f64>) {
+        let value = self.look(&point.iter().map(|&x| [x, x]).collect::<Region>()).value;
+        self.reach(point, value);
+    }
+
+    fn reach(&mut self, point: Vec<f64>, value: Interval) {
+        if value.upper() < self.best - self.allowed {
+            self.best = value.upper();
+            self.better = Some(point);
+        }
     }
 
     fn look(&mut self, region: &[[f64; 2]]) -> Bounds {
@@ -179,10 +177,21 @@ impl Search<'_> {
     }
 }
 
+/// How far the places along a side of a box lie from its middle.
+fn offsets([lower, upper]: [f64; 2], middle: f64) -> Interval {
+    let from = |x: f64| Interval::between(x, x).subtract(&Interval::between(middle, middle));
+    Interval::between(from(lower).lower(), from(upper).upper())
+}
+
+/// How much the value may change along one dimension of a box.
+fn change(region: &[[f64; 2]], middle: &[f64], slopes: &[Interval], d: usize) -> Interval {
+    slopes[d].multiply(&offsets(region[d], middle[d]))
+}
+
 /// Holds every dimension whose slope has one sign at the end where the value is least; says whether there was any.
-fn hold(region: &mut Region, slopes: &[Interval], zones: Zones<'_>) -> bool {
+fn hold(region: &mut Region, slopes: &[Interval], zones: &[Zone]) -> bool {
     let mut held = false;
-    let free: Vec<bool> = (0..region.len()).map(|d| zones.free(d, region)).collect();
+    let free: Vec<bool> = (0..region.len()).map(|d| zones.iter().all(|zone| zone.frees(d, region))).collect();
     let moving = region.iter_mut().zip(slopes).zip(free).filter(|((band, _), free)| *free && band[0] < band[1]);
     for ((band, slope), _) in moving {
         if slope.lower() >= 0.0 {

@@ -6,6 +6,7 @@ use super::answers::Answers;
 use super::climb::Climb;
 use super::model::{Model, Region};
 use super::start::Starts;
+use super::zone::{Zone, zones};
 use super::{Coordinate, Ended, Extreme, Extremes, ExtremesProof, Place, proof};
 use crate::assembly::{Bounds, Run};
 use crate::method::Outcome;
@@ -30,11 +31,11 @@ const BOXES: usize = 20_000;
 /// Boxes of either side where a proof is not asked for: a twentieth of those of a search.
 const ENCLOSING: usize = 1000;
 const FEW: usize = 10;
-/// More of them where a circular zone ends: boxes along its edge, whose number goes with the root of the accuracy.
+/// More of them where a zone ends: boxes along its edge, whose number goes with the root of the accuracy.
 const ROUND: usize = 4;
-
-/// A point on the edge of a zone is within it.
-const ON_THE_EDGE: f64 = 1e-12;
+/// The part of what is near enough to be called reached that a proof without a search tries to close: ends that are printed have their last
+/// digit then.
+const CLOSED: f64 = 1e-3;
 
 pub(super) struct Task {
     characteristic: usize,
@@ -43,8 +44,8 @@ pub(super) struct Task {
     /// Where all the others stay.
     centre: Vec<f64>,
     region: Region,
-    /// Places of coordinates that one circular zone keeps.
-    zones: Vec<Vec<usize>>,
+    /// Zones that some of them share.
+    zones: Vec<Zone>,
     surrogate: Model,
     /// The value at the base of the surrogate.
     base: Option<f64>,
@@ -57,11 +58,11 @@ impl Task {
         let band = |d: usize| band(&problem.dimensions()[d]);
         let matters = |&d: &usize| plan.depends(c, d) && band(d)[0] < band(d)[1];
         let dimensions: Vec<usize> = plan.varying().iter().copied().filter(matters).collect();
-        let region = Region {
+        let mut region = Region {
             lower: dimensions.iter().map(|&d| band(d)[0]).collect(),
             upper: dimensions.iter().map(|&d| band(d)[1]).collect(),
         };
-        let zones = zones(problem, &dimensions);
+        let zones = zones(problem, &dimensions, &mut region);
         let places: HashMap<usize, usize> = dimensions.iter().enumerate().map(|(place, &d)| (d, place)).collect();
         let place = |position: usize| places.get(&plan.varying()[position]).copied();
         let mut products = vec![Vec::new(); dimensions.len()];
@@ -83,36 +84,19 @@ impl Task {
         Self { characteristic: c, dimensions, centre, region, zones, surrogate, base: fitted.centre, starts }
     }
 
-    /// With all dimensions. A place outside a circular zone stands for the one on its edge in the same direction, so that the
-    /// box covers the zone.
+    /// With all dimensions. A place outside a zone stands for the one on its edge in the same direction, or for the nearest row, so that
+    /// the box covers the zone.
     pub(super) fn point(&self, x: &[f64]) -> Vec<f64> {
+        let mut own = x.to_vec();
+        self.zones.iter().for_each(|zone| zone.enter(&mut own, 0.0));
         let mut point = self.centre.clone();
-        self.dimensions.iter().zip(x).for_each(|(&d, &x)| point[d] = x);
-        for zone in &self.zones {
-            let radius = self.radius(zone, x);
-            if radius > 1.0 {
-                for &j in zone {
-                    let middle = self.middle(j);
-                    point[self.dimensions[j]] = middle + (x[j] - middle) / radius;
-                }
-            }
-        }
+        self.dimensions.iter().zip(own).for_each(|(&d, x)| point[d] = x);
         point
-    }
-
-    fn middle(&self, j: usize) -> f64 {
-        0.5 * (self.region.lower[j] + self.region.upper[j])
-    }
-
-    /// How far from the middle of a zone, in its radii.
-    fn radius(&self, zone: &[usize], x: &[f64]) -> f64 {
-        let part = |&j: &usize| (x[j] - self.middle(j)) / (0.5 * (self.region.upper[j] - self.region.lower[j]));
-        zone.iter().map(part).fold(0.0, libm::hypot)
     }
 
     /// Whether no zone is left, but for rounding.
     fn within_zones(&self, x: &[f64]) -> bool {
-        self.zones.iter().all(|zone| self.radius(zone, x) <= 1.0 + ON_THE_EDGE)
+        self.zones.iter().all(|zone| zone.contains(x))
     }
 
     fn own(&self, point: &[f64]) -> Vec<f64> {
@@ -220,23 +204,23 @@ impl Task {
         (0..self.region.len()).map(|d| [self.region.lower[d], self.region.upper[d]]).collect()
     }
 
-    /// Bounds both extremes to `allowed` by interval arithmetic alone, without any value of the model; None where the function has no
-    /// bounds.
-    pub(super) fn enclose(&self, problem: &Problem, allowed: f64, run: &Run<'_>) -> Option<ExtremesProof> {
+    /// Bounds both extremes by interval arithmetic alone, without any value of the model, as closely as boxes allow; they are proven where
+    /// values within `near` of both exist. None where the function has no bounds.
+    pub(super) fn enclose(&self, problem: &Problem, near: f64, run: &Run<'_>) -> Option<ExtremesProof> {
         let region = self.bands();
         let whole = self.bounds(problem, &region)?;
         let round = if self.zones.is_empty() { 1 } else { ROUND };
         let limit = round * ENCLOSING * FEW / region.len().max(FEW);
         let side = |sign: f64| {
             let bounds = |part: &[[f64; 2]]| self.signed(problem, (&region, &whole), part, sign);
-            let zones = proof::Zones { places: &self.zones, bands: &region };
-            proof::least(&bounds, &region, zones, f64::INFINITY, allowed, limit, &|| run.stopped())
+            proof::least(&bounds, &region, &self.zones, f64::INFINITY, CLOSED * near, limit, &|| run.stopped())
         };
         let (below, above) = join(|| side(1.0), || side(-1.0));
-        let near = |least: &proof::Least| least.lower >= least.best - allowed;
+        let slack = [&below, &above].map(|least| (least.best - least.lower).max(0.0));
         Some(ExtremesProof {
             bounds: [below.lower, -above.lower],
-            proven: near(&below) && near(&above),
+            proven: slack.iter().all(|&slack| slack <= near),
+            slack,
             boxes: below.boxes + above.boxes,
         })
     }
@@ -256,21 +240,20 @@ impl Task {
         let known = !answers.spent.run.unfinished() && least <= greatest;
         let Some(whole) = known.then(|| self.bounds(problem, &region)).flatten() else { return (None, Vec::new()) };
         let allowed = PROVEN * (greatest - least) + ROUNDING * least.abs().max(greatest.abs());
-        let limit = BOXES * FEW / self.region.len().max(FEW);
+        let round = if self.zones.is_empty() { 1 } else { ROUND };
+        let limit = round * BOXES * FEW / self.region.len().max(FEW);
         let side = |sign: f64, best: f64| {
             let bounds = |part: &[[f64; 2]]| self.signed(problem, (&region, &whole), part, sign);
-            proof::least(&bounds, &region, proof::Zones::NONE, sign * best, allowed, limit, &|| run.stopped())
+            proof::least(&bounds, &region, &self.zones, sign * best, allowed, limit, &|| run.stopped())
         };
         let (below, above) = join(|| side(1.0, least), || side(-1.0, greatest));
+        let bounds = [below.lower.min(least), (-above.lower).max(greatest)];
         let proof = ExtremesProof {
-            bounds: [below.lower.min(least), (-above.lower).max(greatest)],
+            bounds,
             proven: below.lower >= least - allowed && -above.lower <= greatest + allowed,
+            slack: [least - bounds[0], bounds[1] - greatest],
             boxes: below.boxes + above.boxes,
         };
-        if !self.zones.is_empty() {
-            // A better point in the box may lie outside the zone.
-            return (Some(proof), Vec::new());
-        }
         (Some(proof), below.better.into_iter().chain(above.better).collect())
     }
 
@@ -323,18 +306,4 @@ fn band(dimension: &Dimension) -> [f64; 2] {
         Some(_) => [lower, upper],
         None => [lower.max(least), upper.min(greatest)],
     }
-}
-
-/// The places among `dimensions` of those that share a zone.
-fn zones(problem: &Problem, dimensions: &[usize]) -> Vec<Vec<usize>> {
-    let mut zones: Vec<(&str, Vec<usize>)> = Vec::new();
-    for (j, &d) in dimensions.iter().enumerate() {
-        let Some(zone) = problem.dimensions()[d].zone() else { continue };
-        match zones.iter_mut().find(|(name, _)| *name == zone) {
-            Some((_, places)) => places.push(j),
-            None => zones.push((zone, vec![j])),
-        }
-    }
-    // One coordinate alone goes from end to end: its zone says no more than its band.
-    zones.into_iter().map(|(_, places)| places).filter(|places| places.len() > 1).collect()
 }

@@ -199,7 +199,7 @@ impl Decomposed {
         let mixed = |&pair: &(usize, usize)| {
             let Some(place) = self.place(quadrature, pair) else {
                 let [j, k] = [pair.0, pair.1].map(|position| quadrature.variables.variable(position));
-                return j.and(k).map(|_| Mixed { value: 0.0, complete: true });
+                return j.and(k).map(|_| Mixed::exact(0.0));
             };
             let (v, w, table) = &self.pairs[place];
             let (of_v, of_w) = (&variables[*v].rule, &variables[*w].rule);
@@ -212,7 +212,7 @@ impl Decomposed {
                     found += 1;
                 }
             }
-            (at_means && found > 0).then(|| Mixed { value: sum / weight, complete: found == 4 })
+            (at_means && found > 0).then(|| Mixed { complete: found == 4, ..Mixed::evaluated(sum / weight) })
         };
         pairs.iter().map(mixed).collect()
     }

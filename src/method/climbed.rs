@@ -38,6 +38,8 @@ pub struct Climbed {
     pub probes: usize,
     /// Points that checked.
     pub checks: usize,
+    /// Pairs whose interactions the formulas of all characteristics give.
+    pub from_formulas: usize,
     /// Whether every pair was examined.
     pub all_pairs: bool,
     /// For every characteristic what the check says; None where it has no surrogate, or nothing was checked.

@@ -6,11 +6,13 @@
 use serde::Serialize;
 
 use super::check::SurrogateCheck;
+use super::exact::units;
 use super::hidden::{hidden, ratio};
-use super::{Basis, Climbed, Order, Outcome};
+use super::{Basis, Climbed, Order, Outcome, SurfaceProof};
 use crate::assembly::Directions;
 use crate::problem::Problem;
 use sensitol_numeric::moments::{Interactions, Moments, Term, contributions};
+use sensitol_numeric::power::rescale;
 use sensitol_numeric::surrogate::{Inputs, Surrogate, Univariate};
 
 /// Interactions of which the exact derivatives are worth their time.
@@ -40,6 +42,8 @@ pub struct ErrorEstimate {
     /// Its basis.
     pub sources: Vec<ErrorSource>,
 }
+
+rescale!(ErrorEstimate { mean, sigma } without { skewness, kurtosis, yield_, sources });
 
 /// The basis of an estimate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -162,16 +166,10 @@ pub fn estimate(problem: &Problem, outcome: &Outcome, c: usize, moments: &Moment
     }
     let surrogate = outcome.fitted[c].surrogate.as_ref()?;
     let mut of = Estimate { problem, outcome, c, surrogate, errors: [0.0; 4], known: [true; 4], sources: Vec::new() };
-    let checked = outcome.climbed.as_ref().and_then(|climbed| Some((climbed, climbed.checked[c].as_ref()?)));
-    match of.hidden(moments) {
-        None => {
-            of.known = [false; 4];
-            of.sources.push(ErrorSource::Lost);
-        }
-        Some(hidden) => match checked {
-            Some((climbed, check)) if check.points > 1 => of.checked(climbed, check, hidden, moments),
-            _ => of.unchecked(hidden, moments),
-        },
+    // Moments of correlated inputs may be samples of the surface.
+    match outcome.fitted[c].proof.filter(|_| outcome.plan.inputs().correlation().is_none()) {
+        Some(proof) => of.proven(proof, moments),
+        None => of.unproven(moments),
     }
     of.rounding(moments);
     let value = |i: usize| of.known[i].then_some(of.errors[i]);
@@ -196,6 +194,29 @@ struct Estimate<'a> {
 }
 
 impl Estimate<'_> {
+    /// Adds the errors of a surface that is not known to be the function.
+    fn unproven(&mut self, moments: &Moments) {
+        let outcome = self.outcome;
+        let checked = outcome.climbed.as_ref().and_then(|climbed| Some((climbed, climbed.checked[self.c].as_ref()?)));
+        match self.hidden(moments) {
+            None => {
+                self.known = [false; 4];
+                self.sources.push(ErrorSource::Lost);
+            }
+            Some(hidden) => match checked {
+                Some((climbed, check)) if check.points > 1 => self.checked(climbed, check, hidden, moments),
+                _ => self.unchecked(hidden, moments),
+            },
+        }
+    }
+
+    /// Adds the roundings of a surface that is the function itself.
+    fn proven(&mut self, SurfaceProof { degree, mean, sigma }: SurfaceProof, moments: &Moments) {
+        let part = if moments.sigma() > 0.0 { sigma / moments.sigma() } else { 0.0 };
+        add(&mut self.errors, [mean, sigma, 4.0 * part, 8.0 * part]);
+        self.sources.push(ErrorSource::Proven { degree });
+    }
+
     /// The parts as they are known, of a first-order method too.
     fn parts(&self) -> Option<Vec<Univariate>> {
         self.outcome.plan.varying().iter().map(|&d| self.outcome.fitted[self.c].parts[d]).collect()
@@ -304,9 +325,8 @@ impl Estimate<'_> {
             return;
         }
         let left = self.left_pairs();
-        let examined = 0.5 * self.interactions_squared(&self.surrogate.interactions) / variance;
-        let mut share = examined;
-        let mut products = self.surrogate.interactions.pairs();
+        let mut products = self.examined_products();
+        let mut share = products.iter().map(|(.., value)| value * value).sum::<f64>() / variance;
         if left > 0 {
             share += self.unexamined(left, (&curved(), &independent), variance, &mut products);
         }
@@ -330,23 +350,40 @@ impl Estimate<'_> {
         }
     }
 
-    fn interactions_squared(&self, interactions: &Interactions) -> f64 {
-        2.0 * interactions.each_pair().map(|(.., value)| value * value).sum::<f64>()
+    /// The pairs that were examined, in order: those whose interaction was estimated are not among them.
+    fn examined_pairs(&self) -> Vec<(usize, usize)> {
+        let mixed = &self.outcome.fitted[self.c].mixed;
+        let own = self.outcome.pairs.iter().zip(mixed.iter().copied().chain(std::iter::repeat(None)));
+        let mut examined: Vec<(usize, usize)> = own
+            .filter(|(_, mixed)| mixed.is_none_or(|mixed| mixed.origin.is_known()))
+            .map(|(&pair, _)| pair)
+            .filter(|&(j, k)| self.outcome.plan.joint(self.c, j, k))
+            .collect();
+        examined.sort_unstable();
+        examined
+    }
+
+    /// The products of the surface that were examined.
+    fn examined_products(&self) -> Vec<(usize, usize, f64)> {
+        let mut products = self.surrogate.interactions.pairs();
+        if self.outcome.fitted[self.c].screened > 0 {
+            let examined = self.examined_pairs();
+            products.retain(|&(j, k, _)| examined.binary_search(&(j, k)).is_ok());
+        }
+        products
     }
 
     /// How many pairs that matter to the characteristic were not examined.
     fn left_pairs(&self) -> usize {
-        let plan = &self.outcome.plan;
-        let examined = self.outcome.pairs.iter().filter(|&&(j, k)| plan.joint(self.c, j, k)).count();
-        plan.pairs_of(self.c).saturating_sub(examined)
+        self.outcome.plan.pairs_of(self.c).saturating_sub(self.examined_pairs().len())
     }
 
     /// These pairs.
     fn each_left_pair(&self) -> impl Iterator<Item = (usize, usize)> {
         let n = self.outcome.plan.varying().len();
-        let examined = |pair: &(usize, usize)| self.outcome.pairs.binary_search(pair).is_ok();
+        let examined = self.examined_pairs();
         let all = (0..n).flat_map(move |j| (j + 1..n).map(move |k| (j, k)));
-        all.filter(move |&(j, k)| self.outcome.plan.joint(self.c, j, k) && !examined(&(j, k)))
+        all.filter(move |&(j, k)| self.outcome.plan.joint(self.c, j, k) && examined.binary_search(&(j, k)).is_err())
     }
 
     /// Adds what interactions that were not examined may do; the share of the variance that they are taken to have.
@@ -359,7 +396,7 @@ impl Estimate<'_> {
     ) -> f64 {
         if let Some(exact) = self.exact_pairs(pairs) {
             let more = exact.iter().copied();
-            let all = surrogate.interactions.pairs().into_iter().chain(more).filter(|&(.., value)| value != 0.0);
+            let all = products.iter().copied().chain(more).filter(|&(.., value)| value != 0.0);
             let interactions = Interactions::of_pairs(surrogate.parts.len(), all);
             let whole = Surrogate { interactions, ..surrogate.clone() };
             let [whole, without] = [&whole, surrogate].map(|of| Some(of.contributions(independent)?.moments));
@@ -393,10 +430,15 @@ impl Estimate<'_> {
             left.iter().map(|&(j, k)| (plan.varying()[j], plan.varying()[k])).collect();
         let directions = Directions { point: &plan.centre(), inputs: &[], pairs: &dimensions };
         let outputs = [self.problem.outputs()[self.c]];
-        let derivatives = self.problem.function().derivatives(&outputs, &directions).into_iter().next()??;
-        let scaled = |(&(j, k), value): (&(usize, usize), &Option<f64>)| {
-            Some((j, k, plan.axis(j).scale * plan.axis(k).scale * (*value)?))
+        let units = units(&**plan);
+        let exponents: Vec<i32> = units.iter().map(|unit| unit.exponent()).collect();
+        let function = self.problem.function();
+        let derivatives = function.derivatives_per(&outputs, &directions, &exponents).into_iter().next()??;
+        let scale = |position: usize| {
+            let d = plan.varying()[position];
+            units[d].inverse().times(plan.axis(d).scale)
         };
+        let scaled = |(&(j, k), value): (&(usize, usize), &Option<f64>)| Some((j, k, scale(j) * scale(k) * (*value)?));
         left.iter().zip(&derivatives.mixed).map(scaled).collect()
     }
 
@@ -408,11 +450,11 @@ impl Estimate<'_> {
             .collect();
         let expected =
             |pairs: &mut dyn Iterator<Item = (usize, usize)>| pairs.map(|(j, k)| own[j] * own[k]).sum::<f64>();
-        let seen = expected(&mut self.outcome.pairs.iter().copied().filter(|&(j, k)| plan.joint(self.c, j, k)));
+        let seen = expected(&mut self.examined_pairs().into_iter());
         if seen <= 0.0 || seen.is_nan() {
             return None;
         }
-        let found = 0.5 * self.interactions_squared(&self.surrogate.interactions) / variance;
+        let found = self.examined_products().iter().map(|(.., value)| value * value).sum::<f64>() / variance;
         Some(found / seen * expected(&mut self.each_left_pair()))
     }
 

@@ -6,6 +6,7 @@ use super::{DerivativeSource, MethodError, Options, Order};
 use crate::assembly::{Derivatives, Directions};
 use crate::plan::{DifferencePlan, Mixed, Plan};
 use crate::problem::Problem;
+use sensitol_numeric::power::{Power, Wide};
 use sensitol_numeric::surrogate::Univariate;
 
 /// One characteristic's derivatives at the means, as the assembly function knows them; None where there is none.
@@ -18,12 +19,25 @@ pub struct ExactDerivatives {
     pub second: Vec<Option<f64>>,
     /// By both dimensions of every pair examined.
     pub mixed: Vec<Option<f64>>,
+    /// The unit of every dimension, a power of two, by which the derivatives are; 1 for a dimension of ordinary size.
+    pub(crate) units: Vec<Power>,
+}
+
+/// The units by which exact derivatives are taken.
+pub(super) fn units(plan: &dyn Plan) -> Vec<Power> {
+    (0..plan.centre().len()).map(|d| Power::of(plan.axis(d).scale)).collect()
+}
+
+/// The exact derivatives of all characteristics in these units.
+fn derivatives(problem: &Problem, directions: &Directions<'_>, units: &[Power]) -> Vec<Option<Derivatives>> {
+    let exponents: Vec<i32> = units.iter().map(|unit| unit.exponent()).collect();
+    problem.function().derivatives_per(problem.outputs(), directions, &exponents)
 }
 
 impl ExactDerivatives {
     /// Of every characteristic; None for those of which the function does not know them.
     pub(super) fn of(problem: &Problem, plan: &dyn Plan) -> Vec<Option<Self>> {
-        let (inputs, point) = (plan.moved(), plan.centre());
+        let (inputs, point, units) = (plan.moved(), plan.centre(), units(plan));
         let directions = Directions { point: &point, inputs: &inputs, pairs: &[] };
         let known = |derivatives: Derivatives| {
             let spread = |values: &[Option<f64>]| {
@@ -32,10 +46,9 @@ impl ExactDerivatives {
                 spread
             };
             let (first, second) = (spread(&derivatives.first), spread(&derivatives.second));
-            Self { first, second, mixed: Vec::new() }
+            Self { first, second, mixed: Vec::new(), units: units.clone() }
         };
-        let derivatives = problem.function().derivatives(problem.outputs(), &directions);
-        derivatives.into_iter().map(|derivatives| derivatives.map(known)).collect()
+        derivatives(problem, &directions, &units).into_iter().map(|derivatives| derivatives.map(known)).collect()
     }
 
     /// Those that a report shows beside what was evaluated, with the mixed ones of these pairs of positions; none where only
@@ -59,7 +72,7 @@ impl ExactDerivatives {
         let dimensions: Vec<(usize, usize)> =
             pairs.iter().map(|&(j, k)| (plan.varying()[j], plan.varying()[k])).collect();
         let directions = Directions { point: &plan.centre(), inputs: &[], pairs: &dimensions };
-        let derivatives = problem.function().derivatives(problem.outputs(), &directions);
+        let derivatives = derivatives(problem, &directions, &units(plan));
         for (exact, derivatives) in all.iter_mut().zip(derivatives) {
             if let (Some(exact), Some(derivatives)) = (exact, derivatives) {
                 exact.mixed = derivatives.mixed;
@@ -94,7 +107,7 @@ impl ExactDerivatives {
         plan: &DifferencePlan,
         pairs: &[(usize, usize)],
     ) -> Vec<Vec<((usize, usize), Mixed)>> {
-        let nothing = Self { first: Vec::new(), second: Vec::new(), mixed: Vec::new() };
+        let nothing = Self { first: Vec::new(), second: Vec::new(), mixed: Vec::new(), units: units(plan) };
         let mut all = vec![Some(nothing); problem.characteristics().len()];
         Self::add_pairs(&mut all, problem, plan, pairs);
         let of = |exact: &Self| {
@@ -106,7 +119,7 @@ impl ExactDerivatives {
 
     /// One dimension's own part, in sigmas: a parabola, a straight line where the curvature does not exist.
     pub(super) fn part(&self, plan: &DifferencePlan, dimension: usize) -> Option<Univariate> {
-        let scale = plan.axis(dimension).scale;
+        let scale = self.units[dimension].inverse().times(plan.axis(dimension).scale);
         let slope = scale * self.first[dimension]?;
         Some(match self.second[dimension] {
             Some(second) => Univariate::of_coefficients(&[slope, 0.5 * scale * scale * second]),
@@ -117,10 +130,29 @@ impl ExactDerivatives {
     /// The mixed derivatives in sigmas.
     pub(super) fn mixed(&self, plan: &DifferencePlan, pairs: &[(usize, usize)]) -> Vec<Option<Mixed>> {
         let in_sigmas = |(&(j, k), value): (&(usize, usize), &Option<f64>)| {
-            let scale = |position: usize| plan.axis(plan.varying()[position]).scale;
-            value.map(|value| Mixed { value: scale(j) * scale(k) * value, complete: true })
+            let scale = |position: usize| {
+                let d = plan.varying()[position];
+                self.units[d].inverse().times(plan.axis(d).scale)
+            };
+            value.map(|value| Mixed::exact(scale(j) * scale(k) * value))
         };
         pairs.iter().zip(&self.mixed).map(in_sigmas).collect()
+    }
+
+    /// The first derivative by a dimension, per unit of 1; None where there is none.
+    pub(crate) fn slope(&self, dimension: usize) -> Option<Wide> {
+        Some(Wide::of(self.first[dimension]?).times_power(self.units[dimension].inverse()))
+    }
+
+    /// The second derivative by a dimension, per unit of 1; None where there is none.
+    pub(crate) fn curvature(&self, dimension: usize) -> Option<Wide> {
+        Some(Wide::of(self.second[dimension]?).times_power(self.units[dimension].inverse().squared()))
+    }
+
+    /// The mixed derivative of a pair by its place, of these two dimensions, per unit of 1; None where there is none.
+    pub(crate) fn interaction(&self, place: usize, [j, k]: [usize; 2]) -> Option<Wide> {
+        let unit = self.units[j].and(self.units[k]);
+        Some(Wide::of(self.mixed[place]?).times_power(unit.inverse()))
     }
 
     /// Why this characteristic's moments cannot be had from exact derivatives.

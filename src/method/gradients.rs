@@ -14,7 +14,8 @@ use crate::assembly::{Points, Request, Responses, Run};
 use crate::evaluation::Evaluated;
 use crate::plan::{AtNode, DifferencePlan, Mixed, Point};
 use crate::problem::Problem;
-use sensitol_numeric::surrogate::Univariate;
+use sensitol_numeric::power::Power;
+use sensitol_numeric::surrogate::{DerivativeOrigin, Univariate};
 
 /// Derivatives that differ from a difference by more than this part of the change are wrong: third derivatives of a function that a
 /// parabola describes make less.
@@ -53,9 +54,9 @@ pub(super) fn mixed(
     };
     let both = |&(j, k): &(usize, usize)| {
         if !plan.joint(c, j, k) {
-            return Some(Mixed { value: 0.0, complete: true });
+            return Some(Mixed::exact(0.0));
         }
-        Some(Mixed { value: 0.5 * (half(j, k)? + half(k, j)?), complete: true })
+        Some(Mixed::evaluated(0.5 * (half(j, k)? + half(k, j)?)))
     };
     pairs.iter().map(both).collect()
 }
@@ -78,7 +79,8 @@ pub(super) fn part(plan: &DifferencePlan, evaluated: &Evaluated, c: usize, d: us
     };
     // Where the model has no value at the node, one of its replacements has.
     let (u, chord, b) = axis.slots.first()?.iter().find_map(at)?;
-    Some(Univariate::of_coefficients(&[a, (3.0 * chord - 2.0 * a - b) / u, (a + b - 2.0 * chord) / (u * u)]))
+    let part = Univariate::of_coefficients(&[a, (3.0 * chord - 2.0 * a - b) / u, (a + b - 2.0 * chord) / (u * u)]);
+    Some(part.with_origin(DerivativeOrigin::Evaluated))
 }
 
 /// The nodes of an axis with their places in sigmas, from below; replacements of nodes without a value are not among them.
@@ -148,7 +150,8 @@ pub(super) fn slopes(
             }
         }
         let first = slopes.iter().map(|&slope| Some(slope)).collect();
-        Ok(Some(ExactDerivatives { first, second: vec![None; n], mixed: Vec::new() }))
+        let units = vec![Power::ONE; n];
+        Ok(Some(ExactDerivatives { first, second: vec![None; n], mixed: Vec::new(), units }))
     };
     (0..problem.characteristics().len()).map(of).collect()
 }

@@ -20,7 +20,7 @@ use faer::Mat;
 
 use super::Outcome;
 use sensitol_numeric::moments::Interactions;
-use sensitol_numeric::surrogate::{Surrogate, Univariate};
+use sensitol_numeric::surrogate::{DerivativeOrigin, Surrogate, Univariate};
 
 /// A singular value below this part of the largest is a direction in which no point lies.
 const SINGULAR: f64 = 1e-9;
@@ -100,9 +100,12 @@ fn least_squares(n: usize, values: &[Moved]) -> Option<Surrogate> {
             found.iter_mut().enumerate().for_each(|(column, value)| *value += along * right[(column, k)]);
         }
     }
-    let part = |j: usize| match curved {
-        true => Univariate::of_coefficients(&[found[1 + j], found[1 + n + j]]),
-        false => Univariate::of_coefficients(&[found[1 + j]]),
+    let part = |j: usize| {
+        let part = match curved {
+            true => Univariate::of_coefficients(&[found[1 + j], found[1 + n + j]]),
+            false => Univariate::of_coefficients(&[found[1 + j]]),
+        };
+        part.with_origin(DerivativeOrigin::Evaluated)
     };
     let product = |(place, &(j, k)): (usize, &(usize, usize))| {
         (j, k, found.get(1 + 2 * n + place).map_or(0.0, |value| std::f64::consts::SQRT_2 * value))

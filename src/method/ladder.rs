@@ -5,6 +5,7 @@ use std::sync::Arc;
 pub(super) use super::Order;
 use super::exact::{ExactDerivatives, fits, known};
 use super::gradients;
+use super::polynomial_surface::PolynomialSurface;
 use super::{Basis, Cost, DerivativeSource, Fitted, Method, MethodError, NODES, Options, Outcome, Pairs, Procedure};
 use crate::assembly::Run;
 use crate::evaluation::{Evaluated, evaluate};
@@ -84,11 +85,18 @@ impl Procedure for Ladder {
         }
         let evaluated = evaluate(problem, &plan, run);
         let (pairs, derivatives) = self.derivatives(problem, options, &plan, &evaluated)?;
-        let fit = |(c, derivatives)| self.fit(&plan, &evaluated, c, &pairs, derivatives, exact);
+        let polynomials = PolynomialSurface::all(problem, &plan, options);
+        let fit = |(c, derivatives): (usize, Option<ExactDerivatives>)| {
+            let mut fitted = self.fit(&plan, &evaluated, c, &pairs, derivatives, exact);
+            polynomials[c].iter().for_each(|terms| terms.replace(&mut fitted, &plan, self.order, &pairs));
+            fitted
+        };
         let fitted = derivatives.into_iter().enumerate().map(fit).collect();
         let basis = if exact { Basis::Exact } else { Basis::Differences };
         let (asked, method, plan) = (self.method, self.runs, Arc::new(plan) as _);
-        Ok(Outcome { asked, method, basis, plan, evaluated, order: self.order, fitted, pairs, climbed: None })
+        let outcome =
+            Outcome { asked, method, basis, plan, evaluated, order: self.order, fitted, pairs, climbed: None };
+        Ok(outcome.with_proofs(problem, &polynomials))
     }
 }
 
@@ -133,7 +141,8 @@ impl Ladder {
         let fitted: Vec<Fitted> = if first {
             let slopes = gradients::slopes(problem, &plan, &mut evaluated, run)?;
             let fit = |(c, slopes)| self.fit(&plan, &evaluated, c, &pairs, slopes, true);
-            slopes.into_iter().enumerate().map(fit).collect()
+            // Derivatives of a model are answers of it.
+            slopes.into_iter().enumerate().map(fit).map(Fitted::evaluated).collect()
         } else {
             gradients::checked(problem, &plan, &evaluated)?;
             let fit = |c| {
@@ -145,7 +154,10 @@ impl Ladder {
         };
         let basis = if first { Basis::Exact } else { Basis::Differences };
         let (asked, method, plan) = (self.method, self.runs, Arc::new(plan) as _);
-        Ok(Outcome { asked, method, basis, plan, evaluated, order: self.order, fitted, pairs, climbed: None })
+        let outcome =
+            Outcome { asked, method, basis, plan, evaluated, order: self.order, fitted, pairs, climbed: None };
+        let polynomials = vec![None; problem.characteristics().len()];
+        Ok(outcome.with_proofs(problem, &polynomials))
     }
 
     /// The plan that it would follow.
@@ -237,7 +249,8 @@ impl Ladder {
         let mut mixed = plan.mixed(known, c, &pairs[..evaluated.min(pairs.len())]);
         if pairs.len() > mixed.len() {
             let exact = exact.filter(|exact| exact.mixed.len() == pairs.len()).map(|exact| exact.mixed(plan, pairs));
-            let nothing = Some(Mixed { value: 0.0, complete: true });
+            // A pair that is known to interact elsewhere, and was not looked at here.
+            let nothing = Some(Mixed::screened(0.0));
             let rest = (mixed.len()..pairs.len()).map(|index| exact.as_ref().and_then(|all| all[index]).or(nothing));
             mixed.extend(rest.collect::<Vec<_>>());
         }
@@ -278,10 +291,7 @@ impl Ladder {
             (Some(exact), _) => exact.mixed(plan, pairs),
             (None, exact) => self.differences_of(plan, known, c, pairs, exact.as_ref()),
         });
-        let used = |&d: &usize| match self.order {
-            Order::First => parts[d].map(|part| Univariate::of_coefficients(&[part.slope()])),
-            Order::Second => parts[d],
-        };
+        let used = |&d: &usize| parts[d].map(|part| self.order.used(part));
         let products = pairs.iter().zip(&mixed).filter_map(|(&(j, k), mixed)| Some((j, k, mixed.as_ref()?.value)));
         let centre = known.value(&Point::Centre, c);
         let surrogate = centre.map(|centre| Surrogate {

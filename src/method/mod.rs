@@ -22,6 +22,7 @@ mod narrow;
 mod options;
 mod order;
 mod outcome;
+mod polynomial_surface;
 mod principal;
 pub(crate) mod procedure;
 mod quadrature;
@@ -30,6 +31,7 @@ mod response_surface;
 mod rss;
 mod second_order;
 mod six_n;
+mod surface_proof;
 mod three_point;
 mod worst_case;
 
@@ -48,12 +50,14 @@ pub use options::{Accuracies, DerivativeSource, Options, Pairs};
 pub use order::Basis;
 pub(crate) use order::Order;
 pub use outcome::Residual;
-pub(crate) use outcome::{Fitted, Integrated, InteractionEffect, Lacking, MainEffect, Outcome};
+pub(crate) use outcome::{Fitted, Integrated, InteractionEffect, Lacking, MainEffect, Outcome, SurfaceProof};
 pub(crate) use procedure::Procedure;
 pub use registry::ALL;
 
 use crate::assembly::EvaluationError;
+use crate::evaluation::{Restoration, Restore};
 use crate::warning::{Advice, Figure};
+use sensitol_numeric::power::Power;
 
 /// Why a method cannot be run on a problem as asked.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -206,7 +210,20 @@ pub enum MethodError {
     },
 }
 
+impl Restore for MethodError {
+    fn restore(&mut self, back: &Restoration<'_>) {
+        self.rescale(|name| back.power_of(name));
+    }
+}
+
 impl MethodError {
+    /// Multiplies figures in the unit of a characteristic by the power of two that belongs to its name.
+    pub(crate) fn rescale(&mut self, power_of: impl Fn(&str) -> Power) {
+        if let Self::GradientsDisagree { characteristic, by_gradient, by_values, .. } = self {
+            [by_gradient, by_values].into_iter().for_each(|change| *change = power_of(characteristic).times(*change));
+        }
+    }
+
     /// The actions to take.
     pub fn advice(&self) -> Vec<Advice> {
         match self {

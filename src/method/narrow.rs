@@ -15,11 +15,12 @@ use super::{DerivativeSource, Method, MethodError, Options, Outcome};
 use crate::assembly::{
     AssemblyFunction, Composite, EvaluationError, Input, ModelInfo, Points, Request, Responses, Run, Signature,
 };
-use crate::evaluation::Evaluated;
+use crate::evaluation::{Evaluated, Restoration, Restore, at_any_size};
 use crate::problem::Problem;
 use sensitol_numeric::characteristic::Characteristic;
 use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::distribution::{Distribution, Normal, PearsonLaw};
+use sensitol_numeric::power::{Rescale, Rescaling};
 use sensitol_numeric::sampling::{Draws, Portion, Sampler, Summary};
 use sensitol_numeric::surrogate::Surrogate;
 
@@ -39,6 +40,17 @@ pub struct Narrow<'p> {
     /// How many inputs of the model vary, or along how many axes, and how many dimensions.
     pub inputs: usize,
     pub dimensions: usize,
+}
+
+/// The outcome of a method over the inputs of the model, of which the surfaces and the cost are read.
+struct OverInputs(Outcome);
+
+impl Restore for OverInputs {
+    fn restore(&mut self, back: &Restoration<'_>) {
+        for (c, fitted) in self.0.fitted.iter_mut().enumerate() {
+            fitted.surrogate.rescale(&mut Rescaling::by(back.power(c)));
+        }
+    }
 }
 
 /// A surface over the inputs, or none.
@@ -66,6 +78,7 @@ impl<'p> Narrow<'p> {
         let varies = |d: usize| problem.dimensions()[d].sigma() > 0.0 && dependence.iter().any(|row| row[d]);
         let dimensions = (0..problem.dimensions().len()).filter(|&d| varies(d)).count();
         let (model, needed) = composite.inner(problem.outputs())?;
+        let model = problem.magnitudes().map_or_else(|| Arc::clone(&model), |of| of.remembering(Arc::clone(&model)));
         let names: Vec<String> = model.signature().inputs.iter().map(|input| input.name.clone()).collect();
         if needed.is_empty() || names.is_empty() {
             return None;
@@ -108,7 +121,11 @@ impl<'p> Narrow<'p> {
     /// Not where an output of the model has no surface, or no value at some point: the method over the dimensions then says at which of
     /// them, and what this one has spent is counted there.
     pub(crate) fn run(&self, problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Narrowed, MethodError> {
-        let over_inputs = options.method.procedure().run(&self.problem, options, run)?;
+        // Outputs of the model may be of extreme size where the characteristics are not.
+        let over_inputs = at_any_size(&self.problem, run, |problem, run| {
+            options.method.procedure().run(problem, options, run).map(OverInputs)
+        });
+        let OverInputs(over_inputs) = over_inputs?;
         let varying = over_inputs.plan.varying();
         let surrogates: Option<Vec<Surrogate>> = (over_inputs.fitted.iter())
             .map(|fitted| fitted.surrogate.clone().filter(|of| of.parts.iter().all(Option::is_some)))
@@ -129,7 +146,7 @@ impl<'p> Narrow<'p> {
             varying: varying.iter().map(place).collect(),
             surrogates,
         };
-        let about = problem.with_function(Arc::new(self.composite.about(Arc::new(surface))));
+        let about = problem.with_undivided(Arc::new(self.composite.about(Arc::new(surface))));
         // Nothing that is evaluated now costs anything.
         let method = if options.method == Method::Auto { Method::Full } else { options.method };
         let free = Options { method, budget: None, ..options.clone() };

@@ -1,5 +1,7 @@
 //! Which derivatives a method uses, and where its moments come from.
 
+use sensitol_numeric::surrogate::Univariate;
+
 /// How much of the derivatives a method makes use of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Order {
@@ -7,6 +9,16 @@ pub enum Order {
     First,
     /// Curvatures and interactions too.
     Second,
+}
+
+impl Order {
+    /// Returns as much of a part as is made use of.
+    pub(super) fn used(self, part: Univariate) -> Univariate {
+        match self {
+            Self::First => Univariate::of_coefficients(&[part.slope()]).with_origin(part.origin()),
+            Self::Second => part,
+        }
+    }
 }
 
 /// The basis of the moments.

@@ -8,7 +8,8 @@ use super::{Basis, Climbed, ExactDerivatives, Method, Order};
 use crate::evaluation::Evaluated;
 use crate::plan::{Mixed, Plan};
 use sensitol_numeric::moments::Moments;
-use sensitol_numeric::surrogate::{Surrogate, Univariate};
+use sensitol_numeric::power::rescale;
+use sensitol_numeric::surrogate::{DerivativeOrigin, Surrogate, Univariate};
 
 /// The outcome of a method.
 #[derive(Debug, Clone)]
@@ -56,6 +57,32 @@ pub struct Fitted {
     pub lacking: Option<Lacking>,
     /// How far a surrogate of least squares misses the values that it was fitted to.
     pub residual: Option<Residual>,
+    /// The number of pairs whose mixed derivative was differentiated or evaluated.
+    pub known_pairs: usize,
+    /// The number of products of the surrogate that are estimates.
+    pub screened: usize,
+    /// The proof that the surrogate is the function; None where there is none.
+    pub proof: Option<SurfaceProof>,
+}
+
+/// Knowledge about a surface that is the function itself.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurfaceProof {
+    /// The degree of the polynomial.
+    pub degree: u32,
+    /// One rounding of every operation, in the mean.
+    pub mean: f64,
+    /// The same in sigma, beside that of sigma itself.
+    pub sigma: f64,
+}
+
+impl Fitted {
+    /// Returns the fit with its parts as answers of a model.
+    pub(super) fn evaluated(mut self) -> Self {
+        let parts = self.surrogate.iter_mut().flat_map(|surrogate| &mut surrogate.parts).chain(&mut self.parts);
+        parts.for_each(|part| *part = part.map(|part| part.with_origin(DerivativeOrigin::Evaluated)));
+        self
+    }
 }
 
 /// Moments that were integrated from values, and what they are made of.
@@ -135,3 +162,5 @@ pub struct Residual {
     /// Coefficients.
     pub coefficients: usize,
 }
+
+rescale!(Residual { standard_error, mean, sigma } without { points, coefficients });

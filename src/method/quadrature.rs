@@ -359,7 +359,7 @@ impl<'p> Quadrature<'p> {
         });
         let fitted = fitted.collect();
         let plan = Arc::new(design);
-        Outcome {
+        let outcome = Outcome {
             asked: method,
             method,
             basis: Basis::Quadrature,
@@ -369,7 +369,9 @@ impl<'p> Quadrature<'p> {
             fitted,
             pairs,
             climbed: None,
-        }
+        };
+        // Values at nodes stay what they are, whatever the formula says of itself.
+        outcome.with_proofs(problem, &vec![None; problem.characteristics().len()])
     }
 }
 

@@ -27,6 +27,7 @@ use std::sync::Arc;
 use faer::Mat;
 use faer::linalg::solvers::SolveLstsq;
 
+use super::polynomial_surface::PolynomialSurface;
 use super::{
     Basis, Cost, EvaluationLimit, ExactDerivatives, Fitted, Lacking, Method, MethodError, Options, Order, Outcome,
     Procedure, Residual, cost,
@@ -36,7 +37,7 @@ use crate::evaluation::evaluate;
 use crate::plan::{Axis, Design, KnownAnswers, Mixed, Plan, Point, Purpose, Spread, corners};
 use crate::problem::Problem;
 use sensitol_numeric::moments::Interactions;
-use sensitol_numeric::surrogate::{Surrogate, Univariate};
+use sensitol_numeric::surrogate::{DerivativeOrigin, Surrogate, Univariate};
 
 pub(super) struct ResponseSurface;
 
@@ -77,11 +78,19 @@ impl Procedure for ResponseSurface {
         let evaluated = evaluate(problem, &design, run);
         let pairs = design.pairs();
         let exact = ExactDerivatives::beside(problem, &design, options, &pairs);
-        let fit = |(c, exact)| Fitted { exact, ..fitted(&design, &places, &evaluated.known, c, &pairs) };
-        let fitted = exact.into_iter().enumerate().map(fit).collect();
-        let (method, plan) = (self.method(), Arc::new(design));
         let (basis, order) = (Basis::LeastSquares, Order::Second);
-        Ok(Outcome { asked: method, method, basis, plan, evaluated, order, fitted, pairs, climbed: None })
+        let polynomials = PolynomialSurface::all(problem, &design, options);
+        let fit = |(c, exact): (usize, Option<ExactDerivatives>)| {
+            let mut fitted = Fitted { exact, ..fitted(&design, &places, &evaluated.known, c, &pairs) };
+            // Least squares find a quadratic, and mix up the terms of anything else.
+            let quadratic = polynomials[c].as_ref().filter(|terms| terms.degree <= 2);
+            quadratic.into_iter().for_each(|terms| terms.replace(&mut fitted, &design, order, &pairs));
+            fitted
+        };
+        let fitted = exact.into_iter().enumerate().map(fit).collect();
+        let (method, plan) = (self.method(), Arc::new(design) as _);
+        let outcome = Outcome { asked: method, method, basis, plan, evaluated, order, fitted, pairs, climbed: None };
+        Ok(outcome.with_proofs(problem, &polynomials))
     }
 }
 
@@ -104,7 +113,8 @@ impl ResponseSurface {
         for &d in &varying {
             let axis = Axis::varying(&dimensions[d], Spread::Pair, options.step);
             let far: Vec<f64> = axis.slots.iter().map(|slot| axis.nodes[slot[0] as usize].x).collect();
-            near.push([0, far.len() - 1].map(|side| axis.mean + (far[side] - axis.mean) / 3f64.sqrt()));
+            let nearer = |side: usize| axis.nearest_value(axis.mean + (far[side] - axis.mean) / 3f64.sqrt());
+            near.push([0, far.len() - 1].map(nearer));
             design.steps(d, far.iter().copied());
             design.take_notes(d, axis);
             for x in far {
@@ -156,12 +166,13 @@ fn fitted(design: &Design, points: &[Point], known: &KnownAnswers, c: usize, pai
     };
     for (place, &j) in mine.iter().enumerate() {
         let at = 1 + 2 * place;
-        parts[varying[j]] = Some(Univariate::of_coefficients(&solution.coefficients[at..at + 2]));
+        let part = Univariate::of_coefficients(&solution.coefficients[at..at + 2]);
+        parts[varying[j]] = Some(part.with_origin(DerivativeOrigin::Evaluated));
     }
     let of_products = &solution.coefficients[1 + 2 * mine.len()..];
     let mixed = pairs.iter().map(|pair| {
         let value = products.binary_search(pair).map_or(0.0, |place| of_products[place]);
-        Some(Mixed { value, complete: true })
+        Some(Mixed::evaluated(value))
     });
     let surrogate = Surrogate {
         centre: solution.coefficients[0],

@@ -1,7 +1,8 @@
 //! One dimension's nodes as numbers that a model can be given.
 
-use super::nodes::{MovedNode, Nodes, Reaches, Spread, Tail};
+use super::nodes::{MovedNode, Nodes, Reaches, Spread, Tail, nearest, values};
 use sensitol_numeric::dimension::Dimension;
+use sensitol_numeric::power::Power;
 
 /// A place on an axis: the value, and how many sigmas it really lies off the mean.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,11 +30,15 @@ pub struct Axis {
     pub moved: Vec<MovedNode>,
     /// A tail that is too long for the nodes.
     pub tail: Option<Tail>,
+    /// The values that occur, where each has a probability of its own.
+    pub(super) values: Vec<f64>,
 }
 
 /// The replacements of a node at which the model failed: half its distance, then a quarter.
 const REPLACEMENTS: [f64; 2] = [0.5, 0.25];
-/// The step of a sensitivity without tolerance, relative to the larger of the nominal and 1.
+/// A node so near to a value that occurs, in sigmas, is that value but for rounding.
+const SAME: f64 = 1e-9;
+/// The step of a sensitivity without tolerance, relative to the larger of the nominal and 1; of a nominal of extreme size relative to itself.
 const SENSITIVITY_STEP: f64 = 1e-4;
 
 impl Axis {
@@ -62,6 +67,7 @@ impl Axis {
             inner: [None, None],
             moved: nodes.moved,
             tail: nodes.tail,
+            values: values(distribution),
         };
         for u in nodes.u {
             axis.open_slot(u);
@@ -111,7 +117,8 @@ impl Axis {
     /// The axis of a dimension that does not vary, for its sensitivity alone.
     pub(super) fn fixed(dimension: &Dimension, spread: Spread) -> Self {
         let nominal = dimension.nominal();
-        let scale = SENSITIVITY_STEP * nominal.abs().max(1.0);
+        // A nominal value of extreme size has a unit of its own.
+        let scale = SENSITIVITY_STEP * nominal.abs().max(Power::of(nominal).times(1.0));
         let mut axis = Self { mean: nominal, scale, ..Self::still(dimension) };
         match spread {
             Spread::Bare => {}
@@ -125,7 +132,27 @@ impl Axis {
     pub(super) fn still(dimension: &Dimension) -> Self {
         let mean = dimension.mean();
         let (nodes, slots, moved) = (Vec::new(), Vec::new(), Vec::new());
-        Self { mean, scale: 0.0, nodes, slots, inner: [None, None], moved, tail: None }
+        let values = dimension.distribution().map_or_else(Vec::new, values);
+        Self { mean, scale: 0.0, nodes, slots, inner: [None, None], moved, tail: None, values }
+    }
+
+    /// The value that occurs next to a place, on its side of the mean; the place itself at the mean, and of a dimension that may have any
+    /// value.
+    pub(crate) fn nearest_value(&self, x: f64) -> f64 {
+        if x == self.mean {
+            return x;
+        }
+        let off: Vec<f64> = self.values.iter().map(|value| (value - self.mean) / self.scale).collect();
+        let found = nearest(&off, (x - self.mean) / self.scale);
+        let place = found.and_then(|found| off.iter().position(|&u| u == found));
+        place.map_or(x, |place| self.values[place])
+    }
+
+    /// A value that occurs for one that only rounding separates from it.
+    pub(super) fn occurring(&self, x: f64) -> f64 {
+        let after = self.values.partition_point(|&value| value < x);
+        let beside = self.values[after.saturating_sub(1)..].iter().take(2);
+        beside.copied().find(|value| (value - x).abs() <= SAME * self.scale).unwrap_or(x)
     }
 
     /// The distance of the nearest node from the mean, in the dimension's unit.
@@ -146,6 +173,7 @@ impl Axis {
     }
 
     fn node(&mut self, x: f64) -> u32 {
+        let x = self.occurring(x);
         match self.nodes.iter().position(|node| node.x == x) {
             Some(index) => u32::try_from(index).expect("few nodes on an axis"),
             None => self.open_node(x),

@@ -119,6 +119,7 @@ impl Design {
     /// The node of this value, a new one if need be; None at the mean.
     fn node(&mut self, dimension: usize, x: f64) -> Option<u32> {
         let axis = &mut self.geometry.axes[dimension];
+        let x = axis.occurring(x);
         if x == axis.mean {
             return None;
         }

@@ -15,7 +15,7 @@ use super::stage::{Purpose, Stage};
 use sensitol_numeric::correlation::Correlation;
 use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::parallel::prelude::*;
-use sensitol_numeric::surrogate::{InputShape, Inputs, Univariate, shapes};
+use sensitol_numeric::surrogate::{DerivativeOrigin, InputShape, Inputs, Univariate, shapes};
 
 /// The points that a difference plan evaluates.
 #[derive(Debug, Clone, PartialEq)]
@@ -302,7 +302,7 @@ impl DifferencePlan {
             .collect();
         let mixed = |&(j, k): &(usize, usize)| {
             if !self.joint(characteristic, j, k) {
-                return Some(Mixed { value: 0.0, complete: true });
+                return Some(Mixed::exact(0.0));
             }
             let corners = self.layout.stencil.corners(self.opposite(j, k));
             let (mut sum, mut weight, mut found) = (0.0, 0.0, 0);
@@ -317,7 +317,7 @@ impl DifferencePlan {
                     found += 1;
                 }
             }
-            (found > 0).then(|| Mixed { value: sum / weight, complete: found == corners.len() })
+            (found > 0).then(|| Mixed { complete: found == corners.len(), ..Mixed::evaluated(sum / weight) })
         };
         // Looking two points up in a million takes most of the time.
         pairs.par_iter().map(mixed).collect()
@@ -432,6 +432,25 @@ pub struct Mixed {
     pub value: f64,
     /// Whether every corner had a part in it.
     pub complete: bool,
+    /// Its source.
+    pub origin: DerivativeOrigin,
+}
+
+impl Mixed {
+    /// A derivative of a formula.
+    pub(crate) fn exact(value: f64) -> Self {
+        Self { value, complete: true, origin: DerivativeOrigin::Exact }
+    }
+
+    /// A derivative from values at points of its own.
+    pub(crate) fn evaluated(value: f64) -> Self {
+        Self { value, complete: true, origin: DerivativeOrigin::Evaluated }
+    }
+
+    /// An estimate from what many pairs have in common; 0 where nothing was found.
+    pub(crate) fn screened(value: f64) -> Self {
+        Self { value, complete: true, origin: DerivativeOrigin::Screened }
+    }
 }
 
 impl PairNodes {

@@ -1,4 +1,7 @@
 //! Where on its axis a dimension is evaluated, in units of its sigma about its mean.
+//!
+//! A dimension whose values all have a probability of their own, as two values or measured ones have, is evaluated at such values and at its
+//! mean: a polynomial through both of two values is exact.
 
 use sensitol_numeric::distribution::{Distribution, Jacobi, Rule};
 
@@ -49,6 +52,8 @@ pub struct MovedNode {
 
 /// A node outside the support goes this far of the way from the mean to the edge.
 const INSIDE: f64 = 0.95;
+/// An atom so near to the mean, in sigmas, is there but for rounding.
+const AT_THE_MEAN: f64 = 1e-9;
 /// Moments alone may want a node farther out than any model should be asked.
 const FARTHEST: f64 = 20.0;
 /// Five points keep at least this distance from the mean, where the centre is: chords of a shorter step drown in noise.
@@ -70,7 +75,7 @@ impl Nodes {
     /// `f`, normal ±sqrt 3. Five points are matched to the moments up to the eighth, with the mean among them: for a
     /// normal the Gauss-Hermite nodes. Where one of these would lie outside the support, or very far out, the other four are
     /// the nodes of the distribution's four-point Gauss rule, which never do. With fewer than five atoms, or where even that
-    /// is too far out, five points fall back to the pair.
+    /// is too far out, five points fall back to the pair. Of a distribution of atoms only, nodes are the atoms next to these.
     pub fn matched(distribution: &dyn Distribution, spread: Spread) -> Self {
         Self::matched_with(distribution, spread, &mut Reaches::default())
     }
@@ -82,12 +87,24 @@ impl Nodes {
         if spread == Spread::Bare {
             return Self { u: Vec::new(), moved: Vec::new(), tail: None };
         }
+        let atoms: Vec<f64> = values(distribution).into_iter().map(|x| (x - mean) / sigma).collect();
         let five = if spread == Spread::Five { five(distribution, support) } else { None };
+        let five = match &atoms[..] {
+            [] => five.map(|(u, rule)| (u, Some(rule))),
+            atoms => five.and_then(|(u, _)| four_of(atoms, &u)).map(|u| {
+                let rule = rule_at(distribution, &u);
+                (u, rule)
+            }),
+        };
         let reach = reaches.of(distribution);
         let (u, moved, rule, long) = match five {
-            Some((u, rule)) => (u, Vec::new(), Some(rule), LONG_FIVE),
+            Some((u, rule)) => (u, Vec::new(), rule, LONG_FIVE),
             None => {
-                let (mut u, moved) = pair(distribution, support);
+                let (u, moved) = pair(distribution, support);
+                let (mut u, moved) = match &atoms[..] {
+                    [] => (u, moved),
+                    atoms => (u.iter().map(|&u| nearest(atoms, u).unwrap_or(u)).collect(), Vec::new()),
+                };
                 if spread == Spread::Upper {
                     u.retain(|&u| u > 0.0);
                 }
@@ -108,6 +125,57 @@ impl Nodes {
         };
         Self { u, moved: Vec::new(), tail: None }
     }
+}
+
+/// The values that occur, ascending, where each has a probability of its own; none of a distribution that has a density.
+pub(super) fn values(distribution: &dyn Distribution) -> Vec<f64> {
+    /// Shares are rounded.
+    const WHOLE: f64 = 1.0 - 1e-12;
+    let atoms = distribution.probability().map_or_else(Vec::new, |law| law.atoms());
+    let all: f64 = atoms.iter().map(|(_, share)| share).sum();
+    if all >= WHOLE { atoms.into_iter().map(|(x, _)| x).collect() } else { Vec::new() }
+}
+
+/// The atom nearest to a place, on its side of the mean; None where there is none.
+pub(super) fn nearest(atoms: &[f64], place: f64) -> Option<f64> {
+    let beside = atoms.iter().copied().filter(|u| u.signum() == place.signum() && u.abs() > AT_THE_MEAN);
+    beside.min_by(|a, b| (a - place).abs().total_cmp(&(b - place).abs()))
+}
+
+/// Two atoms on either side, those next to these places; None where a side has no two of them that lie apart from each other and the mean.
+fn four_of(atoms: &[f64], places: &[f64]) -> Option<Vec<f64>> {
+    let &[left, inner_left, inner_right, right] = places else { return None };
+    let side = |outer: f64, inner: f64| {
+        let outer = nearest(atoms, outer)?;
+        let apart = |u: &f64| u.abs() >= NEAREST && (u - outer).abs() >= 0.5 * NEAREST;
+        let others: Vec<f64> = atoms.iter().copied().filter(apart).collect();
+        let inner = nearest(&others, inner)?;
+        Some([outer.min(inner), outer.max(inner)])
+    };
+    Some([side(left, inner_left)?, side(right, inner_right)?].concat())
+}
+
+/// The rule with these nodes and the mean that matches moments up to the fourth; None where one of its weights is negative.
+fn rule_at(distribution: &dyn Distribution, u: &[f64]) -> Option<Rule> {
+    let moments = distribution.standard_moments();
+    let mut nodes: Vec<f64> = u.iter().copied().chain([0.0]).collect();
+    nodes.sort_unstable_by(f64::total_cmp);
+    let moments = [1.0, 0.0, 1.0, moments.skewness, moments.kurtosis()];
+    // The mean of every polynomial of Lagrange, by its coefficients.
+    let weight = |i: usize| {
+        let mut coefficients = vec![1.0];
+        for j in (0..nodes.len()).filter(|&j| j != i) {
+            let scale = 1.0 / (nodes[i] - nodes[j]);
+            coefficients.push(0.0);
+            for k in (0..coefficients.len()).rev() {
+                let below = if k > 0 { coefficients[k - 1] } else { 0.0 };
+                coefficients[k] = (below - nodes[j] * coefficients[k]) * scale;
+            }
+        }
+        coefficients.iter().zip(moments).map(|(c, moment)| c * moment).sum::<f64>()
+    };
+    let weights: Vec<f64> = (0..nodes.len()).map(weight).collect();
+    weights.iter().all(|&weight| weight >= 0.0).then_some(Rule { nodes, weights })
 }
 
 /// How far the moments of distributions reach: dimensions of one distribution share what takes eigenvalues.

@@ -9,6 +9,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::model::{Answers, Model};
 use super::place::{BEFORE, FARTHEST, length, unit};
+use super::plain::PlainPoints;
 use super::space::Columns;
 use super::target::Target;
 use crate::verification::seldom_points;
@@ -111,6 +112,18 @@ impl Explored {
     /// Every point's value of a characteristic, None without one.
     fn values(&self, characteristic: usize) -> impl Iterator<Item = Option<f64>> + '_ {
         self.answers.iter().flat_map(move |answers| answers.values(characteristic))
+    }
+
+    /// The points of the inputs' own density, counted for a target.
+    pub(super) fn plain(&self, target: &Target<'_>) -> PlainPoints {
+        let mut plain = PlainPoints::default();
+        let own: Vec<usize> = (0..self.scales.len()).filter(|&row| self.scales[row] == Some(1.0)).collect();
+        let normals = self.normals.iter().map(|column| own.iter().map(|&row| column[row]).collect()).collect();
+        let values: Vec<Option<f64>> = self.values(target.characteristic).collect();
+        for (&row, margin) in own.iter().zip(target.margins(&normals)) {
+            plain.add(values[row].map(|value| target.sought(value)), margin > 0.0);
+        }
+        plain
     }
 
     /// The points that a target seeks, nearest to the means first.

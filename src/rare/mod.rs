@@ -16,13 +16,19 @@
 //! inputs vary and up to three times as wide, and beside switches that the model tells of. Rejects among them that the surrogate's
 //! components do not cover get components of their own: half-spaces at the likeliest point of the limit near them. So do rejects that
 //! a stage finds by its plain and wide points where no place is.
+//!
+//! No place is of use where rejects lie all around the means in many variables. Where the interval of the weighted points is wider than that
+//! of as many plain ones, the rest of the points are plain, and they alone make the estimate (`plain`): the result is never much worse
+//! than that of plain sampling.
 
 mod border;
 mod estimate;
 mod explore;
+mod measured;
 mod mixture;
 mod model;
 mod place;
+mod plain;
 mod search;
 mod shape;
 mod space;
@@ -33,7 +39,7 @@ mod within;
 use serde::Serialize;
 
 use crate::assembly::{EvaluationError, NonRepeatable, Run};
-use crate::evaluation::history;
+use crate::evaluation::{Restoration, Restore, at_any_size, history};
 use crate::method::{Method, MethodError, Options};
 use crate::problem::Problem;
 use crate::simulation::{Pace, SimulationError, Surrogates};
@@ -41,6 +47,7 @@ use crate::summary::RunSummary;
 use crate::warning::Warning;
 use sensitol_numeric::characteristic::Characteristic;
 use sensitol_numeric::requirement::Requirement;
+use sensitol_numeric::sampling::SamplingInterval;
 use sensitol_numeric::sampling::{Estimate, SamplingError};
 use sensitol_numeric::shape::{text, through};
 use sensitol_numeric::time::Instant;
@@ -170,6 +177,9 @@ pub struct RareCharacteristic {
     pub yield_: Option<f64>,
     /// 95 % interval of that.
     pub yield_interval: Option<[f64; 2]>,
+    /// How far the yield may be off because measured dimensions are known by samples; None where there are none.
+    #[serde(rename = "sampling_interval")]
+    pub sampling: Option<SamplingInterval>,
     /// Whether the search was stopped before all points were drawn: no verdict follows from the others.
     pub unfinished: bool,
 }
@@ -200,6 +210,9 @@ pub struct Beyond {
     pub plain_samples: Option<f64>,
     /// The most likely assembly at the limit, as the surrogate and rejects of the model show it; None where none is known.
     pub design_point: Option<DesignPoint>,
+    /// The plain points that make the estimate, where importance sampling was worse; told of as a warning.
+    #[serde(skip)]
+    pub plain_points: Option<u64>,
 }
 
 /// The most likely assembly at a limit.
@@ -287,6 +300,37 @@ pub fn rare_with(
     run: &Run<'_>,
     pace: &dyn Fn(Pace),
 ) -> Result<RareEvents, RareError> {
+    at_any_size(problem, run, |problem, run| sought(problem, options, run, pace))
+}
+
+impl Restore for RareEvents {
+    fn restore(&mut self, back: &Restoration<'_>) {
+        back.add_time(&mut self.run);
+        for (c, one) in self.characteristics.iter_mut().enumerate() {
+            one.characteristic = back.problem.characteristics()[c].clone();
+            let limits = one.characteristic.limits();
+            for (side, limit) in [(&mut one.below, limits.lower()), (&mut one.above, limits.upper())] {
+                side.iter_mut().zip(limit).for_each(|(side, limit)| side.limit = limit);
+            }
+        }
+        self.warnings.iter_mut().for_each(|warning| warning.rescale(|name| back.power_of(name)));
+    }
+}
+
+impl Restore for RareError {
+    fn restore(&mut self, back: &Restoration<'_>) {
+        if let Self::Simulation(error) = self {
+            error.restore(back);
+        }
+    }
+}
+
+fn sought(
+    problem: &Problem,
+    options: &RareOptions,
+    run: &Run<'_>,
+    pace: &dyn Fn(Pace),
+) -> Result<RareEvents, RareError> {
     if !(LEAST..=MOST).contains(&options.samples) {
         return Err(RareError::Samples { samples: options.samples, least: LEAST, most: MOST });
     }
@@ -304,7 +348,7 @@ pub fn rare_with(
     let mut model = Model::new(problem, &space, run);
     let places: Vec<Place> = targets.iter().enumerate().flat_map(|(index, target)| places(index, target)).collect();
     let places = correct(places, &targets, (options.samples / 4) as usize, &mut model);
-    let mut search = Search::new(&targets, places, options.samples);
+    let mut search = Search::new(&targets, places, (options.samples, options.seed));
     if !targets.is_empty() {
         let explored = Explored::new(&targets, &search.reached(), options.samples, !options.seed, &mut model);
         search.learn(&explored, (options.samples / 10) as usize, &mut model);
@@ -314,17 +358,24 @@ pub fn rare_with(
         let left = options.samples.saturating_sub(model.answered);
         let stage = match options.until {
             Some(_) => search.points.max(FIRST[0]),
-            None if search.stages < LEARNING => (options.samples / 5).clamp(FIRST[0], FIRST[1]),
+            // In many variables the first stage decides whether there is a second of its kind.
+            None if search.stages == 0 && search.has_many_variables() => {
+                (options.samples / 20).clamp(FIRST[0], FIRST[1])
+            }
+            None if search.stages < LEARNING && !search.is_plain() => (options.samples / 5).clamp(FIRST[0], FIRST[1]),
             None => left,
         };
-        done = search.stage(stage.min(left) as usize, options.seed, &mut model);
+        done = search.stage(stage.min(left) as usize, &mut model);
+        if search.stages >= LEARNING || search.has_many_variables() {
+            search.judge(model.answered);
+        }
         let shortfall = search.shortfall();
         reached = options.until.map(|wanted| shortfall <= wanted && search.confirmed(wanted));
         let more = options.until.map_or(f64::INFINITY, |wanted| (shortfall / wanted).powi(2).max(1.0));
         let expected = (search.points as f64 * more).min((search.points + left) as f64);
         pace(Pace { samples: search.points, expected, elapsed: begun.elapsed() });
         done |= model.answered >= options.samples || reached == Some(true) || run.stopped();
-        if !done && (search.stages <= LEARNING || options.until.is_some()) {
+        if !done && !search.is_plain() && (search.stages <= LEARNING || options.until.is_some()) {
             let left = options.samples - model.answered;
             search.follow((left / 4) as usize, &mut model);
         }
@@ -349,10 +400,12 @@ pub fn rare_with(
     let samples = search.points;
     let (joint, joint_interval) = search.within_all(problem).unzip();
     let joint = joint.flatten();
+    let characteristics = search.characteristics(&model, stopped.is_some());
+    let characteristics = measured::with_sampling(problem, &surrogates.outcome, characteristics);
+    let joint_interval = joint_interval.map(|interval| measured::joint(joint, interval, &characteristics));
     let joint_requirement = options.surrogate.target_joint_yield.filter(|_| joint_interval.is_some());
     let joint_requirement = joint_requirement
         .map(|target| Judged::of(Requirement::Yield(target), joint, joint_interval).unless(stopped.is_some()));
-    let characteristics = search.characteristics(&model, stopped.is_some());
     let run = RunSummary { stopped, evaluator: problem.evaluator(), ..drawn.and(&spent) };
     let warnings = warnings::of(&characteristics, samples, run.evaluations);
     Ok(RareEvents {
@@ -375,11 +428,11 @@ fn targets<'a>(problem: &Problem, surrogates: &'a Surrogates, space: &'a Space<'
     let mut targets = Vec::new();
     for (c, characteristic) in problem.characteristics().iter().enumerate() {
         let Some(known) = surrogates.known.get(c).and_then(Option::as_ref) else { continue };
-        let limits = characteristic.limits();
-        for (side, limit) in [(-1.0, limits.lower()), (1.0, limits.upper())] {
-            let Some(limit) = limit else { continue };
+        let (limits, [lower, upper]) = (characteristic.limits(), problem.kept_limits(c).ends());
+        for (side, given, limit) in [(-1.0, limits.lower(), lower), (1.0, limits.upper(), upper)] {
+            let Some(given) = given else { continue };
             let (surrogate, sigma) = (&known.surrogate, known.moments.sigma);
-            let target = Target { space, characteristic: c, side, kept: false, limit, surrogate, sigma };
+            let target = Target { space, characteristic: c, side, kept: false, given, limit, surrogate, sigma };
             let middle = target.margins(&vec![vec![0.0]; space.len()]);
             targets.push(Target { kept: middle.first().is_some_and(|&margin| margin > 0.0), ..target });
         }

@@ -1,10 +1,11 @@
 //! Points drawn and weighed, stage after stage.
 
-use super::estimate::{Weighed, best_parts};
+use super::estimate::{ProbabilityEstimate, Weighed, best_parts};
 use super::explore::Explored;
 use super::mixture::Mixture;
 use super::model::{Answers, Model};
 use super::place::{FAINT, Place, PlaceKind, dot, unit};
+use super::plain::{PlainPoints, SurrogateShare};
 use super::space::Columns;
 use super::target::Target;
 use super::within::within;
@@ -33,6 +34,8 @@ const ALIKE: f64 = 0.97;
 const STRAYED: f64 = 0.05;
 /// The part of a component without a place stays at least this much of its first.
 const WATCHING: f64 = 0.5;
+/// Variables from which on places are judged after the first stage: what they draw there is seldom what matters.
+const MANY_VARIABLES: usize = 30;
 
 /// The points that have been drawn and answered so far.
 pub(super) struct Search<'a> {
@@ -41,6 +44,12 @@ pub(super) struct Search<'a> {
     weighed: Vec<Weighed>,
     /// Of what lies beyond any limit; None with fewer than two characteristics that have limits, and where the means lie beyond one.
     joint: Option<Weighed>,
+    /// The points of the inputs' own density, of every target and of what lies beyond any limit.
+    plain: Vec<PlainPoints>,
+    plain_joint: PlainPoints,
+    /// The targets of which plain points know more than weighted ones do.
+    falls_back: Vec<bool>,
+    seed: u64,
     /// For every target some rejects: the logarithms of their weights, and their normal variables.
     guides: Vec<Vec<(f64, Vec<f64>)>>,
     /// Points drawn and answered.
@@ -61,14 +70,27 @@ struct Drawn {
 
 impl<'a> Search<'a> {
     /// Of so many points.
-    pub(super) fn new(targets: &'a [Target<'a>], places: Vec<Place>, expected: u64) -> Self {
+    pub(super) fn new(targets: &'a [Target<'a>], places: Vec<Place>, (expected, seed): (u64, u64)) -> Self {
         let mixture = Mixture::new(targets, places, expected);
         let (weighed, guides) = (vec![Weighed::default(); targets.len()], vec![Vec::new(); targets.len()]);
         let mut characteristics: Vec<usize> = targets.iter().map(|target| target.characteristic).collect();
         characteristics.dedup();
         let several = characteristics.len() > 1 && !targets.iter().any(|target| target.kept);
         let joint = several.then(Weighed::default);
-        Self { targets, mixture, weighed, joint, guides, points: 0, stages: 0, expected }
+        Self {
+            targets,
+            mixture,
+            weighed,
+            joint,
+            plain: vec![PlainPoints::default(); targets.len()],
+            plain_joint: PlainPoints::default(),
+            falls_back: vec![false; targets.len()],
+            seed,
+            guides,
+            points: 0,
+            stages: 0,
+            expected,
+        }
     }
 
     /// Whether some place of each target crosses its limit.
@@ -84,6 +106,7 @@ impl<'a> Search<'a> {
         let each = budget / self.targets.len().max(1);
         for (index, target) in self.targets.iter().enumerate() {
             self.weighed[index].bound(explored.bound(target));
+            self.plain[index] = explored.plain(target);
             let guards = self.guards(index, each, model);
             self.take(guards);
             found.extend(self.half_spaces(index, &explored.rejects(target), each, model));
@@ -152,12 +175,53 @@ impl<'a> Search<'a> {
     }
 
     /// Draws and weighs so many points; whether some of them were not answered.
-    pub(super) fn stage(&mut self, points: usize, seed: u64, model: &mut Model<'_>) -> bool {
-        let drawn = self.draw(points, mixed_seed(seed, self.stages));
+    pub(super) fn stage(&mut self, points: usize, model: &mut Model<'_>) -> bool {
+        let drawn = self.draw(points, mixed_seed(self.seed, self.stages));
         self.stages += 1;
         let answers = model.ask(&drawn.normals);
         self.weigh(&drawn, &answers);
         (0..points).any(|row| !answers.answered(row))
+    }
+
+    /// Whether the variables are so many that places are judged after the first stage.
+    pub(super) fn has_many_variables(&self) -> bool {
+        self.targets.first().is_some_and(|target| target.space.len() > MANY_VARIABLES)
+    }
+
+    /// Falls back to plain points for every target whose interval is wider than that of a plain sample of as many points as were
+    /// evaluated, where many variables hide the places. With few variables wide intervals are caution, and places are found.
+    pub(super) fn judge(&mut self, evaluated: u64) {
+        if !self.has_many_variables() {
+            return;
+        }
+        for (falls_back, weighed) in self.falls_back.iter_mut().zip(&self.weighed) {
+            let Some(found) = weighed.found() else { continue };
+            let value = found.probability.map_or(0.0, |probability| probability.value);
+            *falls_back |= found.interval[1] - found.interval[0] > PlainPoints::width(evaluated as f64, value);
+        }
+    }
+
+    /// Whether plain points are drawn alone.
+    pub(super) fn is_plain(&self) -> bool {
+        !self.falls_back.is_empty() && self.falls_back.iter().all(|&falls_back| falls_back)
+    }
+
+    /// The estimate of a target, by the points that know more; of plain ones without the surrogate, which takes a while.
+    fn found(&self, index: usize) -> Option<ProbabilityEstimate> {
+        match self.falls_back[index] {
+            true => self.plain[index].found(None),
+            false => self.weighed[index].found(),
+        }
+    }
+
+    /// The same of every target, with the surrogate.
+    fn conclusions(&self) -> Vec<Option<ProbabilityEstimate>> {
+        let beside = |index: usize| SurrogateShare::of(&self.targets[index], !self.seed);
+        let conclusion = |index: usize| match self.falls_back[index] {
+            true => self.plain[index].found(Some(beside(index))),
+            false => self.weighed[index].found(),
+        };
+        (0..self.targets.len()).map(conclusion).collect()
     }
 
     /// Adds a place for every target whose rejects lie on average in a direction in which there is none, and half-spaces for rejects that
@@ -214,8 +278,16 @@ impl<'a> Search<'a> {
     fn parts(&self) -> Vec<f64> {
         let first = &self.mixture.parts;
         let mut parts = vec![0.0; first.len()];
-        for guides in &self.guides {
-            let best = if guides.len() < FEW { first.clone() } else { best_parts(&self.heights(guides), first) };
+        let plain: Vec<f64> = (0..first.len()).map(|component| f64::from(u8::from(component == 0))).collect();
+        if self.is_plain() {
+            return plain;
+        }
+        for (guides, &falls_back) in self.guides.iter().zip(&self.falls_back) {
+            let best = match falls_back {
+                true => plain.clone(),
+                false if guides.len() < FEW => first.clone(),
+                false => best_parts(&self.heights(guides), first),
+            };
             parts.iter_mut().zip(best).for_each(|(part, best)| *part += best / self.guides.len() as f64);
         }
         let mut parts: Vec<f64> =
@@ -262,6 +334,15 @@ impl<'a> Search<'a> {
         };
         let weights: Vec<f64> = rows.iter().map(weight).collect();
         self.points += rows.len() as u64;
+        let plain: Vec<usize> = rows.iter().copied().filter(|&row| drawn.from[row] == 0).collect();
+        let normals: Columns =
+            drawn.normals.iter().map(|column| plain.iter().map(|&row| column[row]).collect()).collect();
+        for (target, counted) in self.targets.iter().zip(&mut self.plain) {
+            for (&row, margin) in plain.iter().zip(target.margins(&normals)) {
+                let sought = answers.value(row, target.characteristic).map(|value| target.sought(value));
+                counted.add(sought, margin > 0.0);
+            }
+        }
         if let Some(joint) = &mut self.joint {
             // A limit that is broken decides, whatever is unknown of the others.
             let beyond = |row: usize| {
@@ -270,6 +351,7 @@ impl<'a> Search<'a> {
                 let all: Vec<Option<bool>> = self.targets.iter().map(each).collect();
                 if all.contains(&Some(true)) { Some(true) } else { all.iter().all(Option::is_some).then_some(false) }
             };
+            plain.iter().for_each(|&row| self.plain_joint.add(beyond(row), false));
             let points = rows.iter().zip(&weights).map(|(&row, &weight)| (drawn.from[row], weight, beyond(row)));
             joint.add(self.mixture.len(), &points.collect::<Vec<_>>());
         }
@@ -288,18 +370,20 @@ impl<'a> Search<'a> {
 
     /// The worst standard error, relative to its probability.
     pub(super) fn shortfall(&self) -> f64 {
-        let relative = |weighed: &Weighed| {
-            let probability = weighed.found().and_then(|found| found.probability);
+        let relative = |index: usize| {
+            let probability = self.found(index).and_then(|found| found.probability);
             probability.map_or(f64::INFINITY, |Estimate { value, standard_error }| {
                 standard_error.map_or(f64::INFINITY, |error| error / value)
             })
         };
-        self.weighed.iter().map(relative).fold(0.0, f64::max)
+        (0..self.targets.len()).map(relative).fold(0.0, f64::max)
     }
 
     /// Whether the last stage by itself confirms the standard errors of all: it is independent of the moment at which these were small.
     pub(super) fn confirmed(&self, wanted: f64) -> bool {
-        self.weighed.iter().all(|weighed| weighed.confirmed(wanted))
+        // Plain points are independent of each other, and need no confirmation.
+        let confirmed = self.weighed.iter().zip(&self.falls_back);
+        confirmed.into_iter().all(|(weighed, &falls_back)| falls_back || weighed.confirmed(wanted))
     }
 
     /// The share within all limits at once, and its 95 % interval, where points without a value may all be rejected ones; the share is None
@@ -308,7 +392,8 @@ impl<'a> Search<'a> {
         // Every limit has a target, but for one of a surrogate that does not vary.
         let ends = |one: &Characteristic| [one.limits().lower(), one.limits().upper()].iter().flatten().count();
         let limits: usize = problem.characteristics().iter().map(ends).sum();
-        let found = self.joint.as_ref().filter(|_| limits == self.targets.len())?.found()?;
+        let joint = self.joint.as_ref().filter(|_| limits == self.targets.len())?;
+        let found = if self.falls_back.contains(&true) { self.plain_joint.found(None)? } else { joint.found()? };
         let [low, high] = [found.interval[0], found.interval[1].max(found.bounds[1])];
         Some((found.probability.map(|found| 1.0 - found.value), [1.0 - high, 1.0 - low]))
     }
@@ -316,10 +401,11 @@ impl<'a> Search<'a> {
     /// The results of every characteristic.
     pub(super) fn characteristics(self, model: &Model<'_>, unfinished: bool) -> Vec<RareCharacteristic> {
         let space = model.space;
+        let conclusions = self.conclusions();
         let beyond = |c: usize, sign: f64| {
             let same = |target: &Target<'_>| target.characteristic == c && target.side * sign > 0.0;
             let index = self.targets.iter().position(same)?;
-            let found = self.weighed[index].found()?;
+            let found = conclusions[index]?;
             let found = if self.targets[index].kept { found.complement() } else { found };
             let mine = self.mixture.places().iter().filter(|place| place.target == index && place.crossed());
             let place = mine.min_by(|a, b| a.distance.total_cmp(&b.distance));
@@ -334,7 +420,7 @@ impl<'a> Search<'a> {
                 Some(value * (1.0 - value) / error / error).filter(|samples| samples.is_finite())
             };
             Some(Beyond {
-                limit: self.targets[index].limit,
+                limit: self.targets[index].given,
                 probability: found.probability,
                 interval: found.interval,
                 bounds: found.bounds,
@@ -343,13 +429,14 @@ impl<'a> Search<'a> {
                 greatest_part: found.greatest_part,
                 plain_samples: found.probability.and_then(plain),
                 design_point,
+                plain_points: self.falls_back[index].then(|| self.plain[index].count()),
             })
         };
         let characteristic = |(c, characteristic): (usize, &Characteristic)| {
             let (below, above) = (beyond(c, -1.0), beyond(c, 1.0));
-            let kept = self.targets.iter().zip(&self.weighed).find_map(|(target, weighed)| {
+            let kept = self.targets.iter().enumerate().find_map(|(index, target)| {
                 let mine = target.characteristic == c && target.kept;
-                mine.then(|| weighed.found()).flatten().map(|found| (usize::from(target.side > 0.0), found))
+                conclusions[index].filter(|_| mine).map(|found| (usize::from(target.side > 0.0), found))
             });
             let within = within(characteristic.limits(), [&below, &above], kept);
             RareCharacteristic {
@@ -360,6 +447,7 @@ impl<'a> Search<'a> {
                 above,
                 yield_: within.and_then(|within| within.value),
                 yield_interval: within.map(|within| within.interval),
+                sampling: None,
                 unfinished,
             }
         };

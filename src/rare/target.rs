@@ -11,6 +11,9 @@ pub(super) struct Target<'a> {
     pub(super) side: f64,
     /// Where the means lie beyond the limit, what keeps it is sought instead: the rarer of the two.
     pub(super) kept: bool,
+    /// The limit as it was given.
+    pub(super) given: f64,
+    /// The last value that keeps it.
     pub(super) limit: f64,
     pub(super) surrogate: &'a Surrogate,
     /// The surrogate's, to measure by.
@@ -23,7 +26,7 @@ impl Target<'_> {
         if self.kept { -self.side } else { self.side }
     }
 
-    /// Whether a value of the model is one that is sought; on the limit, it keeps it.
+    /// Whether a value of the model is one that is sought.
     pub(super) fn sought(&self, value: f64) -> bool {
         (self.side * (value - self.limit) > 0.0) != self.kept
     }

@@ -29,6 +29,10 @@ fn of_one(one: &RareCharacteristic, samples: u64, evaluations: u64) -> Vec<Warni
         if let Some(part) = beyond.greatest_part.filter(|&part| part > HEAVY) {
             warnings.push(Warning::HeavyPoint { characteristic: characteristic(), limit, part });
         }
+        if let Some(points) = beyond.plain_points {
+            warnings.push(Warning::PlainFallback { characteristic: characteristic(), limit, points });
+            continue;
+        }
         if let Some(plain) = beyond.plain_samples.filter(|&plain| plain < evaluations as f64) {
             warnings.push(Warning::PlainSampling { characteristic: characteristic(), limit, plain, evaluations });
         }

@@ -4,18 +4,25 @@ use serde::{Serialize, Serializer};
 
 use super::control::Twin;
 use super::count::{Count, Replicate};
-use super::difference::{Controlled, Difference, Shares, carried, moments as controlled, shares};
+use super::difference::{Controlled, Difference, Shares, carried, largest, moments as controlled, shares};
 use super::indices::SampledFactor;
 use super::inspected::inspected;
 use super::replicate::of_replicates;
+use super::seldom::Seldom;
 use super::shape::value;
 use crate::assembly::EvaluationError;
+use crate::extremes::keeps_by_proof;
 use crate::method::Method;
+use crate::problem::Problem;
 use crate::warning::Warning;
 use sensitol_numeric::capability::{self, InspectionRisks, TAIL};
+use sensitol_numeric::characteristic::KeptLimits;
 use sensitol_numeric::characteristic::{Characteristic, SpecLimits};
+use sensitol_numeric::power::rescale;
 use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::sampling::{Estimate, FEWEST, Fine, Summary, of_moments, wilson};
+use sensitol_numeric::sampling::{LargestShare, SamplingInterval, clopper_pearson, one_error, settled};
+use sensitol_numeric::shape::{RejectIntervals, through};
 use sensitol_numeric::shape::{millionths, text};
 use sensitol_numeric::verdict::{self, Judged, Verdict};
 
@@ -67,6 +74,11 @@ pub struct SimulatedCharacteristic {
     #[serde(rename = "ppm_above", serialize_with = "millionths")]
     #[cfg_attr(feature = "schema", schemars(description = "Assemblies above the upper limit, per million."))]
     pub above: Option<f64>,
+    /// The 95 % intervals of the shares below and above, each by its own count; 0 to 0 where a proof excludes a side, None without that limit
+    /// or any value.
+    #[serde(flatten, serialize_with = "through::<RejectIntervals, _, _>")]
+    #[cfg_attr(feature = "schema", schemars(with = "RejectIntervals"))]
+    pub reject_intervals: [Option<[f64; 2]>; 2],
     /// Width of the limits by six sigma; None unless there are two, and where nothing varies.
     pub cp: Option<f64>,
     /// Distance of the nearer limit by three sigma.
@@ -85,6 +97,12 @@ pub struct SimulatedCharacteristic {
     pub indices: Option<Vec<SampledFactor>>,
     /// The risks of its inspection, among the points of the sample; None without a gauge.
     pub inspection: Option<InspectionRisks>,
+    /// How far the results may be off because measured dimensions are known by samples; None where there are none.
+    #[serde(rename = "sampling_interval")]
+    pub sampling: Option<SamplingInterval>,
+    /// The moments that have not settled, which have no standard errors; told of as a warning.
+    #[serde(skip)]
+    pub unsettled: Option<Unsettled>,
 }
 
 /// The effect of a surrogate as control variate.
@@ -103,6 +121,17 @@ pub struct SurrogateControl {
     pub(crate) carried: [f64; 4],
 }
 
+/// Moments of a sample without standard errors, because few points or assemblies that it lacks decide them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Unsettled {
+    /// The lowest first.
+    figures: Vec<&'static str>,
+    /// The share of the largest points in the sum of the first.
+    share: LargestShare,
+    /// The switch beyond which the assemblies lie that the sample lacks.
+    switch: Option<String>,
+}
+
 /// The share of assemblies that keep the limits.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -110,7 +139,7 @@ pub struct SurrogateControl {
 pub struct YieldEstimate {
     /// Among the points that have a value.
     pub value: f64,
-    /// 95 % interval of that.
+    /// 95 % interval of that, as far as the number of points decides.
     pub interval: [f64; 2],
     /// If every point without a value is rejected, and if none is.
     pub bounds: [f64; 2],
@@ -120,6 +149,12 @@ pub struct YieldEstimate {
 fn share<S: Serializer>(estimate: &Option<YieldEstimate>, serializer: S) -> Result<S::Ok, S::Error> {
     estimate.map(|estimate| estimate.value).serialize(serializer)
 }
+
+rescale!(SimulatedCharacteristic { mean, sigma, quantiles, range, histogram, inspection, sampling } without {
+    characteristic, samples, failed, error, skewness, kurtosis, yield_, below, above, reject_intervals, cp, cpk, unfinished, control, indices,
+    unsettled,
+});
+rescale!(Histogram { edges } without { counts });
 
 /// How many values lie in which interval.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -154,12 +189,12 @@ fn finite(estimate: Option<Estimate>) -> Option<Estimate> {
 }
 
 impl SimulatedCharacteristic {
-    pub(super) fn of(characteristic: &Characteristic, count: &Count, twin: Option<&Twin>, answered: u64) -> Self {
-        let evidence = Evidence::of(count, twin, answered);
+    pub(super) fn of((characteristic, kept): (&Characteristic, KeptLimits), evidence: &Evidence<'_>) -> Self {
+        let count = evidence.count;
         let all = &evidence.all;
         let fine = pooled(&count.replicates);
         let known = all.count();
-        let plain = moments(all, &count.replicates);
+        let plain = evidence.plain();
         let [mean, sigma, skewness, kurtosis] = evidence.moments().map(finite);
         let shares = evidence.shares();
         let share = |side: usize| {
@@ -181,7 +216,7 @@ impl SimulatedCharacteristic {
         let value = |estimate: Option<Estimate>| estimate.map(|estimate| estimate.value);
         let spread = value(sigma).filter(|&sigma| sigma > 0.0);
         let width = limits.lower().zip(limits.upper()).map(|(lower, upper)| upper - lower);
-        let inspection = inspected(characteristic, count, fine.as_ref());
+        let inspection = inspected(characteristic, kept, count, fine.as_ref());
         Self {
             cp: width.zip(spread).map(|(width, sigma)| width / (6.0 * sigma)),
             cpk: value(mean).zip(spread).and_then(|(mean, sigma)| capability::cpk(mean, sigma, limits)),
@@ -197,6 +232,10 @@ impl SimulatedCharacteristic {
             yield_: evidence.yield_of(limits),
             below: limits.lower().and_then(|_| share(0)),
             above: limits.upper().and_then(|_| share(1)),
+            reject_intervals: [
+                limits.lower().and_then(|_| evidence.interval_of(0)),
+                limits.upper().and_then(|_| evidence.interval_of(1)),
+            ],
             histogram: range.zip(fine).zip(low.zip(high)).map(|((range, fine), (low, high))| {
                 let (edges, counts) = fine.histogram(range, [low, high], BINS);
                 Histogram { edges, counts }
@@ -212,32 +251,86 @@ impl SimulatedCharacteristic {
             }),
             indices: None,
             inspection,
+            sampling: None,
+            unsettled: evidence.unsettled(),
         }
+    }
+
+    /// With what measured samples leave open, of all rejects and of each side.
+    pub(super) fn with_sampling(self, sampling: SamplingInterval) -> Self {
+        let sides = [self.below, self.above];
+        let reject_intervals = verdict::sides_with_samples(sides, self.reject_intervals, sampling.rejected);
+        Self { sampling: Some(sampling), reject_intervals, ..self }
     }
 }
 
 impl SimulatedCharacteristic {
+    /// With the proof that a side beyond which no point lies has no rejects, where interval arithmetic has one.
+    pub(super) fn with_proof(mut self, problem: &Problem, c: usize) -> Self {
+        let open = [self.below == Some(0.0), self.above == Some(0.0)];
+        let proven = keeps_by_proof(problem, c, open);
+        for (interval, proven) in self.reject_intervals.iter_mut().zip(proven) {
+            *interval = if proven { Some([0.0; 2]) } else { *interval };
+        }
+        self
+    }
+
     /// How a requirement is kept, whether or not it is the characteristic's own: by the interval of the yield, where points without
-    /// a value may all be rejected ones, or by two standard errors of mean and sigma. Of rss and worst case a sample knows nothing.
+    /// a value may all be rejected ones, or by two standard errors of mean and sigma, with what measured samples leave open of Cpk and
+    /// sigma. Of rss and worst case a sample knows nothing.
     pub(crate) fn judge(&self, requirement: Requirement) -> Judged {
         let limits = self.characteristic.limits();
         let known = |estimate: Option<Estimate>| estimate.map(|of| (of.value, of.standard_error));
+        // Of measured samples whose uncertainty is unknown there is no interval.
+        let measured =
+            |value: Option<f64>, own: Option<[f64; 2]>, of: fn(&SamplingInterval) -> Option<[f64; 2]>| match &self
+                .sampling
+            {
+                Some(sampling) => Some(verdict::joined(value?, own?, of(sampling)?)),
+                None => own,
+            };
         let (value, interval) = match requirement {
             Requirement::Yield(_) => (
                 self.yield_.map(|share| share.value),
-                self.yield_.map(|share| [share.interval[0].min(share.bounds[0]), share.interval[1]]),
+                self.yield_.zip(self.yield_interval()).map(|(share, [low, high])| [low.min(share.bounds[0]), high]),
             ),
             Requirement::Cpk(_) => {
                 let both = known(self.mean).zip(known(self.sigma).filter(|&(sigma, _)| sigma > 0.0));
-                (self.cpk, both.and_then(|(mean, sigma)| verdict::of_cpk(mean, sigma, limits)))
+                let own = both.and_then(|(mean, sigma)| verdict::of_cpk(mean, sigma, limits));
+                (self.cpk, measured(self.cpk, own, |of| of.cpk))
             }
-            Requirement::Sigma(_) => (
-                self.sigma.map(|sigma| sigma.value),
-                known(self.sigma).and_then(|(sigma, error)| verdict::about(sigma, error)),
-            ),
+            Requirement::Sigma(_) => {
+                let value = self.sigma.map(|sigma| sigma.value);
+                let own = known(self.sigma).and_then(|(sigma, error)| verdict::about(sigma, error));
+                (value, measured(value, own, |of| of.sigma))
+            }
             Requirement::Rss | Requirement::WorstCase => (None, None),
         };
         Judged::of(requirement, value, interval).unless(self.unfinished)
+    }
+
+    /// The 95 % interval of the yield: that of the points, with what measured samples leave open. None without limits, and where no point
+    /// has a value.
+    pub fn yield_interval(&self) -> Option<[f64; 2]> {
+        let YieldEstimate { value, interval, .. } = self.yield_?;
+        let rejected = self.sampling.as_ref().and_then(|of| of.rejected);
+        let measured = rejected.map(|[low, high]| [1.0 - high, 1.0 - low]);
+        Some(measured.map_or(interval, |measured| verdict::share(verdict::joined(value, interval, measured))))
+    }
+
+    /// The errors of mean and sigma that decide their digits: standard errors, with what measured samples leave open.
+    pub fn errors(&self) -> [Option<f64>; 2] {
+        let error = |estimate: Option<Estimate>, of: fn(&SamplingInterval) -> Option<[f64; 2]>| {
+            let Estimate { value, standard_error } = estimate?;
+            let measured = self.sampling.as_ref().and_then(of).map(|interval| one_error(value, interval));
+            Some(libm::hypot(standard_error?, measured.unwrap_or(0.0)))
+        };
+        [error(self.mean, |of| of.mean), error(self.sigma, |of| of.sigma)]
+    }
+
+    /// One error of the yield: half of the way to the farther end of its interval.
+    pub fn yield_error(&self) -> Option<f64> {
+        Some(one_error(self.yield_?.value, self.yield_interval()?))
     }
 
     /// The same by three errors on either side.
@@ -268,6 +361,19 @@ impl SimulatedCharacteristic {
         (value > LARGEST).then_some(Warning::Overflow { characteristic, value, limit: LARGEST })
     }
 
+    /// Moments that have not settled.
+    pub(super) fn unsettled(&self) -> Option<Warning> {
+        let Unsettled { figures, share, switch } = self.unsettled.clone()?;
+        Some(Warning::UnsettledMoments {
+            characteristic: self.characteristic.name().to_owned(),
+            figures,
+            points: self.samples,
+            largest: share.largest,
+            ten_largest: share.watched,
+            switch,
+        })
+    }
+
     /// Points without a value, where there are any.
     pub(super) fn failures(&self) -> Option<Warning> {
         Some(Warning::FailedSamples {
@@ -285,6 +391,34 @@ pub(super) struct Evidence<'a> {
     all: Summary,
     beside: Option<(&'a Twin, Vec<&'a Difference>)>,
     answered: u64,
+    watched: Option<Watched<'a>>,
+}
+
+/// The share of the largest points in the sums that the errors of the moments rest on, and which of these lack a seldom side.
+struct Watched<'a> {
+    plain: [Watch; 4],
+    /// Of the differences to a surrogate.
+    controlled: [Watch; 4],
+    seldom: Option<&'a Seldom>,
+}
+
+/// One sum.
+#[derive(Clone, Copy, Default)]
+struct Watch {
+    share: LargestShare,
+    /// Whether a seldom side adds more to it than all points do.
+    lacks_a_side: bool,
+    /// The standard error that the seldom sides make in a sample of as many random points, whether or not it meets them.
+    of_sides: f64,
+}
+
+impl Watch {
+    /// With the standard error that the sum supports.
+    fn settled(self, estimate: Estimate) -> Estimate {
+        let estimate = settled(estimate, self.share);
+        let known = estimate.standard_error.filter(|_| !self.lacks_a_side);
+        Estimate { standard_error: known.map(|error| libm::hypot(error, self.of_sides)), ..estimate }
+    }
 }
 
 impl<'a> Evidence<'a> {
@@ -292,18 +426,80 @@ impl<'a> Evidence<'a> {
         let all = count.summary();
         let differences = || count.replicates.iter().map(|one| &one.difference).collect();
         let beside = twin.filter(|_| all.count() > 0).map(|twin| (twin, differences()));
-        Self { count, all, beside, answered }
+        Self { count, all, beside, answered, watched: None }
+    }
+
+    /// Leaves standard errors out that a few points decide, or assemblies beyond switches that are seldom met.
+    pub(super) fn watched(mut self, seldom: Option<&'a Seldom>) -> Self {
+        let (mean, sigma) = (self.all.mean(), self.all.moment(2).sqrt());
+        let powers = seldom.filter(|_| sigma > 0.0).map_or([0.0; 4], |seldom| seldom.powers(mean, sigma));
+        let standardised = self.all.standardised();
+        let shares = self.count.largest().shares(&self.all);
+        // The mean is in the unit of the values, and half of the square of sigma.
+        let of_sides = |power: f64, i: usize, sigma: f64| {
+            [sigma, 0.5 * sigma, 1.0, 1.0][i] * (power / self.all.count().max(1) as f64).sqrt()
+        };
+        let plain = std::array::from_fn(|i| Watch {
+            of_sides: of_sides(powers[i], i, sigma),
+            share: shares[i],
+            lacks_a_side: standardised.is_some_and(|moments| powers[i] > moments[2 * i + 2]),
+        });
+        let controlled = self.beside.as_ref().map_or([Watch::default(); 4], |(twin, differences)| {
+            let squares = seldom.map_or([0.0; 4], |seldom| seldom.differences(twin));
+            let largest = largest(differences);
+            std::array::from_fn(|i| Watch {
+                of_sides: of_sides(squares[i], i, twin.moments.sigma),
+                share: largest[i].0,
+                lacks_a_side: squares[i] > largest[i].1,
+            })
+        });
+        self.watched = Some(Watched { plain, controlled, seldom });
+        self
     }
 
     pub(super) fn moments(&self) -> [Option<Estimate>; 4] {
-        match &self.beside {
-            Some((twin, differences)) => {
-                let (plain, random) = (moments(&self.all, &self.count.replicates), of_moments(&self.all));
-                let controlled = controlled(differences, twin);
-                std::array::from_fn(|moment| better(controlled[moment], plain[moment], random[moment]))
-            }
-            None => moments(&self.all, &self.count.replicates),
-        }
+        let plain = self.plain();
+        let Some((twin, differences)) = &self.beside else { return plain };
+        let (random, controlled) = (of_moments(&self.all), controlled(differences, twin));
+        let watched = self.watched.as_ref().map_or([Watch::default(); 4], |watched| watched.controlled);
+        std::array::from_fn(|i| {
+            let controlled = controlled[i].map(|Controlled { estimate, random }| {
+                let value = estimate.value;
+                let random = watched[i].settled(Estimate { value, standard_error: random }).standard_error;
+                Controlled { estimate: watched[i].settled(estimate), random }
+            });
+            better(controlled, plain[i], self.settled(random)[i])
+        })
+    }
+
+    /// Without the surrogate.
+    fn plain(&self) -> [Option<Estimate>; 4] {
+        self.settled(moments(&self.all, &self.count.replicates))
+    }
+
+    /// With the standard errors that the sums of the sample support.
+    fn settled(&self, estimates: [Option<Estimate>; 4]) -> [Option<Estimate>; 4] {
+        let Some(Watched { plain, .. }) = &self.watched else { return estimates };
+        std::array::from_fn(|i| estimates[i].map(|estimate| plain[i].settled(estimate)))
+    }
+
+    /// The moments that are told without a standard error because they have not settled.
+    fn unsettled(&self) -> Option<Unsettled> {
+        let watched = self.watched.as_ref().filter(|_| self.all.count() >= FEWEST)?;
+        let found = self.moments();
+        let lacking = |i: usize| {
+            let plain = watched.plain[i];
+            (plain.lacks_a_side || plain.share.widening().is_none())
+                && found[i].is_some_and(|of| of.value.is_finite() && of.standard_error.is_none())
+        };
+        let open: Vec<usize> = (0..4).filter(|&i| lacking(i)).collect();
+        let &first = open.first()?;
+        let plain = watched.plain[first];
+        Some(Unsettled {
+            figures: open.iter().map(|&i| ["mean", "sigma", "skewness", "kurtosis"][i]).collect(),
+            share: plain.share,
+            switch: watched.seldom.filter(|_| plain.lacks_a_side).and_then(Seldom::rarest),
+        })
     }
 
     /// Those outside the limits, where a surrogate and limits are.
@@ -312,13 +508,35 @@ impl<'a> Evidence<'a> {
         shares(differences, twin.outside.as_ref()?, REJECTED * differences.len() as u64)
     }
 
+    /// The interval of the share below (0) or above (1) the limits by its own count; None where no value is known.
+    fn interval_of(&self, side: usize) -> Option<[f64; 2]> {
+        let (known, replicates) = (self.all.count(), &self.count.replicates);
+        if let Some(shares) = self.shares() {
+            return Some(shares.intervals[side]);
+        }
+        let outside: u64 = replicates.iter().map(|replicate| replicate.outside[side]).sum();
+        let value = outside as f64 / known as f64;
+        let few = outside.min(known - outside) < REJECTED * replicates.len() as u64;
+        let scatter = of_replicates(replicates.iter().map(|replicate| {
+            let n = replicate.summary.count();
+            (n > 0).then(|| replicate.outside[side] as f64 / n as f64)
+        }));
+        match scatter {
+            _ if known == 0 => None,
+            Some(error) if !few && error > 0.0 => {
+                Some([(value - 2.0 * error).max(0.0), (value + 2.0 * error).min(1.0)])
+            }
+            _ => Some(clopper_pearson(outside as f64, known as f64)),
+        }
+    }
+
     /// The share within the limits; None where there are none, or no value is known.
     pub(super) fn yield_of(&self, limits: SpecLimits) -> Option<YieldEstimate> {
         let (known, answered, replicates) = (self.all.count(), self.answered, &self.count.replicates);
         if !limits.exist() || known == 0 {
             return None;
         }
-        if let Some(Shares { outside, interval }) = self.shares() {
+        if let Some(Shares { outside, interval, .. }) = self.shares() {
             let value = (1.0 - outside[0] - outside[1]).max(0.0);
             let within = value * known as f64;
             let bounds = [within, within + (answered - known) as f64].map(|most| most / answered as f64);
@@ -344,13 +562,14 @@ impl<'a> Evidence<'a> {
 /// The controlled estimate, or the plain one where it is better; a tenth is added to the standard error for the choice.
 ///
 /// Judged by the scatter of all points as if they were random. Standard errors of 16 replicates are uncertain by a fifth: the smaller
-/// of two would be too small.
+/// of two would be too small. An estimate whose error is unknown is worse than any other.
 fn better(controlled: Option<Controlled>, plain: Option<Estimate>, random: Option<Estimate>) -> Option<Estimate> {
     let Some(Controlled { estimate, random: own }) = controlled else { return plain };
     // Where powers of the values overflow, only the controlled figure, in units of its own sigma, is left.
+    let known = plain.filter(|of| of.value.is_finite() && of.standard_error.is_some());
     let without =
         random.filter(|of| of.value.is_finite()).and_then(|of| of.standard_error).filter(|error| error.is_finite());
-    let Some(own) = own else { return Some(estimate) };
+    let Some(own) = own else { return known.or(Some(estimate)) };
     let best = if without.is_some_and(|without| without < own) { plain? } else { estimate };
     Some(Estimate { standard_error: best.standard_error.map(|error| CHOICE * error), ..best })
 }

@@ -10,7 +10,8 @@ use crate::evaluation::Evaluated;
 use crate::method::{Method, Options, Outcome};
 use crate::problem::Problem;
 use crate::summary::StopReason;
-use sensitol_numeric::characteristic::{Characteristic, SpecLimits};
+use sensitol_numeric::characteristic::KeptLimits;
+
 use sensitol_numeric::moments::Sampled;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::sampling::{Draws, Portion, Sampler};
@@ -42,7 +43,7 @@ pub(super) struct Twin {
     pub(super) moments: Shape,
     /// Their standard errors, where correlated inputs leave them no closed form.
     pub(super) sampled: Option<Sampled>,
-    pub(super) limits: SpecLimits,
+    pub(super) limits: KeptLimits,
     /// Where there are limits.
     pub(super) outside: Option<Outside>,
 }
@@ -95,7 +96,7 @@ impl<'p> Control<'p> {
     }
 
     /// For every characteristic how far its surrogate lies above its centre at these points; empty where it has none.
-    fn rises(&self, points: &Points) -> Vec<Vec<f64>> {
+    pub(super) fn rises(&self, points: &Points) -> Vec<Vec<f64>> {
         let inputs = self.problem.standardised(points, self.outcome.plan.varying());
         let rises = |twin: &Option<Twin>| twin.as_ref().and_then(|twin| twin.surrogate.rises(&inputs));
         self.twins.iter().map(|twin| rises(twin).unwrap_or_default()).collect()
@@ -141,7 +142,7 @@ impl<'p> Control<'p> {
 
 /// The surrogates as they stand beside the model.
 fn twins(problem: &Problem, outcome: &Outcome, known: Vec<Option<KnownSurrogate>>) -> Vec<Option<Twin>> {
-    let twin = |(known, characteristic): (Option<KnownSurrogate>, &Characteristic)| {
+    let twin = |(c, known): (usize, Option<KnownSurrogate>)| {
         known.map(|KnownSurrogate { surrogate, moments, sampled }| Twin {
             centre: surrogate.centre,
             surrogate,
@@ -149,21 +150,16 @@ fn twins(problem: &Problem, outcome: &Outcome, known: Vec<Option<KnownSurrogate>
             evaluations: outcome.evaluated.evaluations,
             moments,
             sampled,
-            limits: characteristic.limits(),
+            limits: problem.kept_limits(c),
             outside: None,
         })
     };
-    known.into_iter().zip(problem.characteristics()).map(twin).collect()
+    known.into_iter().enumerate().map(twin).collect()
 }
 
 impl Twin {
     /// Whether the surrogate lies below and above the limits, from its rise.
     pub(super) fn sides(&self, rise: f64) -> [bool; 2] {
-        sides(&self.limits, self.centre + rise)
+        self.limits.broken(self.centre + rise)
     }
-}
-
-/// Whether a value lies below and above the limits; on a limit it keeps it.
-pub(super) fn sides(limits: &SpecLimits, value: f64) -> [bool; 2] {
-    [limits.lower().is_some_and(|lower| value < lower), limits.upper().is_some_and(|upper| value > upper)]
 }

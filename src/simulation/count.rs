@@ -1,14 +1,15 @@
 //! The counts of one characteristic.
 
 use super::difference::Difference;
+use super::groups::GroupSums;
 use crate::assembly::EvaluationError;
-use sensitol_numeric::characteristic::SpecLimits;
-use sensitol_numeric::sampling::{Fine, Scale, Summary};
+use sensitol_numeric::characteristic::KeptLimits;
+use sensitol_numeric::sampling::{Fine, LargestPoints, Scale, Summary};
 
 /// The limits and the scale by which a portion is counted.
 #[derive(Clone, Copy)]
 pub(super) struct Lens {
-    pub(super) limits: SpecLimits,
+    pub(super) limits: KeptLimits,
     /// Known after the first batch.
     pub(super) scale: Option<Scale>,
 }
@@ -17,6 +18,7 @@ pub(super) struct Lens {
 #[derive(Clone)]
 pub(super) struct Replicate {
     pub(super) summary: Summary,
+    pub(super) largest: LargestPoints,
     pub(super) outside: [u64; 2],
     /// Nothing where no surrogate stands beside the model.
     pub(super) difference: Difference,
@@ -26,6 +28,8 @@ pub(super) struct Replicate {
 /// All of one characteristic.
 pub(super) struct Count {
     pub(super) replicates: Vec<Replicate>,
+    /// By groups of measured rows; nothing without measured inputs.
+    pub(super) groups: GroupSums,
     pub(super) failed: u64,
     pub(super) error: Option<EvaluationError>,
 }
@@ -35,6 +39,13 @@ impl Count {
     pub(super) fn summary(&self) -> Summary {
         let mut all = Summary::default();
         self.replicates.iter().for_each(|replicate| all.merge(&replicate.summary));
+        all
+    }
+
+    /// The largest points of all replicates.
+    pub(super) fn largest(&self) -> LargestPoints {
+        let mut all = LargestPoints::default();
+        self.replicates.iter().for_each(|replicate| all.merge(&replicate.largest));
         all
     }
 }

@@ -16,10 +16,10 @@
 
 use faer::{Mat, Side};
 
-use super::control::{Outside, Twin, sides};
+use super::control::{Outside, Twin};
 use super::replicate::of_replicates;
 use sensitol_numeric::moments::Sampled;
-use sensitol_numeric::sampling::{Estimate, FEWEST, Joint, wilson};
+use sensitol_numeric::sampling::{Estimate, FEWEST, Joint, LargestShare, LargestTerms, clopper_pearson, wilson};
 
 /// Powers of the surrogate that serve as controls.
 const CONTROLS: usize = 4;
@@ -36,12 +36,14 @@ pub(super) struct Difference {
     sums: Joint<COLUMNS>,
     /// Points at which the model has no value.
     lost: u64,
-    /// Points below and above the limits for the model, less those for the surrogate.
-    moved: [i64; 2],
+    /// Points below, and above, the limits for the model only, and for the surrogate only.
+    sides: [[u64; 2]; 2],
     /// Points outside the limits for the model only, and for the surrogate only.
     only: [u64; 2],
     /// How few points carry the sums of `v^k`, and those of `n_k - t^k`.
     carried: [Carried; 2],
+    /// The largest of the `n_k - t^k`.
+    largest: [LargestTerms; CONTROLS],
 }
 
 /// Sums of the squares and the fourth powers of four terms: `(sum r^2)^2 / sum r^4` points carry a sum (Kish 1965).
@@ -82,7 +84,7 @@ impl Difference {
                 difference.lost += 1;
                 let [p1, p2, p3, p4] = powers;
                 rows.push([-1.0, -p1, -p2, -p3, -p4, p1, p2, p3, p4]);
-                difference.carried[1].count(powers);
+                difference.count(powers);
                 continue;
             }
             let d = ((value - twin.centre) - rise) / twin.moments.sigma;
@@ -93,33 +95,35 @@ impl Difference {
             let [p1, p2, p3, p4] = powers;
             rows.push([0.0, d1, d2, d3, d4, p1, p2, p3, p4]);
             difference.carried[0].count([v, v * v, v * v * v, v * v * v * v]);
-            difference.carried[1].count(differences);
-            let (model, surrogate) = (sides(&twin.limits, value), twin.sides(rise));
-            for (side, moved) in difference.moved.iter_mut().enumerate() {
-                *moved += i64::from(model[side]) - i64::from(surrogate[side]);
+            difference.count(differences);
+            let (model, surrogate) = (twin.limits.broken(value), twin.sides(rise));
+            for (side, only) in difference.sides.iter_mut().enumerate() {
+                apart(model[side], surrogate[side], only);
             }
-            match (model.contains(&true), surrogate.contains(&true)) {
-                (true, false) => difference.only[0] += 1,
-                (false, true) => difference.only[1] += 1,
-                _ => {}
-            }
+            apart(model.contains(&true), surrogate.contains(&true), &mut difference.only);
         }
         difference.sums = Joint::of(&rows);
         difference
     }
 
+    /// Counts the differences of one point.
+    fn count(&mut self, differences: [f64; CONTROLS]) {
+        self.carried[1].count(differences);
+        self.largest.iter_mut().zip(differences).for_each(|(largest, difference)| largest.add(difference));
+    }
+
     pub(super) fn merge(&mut self, other: &Self) {
+        self.largest.iter_mut().zip(&other.largest).for_each(|(own, more)| own.merge(more));
         self.sums.merge(&other.sums);
         self.lost += other.lost;
-        (0..2).for_each(|side| {
-            self.moved[side] += other.moved[side];
-            self.only[side] += other.only[side];
-        });
+        let own = self.sides.iter_mut().flatten().chain(&mut self.only);
+        own.zip(other.sides.iter().flatten().chain(&other.only)).for_each(|(own, more)| *own += more);
         self.carried.iter_mut().zip(&other.carried).for_each(|(own, more)| own.merge(more));
     }
 
-    fn net(&self) -> f64 {
-        (self.only[0] as f64 - self.only[1] as f64) / self.sums.count() as f64
+    /// The share that the model has more of an event than the surrogate, by the points that are in it for one of them only.
+    fn net(&self, [model, surrogate]: [u64; 2]) -> f64 {
+        (model as f64 - surrogate as f64) / self.sums.count() as f64
     }
 
     /// Points at which the model has a value.
@@ -217,6 +221,23 @@ pub(super) fn carried(replicates: &[&Difference]) -> [[f64; CONTROLS]; 2] {
     pooled(replicates).carried.map(|carried| carried.points())
 }
 
+/// How much the largest differences have of the sum of squares that each moment rests on, and the mean square.
+pub(super) fn largest(replicates: &[&Difference]) -> [(LargestShare, f64); CONTROLS] {
+    /// Squares of differences that rounding makes, in units of sigma: which of them are the largest says nothing.
+    const ROUNDING: f64 = 1e-20;
+    pooled(replicates).largest.map(|terms| match terms.mean() {
+        rounding if rounding <= ROUNDING => (LargestShare::default(), rounding),
+        mean => (terms.share(), mean),
+    })
+}
+
+/// The squares of `n_k - t^k` at one point, k = 1 to 4, where the model has this value and the surrogate this rise.
+pub(super) fn squares(value: f64, rise: f64, twin: &Twin) -> [f64; CONTROLS] {
+    let t = (rise - (twin.moments.mean - twin.centre)) / twin.moments.sigma;
+    let v = t + ((value - twin.centre) - rise) / twin.moments.sigma;
+    std::array::from_fn(|k| (v.powi(k as i32 + 1) - t.powi(k as i32 + 1)).powi(2))
+}
+
 /// A moment with the surrogate as control.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Controlled {
@@ -265,16 +286,28 @@ fn pooled(replicates: &[&Difference]) -> Difference {
     all
 }
 
+/// Counts a point that is in an event for the model only, or for the surrogate only.
+fn apart(model: bool, surrogate: bool, only: &mut [u64; 2]) {
+    match (model, surrogate) {
+        (true, false) => only[0] += 1,
+        (false, true) => only[1] += 1,
+        _ => {}
+    }
+}
+
 /// Shares outside the limits, and the interval of the share within.
 pub(super) struct Shares {
     /// Below and above.
     pub(super) outside: [f64; 2],
+    /// The interval of either.
+    pub(super) intervals: [[f64; 2]; 2],
     pub(super) interval: [f64; 2],
 }
 
 /// The surrogate's own share and the difference of the model's. The interval combines Wilson's of the surrogate's share and
 /// of the points that only the one and only the other rejects (Zou and Donner 2008), so that no disagreement seen is not
-/// taken for none; where there are `enough` disagreements and replicates, what these differ by.
+/// taken for none; where there are `enough` disagreements and replicates, what these differ by. The rejects of one side have that of their
+/// own counts, by the intervals of Clopper and Pearson.
 ///
 /// None where some points have no value: the surrogate's share is that of all assemblies.
 pub(super) fn shares(replicates: &[&Difference], outside: &Outside, enough: u64) -> Option<Shares> {
@@ -283,22 +316,30 @@ pub(super) fn shares(replicates: &[&Difference], outside: &Outside, enough: u64)
     if n == 0.0 || all.lost > 0 {
         return None;
     }
-    let hits = (outside.hits[0] + outside.hits[1]) as f64;
-    let (own, ends) = (hits / points, wilson(hits, points));
-    let rejected = own + all.net();
-    let [gained, lost] = all.only.map(|count| (count as f64 / n, wilson(count as f64, n)));
-    let mut below = libm::hypot(gained.0 - gained.1[0], lost.1[1] - lost.0);
-    let mut above = libm::hypot(gained.1[1] - gained.0, lost.0 - lost.1[0]);
-    if all.only[0] + all.only[1] >= enough {
-        let nets = replicates.iter().map(|one| (one.sums.count() > 0).then(|| one.net()));
-        if let Some(error) = of_replicates(nets).filter(|&error| error > 0.0) {
-            (below, above) = (2.0 * error, 2.0 * error);
+    let within = |hits: u64, only: &dyn Fn(&Difference) -> [u64; 2], interval: fn(f64, f64) -> [f64; 2]| {
+        let (own, ends) = (hits as f64 / points, interval(hits as f64, points));
+        let counts = only(&all);
+        let rejected = own + all.net(counts);
+        let [gained, lost] = counts.map(|count| (count as f64 / n, interval(count as f64, n)));
+        let mut below = libm::hypot(gained.0 - gained.1[0], lost.1[1] - lost.0);
+        let mut above = libm::hypot(gained.1[1] - gained.0, lost.0 - lost.1[0]);
+        if counts[0] + counts[1] >= enough {
+            let nets = replicates.iter().map(|one| (one.sums.count() > 0).then(|| one.net(only(one))));
+            if let Some(error) = of_replicates(nets).filter(|&error| error > 0.0) {
+                (below, above) = (2.0 * error, 2.0 * error);
+            }
         }
-    }
-    let most = rejected + libm::hypot(above, ends[1] - own);
-    let least = rejected - libm::hypot(below, own - ends[0]);
+        [rejected - libm::hypot(below, own - ends[0]), rejected + libm::hypot(above, ends[1] - own)]
+    };
+    let [least, most] = within(outside.hits[0] + outside.hits[1], &|one| one.only, wilson);
+    let side = |side: usize| {
+        let ends = within(outside.hits[side], &|one| one.sides[side], clopper_pearson);
+        ends.map(|end| end.clamp(0.0, 1.0))
+    };
+    let share = |side: usize| (outside.hits[side] as f64 / points + all.net(all.sides[side])).clamp(0.0, 1.0);
     Some(Shares {
-        outside: [0, 1].map(|side| (outside.hits[side] as f64 / points + all.moved[side] as f64 / n).clamp(0.0, 1.0)),
+        outside: [0, 1].map(share),
+        intervals: [0, 1].map(side),
         interval: [1.0 - most, 1.0 - least].map(|end| end.clamp(0.0, 1.0)),
     })
 }

@@ -11,7 +11,6 @@
 //! error, and stays as it is.
 
 use serde::Serialize;
-use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::{Pace, REPLICATES, SimulationError};
 use crate::assembly::{Request, Responses, Run};
@@ -21,6 +20,7 @@ use crate::verification::{CONFIDENCE, Columns, Space, jackknife, totals};
 use sensitol_numeric::correlation::factors;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::sampling::Normals;
+use sensitol_numeric::sampling::student_quantile;
 use sensitol_numeric::time::Instant;
 
 /// Evaluations of a costly model without a budget, at most.
@@ -219,8 +219,7 @@ fn estimated(
     };
     let (values, errors) = (figures(&all), jackknife(figures, &rows));
     let freedom = (REPLICATES - 1) as f64;
-    let times =
-        StudentsT::new(0.0, 1.0, freedom).map_or(f64::INFINITY, |law| law.inverse_cdf(0.5 * (1.0 + CONFIDENCE)));
+    let times = student_quantile(0.5 * (1.0 + CONFIDENCE), freedom);
     let estimate = |index: usize| {
         let (value, standard_error) = (values[index], errors[index]);
         let half = times * standard_error;

@@ -3,7 +3,7 @@
 use super::count::{Count, Replicate};
 use super::replicate::of_replicates;
 use sensitol_numeric::capability::{EstimatedShare, InspectionRisks, acceptance, guard_reaching};
-use sensitol_numeric::characteristic::{Characteristic, SpecLimits};
+use sensitol_numeric::characteristic::{Characteristic, KeptLimits};
 use sensitol_numeric::inspection::Guard;
 use sensitol_numeric::sampling::Fine;
 
@@ -26,23 +26,28 @@ struct Means {
 }
 
 /// Of a characteristic with a gauge; None where no point has a value.
-pub(super) fn inspected(characteristic: &Characteristic, count: &Count, all: Option<&Fine>) -> Option<InspectionRisks> {
+pub(super) fn inspected(
+    characteristic: &Characteristic,
+    kept: KeptLimits,
+    count: &Count,
+    all: Option<&Fine>,
+) -> Option<InspectionRisks> {
     let (inspection, limits) = (characteristic.inspection()?, characteristic.limits());
     let (all, gauge) = (all?, inspection.gauge());
     let outside = [0, 1].map(|side| count.replicates.iter().map(|replicate| replicate.outside[side]).sum());
-    let whole = pieces(all, limits, outside);
+    let whole = pieces(all, kept, outside);
     let guard = match inspection.guard() {
         Guard::Width(width) => Some(width),
         Guard::FalseAccept(rate) => {
-            let accepted = |guard: f64| means(&whole, limits, gauge, guard).map_or(0.0, |of| of.shares[0]);
+            let accepted = |guard: f64| means(&whole, kept, gauge, guard).map_or(0.0, |of| of.shares[0]);
             guard_reaching(&accepted, limits, gauge, rate)
         }
     };
-    let found = guard.and_then(|guard| Some((means(&whole, limits, gauge, guard)?, guard)));
+    let found = guard.and_then(|guard| Some((means(&whole, kept, gauge, guard)?, guard)));
     let shares = found.map(|(of, guard)| {
         let each = |replicate: &Replicate| {
             let fine = replicate.fine.as_ref()?;
-            means(&pieces(fine, limits, replicate.outside), limits, gauge, guard)
+            means(&pieces(fine, kept, replicate.outside), kept, gauge, guard)
         };
         let replicates: Vec<Option<Means>> = match count.replicates.len() {
             1 => Vec::new(),
@@ -76,10 +81,9 @@ pub(super) fn inspected(characteristic: &Characteristic, count: &Count, all: Opt
 }
 
 /// The bins of a sample, parted where the limits are: by the points counted outside, which are exact.
-fn pieces(fine: &Fine, limits: SpecLimits, outside: [u64; 2]) -> Vec<Piece> {
-    let (lower, upper) = (limits.lower(), limits.upper());
-    let beyond =
-        |[from, to]: [f64; 2]| [lower.is_some_and(|lower| to <= lower), upper.is_some_and(|upper| from > upper)];
+fn pieces(fine: &Fine, limits: KeptLimits, outside: [u64; 2]) -> Vec<Piece> {
+    let [lower, upper] = limits.ends();
+    let beyond = |[from, to]: [f64; 2]| [to <= lower, from > upper];
     // Those of the bins that a limit parts.
     let mut left = outside;
     for (ends, count) in fine.filled() {
@@ -98,8 +102,8 @@ fn pieces(fine: &Fine, limits: SpecLimits, outside: [u64; 2]) -> Vec<Piece> {
             continue;
         }
         let ([from, to], mut inside) = (ends, count);
-        let low = lower.filter(|lower| from < *lower);
-        let high = upper.filter(|upper| to > *upper);
+        let low = Some(lower).filter(|lower| from < *lower);
+        let high = Some(upper).filter(|upper| to > *upper);
         if let Some(low) = low {
             let points = left[0].min(inside);
             (left[0], inside) = (left[0] - points, inside - points);
@@ -116,7 +120,7 @@ fn pieces(fine: &Fine, limits: SpecLimits, outside: [u64; 2]) -> Vec<Piece> {
 }
 
 /// None of no points.
-fn means(pieces: &[Piece], limits: SpecLimits, gauge: f64, guard: f64) -> Option<Means> {
+fn means(pieces: &[Piece], limits: KeptLimits, gauge: f64, guard: f64) -> Option<Means> {
     let total: f64 = pieces.iter().map(|piece| piece.points).sum();
     let (mut shares, mut squares) = ([0.0; 3], [0.0; 3]);
     for piece in pieces {

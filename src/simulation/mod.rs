@@ -4,9 +4,12 @@ mod characteristic;
 mod control;
 mod count;
 mod difference;
+mod groups;
 mod indices;
 mod inspected;
+mod measured;
 mod replicate;
+mod seldom;
 mod shape;
 mod surrogates;
 mod tally;
@@ -25,6 +28,7 @@ use std::time::Duration;
 use serde::Serialize;
 
 use crate::assembly::{EvaluationError, NonRepeatable, Points, Request, Responses, Run, near_rows};
+use crate::evaluation::{Restoration, Restore, at_any_size};
 use crate::method::{Method, MethodError, Options, Outcome};
 use crate::problem::Problem;
 use crate::summary::RunSummary;
@@ -32,8 +36,10 @@ use crate::verification::OutputCorrelation;
 use crate::warning::{Advice, Warning};
 use control::Control;
 use count::Lens;
+use groups::MeasuredGroups;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::parallel::{Rooms, join};
+use sensitol_numeric::power::{Rescale, Rescaling};
 use sensitol_numeric::sampling::{Draws, Portion, Room};
 use sensitol_numeric::shape::through;
 use sensitol_numeric::time::Instant;
@@ -165,6 +171,8 @@ pub(crate) const ROWS: usize = 1024;
 const TASKS: usize = 64;
 /// Points of a costly model between two looks.
 const COSTLY: usize = 4096;
+/// Points after which a sample ends whose moments have not settled, where it would go on until they are known.
+const UNSETTLED: u64 = 1 << 24;
 
 /// The results of a simulation.
 #[derive(Debug, Clone, Serialize)]
@@ -331,6 +339,15 @@ pub fn simulate_with(
     run: &Run<'_>,
     pace: &dyn Fn(Pace),
 ) -> Result<Simulation, SimulationError> {
+    at_any_size(problem, run, |problem, run| simulated(problem, options, run, pace))
+}
+
+fn simulated(
+    problem: &Problem,
+    options: &SimulationOptions,
+    run: &Run<'_>,
+    pace: &dyn Fn(Pace),
+) -> Result<Simulation, SimulationError> {
     if !(2..=MOST).contains(&options.samples) {
         return Err(SimulationError::Samples { samples: options.samples, most: MOST });
     }
@@ -348,14 +365,45 @@ pub fn simulate_with(
     let draws = Draws::new(problem.dimensions(), problem.correlation(), options.sampler, options.seed)?;
     problem.function().prepare(problem.outputs()).map_err(|error| SimulationError::Model { error })?;
     let control = options.control.as_ref().map(|asked| Control::of(problem, asked, options, run)).transpose()?;
-    let found = drawn(problem, options, (&draws, control.as_ref()), run, (begun, pace));
+    let found = drawn(problem, options, (&draws, control.as_ref(), true), run, (begun, pace));
     Ok(match options.sobol {
         Some(points) if !found.run.unfinished() => found.with_indices(problem, (points, options.seed), run, pace),
         _ => found,
     })
 }
 
+impl Restore for Simulation {
+    fn restore(&mut self, back: &Restoration<'_>) {
+        back.add_time(&mut self.run);
+        self.rescale(back);
+    }
+}
+
+impl Restore for SimulationError {
+    fn restore(&mut self, back: &Restoration<'_>) {
+        if let Self::Method(error) = self {
+            error.restore(back);
+        }
+    }
+}
+
 impl Simulation {
+    /// Multiplies every figure in the unit of a characteristic.
+    pub(crate) fn rescale(&mut self, back: &Restoration<'_>) {
+        if back.is_nothing() {
+            return;
+        }
+        for (c, one) in self.characteristics.iter_mut().enumerate() {
+            let mut rescaling = Rescaling::by(back.power(c));
+            one.characteristic = back.problem.characteristics()[c].clone();
+            one.rescale(&mut rescaling);
+            if rescaling.has_lost() {
+                self.warnings.push(Warning::Unrepresentable { characteristic: one.characteristic.name().to_owned() });
+            }
+        }
+        self.warnings.iter_mut().for_each(|warning| warning.rescale(|name| back.power_of(name)));
+    }
+
     /// With Sobol' indices.
     fn with_indices(
         mut self,
@@ -384,18 +432,20 @@ pub(crate) fn simulate_beside(
     let begun = Instant::now();
     let draws = Draws::new(problem.dimensions(), problem.correlation(), options.sampler, options.seed)?;
     let control = Control::beside_of(problem, outcome, options)?;
-    Ok(drawn(problem, options, (&draws, Some(&control)), run, (begun, &|_| {})))
+    // Who asks for them here has error estimates of their own.
+    Ok(drawn(problem, options, (&draws, Some(&control), false), run, (begun, &|_| {})))
 }
 
 fn drawn(
     problem: &Problem,
     options: &SimulationOptions,
-    (draws, control): (&Draws<'_>, Option<&Control<'_>>),
+    (draws, control, watched): (&Draws<'_>, Option<&Control<'_>>, bool),
     run: &Run<'_>,
     (begun, pace): (Instant, &dyn Fn(Pace)),
 ) -> Simulation {
     /// Where a batch takes less time than this, the next one has so many times as many tasks.
     const SHORT: (Duration, usize) = (Duration::from_millis(50), 4);
+    let measured = MeasuredGroups::of(problem, options.samples);
     let mut tally = Tally::new(problem, control, options.sampler);
     let mut portions = Portions::new(options, problem.function().signature().costly, problem.dimensions().len());
     let rooms = Rooms::none();
@@ -414,7 +464,7 @@ fn drawn(
         let one = |portion: &Portion| {
             rooms.within(room, |(room, points, out)| {
                 draws.write(*portion, room, points);
-                block(problem, (points, out), *portion, run, (&lenses, control, options.sampler))
+                block(problem, (points, out), *portion, run, (&lenses, control, measured.as_ref(), options.sampler))
             })
         };
         let asked = Instant::now();
@@ -431,18 +481,28 @@ fn drawn(
         } else {
             tally.add(&batch, blocks());
         }
+        if watched && !ahead {
+            tally.watch(options.seed, run);
+        }
         if let Some(ratio) = tally.shortfall(options) {
             // Standard errors shrink with the root of the sample.
             expected = expected.min(tally.samples() as f64 * (ratio * ratio).max(1.0));
             reached = Some(ratio <= 1.0);
+            if ratio.is_infinite() && tally.samples() >= UNSETTLED {
+                break;
+            }
         }
         if tally.samples() > 0 {
             pace(Pace { samples: tally.samples(), expected, elapsed: begun.elapsed() });
         }
     }
-    let open = tally.stopped || reached != Some(true) && !portions.done();
+    if watched {
+        tally.watch(options.seed, run);
+    }
+    let settles = !tally.shortfall(options).is_some_and(f64::is_infinite) || tally.samples() < UNSETTLED;
+    let open = tally.stopped || reached != Some(true) && settles && !portions.done();
     let stopped = control.and_then(Control::stopped).or_else(|| open.then(|| run.why_open()));
-    let simulation = tally.finish(options, stopped, reached);
+    let simulation = tally.finish(options, measured.as_ref(), stopped, reached);
     Simulation {
         run: RunSummary { wall: begun.elapsed(), evaluator: problem.evaluator(), ..simulation.run },
         ..simulation
@@ -455,14 +515,15 @@ fn block(
     (points, out): (&Points, &mut Responses),
     portion: Portion,
     run: &Run<'_>,
-    (lenses, control, sampler): (&[Lens], Option<&Control<'_>>, Sampler),
+    (lenses, control, measured, sampler): (&[Lens], Option<&Control<'_>>, Option<&MeasuredGroups<'_>>, Sampler),
 ) -> Block {
     out.reopen(portion.rows, problem.outputs().len());
     let begun = Instant::now();
     problem.function().evaluate(&Request::values(points, problem.outputs()), run, out);
     let took = begun.elapsed();
     let beside = control.map_or_else(Vec::new, |control| control.beside(points));
-    Block::of(out, took, (lenses, sampler, portion.replicate), &beside)
+    let groups = measured.map(|measured| (measured, measured.groups(points)));
+    Block::of(out, took, (lenses, sampler, portion.replicate), &beside, groups.as_ref())
 }
 
 /// The portions of a sample, a batch at a time, every replicate as far as the others.

@@ -1,14 +1,12 @@
 //! The standard error that independent replicates tell.
 
-use statrs::distribution::{ContinuousCDF, StudentsT};
-
-use sensitol_numeric::sampling::Summary;
+use sensitol_numeric::sampling::{Summary, student_quantile};
 
 /// The standard error of the mean of independent replicates, widened so that two of it are the 95 % interval of Student's
 /// distribution with one degree of freedom fewer than there are replicates; None where one has no value.
 pub(super) fn of_replicates(values: impl Iterator<Item = Option<f64>>) -> Option<f64> {
     let values: Vec<f64> = values.collect::<Option<_>>()?;
     let count = values.len() as f64;
-    let student = StudentsT::new(0.0, 1.0, count - 1.0).ok()?.inverse_cdf(0.975);
+    let student = (count > 1.0).then(|| student_quantile(0.975, count - 1.0))?;
     Some(0.5 * student * Summary::of(&values).sigma() / count.sqrt())
 }

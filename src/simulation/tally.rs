@@ -7,13 +7,17 @@ use super::characteristic::{Evidence, SimulatedCharacteristic};
 use super::control::{Control, Twin};
 use super::count::{Count, Lens, Replicate};
 use super::difference::Difference;
+use super::groups::{GroupSums, MeasuredGroups};
+use super::seldom::Seldom;
 use super::together::{self, Together};
 use super::{REPLICATES, Simulation, SimulationOptions, TASKS};
-use crate::assembly::{EvaluationError, NonRepeatable, Responses};
+use crate::assembly::{EvaluationError, NonRepeatable, Responses, Run};
 use crate::evaluation::history;
 use crate::problem::Problem;
 use crate::summary::{RunSummary, StopReason};
+use crate::warning::Warning;
 use sensitol_numeric::requirement::Requirement;
+use sensitol_numeric::sampling::LargestPoints;
 use sensitol_numeric::sampling::{Fine, Portion, Sampler, Scale, Summary};
 use sensitol_numeric::verdict::Judged;
 
@@ -34,8 +38,10 @@ pub(super) struct Block {
 /// The answers of one portion for one characteristic.
 struct Column {
     summary: Summary,
+    largest: LargestPoints,
     outside: [u64; 2],
     difference: Difference,
+    groups: GroupSums,
     values: Values,
     failed: u64,
     error: Option<EvaluationError>,
@@ -48,12 +54,14 @@ enum Values {
 }
 
 impl Block {
-    /// `beside` has for every output the surrogate and its rises at the same points, where there is one.
+    /// `beside` has for every output the surrogate and its rises at the same points, where there is one; `groups` the measured samples, with the
+    /// group of every point for each.
     pub(super) fn of(
         out: &Responses,
         took: Duration,
         (lenses, sampler, replicate): (&[Lens], Sampler, u64),
         beside: &[Option<(&Twin, Vec<f64>)>],
+        groups: Option<&(&MeasuredGroups<'_>, Vec<Vec<usize>>)>,
     ) -> Self {
         let open = |row: usize| (0..out.outputs()).all(|output| out.is_open(row, output));
         let full = |output: usize| out.column(output).iter().fold(true, |all, value| all & !value.is_nan());
@@ -65,7 +73,11 @@ impl Block {
         lost.dedup();
         Self {
             columns: (lenses.iter().enumerate())
-                .map(|(output, lens)| Column::of(out, output, lens, beside.get(output).and_then(Option::as_ref)))
+                .map(|(output, lens)| {
+                    let column = Column::of(out, output, lens, beside.get(output).and_then(Option::as_ref));
+                    let sums = groups.map(|(measured, groups)| GroupSums::of(measured, groups, out, output));
+                    Column { groups: sums.unwrap_or_default(), ..column }
+                })
                 .collect(),
             answered: answered as u64,
             extra: out.extra(),
@@ -91,13 +103,11 @@ impl Column {
         let error = errors.next().cloned();
         Self {
             summary: Summary::of(&values),
-            // A value on a limit keeps it.
-            outside: [
-                lens.limits.lower().map_or(0, |lower| count(&|value| value < lower)),
-                lens.limits.upper().map_or(0, |upper| count(&|value| value > upper)),
-            ],
+            largest: LargestPoints::of(&values),
+            outside: [0, 1].map(|side| count(&|value| lens.limits.broken(value)[side])),
             difference: beside
                 .map_or_else(Difference::default, |(twin, rises)| Difference::of(out.column(output), rises, twin)),
+            groups: GroupSums::default(),
             failed: u64::from(error.is_some()) + errors.count() as u64,
             error,
             values: match lens.scale {
@@ -114,6 +124,8 @@ pub(super) struct Tally<'a> {
     lenses: Vec<Lens>,
     counts: Vec<Count>,
     together: Together,
+    /// Of every characteristic, once it was looked for; None where standard errors are not watched.
+    seldom: Option<Vec<Option<Seldom>>>,
     answered: u64,
     extra: i64,
     /// Of the points drawn.
@@ -128,16 +140,27 @@ impl<'a> Tally<'a> {
             Sampler::Random => 1,
             Sampler::Sobol => REPLICATES as usize,
         };
-        let nothing =
-            Replicate { summary: Summary::default(), outside: [0, 0], difference: Difference::default(), fine: None };
-        let count = || Count { replicates: vec![nothing.clone(); replicates], failed: 0, error: None };
+        let nothing = Replicate {
+            summary: Summary::default(),
+            largest: LargestPoints::default(),
+            outside: [0, 0],
+            difference: Difference::default(),
+            fine: None,
+        };
+        let count = || Count {
+            replicates: vec![nothing.clone(); replicates],
+            groups: GroupSums::default(),
+            failed: 0,
+            error: None,
+        };
         let characteristics = problem.characteristics();
         Self {
             problem,
             control,
-            lenses: characteristics.iter().map(|one| Lens { limits: one.limits(), scale: None }).collect(),
+            lenses: (0..characteristics.len()).map(|c| Lens { limits: problem.kept_limits(c), scale: None }).collect(),
             counts: characteristics.iter().map(|_| count()).collect(),
             together: Together::default(),
+            seldom: None,
             answered: 0,
             extra: 0,
             run: RunSummary::default(),
@@ -179,11 +202,13 @@ impl<'a> Tally<'a> {
             self.non_repeatable.extend(block.non_repeatable);
             block.together.iter().for_each(|parts| self.together.merge(parts));
             for (c, (count, column)) in self.counts.iter_mut().zip(block.columns).enumerate() {
+                count.groups.merge(&column.groups);
                 count.failed += column.failed;
                 count.error = count.error.take().or(column.error);
                 let place = portion.replicate as usize;
                 let replicate = &mut count.replicates[place];
                 replicate.summary.merge(&column.summary);
+                replicate.largest.merge(&column.largest);
                 replicate.outside[0] += column.outside[0];
                 replicate.outside[1] += column.outside[1];
                 replicate.difference.merge(&column.difference);
@@ -217,13 +242,35 @@ impl<'a> Tally<'a> {
         }
     }
 
+    /// Looks for assemblies that the sample hardly has, once it has values: from then on standard errors that these or a few points
+    /// decide are left out.
+    pub(super) fn watch(&mut self, seed: u64, run: &Run<'_>) {
+        if self.seldom.is_some() || self.answered == 0 || run.stopped() {
+            return;
+        }
+        let seldom = |(c, count): (usize, &Count)| {
+            Seldom::of(self.problem, c, self.control, (seed, count.summary().sigma()), run)
+        };
+        let found: Vec<Option<Seldom>> = self.counts.iter().enumerate().map(seldom).collect();
+        self.extra += found.iter().flatten().map(|seldom| seldom.evaluations() as i64).sum::<i64>();
+        self.seldom = Some(found);
+    }
+
+    fn evidence<'t>(&'t self, c: usize, count: &'t Count) -> Evidence<'t> {
+        let evidence = Evidence::of(count, self.twin(c), self.answered);
+        match &self.seldom {
+            Some(seldom) => evidence.watched(seldom[c].as_ref()),
+            None => evidence,
+        }
+    }
+
     /// The worst ratio of an uncertainty to what is wanted of it; None where nothing is wanted, or nothing known yet.
     pub(super) fn shortfall(&self, options: &SimulationOptions) -> Option<f64> {
         if options.until.is_none() && options.until_yield.is_none() {
             return None;
         }
         let ratio = |(c, count): (usize, &Count)| {
-            let evidence = Evidence::of(count, self.twin(c), self.answered);
+            let evidence = self.evidence(c, count);
             let sigma = options.until.map(|wanted| {
                 let [_, sigma, ..] = evidence.moments();
                 let known = sigma.and_then(|sigma| Some((sigma.value, sigma.standard_error?)));
@@ -241,7 +288,8 @@ impl<'a> Tally<'a> {
     }
 
     fn characteristic(&self, c: usize, count: &Count) -> SimulatedCharacteristic {
-        SimulatedCharacteristic::of(&self.problem.characteristics()[c], count, self.twin(c), self.answered)
+        let limited = (&self.problem.characteristics()[c], self.lenses[c].limits);
+        SimulatedCharacteristic::of(limited, &self.evidence(c, count))
     }
 
     /// The surrogate that stands beside this characteristic.
@@ -252,13 +300,20 @@ impl<'a> Tally<'a> {
     pub(super) fn finish(
         self,
         options: &SimulationOptions,
+        measured: Option<&MeasuredGroups<'_>>,
         stopped: Option<StopReason>,
         reached: Option<bool>,
     ) -> Simulation {
-        let of =
-            |(c, count)| SimulatedCharacteristic { unfinished: stopped.is_some(), ..self.characteristic(c, count) };
+        let of = |(c, count): (usize, &Count)| {
+            let found = SimulatedCharacteristic { unfinished: stopped.is_some(), ..self.characteristic(c, count) };
+            match measured.and_then(|measured| measured.interval(c, &found, &count.groups)) {
+                Some(interval) => found.with_sampling(interval),
+                None => found.with_proof(self.problem, c),
+            }
+        };
         let characteristics: Vec<SimulatedCharacteristic> = self.counts.iter().enumerate().map(of).collect();
-        let joint = together::joint(&self.together, options.sampler, self.answered);
+        let joint = together::joint(&self.together, options.sampler, self.answered)
+            .map(|joint| together::with_sampling(joint, &characteristics));
         let joint_requirement = options.target_joint_yield.zip(joint).map(|(target, joint)| {
             let interval = [joint.interval[0].min(joint.bounds[0]), joint.interval[1]];
             Judged::of(Requirement::Yield(target), Some(joint.value), Some(interval)).unless(stopped.is_some())
@@ -273,14 +328,19 @@ impl<'a> Tally<'a> {
         };
         let before = surrogate.iter().flat_map(|evaluated| &evaluated.non_repeatable).cloned();
         let non_repeatable: Vec<NonRepeatable> = before.chain(self.non_repeatable).collect();
-        let failures = characteristics.iter().flat_map(|one| [one.failures(), one.overflow()]).flatten();
+        let failures =
+            characteristics.iter().flat_map(|one| [one.failures(), one.overflow(), one.unsettled()]).flatten();
+        let seldom = self.seldom.iter().flatten().zip(&characteristics);
+        let switches = seldom.filter_map(|(seldom, one)| Some((seldom.as_ref()?, one)));
+        let switches = switches.flat_map(|(seldom, one)| seldom.warnings(one.characteristic.name(), one.samples));
+        let warnings: Vec<Warning> = failures.chain(switches).chain(history(self.problem, &non_repeatable)).collect();
         Simulation {
             sampler: options.sampler,
             run: RunSummary { stopped, ..drawn.and(&spent) },
             samples: self.answered,
             surrogate_evaluations: surrogate.map(|_| spent.evaluations),
             reached,
-            warnings: failures.chain(history(self.problem, &non_repeatable)).collect(),
+            warnings,
             non_repeatable,
             joint,
             joint_requirement,

@@ -1,5 +1,6 @@
 //! Results of a sample for several characteristics at once: the share that keeps all limits, and how they vary together.
 
+use super::SimulatedCharacteristic;
 use super::characteristic::{REJECTED, YieldEstimate};
 use super::count::Lens;
 use super::replicate::of_replicates;
@@ -8,6 +9,7 @@ use crate::problem::Problem;
 use crate::verification::{OutputCorrelation, REPLICATES, student};
 use sensitol_numeric::elementary::{Work, on_this_processor};
 use sensitol_numeric::sampling::{Sampler, wilson};
+use sensitol_numeric::verdict;
 
 /// A number of every part.
 type Parts<T> = [T; REPLICATES];
@@ -107,11 +109,9 @@ impl Work for Groups<'_> {
         if limited.len() > 1 {
             let (mut known, mut kept) = (vec![1.0; out.rows()], vec![1.0; out.rows()]);
             for &c in &limited {
-                let lower = lenses[c].limits.lower().unwrap_or(f64::NEG_INFINITY);
-                let upper = lenses[c].limits.upper().unwrap_or(f64::INFINITY);
                 for ((known, kept), &value) in known.iter_mut().zip(&mut kept).zip(columns[c]) {
                     *known = if value.is_nan() { 0.0 } else { *known };
-                    *kept = if value >= lower && value <= upper { *kept } else { 0.0 };
+                    *kept = if lenses[c].limits.contains(value) { *kept } else { 0.0 };
                 }
             }
             groups.known = by_group(&known).map(|count| count as u64);
@@ -251,4 +251,21 @@ pub(super) fn joint(parts: &Together, sampler: Sampler, answered: u64) -> Option
     };
     let bounds = [kept, kept + answered.saturating_sub(known)].map(|most| most as f64 / answered.max(1) as f64);
     Some(YieldEstimate { value, interval, bounds })
+}
+
+/// A joint yield with what measured samples leave open: no fewer assemblies are rejected than by one characteristic, and no more than by all
+/// of them one after the other.
+pub(super) fn with_sampling(joint: YieldEstimate, characteristics: &[SimulatedCharacteristic]) -> YieldEstimate {
+    let (mut most, mut least, mut measured) = (1.0 - joint.value, 0.0f64, false);
+    for one in characteristics {
+        let open = one.yield_.zip(one.sampling.as_ref().and_then(|of| of.rejected));
+        let Some((own, [low, high])) = open else { continue };
+        most += (high - (1.0 - own.value)).max(0.0);
+        (least, measured) = (least.max(low), true);
+    }
+    if !measured {
+        return joint;
+    }
+    let ends = [1.0 - most, 1.0 - least.min(1.0 - joint.value)];
+    YieldEstimate { interval: verdict::share(verdict::joined(joint.value, joint.interval, ends)), ..joint }
 }

@@ -23,6 +23,8 @@ pub struct SimulatedShape<'r> {
     standard_error: StandardErrors,
     /// The sample's own distribution.
     distribution: Empirical,
+    /// 95 % interval of the yield, with what measured samples leave open; null without limits.
+    yield_interval: Option<[f64; 2]>,
     /// If all points without a value are rejected, and if none is; null where every point has one.
     yield_bounds: Option<[f64; 2]>,
     /// Whether the interval of the yield lies above the target (true), below (false), or around it (null).
@@ -40,7 +42,7 @@ pub struct SimulatedShape<'r> {
 struct StandardErrors {
     #[serde(flatten)]
     moments: Four<Option<f64>>,
-    /// 95 % interval.
+    /// 95 % interval, as far as the number of points decides.
     #[serde(rename = "yield")]
     yield_: Option<[f64; 2]>,
     /// Of the quantiles.
@@ -70,6 +72,7 @@ impl Serialize for SimulatedCharacteristic {
                 quantiles: Quantiles(self.quantiles.map(error)),
             },
             distribution: Empirical { family: "empirical", quantiles: Quantiles(self.quantiles.map(value)) },
+            yield_interval: self.yield_interval(),
             yield_bounds: self.yield_bounds(),
             met: self.verdict().and_then(Verdict::met),
             verdict: self.verdict(),

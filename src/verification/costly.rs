@@ -1,7 +1,5 @@
 //! A costly model: its surfaces judged at a dozen points that no surface has seen.
 
-use statrs::distribution::{Beta, ContinuousCDF};
-
 use super::checks::{Design, Wish};
 use super::figures::moments;
 use super::residual::{Judged, Surface, judge, regression};
@@ -10,7 +8,7 @@ use super::space::{Columns, Space};
 use super::strata::{HalfSpace, between};
 use crate::assembly::{Points, Request, Responses, Run};
 use crate::problem::Problem;
-use sensitol_numeric::sampling::Normals;
+use sensitol_numeric::sampling::{Normals, clopper_pearson};
 use sensitol_numeric::surrogate::Surrogate;
 
 pub use super::checks::MOST as MOST_CHECKS;
@@ -90,13 +88,11 @@ impl Checked {
 /// ```
 pub fn unseen(points: usize, seen: usize) -> [f64; 2] {
     let (n, k) = (points as f64, seen as f64);
-    let quantile = |a: f64, b: f64, p: f64| Beta::new(a, b).map_or(f64::NAN, |law| law.inverse_cdf(p));
-    let side = 0.5 * (1.0 - CONFIDENCE);
     match seen {
         _ if points == 0 => [0.0, 1.0],
         0 => [0.0, 1.0 - libm::pow(1.0 - CONFIDENCE, 1.0 / n)],
         all if all >= points => [libm::pow(1.0 - CONFIDENCE, 1.0 / n), 1.0],
-        _ => [quantile(k, n - k + 1.0, side), quantile(k + 1.0, n - k, 1.0 - side)],
+        _ => clopper_pearson(k, n),
     }
 }
 
@@ -141,12 +137,11 @@ pub fn verify_by_checks(
         .map(|c| {
             let model = answers.column(c);
             let failed = model.iter().filter(|y| y.is_nan()).count();
-            let limits = problem.characteristics()[c].limits();
             let nothing = CheckedFigures { failed, ..CheckedFigures::nothing() };
             let known = surfaces[c].as_ref().zip(wishes[c].as_ref()).zip(targets[c].surrogate);
             let Some(((surface, wish), surrogate)) = known else { return nothing };
             let at: Option<Vec<f64>> = values(surrogate, &standardised);
-            let [low, high] = [limits.lower().unwrap_or(f64::NEG_INFINITY), limits.upper().unwrap_or(f64::INFINITY)];
+            let [low, high] = problem.kept_limits(c).ends();
             let within = [[low, high], [low, f64::INFINITY], [f64::NEG_INFINITY, high]];
             let judged = at.and_then(|at| judge(&design, wish, surface, model, &at, &within));
             let of_shares = |judged: &Judged| {

@@ -1,6 +1,6 @@
 //! Figures from weighted sums, and what randomisations say of their errors.
 
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use sensitol_numeric::sampling::student_quantile;
 
 /// How many figures the moments are: mean, sigma, skewness, kurtosis. Shares follow them.
 pub(crate) const MOMENTS: usize = 4;
@@ -94,7 +94,7 @@ pub(crate) fn carried_by(points: f64) -> f64 {
 /// the quantile of Student's distribution by that of the normal one, 1.2 for 16 randomisations.
 pub(crate) fn student(replicates: usize) -> f64 {
     let freedom = (replicates.max(2) - 1) as f64;
-    StudentsT::new(0.0, 1.0, freedom).map_or(f64::INFINITY, |law| law.inverse_cdf(THREE_SIGMAS) / 3.0)
+    student_quantile(THREE_SIGMAS, freedom) / 3.0
 }
 
 #[cfg(test)]

@@ -26,7 +26,7 @@ pub(crate) use costly::CONFIDENCE;
 pub use costly::{Checked, CheckedFigures, MOST_CHECKS, Target, unseen, verify_by_checks};
 pub(crate) use figures::{MOMENTS, carried_by, effective, jackknife, standard, student, totals};
 pub use outputs::OutputCorrelation;
-pub(crate) use outputs::output_correlations;
+pub(crate) use outputs::{common_rejects, output_correlations};
 pub(crate) use residual::{OVERLOOKED, OVERLOOKED_BY, TOO_SMALL};
 pub(crate) use sample::REPLICATES;
 pub use shares::Share;
@@ -37,12 +37,13 @@ pub(crate) use weighted::WeightedSample;
 
 use serde::Serialize;
 
-use crate::assembly::Run;
+use crate::assembly::{Points, Run};
 use crate::problem::Problem;
 use figures::moments;
 use model::Model;
 use sample::Sample;
 use sensitol_numeric::correlation::factors;
+use sensitol_numeric::power::{Rescale, Rescaling, Unknown};
 use sensitol_numeric::sampling::Normals;
 use sensitol_numeric::surrogate::Surrogate;
 
@@ -55,6 +56,18 @@ const BESIDE: usize = 1 << 10;
 /// Evaluations that a sample with so many points in its core takes at most, with those that [`unexplained`] takes beside it.
 pub(crate) const fn most_points(core: usize) -> usize {
     sample::PILOT + (sides::MOST + 2) * sample::TAIL + core + BESIDE
+}
+
+/// Points in the core of the largest sample that takes no more than `most` evaluations of a characteristic, up to [`CORE`] and down to
+/// as many as a tail has; None where there are too few for that.
+pub(crate) fn core_within(problem: &Problem, c: usize, most: Option<usize>) -> Option<usize> {
+    let Some(most) = most else { return Some(CORE) };
+    // Without switches there are no seldom sides.
+    let switches = problem.function().switches(problem.outputs()[c]).map_or(0, |switches| switches.list.len());
+    let sides = if switches == 0 { sides::MOST } else { 0 };
+    let others = most_points(0) - sides * sample::TAIL;
+    let halved = std::iter::successors(Some(CORE), |core| Some(core / 2));
+    halved.take_while(|&core| core >= sample::TAIL).find(|&core| others + core <= most)
 }
 
 /// Evaluations that [`unexplained`] and then [`variance_shares_during`] over so many inputs take at most.
@@ -70,6 +83,19 @@ pub struct Verified {
     pub value: f64,
     /// Its estimated error.
     pub error: f64,
+}
+
+impl Rescale for Verified {
+    fn rescale(&mut self, by: &mut Rescaling) {
+        self.value.rescale(by);
+        self.error.rescale(by);
+    }
+}
+
+impl Unknown for Verified {
+    fn is_unknown(&self) -> bool {
+        self.value.is_nan()
+    }
 }
 
 /// The figures of one characteristic by sampling the model.
@@ -90,6 +116,8 @@ pub struct SampledFigures {
     pub yield_: Option<Verified>,
     /// The share below the lower limit, and above the upper one.
     pub beyond: [Option<Verified>; 2],
+    /// The weight of one point: what no point shows may be as much.
+    pub point: f64,
     /// How much more of the model than of its surface lies within the limits, below and above them; None where no surface was given,
     /// and where some points have no value.
     pub difference: Option<[Verified; 3]>,
@@ -151,6 +179,53 @@ pub(crate) fn seldom_points(problem: &Problem, c: usize, varying: &[usize], seed
     let point =
         |space: strata::HalfSpace| space.direction.iter().map(|part| part * (space.from + sides::BEFORE)).collect();
     found.half_spaces.into_iter().map(point).collect()
+}
+
+/// The switches of a characteristic, and points beyond those that are seldom met.
+pub(crate) struct SeldomSides {
+    pub(crate) switches: Vec<FoundSwitch>,
+    /// Points of the half-spaces that hold the seldom sides, with the values there, NaN where there is none.
+    pub(crate) points: Points,
+    pub(crate) values: Vec<f64>,
+    /// Their sum is the probability of the half-spaces.
+    pub(crate) weights: Vec<f64>,
+}
+
+/// Looks for the switches of a characteristic whose values spread by `scale`; None where the model is costly, or does not tell its switches, and
+/// where the run was stopped.
+///
+/// Evaluations: 256 for every half-space, six at most. The margins of switches, and some values beside them, are read besides.
+pub(crate) fn seldom_sides(
+    problem: &Problem,
+    c: usize,
+    (seed, scale): (u64, f64),
+    run: &Run<'_>,
+) -> Option<SeldomSides> {
+    /// Points of a half-space: a tenth of what its part of a moment is.
+    const WITHIN: usize = 1 << 8;
+    let function = problem.function();
+    let told = function.switches(problem.outputs()[c]).filter(|told| !told.list.is_empty());
+    told.filter(|_| !function.signature().costly)?;
+    let model = Model::new(problem, c).during(run);
+    let normals = Normals::new(model.len(), seed);
+    let found = sides::sides(&model, &normals, if scale > 0.0 { scale } else { 1.0 });
+    let mut all: Columns = vec![Vec::new(); model.len()];
+    let mut weights = Vec::new();
+    for (index, space) in found.half_spaces.iter().enumerate() {
+        let mut z = normals.columns((1 << 34) + index as u64, WITHIN);
+        let own = space.enter(&mut z);
+        // A point counts in the first half-space that holds it.
+        let mut held = vec![false; WITHIN];
+        for earlier in &found.half_spaces[..index] {
+            held.iter_mut().zip(earlier.holds(&z)).for_each(|(held, by)| *held |= by);
+        }
+        for (all, column) in all.iter_mut().zip(z) {
+            all.extend(column.iter().zip(&held).filter(|(_, held)| !**held).map(|(z, _)| *z));
+        }
+        weights.extend(own.iter().zip(&held).filter(|(_, held)| !**held).map(|(weight, _)| weight / WITHIN as f64));
+    }
+    let (points, values) = model.points_and_values(&all);
+    (!model.stopped()).then(|| SeldomSides { switches: found.switches.unwrap_or_default(), points, values, weights })
 }
 
 /// The share of a characteristic's variance that a surface over the dimensions at `varying` leaves unexplained, by 1024 points of the
@@ -240,7 +315,7 @@ pub(crate) fn verify_characteristic(
 ) -> Option<SampledFigures> {
     let model = Model::new(problem, c).during(run);
     let limits = problem.characteristics()[c].limits();
-    let [low, high] = [limits.lower().unwrap_or(f64::NEG_INFINITY), limits.upper().unwrap_or(f64::INFINITY)];
+    let [low, high] = problem.kept_limits(c).ends();
     if model.len() == 0 {
         return Some(constant(&model, [low, high])).filter(|_| !model.stopped());
     }
@@ -264,6 +339,7 @@ pub(crate) fn verify_characteristic(
         kurtosis: known(3).filter(|_| varies),
         yield_: known(4).filter(|_| limits.exist()),
         beyond: [known(5).filter(|_| limits.lower().is_some()), known(6).filter(|_| limits.upper().is_some())],
+        point: sample.point(),
         difference: sample.difference(&[[low, high], beyond[0], beyond[1]]),
         valid: Verified { value: figures.valid.0, error: figures.valid.1 },
         switches: sides.switches,
@@ -290,6 +366,7 @@ fn constant(model: &Model<'_>, [low, high]: [f64; 2]) -> SampledFigures {
             share(value < low).filter(|_| known && limited[0]),
             share(value > high).filter(|_| known && limited[1]),
         ],
+        point: 0.0,
         difference: None,
         valid: Verified { value: f64::from(u8::from(known)), error: 0.0 },
         switches: None,

@@ -1,7 +1,7 @@
 //! One characteristic of a cheap model as a function of independent normal variables.
 
 use super::space::{Columns, Space};
-use crate::assembly::{Request, Responses, Run};
+use crate::assembly::{Points, Request, Responses, Run};
 use crate::problem::Problem;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::surrogate::Surrogate;
@@ -55,10 +55,16 @@ impl<'p> Model<'p> {
 
     /// The values at some points, NaN where there is none.
     pub(super) fn values(&self, z: &Columns) -> Vec<f64> {
+        self.points_and_values(z).1
+    }
+
+    /// The same with the points themselves, as the model takes them.
+    pub(super) fn points_and_values(&self, z: &Columns) -> (Points, Vec<f64>) {
         let (points, outputs) = (self.space.points(z), [self.output]);
         let mut out = Responses::open(points.rows(), 1);
         self.problem.function().evaluate(&Request::values(&points, &outputs), &self.run, &mut out);
-        out.column(0).to_vec()
+        let values = out.column(0).to_vec();
+        (points, values)
     }
 
     /// The values of a surface over the dimensions at `varying`, of which those that this characteristic does not depend on have no

@@ -1,4 +1,4 @@
-//! How the characteristics of a cheap model vary together, by points of the model itself.
+//! How the characteristics of a cheap model vary together, and what their rejects have in common, by points of the model itself.
 
 use serde::Serialize;
 
@@ -7,8 +7,9 @@ use super::figures::{jackknife, student, totals};
 use super::model::Model;
 use super::sample::REPLICATES;
 use crate::problem::Problem;
+use sensitol_numeric::characteristic::KeptLimits;
 use sensitol_numeric::parallel::prelude::*;
-use sensitol_numeric::sampling::Normals;
+use sensitol_numeric::sampling::{Normals, clopper_pearson};
 
 /// Points of one randomisation.
 const ROWS: usize = 1 << 10;
@@ -67,6 +68,44 @@ pub(crate) fn output_correlations(problem: &Problem, seed: u64) -> Vec<Option<Ve
             known.then(|| Verified { value, error: student(REPLICATES) * error })
         })
         .collect()
+}
+
+/// The mean of the broken characteristics beyond the first, over the points at which all of these have a value: what is counted more than once
+/// where their rejects are added. None where no point has all values.
+///
+/// At the points of [`output_correlations`], with its errors; that no point is counted twice is known as none of all of them.
+pub(crate) fn common_rejects(problem: &Problem, characteristics: &[usize], seed: u64) -> Option<Verified> {
+    let varying: Vec<usize> =
+        (0..problem.dimensions().len()).filter(|&d| problem.dimensions()[d].sigma() > 0.0).collect();
+    let models: Vec<Model<'_>> = characteristics.iter().map(|&c| Model::over(problem, c, &varying)).collect();
+    let kept: Vec<KeptLimits> = characteristics.iter().map(|&c| problem.kept_limits(c)).collect();
+    let normals = Normals::new(varying.len(), seed);
+    // Points with all values, and the broken characteristics beyond the first.
+    let count = |replicate: usize| -> [f64; 2] {
+        let z = normals.columns((1 << 34) + replicate as u64, ROWS);
+        let columns: Vec<Vec<f64>> = models.iter().map(|model| model.values(&z)).collect();
+        let mut sums = [0.0; 2];
+        for row in 0..columns.first().map_or(0, Vec::len) {
+            let values = || columns.iter().map(|column| column[row]);
+            if values().all(|value| value.is_finite()) {
+                let broken = values().zip(&kept).filter(|(value, kept)| !kept.contains(*value)).count();
+                sums[0] += 1.0;
+                sums[1] += broken.saturating_sub(1) as f64;
+            }
+        }
+        sums
+    };
+    let counts: Vec<[f64; 2]> = (0..REPLICATES).into_par_iter().map(count).collect();
+    let sums: Vec<Vec<f64>> = (0..2).map(|of| counts.iter().map(|one| one[of]).collect()).collect();
+    let mean = |total: &[f64]| vec![total[1] / total[0]];
+    let [points, twice] = [totals(&sums)[0], totals(&sums)[1]];
+    if points == 0.0 {
+        return None;
+    }
+    let scatter = student(REPLICATES) * jackknife(mean, &sums)[0];
+    let [_, unseen] = clopper_pearson(0.0, points);
+    let error = if twice > 0.0 { scatter } else { 0.5 * unseen };
+    Some(Verified { value: twice / points, error: error.max(1.0 / points) })
 }
 
 /// Mean and sigma of the values that there are; 0 and 1 where that is nothing to count from.

@@ -183,6 +183,11 @@ impl Sample {
         Some(std::array::from_fn(|i| Verified { value: values[i], error: libm::hypot(student * errors[i], self.one) }))
     }
 
+    /// The weight of one point of the core.
+    pub(super) fn point(&self) -> f64 {
+        self.one
+    }
+
     /// All of it, for tails and shares that are asked for later.
     pub(super) fn kept(self) -> WeightedSample {
         let parts = self.parts.into_iter().map(|part| (part.replicate, part.values, part.weights));

@@ -13,6 +13,7 @@ use super::model::Model;
 use super::space::Columns;
 use super::strata::{HalfSpace, REACH, length};
 use crate::assembly::Switch;
+use crate::warning::{Change, Warning};
 use sensitol_numeric::sampling::Normals;
 
 /// Points at which margins are read, plain, twice and three times as wide.
@@ -31,6 +32,8 @@ const STEP: f64 = 1e-3;
 const LINE: [f64; 2] = [0.9, 1.1];
 /// Points of a half-space by which its probability is known to a percent.
 const WITHIN: usize = 1 << 12;
+/// A switch is worth a warning from one assembly in ten million on.
+const TOLD: f64 = 1e-7;
 /// Halvings by which a border is found.
 const HALVINGS: usize = 40;
 /// From which part of sigma on two values are apart, and from which change of the slope by a sigma two slopes are;
@@ -71,6 +74,24 @@ pub struct FoundSwitch {
     pub crossing: Crossing,
     /// The probability of its smaller side.
     pub probability: f64,
+}
+
+impl FoundSwitch {
+    /// The warning that tells of it, with the points of a sample among which it is; None where it is met too seldom.
+    pub(crate) fn warning(&self, characteristic: &str, sample: Option<u64>) -> Option<Warning> {
+        let (switch, probability) = (self.name.clone(), self.probability);
+        let change = match self.crossing {
+            _ if probability < TOLD => return None,
+            Crossing::Kink => Change::Kink,
+            Crossing::Jump => Change::Jump,
+            Crossing::Edge => Change::Edge,
+            Crossing::Pole => {
+                return Some(Warning::Pole { characteristic: characteristic.to_owned(), switch, probability });
+            }
+        };
+        let points = sample.map(|points| points as f64 * probability);
+        Some(Warning::Switch { characteristic: characteristic.to_owned(), switch, change, probability, points })
+    }
 }
 
 /// The findings on the switches of one output.

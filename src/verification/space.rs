@@ -87,6 +87,11 @@ impl<'p> Space<'p> {
         for (input, column) in self.inputs.iter().zip(together.as_ref().unwrap_or(normals)) {
             let values = points.column_mut(input.dimension);
             values.copy_from_slice(column);
+            // A measured value is that value to the last digit.
+            if let Law::Atoms(law) = &input.law {
+                values.iter_mut().for_each(|x| *x = behind_normal(*law, *x));
+                continue;
+            }
             input.transform(values);
             values.iter_mut().for_each(|x| *x = input.mean + input.sigma * *x);
         }

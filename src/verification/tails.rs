@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::figures::{jackknife, student, totals};
+use sensitol_numeric::power::rescale;
 
 /// Points of a tail.
 const SHOWN: usize = 40;
@@ -34,6 +35,9 @@ pub struct TailPoint {
     /// Its estimated error; null where one randomisation has all values, so that none differs from it.
     pub error: Option<f64>,
 }
+
+rescale!(Tails { below, above } without {});
+rescale!(TailPoint { at } without { share, error });
 
 /// A value with its weight and its randomisation.
 pub(super) type Weighed = (f64, f64, usize);

@@ -3,6 +3,7 @@
 use super::Verified;
 use super::figures::{jackknife, student, totals};
 use super::tails::{Tails, Weighed, tail};
+use sensitol_numeric::power::{Rescale, Rescaling};
 
 /// Values with their weights, by randomisation.
 #[derive(Debug, Clone, PartialEq)]
@@ -12,6 +13,12 @@ pub(crate) struct WeightedSample {
     replicates: usize,
     /// The weight of one point: what no point shows may be as much.
     one: f64,
+}
+
+impl Rescale for WeightedSample {
+    fn rescale(&mut self, by: &mut Rescaling) {
+        self.parts.iter_mut().for_each(|(_, values, _)| values.rescale(by));
+    }
 }
 
 impl WeightedSample {

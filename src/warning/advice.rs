@@ -49,6 +49,8 @@ pub enum Advice {
     SamplePlainly,
     /// Draw more points.
     MorePoints,
+    /// Analyse the study, whose sample lies along the tails.
+    Analyze,
     /// Take differences over a shorter step.
     SmallerStep {
         /// Along this dimension; None for all.
@@ -108,6 +110,8 @@ pub enum Advice {
     NearerDatum,
     /// Choose a larger unit, so that the values are smaller.
     LargerUnit,
+    /// Choose units in which values are of ordinary size.
+    OrdinaryUnit,
     /// Solve the model with a tighter tolerance.
     TightenSolver,
     /// Give each branch of the model a characteristic of its own.
@@ -159,6 +163,7 @@ impl fmt::Display for Advice {
             Self::SampleRareEvents => "Sample the model by importance sampling.",
             Self::SamplePlainly => "Sample without importance sampling.",
             Self::MorePoints => "Draw more points.",
+            Self::Analyze => "Analyse the study, which samples the tails by themselves.",
             Self::SmallerStep { dimension: None } => "Use a smaller step.",
             Self::UseDifferences => "Take derivatives from differences.",
             Self::IncludeFixedDimensions => "Ask for the sensitivities of all dimensions.",
@@ -186,6 +191,7 @@ impl fmt::Display for Advice {
             Self::SignedMeasure => "Let the model return a signed measure.",
             Self::NearerDatum => "Measure the characteristic from a nearer datum.",
             Self::LargerUnit => "Choose a larger unit, so that the values are smaller.",
+            Self::OrdinaryUnit => "Choose units in which the values are of ordinary size.",
             Self::TightenSolver => "Solve the model with a tighter tolerance.",
             Self::SplitBranches => "Give each branch a characteristic of its own.",
             Self::NearestFit => "Choose the nearest class, and write classes as processes where one is required.",

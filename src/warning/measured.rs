@@ -55,7 +55,7 @@ pub(super) fn no_sampling_interval(dimensions: &[String], correlated: &bool) -> 
         false => ("the method has no surrogate", Advice::UseMethod { methods: vec![Method::SixN] }),
     };
     say(format!(
-        "The uncertainty from the size of the {samples} of {} is not computed: {why}. The result has no sampling interval.",
+        "The uncertainty from the size of the {samples} of {} is computed for the yield only: {why}. Mean, sigma and Cpk have no sampling interval.",
         names(dimensions)
     ))
     .advise(advice)

@@ -12,6 +12,7 @@ mod derivatives;
 mod distribution;
 mod measured;
 mod model;
+mod rescale;
 mod run;
 mod sample;
 mod serialize;
@@ -207,6 +208,11 @@ warnings! {
         value: f64,
         /// The size beyond which powers overflow.
         limit: f64,
+    };
+    /// Figures that a double-precision number cannot hold.
+    Unrepresentable = "unrepresentable" by model::unrepresentable {
+        /// The characteristic.
+        characteristic: String,
     };
     /// Values of a built-in model for which its formulas describe nothing real.
     OutsideModel = "outside-model" by model::outside_model {
@@ -480,6 +486,8 @@ warnings! {
         change: Change,
         /// The probability of the smaller side.
         probability: f64,
+        /// Points of a sample that lie beyond on average; None where the figures are not those of a sample.
+        points: Option<f64>,
     };
     /// A divisor passes through 0 within the assemblies.
     Pole = "pole" by surface::pole {
@@ -501,6 +509,21 @@ warnings! {
         /// As the model has it.
         model: f64,
         /// The error of that.
+        error: f64,
+    };
+    /// The law of the surface fails a test, and points take its place.
+    SurfaceLawRefuted = "surface-law-refuted" by surface::surface_law_refuted {
+        /// The characteristic.
+        characteristic: String,
+        /// The failed test: `monotone` or `count`.
+        test: &'static str,
+        /// The limit at which it failed.
+        limit: f64,
+        /// Share of assemblies below the limit by the law.
+        law: f64,
+        /// Share of points below the limit.
+        counted: f64,
+        /// Standard error of that share.
         error: f64,
     };
     /// The estimated error is larger than the wanted accuracy.
@@ -580,6 +603,30 @@ warnings! {
         plain: f64,
         /// Evaluations spent.
         evaluations: u64,
+    };
+    /// Importance sampling was worse than plain points, which make the estimate.
+    PlainFallback = "plain-fallback" by sample::plain_fallback {
+        /// The characteristic.
+        characteristic: String,
+        /// The limit.
+        limit: f64,
+        /// Plain points.
+        points: u64,
+    };
+    /// Moments of a sample that a few points decide, or that rest on assemblies which it hardly has.
+    UnsettledMoments = "unsettled-moments" by sample::unsettled_moments {
+        /// The characteristic.
+        characteristic: String,
+        /// Mean, sigma, skewness or kurtosis, the lowest first.
+        figures: Vec<&'static str>,
+        /// Points of the sample.
+        points: u64,
+        /// The part of the largest point in the sum that the error of the first figure rests on.
+        largest: f64,
+        /// That of the ten largest.
+        ten_largest: f64,
+        /// The switch beyond which assemblies decide that the sample hardly has; None where the sample's own points do.
+        switch: Option<String>,
     };
     /// The standard errors of a sample are larger than wanted.
     TargetErrorMissed = "target-error-missed" by sample::target_error_missed {

@@ -28,6 +28,14 @@ pub(super) fn overflow(characteristic: &str, value: &f64, limit: &f64) -> Text {
     .advise(Advice::LargerUnit)
 }
 
+pub(super) fn unrepresentable(characteristic: &str) -> Text {
+    say(format!(
+        "Some figures of `{characteristic}`, such as its second derivatives, lie outside the range of double-precision numbers, 1e-308 to 1.8e308. \
+         They are unknown here. All other figures hold."
+    ))
+    .advise(Advice::OrdinaryUnit)
+}
+
 pub(super) fn outside_model(output: &str, reason: &str) -> Text {
     say(format!(
         "Evaluated values of `{output}` lie outside the model: {reason}. Results that use them describe no real part."

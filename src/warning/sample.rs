@@ -29,6 +29,43 @@ pub(super) fn plain_sampling(characteristic: &str, limit: &f64, plain: &f64, eva
     .advise(Advice::SamplePlainly)
 }
 
+pub(super) fn plain_fallback(characteristic: &str, limit: &f64, points: &u64) -> Text {
+    say(format!(
+        "Importance sampling does not find where `{characteristic}` lies beyond {limit}: its interval is wider than that of plain sampling. The \
+         estimate is that of {points} plain points."
+    ))
+    .advise(Advice::SamplePlainly)
+}
+
+pub(super) fn unsettled_moments(
+    characteristic: &str,
+    figures: &[&'static str],
+    points: &u64,
+    largest: &f64,
+    ten_largest: &f64,
+    switch: &Option<String>,
+) -> Text {
+    let (names, have) = match figures {
+        [most @ .., last] if !most.is_empty() => (format!("{} and {last}", most.join(", ")), "have"),
+        _ => (figures.concat(), "has"),
+    };
+    let first = figures.first().copied().unwrap_or_default();
+    let why = match switch {
+        Some(switch) => format!("Assemblies beyond {switch} decide the {first}, and the sample hardly has any of them"),
+        None => format!(
+            "The largest point carries {:.0} % of the sum behind the error of the {first}, and the ten largest {:.0} %",
+            100.0 * largest,
+            100.0 * ten_largest
+        ),
+    };
+    say(format!(
+        "The {names} of `{characteristic}` {have} not settled after {points} points. {why}. No standard error is known, and the true value may \
+         be far off."
+    ))
+    .advise(Advice::MorePoints)
+    .advise(Advice::Analyze)
+}
+
 pub(super) fn target_error_missed(points: &u64) -> Text {
     say(format!("The standard errors are larger than wanted after {points} points.")).advise(Advice::MorePoints)
 }

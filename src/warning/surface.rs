@@ -137,7 +137,24 @@ pub(super) fn under_resolved(
     say(format!("{known} {why}")).advise(Advice::RaiseBudget).advise(Advice::Sample { points: None })
 }
 
-pub(super) fn switch(characteristic: &str, switch: &str, change: &Change, probability: &f64) -> Text {
+pub(super) fn switch(
+    characteristic: &str,
+    switch: &str,
+    change: &Change,
+    probability: &f64,
+    points: &Option<f64>,
+) -> Text {
+    if let Some(points) = points {
+        let does = match change {
+            Change::Kink => "bends",
+            Change::Jump => "jumps",
+            Change::Edge => "has no value beyond a limit",
+        };
+        let (beyond, points) = (part(*probability), significant(*points, 2));
+        return say(format!(
+            "`{characteristic}` {does} at {switch}, with {beyond} of the assemblies beyond: about {points} points of the sample."
+        ));
+    }
     let (does, means) = match change {
         Change::Kink => ("bends", "No polynomial follows a kink."),
         Change::Jump => ("jumps", "No polynomial follows a jump."),
@@ -168,6 +185,34 @@ pub(super) fn figure_off(characteristic: &str, figure: &&'static str, value: &f6
         "The {figure} of `{characteristic}` is {value} by the method, and {model} by the model itself, with an error of {error}."
     ))
     .advise(Advice::UseMethod { methods: vec![Method::Auto] })
+}
+
+pub(super) fn surface_law_refuted(
+    characteristic: &str,
+    test: &&'static str,
+    limit: &f64,
+    law: &f64,
+    counted: &f64,
+    error: &f64,
+) -> Text {
+    let fails = if *test == "monotone" { "has quantiles or shares that fall" } else { "contradicts points" };
+    let [law, counted, error] = [law, counted, error].map(|share| ppm(*share));
+    say(format!(
+        "The surface law of `{characteristic}` {fails}: it has {law} ppm below {}, where {counted} ± {error} ppm of the points lie. Points take \
+         its place for yield, quantiles and coverage intervals.",
+        short(*limit)
+    ))
+    .advise(Advice::Sample { points: None })
+}
+
+/// A number with six digits.
+fn short(number: f64) -> f64 {
+    format!("{number:.5e}").parse().unwrap_or(number)
+}
+
+/// Parts per million without decimals.
+fn ppm(share: f64) -> String {
+    format!("{:.0}", 1e6 * share)
 }
 
 /// A share as percent, or as parts per million where it is small.

@@ -1,8 +1,16 @@
 //! Whether the intervals of rare events hold the truth, where a surrogate does not know of the rejects.
 
-use sensitol::rare::{RareOptions, rare};
+use rayon::prelude::*;
+use sensitol::distribution::{Gamma, Probability};
+use sensitol::rare::{Beyond, RareOptions, rare};
 use sensitol::{Characteristic, Closure, Problem, SpecLimits};
 use sensitol_testing::{data, standard};
+
+/// The probability that a hundred normal variables lie farther from the means than this.
+fn beyond_a_sphere(radius: f64) -> f64 {
+    let squares = Gamma::new(0.0, 100.0, 200f64.sqrt()).unwrap();
+    squares.sf(radius * radius)
+}
 
 /// A published problem or another function of `n` standard normal variables, whose reject is a value below 0.
 struct Case {
@@ -123,4 +131,41 @@ fn a_lucky_standard_error_is_no_reason_to_stop() {
     let case = CASES.iter().find(|case| case.name == "rp33").unwrap();
     let (held, error) = case.held(100_000, Some(0.05));
     assert!(held >= 37, "{held} {error}");
+}
+
+/// In a hundred variables rejects lie all around the means, and no place is of use: importance sampling falls back to plain points, and is not
+/// worse than a plain sample of as many evaluations. The surrogate is the function in the first case, and misses it in the others.
+#[test]
+fn a_hundred_variables_are_no_worse_than_plain_points() {
+    const RADIUS: f64 = 12.435_6;
+    let truth = beyond_a_sphere(RADIUS);
+    assert!((truth - 377e-6).abs() < 2e-6, "{truth}");
+    type Function = fn(&[f64]) -> f64;
+    let functions: [(&str, Function, f64); 3] = [
+        ("sphere", |x| x.iter().map(|x| x * x).sum(), RADIUS * RADIUS),
+        ("distance", |x| x.iter().map(|x| x * x).sum::<f64>().sqrt(), RADIUS),
+        ("fourth power of it", |x| x.iter().map(|x| x * x).sum::<f64>().powi(2) / 1e4, RADIUS.powi(4) / 1e4),
+    ];
+    for (name, function, limit) in functions {
+        let problem = Problem::new(standard(100), Closure::scalar("y", function)).unwrap();
+        let limits = SpecLimits::new(None, Some(limit)).unwrap();
+        let problem = problem.asking([Characteristic::new("y").with_limits(limits)]).unwrap();
+        let one = |seed: u64| {
+            let found = rare(&problem, &RareOptions::default().with_seed(seed)).unwrap();
+            let above = found.characteristics[0].above.clone().unwrap();
+            (found.run.evaluations, above)
+        };
+        let found: Vec<_> = (0..20).into_par_iter().map(one).collect();
+        let evaluations = found[0].0 as f64;
+        let square =
+            |above: &Beyond| (above.probability.map_or(0.0, |probability| probability.value) - truth).powi(2) / 20.0;
+        let error = found.iter().map(|(_, above)| square(above)).sum::<f64>().sqrt();
+        // The root mean square of 20 runs is uncertain by 1/sqrt(40), a sixth: two of that, and the evaluations that looked for places.
+        let plain = (truth / evaluations).sqrt();
+        assert!(error < 1.45 * plain, "{name}: {error} where a plain sample has {plain}");
+        let held = found.iter().filter(|(_, above)| above.interval[0] <= truth && truth <= above.interval[1]).count();
+        assert!(held >= 18, "{name}: {held} of 20");
+        // An interval that tells more than nothing.
+        assert!(found.iter().all(|(_, above)| above.interval[1] < 20.0 / evaluations), "{name}");
+    }
 }

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 use sensitol::analysis::{Crossing, VerificationKind, Verified};
-use sensitol::assembly::{AssemblyFunction, Request, Responses, Run, Signature};
+use sensitol::assembly::Run;
 use sensitol::correlation::Pair;
 
 use sensitol::method::registry::procedure;

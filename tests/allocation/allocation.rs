@@ -191,7 +191,6 @@ fn independent_residual(task: &AllocationTask, slopes: &[Vec<f64>], limits: &[[f
             Requirement::Cpk(least) => (least * 3.0 * sigma / room, squares),
             Requirement::Sigma(most) => (sigma / most, squares),
             Requirement::Yield(least) => ((cdf(lower / sigma) + cdf(-upper / sigma)) / (1.0 - least), squares),
-            other => unreachable!("no such requirement in these studies: {other:?}"),
         };
         // statrs knows the tails to 1e-10.
         assert!(value <= 1.0 + 1e-6, "{requirement:?} is exceeded: {value}");

@@ -6,12 +6,14 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use sensitol::analysis::{Analysis, Extremes, Place};
-use sensitol::assembly::{Points, Request, Responses, Run};
+use sensitol::assembly::Run;
 
 use sensitol::warning::Ended;
 use sensitol::{Closure, Dimension, Method, Options, Problem, StopReason, analyze, analyze_with};
 use sensitol_study::Study;
-use sensitol_testing::{Asked, close, normals, refusing, relative, repository, standard};
+use sensitol_testing::{
+    Asked, among, close, normals, random_points, refusing, relative, repository, standard, vertices,
+};
 
 fn searched(problem: &Problem, method: Method) -> Analysis {
     analyze(problem, &Options::from(method).with_extremes(true)).unwrap()
@@ -35,41 +37,6 @@ fn places(extremes: &Extremes) -> [Vec<Place>; 2] {
     [&extremes.least, &extremes.greatest].map(|extreme| extreme.at.iter().map(|at| at.place).collect())
 }
 
-/// The box of a problem: the band of every dimension.
-fn bands(problem: &Problem) -> Vec<[f64; 2]> {
-    problem.dimensions().iter().map(|d| d.reach().map(|reach| d.nominal() + reach)).collect()
-}
-
-/// The extremes of every characteristic among these points.
-fn among(problem: &Problem, points: &[Vec<f64>]) -> Vec<[f64; 2]> {
-    let mut out = Responses::open(points.len(), problem.outputs().len());
-    let points = Points::from_rows(points);
-    problem.function().evaluate(&Request::values(&points, problem.outputs()), &Run::to_the_end(), &mut out);
-    let ends = |c: usize| {
-        let column = out.column(c).iter().copied();
-        [column.clone().fold(f64::INFINITY, f64::min), column.fold(f64::NEG_INFINITY, f64::max)]
-    };
-    (0..problem.outputs().len()).map(ends).collect()
-}
-
-/// All `2^N` vertices of the dimensions that vary.
-fn vertices(problem: &Problem) -> Vec<Vec<f64>> {
-    let bands = bands(problem);
-    let varying: Vec<usize> = (0..bands.len()).filter(|&d| bands[d][0] < bands[d][1]).collect();
-    let vertex = |number: usize| {
-        let mut point: Vec<f64> = bands.iter().map(|band| band[0]).collect();
-        varying.iter().enumerate().for_each(|(bit, &d)| point[d] = bands[d][number >> bit & 1]);
-        point
-    };
-    (0..1 << varying.len()).map(vertex).collect()
-}
-
-fn random(problem: &Problem, count: usize) -> Vec<Vec<f64>> {
-    let (bands, mut rng) = (bands(problem), Xoshiro256PlusPlus::seed_from_u64(11));
-    let point = |_| bands.iter().map(|[a, b]| a + (b - a) * rng.random::<f64>()).collect();
-    (0..count).map(point).collect()
-}
-
 /// Every method begins elsewhere; the extremes are the same. Their values: the project's own figures for this study, and
 /// no vertex or random point lies beyond them.
 #[test]
@@ -77,7 +44,7 @@ fn the_engine_has_its_true_extremes() {
     let study = Study::read(&repository("examples/engine-balance/study.toml")).unwrap();
     let mut points = vertices(&study.problem);
     assert_eq!(points.len(), 1 << 10);
-    points.extend(random(&study.problem, 100_000));
+    points.extend(random_points(&study.problem, 100_000));
     points.push(study.problem.dimensions().iter().map(Dimension::nominal).collect());
     let sampled = among(&study.problem, &points);
     let mut counts = Vec::new();
@@ -464,4 +431,141 @@ fn positions_keep_their_circle() {
     for extreme in [&found.least, &found.greatest] {
         assert!(extreme.at[0].x.hypot(extreme.at[1].x) <= 0.1 * (1.0 + 1e-12));
     }
+}
+
+/// The function of a zone's two coordinates and of one dimension more.
+type Planar = fn(f64, f64, f64) -> f64;
+
+/// Formulas with extremes on the edge of a zone and within it, of which every one rises or falls with `a`.
+const PLANAR: [(&str, Planar); 6] = [
+    ("a + x + y", |a, x, y| a + x + y),
+    ("a + x - 0.4*y + x*y", |a, x, y| a + x - 0.4 * y + x * y),
+    ("a + x^2 + 3*y^2 - x*y", |a, x, y| a + x * x + 3.0 * y * y - x * y),
+    ("2*a + sin(7*x)*cos(5*y)", |a, x, y| 2.0 * a + (7.0 * x).sin() * (5.0 * y).cos()),
+    ("a*exp(x) + abs(y - 0.05)", |a, x, y| a * x.exp() + (y - 0.05).abs()),
+    ("a + hypot(x + 0.1, y)", |a, x, y| a + (x + 0.1).hypot(y)),
+];
+
+/// Points of a zone of half widths 0.2 and 0.3, as near to each other as 1e-4 along its edge.
+fn zone(law: &str) -> Vec<[f64; 2]> {
+    let turn = |angle: f64, radius: f64| [0.2 * radius * angle.cos(), 0.3 * radius * angle.sin()];
+    let angles = |count: usize| (0..count).map(move |k| std::f64::consts::TAU * k as f64 / count as f64);
+    match law {
+        "rim" => angles(20_000).map(|angle| turn(angle, 1.0)).collect(),
+        "disc" => {
+            let inner = (0..200).flat_map(|r| angles(400).map(move |angle| turn(angle, r as f64 / 200.0)));
+            angles(20_000).map(|angle| turn(angle, 1.0)).chain(inner).collect()
+        }
+        _ => {
+            let grid =
+                (-200..=200).flat_map(|i| (-200..=200).map(move |j| [f64::from(i) / 200.0, f64::from(j) / 200.0]));
+            let within = |[x, y]: &[f64; 2]| x.abs() + y.abs() <= 1.0;
+            let edge = (0..=5000).flat_map(|k| {
+                let x = f64::from(k) / 5000.0;
+                [[x, 1.0 - x], [-x, 1.0 - x], [x, x - 1.0], [-x, x - 1.0]]
+            });
+            grid.filter(within).chain(edge).map(|[x, y]| [0.2 * x, 0.3 * y]).collect()
+        }
+    }
+}
+
+/// Coordinates that share a zone stay within it, in a proof too: no point of it lies beyond the proven ends, and some lie next to them. Within a disc
+/// the samples are 1e-3 apart, where a value at rest is off by the square of that.
+#[test]
+fn a_proof_over_a_zone_is_that_of_its_points() {
+    for law in ["disc", "rim", "diamond"] {
+        let points = zone(law);
+        for (formula, value) in PLANAR {
+            let text = format!(
+                "[dimensions]\na = {{ nominal = 1, tolerance = 0.1 }}\nx = {{ nominal = 0, tolerance = 0.2 }}\n\
+                 y = {{ nominal = 0, tolerance = 0.3 }}\n[[joint]]\nof = [\"x\", \"y\"]\nlaw = \"{law}\"\n\
+                 [characteristics]\nf = {{ formula = \"{formula}\" }}\n"
+            );
+            let study = Study::from_toml(&text, "zone.toml").unwrap();
+            let of = |a: f64| points.iter().map(move |[x, y]| value(a, *x, *y));
+            let least = of(0.9).fold(f64::INFINITY, f64::min);
+            let greatest = of(1.1).fold(f64::NEG_INFINITY, f64::max);
+            let one = analyze(&study.problem, &study.options).unwrap().characteristics.remove(0);
+            let bounds = one.bounds.unwrap();
+            let searched = searched(&study.problem, Method::Full).characteristics.remove(0).extremes.unwrap();
+            for (what, proof) in [("bounds", &bounds), ("extremes", searched.proof.as_ref().unwrap())] {
+                let [low, high] = proof.bounds;
+                assert!(proof.proven, "{law}, {formula}, {what}: {proof:?}");
+                assert!(
+                    low <= least + 1e-12 && greatest <= high + 1e-12,
+                    "{law}, {formula}, {what}: {proof:?} {least} {greatest}"
+                );
+                assert!(
+                    least - low < 2e-5 && high - greatest < 2e-5,
+                    "{law}, {formula}, {what}: {proof:?} {least} {greatest}"
+                );
+            }
+        }
+    }
+}
+
+/// Columns of one file without tolerances of their own are the rows that were measured; with a drawing's tolerance every value of the band can be.
+#[test]
+fn measured_rows_are_the_worst_case_of_their_columns() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(5);
+    let rows: Vec<[f64; 2]> = (0..60)
+        .map(|_| {
+            let x: f64 = rng.random_range(-0.2..0.2);
+            [x, 0.7 * x + rng.random_range(-0.05..0.05)]
+        })
+        .collect();
+    let lines: Vec<String> = rows.iter().map(|[x, y]| format!("{x},{y}")).collect();
+    std::fs::write(folder.path().join("rows.csv"), format!("x,y\n{}\n", lines.join("\n"))).unwrap();
+    let of = |tolerances: [&str; 2], formula: &str| {
+        let [x, y] = tolerances;
+        let text = format!(
+            "[dimensions]\na = {{ nominal = 1, tolerance = 0.1 }}\nx = {{ measured = \"rows.csv\", column = \"x\"{x} }}\n\
+             y = {{ measured = \"rows.csv\", column = \"y\"{y} }}\n[characteristics]\nf = {{ formula = \"{formula}\" }}\n"
+        );
+        let path = folder.path().join("study.toml");
+        std::fs::write(&path, text).unwrap();
+        let study = Study::read(&path).unwrap();
+        let bounds = analyze(&study.problem, &study.options).unwrap().characteristics.remove(0).bounds.unwrap();
+        assert!(bounds.proven, "{formula}: {bounds:?}");
+        bounds.bounds
+    };
+    let cases: [(&str, Planar); 3] = [
+        ("a + x - y", |a, x, y| a + x - y),
+        ("a + x*y - x", |a, x, y| a + x * y - x),
+        ("a*cos(x) + 3*y^2", |a, x, y| a * x.cos() + 3.0 * y * y),
+    ];
+    for (formula, value) in cases {
+        let [low, high] = of(["", ""], formula);
+        let ends = |a: f64| rows.iter().map(move |[x, y]| value(a, *x, *y));
+        let (least, greatest) = (ends(0.9).fold(f64::INFINITY, f64::min), ends(1.1).fold(f64::NEG_INFINITY, f64::max));
+        close(low, least, 1e-6, 1.0);
+        close(high, greatest, 1e-6, 1.0);
+    }
+    let bands = [", nominal = 0, tolerance = 0.2", ", nominal = 0, tolerance = 0.2"];
+    let [low, high] = of(bands, "a + x - y");
+    close(low, 0.9 - 0.4, 1e-9, 1.0);
+    close(high, 1.1 + 0.4, 1e-9, 1.0);
+}
+
+/// A worst case that is required holds over the zone: the cheapest tolerances use all of the room, by the closed form of a disc.
+#[test]
+fn a_required_worst_case_is_that_of_the_zone() {
+    use sensitol::allocation::{AllocationOptions, Status, allocate};
+    let text = "[dimensions]\na = { nominal = 1, tolerance = 0.05 }\nh = { nominal = [0, 0], position = 0.1 }\n[characteristics]\n\
+                y = { formula = \"a + h_x + h_y + 0.5*h_x*h_y\", upper = 1.2, require = \"worst-case\" }\n[costs]\n\
+                a = { model = \"reciprocal\", b = 0.1 }\nh = { model = \"reciprocal\", b = 0.1 }\n";
+    let study = Study::from_toml(text, "zone.toml").unwrap();
+    let options = AllocationOptions::default().with_analysis(study.options.clone());
+    let found = allocate(&study.problem, &study.allocation_task(), &options).unwrap();
+    let half = |name: &str| {
+        let all = found.problem.dimensions();
+        all.iter().find(|dimension| dimension.name() == name).unwrap().half_band()
+    };
+    let (a, r) = (half("a"), half("h_x"));
+    // Greatest where both coordinates are r/sqrt 2.
+    let greatest = 1.0 + a + 2f64.sqrt() * r + 0.25 * r * r;
+    assert!(greatest <= 1.2 + 1e-6 && greatest > 1.2 - 1e-3, "{greatest}");
+    assert!(!matches!(found.status, Status::Optimal | Status::NoFeasiblePointFound), "{:?}", found.status);
+    assert!(found.cost_after.unwrap() < found.cost_before.unwrap());
 }

@@ -23,23 +23,26 @@ fn run(problem: &Problem, samples: u64, sampler: Sampler, seed: u64) -> Simulati
 /// The true values of a characteristic: mean, sigma, skewness, kurtosis, the 0.00135 quantile, the yield.
 pub type Truth = [f64; 6];
 
-/// In how many of the runs each truth lies within two standard errors, or the interval.
+/// In how many of the runs each truth lies within two standard errors, or the interval. Runs that tell no standard error of a figure, because
+/// few points decide it, are left out, and the others scaled to as many.
 fn covered(problem: &Problem, truth: Truth, samples: u64, sampler: Sampler) -> [usize; 6] {
-    let mut hits = [0; 6];
+    let (mut hits, mut told) = ([0; 6], [0; 6]);
     for seed in 0..SEEDS {
         let found = &run(problem, samples, sampler, seed).characteristics[0];
-        let within = |estimate: Option<Estimate>, truth: f64| {
-            let estimate = estimate.unwrap();
-            (estimate.value - truth).abs() <= 2.0 * estimate.standard_error.unwrap()
-        };
         let moments = [found.mean, found.sigma, found.skewness, found.kurtosis, found.quantiles[0]];
         for (index, estimate) in moments.into_iter().enumerate() {
-            hits[index] += usize::from(within(estimate, truth[index]));
+            let Estimate { value, standard_error } = estimate.unwrap();
+            let Some(error) = standard_error else { continue };
+            told[index] += 1;
+            hits[index] += usize::from((value - truth[index]).abs() <= 2.0 * error);
         }
         let [low, high] = found.yield_.unwrap().interval;
+        told[5] += 1;
         hits[5] += usize::from(low <= truth[5] && truth[5] <= high);
     }
-    hits
+    // Mean and sigma are told by every run of these functions.
+    assert_eq!(told[..2], [SEEDS as usize; 2]);
+    std::array::from_fn(|index| hits[index] * SEEDS as usize / told[index].max(1))
 }
 
 /// Two lognormal factors of log-sd 0.09 and 0.12: a lognormal of log-sd 0.15, whose truth is in every textbook. Of longer

@@ -27,6 +27,7 @@ fn words(advice: &Advice) -> String {
         Advice::SampleRareEvents => "run `sensitol simulate --rare` where few are rejected".to_owned(),
         Advice::SamplePlainly => "leave out --rare".to_owned(),
         Advice::MorePoints => "raise --samples".to_owned(),
+        Advice::Analyze => "run `sensitol analyze`, which samples the tails by themselves".to_owned(),
         Advice::SmallerStep { dimension: None } => "use a smaller --step".to_owned(),
         Advice::UseDifferences => "use --derivatives difference".to_owned(),
         Advice::ReadModelLog => "show all that the model writes to stderr with -v".to_owned(),

@@ -9,9 +9,10 @@ use super::output::{Look, json};
 use super::progress::Bar;
 use super::running::{Clock, confirmed, externals, kept, on_threads};
 use super::{interrupt, study};
-use sensitol::allocation::{Allocation, AllocationOptions, AllocationTask, CostBasis, Goal, Status, allocate_with};
+use sensitol::allocation::{Allocation, AllocationOptions, AllocationTask, CostBasis, Goal, Status, allocate_written};
 use sensitol::assembly::{Progress, Run};
 use sensitol::method::Options;
+use sensitol::problem::Problem;
 use sensitol::warning::{Counted, Warning};
 use sensitol_report::document::svg::svg;
 use sensitol_report::document::terminal::text;
@@ -82,7 +83,9 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
         _ if incomplete && !allocation.run.unfinished() => Exit::NoResult,
         Status::Optimal | Status::LocalOptimum | Status::AlmostOptimal if refuted => Exit::Missed,
         Status::Optimal | Status::LocalOptimum | Status::AlmostOptimal => Exit::Done,
-        Status::Infeasible | Status::NoFeasiblePointFound | Status::OutOfTime => Exit::NotAllocated,
+        Status::Infeasible | Status::NoFeasiblePointFound | Status::Inconclusive | Status::OutOfTime => {
+            Exit::NotAllocated
+        }
     };
     Ok(confirmed(exit, &allocation.run))
 }
@@ -140,7 +143,8 @@ fn allocate(
     let bar = plan.map(|plan| Bar::new(2 * plan.cost().0, look.quiet));
     let show = |more: Progress| bar.iter().for_each(|bar| bar.show(more));
     let run = Run::to_the_end().stopping_when(&stop).abandoning_when(&interrupt::abandoned).showing(&show);
-    let result = on_threads(threads, || allocate_with(&study.problem, task, options, &run));
+    let written = |problem: &Problem| study.written_dimensions(problem);
+    let result = on_threads(threads, || allocate_written(&study.problem, task, options, &run, &written));
     if let Some(bar) = bar {
         bar.clear();
     }

@@ -4,15 +4,16 @@ use serde::Serialize;
 
 use crate::inspection::{Inspection, InspectionError};
 use crate::labels::Labels;
+use crate::power::Power;
 use crate::requirement::{Requirement, RequirementError};
 
 /// A key characteristic: its name, its unit, and the limits it should keep.
 ///
 /// ```
-/// use sensitol_numeric::characteristic::{Characteristic, SpecLimits};
+/// use crate::characteristic::{Characteristic, SpecLimits};
 /// let gap = Characteristic::new("gap").with_unit("mm").with_limits(SpecLimits::new(Some(5.0), Some(7.0))?);
 /// assert_eq!((gap.limits().lower(), gap.limits().upper()), (Some(5.0), Some(7.0)));
-/// # Ok::<(), sensitol_numeric::characteristic::LimitsError>(())
+/// # Ok::<(), crate::characteristic::LimitsError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -91,8 +92,8 @@ impl Characteristic {
     /// When the number is impossible, or limits are missing that it speaks of.
     ///
     /// ```
-    /// use sensitol_numeric::characteristic::{Characteristic, SpecLimits};
-    /// use sensitol_numeric::requirement::Requirement;
+    /// use crate::characteristic::{Characteristic, SpecLimits};
+    /// use crate::requirement::Requirement;
     /// let gap = Characteristic::new("gap").with_limits(SpecLimits::new(Some(5.0), Some(7.0))?);
     /// let gap = gap.with_target_yield(0.99)?.with_requirement(Requirement::Cpk(1.33))?;
     /// assert_eq!(gap.requirements(), [Requirement::Yield(0.99), Requirement::Cpk(1.33)]);
@@ -110,6 +111,16 @@ impl Characteristic {
     pub fn with_inspection(mut self, inspection: Inspection) -> Result<Self, InspectionError> {
         self.inspection = Some(inspection.checked([self.limits.lower, self.limits.upper])?);
         Ok(self)
+    }
+
+    /// The same with everything in its unit times a power of two.
+    pub fn times(self, power: Power) -> Self {
+        Self {
+            limits: self.limits.times(power),
+            requirement: self.requirement.map(|requirement| requirement.times(power)),
+            inspection: self.inspection.map(|inspection| inspection.times(power)),
+            ..self
+        }
     }
 
     /// The gauge by which its limits are inspected, where there is one.
@@ -192,6 +203,15 @@ impl SpecLimits {
         }
     }
 
+    /// The same limits times a power of two. One that no double holds is the greatest double: values beyond do not occur either. Two that both are 0
+    /// then stay apart.
+    pub fn times(self, power: Power) -> Self {
+        let times = |limit: f64| power.times(limit).clamp(-f64::MAX, f64::MAX);
+        let (lower, upper) = (self.lower.map(times), self.upper.map(times));
+        let upper = upper.map(|upper| if Some(upper) == lower { upper.next_up() } else { upper });
+        Self { lower, upper }
+    }
+
     /// The lower limit, where there is one.
     pub fn lower(&self) -> Option<f64> {
         self.lower
@@ -206,9 +226,112 @@ impl SpecLimits {
     pub fn exist(&self) -> bool {
         self.lower.is_some() || self.upper.is_some()
     }
+}
 
-    /// Whether a value keeps the limits; a limit itself is kept.
+/// The limits that computed values keep: those given, each moved outward by what rounding may have moved a value on it.
+///
+/// This is the only place that decides whether a value keeps a limit. Points of the model, points of a surface and the steps of a discrete
+/// distribution are all compared here, so that a value on a limit is the same event everywhere: it keeps the limit.
+///
+/// ```text
+/// kept       lower - a <= value <= upper + a
+/// a          256 epsilon max(sum of the magnitudes of the terms of the value, |lower|, |upper|)
+/// ```
+///
+/// Source: J. H. Wilkinson, Rounding Errors in Algebraic Processes (1963): a sum is off by at most its number of terms times epsilon by
+/// the sum of their magnitudes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct KeptLimits {
+    /// Infinite without that limit.
+    ends: [f64; 2],
+    rounding: f64,
+}
+
+impl KeptLimits {
+    /// Roundings that a value may have, of the size of all of its terms: as many as a sum of 256 terms has at most, and a surface through
+    /// the values of a sum of some dozens.
+    const ROUNDINGS: f64 = 256.0;
+
+    /// Of values whose terms have magnitudes that sum to `terms`.
+    pub fn new(limits: SpecLimits, terms: f64) -> Self {
+        let largest = [limits.lower, limits.upper].into_iter().flatten().map(f64::abs).fold(terms, f64::max);
+        Self::moved(limits, Self::rounding_of(largest))
+    }
+
+    /// Of values that rounding moves by no more than this.
+    pub(crate) fn moved(limits: SpecLimits, rounding: f64) -> Self {
+        let lower = limits.lower.map_or(f64::NEG_INFINITY, |limit| limit - rounding);
+        let upper = limits.upper.map_or(f64::INFINITY, |limit| limit + rounding);
+        Self { ends: [lower, upper], rounding }
+    }
+
+    /// The distance that rounding may put between a value and a limit on which it lies.
+    pub fn rounding_of(terms: f64) -> f64 {
+        Self::ROUNDINGS * f64::EPSILON * terms
+    }
+
+    /// By how much the limits are moved.
+    pub fn rounding(&self) -> f64 {
+        self.rounding
+    }
+
+    /// The least and the greatest value that is kept; infinite without that limit.
+    pub fn ends(&self) -> [f64; 2] {
+        self.ends
+    }
+
+    /// Whether there is any limit.
+    pub fn exist(&self) -> bool {
+        self.ends.iter().any(|end| end.is_finite())
+    }
+
+    /// Whether a value is below and above the limits.
+    pub fn broken(&self, value: f64) -> [bool; 2] {
+        [value < self.ends[0], value > self.ends[1]]
+    }
+
+    /// Whether a value keeps both limits.
     pub fn contains(&self, value: f64) -> bool {
-        self.lower.is_none_or(|lower| lower <= value) && self.upper.is_none_or(|upper| value <= upper)
+        self.ends[0] <= value && value <= self.ends[1]
+    }
+
+    /// The same limits tightened by a guard on either side.
+    pub(crate) fn tightened(&self, guard: f64) -> Self {
+        Self { ends: [self.ends[0] + guard, self.ends[1] - guard], ..*self }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn limits(lower: f64, upper: f64) -> SpecLimits {
+        SpecLimits::new(Some(lower), Some(upper)).unwrap()
+    }
+
+    /// 0.1 + 0.2 is one unit in the last place above 0.3, and keeps it; so does 0.3 - 1e-10, and 0.3 + 1e-10 does not.
+    #[test]
+    fn a_value_that_rounding_puts_beyond_a_limit_keeps_it() {
+        let kept = KeptLimits::new(limits(0.1, 0.3), 0.3);
+        assert!(0.1 + 0.2 > 0.3 && kept.contains(0.1 + 0.2));
+        assert_eq!(kept.broken(0.3 + 1e-10), [false, true]);
+        assert_eq!(kept.broken(0.1 - 1e-10), [true, false]);
+        assert_eq!(kept.broken(f64::NAN), [false, false]);
+        assert!(!kept.contains(f64::NAN));
+    }
+
+    /// 100.01 - 100.00 is off 0.01 by 5e-15: half a unit in the last place of 100, which the size of the limit does not tell.
+    #[test]
+    fn the_terms_of_a_difference_say_how_it_is_rounded() {
+        let value = 100.01 - 100.00;
+        assert!(!KeptLimits::new(limits(0.0, 0.01), 0.0).contains(value));
+        assert!(KeptLimits::new(limits(0.0, 0.01), 200.01).contains(value));
+    }
+
+    #[test]
+    fn a_limit_that_is_missing_is_kept_by_all() {
+        let kept = KeptLimits::new(SpecLimits::new(None, Some(1.0)).unwrap(), 1.0);
+        assert_eq!(kept.broken(-1e300), [false, false]);
+        assert_eq!(kept.tightened(0.5).broken(0.75), [false, true]);
     }
 }

@@ -1,13 +1,15 @@
 //! How a characteristic is measured before it is accepted: with a gauge that errs, within limits that are tightened by a guard band.
 
+use crate::power::Power;
+
 /// A gauge and its guard bands.
 ///
 /// A part is accepted where its measured value, which is normal about the true one with sigma `gauge`, lies within the limits, tightened by
 /// the guard on every side.
 ///
 /// ```
-/// use sensitol_numeric::inspection::{Guard, Inspection};
-/// use sensitol_numeric::characteristic::{Characteristic, SpecLimits};
+/// use crate::inspection::{Guard, Inspection};
+/// use crate::characteristic::{Characteristic, SpecLimits};
 /// let inspection = Inspection::new(0.015)?.with_guard(Guard::Width(0.01))?;
 /// let gap = Characteristic::new("gap").with_limits(SpecLimits::new(Some(9.95), Some(10.05))?).with_inspection(inspection)?;
 /// assert_eq!(gap.inspection().unwrap().gauge(), 0.015);
@@ -103,6 +105,16 @@ impl Inspection {
     /// Its guard bands.
     pub fn guard(&self) -> Guard {
         self.guard
+    }
+
+    /// The same of a characteristic times a power of two.
+    pub(crate) fn times(self, power: Power) -> Self {
+        let times = |width: f64| power.times(width).min(f64::MAX);
+        let guard = match self.guard {
+            Guard::Width(width) => Guard::Width(times(width)),
+            rate @ Guard::FalseAccept(_) => rate,
+        };
+        Self { gauge: times(self.gauge), guard }
     }
 
     /// For these limits, the lower and the upper one.

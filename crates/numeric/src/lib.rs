@@ -19,6 +19,7 @@ pub mod names;
 pub mod parallel;
 pub mod pearson;
 pub mod points;
+pub mod power;
 pub mod requirement;
 pub mod sampling;
 pub mod shape;

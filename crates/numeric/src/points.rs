@@ -3,7 +3,7 @@
 /// `R` points in `N` dimensions, stored a column per dimension.
 ///
 /// ```
-/// use sensitol_numeric::points::Points;
+/// use crate::points::Points;
 /// let points = Points::from_rows(&[[10.0, 30.0], [10.5, 30.0], [10.0, 30.0]]);
 /// assert_eq!(points.column(0), [10.0, 10.5, 10.0]);
 /// assert_eq!(points.row(1), [10.5, 30.0]);

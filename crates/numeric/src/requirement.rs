@@ -2,6 +2,8 @@
 
 use serde::{Serialize, Serializer};
 
+use crate::power::Power;
+
 /// A requirement of a characteristic: when tolerances are chosen, and when a result is judged.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Requirement {
@@ -78,6 +80,14 @@ impl Requirement {
         match self {
             Self::Cpk(_) => "cpk",
             other => other.name(),
+        }
+    }
+
+    /// The same of a characteristic times a power of two.
+    pub fn times(self, power: Power) -> Self {
+        match self {
+            Self::Sigma(value) => Self::Sigma(power.times(value).clamp(f64::MIN_POSITIVE, f64::MAX)),
+            other => other,
         }
     }
 

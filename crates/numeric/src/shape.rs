@@ -52,6 +52,24 @@ impl<T: Copy> From<&[T; 2]> for Sides<T> {
     }
 }
 
+/// Within which the rejects of either side are known.
+#[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct RejectIntervals {
+    /// The 95 % interval of the assemblies below the lower limit by themselves, per million; 0 to 0 where a proof excludes them, null where it
+    /// is not known.
+    ppm_below_interval: Option<[f64; 2]>,
+    /// The same above the upper limit.
+    ppm_above_interval: Option<[f64; 2]>,
+}
+
+impl From<&[Option<[f64; 2]>; 2]> for RejectIntervals {
+    fn from(intervals: &[Option<[f64; 2]>; 2]) -> Self {
+        let [ppm_below_interval, ppm_above_interval] = intervals.map(|of| of.map(|ends| ends.map(|end| 1e6 * end)));
+        Self { ppm_below_interval, ppm_above_interval }
+    }
+}
+
 /// The ends of an interval that there are.
 pub fn ends([low, high]: [f64; 2]) -> [Option<f64>; 2] {
     [finite(low), finite(high)]

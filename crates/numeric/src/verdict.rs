@@ -13,6 +13,7 @@ use serde::{Serialize, Serializer};
 
 use crate::capability;
 use crate::characteristic::{Characteristic, SpecLimits};
+use crate::power::Power;
 use crate::requirement::{Required, Requirement};
 use crate::shape::{ends, finite};
 
@@ -58,8 +59,8 @@ impl Verdict {
     /// Of an interval, inconclusive where there is none.
     ///
     /// ```
-    /// use sensitol_numeric::requirement::Requirement;
-    /// use sensitol_numeric::verdict::Verdict;
+    /// use crate::requirement::Requirement;
+    /// use crate::verdict::Verdict;
     /// let yield_ = Requirement::Yield(0.99);
     /// assert_eq!(Verdict::of(yield_, Some([0.991, 0.999])), Verdict::Met);
     /// assert_eq!(Verdict::of(yield_, Some([0.98, 0.985])), Verdict::Missed);
@@ -131,6 +132,19 @@ impl Judged {
         Self { requirement, value, interval, verdict: Verdict::of(requirement, interval) }
     }
 
+    /// The same of a characteristic times a power of two.
+    pub fn times(self, power: Power) -> Self {
+        match self.requirement {
+            Requirement::Sigma(_) => Self {
+                requirement: self.requirement.times(power),
+                value: self.value.and_then(|value| power.checked(value)),
+                interval: self.interval.map(|interval| interval.map(|end| power.times(end))),
+                verdict: self.verdict,
+            },
+            _ => self,
+        }
+    }
+
     /// The same by three errors on either side in place of two: many requirements are asked of a sample, each of them often just kept.
     pub fn widely(self) -> Self {
         let Self { requirement, value, interval, .. } = self;
@@ -175,6 +189,30 @@ pub fn including([low, high]: [f64; 2], other: f64) -> [f64; 2] {
     [low.min(other), high.max(other)]
 }
 
+/// An interval of an estimate to which an independent error belongs that leaves `other` open: the distances of the ends add as
+/// squares (Zou and Donner 2008).
+pub fn joined(value: f64, [low, high]: [f64; 2], other: [f64; 2]) -> [f64; 2] {
+    let apart = |from: f64, to: f64| (to - from).max(0.0);
+    let below = libm::hypot(apart(low, value), apart(other[0], value));
+    let above = libm::hypot(apart(value, high), apart(value, other[1]));
+    [value - below, value + above]
+}
+
+/// The 95 % intervals of the rejects of either side, widened by the interval that measured samples leave to all rejects; None where that is unknown.
+pub fn sides_with_samples(
+    sides: [Option<f64>; 2],
+    intervals: [Option<[f64; 2]>; 2],
+    rejected: Option<[f64; 2]>,
+) -> [Option<[f64; 2]>; 2] {
+    let all: f64 = sides.iter().flatten().sum();
+    [0, 1].map(|side| {
+        let ([low, high], value) = (rejected?, sides[side]?);
+        // Each side may have all that is open.
+        let open = [value - (all - low).max(0.0), value + (high - all).max(0.0)];
+        Some(share(joined(value, intervals[side]?, open)))
+    })
+}
+
 /// The yield when this share of all assemblies has no value, and may be rejected: all of it, or none.
 ///
 /// `lost` is None where assemblies without a value were met and how many there are is unknown.
@@ -186,14 +224,14 @@ pub fn losing([low, high]: [f64; 2], lost: Option<f64>) -> [f64; 2] {
 /// `cpk(sigma + 2 e)` and `cpk(sigma - 2 e)`; the two are independent. None where an error is unknown, or there is no Cpk.
 ///
 /// ```
-/// use sensitol_numeric::characteristic::SpecLimits;
-/// use sensitol_numeric::verdict::of_cpk;
+/// use crate::characteristic::SpecLimits;
+/// use crate::verdict::of_cpk;
 /// let limits = SpecLimits::new(Some(-4.0), Some(4.0))?;
 /// // 4/3, and 2 x 0.03/3 by the mean alone.
 /// let [low, high] = of_cpk((0.0, Some(0.03)), (1.0, Some(0.0)), limits).unwrap();
 /// assert!((low - 3.94 / 3.0).abs() < 1e-12 && (high - 4.06 / 3.0).abs() < 1e-12);
 /// assert_eq!(of_cpk((0.0, None), (1.0, Some(0.0)), limits), None);
-/// # Ok::<(), sensitol_numeric::characteristic::LimitsError>(())
+/// # Ok::<(), crate::characteristic::LimitsError>(())
 /// ```
 pub fn of_cpk(
     (mean, mean_error): (f64, Option<f64>),
@@ -227,6 +265,14 @@ mod tests {
     fn what_has_no_value_only_lowers_a_yield() {
         assert_eq!(losing([0.9, 0.95], None), [0.0, 0.95]);
         assert_eq!(losing([0.8, 0.9], Some(0.5)), [0.4, 0.9]);
+    }
+
+    /// Three below by one error and four by another are five; the other side has only one of them.
+    #[test]
+    fn independent_errors_add_as_squares() {
+        assert_eq!(joined(10.0, [7.0, 10.0], [6.0, 12.0]), [5.0, 12.0]);
+        // An interval that does not hold the estimate reaches no farther than it.
+        assert_eq!(joined(10.0, [9.0, 11.0], [10.5, 10.5]), [9.0, 10.0 + libm::hypot(1.0, 0.5)]);
     }
 
     /// Two errors of sigma reach 0: no Cpk is too good to be.

@@ -29,7 +29,7 @@ pub struct AllocationReport {
     /// The method by which derivatives were taken.
     #[cfg_attr(feature = "schema", schemars(with = "String"))]
     pub(crate) method: Method,
-    /// `optimal`, `local-optimum`, `almost-optimal`, `infeasible`, `no-feasible-point-found` or `out-of-time`.
+    /// `optimal`, `local-optimum`, `almost-optimal`, `infeasible`, `no-feasible-point-found`, `inconclusive` or `out-of-time`.
     pub(crate) status: Status,
     /// Whether the model was evaluated at the tolerances found.
     pub(crate) confirmed: bool,
@@ -38,7 +38,7 @@ pub struct AllocationReport {
     pub(crate) run: RunSummary,
     /// How often derivatives were taken.
     pub(crate) rounds: usize,
-    /// Points of a cheap model by which moments were corrected and worst cases followed, beside the evaluations.
+    /// Points of a cheap model by which moments were corrected, worst cases followed and tolerances tried, beside the evaluations.
     pub(crate) model_points: u64,
     /// All costs before; null where no process holds some tolerance, and without costs.
     pub(crate) cost_before: Option<f64>,

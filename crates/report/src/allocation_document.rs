@@ -15,6 +15,7 @@ use crate::document::{
     Bar, Bars, Blocks, Cell, Chart, Columns, DataTable, Document, Element, Fill, Flow, Layer, Line, Paragraph, Plot,
     PlotAxis, PlotPoint, PlotScale, Section, Stroke, Tone, Value,
 };
+use sensitol::allocation::AllocationSolver;
 use sensitol::allocation::{
     Allocated, Attainable, Bound, CostBasis, FrontRequirement, Goal, JointYield, Kept, Moved, ShadowPrice, Status,
 };
@@ -155,6 +156,12 @@ impl AllocationReport {
             },
             match self.status {
                 Status::NoFeasiblePointFound => ", which end at tolerances that miss a requirement",
+                Status::Inconclusive => ", which end at tolerances whose verdict is inconclusive",
+                _ if self.proof.solver == Some(AllocationSolver::VerifiedSearch) => {
+                    "; found by trials of the model"
+                }
+                // The tolerances before are the best that was found.
+                _ if self.proof.residual.is_some_and(f64::is_infinite) => "",
                 _ if self.confirmed && self.cost_after.is_some() => "; moments re-evaluated at the optimum: agree",
                 _ => "",
             },
@@ -401,6 +408,9 @@ impl AllocationReport {
         let of = |factor: Option<f64>| factor.map_or("no one factor".to_owned(), |factor| format!("{factor:.4}"));
         let before = of(self.loosest_scaling.before);
         section.line(match self.loosest_scaling.after {
+            None if self.cost_after.is_some() => {
+                format!("margin of the tolerances before: they can be scaled by {before}")
+            }
             None => format!("margin: tolerances can be scaled by {before} before a requirement fails"),
             after => format!("margin: tolerances can be scaled by {}; those before by {before}", of(after)),
         });
@@ -423,7 +433,7 @@ impl AllocationReport {
         let Some(confirmation) = &self.confirmation else { return };
         for one in &confirmation.characteristics {
             let Some(share) = one.yield_ else { continue };
-            let [low, high] = share.interval.map(yielded);
+            let [low, high] = one.yield_interval().unwrap_or(share.interval).map(yielded);
             let (name, value, points) = (short(one.name()), yielded(share.value), confirmation.samples);
             section.line(format!(
                 "{name}: {value} of {points} points of the model keep the limits, 95 % interval {low} .. {high}"

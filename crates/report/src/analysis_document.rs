@@ -3,14 +3,16 @@
 use super::figures::{Figures, Named};
 use super::head::{self, findings};
 use super::inspection::inspected;
+use super::interactions::{SHOWN, SHOWN_ON_PAGE};
 use super::output_correlation::{all_limits, together, together_table};
 use super::requirement::{judged, lines};
+use super::sampling::sampled;
 use super::source::source;
 use super::stack::Stack;
 use super::statistics::{derivative, matters, part, size, total};
 use super::{DimensionReport, Report, bars};
 use crate::document::number::{
-    NEWS, UNKNOWN, beside, index, known, limits, percent, plain, plural, shape, share, short, significant,
+    UNKNOWN, beside, index, known, limits, percent, plain, plural, short, significant, yielded,
 };
 use crate::document::rejects::Rejects;
 use crate::document::{
@@ -18,21 +20,20 @@ use crate::document::{
     terminal,
 };
 use crate::figures::FittedFigures;
+use crate::interactions::InteractionSections;
 use crate::statistics::CharacteristicStatistics;
-use sensitol::analysis::{CharacteristicAnalysis, EstimatedShare, IndexSource, Interaction, Sensitivity, SobolIndices};
+use sensitol::analysis::{CharacteristicAnalysis, EstimatedShare, IndexSource, Sensitivity, SobolIndices};
 use sensitol::extremes::{Extreme, Place};
 use sensitol::method::Basis;
 use sensitol_numeric::capability::{Capability, Law, Quantiles, TAIL};
 use sensitol_numeric::correlation::Pair;
 use sensitol_numeric::pearson::Pearson;
+use sensitol_numeric::sampling::one_error;
 
-/// Contributions and interactions that a terminal shows unless all are asked for, and interactions that a page shows.
+/// Contributions that a terminal shows unless all are asked for.
 const CONTRIBUTIONS: usize = 30;
-const INTERACTIONS: usize = 2;
-const INTERACTIONS_OF_PAGE: usize = 24;
 /// Dimensions that are named, rather than counted, in a sentence.
 const NAMED: usize = 8;
-const SAMPLES: usize = 3;
 /// The heading of the contributions.
 pub(super) const SHARES: &str = "Contributions to the variance";
 /// A rejected share that the normal fit has wrong by more than this part is worth a line.
@@ -48,7 +49,7 @@ impl Report {
 
     /// The same with the interactions that a page or a terminal shows, where not all are asked for.
     pub fn brief_document(&self) -> Document {
-        self.with_pairs(INTERACTIONS.max(INTERACTIONS_OF_PAGE))
+        self.with_pairs(SHOWN.max(SHOWN_ON_PAGE))
     }
 
     fn with_pairs(&self, pairs: usize) -> Document {
@@ -66,10 +67,16 @@ impl Report {
         document.gap();
         document.table(self.verdicts());
         if let Some(joint) = &self.analysis.joint {
-            let error = significant(100.0 * joint.error, 2);
-            let text = Rejects::all(1.0 - joint.value, Some(joint.error)).yield_text().unwrap_or_default();
+            let measured = self.analysis.characteristics.iter().any(|one| one.sampling.is_some());
+            let interval = self.analysis.joint_interval.filter(|_| measured);
+            let error = interval.map_or(joint.error, |interval| one_error(joint.value, interval));
+            let text = Rejects::all(1.0 - joint.value, Some(error)).yield_text().unwrap_or_default();
             let requirement = self.analysis.joint_requirement.as_ref();
-            document.note(all_limits(&text, &format!("± {error} %"), requirement));
+            let reach = match interval.map(|ends| ends.map(yielded)) {
+                Some([low, high]) => format!("95 % interval {low} to {high}"),
+                None => format!("± {} %", significant(100.0 * joint.error, 2)),
+            };
+            document.note(all_limits(&text, &reach, requirement));
         }
         if let Some(line) = together(&self.analysis.correlations) {
             document.wrapped(2, line);
@@ -95,7 +102,7 @@ impl Report {
         one.errors(&mut section);
         one.extremes(&mut section);
         one.distribution(&mut section);
-        one.sampling(&mut section);
+        one.sampling.iter().for_each(|of| sampled(&mut section, of, one.sigma().unwrap_or(0.0), one.limited()));
         let concerned = self.warnings.iter().filter(|warning| warning.characteristic.as_deref() == Some(one.name()));
         let codes: Vec<&str> = concerned.map(|warning| warning.code).collect();
         if !codes.is_empty() {
@@ -110,6 +117,9 @@ impl Report {
         }
         section.detail(all);
         self.correlations(one, &mut section);
+        if one.has_negative_contributions() {
+            section.note("a contribution below 0 lowers the variance: it varies against the others");
+        }
         one.pairs(&mut section, pairs);
         // A page draws them.
         let mut left = Vec::new();
@@ -189,9 +199,6 @@ pub(crate) trait CharacteristicSections {
     /// Whether the normal fit rejects visibly more or fewer, on either side.
     fn differs(&self, normal: &Capability) -> bool;
 
-    /// The uncertainty by the size of measured samples: intervals beside one another, below what they belong to.
-    fn sampling(&self, section: &mut Section);
-
     /// The dimensions that vary or do something, with what they do.
     fn shown<'r>(
         &'r self,
@@ -201,16 +208,11 @@ pub(crate) trait CharacteristicSections {
     /// The contributions of the dimensions, strongest first.
     fn contributions(&self, dimensions: &[DimensionReport]) -> DataTable;
 
-    /// The interactions examined: how many, what they make, and the strongest.
-    fn pairs(&self, section: &mut Section, pairs: usize);
-
     /// Dimensions that vary together, as one factor: without what they do to each other where the surface tells of each of them.
     fn together(&self, section: &mut Section);
 
     /// Where contributions come from that are not the surface's.
     fn of_model(&self, of: &SobolIndices) -> String;
-
-    fn interaction_table(&self, rows: usize) -> DataTable;
 }
 
 impl CharacteristicSections for CharacteristicAnalysis {
@@ -284,7 +286,7 @@ impl CharacteristicSections for CharacteristicAnalysis {
             }
         }
         if self.surface_law.is_some_and(|law| law.steps) && self.sigma().is_some_and(|sigma| sigma > 0.0) {
-            section.note("the surface law is a step function: all that varies are measured values");
+            section.note("the surface law is a step function: all that varies has single values");
         }
         if let Some(points) = self.surface_law.as_ref().and_then(|law| law.counted) {
             section.note(format!("the surface law is counted at {points} points of the surface"));
@@ -389,10 +391,13 @@ impl CharacteristicSections for CharacteristicAnalysis {
     }
 
     fn rejects(&self) -> Rejects {
-        let error = self.error_estimate.as_ref().and_then(|estimate| estimate.yield_);
+        let error = match self.sampling.as_ref().and(self.yield_()) {
+            Some(value) => self.yield_interval().map(|interval| one_error(value, interval)),
+            None => self.error_estimate.as_ref().and_then(|estimate| estimate.yield_),
+        };
         let [below, above] = [|of: &Capability| of.below, |of: &Capability| of.above]
             .map(|side| self.capability.as_ref().and_then(side));
-        Rejects::new(below, above, error)
+        Rejects::new(below, above, error).within(self.reject_intervals)
     }
 
     fn differs(&self, normal: &Capability) -> bool {
@@ -403,50 +408,6 @@ impl CharacteristicSections for CharacteristicAnalysis {
         };
         let seen = |ppm: Option<f64>| ppm.map(|ppm| if ppm < LEAST_PPM { 0.0 } else { ppm });
         far(seen(self.ppm_below()), seen(normal.ppm_below())) || far(seen(self.ppm_above()), seen(normal.ppm_above()))
-    }
-
-    fn sampling(&self, section: &mut Section) {
-        let Some(interval) = &self.sampling else { return };
-        let samples = interval.samples.iter().take(SAMPLES);
-        let samples: Vec<String> = samples.map(|(name, count)| format!("{count} values of {}", short(name))).collect();
-        let more = interval.samples.len().saturating_sub(SAMPLES);
-        let more = if more > 0 { format!(" and {more} more samples") } else { String::new() };
-        let (level, samples) = (100.0 * interval.level, samples.join(", "));
-        section.gap();
-        section.note(format!("{level} % intervals for {samples}{more}, by {} resamples", interval.resamples));
-        let scale = self.sigma().unwrap_or(0.0);
-        let range = |ends: Option<[f64; 2]>, text: &dyn Fn(f64) -> String| match ends {
-            Some([low, high]) => format!("{} .. {}", text(low), text(high)),
-            None => "unknown".to_owned(),
-        };
-        let value = |ends| range(ends, &|value| beside(value, scale));
-        let of_shape = |ends| range(ends, &shape);
-        let kept = interval.rejected.map(|[low, high]| [high, low]);
-        let limited = self.limited();
-        let of_limits = |name: &str, text: String| if limited { [name.to_owned(), text] } else { Default::default() };
-        let ([yield_, yields], [cpk, cpks]) =
-            (of_limits("yield", range(kept, &share)), of_limits("Cpk", range(interval.cpk, &index)));
-        section.table(DataTable::untitled(
-            [
-                [
-                    "mean".to_owned(),
-                    value(interval.mean),
-                    "skewness".to_owned(),
-                    of_shape(interval.skewness),
-                    yield_,
-                    yields,
-                ],
-                [
-                    "sigma".to_owned(),
-                    value(interval.sigma),
-                    "kurtosis".to_owned(),
-                    of_shape(interval.kurtosis),
-                    cpk,
-                    cpks,
-                ],
-            ]
-            .map(|row| row.map(Cell::text)),
-        ));
     }
 
     fn shown<'r>(
@@ -499,23 +460,6 @@ impl CharacteristicSections for CharacteristicAnalysis {
             .at_most([CONTRIBUTIONS, usize::MAX], rest)
     }
 
-    fn pairs(&self, section: &mut Section, pairs: usize) {
-        let (possible, examined) = (self.possible_interactions, self.examined());
-        self.together(section);
-        if let Some(of_model) = self.indices.as_ref().filter(|_| self.is_of_model()) {
-            section.note(self.of_model(of_model));
-        } else if possible > 0 && examined == 0 {
-            section.note(format!("interactions: none of {possible} examined"));
-        } else if possible > 0 {
-            let known: Option<Vec<f64>> = self.interactions.iter().map(|interaction| interaction.share).collect();
-            let sum = known.map(|shares| format!("{} %", percent(shares.iter().sum())));
-            let together = sum.unwrap_or_else(|| "an unknown part".to_owned());
-            section
-                .note(format!("interactions: {examined} of {possible} examined, {together} of the variance together"));
-        }
-        section.table(self.interaction_table(pairs));
-    }
-
     fn together(&self, section: &mut Section) {
         let Some(of) = &self.indices else { return };
         let percents =
@@ -546,31 +490,6 @@ impl CharacteristicSections for CharacteristicAnalysis {
                 format!("contributions by points of the model; interactions have {rest} of the variance")
             }
         }
-    }
-
-    fn interaction_table(&self, rows: usize) -> DataTable {
-        let news = self.interactions.iter().filter(|pair| pair.share.is_none_or(|share| share >= NEWS)).count();
-        let trusted = !self.is_of_model();
-        let most = [if trusted { news.min(INTERACTIONS) } else { 0 }, news.min(INTERACTIONS_OF_PAGE)];
-        let both = |pair: &Interaction<'_>| {
-            let [a, b] = pair.dimensions;
-            Cell {
-                full: Some(format!("{a} × {b}")),
-                ..Cell::both(Value::Empty, format!("{} × {}", short(a), short(b)))
-            }
-        };
-        Columns::default()
-            .data("characteristic", |_| Cell::text(self.name()))
-            .data("dimension_a", |pair: &Interaction<'_>| Cell::text(pair.dimensions[0]))
-            .data("dimension_b", |pair| Cell::text(pair.dimensions[1]))
-            .named("", "pair", both)
-            .column("mixed", "mixed derivative", |pair| {
-                Cell::both(Value::Number(pair.mixed), derivative(pair.mixed, pair.rounding, 6))
-            })
-            .column("share", "share %", |pair| Cell::number(pair.share, percent))
-            .data("rounding", |pair| Cell::data(pair.rounding))
-            .table("interactions", self.interactions.iter().take(rows))
-            .at_most(most, String::new())
     }
 }
 

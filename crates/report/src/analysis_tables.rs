@@ -90,7 +90,8 @@ impl Report {
             let own = report.verdicts();
             let table = all.get_or_insert_with(|| {
                 let mut columns = own.columns.clone();
-                columns.insert(0, Column { key: "of", title: "", heading: "", terminal: true, page: true });
+                columns
+                    .insert(0, Column { key: "of", title: "", heading: "", terminal: true, page: true, label: false });
                 DataTable { columns, rows: Vec::new(), view: Vec::new(), ..own.clone() }
             });
             for mut row in own.rows {

@@ -1,9 +1,11 @@
 //! The ranges of a characteristic beside its limits, and what its contributions leave out.
 
 use super::figures::{Figures, Named};
-use crate::document::number::{NEWS, beside, percent};
+use super::worst_case::WorstCaseKind;
+use crate::document::number::{NEWS, beside, outward, percent};
 use crate::document::{Bar, Bars, Extent, Fill, Line, Tone};
 use crate::statistics::CharacteristicStatistics;
+use crate::worst_case::WorstCaseFigures;
 use sensitol::analysis::CharacteristicAnalysis;
 use sensitol::extremes::Extremes;
 
@@ -11,6 +13,8 @@ use sensitol::extremes::Extremes;
 const ROUNDING: f64 = 1e-9;
 /// A limit farther off than this many extents would press everything together.
 const FAR: f64 = 2.0;
+/// The bounds that interval arithmetic proves.
+const BOUNDS: &str = "worst case, proven bounds";
 
 /// The part of the variance that the contributions leave, in words; None where that is nothing to speak of, or unknown.
 pub(super) fn left_out(one: &CharacteristicAnalysis) -> Option<String> {
@@ -18,29 +22,29 @@ pub(super) fn left_out(one: &CharacteristicAnalysis) -> Option<String> {
     Some(format!("{} % is left out by all of these", percent(left_out)))
 }
 
-/// The ranges below a density: mean \u{b1} 3 sigma, RSS, and the worst case as well as it is known.
-pub(super) fn ranges(one: &CharacteristicAnalysis) -> Vec<(String, [f64; 2])> {
-    let around = |middle: Option<f64>, reach: Option<f64>| Some([middle? - reach?, middle? + reach?]);
-    let worst = worst_case(one).map_or(("worst case", None), |(name, ends)| (name, Some(ends)));
+/// The ranges below a density, each with its ends as they are shown: mean \u{b1} 3 sigma, RSS, and the worst case as well as it is known.
+pub(super) fn ranges(one: &CharacteristicAnalysis) -> Vec<(String, [f64; 2], [String; 2])> {
+    let around = |middle: Option<f64>, reach: Option<f64>| {
+        let ends = [middle? - reach?, middle? + reach?];
+        Some((ends, ends.map(|end| beside(end, one.scale()))))
+    };
+    let worst = one.known_worst_case();
+    let name = match worst.as_ref().map(|worst| worst.kind) {
+        Some(WorstCaseKind::Proven) => "worst case, proven",
+        Some(WorstCaseKind::Found) => "worst case found",
+        Some(WorstCaseKind::Linear) | None => "worst case, linear",
+    };
     [
         ("mean \u{b1} 3\u{3c3}", around(one.mean(), one.sigma().map(|sigma| 3.0 * sigma))),
         ("RSS", around(one.middle, one.rss)),
-        worst,
+        (name, worst.map(|worst| (worst.ends, worst.texts))),
     ]
     .into_iter()
-    .filter_map(|(name, ends)| Some((name.to_owned(), ends.filter(|ends| ends[0] < ends[1])?)))
+    .filter_map(|(name, range)| {
+        let (ends, texts) = range.filter(|(ends, _)| ends[0] < ends[1])?;
+        Some((name.to_owned(), ends, texts))
+    })
     .collect()
-}
-
-/// The worst case as well as it is known, and how it is known: proven, found by a search, or linear.
-pub(super) fn worst_case(one: &CharacteristicAnalysis) -> Option<(&'static str, [f64; 2])> {
-    let searched = one.extremes.as_ref().map(|found| [found.least.value, found.greatest.value]);
-    match (searched, one.proof().filter(|proof| proof.proven)) {
-        (Some(ends), Some(_)) => Some(("worst case, proven", ends)),
-        (None, Some(proof)) => Some(("worst case, proven", proof.bounds)),
-        (Some(ends), None) => Some(("worst case found", ends)),
-        (None, None) => Some(("worst case, linear", one.worst_case?)),
-    }
 }
 
 /// Worst case, RSS and three sigma on one scale with the limits; None where there is no extent.
@@ -54,7 +58,7 @@ pub(super) fn spans(one: &CharacteristicAnalysis) -> Option<Bars> {
     let intervals: Vec<(&str, [f64; 2])> = [
         ("worst case, linear", one.worst_case),
         (proven, found.map(|found| [found.least.value, found.greatest.value])),
-        ("worst case, proven bounds", one.proof().map(|proof| proof.bounds)),
+        (BOUNDS, one.proof().map(|proof| proof.bounds)),
         ("RSS", around(one.middle, one.rss)),
         (inflated, around(one.middle, one.inflated_rss)),
         ("RSS with shifted means", around(one.middle, one.mean_shift_rss)),
@@ -76,10 +80,14 @@ pub(super) fn spans(one: &CharacteristicAnalysis) -> Option<Bars> {
             && one.upper().is_none_or(|upper| to <= upper + slack);
         let fill = if limited && !kept { Fill::Over } else { Fill::Span };
         let x = scale.at(from);
+        let [low, high] = match name == BOUNDS {
+            true => outward([from, to], unit, None),
+            false => [from, to].map(|end| beside(end, unit)),
+        };
         Bar {
             name: name.to_owned(),
             parts: vec![(fill, [x, (scale.at(to) - x).max(0.2)])],
-            text: format!("{} .. {}", beside(from, unit), beside(to, unit)),
+            text: format!("{low} .. {high}"),
             remark: match (limited, kept) {
                 (false, _) => Line::default(),
                 (true, true) => Line::toned("within", Tone::Good),

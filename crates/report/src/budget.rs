@@ -9,14 +9,13 @@
 //! Of first order in the slopes at the means. The standard uncertainty of an input is its sigma, of a Student distribution its scale.
 //! Source: JCGM 100:2008, 5.1.2, 5.2.2, 8 and G.4.1.
 
-use statrs::distribution::{ContinuousCDF, StudentsT};
-
 use super::figures::{Figures, Named};
 use super::{DimensionReport, Report};
 use crate::document::number::{UNKNOWN, beside, percent, plain, significant};
 use crate::document::{Blocks, Cell, Columns, DataTable, Document, Section, Value};
 use sensitol::analysis::{CharacteristicAnalysis, Interaction};
 use sensitol_numeric::distribution::standard_normal;
+use sensitol_numeric::sampling::student_quantile;
 
 /// The share that an expanded uncertainty holds unless the study says otherwise.
 const PROBABILITY: f64 = 0.95;
@@ -151,7 +150,7 @@ fn factor(probability: f64, degrees: f64) -> Option<f64> {
         return Some(standard_normal::upper_quantile(outside));
     }
     let whole = whole(degrees);
-    (whole >= 1.0).then(|| StudentsT::new(0.0, 1.0, whole).ok())?.map(|law| law.inverse_cdf(1.0 - outside))
+    (whole >= 1.0).then(|| student_quantile(1.0 - outside, whole))
 }
 
 /// Rounded down, unless only rounding made it less than a whole number.

@@ -52,22 +52,22 @@ fn characteristic(json: &Value, one: &CharacteristicAnalysis) {
     complete!(json, one => CharacteristicAnalysis {
         characteristic: "/name", nominal: "/nominal", moments: "/kurtosis", sampled: "/surrogate_sampling",
         model_sampled: "/model_sampling", surface_law: "/surface_law", density: "", curved: "", yield_source: "/yield_source", pearson: "/pearson_fit", unfinished: "/unfinished", without_value: "/without_value",
-        error_estimate: "/error_estimate", residual: "/least_squares", law: "/distribution", capability: "/cpk",
+        error_estimate: "/error_estimate", residual: "/least_squares", law: "/distribution", capability: "/cpk", reject_intervals: "/ppm_above_interval",
         normal: "/normal_fit", sampling: "/sampling_interval", worst_case: "/worst_case/linear",
         extremes: "/worst_case/extremes", bounds: "/worst_case/bounds", middle: "/middle", rss: "/rss", inflated_rss: "/inflated_rss",
         mean_shift_rss: "/mean_shift_rss", six_sigma: "/six_sigma", sensitivities: "/sensitivities/1", interactions: "/interactions/0", interactions_remainder: "/interactions_remainder",
-        possible_interactions: "/possible_interactions", left_out_share: "/left_out_share", constant: "/constant",
+        possible_interactions: "/possible_interactions", examined_interactions: "/examined_interactions", left_out_share: "/left_out_share", constant: "/constant",
         verification: "/verification", indices: "/sobol", inspection: "/inspection", coverage: "/coverage",
     });
     let sensitivity = json.pointer("/sensitivities/0").unwrap();
     complete!(sensitivity, &one.sensitivities[0] => Sensitivity {
-        dimension: "/dimension", first: "/first", second: "/second", exact: "/exact", rounding: "/rounding", steps: "/steps",
+        dimension: "/dimension", first: "/first", second: "/second", exact: "/exact", origin: "/origin", rounding: "/rounding", steps: "/steps",
         linear_share: "/linear_share", curvature_share: "/curvature_share", mean_shift: "/mean_shift",
         first_order: "/first_order", total: "/total",
     });
     let interaction = json.pointer("/interactions/0").unwrap();
     complete!(interaction, one.interactions.get(0).unwrap() => Interaction {
-        dimensions: "/dimensions", mixed: "/mixed", missing: "/missing", exact: "/exact", rounding: "/rounding",
+        dimensions: "/dimensions", mixed: "/mixed", missing: "/missing", exact: "/exact", origin: "/origin", rounding: "/rounding",
         share: "/share", mean_shift: "/mean_shift",
     });
 }
@@ -76,8 +76,9 @@ fn simulated(json: &Value, one: &SimulatedCharacteristic) {
     complete!(json, one => SimulatedCharacteristic {
         characteristic: "/name", samples: "/samples", failed: "/failed", error: "/error", mean: "/mean", sigma: "/sigma",
         skewness: "/skewness", kurtosis: "/kurtosis", quantiles: "/distribution/quantiles", yield_: "/yield",
-        below: "/ppm_below", above: "/ppm_above", cp: "/cp", cpk: "/cpk", unfinished: "/unfinished", range: "/range",
+        below: "/ppm_below", above: "/ppm_above", reject_intervals: "/ppm_below_interval", cp: "/cp", cpk: "/cpk", unfinished: "/unfinished", range: "/range",
         histogram: "/histogram", control: "/control", indices: "/sobol", inspection: "/inspection",
+        sampling: "/sampling_interval", unsettled: "",
     });
 }
 
@@ -89,7 +90,8 @@ fn an_analysis_is_all_in_its_report() {
     // The surface is for pages that try other tolerances.
     complete!(json, &found => Analysis {
         method: "/method", varying: "/varying", run: "/evaluations", characteristics: "/characteristics/0",
-        joint: "/joint_yield", joint_requirement: "/joint_requirement", correlations: "/characteristic_correlation", account: "/account", basis: "/basis", surface: "", warnings: "/warnings",
+        joint: "/joint_yield", joint_interval: "/joint_yield_interval", joint_requirement: "/joint_requirement",
+        correlations: "/characteristic_correlation", account: "/account", basis: "/basis", surface: "", warnings: "/warnings",
     });
     characteristic(json.pointer("/characteristics/0").unwrap(), &found.characteristics[0]);
 }
@@ -118,13 +120,13 @@ fn samples_are_all_in_their_reports() {
     let one = of.pointer("/characteristics/0").unwrap();
     complete!(one, &found.characteristics[0] => RareCharacteristic {
         characteristic: "/name", failed: "/failed", error: "/error", below: "/below", above: "/above", yield_: "/yield",
-        yield_interval: "/yield_interval", unfinished: "/unfinished",
+        yield_interval: "/yield_interval", sampling: "/sampling_interval", unfinished: "/unfinished",
     });
     let above = one.pointer("/above").unwrap();
     complete!(above, found.characteristics[0].above.as_ref().unwrap() => Beyond {
         limit: "/limit", probability: "/probability", interval: "/interval", bounds: "/bounds", hits: "/hits",
         effective_samples: "/effective_samples", greatest_part: "/greatest_part", plain_samples: "/plain_samples",
-        design_point: "/design_point",
+        design_point: "/design_point", plain_points: "",
     });
 }
 

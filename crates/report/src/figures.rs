@@ -1,6 +1,6 @@
 //! The figures that documents ask of every result of a characteristic.
 
-use sensitol::analysis::{CharacteristicAnalysis, Missing};
+use sensitol::analysis::{CharacteristicAnalysis, DerivativeOrigin, Interaction, Missing};
 use sensitol::rare::RareCharacteristic;
 use sensitol::simulation::SimulatedCharacteristic;
 use sensitol_numeric::capability::{Capability, Law, Quantiles};
@@ -145,8 +145,12 @@ pub(crate) trait FittedFigures {
     /// The distribution that has its moments; None where there is none.
     fn fitted(&self) -> Option<&Law>;
 
-    /// How many interactions were examined: not those whose points a stopped run left open.
+    /// The number of interactions whose points were evaluated, and of those that the formula gives: not those that a stopped run left
+    /// open, nor those that were estimated.
     fn examined(&self) -> usize;
+
+    /// The interactions that were estimated.
+    fn screened(&self) -> impl Iterator<Item = Interaction<'_>>;
 
     /// Its quantiles: by the law of its surface, where there is one, by the Pearson fit elsewhere.
     fn quantiles(&self) -> Option<Quantiles>;
@@ -158,7 +162,12 @@ impl FittedFigures for CharacteristicAnalysis {
     }
 
     fn examined(&self) -> usize {
-        self.interactions.iter().filter(|pair| pair.missing != Some(Missing::NotEvaluated)).count()
+        let failed = self.interactions.iter().filter(|pair| pair.missing == Some(Missing::Failed)).count();
+        self.examined_interactions + failed
+    }
+
+    fn screened(&self) -> impl Iterator<Item = Interaction<'_>> {
+        self.interactions.iter().filter(|pair| pair.origin == Some(DerivativeOrigin::Screened))
     }
 
     fn quantiles(&self) -> Option<Quantiles> {

@@ -7,7 +7,7 @@ use crate::document::rejects::Rejects;
 use crate::document::{Cell, Columns, DataTable, Line, Value};
 use sensitol::rare::RareCharacteristic;
 use sensitol::simulation::SimulatedCharacteristic;
-use sensitol_numeric::sampling::{Estimate, one_error};
+use sensitol_numeric::sampling::Estimate;
 use sensitol_numeric::verdict::{Judged, worst};
 
 /// A characteristic in words.
@@ -24,18 +24,17 @@ pub(super) struct Glance<'r> {
 impl<'r> Glance<'r> {
     /// Of a sample: as many digits as its standard errors carry.
     pub(super) fn sampled(one: &'r SimulatedCharacteristic) -> Self {
-        let text = |of: Option<Estimate>| {
-            known(of.map(|of| of.value), |value| estimated(value, of.and_then(|of| of.standard_error)))
-        };
+        let text = |of: Option<Estimate>, error| known(of.map(|of| of.value), |value| estimated(value, error));
+        let [of_mean, of_sigma] = one.errors();
         Self {
             name: one.name(),
             unit: one.unit(),
-            mean: text(one.mean),
-            sigma: text(one.sigma),
+            mean: text(one.mean, of_mean),
+            sigma: text(one.sigma, of_sigma),
             cpk: one.cpk,
             yield_: one.yield_.map_or_else(String::new, |share| {
-                let error = Some(one_error(share.value, share.interval));
-                let text = Rejects::new(one.below, one.above, error).with_error();
+                let rejects = Rejects::new(one.below, one.above, one.yield_error());
+                let text = rejects.within(one.reject_intervals).with_error();
                 text.unwrap_or_else(|| yielded(share.value))
             }),
             verdict: verdict(&one.requirements()),

@@ -19,10 +19,12 @@ mod glance;
 mod head;
 pub mod html;
 mod inspection;
+mod interactions;
 mod labels;
 mod output_correlation;
 mod rare;
 mod requirement;
+mod sampling;
 mod simulation;
 mod source;
 mod stack;
@@ -30,6 +32,7 @@ mod statistics;
 mod sweep;
 pub mod task;
 mod to_document;
+mod worst_case;
 #[cfg(feature = "xlsx")]
 mod xlsx;
 

@@ -7,6 +7,7 @@ use super::glance::{self, Glance};
 use super::head::{self, seed};
 use super::output_correlation::all_limits;
 use super::requirement::{judged, lines};
+use super::sampling::samples;
 use super::{About, DimensionReport, Head, WarningReport, correlation};
 use crate::document::number::{known, plain, short, significant, yielded};
 use crate::document::{Blocks, Cell, Columns, DataTable, Document, Element, Line, Section, Value};
@@ -110,6 +111,9 @@ impl RareSection for RareCharacteristic {
             let interval = format!("95 % interval {} to {}", yielded(low), yielded(high));
             let target = judged(self.target(), self.verdict());
             section.note(Line::from(format!("yield {}, {interval}", known(self.yield_, yielded))).and(target));
+        }
+        if let Some(measured) = &self.sampling {
+            section.note(format!("the interval includes what {} leave open", samples(measured)));
         }
         lines(self.requirements()).for_each(|line| section.note(line));
         for (side, of) in sides {

@@ -8,6 +8,7 @@ use super::head::{self, findings, seed};
 use super::inspection::inspected;
 use super::output_correlation::{all_limits_within, together};
 use super::requirement::{judged, lines};
+use super::sampling::sampled;
 use super::{About, DimensionReport, Head, WarningReport, correlation};
 use crate::document::number::{estimated, index, known, limits, percent, plain, significant, uncertainty, yielded};
 use crate::document::rejects::Rejects;
@@ -19,7 +20,7 @@ use sensitol_numeric::capability::Law;
 use sensitol_numeric::correlation::Pair;
 use sensitol_numeric::moments::Moments;
 use sensitol_numeric::pearson::Pearson;
-use sensitol_numeric::sampling::{Estimate, one_error};
+use sensitol_numeric::sampling::Estimate;
 
 /// The report of a simulation, as `--json` prints it. Unknown values are null, never 0.
 #[derive(Debug, Clone, Serialize)]
@@ -138,6 +139,8 @@ impl SimulationSection for SimulatedCharacteristic {
         if let Some(of) = &self.inspection {
             inspected(&mut section, of);
         }
+        let sigma = self.sigma.map_or(0.0, |of| of.value);
+        self.sampling.iter().for_each(|of| sampled(&mut section, of, sigma, self.limited()));
         let mut picture = Vec::new();
         self.picture(&mut picture);
         match self.indices {
@@ -149,10 +152,9 @@ impl SimulationSection for SimulatedCharacteristic {
     }
 
     fn kept(&self, section: &mut Section, yield_: YieldEstimate) {
-        let [low, high] = yield_.interval.map(yielded);
+        let [low, high] = self.yield_interval().unwrap_or(yield_.interval).map(yielded);
         let target = judged(self.target(), self.verdict());
-        let error = one_error(yield_.value, yield_.interval);
-        let rejects = Rejects::new(self.below, self.above, Some(error));
+        let rejects = Rejects::new(self.below, self.above, self.yield_error()).within(self.reject_intervals);
         let text = rejects.yield_text().unwrap_or_else(|| yielded(yield_.value));
         section.note(Line::from(format!("yield {text}, 95 % interval {low} to {high}")).and(target));
         if let Some([low, high]) = self.yield_bounds() {
@@ -176,12 +178,19 @@ impl SimulationSection for SimulatedCharacteristic {
         if self.samples == 0 {
             return DataTable::untitled::<6>([]);
         }
-        let moments =
-            [("mean", self.mean), ("sigma", self.sigma), ("skewness", self.skewness), ("kurtosis", self.kurtosis)];
-        let quantiles = ["0.135 %", "1 %", "5 %", "median", "95 %", "99 %", "99.865 %"].into_iter().zip(self.quantiles);
-        let cells = |(name, of): (&str, Option<Estimate>)| {
-            let error = of.and_then(|of| of.standard_error);
-            let value = Cell::number(of.map(|of| of.value), |value| estimated(value, error));
+        let own = |of: Option<Estimate>| of.and_then(|of| of.standard_error);
+        let [mean, sigma] = self.errors();
+        let moments = [
+            ("mean", self.mean, mean),
+            ("sigma", self.sigma, sigma),
+            ("skewness", self.skewness, own(self.skewness)),
+            ("kurtosis", self.kurtosis, own(self.kurtosis)),
+        ];
+        let names = ["0.135 %", "1 %", "5 %", "median", "95 %", "99 %", "99.865 %"];
+        let quantiles = names.into_iter().zip(self.quantiles).map(|(name, of)| (name, of, own(of)));
+        let cells = |(name, of, digits): (&str, Option<Estimate>, Option<f64>)| {
+            let error = own(of);
+            let value = Cell::number(of.map(|of| of.value), |value| estimated(value, digits));
             let error = error.map_or(String::new(), |error| format!("± {}", uncertainty(error)));
             [Cell::text(name), value, Cell::text(error)]
         };
@@ -190,7 +199,7 @@ impl SimulationSection for SimulatedCharacteristic {
             let [of, moment, moment_error] = left.next().unwrap_or_else(|| std::array::from_fn(|_| Cell::empty()));
             [of, moment, moment_error, name, value, error]
         });
-        DataTable::untitled(rows)
+        DataTable::untitled(rows).labelled_by(&[3])
     }
 
     fn estimates(&self) -> DataTable {
@@ -203,6 +212,7 @@ impl SimulationSection for SimulatedCharacteristic {
         let quantiles = QUANTILES.into_iter().zip(self.quantiles).map(|(name, estimate)| (name, estimate, None));
         let seen = if self.samples == 0 { 0 } else { moments.len() + QUANTILES.len() };
         let plain = |value: Option<f64>| value.map(|value| Estimate { value, standard_error: None });
+        let millionths = |interval: Option<[f64; 2]>| interval.map(|ends| ends.map(|end| 1e6 * end));
         let risk = |name: &'static str, share: fn(&InspectionRisks) -> Option<EstimatedShare>| {
             let of = self.inspection.as_ref()?;
             Some((name, share(of).map(|of| Estimate { value: of.value, standard_error: of.error }), None))
@@ -214,9 +224,9 @@ impl SimulationSection for SimulatedCharacteristic {
             risk("bad_among_accepted", |of| of.bad_among_accepted),
         ];
         let rest: [Row; 3] = [
-            ("yield", plain(self.yield_()), self.yield_.map(|share| share.interval)),
-            ("ppm_below", plain(self.ppm_below()), None),
-            ("ppm_above", plain(self.ppm_above()), None),
+            ("yield", plain(self.yield_()), self.yield_interval()),
+            ("ppm_below", plain(self.ppm_below()), millionths(self.reject_intervals[0])),
+            ("ppm_above", plain(self.ppm_above()), millionths(self.reject_intervals[1])),
         ];
         let error = |row: &Row| row.1.and_then(|estimate| estimate.standard_error);
         Columns::default()

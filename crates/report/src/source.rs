@@ -8,11 +8,16 @@ use sensitol_numeric::capability::Capability;
 /// The Pearson fit is named beside the yield where it has more than this part of what is rejected wrong.
 const DIFFERENT: f64 = 0.01;
 
+/// An error of the yield below this is that of the arithmetic.
+const ROUNDING: f64 = 1e-12;
+
 /// The source of the yield, its error, and the Pearson fit where that says something else.
 pub(super) fn source(one: &CharacteristicAnalysis) -> Option<String> {
     let source = one.yield_source?;
     let error = one.error_estimate.as_ref().and_then(|estimate| estimate.yield_);
     let error = match (source, error) {
+        // Beside measured samples a rounding says nothing.
+        (_, Some(error)) if one.sampling.is_some() && error < ROUNDING => String::new(),
         (_, Some(error)) if error > 0.0 => format!(", ± {} %", significant(100.0 * error, 2)),
         (YieldSource::Proof, _) | (_, Some(_)) => String::new(),
         (_, None) => ", error unknown".to_owned(),

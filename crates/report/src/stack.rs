@@ -8,12 +8,16 @@
 //! A characteristic that is not linear has the table of its tangent at the means, and the table says so. Totals: as
 //! [`CharacteristicAnalysis`](sensitol::CharacteristicAnalysis) defines them, each about its own middle.
 
+use crate::worst_case::WorstCaseFigures;
 use std::fmt;
 
 use super::figures::{Figures, Named};
+use super::statistics::part;
+use super::worst_case::KnownWorstCase;
 use super::{DimensionReport, Report};
-use crate::document::number::{UNKNOWN, beside, limits, percent, plain, short, significant};
+use crate::document::number::{UNKNOWN, beside, limits, outward, percent, plain, short, significant};
 use crate::document::{Blocks, Cell, Columns, DataTable, Document, Line, Section, Tone, Value};
+use sensitol::analysis::DerivativeOrigin;
 use sensitol::analysis::{CharacteristicAnalysis, Sensitivity};
 use sensitol::method::Method;
 
@@ -70,8 +74,12 @@ pub struct StackTotal {
 /// The ways of adding a stack up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TotalKind {
-    /// Everything at its worst end.
+    /// Everything at its worst end, where it is proven that slopes tell all of it.
     WorstCase,
+    /// The same by slopes alone, which is not a bound.
+    LinearWorstCase,
+    /// The proven worst case of a characteristic that is not linear; the last of all.
+    ProvenWorstCase,
     /// Root of the sum of squares.
     Rss,
     /// 1.5 times that, or by the factors of the study.
@@ -104,6 +112,8 @@ pub enum StackNote {
         /// How many.
         count: usize,
     },
+    /// Parts of the squared RSS that are no contributions to the variance.
+    SharesOfRss,
     /// Dimensions whose slope is not known.
     SlopeUnknown {
         /// The dimensions.
@@ -156,9 +166,12 @@ impl Stack {
         }
         let first_order = [Method::Rss, Method::WorstCase].contains(&report.analysis.method);
         let worst_case = one.worst_case.map(|[lower, upper]| 0.5 * (upper - lower));
+        let proven = one.proven_worst_case();
+        let linear = proven.as_ref().is_some_and(|proven| one.is_linear(proven));
+        let by_slopes = if linear { TotalKind::WorstCase } else { TotalKind::LinearWorstCase };
         let about_middle = |kind, half_width| StackTotal { kind, middle: one.middle, half_width };
         let mut totals = vec![
-            about_middle(TotalKind::WorstCase, worst_case),
+            about_middle(by_slopes, worst_case),
             about_middle(TotalKind::Rss, one.rss),
             about_middle(TotalKind::InflatedRss, one.inflated_rss),
             about_middle(TotalKind::MeanShiftRss, one.mean_shift_rss),
@@ -170,6 +183,10 @@ impl Stack {
         ];
         if let Some(effective) = one.six_sigma {
             totals.insert(4, about_middle(TotalKind::SixSigma, Some(SIGMAS * effective)));
+        }
+        if let Some(KnownWorstCase { ends: [lower, upper], .. }) = proven.filter(|_| !linear) {
+            let [middle, half_width] = [0.5 * (lower + upper), 0.5 * (upper - lower)].map(Some);
+            totals.push(StackTotal { kind: TotalKind::ProvenWorstCase, middle, half_width });
         }
         Self {
             characteristic: one.name().to_owned(),
@@ -206,6 +223,8 @@ impl TotalKind {
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::WorstCase => "worst case",
+            Self::LinearWorstCase => "linear worst case",
+            Self::ProvenWorstCase => "proven worst case",
             Self::Rss => "rss",
             Self::InflatedRss => "inflated rss",
             Self::MeanShiftRss => "mean-shift rss",
@@ -261,6 +280,9 @@ fn notes(report: &Report, one: &CharacteristicAnalysis, rows: &[StackRow]) -> Ve
         notes.push(StackNote::SlopeUnknown { dimensions: lost });
     }
     notes.extend(shape(one, rows));
+    if has_other_contributions(one, rows) {
+        notes.push(StackNote::SharesOfRss);
+    }
     let unbanded = names(&|row| row.dimension.tolerance.is_none() && row.dimension.sigma > 0.0);
     if !unbanded.is_empty() {
         notes.push(StackNote::ThreeSigma { dimensions: unbanded });
@@ -287,6 +309,15 @@ fn notes(report: &Report, one: &CharacteristicAnalysis, rows: &[StackRow]) -> Ve
     notes
 }
 
+/// Whether a contribution to the variance is another part than that of the squared RSS, as they are printed.
+fn has_other_contributions(one: &CharacteristicAnalysis, rows: &[StackRow]) -> bool {
+    let apart = |row: &StackRow| {
+        let of_variance = one.sensitivities.iter().find(|of| of.dimension == row.dimension.name).and_then(part);
+        of_variance.zip(row.share).is_some_and(|(a, b)| percent(a) != percent(b))
+    };
+    rows.iter().any(apart)
+}
+
 /// The note on the characteristic's being linear; a derivative that rounding alone can make counts as none.
 fn shape(one: &CharacteristicAnalysis, rows: &[StackRow]) -> Option<StackNote> {
     let real = |value: Option<f64>, rounding: Option<f64>| match (value, rounding) {
@@ -297,7 +328,8 @@ fn shape(one: &CharacteristicAnalysis, rows: &[StackRow]) -> Option<StackNote> {
     let known = curved.clone().all(|row| row.curvature_share.is_some());
     let curvature: f64 = curved.clone().filter_map(|row| row.curvature_share).sum();
     let mean_shift: f64 = curved.clone().filter_map(|row| row.mean_shift).sum();
-    let joint = one.interactions.iter().filter(|pair| real(pair.mixed, pair.rounding));
+    let examined = one.interactions.iter().filter(|pair| pair.origin != Some(DerivativeOrigin::Screened));
+    let joint = examined.filter(|pair| real(pair.mixed, pair.rounding));
     let interactions: f64 = joint.clone().filter_map(|pair| pair.share).sum();
     let varying =
         |row: &Sensitivity| rows.iter().any(|of| of.dimension.name == row.dimension && of.dimension.sigma > 0.0);
@@ -308,7 +340,7 @@ fn shape(one: &CharacteristicAnalysis, rows: &[StackRow]) -> Option<StackNote> {
     if not_examined {
         return Some(StackNote::NotExamined);
     }
-    match one.possible_interactions.saturating_sub(one.interactions.len()) {
+    match one.possible_interactions.saturating_sub(one.examined_interactions) {
         0 => None,
         count => Some(StackNote::InteractionsNotExamined { count }),
     }
@@ -332,6 +364,9 @@ impl fmt::Display for StackNote {
                 let which = if *count == 1 { "one interaction".to_owned() } else { format!("{count} interactions") };
                 write!(f, "linear, unless an interaction says otherwise: {which} not examined (the method full examines all)")
             }
+            Self::SharesOfRss => f.write_str(
+                "RSS % is a dimension's part of the squared rss, by half tolerances; its contribution to the variance is another one",
+            ),
             Self::SlopeUnknown { dimensions } => write!(f, "without slope, so that the totals are unknown: {}", list(dimensions)),
             Self::ThreeSigma { dimensions } => write!(f, "3 sigma stands for a tolerance of {}", list(dimensions)),
             Self::Fixed { dimensions } => {
@@ -386,7 +421,15 @@ impl Stack {
     pub(super) fn tables(&self) -> [DataTable; 2] {
         let scale = self.totals.iter().filter_map(|total| total.half_width).fold(0.0, f64::max);
         let scaled = |value: Option<f64>| Cell::number(value, |value| beside(value, scale));
-        let end = |interval: Option<[f64; 2]>, end: usize| interval.map(|ends| ends[end]);
+        let shown_end = move |total: &StackTotal, end: usize| {
+            let interval = total.interval();
+            // No assembly lies beyond what is printed.
+            let proven = matches!(total.kind, TotalKind::WorstCase | TotalKind::ProvenWorstCase);
+            match interval.filter(|_| proven) {
+                Some(ends) => Cell::both(Value::Number(Some(ends[end])), outward(ends, scale, None)[end].clone()),
+                None => scaled(interval.map(|ends| ends[end])),
+            }
+        };
         let rows = Columns::default()
             .data("characteristic", |_| Cell::text(&self.characteristic))
             .data("row", |_| Cell::text("dimension"))
@@ -400,7 +443,7 @@ impl Stack {
             .named("", "unit", |row| Cell::optional(row.dimension.unit.as_deref()))
             .data("slope", |row| Cell::data(row.slope))
             .column("contribution", "effect", move |row| scaled(row.contribution))
-            .column("share", "contribution %", |row| Cell::number(row.share, percent))
+            .column("share", "RSS %", |row| Cell::number(row.share, percent))
             .data("from", |_| Cell::empty())
             .data("to", |_| Cell::empty())
             .data("within_limits", |_| Cell::empty())
@@ -416,8 +459,8 @@ impl Stack {
             .data("slope", |_| Cell::empty())
             .data("contribution", |total| Cell::data(total.half_width))
             .data("share", |_| Cell::empty())
-            .column("from", "from", move |total| scaled(end(total.interval(), 0)))
-            .column("to", "to", move |total| scaled(end(total.interval(), 1)))
+            .column("from", "from", move |total| shown_end(total, 0))
+            .column("to", "to", move |total| shown_end(total, 1))
             .named("within_limits", "limits", |total| {
                 let keeps = self.keeps(total);
                 let line = match keeps {

@@ -2,8 +2,9 @@
 
 use super::DimensionReport;
 use super::figures::Figures;
-use crate::document::number::{UNKNOWN, carried, known, percent, plain, shape_with, significant, uncertainty};
+use crate::document::number::{UNKNOWN, carried, known, outward, percent, plain, shape_with, significant, uncertainty};
 use crate::document::{Blocks, Cell, Columns, DataTable, Section, Value};
+use crate::worst_case::WorstCaseFigures;
 use sensitol::analysis::{CharacteristicAnalysis, IndexSource, Sensitivity};
 use sensitol::method::{ErrorEstimate, ErrorSource};
 use sensitol_numeric::names::element;
@@ -12,7 +13,7 @@ use sensitol_numeric::names::element;
 const CONTRIBUTORS: usize = 6;
 /// Rows of statistics that a terminal shows: the linear worst case beside a proven one comes after.
 const ROWS: usize = 6;
-/// Of sigma: worst cases nearer than this look the same in print.
+/// Of sigma: bounds that are not reached and a linear worst case nearer than this are the same.
 const SAME: f64 = 1e-3;
 /// Sigmas on either side that stand for the band of a dimension without a tolerance.
 const BAND: f64 = 3.0;
@@ -104,16 +105,16 @@ impl CharacteristicStatistics for CharacteristicAnalysis {
         let around = |middle: Option<f64>, reach: Option<f64>, error| {
             interval(middle.zip(reach).map(|(middle, reach)| [middle - reach, middle + reach]), error)
         };
-        // Found by no search, so that the bounds are all that is known of the true worst case.
-        let proven =
-            self.bounds.as_ref().filter(|bounds| bounds.proven && self.extremes.is_none()).map(|bounds| bounds.bounds);
         let same =
             |[a, b]: [[f64; 2]; 2]| (0..2).all(|end| (a[end] - b[end]).abs() <= SAME * self.sigma().unwrap_or(0.0));
-        let as_linear = proven.zip(self.worst_case).is_some_and(|(proven, linear)| same([proven, linear]));
-        let (worst, linear) = match proven.filter(|_| !as_linear) {
-            Some(proven) => (("proven worst case", Some(proven)), Some(("linear worst case", self.worst_case))),
-            None if as_linear => (("worst case", self.worst_case), None),
-            None => (("linear worst case", self.worst_case), None),
+        let text = |[low, high]: &[String; 2]| Cell::text(format!("{low} .. {high}"));
+        let proven = self.proven_worst_case();
+        let linear = ("linear worst case", interval(self.worst_case, None));
+        // A linear model that tells the same needs no row of its own.
+        let (worst, linear) = match &proven {
+            Some(proven) if self.is_shown_as_linear(proven) => (("worst case", text(&proven.texts)), None),
+            Some(proven) => (("proven worst case", text(&proven.texts)), Some(linear)),
+            None => (linear, None),
         };
         // Beyond slopes, and not proven to be reached.
         let within = (self.bounds.as_ref().filter(|_| self.extremes.is_none() && proven.is_none()))
@@ -124,9 +125,9 @@ impl CharacteristicStatistics for CharacteristicAnalysis {
             ("RSS", around(self.middle, self.rss, None)),
             ("inflated RSS", around(self.middle, self.inflated_rss, None)),
             ("mean-shift RSS", around(self.middle, self.mean_shift_rss, None)),
-            (worst.0, interval(worst.1, None)),
+            worst,
             match within {
-                Some(within) => ("worst case within", interval(Some(within), None)),
+                Some(within) => ("worst case within", text(&outward(within, scale, None))),
                 None => ("", Cell::empty()),
             },
         ];
@@ -136,10 +137,9 @@ impl CharacteristicStatistics for CharacteristicAnalysis {
         };
         let rows = self.first_figures().map(Shown::cells).into_iter().zip(beside);
         let rows: Vec<[Cell; 5]> = rows.map(|(cells, beside)| row(cells, beside)).collect();
-        let linear_row =
-            linear.map(|(name, ends)| row([Cell::empty(), Cell::empty(), Cell::empty()], (name, interval(ends, None))));
-        section
-            .table(DataTable::untitled(rows.into_iter().chain(linear_row)).at_most([ROWS, usize::MAX], String::new()));
+        let linear_row = linear.map(|linear| row([Cell::empty(), Cell::empty(), Cell::empty()], linear));
+        let table = DataTable::untitled(rows.into_iter().chain(linear_row)).labelled_by(&[3]);
+        section.table(table.at_most([ROWS, usize::MAX], String::new()));
     }
 
     fn is_of_model(&self) -> bool {
@@ -234,9 +234,10 @@ impl<'r> Contributor<'r> {
     }
 }
 
-/// Whether a dimension does something here.
+/// Whether a dimension does something here; by the model, where the surface is not trusted, its interactions may be all of it.
 fn does(row: &Row<'_>) -> bool {
-    part(row.0) != Some(0.0) || effect(row) != Some(0.0)
+    let of_model = total(row.0).filter(|_| row.0.linear_share.is_none());
+    part(row.0) != Some(0.0) || effect(row) != Some(0.0) || of_model.is_some_and(|total| total > 0.0)
 }
 
 /// How far the characteristic moves where this dimension alone goes to the end of its band that moves it more, by slope and curvature.
@@ -258,7 +259,8 @@ pub(super) fn matters(row: &Sensitivity, dimension: &DimensionReport) -> bool {
 /// neither is known.
 pub(super) fn part(row: &Sensitivity) -> Option<f64> {
     let of_surface = row.linear_share.map(|linear| linear + row.curvature_share.unwrap_or(0.0));
-    of_surface.or(row.first_order.map(|index| index.value))
+    // An estimate below 0 is 0 within its error; a covariance below 0 is one.
+    of_surface.or(row.first_order.map(|index| index.value.max(0.0)))
 }
 
 /// The same with every interaction in which it has a part.

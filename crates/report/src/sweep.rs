@@ -1,5 +1,6 @@
 //! The report of a sweep: as data.
 
+use crate::analysis_document::CharacteristicSections;
 use std::collections::BTreeMap;
 
 use serde::Serialize;
@@ -21,6 +22,7 @@ use sensitol::problem::Problem;
 use sensitol::summary::RunSummary;
 use sensitol::sweep::Sweep;
 use sensitol_numeric::capability::{Law, Quantiles};
+use sensitol_numeric::shape::{RejectIntervals, through};
 use sensitol_numeric::verdict::{Judged, Verdict};
 
 /// The report of a sweep, as `--json` prints it. Unknown values are null, never 0.
@@ -98,12 +100,18 @@ pub struct SweptPointReport {
     /// Share of assemblies within the limits.
     #[serde(rename = "yield")]
     pub(crate) yield_: Option<f64>,
+    /// Within which that is known, measured samples included; null where it is not known.
+    pub(crate) yield_interval: Option<[f64; 2]>,
     /// Its source; null without limits.
     pub(crate) yield_source: Option<YieldSource>,
     /// Rejected below the lower limit, in parts per million.
     pub(crate) ppm_below: Option<f64>,
     /// Rejected above the upper limit.
     pub(crate) ppm_above: Option<f64>,
+    /// The intervals of both.
+    #[serde(flatten, serialize_with = "through::<RejectIntervals, _, _>")]
+    #[cfg_attr(feature = "schema", schemars(with = "RejectIntervals"))]
+    pub(crate) reject_intervals: [Option<[f64; 2]>; 2],
     /// Whether the target yield is met; null where that is not known, and without one.
     pub(crate) met: Option<bool>,
     /// The same in a word.
@@ -111,6 +119,9 @@ pub struct SweptPointReport {
     /// Everything that is required of it, the target yield included.
     #[cfg_attr(feature = "schema", schemars(with = "Vec<sensitol_numeric::verdict::JudgedShape>"))]
     pub(crate) requirements: Vec<Judged>,
+    /// The rejects with their error, for people.
+    #[serde(skip)]
+    rejects: Rejects,
 }
 
 impl SweepReport {
@@ -358,19 +369,20 @@ impl SweptPointReport {
             rss: of(|one| one.rss),
             quantiles: Quantiles(quantiles.map_or([None; 7], |all| all.0.map(Some))),
             yield_: of(Figures::yield_),
+            yield_interval: analysis.and_then(CharacteristicAnalysis::yield_interval),
             yield_source: analysis.and_then(|one| one.yield_source),
             ppm_below: of(Figures::ppm_below),
             ppm_above: of(Figures::ppm_above),
+            reject_intervals: analysis.map_or([None; 2], |one| one.reject_intervals),
             met: analysis.and_then(CharacteristicAnalysis::met),
             verdict: analysis.and_then(CharacteristicAnalysis::verdict),
             requirements: analysis.map_or(Vec::new(), CharacteristicAnalysis::requirements),
+            rejects: analysis.map_or(Rejects::new(None, None, None), CharacteristicAnalysis::rejects),
         }
     }
 
     pub(super) fn rejects(&self) -> Rejects {
-        let error = self.error_estimate.as_ref().and_then(|estimate| estimate.yield_);
-        let [below, above] = [self.ppm_below, self.ppm_above].map(|ppm| ppm.map(|ppm| 1e-6 * ppm));
-        Rejects::new(below, above, error)
+        self.rejects
     }
 
     /// The ends of the band in which all but 0.27 % lie; None where they are unknown.

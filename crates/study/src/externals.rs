@@ -10,7 +10,7 @@ use sensitol_external::{Greeting, Listener};
 
 /// Makes the function that answers a study's model from the names and units of its inputs and outputs, nominal values and constants.
 #[derive(Clone)]
-pub(crate) struct Host(Arc<dyn Fn(Signature, Greeting) -> Arc<dyn AssemblyFunction> + Send + Sync>);
+pub struct Host(Arc<dyn Fn(Signature, Greeting) -> Arc<dyn AssemblyFunction> + Send + Sync>);
 
 impl Host {
     pub(super) fn function(&self, signature: Signature, greeting: Greeting) -> Arc<dyn AssemblyFunction> {

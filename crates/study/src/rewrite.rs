@@ -52,6 +52,8 @@ pub enum RewriteError {
 
 /// Digits of a tolerance, cut off rather than rounded: what is written is never wider than what was found.
 const DIGITS: usize = 6;
+/// Decimals from which on numbers are written with an exponent.
+const LONGEST: i32 = 20;
 /// How far a tolerance that was read again may be off, relative.
 const SAME: f64 = 1e-5;
 /// And a nominal value, in sigmas.
@@ -78,6 +80,17 @@ impl Study {
     /// # Ok::<(), sensitol_study::StudyError>(())
     /// ```
     pub fn rewritten(&self, wanted: &Problem) -> Result<Rewritten, RewriteError> {
+        Ok(self.rewritten_and_read(wanted)?.0)
+    }
+
+    /// The dimensions of a problem with the digits that its tolerances and nominal values have in a file; None where they cannot be written.
+    pub fn written_dimensions(&self, wanted: &Problem) -> Option<Vec<Dimension>> {
+        let (_, read) = self.rewritten_and_read(wanted).ok()?;
+        Some(read.problem.dimensions().to_vec())
+    }
+
+    /// The text, and the study that it is.
+    fn rewritten_and_read(&self, wanted: &Problem) -> Result<(Rewritten, Self), RewriteError> {
         let tree = self.tree();
         let lines = tree.as_ref().and_then(|tree| tree.entry("dimensions"));
         let mut edits: Vec<(Range<usize>, String)> = Vec::new();
@@ -124,7 +137,7 @@ impl Study {
             }
         }
         let entries = read.entries(&changed);
-        Ok(Rewritten { text, entries, replaced_fits })
+        Ok((Rewritten { text, entries, replaced_fits }, read))
     }
 
     /// The dimension with the cost and the name of the process that makes this one so, where it says how its parts lie.
@@ -342,7 +355,12 @@ impl Entry<'_> {
         if self.old.nominal() == value {
             return (write::number(value), value);
         }
-        let decimals = (4 - libm::log10(self.new.sigma()).floor() as i32).clamp(0, 15) as usize;
+        let decimals = 4 - libm::log10(self.new.sigma()).floor() as i32;
+        if !(-LONGEST..=LONGEST).contains(&decimals) {
+            let rounded = in_tenths(value, decimals, f64::round);
+            return (write::number(rounded), rounded);
+        }
+        let decimals = decimals.max(0) as usize;
         let text = format!("{value:.decimals$}");
         let text = if text.contains('.') { text } else { format!("{text}.0") };
         let rounded = text.parse().unwrap_or(value);
@@ -375,10 +393,15 @@ fn rounded(value: f64, scale: f64, up: bool) -> String {
     // A value that is a round number but for rounding is that number.
     let magnitude = libm::log10(scale.abs() * (1.0 + 8.0 * f64::EPSILON)).floor() as i32;
     let decimals = DIGITS as i32 - 1 - magnitude;
+    let inside = |scaled: f64| {
+        let blur = 8.0 * f64::EPSILON * scaled.abs();
+        if up { (scaled - blur).ceil() } else { (scaled + blur).floor() }
+    };
+    if !(-LONGEST..=LONGEST).contains(&decimals) {
+        return write::number(in_tenths(value, decimals, inside));
+    }
     let unit = 10f64.powi(decimals);
-    let (scaled, blur) = (value * unit, 8.0 * f64::EPSILON * (value * unit).abs());
-    let whole = if up { (scaled - blur).ceil() } else { (scaled + blur).floor() };
-    let text = format!("{:.*}", decimals.max(0) as usize, whole / unit);
+    let text = format!("{:.*}", decimals.max(0) as usize, inside(value * unit) / unit);
     if !text.contains('.') {
         return text + ".0";
     }
@@ -393,6 +416,17 @@ fn rounded(value: f64, scale: f64, up: bool) -> String {
         }
         None => text.to_owned(),
     }
+}
+
+/// A number rounded to this many decimals.
+fn in_tenths(value: f64, decimals: i32, round: impl Fn(f64) -> f64) -> f64 {
+    // A decimal text is a double with no more than one rounding, however many decimals there are.
+    let whole = round(value * power_of_ten(decimals));
+    format!("{whole}e{}", -decimals).parse().unwrap_or(value)
+}
+
+fn power_of_ten(decimals: i32) -> f64 {
+    format!("1e{decimals}").parse().unwrap_or(f64::NAN)
 }
 
 /// Six digits, rounded down.

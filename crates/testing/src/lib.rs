@@ -1,6 +1,8 @@
 //! Files, assertions and problems that the tests of several packages share.
 
 mod assertions;
+#[cfg(feature = "engine")]
+mod box_points;
 pub mod densities;
 mod files;
 #[cfg(feature = "engine")]
@@ -10,6 +12,8 @@ mod processes;
 mod studies;
 
 pub use assertions::{close, fields, normals, relative, standard};
+#[cfg(feature = "engine")]
+pub use box_points::{among, random_points, vertices};
 pub use files::{INSTALLED, case, data, example_studies, generated, problem, read, repository, says};
 #[cfg(feature = "engine")]
 pub use models::{Asked, costly, counted, refusing};

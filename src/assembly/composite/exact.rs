@@ -5,6 +5,7 @@ use crate::assembly::formula::Jet;
 use crate::assembly::implicit::Tangent;
 use crate::assembly::{Derivatives, Directions, Run};
 use sensitol_numeric::parallel::prelude::*;
+use sensitol_numeric::power::Power;
 
 /// So many pairs are worth a tape of the formula.
 const TOGETHER: usize = 64;
@@ -15,7 +16,17 @@ impl Composite {
     /// Cost: for `P` pairs and `N` inputs about ten evaluations of the formulas for each of `N + P` directions, and as many
     /// solutions of linear systems where there are unknowns; for each of `2 N` directions where `P` is 64 or more and the output is a
     /// formula of the inputs alone.
-    pub(super) fn exact(&self, outputs: &[usize], directions: &Directions<'_>) -> Vec<Option<Derivatives>> {
+    ///
+    /// With `exponents` per unit of `2^exponent` of each input, as
+    /// [`derivatives_per`](crate::AssemblyFunction::derivatives_per) has them.
+    pub(super) fn exact(
+        &self,
+        outputs: &[usize],
+        directions: &Directions<'_>,
+        exponents: Option<&[i32]>,
+    ) -> Vec<Option<Derivatives>> {
+        // A number moves by one unit of its input.
+        let unit = |input: usize| exponents.map_or(1.0, |all| Power::of_exponent(all[input]).times(1.0));
         let origins = self.origins(outputs);
         let needs: Vec<Needs> = origins.iter().map(|&origin| self.needs(origin)).collect();
         let explicit = |needs: &Needs| needs.answers.is_empty();
@@ -29,13 +40,13 @@ impl Composite {
         let determined = |needs: &Needs| !needs.unknowns || tangent.is_some();
         let known: Vec<usize> = (0..origins.len()).filter(|&k| explicit(&needs[k]) && determined(&needs[k])).collect();
         let asked: Vec<Origin> = known.iter().map(|&k| origins[k]).collect();
-        let along = |u: usize, v: usize| self.jets(&asked, &given, tangent.as_ref(), u, v);
+        let along = |u: usize, v: usize| self.jets(&asked, &given, tangent.as_ref(), [(u, unit(u)), (v, unit(v))]);
         let pure: Vec<Vec<Jet>> = directions.inputs.par_iter().map(|&d| along(d, d)).collect();
         let together: Vec<Option<Vec<f64>>> =
-            asked.iter().map(|&origin| self.mixed_together(origin, &given, directions)).collect();
+            asked.iter().map(|&origin| self.mixed_together(origin, &given, directions, exponents)).collect();
         let open: Vec<Origin> =
             asked.iter().zip(&together).filter(|(_, together)| together.is_none()).map(|(&origin, _)| origin).collect();
-        let each = |&(j, k): &(usize, usize)| self.jets(&open, &given, tangent.as_ref(), j, k);
+        let each = |&(j, k): &(usize, usize)| self.jets(&open, &given, tangent.as_ref(), [(j, unit(j)), (k, unit(k))]);
         let mixed: Vec<Vec<Jet>> =
             if open.is_empty() { Vec::new() } else { directions.pairs.par_iter().map(each).collect() };
         // Formulas know that there is none where the unknowns have none.
@@ -66,18 +77,32 @@ impl Composite {
     }
 
     /// All mixed derivatives of a formula of dimensions alone, where there are many and nothing stands in the way.
-    fn mixed_together(&self, origin: Origin, given: &[f64], directions: &Directions<'_>) -> Option<Vec<f64>> {
+    fn mixed_together(
+        &self,
+        origin: Origin,
+        given: &[f64],
+        directions: &Directions<'_>,
+        exponents: Option<&[i32]>,
+    ) -> Option<Vec<f64>> {
         match origin {
-            Origin::Formula(formula) if directions.pairs.len() >= TOGETHER && !self.needs(origin).unknowns => {
+            Origin::Formula(formula)
+                if directions.pairs.len() >= TOGETHER && !self.needs(origin).unknowns && exponents.is_none() =>
+            {
                 self.formulas.mixed(formula, given, directions.pairs)
             }
             _ => None,
         }
     }
 
-    /// These outputs along two dimensions.
-    fn jets(&self, asked: &[Origin], given: &[f64], tangent: Option<&Tangent<'_>>, u: usize, v: usize) -> Vec<Jet> {
-        let along = |index: usize| [u, v].map(|d| f64::from(u8::from(d == index)));
+    /// These outputs along two dimensions, each with how far it moves.
+    fn jets(
+        &self,
+        asked: &[Origin],
+        given: &[f64],
+        tangent: Option<&Tangent<'_>>,
+        directions: [(usize, f64); 2],
+    ) -> Vec<Jet> {
+        let along = |index: usize| directions.map(|(d, unit)| if d == index { unit } else { 0.0 });
         let unknowns = tangent.map_or_else(Vec::new, |tangent| tangent.jets(&along));
         let variable = |index: usize| match index.checked_sub(given.len()) {
             None => Jet::variable(given[index], along(index)),

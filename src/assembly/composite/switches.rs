@@ -1,7 +1,7 @@
 //! Where the outputs of a composition change their form, and their degree.
 
 use super::{Composite, Origin, SolvedRows, Source};
-use crate::assembly::{Points, Run, Switch, SwitchKind, Switches};
+use crate::assembly::{Points, Polynomial, Run, Switch, SwitchKind, Switches};
 use sensitol_numeric::parallel::prelude::*;
 
 /// Rows whose unknowns one task finds.
@@ -96,6 +96,15 @@ impl Composite {
             }
         }
         Some(margins)
+    }
+
+    /// An output as a polynomial, where it is a formula of dimensions alone.
+    pub(super) fn polynomial_of(&self, output: usize, centre: &[f64], scale: &[f64]) -> Option<Polynomial> {
+        let dimensions = self.signature.inputs.len();
+        let Origin::Formula(formula) = self.outputs[output] else { return None };
+        let variable =
+            |index: usize| (index < dimensions).then(|| Polynomial::input(index, centre[index], scale[index]));
+        self.formulas.polynomial(formula, &variable)
     }
 
     pub(super) fn degree_of(&self, output: usize, varying: &[bool]) -> Option<u32> {

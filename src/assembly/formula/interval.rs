@@ -4,6 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::functions::{Binary, Unary};
 use super::scalar::{Scalar, Verdict};
+use sensitol_numeric::power::Power;
 
 /// All values from `lower` to `upper`, both included; NaN where there is none.
 ///
@@ -110,6 +111,15 @@ impl Interval {
         Self { lower: down(function(self.lower)), upper: up(function(self.upper)), whole: true }.after(&[self])
     }
 
+    /// Times a power of two: exact, and one step outwards where an end loses digits among the least doubles, or leaves the greatest.
+    pub(crate) fn times(&self, power: Power) -> Self {
+        let end = |end: f64, outwards: fn(f64) -> f64| match power.times(end) {
+            product if power.inverse().times(product) == end => product,
+            product => outwards(product),
+        };
+        Self { lower: end(self.lower, f64::next_down), upper: end(self.upper, f64::next_up), whole: self.whole }
+    }
+
     pub(crate) fn negate(&self) -> Self {
         Self { lower: -self.upper, upper: -self.lower, whole: self.whole }
     }
@@ -173,12 +183,12 @@ impl Interval {
         }
     }
 
-    pub(super) fn squared(&self) -> Self {
+    pub(crate) fn squared(&self) -> Self {
         let size = self.abs();
         size.multiply(&size)
     }
 
-    pub(super) fn sqrt(&self) -> Self {
+    pub(crate) fn sqrt(&self) -> Self {
         let x = self.within(0.0, f64::INFINITY);
         // The root of the upper end is rounded up if its square is too small.
         let upper = x.upper.sqrt();

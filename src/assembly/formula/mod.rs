@@ -12,17 +12,19 @@
 //! finite is an error of that point.
 //!
 //! The same programs run on other things than columns of numbers, whatever can be a `Scalar`: on a [`Jet`] they give
-//! exact derivatives, on an [`Interval`] bounds that no rounding breaks.
+//! exact derivatives, on an [`Interval`] bounds that no rounding breaks, on a magnitude the size of what is rounded.
 
 mod batch;
 mod cancel;
 mod error;
+mod expansion;
 mod functions;
 mod graph;
 mod hessian;
 pub mod interval;
 pub mod jet;
 mod lexer;
+mod magnitude;
 mod margins;
 mod name;
 pub(crate) mod parser;

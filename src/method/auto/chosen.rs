@@ -1,5 +1,6 @@
 //! The points that `auto` evaluates beside the axes.
 
+use crate::method::polynomial_surface::PolynomialSurface;
 use crate::plan::{Mixed, Point};
 
 /// Every dimension up or down, and all turned round where odd powers may be left.
@@ -22,15 +23,22 @@ pub(super) struct ChosenPoints {
     pub(super) direct: Vec<(usize, usize)>,
     /// For every characteristic, pairs that are known to interact, with their exact mixed derivatives.
     pub(super) given: Vec<Vec<((usize, usize), Mixed)>>,
+    /// For every characteristic the surface of its formula, where that is a polynomial.
+    pub(super) polynomials: Vec<Option<PolynomialSurface>>,
     /// Probes that judge, and probes that are fitted.
     pub(super) judging: Vec<Probe>,
     pub(super) fitted: Vec<Probe>,
 }
 
 impl ChosenPoints {
+    /// The surface of a characteristic whose formula is a polynomial.
+    pub(super) fn polynomial(&self, c: usize) -> Option<&PolynomialSurface> {
+        self.polynomials.get(c)?.as_ref()
+    }
+
     /// Whether nothing is left to find out about a pair of one characteristic.
     pub(super) fn knows(&self, c: usize, pair: (usize, usize)) -> bool {
-        self.direct.binary_search(&pair).is_ok() || self.gives(c, pair)
+        self.direct.binary_search(&pair).is_ok() || self.gives(c, pair) || self.polynomial(c).is_some()
     }
 
     /// Whether a pair is known to interact, and how.

@@ -9,6 +9,7 @@ use super::view::{View, skewed};
 use crate::method::Options;
 use crate::method::climbed::ClimbEnd;
 use crate::method::exact::ExactDerivatives;
+use crate::method::polynomial_surface::PolynomialSurface;
 use crate::plan::{DifferencePlan, KnownAnswers, Plan, Point, Purpose, Stage, scattered};
 use crate::problem::Problem;
 
@@ -125,6 +126,7 @@ impl<'p> Climb<'p> {
         if !known.is_empty() {
             climb.bought.given = ExactDerivatives::mixed_of(problem, &climb.plan, &known);
         }
+        climb.bought.polynomials = PolynomialSurface::all(problem, &climb.plan, options);
         climb.spent = climb.plan.cost().0;
         if !climb.plan.varying().is_empty() {
             climb.check();
@@ -185,6 +187,19 @@ impl<'p> Climb<'p> {
             }
         }
         stage
+    }
+
+    /// Whether every mixed derivative of a characteristic is known.
+    pub(super) fn knows_all_pairs(&self, c: usize) -> bool {
+        self.bought.polynomial(c).is_some() || self.bought.known(c).len() == self.plan.possible_pairs()
+    }
+
+    /// Pairs whose interactions the formulas of all characteristics give.
+    pub(super) fn pairs_by_formulas(&self) -> usize {
+        match self.bought.polynomials.iter().all(Option::is_some) {
+            true => self.plan.possible_pairs(),
+            false => 0,
+        }
     }
 
     fn positions(&self) -> usize {
@@ -302,7 +317,8 @@ impl<'p> Climb<'p> {
                         let (mean, sigma) = (dimension.mean(), dimension.sigma());
                         let [lower, upper] = dimension.distribution().map_or([mean; 2], |law| law.support());
                         let edge = |edge: f64| mean + WITHIN * (edge - mean);
-                        (d, (mean + side * FAR_OUT * part / size * sigma).clamp(edge(lower), edge(upper)))
+                        let x = (mean + side * FAR_OUT * part / size * sigma).clamp(edge(lower), edge(upper));
+                        (d, self.plan.axis(d).nearest_value(x))
                     });
                     let at: Vec<(usize, f64)> = at.collect();
                     self.plan.point_at(at)

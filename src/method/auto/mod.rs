@@ -167,14 +167,15 @@ fn outcome(problem: &Problem, options: &Options, climb: &Climb<'_>, evaluated: &
     let pairs = listed(climb, &views);
     let exact = ExactDerivatives::beside(problem, plan, options, &pairs);
     let fit = |(c, (view, exact)): (usize, (&Option<View>, Option<ExactDerivatives>))| {
-        let part = |d: usize| plan.part(known, c, d);
-        let mixed = |pair: &(usize, usize)| {
-            let nothing = Some(Mixed { value: 0.0, complete: true });
-            match view {
-                Some(view) if climb.bought.direct.binary_search(pair).is_ok() => view.products.get(pair).copied(),
-                Some(view) => view.products.get(pair).copied().or(nothing),
-                None => None,
-            }
+        let polynomial = climb.bought.polynomial(c);
+        let own = |d: usize| Some(polynomial?.parts[plan.varying().binary_search(&d).ok()?]);
+        let part = |d: usize| own(d).or_else(|| plan.part(known, c, d));
+        let mixed = |pair: &(usize, usize)| match (view, polynomial) {
+            (Some(_), Some(polynomial)) => Some(polynomial.mixed(*pair)),
+            (Some(view), _) if climb.bought.direct.binary_search(pair).is_ok() => view.products.get(pair).copied(),
+            // A pair of another characteristic, which was not examined in this one.
+            (Some(view), _) => Some(view.products.get(pair).copied().unwrap_or(Mixed::screened(0.0))),
+            (None, _) => None,
         };
         Fitted {
             nominal: known.value(plan.nominal(), c),
@@ -183,6 +184,7 @@ fn outcome(problem: &Problem, options: &Options, climb: &Climb<'_>, evaluated: &
             parts: (0..problem.dimensions().len()).map(part).collect(),
             mixed: pairs.iter().map(mixed).collect(),
             surrogate: view.as_ref().map(|view| view.surrogate.clone()),
+            screened: view.as_ref().map_or(0, View::screened),
             ..Fitted::default()
         }
     };
@@ -196,7 +198,8 @@ fn outcome(problem: &Problem, options: &Options, climb: &Climb<'_>, evaluated: &
         direct: climb.bought.direct.len(),
         probes: climb.bought.judging.len() + climb.bought.fitted.len(),
         checks: climb.bought.checks.iter().flatten().filter(|point| known.tried(point)).count(),
-        all_pairs: (0..problem.characteristics().len()).all(|c| climb.bought.known(c).len() == plan.possible_pairs()),
+        from_formulas: climb.pairs_by_formulas(),
+        all_pairs: (0..problem.characteristics().len()).all(|c| climb.knows_all_pairs(c)),
         noise: of(|view| view.noise),
         tails: of(|view| view.tail),
         beyond: of(|view| view.beyond),
@@ -204,7 +207,7 @@ fn outcome(problem: &Problem, options: &Options, climb: &Climb<'_>, evaluated: &
         unscreened: of(|view| view.unscreened),
         checked: views.iter().map(|view| view.as_ref()?.check.clone()).collect(),
     };
-    Outcome {
+    let outcome = Outcome {
         asked: Method::Auto,
         method: Method::Auto,
         basis: Basis::Differences,
@@ -214,17 +217,19 @@ fn outcome(problem: &Problem, options: &Options, climb: &Climb<'_>, evaluated: &
         fitted,
         pairs,
         climbed: Some(climbed),
-    }
+    };
+    outcome.with_proofs(problem, &climb.bought.polynomials)
 }
 
-/// The pairs that some surrogate has, or that were examined; of more than can be read, those examined for themselves.
+/// The pairs that some surrogate has, or that were examined; of more than can be read, those that are known.
 fn listed(climb: &Climb<'_>, views: &[Option<View>]) -> Vec<(usize, usize)> {
     let mut pairs = climb.bought.direct.clone();
-    let found: usize = views.iter().flatten().map(|view| view.products.len()).sum();
-    if found <= LISTED {
-        pairs.extend(views.iter().flatten().flat_map(|view| view.products.keys().copied()));
-        pairs.sort_unstable();
-        pairs.dedup();
+    let few = views.iter().flatten().map(View::screened).sum::<usize>() <= LISTED;
+    for view in views.iter().flatten() {
+        let shown = view.products.iter().filter(|(_, mixed)| few || mixed.origin.is_known());
+        pairs.extend(shown.map(|(&pair, _)| pair));
     }
+    pairs.sort_unstable();
+    pairs.dedup();
     pairs
 }

@@ -7,10 +7,11 @@ use super::chosen::{ChosenPoints, Probe};
 use super::screening::{self, Fit, Probed};
 use crate::method::check::{SurrogateCheck, failed};
 use crate::method::hidden::hidden;
+use crate::method::polynomial_surface::PolynomialSurface;
 use crate::plan::{DifferencePlan, KnownAnswers, Mixed, Point};
 use sensitol_numeric::distribution::StandardMoments;
 use sensitol_numeric::moments::{Interactions, Moments};
-use sensitol_numeric::surrogate::{Surrogate, Univariate};
+use sensitol_numeric::surrogate::{DerivativeOrigin, Surrogate, Univariate};
 
 /// Mixed derivatives by pair.
 type Products = BTreeMap<(usize, usize), Mixed>;
@@ -27,7 +28,7 @@ pub(super) struct View {
     /// Variance of every part, and what of it is curved, as a share of the surrogate's.
     pub(super) shares: Vec<[f64; 2]>,
     /// Products of two positions, with what is not complete.
-    pub(super) products: BTreeMap<(usize, usize), Mixed>,
+    pub(super) products: Products,
     /// Mean square of what the screening's fit left at the probes that judge it, as a share of the variance.
     pub(super) unscreened: Option<f64>,
     /// The scatter of the answers.
@@ -37,6 +38,128 @@ pub(super) struct View {
     pub(super) tail: Option<f64>,
     pub(super) beyond: Option<f64>,
     pub(super) bends: Bends,
+}
+
+/// A surface before its figures are known.
+struct Draft {
+    /// Its value at the means.
+    base: f64,
+    parts: Vec<Option<Univariate>>,
+    products: Products,
+    bends: Bends,
+    /// Variance of every part as it was evaluated.
+    own: Vec<f64>,
+    /// Mean square of what the screening's fit left at the probes that judge it.
+    unscreened: Option<f64>,
+}
+
+/// The answers of one characteristic so far.
+#[derive(Clone, Copy)]
+struct Answers<'a> {
+    plan: &'a DifferencePlan,
+    known: &'a KnownAnswers,
+    bought: &'a ChosenPoints,
+    characteristic: usize,
+    /// The value at the means.
+    centre: f64,
+}
+
+impl Draft {
+    /// The formula itself.
+    fn of_polynomial(polynomial: &PolynomialSurface, answers: Answers<'_>) -> Self {
+        let parts: Vec<Option<Univariate>> = polynomial.parts.iter().copied().map(Some).collect();
+        let own = variances(answers.plan, &parts);
+        let (bends, products) = (Bends::of(&parts), polynomial.products.clone());
+        Self { base: answers.centre, bends, parts, products, own, unscreened: None }
+    }
+
+    /// Parts and pairs as they were evaluated, and estimates of all other pairs.
+    fn of_points(answers: Answers<'_>, accuracy: f64) -> Option<Self> {
+        let Answers { plan, known, bought, characteristic: c, centre } = answers;
+        let parts: Vec<Option<Univariate>> = plan.varying().iter().map(|&d| plan.part(known, c, d)).collect();
+        let bends = Bends::of(&parts);
+        let mixed = plan.mixed(known, c, &bought.direct);
+        let evaluated = bought.direct.iter().zip(mixed).filter_map(|(&pair, mixed)| Some((pair, mixed?)));
+        let mut products: Products = evaluated.collect();
+        products.extend(bought.given.get(c).into_iter().flatten().copied());
+        let mut draft = Self { base: centre, parts, products, bends, own: Vec::new(), unscreened: None };
+        if !bought.direct.is_empty() {
+            draft.twist(answers);
+        }
+        draft.own = variances(plan, &draft.parts);
+        let alone: f64 =
+            draft.own.iter().sum::<f64>() + draft.products.values().map(|mixed| mixed.value.powi(2)).sum::<f64>();
+        let screened = Screened::of(plan, known, bought, c, (centre, &draft.parts, &draft.products));
+        let mut together = None;
+        if let Some(screened) = screened {
+            let fit = screened.fit(0.5 * accuracy * alone);
+            screened.add(&fit, &mut draft.products);
+            draft.unscreened = Some(fit.left / screened.unit);
+            together = Some(fit.together);
+        }
+        draft.add_atoms(answers, together)?;
+        Some(draft)
+    }
+
+    fn surrogate(&self) -> Surrogate {
+        surrogate_of(self.base, &self.parts, &self.products)
+    }
+
+    /// Takes the terms of corners beside products where the points that check agree.
+    fn twist(&mut self, answers: Answers<'_>) {
+        let Answers { plan, known, bought, characteristic: c, .. } = answers;
+        let (mut parts, mut products, mut base) = (self.parts.clone(), self.products.clone(), self.base);
+        for (&(j, k), corners) in bought.direct.iter().zip(plan.twists(known, c, &bought.direct)) {
+            let Some(twist) = self.bends.twist((j, k), &corners) else { continue };
+            if let Some(mixed) = products.get_mut(&(j, k)) {
+                mixed.value = twist.product;
+            }
+            for (position, slope) in [(j, twist.slopes[0]), (k, twist.slopes[1])] {
+                // How these terms share what the corners show is an assumption.
+                let added = |part: Univariate| {
+                    part.with_slope(slope).with_curvature(twist.square).with_origin(DerivativeOrigin::Screened)
+                };
+                parts[position] = parts[position].map(added);
+            }
+            base -= twist.square;
+        }
+        let left_by = |surrogate: &Surrogate| {
+            let left = left_at(plan, known, c, bought, surrogate)?;
+            Some(left.into_iter().flatten().map(|left| left * left).sum::<f64>())
+        };
+        let agree = left_by(&surrogate_of(base, &parts, &products)).zip(left_by(&self.surrogate()));
+        if agree.is_some_and(|(twisted, plain)| twisted < plain) {
+            (self.parts, self.products, self.base) = (parts, products, base);
+        }
+    }
+
+    /// Adds estimates of all interactions that were not examined, where one number explains what is left; `together` is that of the
+    /// probes. None where a part is unknown.
+    fn add_atoms(&mut self, answers: Answers<'_>, together: Option<f64>) -> Option<()> {
+        let Answers { plan, known, bought, characteristic: c, .. } = answers;
+        let left = left_at(plan, known, c, bought, &self.surrogate())?;
+        let atoms = atoms(plan, bought, &bought.known(c), &self.bends, &left, together);
+        if let Some(together) = atoms.together {
+            let n = self.parts.len();
+            for (j, k) in (0..n).flat_map(|j| (j + 1..n).map(move |k| (j, k))) {
+                let value = together * self.bends.slope(j) * self.bends.slope(k);
+                if value != 0.0 && plan.joint(c, j, k) {
+                    self.products.entry((j, k)).or_insert(Mixed::screened(value));
+                }
+            }
+        }
+        for (part, &more) in self.parts.iter_mut().zip(atoms.slopes.iter().flatten()).filter(|(_, more)| **more != 0.0)
+        {
+            *part = part.map(|part| part.with_slope(more).with_origin(DerivativeOrigin::Screened));
+        }
+        Some(())
+    }
+}
+
+/// Variance of every part; 0 of one that is unknown.
+fn variances(plan: &DifferencePlan, parts: &[Option<Univariate>]) -> Vec<f64> {
+    let shapes = plan.inputs().shapes();
+    parts.iter().zip(shapes).map(|(part, shape)| part.map_or(0.0, |part| part.term(shape).variance(1.0))).collect()
 }
 
 impl View {
@@ -49,90 +172,34 @@ impl View {
         accuracy: f64,
     ) -> Option<Self> {
         let centre = known.value(&Point::Centre, c)?;
-        let mut parts: Vec<Option<Univariate>> = plan.varying().iter().map(|&d| plan.part(known, c, d)).collect();
-        let n = parts.len();
-        let bends = Bends::of(&parts);
-        let mut products: BTreeMap<(usize, usize), Mixed> = BTreeMap::new();
-        let mixed = plan.mixed(known, c, &bought.direct);
-        for (&pair, mixed) in bought.direct.iter().zip(mixed) {
-            if let Some(mixed) = mixed {
-                products.insert(pair, mixed);
-            }
-        }
-        products.extend(bought.given.get(c).into_iter().flatten().copied());
-        let mut base = centre;
-        let left_by = |base: f64, parts: &[Option<Univariate>], products: &BTreeMap<(usize, usize), Mixed>| {
-            let left = left_at(plan, known, c, bought, &surrogate_of(base, parts, products))?;
-            Some(left.into_iter().flatten().map(|left| left * left).sum::<f64>())
+        let answers = Answers { plan, known, bought, characteristic: c, centre };
+        let polynomial = bought.polynomial(c);
+        let draft = match polynomial {
+            Some(polynomial) => Draft::of_polynomial(polynomial, answers),
+            None => Draft::of_points(answers, accuracy)?,
         };
-        if !bought.direct.is_empty() {
-            // The terms of corners beside products are taken where the points that check agree.
-            let (mut other, mut twisted, mut lower) = (parts.clone(), products.clone(), centre);
-            for (&(j, k), corners) in bought.direct.iter().zip(plan.twists(known, c, &bought.direct)) {
-                let Some(twist) = bends.twist((j, k), &corners) else { continue };
-                if let Some(mixed) = twisted.get_mut(&(j, k)) {
-                    mixed.value = twist.product;
-                }
-                for (position, slope) in [(j, twist.slopes[0]), (k, twist.slopes[1])] {
-                    other[position] = other[position].map(|part| part.with_slope(slope).with_curvature(twist.square));
-                }
-                lower -= twist.square;
-            }
-            let agree = left_by(lower, &other, &twisted).zip(left_by(centre, &parts, &products));
-            if agree.is_some_and(|(twisted, plain)| twisted < plain) {
-                (parts, products, base) = (other, twisted, lower);
-            }
-        }
-        let own = |j: usize| parts[j].map_or(0.0, |part| part.term(&plan.inputs().shapes()[j]).variance(1.0));
-        let own: Vec<f64> = (0..n).map(own).collect();
-        let alone: f64 = own.iter().sum::<f64>() + products.values().map(|mixed| mixed.value.powi(2)).sum::<f64>();
-        let screened = Screened::of(plan, known, bought, c, (centre, &parts, &products));
-        let (mut unscreened, mut together) = (None, None);
-        if let Some(screened) = screened {
-            let fit = screened.fit(0.5 * accuracy * alone);
-            screened.add(&fit, &mut products);
-            unscreened = Some(fit.left / screened.unit);
-            together = Some(fit.together);
-        }
-        let surrogate = surrogate_of(base, &parts, &products);
-        let left = left_at(plan, known, c, bought, &surrogate)?;
-        let atoms = atoms(plan, bought, &bought.known(c), &bends, &left, together);
-        if let Some(together) = atoms.together {
-            let slope = |j: usize| bends.slope(j);
-            for j in 0..n {
-                for k in j + 1..n {
-                    let value = together * slope(j) * slope(k);
-                    if value != 0.0 && plan.joint(c, j, k) {
-                        products.entry((j, k)).or_insert(Mixed { value, complete: true });
-                    }
-                }
-            }
-        }
-        if let Some(slopes) = &atoms.slopes {
-            add_slopes(&mut parts, slopes);
-        }
-        let surrogate = match (atoms.together, &atoms.slopes) {
-            (None, None) => surrogate,
-            _ => surrogate_of(base, &parts, &products),
-        };
+        let surrogate = draft.surrogate();
         let moments = surrogate.contributions(plan.inputs())?.moments;
         let variance = moments.variance();
         let share = |value: f64| if variance > 0.0 { value / variance } else { 0.0 };
         let part = |j: usize| {
             let part = surrogate.parts[j].expect("moments need every part");
             let (d, shape) = (plan.varying()[j], &plan.inputs().shapes()[j]);
+            // A formula hides nothing of itself.
             let hidden = plan
                 .samples(known, c, d)
-                .filter(|_| plan.depends(c, d))
+                .filter(|_| plan.depends(c, d) && polynomial.is_none())
                 .and_then(|samples| hidden(&part, &samples, centre, shape));
-            (hidden.map_or(0.0, |hidden| hidden.variance), [share(own[j]), share(part.term(shape).part(1.0).curved)])
+            let shares = [share(draft.own[j]), share(part.term(shape).part(1.0).curved)];
+            (hidden.map_or(0.0, |hidden| hidden.variance), shares)
         };
-        let (hidden, shares) = (0..n).map(part).unzip();
+        let (hidden, shares) = (0..surrogate.parts.len()).map(part).unzip();
         let check = SurrogateCheck::of(plan, known, c, &bought.checks, (&surrogate, &moments));
         let even = check.as_ref().map_or(0.0, |check| share(check.even));
         let [tail, beyond] = [0.0, even].map(|even| tail(plan, known, c, bought, (&surrogate, moments.sigma()), even));
         let noise = bought.noise.as_ref().and_then(|points| scatter(plan, known, c, points, &surrogate));
-        let unscreened = unscreened.map(share);
+        let unscreened = draft.unscreened.map(share);
+        let Draft { products, bends, .. } = draft;
         Some(Self {
             characteristic: c,
             surrogate,
@@ -147,6 +214,11 @@ impl View {
             beyond,
             bends,
         })
+    }
+
+    /// The number of products of the surrogate that are estimates.
+    pub(super) fn screened(&self) -> usize {
+        self.products.values().filter(|mixed| mixed.value != 0.0 && !mixed.origin.is_known()).count()
     }
 
     pub(super) fn variance(&self) -> f64 {
@@ -184,16 +256,10 @@ impl View {
     }
 }
 
-fn surrogate_of(centre: f64, parts: &[Option<Univariate>], products: &BTreeMap<(usize, usize), Mixed>) -> Surrogate {
+fn surrogate_of(centre: f64, parts: &[Option<Univariate>], products: &Products) -> Surrogate {
     let pairs = products.iter().map(|(&(j, k), mixed)| (j, k, mixed.value)).filter(|&(.., value)| value != 0.0);
     let interactions = Interactions::of_pairs(parts.len(), pairs.collect::<Vec<_>>());
     Surrogate { centre, parts: parts.to_vec(), interactions }
-}
-
-fn add_slopes(parts: &mut [Option<Univariate>], more: &[f64]) {
-    for (part, &more) in parts.iter_mut().zip(more).filter(|(_, more)| **more != 0.0) {
-        *part = part.map(|part| part.with_slope(more));
-    }
 }
 
 /// The differences between the model and the surrogate at the points that check.
@@ -330,12 +396,12 @@ impl<'a> Screened<'a> {
         screening::fit(&self.fitted, &self.judging, &self.slopes, enough * self.unit)
     }
 
-    fn add(&self, fit: &Fit, products: &mut BTreeMap<(usize, usize), Mixed>) {
+    fn add(&self, fit: &Fit, products: &mut Products) {
         let mut add = |j: usize, k: usize, value: f64| {
             let over = self.half[j] * self.half[k];
             if over != 0.0 && value != 0.0 {
-                let mixed = products.entry((j, k)).or_insert(Mixed { value: 0.0, complete: true });
-                mixed.value += value / over;
+                let mixed = products.entry((j, k)).or_insert(Mixed::screened(0.0));
+                (mixed.value, mixed.origin) = (mixed.value + value / over, DerivativeOrigin::Screened);
             }
         };
         if fit.together != 0.0 {

@@ -2,11 +2,12 @@
 
 pub use std::collections::BTreeSet;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 
 use super::command::{ENGINE, rounded, run, sensitol};
+use sensitol::simulation::{SimulationOptions, simulate};
 use sensitol_report::text;
-use sensitol_report::{About, Report, ToDocument};
+use sensitol_report::{About, Report, SimulationReport};
 use sensitol_report::{Detail, Style};
 use sensitol_testing::repository;
 
@@ -656,6 +657,53 @@ fn reports_fit_their_width() {
             let wide = text.lines().map(|line| line.chars().count()).max().unwrap();
             assert!(wide <= width, "{name}: {wide} columns of {width}\n{text}");
             assert_eq!(numbers(&text), usual, "{name} at {width}");
+        }
+    }
+}
+
+/// The cells of a line of a table: two spaces or more part them.
+fn cells(line: &str) -> Vec<&str> {
+    line.split("  ").map(str::trim).filter(|cell| !cell.is_empty()).collect()
+}
+
+/// Numbers with many digits, or with exponents: at every width a value stands right of its own label, as it does where there is room for all.
+#[test]
+fn values_stand_beside_their_labels_at_every_width() {
+    let study = sensitol_study::Study::read(&repository("tests/data/any-size/wide-numbers.toml")).unwrap();
+    let analysis = sensitol::analyze(&study.problem, &study.options).unwrap();
+    let sample = SimulationOptions::default().with_samples(2000);
+    let simulation = simulate(&study.problem, &sample).unwrap();
+    let documents = [
+        Report::of(&study.problem, &analysis, About::default()).document(),
+        SimulationReport::of(&study.problem, &simulation, About::default()).document(),
+    ];
+    let labels: [&[&str]; 2] = [
+        &["± 3 sigma", "RSS", "inflated RSS", "mean-shift RSS", "nominal", "mean", "shift", "sigma", "skewness"],
+        &["0.135 %", "1 %", "5 %", "median", "95 %", "99 %", "99.865 %", "mean", "sigma", "skewness", "kurtosis"],
+    ];
+    for (document, labels) in documents.iter().zip(labels) {
+        let of = |width: usize| text(document, Style { detail: Detail::Short, unicode: true, color: false, width });
+        let whole = of(400);
+        // The figures, below the name of the characteristic.
+        let figures = whole.split("\ndiff").nth(1).unwrap();
+        let value = |label: &str| {
+            let at = |line: &&str| cells(line).iter().position(|cell| *cell == label).is_some();
+            let line = figures.lines().find(at).unwrap_or_else(|| panic!("{label} in {whole}"));
+            let cells = cells(line);
+            cells[cells.iter().position(|cell| *cell == label).unwrap() + 1]
+        };
+        for width in 40..200 {
+            let page = of(width);
+            let page = page.split("\ndiff").nth(1).unwrap();
+            for &label in labels {
+                // A label that gives way keeps its ends.
+                let names = |cell: &str| match cell.split_once('…') {
+                    Some((head, tail)) => label.starts_with(head) && label.ends_with(tail),
+                    None => cell == label,
+                };
+                let stands = |line: &str| cells(line).windows(2).any(|two| names(two[0]) && two[1] == value(label));
+                assert!(page.lines().any(stands), "{label} {} at {width}:\n{page}", value(label));
+            }
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Commands: output, exit codes, files.
 
 mod allocation_cli;
+mod allocation_verdicts;
 mod brief;
 mod cli;
 #[path = "../support/command.rs"]
@@ -18,6 +19,7 @@ mod outputs;
 mod probabilities;
 mod probe;
 mod rare;
+mod rejects;
 mod sampled_cli;
 mod serve;
 mod several;
@@ -26,3 +28,4 @@ mod sweep;
 mod verdicts;
 mod workbench;
 mod workbooks;
+mod worst_cases;

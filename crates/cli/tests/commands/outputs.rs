@@ -86,7 +86,10 @@ fn corners_of_the_box_of_a_circle_are_no_worst_case() {
     let one = analyze(&study.problem, &study.options).unwrap().characteristics.remove(0);
     let bounds = one.bounds.as_ref().unwrap();
     let [least, most] = one.worst_case.unwrap();
-    assert!(!bounds.proven && bounds.bounds[0] <= least && bounds.bounds[1] >= most, "{bounds:?} {least} {most}");
+    // Five radii of 0.1, each end within the roundings of the proof.
+    assert_eq!([least, most], [-0.5, 0.5]);
+    assert!(bounds.proven && bounds.bounds[0] <= least && bounds.bounds[1] >= most, "{bounds:?} {least} {most}");
+    assert!(bounds.bounds[0] > least - 1e-12 && bounds.bounds[1] < most + 1e-12, "{bounds:?}");
 }
 
 /// The worst case by slopes is named as linear beside a kink or a curvature, with the proven one below it; where both are the same it is

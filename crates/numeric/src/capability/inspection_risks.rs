@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::power::rescale;
+
 /// A share that is estimated: of the variance, or of all parts.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -31,3 +33,5 @@ pub struct InspectionRisks {
     /// Of the accepted parts, those that are bad.
     pub bad_among_accepted: Option<EstimatedShare>,
 }
+
+rescale!(InspectionRisks { gauge, guard, acceptance } without { false_accept, false_reject, accepted, bad_among_accepted });

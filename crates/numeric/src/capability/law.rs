@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::Quantiles;
 use crate::moments::Moments;
 use crate::pearson::{Pearson, PearsonError};
+use crate::power::{Rescale, Rescaling};
 use crate::shape::{ends, through};
 
 /// A distribution with the four moments of a characteristic.
@@ -41,6 +42,15 @@ struct PearsonShape {
 impl From<&Box<Pearson>> for PearsonShape {
     fn from(law: &Box<Pearson>) -> Self {
         Self { kind: law.kind().name(), support: ends(law.support()), quantiles: Quantiles::of(law) }
+    }
+}
+
+impl Rescale for Law {
+    fn rescale(&mut self, by: &mut Rescaling) {
+        match self {
+            Self::Point { at } => at.rescale(by),
+            Self::Pearson(law) => law.rescale(by),
+        }
     }
 }
 

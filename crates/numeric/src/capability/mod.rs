@@ -14,7 +14,7 @@ use std::sync::LazyLock;
 
 use serde::{Serialize, Serializer};
 
-use crate::characteristic::SpecLimits;
+use crate::characteristic::{KeptLimits, SpecLimits};
 use crate::pearson::Pearson;
 
 /// Half of the share that six sigma of a normal leave out: 1 - 0.9973 on both sides.
@@ -111,9 +111,9 @@ impl Capability {
     /// Source: ISO 22514-2 (2017), which calls the percentile forms Pp and Ppk by its method M2.
     ///
     /// ```
-    /// use sensitol_numeric::capability::{Capability, Law};
-    /// use sensitol_numeric::characteristic::SpecLimits;
-    /// use sensitol_numeric::moments::Moments;
+    /// use crate::capability::{Capability, Law};
+    /// use crate::characteristic::SpecLimits;
+    /// use crate::moments::Moments;
     /// let moments = Moments::new(6.0, 0.25, 0.0, 0.0);
     /// let limits = SpecLimits::new(Some(5.0), Some(7.0))?;
     /// let capability = Capability::of(&Law::fit(&moments)?, 6.0, 0.25, limits);
@@ -134,6 +134,14 @@ impl Capability {
             cpk_percentile,
             ..Self::of_moments(mean, sigma, limits)
         }
+    }
+
+    /// The same, where a value that does not vary keeps a limit as computed values do.
+    pub fn of_kept(law: &Law, mean: f64, sigma: f64, limits: SpecLimits, kept: KeptLimits) -> Self {
+        let capability = Self::of(law, mean, sigma, limits);
+        let Law::Point { at } = law else { return capability };
+        let [below, above] = kept.broken(*at).map(|broken| f64::from(u8::from(broken)));
+        Self { below: limits.lower().map(|_| below), above: limits.upper().map(|_| above), ..capability }
     }
 
     /// The figures that follow from mean and sigma alone: Cp and Cpk.

@@ -11,7 +11,7 @@
 //! and the same mirrored above, with the upper tail of the distribution, so that small shares keep their digits. Nothing but `F` is asked, so
 //! that any law will do, one of measured values too. Source: Deaver (1995), NCSLI RP-19; by integrals over the part in place of the error.
 
-use crate::characteristic::SpecLimits;
+use crate::characteristic::{KeptLimits, SpecLimits};
 use crate::distribution::standard_normal;
 use crate::pearson::LEGENDRE;
 
@@ -87,17 +87,13 @@ pub fn guard_reaching(accepted: &dyn Fn(f64) -> f64, limits: SpecLimits, gauge: 
 }
 
 /// The probability that a part with this true value is accepted.
-pub fn acceptance(x: f64, limits: SpecLimits, gauge: f64, guard: f64) -> f64 {
-    let below = |end: f64| match gauge > 0.0 {
-        true => standard_normal::cdf((end - x) / gauge),
-        false => f64::from(u8::from(x <= end)),
-    };
-    let strictly_below = |end: f64| match gauge > 0.0 {
-        true => standard_normal::cdf((end - x) / gauge),
-        false => f64::from(u8::from(x < end)),
-    };
-    let [low, high] = [limits.lower().map(|lower| lower + guard), limits.upper().map(|upper| upper - guard)];
-    (high.map_or(1.0, below) - low.map_or(0.0, strictly_below)).max(0.0)
+pub fn acceptance(x: f64, limits: KeptLimits, gauge: f64, guard: f64) -> f64 {
+    let accepted = limits.tightened(guard);
+    if gauge == 0.0 {
+        return f64::from(u8::from(accepted.contains(x)));
+    }
+    let [low, high] = accepted.ends().map(|end| standard_normal::cdf((end - x) / gauge));
+    (high - low).max(0.0)
 }
 
 /// One limit: the lower one, or the upper one as the lower one of the mirrored axis.

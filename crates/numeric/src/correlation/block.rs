@@ -73,6 +73,22 @@ impl Rows {
         self.standardised.first().map_or(0, Vec::len)
     }
 
+    /// The values of a member, in sigmas off its mean.
+    pub fn column(&self, coordinate: usize) -> &[f64] {
+        &self.standardised[coordinate]
+    }
+
+    /// For every member and row, the place of its value among the distinct values of the member, ascending.
+    pub fn ranks(&self) -> Vec<Vec<usize>> {
+        let ranks = |scores: &Vec<f64>| {
+            let mut distinct = scores.clone();
+            distinct.sort_unstable_by(f64::total_cmp);
+            distinct.dedup();
+            scores.iter().map(|score| distinct.partition_point(|other| other < score)).collect()
+        };
+        self.scores.iter().map(ranks).collect()
+    }
+
     /// The row of a normal variable, which picks it by its probability.
     fn row(&self, z: f64) -> usize {
         let n = self.len();

@@ -7,13 +7,13 @@ use super::{Distribution, DistributionError, Jacobi, Probability, StandardMoment
 /// The derivative methods need no more than this. Sampling does, and refuses such a dimension.
 ///
 /// ```
-/// use sensitol_numeric::distribution::{CentralMoments, Distribution};
+/// use crate::distribution::{CentralMoments, Distribution};
 /// // An exponential distribution with mean 10 and sigma 1.
 /// let wear = CentralMoments::new(10.0, [1.0, 2.0, 9.0, 44.0, 265.0, 1854.0, 14833.0])?;
 /// assert_eq!(wear.standard_moments().skewness, 2.0);
 /// // A kurtosis must exceed the squared skewness by 1 at least.
 /// assert!(CentralMoments::new(10.0, [1.0, 2.0, 4.5, 44.0, 265.0, 1854.0, 14833.0]).is_err());
-/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
+/// # Ok::<(), crate::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct CentralMoments {

@@ -8,6 +8,7 @@ use super::probability::checked;
 use super::{
     Distribution, DistributionError, Jacobi, Probability, Scaled, StandardMoments, finite, interval, positive,
 };
+use crate::power::Power;
 
 /// Uniform distribution over an interval whose two ends are off by the same unknown amount, uniform within an inexactness
 /// `d`: both ends outwards, or both inwards. With the half width `w` the variance is `w^2/3 + d^2/9`, and the density
@@ -20,11 +21,11 @@ use super::{
 /// Source: GUM Supplement 1 (JCGM 101:2008), 6.4.3, CTrap.
 ///
 /// ```
-/// use sensitol_numeric::distribution::{CurvilinearTrapezoid, Distribution};
+/// use crate::distribution::{CurvilinearTrapezoid, Distribution};
 /// let given = CurvilinearTrapezoid::new(-0.1, 0.1, 0.025)?;
 /// assert!((given.sigma().powi(2) - (0.01 / 3.0 + 0.025 * 0.025 / 9.0)).abs() < 1e-17);
 /// assert_eq!(given.support(), [-0.125, 0.125]);
-/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
+/// # Ok::<(), crate::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurvilinearTrapezoid {
@@ -128,7 +129,10 @@ impl Distribution for CurvilinearTrapezoid {
     }
 
     fn sigma(&self) -> f64 {
-        (self.half * self.half / 3.0 + self.inexactness * self.inexactness / 9.0).sqrt()
+        // In a unit of its own, a width of extreme size has a square.
+        let unit = Power::of(self.half);
+        let [half, inexactness] = [self.half, self.inexactness].map(|width| unit.inverse().times(width));
+        unit.times((half * half / 3.0 + inexactness * inexactness / 9.0).sqrt())
     }
 
     /// With `q = d/w` and the half width as unit: `((1 + q)^(n+1) - (1 - q)^(n+1))/(2 q (n+1)^2)`, carried out.

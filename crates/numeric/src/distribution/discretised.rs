@@ -1,6 +1,7 @@
 //! A distribution as a fine quadrature with positive weights: the stable way to moments and recurrences without a closed form.
 
 use super::{Distribution, Jacobi, StandardMoments, Uniform};
+use crate::power::Power;
 
 /// How far recurrences go that are computed once and kept.
 pub(super) const ORDER: usize = 16;
@@ -38,9 +39,12 @@ impl Discretised {
         // The rest that the rounding of the mean has left.
         let rest = self.mean(|x| x);
         self.points.iter_mut().for_each(|point| *point -= rest);
+        // In a unit of their own, points of extreme size have squares.
+        let unit = Power::of(self.points.iter().fold(0.0, |size: f64, point| size.max(point.abs())));
+        self.points.iter_mut().for_each(|point| *point = unit.inverse().times(*point));
         let sigma = self.mean(|x| x * x).sqrt();
         self.points.iter_mut().for_each(|point| *point /= sigma);
-        [mean + rest, sigma]
+        [mean + rest, unit.times(sigma)]
     }
 
     fn mean(&self, f: impl Fn(f64) -> f64) -> f64 {

@@ -16,10 +16,10 @@ use super::{
 /// setting after the other. The variance is `sigma^2 + drift^2/3`.
 ///
 /// ```
-/// use sensitol_numeric::distribution::{Distribution, Drifting};
+/// use crate::distribution::{Distribution, Drifting};
 /// let turned = Drifting::new(25.0, 0.01, 0.03)?;
 /// assert!((turned.sigma() - (0.0001f64 + 0.0003).sqrt()).abs() < 1e-16);
-/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
+/// # Ok::<(), crate::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drifting {

@@ -9,10 +9,10 @@ use super::{Distribution, DistributionError, Jacobi, Probability, StandardMoment
 /// It does not scale with a tolerance: its mean fixes it.
 ///
 /// ```
-/// use sensitol_numeric::distribution::{Distribution, Exponential};
+/// use crate::distribution::{Distribution, Exponential};
 /// let film = Exponential::new(0.0, 0.5)?;
 /// assert_eq!((film.sigma(), film.standard_moments().excess), (0.5, 6.0));
-/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
+/// # Ok::<(), crate::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Exponential {

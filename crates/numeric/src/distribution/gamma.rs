@@ -14,10 +14,10 @@ use super::{Distribution, DistributionError, Jacobi, Probability, Scaled, Standa
 /// Gamma distribution from an origin on, of given mean and sigma.
 ///
 /// ```
-/// use sensitol_numeric::distribution::{Distribution, Gamma};
+/// use crate::distribution::{Distribution, Gamma};
 /// let wear = Gamma::new(0.0, 2.0, 1.0)?; // shape 4, scale 1/2
 /// assert_eq!(wear.standard_moments().skewness, 1.0); // 2 by the root of the shape
-/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
+/// # Ok::<(), crate::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Gamma {

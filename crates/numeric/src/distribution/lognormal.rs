@@ -11,11 +11,11 @@ use super::{Distribution, DistributionError, Jacobi, Probability, Scaled, Standa
 /// normal.
 ///
 /// ```
-/// use sensitol_numeric::distribution::{Distribution, Lognormal};
+/// use crate::distribution::{Distribution, Lognormal};
 /// let runout = Lognormal::new(0.0, 1.0, 0.5)?;
 /// let v: f64 = 0.25;
 /// assert!((runout.standard_moments().skewness - (3.0 + v) * v.sqrt()).abs() < 1e-15);
-/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
+/// # Ok::<(), crate::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lognormal {

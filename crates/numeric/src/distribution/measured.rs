@@ -12,12 +12,12 @@ use super::{
 /// moments are of this law: see [`Sample`].
 ///
 /// ```
-/// use sensitol_numeric::distribution::{Distribution, Measured};
+/// use crate::distribution::{Distribution, Measured};
 /// let pin = Measured::new(&[9.98, 10.00, 10.00, 10.01, 10.03])?;
 /// assert_eq!(pin.support(), [9.98, 10.03]);
 /// let law = pin.probability().expect("measured values are known whole");
 /// assert_eq!((law.quantile(0.5), law.cdf(10.0), law.density(10.0)), (10.0, 0.6, None));
-/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
+/// # Ok::<(), crate::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {

@@ -8,19 +8,20 @@ use super::discretised::{Discretised, ORDER};
 use super::inverse::root;
 use super::probability::{checked, clamped};
 use super::{Distribution, DistributionError, Jacobi, Probability, Scaled, StandardMoments};
+use crate::power::Power;
 
 /// Values that come from one of several sources, each with its own distribution and its share.
 ///
 /// ```
 /// use std::sync::Arc;
-/// use sensitol_numeric::distribution::{Distribution, Mixture, Normal, Part};
-/// let part = |name: &str, weight: f64, mean: f64| -> Result<Part, sensitol_numeric::distribution::DistributionError> {
+/// use crate::distribution::{Distribution, Mixture, Normal, Part};
+/// let part = |name: &str, weight: f64, mean: f64| -> Result<Part, crate::distribution::DistributionError> {
 ///     Ok(Part { name: name.into(), weight, distribution: Arc::new(Normal::new(mean, 0.1)?) })
 /// };
 /// let bore = Mixture::new(vec![part("machine 1", 3.0, 10.0)?, part("machine 2", 1.0, 10.4)?])?;
 /// assert!((bore.mean() - 10.1).abs() < 1e-14);
 /// assert!((bore.sigma().powi(2) - (0.01 + 0.75 * 0.25 * 0.16)).abs() < 1e-14);
-/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
+/// # Ok::<(), crate::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct Mixture {
@@ -31,6 +32,68 @@ pub struct Mixture {
     moments: StandardMoments,
     /// As far as the parts' own recurrences go.
     jacobi: Jacobi,
+    atoms: Atoms,
+}
+
+/// Values with a probability of their own, ascending.
+#[derive(Debug, Clone)]
+struct Atoms {
+    values: Vec<f64>,
+    shares: Vec<f64>,
+    /// The probability of at most each of the values, and of more.
+    upto: Vec<f64>,
+    above: Vec<f64>,
+    /// Whether there is nothing else.
+    whole: bool,
+}
+
+impl Atoms {
+    /// Of all parts, whose weights sum to 1.
+    fn of(parts: &[Part]) -> Self {
+        /// Shares are rounded.
+        const WHOLE: f64 = 1.0 - 1e-12;
+        let own = |part: &Part| -> Vec<(f64, f64)> {
+            Mixture::law(part).atoms().into_iter().map(|(x, share)| (x, part.weight * share)).collect()
+        };
+        let mut atoms: Vec<(f64, f64)> = parts.iter().flat_map(own).collect();
+        atoms.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        atoms.dedup_by(|next, kept| {
+            let same = next.0 == kept.0;
+            kept.1 += if same { next.1 } else { 0.0 };
+            same
+        });
+        let (values, shares): (Vec<f64>, Vec<f64>) = atoms.into_iter().unzip();
+        let running = |sum: &mut f64, share: &f64| {
+            *sum += share;
+            Some(*sum)
+        };
+        let upto: Vec<f64> = shares.iter().scan(0.0, running).collect();
+        let mut above: Vec<f64> = shares.iter().rev().scan(0.0, running).collect();
+        above.reverse();
+        let shifted = usize::from(!above.is_empty());
+        above.rotate_left(shifted);
+        above.last_mut().into_iter().for_each(|last| *last = 0.0);
+        let whole = upto.last().is_some_and(|all| *all >= WHOLE);
+        Self { values, shares, upto, above, whole }
+    }
+
+    /// The least value with at least this probability at and below it, or with no more than it above.
+    fn inverse(&self, p: f64, upper: bool) -> f64 {
+        /// Sums of shares are rounded.
+        const ROUNDING: f64 = 1e-14;
+        let place = match upper {
+            true => self.above.partition_point(|&above| above > p * (1.0 + ROUNDING)),
+            false => self.upto.partition_point(|&upto| upto < p * (1.0 - ROUNDING)),
+        };
+        self.values[place.min(self.values.len() - 1)]
+    }
+
+    /// The value that only rounding separates from this one; itself where there is none.
+    fn snapped(&self, x: f64, rounding: f64) -> f64 {
+        let after = self.values.partition_point(|&value| value < x);
+        let beside = self.values[after.saturating_sub(1)..].iter().take(2);
+        beside.copied().find(|value| (value - x).abs() <= rounding).unwrap_or(x)
+    }
 }
 
 /// One source of a mixture.
@@ -44,6 +107,8 @@ pub struct Part {
     pub distribution: Arc<dyn Distribution>,
 }
 
+/// Part of sigma within which a quantile is at a value with a probability of its own: a search ends next to the jump.
+const ON_AN_ATOM: f64 = 1e-12;
 /// Part of sigma below which two bounds of a quantile are one.
 const SAME: f64 = 1e-15;
 
@@ -65,7 +130,11 @@ impl Mixture {
         parts.iter_mut().for_each(|part| part.weight /= total);
         let first = parts[0].distribution.mean();
         let mean = first + weighted(&parts, |part| part.mean() - first);
-        let sigma = weighted(&parts, |part| (part.mean() - mean).powi(2) + part.sigma().powi(2)).sqrt();
+        // In a unit of their own, deviations of extreme size have squares.
+        let size = |part: &Part| (part.distribution.mean() - mean).abs().max(part.distribution.sigma());
+        let unit = Power::of(parts.iter().map(size).fold(0.0, f64::max));
+        let square = |deviation: f64| unit.inverse().times(deviation).powi(2);
+        let sigma = unit.times(weighted(&parts, |part| square(part.mean() - mean) + square(part.sigma())).sqrt());
         let moments = standard_moments(&parts, mean, sigma);
         if parts.iter().any(|part| !part.distribution.standard_moments().are_finite()) {
             let reason =
@@ -76,7 +145,8 @@ impl Mixture {
             return Err(DistributionError::NoLaw { reason: "its moments are beyond the range of a double".into() });
         }
         let jacobi = jacobi(&parts, mean, sigma);
-        Ok(Self { parts, mean, sigma, moments, jacobi })
+        let atoms = Atoms::of(&parts);
+        Ok(Self { parts, mean, sigma, moments, jacobi, atoms })
     }
 
     fn law(part: &Part) -> &dyn Probability {
@@ -91,6 +161,9 @@ impl Mixture {
     fn inverse(&self, p: f64, upper: bool) -> f64 {
         if checked(p).is_nan() {
             return f64::NAN;
+        }
+        if self.atoms.whole {
+            return self.atoms.inverse(p, upper);
         }
         let quantiles = self.parts.iter().map(|part| {
             let law = Self::law(part);
@@ -112,7 +185,8 @@ impl Mixture {
             let error = libm::log(tail / p);
             if upper { (-error, slope) } else { (error, slope) }
         };
-        self.mean + root([low - self.mean, high - self.mean], 0.5 * (low + high) - self.mean, off)
+        let found = self.mean + root([low - self.mean, high - self.mean], 0.5 * (low + high) - self.mean, off);
+        self.atoms.snapped(found, ON_AN_ATOM * self.sigma)
     }
 }
 
@@ -226,17 +300,7 @@ impl Probability for Mixture {
     }
 
     fn atoms(&self) -> Vec<(f64, f64)> {
-        let own = |part: &Part| -> Vec<(f64, f64)> {
-            Self::law(part).atoms().into_iter().map(|(x, share)| (x, part.weight * share)).collect()
-        };
-        let mut atoms: Vec<(f64, f64)> = self.parts.iter().flat_map(own).collect();
-        atoms.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-        atoms.dedup_by(|next, kept| {
-            let same = next.0 == kept.0;
-            kept.1 += if same { next.1 } else { 0.0 };
-            same
-        });
-        atoms
+        self.atoms.values.iter().copied().zip(self.atoms.shares.iter().copied()).collect()
     }
 
     fn smooth_density(&self, x: f64) -> f64 {

@@ -12,10 +12,10 @@ use super::{
 /// Normal distribution of given mean and sigma.
 ///
 /// ```
-/// use sensitol_numeric::distribution::{Distribution, Normal};
+/// use crate::distribution::{Distribution, Normal};
 /// let bore = Normal::new(25.0, 0.01)?;
 /// assert_eq!(bore.standard_moments().m6, 15.0);
-/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
+/// # Ok::<(), crate::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Normal {

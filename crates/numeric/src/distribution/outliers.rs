@@ -1,6 +1,7 @@
 //! Values that do not belong to the others.
 
 use crate::pearson::Pearson;
+use crate::power::Power;
 
 /// The share of clean normal samples in which some value is named all the same.
 const FALSE_ALARMS: f64 = 0.01;
@@ -19,7 +20,7 @@ const LEAST: usize = 7;
 /// a strong skewness has values that a normal law has not: they are named too, and it is for people to say what they are.
 ///
 /// ```
-/// use sensitol_numeric::distribution::outliers::outliers;
+/// use crate::distribution::outliers::outliers;
 /// let mut values: Vec<f64> = (0..40).map(|i| 10.0 + 0.01 * f64::from(i % 7)).collect();
 /// values[3] = 10.9; // a slip of the pen
 /// assert_eq!(outliers(&values), [3]);
@@ -40,13 +41,16 @@ pub fn outliers(values: &[f64]) -> Vec<usize> {
 pub fn extreme(values: &[f64], level: f64, most: usize) -> Vec<usize> {
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_unstable_by(|&a, &b| values[a].total_cmp(&values[b]));
+    // In a unit of their own, deviations of extreme size have squares.
+    let ends = [order.first(), order.last()].map(|end| end.map_or(0.0, |&i| values[i]));
+    let unit = Power::of(ends[1] - ends[0]).inverse();
     let (mut found, mut taken) = (0, Vec::new());
     let mut left = &order[..];
     while taken.len() < most && left.len() >= LEAST {
         let m = left.len() as f64;
         let origin = values[left[left.len() / 2]];
         let mean = left.iter().map(|&i| values[i] - origin).sum::<f64>() / m;
-        let off = |i: usize| values[i] - origin - mean;
+        let off = |i: usize| unit.times(values[i] - origin - mean);
         let sigma = (left.iter().map(|&i| off(i) * off(i)).sum::<f64>() / (m - 1.0)).sqrt();
         let (first, last) = (left[0], left[left.len() - 1]);
         let low = off(first).abs() > off(last).abs();

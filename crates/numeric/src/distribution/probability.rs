@@ -13,13 +13,13 @@ use super::standard_normal;
 /// unless a distribution says otherwise.
 ///
 /// ```
-/// use sensitol_numeric::distribution::{Distribution, Normal};
+/// use crate::distribution::{Distribution, Normal};
 /// let bore = Normal::new(25.0, 0.01)?;
 /// let law = bore.probability().expect("a normal distribution is known whole");
 /// assert_eq!(law.cdf(25.0), 0.5);
 /// assert!((law.sf(25.03) - 1.349_898_031_630_095e-3).abs() < 1e-15);
 /// assert!((law.upper_quantile(1e-9) - 25.0 - 0.059_978_070_150_076_87).abs() < 1e-14);
-/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
+/// # Ok::<(), crate::distribution::DistributionError>(())
 /// ```
 pub trait Probability: Send + Sync {
     /// Density per unit of `x`; None where there is none, as for measured values, which are atoms.

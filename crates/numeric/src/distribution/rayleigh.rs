@@ -11,10 +11,10 @@ use super::{Distribution, DistributionError, Jacobi, Probability, StandardMoment
 /// It is the Weibull distribution of shape 2, and does not scale with a tolerance: its mean fixes it.
 ///
 /// ```
-/// use sensitol_numeric::distribution::{Distribution, Rayleigh};
+/// use crate::distribution::{Distribution, Rayleigh};
 /// let offset = Rayleigh::new(0.0, 1.0)?;
 /// assert!((offset.sigma() - (4.0 / std::f64::consts::PI - 1.0).sqrt()).abs() < 1e-15);
-/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
+/// # Ok::<(), crate::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rayleigh {

@@ -77,7 +77,7 @@ impl Jacobi {
     }
 
     /// Whether it describes its distribution whole: one of as many atoms as its order.
-    pub(super) fn is_whole(&self) -> bool {
+    pub(crate) fn is_whole(&self) -> bool {
         self.beta.last() == Some(&0.0)
     }
 
@@ -127,12 +127,12 @@ impl Rule {
     /// is exact up to degree 8.
     ///
     /// ```
-    /// use sensitol_numeric::distribution::{Distribution, Exponential};
-    /// use sensitol_numeric::distribution::rule::Rule;
+    /// use crate::distribution::{Distribution, Exponential};
+    /// use crate::distribution::rule::Rule;
     /// // E u^5 = 44 of an exponential distribution, by three nodes.
     /// let rule = Rule::of(&Exponential::new(0.0, 1.0)?, 3);
     /// assert!((rule.mean(|u| u.powi(5)) - 44.0).abs() < 1e-12);
-    /// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
+    /// # Ok::<(), crate::distribution::DistributionError>(())
     /// ```
     pub fn of(distribution: &dyn Distribution, nodes: usize) -> Self {
         let jacobi = distribution.jacobi(nodes);
@@ -145,10 +145,14 @@ impl Rule {
     /// The rule with the mean and one node on either side that match moments 1 to 4; where one of these would lie outside
     /// the support, the Gauss rule of three nodes, which matches five.
     ///
-    /// The nodes are `s/2 +- sqrt(f - 3 s^2/4)` with skewness `s` and kurtosis `f`. A distribution of two atoms has these two.
+    /// The nodes are `s/2 +- sqrt(f - 3 s^2/4)` with skewness `s` and kurtosis `f`. A distribution of two or three atoms has these.
     ///
     /// Source: Seo and Kwak (2002), equations for the levels and weights of an input.
     pub fn three_point(distribution: &dyn Distribution) -> Self {
+        let all = distribution.jacobi(3);
+        if all.is_whole() {
+            return all.gauss();
+        }
         let (mean, sigma) = (distribution.mean(), distribution.sigma());
         let [lower, upper] = distribution.support().map(|edge| (edge - mean) / sigma);
         let matched = distribution.jacobi(2).gauss_with_mean();
@@ -159,10 +163,10 @@ impl Rule {
     /// `E[f(u)]` by this rule.
     ///
     /// ```
-    /// use sensitol_numeric::distribution::{Distribution, Normal};
+    /// use crate::distribution::{Distribution, Normal};
     /// let rule = Normal::new(0.0, 1.0)?.jacobi(5).gauss();
     /// assert!((rule.mean(|u| u.powi(8)) - 105.0).abs() < 1e-11);
-    /// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
+    /// # Ok::<(), crate::distribution::DistributionError>(())
     /// ```
     pub fn mean(&self, f: impl Fn(f64) -> f64) -> f64 {
         self.nodes.iter().zip(&self.weights).map(|(&u, &weight)| weight * f(u)).sum()

@@ -50,11 +50,11 @@ impl Sample {
     /// When a value is not finite, or there are not two different ones.
     ///
     /// ```
-    /// use sensitol_numeric::distribution::sample::Sample;
+    /// use crate::distribution::sample::Sample;
     /// let sample = Sample::new(&[2.0, 1.0, 2.0, 3.0])?;
     /// assert_eq!((sample.len(), sample.values(), sample.counts()), (4, &[1.0, 2.0, 3.0][..], &[1, 2, 1][..]));
     /// assert_eq!((sample.mean(), sample.sigma()), (2.0, 0.5f64.sqrt()));
-    /// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
+    /// # Ok::<(), crate::distribution::DistributionError>(())
     /// ```
     pub fn new(measured: &[f64]) -> Result<Self, DistributionError> {
         for &value in measured {
@@ -112,7 +112,7 @@ impl Sample {
     }
 
     /// How many measured values are at most each of the distinct ones.
-    pub(crate) fn upto(&self) -> &[usize] {
+    pub fn upto(&self) -> &[usize] {
         &self.upto
     }
 

@@ -13,13 +13,13 @@ use super::{Distribution, DistributionError, Jacobi, Probability, StandardMoment
 /// out, so that the probability is 1 in all. Over scores most laws are nearly straight, which they are not over probabilities.
 ///
 /// ```
-/// use sensitol_numeric::distribution::{Distribution, Tabulated};
+/// use crate::distribution::{Distribution, Tabulated};
 /// // A straight line over the scores is a normal distribution, cut at the ends of the table.
 /// let pin = Tabulated::new(&[-6.0, 0.0, 6.0], &[9.94, 10.0, 10.06])?;
 /// assert!((pin.sigma() - 0.01).abs() < 1e-8);
 /// let law = pin.probability().expect("a table is known whole");
 /// assert!((law.sf(10.03) - 1.349_898e-3).abs() < 1e-8);
-/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
+/// # Ok::<(), crate::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tabulated {

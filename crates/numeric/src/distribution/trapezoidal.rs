@@ -12,10 +12,10 @@ use super::{
 /// sum of two uniform variables.
 ///
 /// ```
-/// use sensitol_numeric::distribution::{Distribution, Trapezoidal, Uniform};
+/// use crate::distribution::{Distribution, Trapezoidal, Uniform};
 /// let flat = Trapezoidal::new(16.0, 18.0, 1.0)?;
 /// assert!((flat.sigma() - Uniform::new(16.0, 18.0)?.sigma()).abs() < 1e-15);
-/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
+/// # Ok::<(), crate::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Trapezoidal {

@@ -12,11 +12,11 @@ use super::{
 /// the other end.
 ///
 /// ```
-/// use sensitol_numeric::distribution::{Distribution, Triangular};
+/// use crate::distribution::{Distribution, Triangular};
 /// let slot = Triangular::new(9.9, 10.0, 10.1)?;
 /// assert!((slot.sigma() - 0.1 / 6f64.sqrt()).abs() < 1e-15);
 /// assert_eq!(slot.standard_moments().excess, -0.6);
-/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
+/// # Ok::<(), crate::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Triangular {

@@ -21,11 +21,11 @@ use super::{
 /// wide beside the limits leaves a uniform distribution, a narrow one the normal itself.
 ///
 /// ```
-/// use sensitol_numeric::distribution::{Distribution, TruncatedNormal};
+/// use crate::distribution::{Distribution, TruncatedNormal};
 /// // Sorted at two sigma: the variance is 1 - 4 density(2)/P(|z| < 2).
 /// let pin = TruncatedNormal::new(-2.0, 2.0, 0.0, 1.0)?;
 /// assert!((pin.sigma() - 0.879_625_661_034_239_8).abs() < 1e-14);
-/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
+/// # Ok::<(), crate::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct TruncatedNormal {

@@ -12,10 +12,10 @@ use super::{
 /// One of two values, either with probability one half: a pin that lies on one side of its hole or the other.
 ///
 /// ```
-/// use sensitol_numeric::distribution::{Distribution, TwoValues};
+/// use crate::distribution::{Distribution, TwoValues};
 /// let side = TwoValues::new(-0.05, 0.05)?;
 /// assert_eq!((side.mean(), side.sigma()), (0.0, 0.05));
-/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
+/// # Ok::<(), crate::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TwoValues {

@@ -14,10 +14,10 @@ use super::{
 /// It describes what stays near either end, such as a size that is reworked until it just fits.
 ///
 /// ```
-/// use sensitol_numeric::distribution::{Distribution, UShaped};
+/// use crate::distribution::{Distribution, UShaped};
 /// let reworked = UShaped::new(9.0, 11.0)?;
 /// assert!((reworked.sigma() - 0.6f64.sqrt()).abs() < 1e-15);
-/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
+/// # Ok::<(), crate::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UShaped {

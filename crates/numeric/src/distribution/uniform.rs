@@ -12,11 +12,11 @@ use super::{
 /// Uniform distribution between two limits.
 ///
 /// ```
-/// use sensitol_numeric::distribution::{Distribution, Uniform};
+/// use crate::distribution::{Distribution, Uniform};
 /// let angle = Uniform::new(16.0, 18.0)?;
 /// assert_eq!(angle.mean(), 17.0);
 /// assert!((angle.sigma() - 1.0 / 3f64.sqrt()).abs() < 1e-15);
-/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
+/// # Ok::<(), crate::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Uniform {

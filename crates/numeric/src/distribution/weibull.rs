@@ -12,11 +12,11 @@ use super::{Distribution, DistributionError, Jacobi, Probability, Scaled, Standa
 /// distance `t` from the origin in units of the scale.
 ///
 /// ```
-/// use sensitol_numeric::distribution::{Distribution, Weibull};
+/// use crate::distribution::{Distribution, Weibull};
 /// // Shape 1 is the exponential distribution.
 /// let life = Weibull::new(0.0, 3.0, 3.0)?;
 /// assert!((life.standard_moments().skewness - 2.0).abs() < 1e-13);
-/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
+/// # Ok::<(), crate::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Weibull {

@@ -188,7 +188,7 @@ const SHAFT_J: [[i32; 13]; 2] =
 /// Lower deviation of j8, without its sign; it is there to 3 mm.
 const SHAFT_J8: i32 = 6;
 
-/// The place of a size among upper ends that include it; it is no larger than the last.
+/// The place of a size among upper ends that include it; it is at most the last.
 fn place(ends: &[f64], nominal: f64) -> usize {
     ends.partition_point(|&end| end < nominal)
 }

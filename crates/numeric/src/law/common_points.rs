@@ -23,6 +23,7 @@ use faer::{Mat, Side};
 use super::input::Input;
 use super::points::mixed;
 use super::polynomial::value;
+use super::steps::Groups;
 use super::{LawFigure, LawTail, SurfaceLaw};
 use crate::characteristic::SpecLimits;
 use crate::correlation::Block;
@@ -38,6 +39,10 @@ const SEED: u64 = 1;
 /// Deviations of what a direction does not explain, by which its cut is nearer than the limit: of what breaks the limit a
 /// thousandth is left to the own points.
 const NEARER: f64 = 3.0;
+/// Values of surfaces that are listed at most: of a hundred inputs and ten characteristics 2^14 combinations.
+const LISTED: usize = 1 << 24;
+/// Combinations that are taken together.
+const ROWS: usize = 1 << 10;
 /// A direction that explains less of the variance serves no cut.
 const LEAST_EXPLAINED: f64 = 0.25;
 
@@ -172,25 +177,63 @@ impl<'a> CommonPoints<'a> {
         let mut columns = self.scores(replicate);
         let weights = self.draw(&mut columns);
         self.inputs(&mut columns);
-        let mut broken = vec![0usize; POINTS];
-        for (law, limits) in self.characteristics {
-            let mut own: Vec<&[f64]> = vec![&[]; law.given.len()];
-            for ((position, _), column) in self.laws.iter().zip(&columns) {
-                if let Some(at) = law.given.places.get(*position).copied().flatten() {
-                    own[at] = column;
-                }
-            }
-            for (broken, value) in broken.iter_mut().zip(law.given.values(&own, POINTS)) {
-                *broken += usize::from(!limits.contains(value));
-            }
-        }
         let mut counts = Counts::default();
+        let broken = self.broken(&columns, POINTS);
         for (broken, weight) in broken.into_iter().zip(weights).filter(|(broken, _)| *broken > 0) {
             counts.broken += broken as f64 * weight / POINTS as f64;
             counts.beyond += (broken - 1) as f64 * weight / POINTS as f64;
             counts.squares += broken as f64 * weight * weight / (POINTS * POINTS) as f64;
         }
         counts
+    }
+
+    /// How many laws break a limit at every point: a column for every input.
+    fn broken(&self, columns: &[Vec<f64>], points: usize) -> Vec<usize> {
+        let mut broken = vec![0usize; points];
+        for (law, limits) in self.characteristics {
+            let mut own: Vec<&[f64]> = vec![&[]; law.given.len()];
+            for ((position, _), column) in self.laws.iter().zip(columns) {
+                if let Some(at) = law.given.places.get(*position).copied().flatten() {
+                    own[at] = column;
+                }
+            }
+            let kept = law.kept(*limits);
+            for (broken, value) in broken.iter_mut().zip(law.given.values(&own, points)) {
+                *broken += usize::from(!kept.contains(value));
+            }
+        }
+        broken
+    }
+
+    /// The mean of the broken limits beyond the first over all combinations of values; None where an input has a density, and where there
+    /// are too many of them.
+    pub(super) fn listed(&self) -> Option<LawFigure> {
+        if !self.laws.iter().all(|(_, input)| input.is_discrete()) {
+            return None;
+        }
+        let groups = Groups::of(self.laws.iter().map(|(_, input)| input.as_ref()), &self.members, &self.blocks)?;
+        let terms: usize = self.characteristics.iter().map(|(law, _)| law.given.len()).sum();
+        groups.count(LISTED / terms.max(1))?;
+        let (mut columns, mut weights) = (vec![Vec::with_capacity(ROWS); self.laws.len()], Vec::with_capacity(ROWS));
+        let mut sum = 0.0;
+        let mut take = |columns: &mut Vec<Vec<f64>>, weights: &mut Vec<f64>| {
+            let broken = self.broken(columns, weights.len());
+            let beyond =
+                broken.iter().zip(weights.iter()).map(|(broken, weight)| broken.saturating_sub(1) as f64 * weight);
+            sum += beyond.sum::<f64>();
+            columns.iter_mut().for_each(Vec::clear);
+            weights.clear();
+        };
+        groups.each(&mut vec![0.0; self.laws.len()], |z, weight| {
+            columns.iter_mut().zip(z).for_each(|(column, z)| column.push(*z));
+            weights.push(weight);
+            if weights.len() == ROWS {
+                take(&mut columns, &mut weights);
+            }
+        });
+        take(&mut columns, &mut weights);
+        // Shares are rounded, and so is every product of them.
+        Some(LawFigure::new(sum, 4.0 * f64::EPSILON * (self.laws.len() + 1) as f64 * sum))
     }
 
     /// Independent normal scores of the own law: a column for every input.

@@ -61,7 +61,7 @@ pub(super) struct Contour {
 struct Values {
     /// `M(s)/M(theta)`; its logarithm where the contour is bent.
     at: Vec<Complex>,
-    /// Whether the tables of a tree would have been too large to go on.
+    /// Whether sums over nodes resolve no point farther out.
     ended: bool,
 }
 
@@ -71,7 +71,7 @@ impl Side {
             LawTail::Upper => transform.domain[1],
             LawTail::Lower => -transform.domain[0],
         };
-        let kind = match (transform.is_closed(), transform.trees.is_empty()) {
+        let kind = match (transform.is_closed(), transform.are_sums_closed()) {
             (true, _) => 0,
             (_, true) => 1,
             _ => 2,
@@ -160,7 +160,7 @@ impl Contour {
         Complex::new(self.theta + self.bend * t * t, t)
     }
 
-    /// `exp(K(s) - K(theta) - (s - theta) y)` at the points up to `count`; fewer where a tree ended it.
+    /// `exp(K(s) - K(theta) - (s - theta) y)` at the points up to `count`; fewer where sums over nodes ended it.
     pub(super) fn integrand(&self, transform: &Transform, y: f64, count: usize) -> Vec<Complex> {
         let mut values = self.values.lock().unwrap_or_else(PoisonError::into_inner);
         while values.at.len() < count && !values.ended {
@@ -177,18 +177,18 @@ impl Contour {
     fn extend(&self, transform: &Transform, values: &mut Values) {
         let first = values.at.len();
         let mut block = vec![Complex::ONE; BLOCK];
-        if self.bend == 0.0 {
-            let from = self.step * first as f64;
-            if transform.ratios(self.theta, &self.logs, from, self.step, &mut block).is_none() {
-                values.ended = true;
-                return;
+        match self.bend == 0.0 {
+            true => {
+                let from = self.step * first as f64;
+                let resolved = transform.ratios(self.theta, &self.logs, from, self.step, &mut block);
+                block.truncate(resolved);
             }
-        } else {
-            let at_theta = transform.forms.log(Complex::from(self.theta));
-            for (i, value) in block.iter_mut().enumerate() {
-                *value = transform.forms.log(self.s(first + i)) - at_theta;
+            false => {
+                let points: Vec<Complex> = (0..BLOCK).map(|i| self.s(first + i)).collect();
+                block = transform.bent_logs(self.theta, &points);
             }
         }
+        values.ended = block.len() < BLOCK;
         values.at.extend(block);
     }
 }

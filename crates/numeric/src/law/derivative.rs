@@ -9,6 +9,7 @@ use super::complex::Complex;
 use super::contour::Contour;
 use super::forms::Block;
 use super::inversion::Inversion;
+use super::perturbed_form::PerturbedForm;
 use super::polynomial::{derivative, value};
 use super::single_sum::BLOCK;
 use super::surface::Surface;
@@ -26,7 +27,7 @@ pub(super) fn tail_derivatives(law: &SurfaceLaw, y: f64, tail: LawTail) -> Optio
     let own: Vec<LawFigure> = match &law.kind {
         _ if y <= least || y >= most => vec![nothing; law.surface.len()],
         Kind::Point(_) | Kind::Steps(_) => return None,
-        Kind::Exact(inversion) => exact_derivatives(inversion, &law.surface, y, tail),
+        Kind::Exact(exact) => exact_derivatives(&exact.inversion, &law.surface, y, tail),
         Kind::Single(single) => single.derivatives(y, tail),
         Kind::Sampled(sampled) => sampled.derivatives(y, tail, law.mean),
     };
@@ -68,8 +69,15 @@ pub(super) fn exact_derivatives(law: &Inversion, surface: &Surface, y: f64, tail
                 }
             }
         }
+        for form in &transform.perturbed {
+            let ratios =
+                |surface: &Surface| Some(form_ratios(&PerturbedForm::of(surface, &form.members)?, contour, count));
+            by_differences(&form.members, surface, ratios, &mut changes);
+        }
         for tree in &transform.trees {
-            of_tree(tree, surface, contour, count, &mut changes);
+            let members = tree.sorted();
+            let ratios = |surface: &Surface| Some(tree_ratios(&Tree::of(surface, &members)?, contour, count));
+            by_differences(&members, surface, ratios, &mut changes);
         }
         changes
     })
@@ -146,29 +154,44 @@ impl Work for BlockChanges<'_> {
     }
 }
 
-/// By differences of the transform, with the same contour: 1e-8 relative.
-fn of_tree(tree: &Tree, surface: &Surface, contour: &Contour, count: usize, changes: &mut [Vec<Complex>]) {
+/// The transform of a component along a contour by its value at the tilt, and the logarithm of that.
+type Ratios = (Vec<Complex>, f64);
+
+fn tree_ratios(tree: &Tree, contour: &Contour, count: usize) -> Ratios {
+    let mut all = vec![Complex::ONE; count];
+    for (block, out) in all.chunks_mut(BLOCK).enumerate() {
+        let from = contour.step * (block * BLOCK) as f64;
+        let resolved = tree.multiply(contour.theta, from, contour.step, out);
+        out[resolved..].fill(Complex::new(f64::NAN, 0.0));
+    }
+    (all, tree.log(contour.theta))
+}
+
+fn form_ratios(form: &PerturbedForm, contour: &Contour, count: usize) -> Ratios {
+    let points: Vec<Complex> = (0..count).map(|index| contour.s(index)).collect();
+    let mut all: Vec<Complex> = form.logs(contour.theta, &points).iter().map(|log| log.exp()).collect();
+    all.resize(count, Complex::new(f64::NAN, 0.0));
+    (all, form.log(contour.theta))
+}
+
+/// Changes of the transform of a component by differences along the same contour: 1e-8 relative.
+fn by_differences(
+    members: &[usize],
+    surface: &Surface,
+    ratios: impl Fn(&Surface) -> Option<Ratios>,
+    changes: &mut [Vec<Complex>],
+) {
     const PART: f64 = 1e-4;
-    let ratios = |tree: &Tree| {
-        let mut all = vec![Complex::ONE; count];
-        for (block, out) in all.chunks_mut(BLOCK).enumerate() {
-            let from = contour.step * (block * BLOCK) as f64;
-            if !tree.multiply(contour.theta, from, contour.step, out) {
-                out.fill(Complex::new(f64::NAN, 0.0));
-            }
-        }
-        (all, tree.log(contour.theta))
-    };
-    let (own, _) = ratios(tree);
-    for j in tree.sorted() {
-        let scaled = |by: f64| Tree::of(&surface.scaled(j, by), &tree.sorted()).map(|tree| ratios(&tree));
+    let Some((own, _)) = ratios(surface) else { return };
+    for &j in members {
+        let scaled = |by: f64| ratios(&surface.scaled(j, by));
         let (Some((more, log_more)), Some((less, log_less))) = (scaled(1.0 + PART), scaled(1.0 - PART)) else {
             continue;
         };
         let level = (log_more - log_less) / (2.0 * PART);
         for (at, change) in changes[j].iter_mut().enumerate() {
             let turn = (more[at] - less[at]) * (0.5 / PART) / own[at];
-            // Where the transform has vanished its change does not count.
+            // Where the transform has vanished, or is not resolved, its change does not count.
             *change = if turn.is_finite() { turn + Complex::from(level) } else { Complex::ZERO };
         }
     }

@@ -7,9 +7,9 @@
 
 use std::sync::Arc;
 
-use faer::Mat;
+use faer::{Mat, Side};
 
-use super::forms::factor;
+use super::forms::{factor, form};
 use super::input::Input;
 use super::polynomial::{Quartic, value};
 use super::surface::Surface;
@@ -74,10 +74,18 @@ impl Direction {
             Some(best) if best.1 >= next.1 => Some(best),
             _ => Some(next),
         });
+        let norm = strength.sqrt();
+        steepest.iter_mut().for_each(|d| *d /= if norm > 0.0 { norm } else { 1.0 });
+        // Slopes that change their signs have no mean: then the direction in which they are steepest in the mean square.
+        let strength = match swinging(surface, &block, &axes, &steepest) {
+            Some((direction, squares)) => {
+                steepest = direction;
+                squares
+            }
+            None => strength,
+        };
         let by_normal = m > 0 && (strength > 0.0 || other.is_none()) && other.is_none_or(|(_, most)| strength >= most);
         if by_normal && strength > 0.0 {
-            let norm = strength.sqrt();
-            steepest.iter_mut().for_each(|d| *d /= norm);
             axes = reflected(&axes, &steepest);
         }
         let along = if by_normal { Some(block[0]) } else { other.map(|(j, _)| j) };
@@ -261,6 +269,48 @@ const BINOMIAL: [[f64; 5]; 5] = [
     [1.0, 3.0, 3.0, 1.0, 0.0],
     [1.0, 4.0, 6.0, 4.0, 1.0],
 ];
+
+/// The direction of the largest mean square of the slope among normal inputs, and that mean square; None where the mean slope leads nearly
+/// as far, or inputs are many.
+///
+/// ```text
+/// E[dy/dz_j dy/dz_k] = sum_n n! d_jn d_kn rho_jk^n,   dy/dz_j = sum_n d_jn He_n(z_j) + sum_k b_jk z_k
+/// ```
+fn swinging(surface: &Surface, block: &[usize], axes: &Mat<f64>, steepest: &[f64]) -> Option<(Vec<f64>, f64)> {
+    /// Inputs at most: the direction is an eigenvector.
+    const MOST: usize = 64;
+    /// Factor of the mean squares from which on another direction is worth it.
+    const WORTH: f64 = 2.0;
+    let m = block.len();
+    if m == 0 || m > MOST {
+        return None;
+    }
+    let correlation = axes * axes.transpose();
+    let mut linear = form(surface, block) * 2.0;
+    block.iter().enumerate().for_each(|(a, &j)| linear[(a, a)] += 12.0 * surface.parts[j][4]);
+    let by_linear = &linear * &correlation * linear.transpose();
+    let inside = |k: &usize| block.binary_search(k).is_ok();
+    let squares = Mat::from_fn(m, m, |a, b| {
+        let ([_, c1, _, c3, c4], [_, d1, _, d3, d4], rho) =
+            (surface.parts[block[a]], surface.parts[block[b]], correlation[(a, b)]);
+        let beside = surface.neighbours[block[a]].iter().filter(|(k, _)| !inside(k));
+        let outside: f64 = beside.map(|&(k, product)| product * surface.product(block[b], k)).sum();
+        let means = (c1 + 3.0 * c3) * (d1 + 3.0 * d3);
+        means + by_linear[(a, b)] + outside + 18.0 * c3 * d3 * rho * rho + 96.0 * c4 * d4 * rho.powi(3)
+    });
+    let squares = axes.transpose() * &squares * axes;
+    let eigen = squares.self_adjoint_eigen(Side::Lower).ok()?;
+    let most = eigen.S()[m - 1];
+    let own: f64 = (0..m).map(|a| (0..m).map(|b| steepest[a] * squares[(a, b)] * steepest[b]).sum::<f64>()).sum();
+    if most.is_nan() || most <= WORTH * own {
+        return None;
+    }
+    let vector: Vec<f64> = (0..m).map(|a| eigen.U()[(a, m - 1)]).collect();
+    // Of the two signs that in which the largest component is positive.
+    let largest =
+        vector.iter().fold(0.0f64, |largest, d| if d.abs() > largest.abs() * (1.0 + 1e-9) { *d } else { largest });
+    Some((vector.iter().map(|d| d * largest.signum()).collect(), most))
+}
 
 /// The axes after a reflection that makes this unit vector the first of them.
 fn reflected(axes: &Mat<f64>, unit: &[f64]) -> Mat<f64> {

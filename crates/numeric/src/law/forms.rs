@@ -55,15 +55,7 @@ impl Block {
             return Some(Self { members, axes: None, curvatures, linear: slopes.clone(), slopes, form: None });
         }
         let m = members.len();
-        let mut form = Mat::<f64>::zeros(m, m);
-        for (a, &j) in members.iter().enumerate() {
-            form[(a, a)] = surface.parts[j][2];
-            for &(k, product) in &surface.neighbours[j] {
-                if let Ok(b) = members.binary_search(&k) {
-                    form[(a, b)] = 0.5 * product;
-                }
-            }
-        }
+        let form = form(surface, members);
         let factor = factor(surface, members)?;
         let eigen = match &factor {
             Some(factor) => (factor.transpose() * &form * factor).self_adjoint_eigen(Side::Lower),
@@ -85,6 +77,21 @@ impl Block {
     pub(super) fn images(&self) -> Option<Mat<f64>> {
         Some(self.form.as_ref()? * self.axes.as_ref()?)
     }
+}
+
+/// `H` of the members: curvatures, with half the products beside them.
+pub(super) fn form(surface: &Surface, members: &[usize]) -> Mat<f64> {
+    let m = members.len();
+    let mut form = Mat::<f64>::zeros(m, m);
+    for (a, &j) in members.iter().enumerate() {
+        form[(a, a)] = surface.parts[j][2];
+        for &(k, product) in &surface.neighbours[j] {
+            if let Ok(b) = members.binary_search(&k) {
+                form[(a, b)] = 0.5 * product;
+            }
+        }
+    }
+    form
 }
 
 /// `L` with `L L'` the correlation of the members; None inside where they are uncorrelated.
@@ -136,12 +143,15 @@ impl Forms {
 
     /// Where the parabolas together have their vertex, if all of the form is curved enough that its transform decays like a
     /// power only: there the law has a corner, and on either side of it the contour can be bent.
-    pub(super) fn vertex(&self) -> Option<f64> {
-        let least = self.curved.iter().map(|[a, _]| a.abs()).fold(f64::INFINITY, f64::min);
-        let steepest = self.curved.iter().map(|[_, slope]| slope.abs()).fold(0.0, f64::max);
+    ///
+    /// `more` are curvatures and slopes of forms beside these.
+    pub(super) fn vertex(&self, more: &[[f64; 2]]) -> Option<f64> {
+        let all = || self.curved.iter().chain(more).filter(|parabola| **parabola != [0.0, 0.0]);
+        let least = all().map(|[a, _]| a.abs()).fold(f64::INFINITY, f64::min);
+        let steepest = all().map(|[_, slope]| slope.abs()).fold(0.0, f64::max);
         // Slopes far beyond the curvatures decay like those of a normal distribution first.
-        let bent = self.straight == 0.0 && !self.curved.is_empty() && 30.0 * least > steepest;
-        bent.then(|| -self.curved.iter().map(|[a, slope]| slope * slope / (4.0 * a)).sum::<f64>())
+        let bent = self.straight == 0.0 && all().count() > 0 && 30.0 * least > steepest;
+        bent.then(|| -all().map(|[a, slope]| slope * slope / (4.0 * a)).sum::<f64>())
     }
 
     /// `[K, K', K'']` at a real `s` within the domain.

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use super::exact::is_poor;
 use super::inversion::Line;
 use super::sampled::Held;
 use super::{Kind, LawFigure, LawTail, SurfaceLaw};
@@ -27,7 +28,7 @@ enum HeldKind {
 impl HeldTail {
     pub(super) fn of(law: &SurfaceLaw, y: f64, tail: LawTail) -> Self {
         let kind = match &law.kind {
-            Kind::Exact(inversion) if !inversion.is_normal() => HeldKind::Line(inversion.held(y, tail)),
+            Kind::Exact(exact) if !exact.inversion.is_normal() => HeldKind::Line(exact.inversion.held(y, tail)),
             Kind::Sampled(sampled) => HeldKind::Points(Arc::new(sampled.held(y, tail, law.mean))),
             _ => HeldKind::Nothing,
         };
@@ -42,8 +43,11 @@ impl HeldTail {
         if y.is_nan() || y <= least || y >= most {
             return own();
         }
+        let y = law.beyond(y, self.tail);
         match (&self.kind, &law.kind) {
-            (HeldKind::Line(line), Kind::Exact(inversion)) => inversion.tail_along(y, line).unwrap_or_else(own),
+            (HeldKind::Line(line), Kind::Exact(exact)) => {
+                exact.inversion.tail_along(y, line).filter(|figure| !is_poor(*figure)).unwrap_or_else(own)
+            }
             (HeldKind::Points(held), Kind::Sampled(sampled)) => sampled.tail_held(y, held).unwrap_or_else(own),
             _ => own(),
         }

@@ -21,8 +21,14 @@ use crate::distribution::standard_normal;
 
 /// Points of the first window.
 const FIRST: usize = 64;
-/// Points of the last one, where panels and trees are summed; closed forms and atoms are cheaper.
-const LAST: [usize; 2] = [1 << 11, 1 << 14];
+/// Points of the last one, where panels and trees are summed, with closed forms and atoms, which are cheaper, and with few nodes beside these.
+const LAST: usize = 1 << 11;
+const LAST_CHEAP: usize = 1 << 14;
+const LAST_PERTURBED: usize = 1 << 13;
+/// The error of a contour that ended early, by the difference of its windows: these agree by chance before they do for good.
+const ENDED_EARLY: f64 = 40.0;
+/// Points of a contour below which nothing is known.
+const FEWEST: usize = 8;
 /// A term that is below this part of the sum ends it.
 const ENDED: f64 = 1e-14;
 /// Two windows agree,
@@ -44,6 +50,8 @@ pub(super) struct Inversion {
     pub(super) transform: Transform,
     /// Of the surface: limits are counted from it.
     centre: f64,
+    /// Values with a probability of their own, about the centre, ascending: they are left out of the sums, which would halve them.
+    jumps: Vec<(f64, f64)>,
     sides: [Side; 2],
 }
 
@@ -57,7 +65,19 @@ enum Quantity {
 impl Inversion {
     pub(super) fn new(transform: Transform, centre: f64) -> Self {
         let sides = [LawTail::Lower, LawTail::Upper].map(|tail| Side::new(tail, &transform));
-        Self { transform, centre, sides }
+        Self { transform, centre, jumps: Vec::new(), sides }
+    }
+
+    /// With these values, each with a probability of its own.
+    pub(super) fn with_jumps(self, jumps: impl Iterator<Item = (f64, f64)>) -> Self {
+        let jumps = jumps.map(|(y, weight)| (y - self.centre, weight)).collect();
+        Self { jumps, ..self }
+    }
+
+    /// The probability of the values strictly beyond a limit that is counted from the centre.
+    fn jumps_beyond(&self, y: f64, tail: LawTail) -> f64 {
+        let beyond = |at: f64| tail.sign() * (at - y) > 0.0;
+        self.jumps.iter().filter(|(at, _)| beyond(*at)).map(|(_, weight)| weight).sum()
     }
 
     pub(super) fn mean(&self) -> f64 {
@@ -66,6 +86,34 @@ impl Inversion {
 
     pub(super) fn sigma(&self) -> f64 {
         self.transform.sigma
+    }
+
+    /// Whether sums over nodes resolve the law: on both sides of the mean, where the sides also sum to 1, and farther out.
+    pub(super) fn is_resolved(&self) -> bool {
+        /// Part of a tail that the stated error may be; points do as well beyond.
+        const RESOLVED: f64 = 1e-4;
+        /// Tilts by sigma whose limits are tried: as many sigmas out of a normal law.
+        const TILTS: [f64; 2] = [1.5, 3.0];
+        /// Part of the domain that a tilt is kept within.
+        const INNER: f64 = 0.7;
+        if self.transform.are_sums_closed() {
+            return true;
+        }
+        let good = |figure: &LawFigure| figure.value.is_finite() && figure.error <= RESOLVED * figure.value;
+        let sum = |y: f64, tail: LawTail| self.with_jumps_beyond(self.sum(y, tail, Quantity::LawTail(tail)), y, tail);
+        let sides = [LawTail::Lower, LawTail::Upper];
+        let halves = sides.map(|tail| sum(self.transform.mean, tail));
+        let middle: f64 =
+            self.jumps.iter().filter(|(at, _)| *at == self.transform.mean).map(|(_, weight)| weight).sum();
+        let whole: f64 = halves.iter().map(|half| half.value).sum::<f64>() + middle;
+        let [low, high] = self.transform.domain;
+        let limit = |tail: LawTail, tilt: f64| {
+            let theta = tail.sign() * tilt / self.sigma();
+            self.transform.cumulants(theta.clamp(INNER * low, INNER * high))[1]
+        };
+        halves.iter().all(good)
+            && (whole - 1.0).abs() <= RESOLVED
+            && sides.iter().all(|&tail| TILTS.iter().all(|&tilt| good(&sum(limit(tail, tilt), tail))))
     }
 
     /// The mean about the centre under a tilt, or under the nearest one that the law bears.
@@ -82,10 +130,14 @@ impl Inversion {
             return LawFigure::new(value, 4.0 * f64::EPSILON * value * (1.0 + z * z));
         }
         let outward = tail.sign() * (y - self.transform.mean) / self.sigma();
-        match outward < -CENTRAL {
-            true => self.sum(y, tail.other(), Quantity::LawTail(tail.other())).complement(),
-            false => self.sum(y, tail, Quantity::LawTail(tail)),
-        }
+        let own = if outward < -CENTRAL { tail.other() } else { tail };
+        let found = self.with_jumps_beyond(self.sum(y, own, Quantity::LawTail(own)), y, own);
+        if own == tail { found } else { found.complement() }
+    }
+
+    /// A tail of what has a density, and the values beyond the limit.
+    fn with_jumps_beyond(&self, smooth: LawFigure, y: f64, tail: LawTail) -> LawFigure {
+        LawFigure::new((smooth.value + self.jumps_beyond(y, tail)).min(1.0), smooth.error)
     }
 
     /// Density per unit of `y`.
@@ -119,7 +171,7 @@ impl Inversion {
         // The window before the last one, so that two are compared again.
         points.set(window.points / 2);
         let (density, _) = self.along(contour, y, Quantity::Density, Extent::Fixed(window));
-        [value, density]
+        [self.with_jumps_beyond(value, y, tail), density]
     }
 
     /// Whether the law is a normal distribution.
@@ -145,19 +197,24 @@ impl Inversion {
     /// The sum along a contour, over as many points as it takes or as many as it is told; and how many these were.
     fn along(&self, contour: &Contour, y: f64, quantity: Quantity, extent: Extent) -> (LawFigure, Window) {
         let transform = &self.transform;
-        let most = LAST[usize::from(transform.is_cheap())];
+        let most = match (transform.is_cheap(), transform.is_perturbed()) {
+            (true, _) => LAST_CHEAP,
+            (false, true) => LAST_PERTURBED,
+            (false, false) => LAST,
+        };
         let (mut count, agreed, fixed) = match extent {
             Extent::From(points) => (points.max(FIRST), AGREED, None),
             Extent::Nearly(points) => (points.max(FIRST), NEARLY, None),
             Extent::Fixed(window) => (window.points, AGREED, Some(window)),
         };
-        let mut before = f64::NAN;
+        let mut previous = f64::NAN;
         let (sum, off, largest, window) = loop {
-            let terms = terms(contour, transform, y, quantity, count);
-            if terms.is_empty() {
-                // The tables of a tree are too large: nothing is known.
+            let terms = self.terms(contour, y, quantity, count);
+            if terms.len() < FEWEST {
+                // Sums over nodes resolve next to nothing of the contour.
                 return (LawFigure::new(f64::NAN, f64::INFINITY), Window { points: FIRST, smooth: true });
             }
+            let ended = terms.len() < count;
             let largest = terms.iter().map(|term| term.abs()).fold(0.0, f64::max);
             let last = terms[terms.len() - terms.len() / 4..].iter().map(|term| term.abs()).fold(0.0, f64::max);
             let plain: f64 = terms.iter().map(|term| term.re).sum();
@@ -171,12 +228,14 @@ impl Inversion {
                 break (plain, left, largest, window(false));
             }
             let now = windowed(&terms);
-            let off = (now - before).abs();
-            if off < agreed * now.abs() || count >= most || terms.len() < count {
-                let off = if off.is_nan() { now.abs() } else { 4.0 * off + LEFT * now.abs() };
+            // A contour that has ended is compared with shorter windows: the same one again would agree.
+            let off = if ended { shortened(&terms, now) } else { (now - previous).abs() };
+            if off < agreed * now.abs() || count >= most || ended {
+                let factor = if ended { ENDED_EARLY } else { 4.0 };
+                let off = if off.is_nan() { now.abs() } else { factor * off + LEFT * now.abs() };
                 break (now, off, largest, window(true));
             }
-            (before, count) = (now, 2 * count);
+            (previous, count) = (now, 2 * count);
         };
         // The rounding error of the sum.
         let rounding = 1e-15 * (window.points as f64).sqrt() * largest;
@@ -212,6 +271,7 @@ impl Inversion {
         let y = y - self.centre;
         let contour = Contour::fixed(&self.transform, line.theta, line.step, line.bend);
         let (found, _) = self.along(&contour, y, Quantity::LawTail(line.tail), Extent::Fixed(line.window));
+        let found = self.with_jumps_beyond(found, y, line.tail);
         Some(if line.complement { found.complement() } else { found })
     }
 
@@ -227,7 +287,7 @@ impl Inversion {
         let contour = self.side(line.tail).contour(&self.transform, y);
         // A derivative decays more slowly than what it is of.
         let count = 2 * line.window.points;
-        let terms = terms(&contour, &self.transform, y, Quantity::LawTail(line.tail), count);
+        let terms = weighed(&contour, contour.integrand(&self.transform, y, count), Quantity::LawTail(line.tail));
         let sign = if line.complement { -1.0 } else { 1.0 };
         let level = sign * libm::exp(contour.log - contour.theta * y) * contour.step / PI;
         let of = |change: &Vec<Complex>| {
@@ -238,6 +298,24 @@ impl Inversion {
             LawFigure::new(level * whole, level.abs() * ((whole - half).abs() + 1e-11 * whole.abs()))
         };
         changes(&contour, terms.len()).iter().map(of).collect()
+    }
+}
+
+impl Inversion {
+    /// The terms of the sum at the first points, the first one halved, without the values that have a probability of their own:
+    ///
+    /// ```text
+    /// M(s) - sum_k p_k exp(s y_k)
+    /// ```
+    fn terms(&self, contour: &Contour, y: f64, quantity: Quantity, count: usize) -> Vec<Complex> {
+        let mut terms = contour.integrand(&self.transform, y, count);
+        for &(at, weight) in &self.jumps {
+            let weight = weight * libm::exp(contour.theta * at - contour.log);
+            for (index, term) in terms.iter_mut().enumerate() {
+                *term = *term - Complex::cis(contour.step * index as f64 * (at - y)) * weight;
+            }
+        }
+        weighed(contour, terms, quantity)
     }
 }
 
@@ -270,9 +348,8 @@ pub(super) struct Line {
     window: Window,
 }
 
-/// The terms of the sum at the first points, the first one halved.
-fn terms(contour: &Contour, transform: &Transform, y: f64, quantity: Quantity, count: usize) -> Vec<Complex> {
-    let mut terms = contour.integrand(transform, y, count);
+/// Values of the integrand as the terms of the sum: the first one halved.
+fn weighed(contour: &Contour, mut terms: Vec<Complex>, quantity: Quantity) -> Vec<Complex> {
     for (index, term) in terms.iter_mut().enumerate() {
         let s = contour.s(index);
         if let Quantity::LawTail(tail) = quantity {
@@ -287,6 +364,14 @@ fn terms(contour: &Contour, transform: &Transform, y: f64, quantity: Quantity, c
         *first = *first * 0.5;
     }
     terms
+}
+
+/// The largest difference of shorter windows to the whole one.
+fn shortened(terms: &[Complex], whole: f64) -> f64 {
+    /// Eighths of the window.
+    const EIGHTHS: [usize; 2] = [6, 7];
+    let off = |eighths: usize| (windowed(&terms[..terms.len() * eighths / 8]) - whole).abs();
+    EIGHTHS.iter().map(|&eighths| off(eighths)).fold(0.0, f64::max)
 }
 
 /// The sum of the real parts under a window that falls smoothly to 0 at the end.

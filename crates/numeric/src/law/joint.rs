@@ -5,7 +5,8 @@
 //! ```
 //!
 //! The tails are those of each law; only the second term is sampled. Where failures are rare or far apart it is small, and so
-//! is its error. Of two sums of normal inputs it is exact too.
+//! is its error. Of two sums of normal inputs it is exact too, and where all inputs have values with probabilities of their own: their
+//! combinations are listed. A value on a limit keeps it in all of them.
 
 use super::common_points::{CommonPoints, Counts, Limit};
 use super::points::{QUANTILE, REPLICATES};
@@ -22,11 +23,11 @@ use crate::parallel::prelude::*;
 ///
 /// ```
 /// use std::sync::Arc;
-/// use sensitol_numeric::characteristic::SpecLimits;
-/// use sensitol_numeric::distribution::{Distribution, Normal};
-/// use sensitol_numeric::law::{LawOptions, SurfaceLaw, joint_yield};
-/// use sensitol_numeric::moments::Interactions;
-/// use sensitol_numeric::surrogate::{Surrogate, Univariate};
+/// use crate::characteristic::SpecLimits;
+/// use crate::distribution::{Distribution, Normal};
+/// use crate::law::{LawOptions, SurfaceLaw, joint_yield};
+/// use crate::moments::Interactions;
+/// use crate::surrogate::{Surrogate, Univariate};
 /// let inputs: Vec<Arc<dyn Distribution>> = vec![Arc::new(Normal::new(0.0, 1.0)?), Arc::new(Normal::new(0.0, 1.0)?)];
 /// let law = |slopes: [f64; 2]| {
 ///     let parts = slopes.map(|slope| Some(Univariate::of_coefficients(&[slope]))).to_vec();
@@ -48,7 +49,26 @@ pub fn joint_yield(characteristics: &[(&SurfaceLaw, SpecLimits)]) -> LawFigure {
         LawFigure::new(sum.value + tail.value, sum.error + tail.error)
     });
     let common = overlap(&limited, &tails);
-    LawFigure::new((1.0 - sum.value + common.value).clamp(0.0, 1.0), sum.error + common.error)
+    let [least, most] = joint_bounds(&by_law(&tails, limited.len()));
+    LawFigure::new((1.0 - sum.value + common.value).max(least).min(most), sum.error + common.error)
+}
+
+/// The rejects of every law.
+fn by_law(tails: &[(Limit, LawFigure)], laws: usize) -> Vec<f64> {
+    let mut rejects = vec![0.0; laws];
+    tails.iter().for_each(|(limit, tail)| rejects[limit.of] += tail.value);
+    rejects
+}
+
+/// Within which several yields leave a joint one, whatever they have in common: at most the least of them, and no less than would be left if no
+/// assembly broke two of them (Fréchet 1935).
+///
+/// ```text
+/// max(0, 1 - sum of all rejects) <= P(all kept) <= 1 - max of the rejects
+/// ```
+pub fn joint_bounds(rejects: &[f64]) -> [f64; 2] {
+    let most = 1.0 - rejects.iter().copied().fold(0.0, f64::max).min(1.0);
+    [(1.0 - rejects.iter().sum::<f64>()).max(0.0).min(most), most]
 }
 
 /// The rejects of several characteristics by their limits: the sum of the tails, and by how much that counts assemblies twice.
@@ -71,7 +91,7 @@ fn tails(limited: &[(&SurfaceLaw, SpecLimits)]) -> Vec<(Limit, LawFigure)> {
     limited.iter().enumerate().flat_map(of).flatten().collect()
 }
 
-/// The mean of the broken limits beyond the first: none of one law, exact of two sums of normal inputs, sampled of all others.
+/// The mean of the broken limits beyond the first: none of one law, exact of two sums of normal inputs and of lists, sampled of all others.
 ///
 /// ```text
 /// E[ (number broken - 1)+ ] = sum of the tails * mean(w (number broken - 1)+) / mean(w number broken)
@@ -88,6 +108,9 @@ fn overlap(limited: &[(&SurfaceLaw, SpecLimits)], tails: &[(Limit, LawFigure)]) 
         return both;
     }
     let points = CommonPoints::of(limited, tails);
+    if let Some(listed) = points.listed() {
+        return listed;
+    }
     let counts: Vec<Counts> = (0..REPLICATES).into_par_iter().map(|replicate| points.counts(replicate)).collect();
     let n = REPLICATES as f64;
     let mean = |of: fn(&Counts) -> f64| counts.iter().map(of).sum::<f64>() / n;

@@ -22,6 +22,7 @@ mod complex;
 mod contour;
 mod derivative;
 mod direction;
+mod exact;
 mod forms;
 mod hats;
 mod held;
@@ -29,6 +30,7 @@ mod input;
 mod inversion;
 mod joint;
 mod panels;
+mod perturbed_form;
 mod points;
 mod polynomial;
 mod quadrant;
@@ -46,25 +48,29 @@ mod tree;
 mod zones;
 
 pub use held::HeldTail;
+pub use joint::joint_bounds;
 pub use joint::joint_yield;
 pub use joint::rejected;
 pub use points::QUANTILE;
 pub use quantile::Sought;
 pub use tabulated::TabulatedInput;
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
+use crate::characteristic::{KeptLimits, SpecLimits};
 use crate::correlation::Correlation;
 use crate::distribution::Distribution;
+use crate::power::{Rescale, Rescaling, Unknown};
 use crate::surrogate::{Inputs, Surrogate, shapes};
 
 use direction::Direction;
+use exact::Exact;
 use inversion::Inversion;
 use sampled::Sampled;
 use single::Single;
 use steps::Steps;
 use surface::Surface;
-use transform::Transform;
+use transform::{Summed, Transform};
 use zones::{Straightened, Zone, straightened};
 
 /// A number and what its computation leaves uncertain.
@@ -77,6 +83,19 @@ pub struct LawFigure {
     pub error: f64,
     /// Whether the number is 0 or 1 because no value of the surface lies beyond the limit, or within it.
     pub proven: bool,
+}
+
+impl Unknown for LawFigure {
+    fn is_unknown(&self) -> bool {
+        self.value.is_nan()
+    }
+}
+
+impl Rescale for LawFigure {
+    fn rescale(&mut self, by: &mut Rescaling) {
+        self.value.rescale(by);
+        self.error.rescale(by);
+    }
 }
 
 impl LawFigure {
@@ -113,7 +132,7 @@ pub enum LawTail {
 
 impl LawTail {
     /// 1 above, -1 below.
-    fn sign(self) -> f64 {
+    pub fn sign(self) -> f64 {
         match self {
             Self::Lower => -1.0,
             Self::Upper => 1.0,
@@ -190,12 +209,14 @@ pub struct LawOptions {
     /// Whether products that form a tree are computed: a limit takes milliseconds, quantiles of quartics of several inputs half a second.
     /// Otherwise they belong to the sampled branch.
     pub trees: bool,
+    /// By how much rounding may move a value of the surface; what its own coefficients say where that is more.
+    pub rounding: f64,
 }
 
 impl Default for LawOptions {
     /// 2^13 points, and trees.
     fn default() -> Self {
-        Self { points: 1 << 13, seed: 1, trees: true }
+        Self { points: 1 << 13, seed: 1, trees: true, rounding: 0.0 }
     }
 }
 
@@ -203,10 +224,10 @@ impl Default for LawOptions {
 ///
 /// ```
 /// use std::sync::Arc;
-/// use sensitol_numeric::distribution::{Distribution, Uniform};
-/// use sensitol_numeric::law::{LawOptions, SurfaceLaw};
-/// use sensitol_numeric::moments::Interactions;
-/// use sensitol_numeric::surrogate::{Surrogate, Univariate};
+/// use crate::distribution::{Distribution, Uniform};
+/// use crate::law::{LawOptions, SurfaceLaw};
+/// use crate::moments::Interactions;
+/// use crate::surrogate::{Surrogate, Univariate};
 /// // Three uniform inputs: the probability beyond a limit d below the greatest value sqrt(27) is d^3/(6 (2 sqrt 3)^3).
 /// let uniform: Arc<dyn Distribution> = Arc::new(Uniform::new(-1.0, 1.0)?);
 /// let parts = vec![Some(Univariate::of_coefficients(&[1.0])); 3];
@@ -232,14 +253,21 @@ pub struct SurfaceLaw {
     mean: f64,
     sigma: f64,
     step: bool,
+    /// By how much rounding may move a value.
+    rounding: f64,
+    /// The largest probability of a single value that is neither listed nor summed apart; 0 where there is none.
+    jump: f64,
 }
+
+/// Values with a probability of their own that are summed apart beside a density, at most.
+const MOST_JUMPS: usize = 1 << 12;
 
 #[derive(Debug)]
 enum Kind {
     /// One value.
     Point(f64),
     Steps(Steps),
-    Exact(Box<Inversion>),
+    Exact(Box<Exact>),
     Single(Box<Single>),
     Sampled(Box<Sampled>),
 }
@@ -267,23 +295,28 @@ impl SurfaceLaw {
         let surface = Arc::new(Surface::of(surrogate, inputs, correlation)?);
         let (given, zones) = (Arc::clone(&surface), Vec::new());
         let correlation = correlation.cloned();
-        if surface.len() == 0 {
-            let at = surface.centre;
-            let (kind, range) = (Kind::Point(at), [at; 2]);
-            return Ok(Self { surface, given, zones, correlation, kind, range, mean: at, sigma: 0.0, step: true });
-        }
-        let step = surface.inputs.iter().all(|input| input.is_discrete());
-        if let Some(steps) = Steps::of(&surface) {
-            let ([mean, sigma], range) = (steps.moments(), steps.range());
-            let kind = Kind::Steps(steps);
-            return Ok(Self { surface, given, zones, correlation, kind, range, mean, sigma, step });
-        }
-        let range = surface.range();
+        let rounding = options.rounding.max(KeptLimits::rounding_of(surface.magnitude()));
         let own = Arc::clone(&surface);
         let correlated = correlation.clone();
+        let made = move |kind: Kind, range: [f64; 2], [mean, sigma]: [f64; 2], jump: f64| {
+            let step = own.inputs.iter().all(|input| input.is_discrete());
+            let (surface, correlation) = (own, correlated);
+            Self { surface, given, zones, correlation, kind, range, mean, sigma, step, rounding, jump }
+        };
+        if surface.len() == 0 {
+            let at = surface.centre;
+            return Ok(made(Kind::Point(at), [at; 2], [at, 0.0], 0.0));
+        }
+        let discrete = surface.inputs.iter().all(|input| input.is_discrete());
+        let jumps = match steps::atoms(&surface, rounding) {
+            Some(values) if discrete => return Ok(Self::step_function(surface, correlation, rounding, values)),
+            some => some.filter(|jumps| jumps.len() <= MOST_JUMPS),
+        };
+        let jump = if jumps.is_some() { 0.0 } else { steps::largest_jump(&surface) };
+        let range = surface.range();
         let with = move |kind: Kind, [mean, sigma]: [f64; 2]| match sigma > 0.0 && sigma.is_finite() && mean.is_finite()
         {
-            true => Ok(Self { surface: own, given, zones, correlation: correlated, kind, range, mean, sigma, step }),
+            true => Ok(made(kind, range, [mean, sigma], jump)),
             false => Err(LawError::NoVariance),
         };
         let parabolas = (0..surface.len()).all(|j| surface.is_normal_parabola(j));
@@ -296,15 +329,55 @@ impl SurfaceLaw {
         if let Some(position) = surface.inputs.iter().position(|input| input.falls_as_a_power()) {
             return Err(LawError::LongTail { position });
         }
-        let (transform, left) = Transform::of(&surface, &surface.components(), options.trees);
+        let components = surface.components();
+        let summed = if options.trees { Summed::Trees } else { Summed::Perturbed };
+        let jumps = jumps.unwrap_or_default();
+        let inverted = |summed: Summed| {
+            let (transform, left) = Transform::of(&surface, &components, summed);
+            (Inversion::new(transform, surface.centre).with_jumps(jumps.iter().copied()), left)
+        };
+        let (mut inversion, mut left) = inverted(summed);
+        if !inversion.is_resolved() {
+            (inversion, left) = inverted(Summed::Singles);
+        }
         if left.is_empty() {
-            let inversion = Inversion::new(transform, surface.centre);
             let moments = [inversion.mean(), inversion.sigma()];
-            return with(Kind::Exact(Box::new(inversion)), moments);
+            let exact = Exact { inversion, points: OnceLock::new(), options: *options };
+            return with(Kind::Exact(Box::new(exact)), moments);
         }
         let [mean, sigma] = moments(surrogate, inputs, correlation.as_ref())?;
-        let sampled = Sampled::of(&surface, transform, &left, sigma, options).ok_or(LawError::NoEigenvalues)?;
+        let sampled =
+            Sampled::of(&surface, inversion.transform, &left, sigma, options).ok_or(LawError::NoEigenvalues)?;
         with(Kind::Sampled(Box::new(sampled)), [mean, sigma])
+    }
+
+    /// [`of`](Self::of) of inputs that all have values with probabilities of their own, whose sums are few: such as those on a grid, however
+    /// many combinations there are. None of anything else.
+    ///
+    /// Cost: a list of 2^20 values at most, for every component.
+    pub fn of_list(
+        surrogate: &Surrogate,
+        inputs: &[Arc<dyn Distribution>],
+        correlation: Option<&Correlation>,
+        options: &LawOptions,
+    ) -> Option<Self> {
+        let surface = Arc::new(Surface::of(surrogate, inputs, correlation).ok()?);
+        let rounding = options.rounding.max(KeptLimits::rounding_of(surface.magnitude()));
+        let discrete = surface.len() > 0 && surface.inputs.iter().all(|input| input.is_discrete());
+        let values = if discrete { steps::atoms(&surface, rounding)? } else { return None };
+        Some(Self::step_function(surface, correlation.cloned(), rounding, values))
+    }
+
+    fn step_function(
+        surface: Arc<Surface>,
+        correlation: Option<Correlation>,
+        rounding: f64,
+        values: Vec<steps::Weighed>,
+    ) -> Self {
+        let steps = Steps::new(values);
+        let ([mean, sigma], range, given) = (steps.moments(), steps.range(), Arc::clone(&surface));
+        let (kind, zones) = (Kind::Steps(steps), Vec::new());
+        Self { surface, given, zones, correlation, kind, range, mean, sigma, step: true, rounding, jump: 0.0 }
     }
 
     /// Probability strictly below a limit, so that a limit itself is kept.
@@ -319,11 +392,13 @@ impl SurfaceLaw {
 
     /// Probability strictly beyond a limit, computed as what it is and not as a complement.
     ///
-    /// Exactly 0 or 1, and said to be proven, where the limit lies outside of the range. NaN gives NaN.
+    /// Exactly 0 or 1, and said to be proven, where the limit lies outside of the range. NaN gives NaN. A value that only rounding
+    /// separates from the limit is on it.
     pub fn tail(&self, y: f64, tail: LawTail) -> LawFigure {
         if y.is_nan() {
             return LawFigure::new(f64::NAN, f64::INFINITY);
         }
+        let y = self.beyond(y, tail);
         let [least, most] = self.range;
         let (outside, whole) = match tail {
             LawTail::Lower => (y <= least, y > most),
@@ -335,10 +410,25 @@ impl SurfaceLaw {
         match &self.kind {
             Kind::Point(_) => LawFigure::proven(0.0),
             Kind::Steps(steps) => steps.tail(y, tail),
-            Kind::Exact(inversion) => inversion.tail(y, tail),
+            Kind::Exact(exact) => {
+                let found = exact.tail(&self.surface, y, tail);
+                // A sum over a contour halves a jump at the limit.
+                LawFigure { error: found.error + self.jump, ..found }
+            }
             Kind::Single(single) => single.tail(y, tail),
             Kind::Sampled(sampled) => sampled.tail(y, tail, self.mean),
         }
+    }
+
+    /// The place beyond which a value breaks a limit: farther off than rounding where values have a probability of their own.
+    fn beyond(&self, y: f64, tail: LawTail) -> f64 {
+        let jumps = self.surface.inputs.iter().all(|input| !input.atoms.is_empty());
+        if jumps { y + tail.sign() * self.rounding } else { y }
+    }
+
+    /// The limits that values of the surface keep.
+    fn kept(&self, limits: SpecLimits) -> KeptLimits {
+        KeptLimits::moved(limits, self.rounding)
     }
 
     /// Density per unit of `y`; 0 where the law is a step function, NaN where points are drawn of which none can be integrated.
@@ -352,7 +442,7 @@ impl SurfaceLaw {
         }
         match &self.kind {
             Kind::Point(_) | Kind::Steps(_) => LawFigure::proven(0.0),
-            Kind::Exact(inversion) => inversion.density(y),
+            Kind::Exact(exact) => exact.density(&self.surface, y),
             Kind::Single(single) => single.density(y),
             Kind::Sampled(sampled) => sampled.density(y, self.mean),
         }

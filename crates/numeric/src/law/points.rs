@@ -11,6 +11,8 @@ pub(super) const REPLICATES: usize = 16;
 /// Standard errors of the mean of 16 replicates that bound the error: Student's distribution with 15 degrees of freedom leaves
 /// 1 % beyond.
 pub const QUANTILE: f64 = 2.95;
+/// Share of the own law in the mixture of a proposal: no point weighs more than its inverse.
+const OWN: f64 = 0.25;
 
 /// Points in replicates one after the other.
 #[derive(Debug)]
@@ -27,7 +29,8 @@ pub(super) struct Sample {
 pub(super) struct Along<'a> {
     pub(super) direction: &'a Direction,
     pub(super) full: &'a Terms,
-    pub(super) control: Option<&'a Terms>,
+    /// The control over its own parts.
+    pub(super) control: Option<(&'a Direction, &'a Terms)>,
 }
 
 impl Sample {
@@ -35,7 +38,7 @@ impl Sample {
     pub(super) fn of(along: &Along<'_>, tilts: &Tilts, proposal: Option<&Proposal>, points: usize, seed: u64) -> Self {
         let rows = visit(along.direction, tilts, proposal, points, seed, |z, weight| {
             let full = along.direction.along(z, along.full);
-            (full, along.control.map(|terms| along.direction.along(z, terms)), weight)
+            (full, along.control.map(|(direction, terms)| direction.along(z, terms)), weight)
         });
         Self {
             full: rows.iter().map(|row| row.0).collect(),
@@ -56,14 +59,12 @@ pub(super) fn visit<T: Send>(
     f: impl Fn(&[f64], f64) -> T + Sync,
 ) -> Vec<T> {
     let sampled = tilts.sampled();
-    let own: Vec<Vec<f64>>;
-    let masses: Vec<(&[Vec<f64>], f64)> = match proposal {
-        Some(proposal) => proposal.modes.iter().map(|mode| (mode.masses.as_slice(), mode.share)).collect(),
-        None => {
-            own = tilts.cells[..sampled.len()].iter().map(|cells| cells.masses().to_vec()).collect();
-            vec![(own.as_slice(), 1.0)]
-        }
-    };
+    let own: Vec<Vec<f64>> = tilts.cells[..sampled.len()].iter().map(|cells| cells.masses().to_vec()).collect();
+    let modes = proposal.map_or(&[][..], |proposal| &proposal.modes);
+    let tilted = modes.iter().map(|mode| (mode.masses.as_slice(), (1.0 - OWN) * mode.share));
+    // A part of the own law bounds every weight, so that a mode which no tilt leads to is still seen.
+    let own = std::iter::once((own.as_slice(), if modes.is_empty() { 1.0 } else { OWN }));
+    let masses: Vec<(&[Vec<f64>], f64)> = tilted.chain(own).collect();
     // Running sums, by mode and coordinate.
     let sums: Vec<Vec<Vec<f64>>> =
         masses.iter().map(|(masses, _)| masses.iter().map(|m| running(m)).collect()).collect();

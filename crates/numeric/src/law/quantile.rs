@@ -4,6 +4,7 @@ use std::cell::Cell;
 use std::sync::Arc;
 
 use super::contour::Contour;
+use super::exact::is_poor;
 use super::inversion::Inversion;
 use super::sampled::{Choice, Sampled};
 use super::single::Single;
@@ -19,9 +20,12 @@ pub(super) fn quantile(law: &SurfaceLaw, tail: LawTail, p: f64) -> LawFigure {
     let (mean, sigma) = (law.mean(), law.sigma());
     let sign = tail.sign();
     // Outward from the mean; positive while the tail is too heavy.
+    let open = Cell::new(0.0);
     let gap = |u: f64| {
-        let value = law.tail(mean + sign * u, tail).value;
-        libm::log(value.max(1e-305) / p)
+        let figure = law.tail(mean + sign * u, tail);
+        // A small part of what the tail itself leaves open is not a difference. Next to nothing beside a large error is one.
+        open.set(OPEN * figure.error / figure.value.max(p));
+        libm::log(figure.value.max(1e-305) / p)
     };
     let [least, most] = law.range();
     let end = if tail == LawTail::Upper { most - mean } else { mean - least };
@@ -60,7 +64,7 @@ pub(super) fn quantile(law: &SurfaceLaw, tail: LawTail, p: f64) -> LawFigure {
             at_low *= weight(at, at_high);
             (high, at_high) = (u, at);
         }
-        if at == 0.0 || moved <= scale {
+        if at.abs() <= open.get() || moved <= scale {
             break;
         }
         halve = high - low > 0.5 * before && !halve;
@@ -136,16 +140,17 @@ fn near(law: &SurfaceLaw, side: &Together<'_>, sought: &Sought) -> LawFigure {
         } else {
             high = at
         }
-        slope = match (own_slope, last) {
-            (Some(own), _) if own * sign < 0.0 && own.is_finite() => own,
-            (_, Some((before, there))) if (here - there) * (at - before) * sign < 0.0 => (here - there) / (at - before),
-            _ => slope,
-        };
+        let own = own_slope.filter(|own| own * sign < 0.0 && own.is_finite());
+        let secant = last.map(|(before, there)| (here - there) / (at - before)).filter(|secant| secant * sign < 0.0);
+        let measured = own.or(secant);
+        slope = measured.unwrap_or(slope);
         let step = -here / slope;
-        let known = (value.error / value.value / slope).abs();
+        let known = (value.error / value.value.max(p) / slope).abs();
         open = if known.is_finite() { known } else { open };
         let close = (NEAR * sigma).max(if open.is_finite() { OPEN * open } else { 0.0 });
-        if here == 0.0 || step.abs() <= close {
+        // The slope of another law says nothing of how close a place is: next to a corner it may be infinite.
+        let close_enough = step.abs() <= close && (measured.is_some() || here.abs() <= NEAR);
+        if here == 0.0 || close_enough {
             return LawFigure::new((at + step).clamp(low, high), open + close);
         }
         if high - low <= close {
@@ -189,7 +194,7 @@ impl<'l> Together<'l> {
         let places = [SHARED * most, most + MARGIN * law.sigma()].map(|by| law.mean + tail.sign() * by);
         let line = |inversion: &'l Inversion| Some((inversion, inversion.shared(tail, places)?, Cell::new(0)));
         match &law.kind {
-            Kind::Exact(inversion) => match line(inversion) {
+            Kind::Exact(exact) => match line(&exact.inversion) {
                 Some((inversion, contour, points)) => Self::Line(inversion, contour, points),
                 None => Self::Nothing,
             },
@@ -212,7 +217,10 @@ impl<'l> Together<'l> {
         match self {
             Self::Line(inversion, contour, points) => {
                 let [value, density] = inversion.tail_and_density(contour, y, tail, points);
-                (value, Some(-tail.sign() * density.value / value.value))
+                match is_poor(value) {
+                    true => (law.tail(y, tail), None),
+                    false => (value, Some(-tail.sign() * density.value / value.value)),
+                }
             }
             Self::Points(sampled, line) => {
                 let exact = || match line {

@@ -18,15 +18,13 @@ use super::polynomial::{Quartic, derivative, roots, value};
 use super::surface::Surface;
 use super::table::Table;
 use super::tilt::{Proposal, Tilts};
-use super::transform::Transform;
+use super::transform::{Summed, Transform};
 use super::{LawFigure, LawOptions, LawTail};
 
 /// Sigma of the exact components by that along the direction from which on they take its place.
 const WIDE: f64 = 0.5;
 /// A plain estimate of this relative error rules where a tilted one contradicts it, which may have seen one of two modes.
 const GOOD: f64 = 0.1;
-/// The error of a table of an exact law, relative.
-const TABULATED: f64 = 1e-7;
 
 /// The law of a surface of which a part is sampled.
 #[derive(Debug)]
@@ -37,13 +35,51 @@ pub(super) struct Sampled {
     full: Terms,
     /// The exact law of the components that are not sampled.
     others: Option<(Table, Inversion)>,
-    control: Option<(Terms, Inversion)>,
-    /// The surface with those products only that the control has.
-    simple: Arc<Surface>,
+    control: Option<Control>,
     points: usize,
     seed: u64,
     plain: Mutex<Option<Arc<Sample>>>,
     tilted: Mutex<BTreeMap<(LawTail, usize), Arc<Sample>>>,
+}
+
+/// The nearest surface whose law is exact.
+#[derive(Debug)]
+struct Control {
+    surface: Arc<Surface>,
+    /// The direction over its parts.
+    direction: Direction,
+    terms: Terms,
+    law: Inversion,
+}
+
+impl Control {
+    /// Chooses among surfaces that keep the products of normal inputs, those of parabolas or none; None where none of them has an exact law.
+    fn of(surface: &Surface, direction: &Direction) -> Option<Self> {
+        let normal = |j: usize, k: usize| surface.inputs[j].is_normal() && surface.inputs[k].is_normal();
+        let parabolas = |j: usize, k: usize| surface.is_normal_parabola(j) && surface.is_normal_parabola(k);
+        let whole = surface.with_products(normal);
+        let mut candidates = vec![(surface.with_products(parabolas), Summed::Singles)];
+        if (0..surface.len()).any(|j| surface.inputs[j].is_normal() && !surface.is_normal_parabola(j)) {
+            let straightened = whole.with_normal_parabolas();
+            candidates.extend([(straightened, Summed::Singles), (whole, Summed::Perturbed)]);
+        }
+        let mut open: Vec<(f64, Surface, Summed)> = candidates
+            .into_iter()
+            .map(|(candidate, summed)| (surface.squared_distance(&candidate), candidate, summed))
+            .collect();
+        open.sort_by(|a, b| a.0.total_cmp(&b.0));
+        open.into_iter().find_map(|(_, candidate, summed)| {
+            let (exact, rest) = Transform::of(&candidate, &candidate.components(), summed);
+            let shifts: f64 = candidate.parts.iter().map(|part| part[0]).sum();
+            let law = Inversion::new(exact, surface.centre + shifts);
+            if !rest.is_empty() || !law.is_resolved() {
+                return None;
+            }
+            let candidate = Arc::new(candidate);
+            let direction = direction.over(&candidate);
+            Some(Self { terms: direction.terms(&candidate), direction, surface: candidate, law })
+        })
+    }
 }
 
 /// Points and estimate for several limits of one tail.
@@ -75,21 +111,20 @@ impl Sampled {
         members.sort_unstable();
         let direction = Direction::of(surface, &members)?;
         let wide = !transform.is_empty() && transform.sigma >= WIDE * direction.variance().sqrt();
-        let (direction, others) = match wide {
+        // About the centre, which belongs to the sampled part.
+        let others = match wide {
             true => {
-                // About the centre, which belongs to the sampled part.
-                let range = surface.range_without(&members);
                 let law = Inversion::new(transform, 0.0);
-                (direction.without(), Some((Table::of(&law, range), law)))
+                Table::of(&law, surface.range_without(&members)).map(|table| (table, law))
             }
-            false => {
-                let all: Vec<usize> = (0..surface.len()).collect();
-                (Direction::of(surface, &all)?, None)
-            }
+            false => None,
         };
-        let simple = surface.with_products(|j, k| surface.is_normal_parabola(j) && surface.is_normal_parabola(k));
-        let (exact, rest) = Transform::of(&simple, &simple.components(), options.trees);
-        let control = rest.is_empty().then(|| (direction.terms(&simple), Inversion::new(exact, surface.centre)));
+        // Without a table one direction of all inputs is integrated.
+        let direction = match &others {
+            Some(_) => direction.without(),
+            None => Direction::of(surface, &(0..surface.len()).collect::<Vec<_>>())?,
+        };
+        let control = Control::of(surface, &direction);
         let (full, tilts) = (direction.terms(surface), Arc::new(Tilts::of(&direction, surface, sigma)));
         let points = options.points.div_ceil(REPLICATES).next_power_of_two();
         Some(Self {
@@ -99,7 +134,6 @@ impl Sampled {
             full,
             others,
             control,
-            simple: Arc::new(simple),
             points,
             seed: options.seed,
             plain: Mutex::default(),
@@ -131,7 +165,7 @@ impl Sampled {
     }
 
     fn sample(&self, tilted: Option<(LawTail, usize, &Proposal)>) -> Arc<Sample> {
-        let control = self.control.as_ref().map(|(terms, _)| terms);
+        let control = self.control.as_ref().map(|control| (&control.direction, &control.terms));
         let along = Along { direction: &self.direction, full: &self.full, control };
         match tilted {
             None => {
@@ -170,7 +204,7 @@ impl Sampled {
     }
 
     fn exact(&self, y: f64, quantity: Quantity) -> Option<LawFigure> {
-        self.control.as_ref().map(|(_, law)| match quantity {
+        self.control.as_ref().map(|Control { law, .. }| match quantity {
             Quantity::LawTail(tail) => law.tail(y, tail),
             Quantity::Density => law.density(y),
         })
@@ -193,8 +227,10 @@ impl Sampled {
         let sample = self.sample(Some((tail, rung, &proposal)));
         let tilted = self.estimates(&self.direction, &sample, off, quantity, exact);
         let found = tilted.best();
+        // Own points that lie beyond the limit refute a tilt that has not seen them, however few they are.
+        let unseen = found.value < own.value - own.error - found.error;
         let contradicted =
-            own.error < GOOD * own.value && (found.value - own.value).abs() > 2.0 * (found.error + own.error);
+            unseen || own.error < GOOD * own.value && (found.value - own.value).abs() > 2.0 * (found.error + own.error);
         match own.value > 0.0 && (own.error <= found.error || contradicted) || found.value <= 0.0 {
             true => (None, plain.is_beside(), plain),
             false => (Some((rung, proposal)), tilted.is_beside(), tilted),
@@ -214,7 +250,7 @@ impl Sampled {
 
     /// The exact law of the control.
     pub(super) fn control(&self) -> Option<&Inversion> {
-        self.control.as_ref().filter(|_| self.only().is_none()).map(|(_, law)| law)
+        self.control.as_ref().filter(|_| self.only().is_none()).map(|control| &control.law)
     }
 
     /// A tail by the estimate that was chosen for several limits, beside what `exact` says of the control.
@@ -263,8 +299,13 @@ impl Sampled {
         }
         let quantity = Quantity::LawTail(held.nearer);
         let direction = held.direction.over(&self.surface);
-        let (full, simple) = (direction.terms(&self.surface), direction.terms(&self.simple));
-        let control = held.beside.then_some(&simple);
+        let full = direction.terms(&self.surface);
+        let simple = self.control.as_ref().filter(|_| held.beside).map(|control| {
+            let direction = held.direction.over(&control.surface);
+            let terms = direction.terms(&control.surface);
+            (direction, terms)
+        });
+        let control = simple.as_ref().map(|(direction, terms)| (direction, terms));
         let along = Along { direction: &direction, full: &full, control };
         let sample = Sample::of(&along, &held.tilts, held.proposal.as_deref(), held.points, held.seed);
         let exact = self.exact(y, quantity).filter(|_| held.beside);
@@ -319,7 +360,12 @@ impl Sampled {
         let part = &self.surface.parts[coordinate];
         let found =
             expectation(&self.surface.inputs[coordinate], &[], EXACT, |z| self.beside(off - value(part, z), quantity));
-        LawFigure::new(found.value, found.error + TABULATED * found.value)
+        LawFigure::new(found.value, found.error + self.tabulated() * found.value)
+    }
+
+    /// The relative error of the integrand.
+    fn tabulated(&self) -> f64 {
+        self.others.as_ref().map_or(1e-12, |(table, _)| table.error)
     }
 
     /// The exact law of the other components at what is left of a limit.
@@ -360,7 +406,7 @@ impl Sampled {
         };
         let values: Vec<f64> = sample.full.iter().map(inner).collect();
         let (mean, error) = of_replicates(&means(&|at| weight(at) * values[at]));
-        let tabulated = if self.others.is_some() { TABULATED } else { 1e-12 };
+        let tabulated = self.tabulated();
         let alone = LawFigure::new(mean, error + tabulated * mean.abs());
         let exact = exact.filter(|_| sample.control.len() == values.len());
         let beside = exact.map(|exact| {

@@ -1,16 +1,23 @@
 //! A surface of atoms only: a step function, by the list of its values.
+//!
+//! Combinations are listed all together where they are few. Of many, those of every component are listed by themselves, and their sums are
+//! taken one component after the other: values on a grid then stay few.
 
+use std::collections::BTreeMap;
+
+use super::input::Input;
 use super::surface::Surface;
 use super::{LawFigure, LawTail};
-use crate::correlation::{Atom, JointLaw};
+use crate::correlation::{Atom, Block, JointLaw};
 
 /// Combinations that are listed at most.
 const MOST: usize = 1 << 20;
-/// The rounding error of the values, relative to the largest term: values nearer to each other are one.
-const SAME: f64 = 1e-13;
 
 /// A place of one or several inputs: its probability, and where each of them is.
 type Place = (f64, Vec<(usize, f64)>);
+
+/// A value and its probability.
+pub(super) type Weighed = (f64, f64);
 
 /// Values in ascending order with the probabilities on either side.
 #[derive(Debug)]
@@ -20,49 +27,72 @@ pub(super) struct Steps {
     /// Probability of at most each of the values, summed from the lower end, and of at least, from the upper one.
     up: Vec<f64>,
     down: Vec<f64>,
-    same: f64,
 }
 
-impl Steps {
-    /// None where an input has a density, or there are too many combinations.
-    pub(super) fn of(surface: &Surface) -> Option<Self> {
-        // Inputs of one group take their places together.
+/// Inputs that take their values together, or by themselves, with the values that have a probability of their own.
+#[derive(Debug)]
+pub(super) struct Groups(Vec<Vec<Place>>);
+
+impl Groups {
+    /// None where an input has no such values, or inputs are correlated otherwise than by rows.
+    pub(super) fn of<'i>(
+        inputs: impl ExactSizeIterator<Item = &'i Input>,
+        correlated: &[usize],
+        blocks: &[Block],
+    ) -> Option<Self> {
         let mut groups: Vec<Vec<Place>> = Vec::new();
-        let mut grouped = vec![false; surface.len()];
-        if let Some(correlated) = &surface.correlated {
-            for block in &correlated.blocks {
-                if !matches!(block.law, JointLaw::Rows(_)) {
-                    return None;
-                }
-                let row = |atom: Atom| (atom.weight, block.members.iter().copied().zip(atom.u).collect());
-                groups.push(block.law.atoms(1).into_iter().map(row).collect());
-                block.members.iter().for_each(|&member| grouped[member] = true);
-            }
-            if correlated.members.iter().any(|&member| !grouped[member]) {
+        let mut grouped = vec![false; inputs.len()];
+        // Inputs of one group take their places together.
+        for block in blocks {
+            if !matches!(block.law, JointLaw::Rows(_)) {
                 return None;
             }
+            let row = |atom: Atom| (atom.weight, block.members.iter().copied().zip(atom.u).collect());
+            groups.push(block.law.atoms(1).into_iter().map(row).collect());
+            block.members.iter().for_each(|&member| grouped[member] = true);
         }
-        for (j, input) in surface.inputs.iter().enumerate().filter(|&(j, _)| !grouped[j]) {
-            if !input.is_discrete() {
+        if correlated.iter().any(|&member| !grouped[member]) {
+            return None;
+        }
+        for (j, input) in inputs.enumerate().filter(|&(j, _)| !grouped[j]) {
+            if input.atoms.is_empty() {
                 return None;
             }
             groups.push(input.atoms.iter().map(|&(at, share)| (share, vec![(j, at)])).collect());
         }
-        let count = groups
-            .iter()
-            .try_fold(1usize, |count, group| count.checked_mul(group.len()).filter(|&count| count <= MOST))?;
-        let mut found = Vec::with_capacity(count);
-        let mut places = vec![0; groups.len()];
-        let mut z = vec![0.0; surface.len()];
+        Some(Self(groups))
+    }
+
+    fn of_surface(surface: &Surface) -> Option<Self> {
+        let (members, blocks) =
+            surface.correlated.as_ref().map_or((&[][..], &[][..]), |of| (&of.members[..], &of.blocks[..]));
+        Self::of(surface.inputs.iter().map(|input| input.as_ref()), members, blocks)
+    }
+
+    /// How many combinations there are; None of more than `most`.
+    pub(super) fn count(&self, most: usize) -> Option<usize> {
+        let all = self.0.iter().map(Vec::len);
+        all.into_iter().try_fold(1usize, |count, own| count.checked_mul(own).filter(|&count| count <= most))
+    }
+
+    /// The largest probability of one combination.
+    fn likeliest(&self) -> f64 {
+        self.0.iter().map(|group| group.iter().map(|(share, _)| *share).fold(0.0, f64::max)).product()
+    }
+
+    /// Visits every combination with its probability, the inputs at their places in `z`.
+    pub(super) fn each(&self, z: &mut [f64], mut visit: impl FnMut(&[f64], f64)) {
+        let count: usize = self.0.iter().map(Vec::len).product();
+        let mut places = vec![0; self.0.len()];
         for _ in 0..count {
             let mut weight = 1.0;
-            for (group, &place) in groups.iter().zip(&places) {
+            for (group, &place) in self.0.iter().zip(&places) {
                 let (share, at) = &group[place];
                 at.iter().for_each(|&(j, at)| z[j] = at);
                 weight *= share;
             }
-            found.push((surface.value(&z), weight));
-            for (place, group) in places.iter_mut().zip(&groups) {
+            visit(z, weight);
+            for (place, group) in places.iter_mut().zip(&self.0) {
                 *place += 1;
                 if *place < group.len() {
                     break;
@@ -70,19 +100,67 @@ impl Steps {
                 *place = 0;
             }
         }
-        found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-        let largest = found.iter().map(|(y, _)| y.abs()).fold(surface.centre.abs(), f64::max);
-        let same = SAME * largest;
-        let (mut values, mut weights): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
-        for (y, weight) in found {
-            match (values.last(), weights.last_mut()) {
-                (Some(last), Some(sum)) if y - last <= same => *sum += weight,
-                _ => {
-                    values.push(y);
-                    weights.push(weight);
-                }
-            }
+    }
+
+    /// The groups of every component of a surface, with its members.
+    fn by_component(self, surface: &Surface) -> Vec<(Vec<usize>, Self)> {
+        let components = surface.components();
+        let mut own: BTreeMap<usize, Vec<Vec<Place>>> = BTreeMap::new();
+        for group in self.0 {
+            let member = group[0].1[0].0;
+            let component = components.iter().position(|members| members.binary_search(&member).is_ok());
+            own.entry(component.expect("every input is in a component")).or_default().push(group);
         }
+        components.into_iter().zip(own.into_values()).map(|(members, groups)| (members, Self(groups))).collect()
+    }
+}
+
+/// The values of a surface that have a probability of their own, those that only rounding separates as one; None where an input has no
+/// such values, or there are too many.
+pub(super) fn atoms(surface: &Surface, rounding: f64) -> Option<Vec<Weighed>> {
+    let groups = Groups::of_surface(surface)?;
+    let mut z = vec![0.0; surface.len()];
+    if let Some(count) = groups.count(MOST) {
+        let mut found = Vec::with_capacity(count);
+        groups.each(&mut z, |z, weight| found.push((surface.value(z), weight)));
+        return Some(merged(found, rounding));
+    }
+    let mut sums = vec![(surface.centre, 1.0)];
+    for (members, groups) in groups.by_component(surface) {
+        groups.count(MOST)?;
+        let mut own = Vec::new();
+        groups.each(&mut z, |z, weight| own.push((surface.value_of(&members, z), weight)));
+        let own = merged(own, rounding);
+        if sums.len().checked_mul(own.len())? > MOST {
+            return None;
+        }
+        let each = |&(y, weight): &Weighed| own.iter().map(move |&(more, share)| (y + more, weight * share));
+        sums = merged(sums.iter().flat_map(each).collect(), rounding);
+    }
+    Some(sums)
+}
+
+/// The largest probability that a single value of a surface has, where no two combinations of its inputs make the same one; 0 of a surface
+/// with a density.
+pub(super) fn largest_jump(surface: &Surface) -> f64 {
+    Groups::of_surface(surface).map_or(0.0, |groups| groups.likeliest())
+}
+
+/// In ascending order; values nearer to each other than rounding are one.
+fn merged(mut found: Vec<Weighed>, rounding: f64) -> Vec<Weighed> {
+    found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    found.dedup_by(|next, kept| {
+        let same = next.0 - kept.0 <= rounding;
+        kept.1 += if same { next.1 } else { 0.0 };
+        same
+    });
+    found
+}
+
+impl Steps {
+    /// Of values with probabilities that sum to 1, ascending, at least one.
+    pub(super) fn new(values: Vec<Weighed>) -> Self {
+        let (values, weights): (Vec<f64>, Vec<f64>) = values.into_iter().unzip();
         let summed = |weights: &mut dyn Iterator<Item = &f64>| -> Vec<f64> {
             weights
                 .scan(0.0, |sum, weight| {
@@ -94,18 +172,18 @@ impl Steps {
         let up = summed(&mut weights.iter());
         let mut down = summed(&mut weights.iter().rev());
         down.reverse();
-        Some(Self { values, weights, up, down, same })
+        Self { values, weights, up, down }
     }
 
-    /// Probability strictly beyond a limit; a value that only rounding separates from the limit keeps it.
+    /// Probability strictly beyond a place.
     pub(super) fn tail(&self, y: f64, tail: LawTail) -> LawFigure {
         let value = match tail {
-            LawTail::Lower => match self.values.partition_point(|value| *value < y - self.same) {
+            LawTail::Lower => match self.values.partition_point(|value| *value < y) {
                 0 => 0.0,
                 count => self.up[count - 1],
             },
             LawTail::Upper => {
-                let first = self.values.partition_point(|value| *value <= y + self.same);
+                let first = self.values.partition_point(|value| *value <= y);
                 self.down.get(first).copied().unwrap_or(0.0)
             }
         };

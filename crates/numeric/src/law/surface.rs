@@ -149,6 +149,27 @@ impl Surface {
         self.centre + own + self.products().map(|(j, k, b)| b * z[j] * z[k]).sum::<f64>()
     }
 
+    /// The part that these inputs add to the centre, with the products among them; `members` ascending.
+    pub(super) fn value_of(&self, members: &[usize], z: &[f64]) -> f64 {
+        let own = |&j: &usize| {
+            let within = |(k, _): &&(usize, f64)| *k > j && members.binary_search(k).is_ok();
+            let products: f64 = self.neighbours[j].iter().filter(within).map(|&(k, b)| b * z[j] * z[k]).sum();
+            value(&self.parts[j], z[j]) + products
+        };
+        members.iter().map(own).sum()
+    }
+
+    /// The sum of the magnitudes of the centre and of all parts and products, each where it is largest among the values of its inputs that
+    /// have a probability of their own.
+    pub(super) fn magnitude(&self) -> f64 {
+        let farthest: Vec<f64> =
+            self.inputs.iter().map(|input| input.atoms.iter().map(|(z, _)| z.abs()).fold(0.0, f64::max)).collect();
+        let part = |(part, z): (&Quartic, &f64)| part.iter().rev().fold(0.0, |sum, c| sum * z + c.abs());
+        let parts: f64 = self.parts.iter().zip(&farthest).map(part).sum();
+        let products: f64 = self.products().map(|(j, k, b)| (b * farthest[j] * farthest[k]).abs()).sum();
+        self.centre.abs() + parts + products
+    }
+
     /// The surface itself at some points: a column for every input.
     pub(super) fn values(&self, z: &[&[f64]], points: usize) -> Vec<f64> {
         on_this_processor(Values { surface: self, z, points })
@@ -192,6 +213,29 @@ impl Surface {
         let Self { centre, inputs, parts, correlated, places, .. } = self;
         let (inputs, parts, correlated, places) = (inputs.clone(), parts.clone(), correlated.clone(), places.clone());
         Self { centre: *centre, inputs, parts, neighbours, correlated, places }
+    }
+
+    /// The same surface with the nearest parabola in place of every higher part of a normal input: `z^3` as `3 z`, `z^4` as `6 z^2 - 3`.
+    /// Constants stay in the parts.
+    pub(super) fn with_normal_parabolas(&self) -> Self {
+        let parabola = |(part, input): (&Quartic, &Arc<Input>)| match (input.is_normal(), *part) {
+            (true, [c0, c1, c2, c3, c4]) => [c0 - 3.0 * c4, c1 + 3.0 * c3, c2 + 6.0 * c4, 0.0, 0.0],
+            (false, part) => part,
+        };
+        let parts = self.parts.iter().zip(&self.inputs).map(parabola).collect();
+        Self { parts, ..self.clone() }
+    }
+
+    /// The variance of the difference to another surface over the same inputs, as far as these are uncorrelated: of parts of normal inputs by
+    /// Hermite polynomials, and of products.
+    pub(super) fn squared_distance(&self, other: &Self) -> f64 {
+        let parts: f64 = (0..self.len())
+            .map(|j| {
+                let [_, c1, c2, c3, c4] = std::array::from_fn(|k| self.parts[j][k] - other.parts[j][k]);
+                (c1 + 3.0 * c3).powi(2) + 2.0 * (c2 + 6.0 * c4).powi(2) + 6.0 * c3 * c3 + 24.0 * c4 * c4
+            })
+            .sum();
+        parts + self.products().map(|(j, k, b)| (b - other.product(j, k)).powi(2)).sum::<f64>()
     }
 
     /// The surface where one input varies by this factor more.

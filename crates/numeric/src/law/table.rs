@@ -2,6 +2,7 @@
 //! surface is sampled.
 
 use super::LawTail;
+use super::complex::Complex;
 use super::derivative::exact_derivatives;
 use super::inversion::Inversion;
 use super::surface::Surface;
@@ -13,6 +14,30 @@ const LEAST: f64 = 1e-40;
 /// Places to either side of the mean at most.
 const MOST: usize = 1200;
 
+/// The relative error of cubics where a density is smooth.
+const SMOOTH: f64 = 1e-7;
+
+/// The largest relative error of a table that takes the place of a direction.
+const COARSE: f64 = 1e-4;
+
+/// Whether the transform has vanished where a wave is as short as a few places of a table.
+fn is_smooth(law: &Inversion) -> bool {
+    /// Waves by the inverse of sigma: 2.5 to 4 places each.
+    const WAVES: [f64; 4] = [36.0, 44.0, 52.0, 60.0];
+    /// A tilt of the middle, by the inverse of sigma.
+    const TILT: f64 = 1.2;
+    let (transform, sigma) = (&law.transform, law.sigma());
+    let [low, high] = transform.domain;
+    [-TILT / sigma, TILT / sigma].iter().all(|&tilt| {
+        let theta = tilt.clamp(0.5 * low, 0.5 * high);
+        let logs = transform.logs(theta);
+        WAVES.iter().all(|wave| {
+            let mut ratio = [Complex::ONE];
+            transform.ratios(theta, &logs, wave / sigma, 1.0 / sigma, &mut ratio) == 1 && ratio[0].abs() < COARSE
+        })
+    })
+}
+
 /// Logarithms of both tails and their slopes, at equal distances.
 #[derive(Debug)]
 pub(super) struct Table {
@@ -22,10 +47,16 @@ pub(super) struct Table {
     lower: Vec<[f64; 2]>,
     upper: Vec<[f64; 2]>,
     density: Vec<f64>,
+    /// Largest relative difference of a tail to the law itself between places, and at least [`SMOOTH`].
+    pub(super) error: f64,
 }
 
 impl Table {
-    pub(super) fn of(law: &Inversion, range: [f64; 2]) -> Self {
+    /// Returns None where the law has steps or corners, between which no cubic leads.
+    pub(super) fn of(law: &Inversion, range: [f64; 2]) -> Option<Self> {
+        if !is_smooth(law) {
+            return None;
+        }
         let (mean, step) = (law.mean(), law.sigma() / PER_SIGMA);
         let reach = |tail: LawTail, end: f64| {
             let beyond = |place: usize| {
@@ -52,7 +83,30 @@ impl Table {
             }
             density.push(at);
         }
-        Self { from, step, lower, upper, density }
+        let mut table = Self { from, step, lower, upper, density, error: SMOOTH };
+        table.error = table.error.max(table.difference(law));
+        (table.error <= COARSE).then_some(table)
+    }
+
+    /// Largest relative difference of the smaller tail to the law itself, halfway between places.
+    fn difference(&self, law: &Inversion) -> f64 {
+        /// A tail below this part of its own is far out, where the law itself loses digits.
+        const TRACE: f64 = 1e-12;
+        let last = self.lower.len() - 1;
+        let mut most = 0.0f64;
+        for place in 0..last {
+            let y = self.from + self.step * (place as f64 + 0.5);
+            let tail = if y < law.mean() { LawTail::Lower } else { LawTail::Upper };
+            let own = law.tail(y, tail);
+            let off = ((self.tail(y, tail) - own.value).abs() + own.error) / own.value;
+            if own.value > TRACE || off.is_nan() {
+                most = most.max(if off.is_nan() { f64::INFINITY } else { off });
+            }
+            if most > COARSE {
+                break;
+            }
+        }
+        most
     }
 
     /// Probability beyond a limit, by Hermite's cubic of the logarithm: 1e-8 relative where the density is smooth.

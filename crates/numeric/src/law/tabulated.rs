@@ -72,9 +72,4 @@ impl TabulatedInput {
     pub fn is_normal(&self) -> bool {
         self.normal
     }
-
-    /// Whether every value has a probability of its own.
-    pub fn is_discrete(&self) -> bool {
-        self.top.is_none()
-    }
 }

@@ -3,6 +3,7 @@
 use super::complex::Complex;
 use super::forms::{Block, Forms};
 use super::hats::{Hat, Hats};
+use super::perturbed_form::PerturbedForm;
 use super::single_sum::Single;
 use super::surface::Surface;
 use super::tree::Tree;
@@ -18,6 +19,7 @@ pub(super) struct Transform {
     pub(super) forms: Forms,
     pub(super) hats: Hats,
     pub(super) singles: Vec<Single>,
+    pub(super) perturbed: Vec<PerturbedForm>,
     pub(super) trees: Vec<Tree>,
     /// About the centre of the surface, as everything here.
     pub(super) mean: f64,
@@ -33,6 +35,7 @@ enum Kind {
     Form(Block),
     Hat(Hat),
     Single(Single),
+    Perturbed(PerturbedForm),
     Tree(Tree),
 }
 
@@ -48,18 +51,19 @@ impl Kind {
             }
             return Some(Self::Single(Single::new(j, law, surface.parts[j])));
         }
-        Tree::of(surface, members).map(Self::Tree)
+        PerturbedForm::of(surface, members).map(Self::Perturbed).or_else(|| Tree::of(surface, members).map(Self::Tree))
     }
 }
 
 impl Transform {
-    /// Of a surface's components, and the components that it does not take: neither tree nor form, or too heavy a tail, or a tree where
-    /// there are to be none.
-    pub(super) fn of(surface: &Surface, components: &[Vec<usize>], trees: bool) -> (Self, Vec<Vec<usize>>) {
+    /// Of a surface's components, and the components that it does not take: neither tree nor form, or too heavy a tail, or a kind that is
+    /// not to be summed.
+    pub(super) fn of(surface: &Surface, components: &[Vec<usize>], summed: Summed) -> (Self, Vec<Vec<usize>>) {
         let mut transform = Self {
             forms: Forms::default(),
             hats: Hats::default(),
             singles: Vec::new(),
+            perturbed: Vec::new(),
             trees: Vec::new(),
             mean: 0.0,
             sigma: 0.0,
@@ -72,30 +76,53 @@ impl Transform {
                 Some(Kind::Form(block)) => transform.forms.push(block),
                 Some(Kind::Hat(hat)) => transform.hats.push(hat),
                 Some(Kind::Single(single)) => transform.singles.push(single),
-                Some(Kind::Tree(tree)) if trees => transform.trees.push(tree),
-                Some(Kind::Tree(_)) | None => left.push(members.clone()),
+                Some(Kind::Perturbed(form)) if summed >= Summed::Perturbed => transform.perturbed.push(form),
+                Some(Kind::Tree(tree)) if summed >= Summed::Trees => transform.trees.push(tree),
+                Some(Kind::Perturbed(_) | Kind::Tree(_)) | None => left.push(members.clone()),
             }
         }
         transform.measure();
-        // A component whose own tail is too heavy for a tilt of the whole.
-        let least = LEAST_TILT / transform.sigma;
-        let bears = |single: &Single| single.bears(least, least) && single.bears(-least, least);
-        let heavy: Vec<usize> = transform.singles.iter().filter(|single| !bears(single)).map(|s| s.input).collect();
-        transform.singles.retain(|single| !heavy.contains(&single.input));
-        left.extend(heavy.iter().map(|&input| vec![input]));
-        let tall = |tree: &Tree| !(tree.bears(least, least) && tree.bears(-least, least));
-        let heavy: Vec<Vec<usize>> = transform.trees.iter().filter(|tree| tall(tree)).map(Tree::sorted).collect();
-        transform.trees.retain(|tree| !heavy.contains(&tree.sorted()));
-        left.extend(heavy);
+        left.extend(transform.without_heavy_components(surface, summed));
         if !left.is_empty() {
             left.sort();
             transform.measure();
         }
         transform.domain = transform.reach();
-        if transform.is_form() {
-            transform.vertex = transform.forms.vertex();
-        }
+        transform.vertex = transform.corner();
         (transform, left)
+    }
+
+    /// Takes out the components whose own tail is too heavy for a tilt of the whole. A perturbed form that bears none may be a tree.
+    fn without_heavy_components(&mut self, surface: &Surface, summed: Summed) -> Vec<Vec<usize>> {
+        let least = LEAST_TILT / self.sigma;
+        let mut left: Vec<Vec<usize>> = Vec::new();
+        let bears = |single: &Single| single.bears(least, least) && single.bears(-least, least);
+        let heavy: Vec<usize> = self.singles.iter().filter(|single| !bears(single)).map(|s| s.input).collect();
+        self.singles.retain(|single| !heavy.contains(&single.input));
+        left.extend(heavy.iter().map(|&input| vec![input]));
+        for form in std::mem::take(&mut self.perturbed) {
+            match form.bears(least) && form.bears(-least) {
+                true => self.perturbed.push(form),
+                false => match Tree::of(surface, &form.members).filter(|_| summed >= Summed::Trees) {
+                    Some(tree) => self.trees.push(tree),
+                    None => left.push(form.members.clone()),
+                },
+            }
+        }
+        let tall = |tree: &Tree| !(tree.bears(least, least) && tree.bears(-least, least));
+        let heavy: Vec<Vec<usize>> = self.trees.iter().filter(|tree| tall(tree)).map(Tree::sorted).collect();
+        self.trees.retain(|tree| !heavy.contains(&tree.sorted()));
+        left.extend(heavy);
+        left
+    }
+
+    /// The vertex of quadratic forms that are all there is, with or without higher powers beside them.
+    fn corner(&self) -> Option<f64> {
+        if !self.is_perturbed() {
+            return None;
+        }
+        let parabolas: Vec<[f64; 2]> = self.perturbed.iter().flat_map(PerturbedForm::parabolas).collect();
+        self.forms.vertex(&parabolas)
     }
 
     /// Whether there is no component at all.
@@ -110,12 +137,22 @@ impl Transform {
 
     /// Whether no panel is summed.
     pub(super) fn is_closed(&self) -> bool {
-        self.singles.is_empty() && self.trees.is_empty()
+        self.singles.is_empty() && self.are_sums_closed()
     }
 
     /// Whether there are closed forms and atoms only, so that a contour may have many points.
     pub(super) fn is_cheap(&self) -> bool {
-        self.trees.is_empty() && self.singles.iter().all(Single::is_discrete)
+        self.are_sums_closed() && self.singles.iter().all(Single::is_discrete)
+    }
+
+    /// Whether there are quadratic forms, with higher powers beside some of them, and nothing else.
+    pub(super) fn is_perturbed(&self) -> bool {
+        self.hats.is_empty() && self.singles.is_empty() && self.trees.is_empty()
+    }
+
+    /// Whether no component has products beside curved parts that only a sum over nodes resolves: only such a contour may end early.
+    pub(super) fn are_sums_closed(&self) -> bool {
+        self.trees.is_empty() && self.perturbed.is_empty()
     }
 
     /// Mean and sigma.
@@ -125,8 +162,8 @@ impl Transform {
             let [own, spread] = single.moments();
             (mean, variance) = (mean + own, variance + spread);
         }
-        for tree in &self.trees {
-            let [own, spread] = tree.moments();
+        let moments = self.perturbed.iter().map(PerturbedForm::moments).chain(self.trees.iter().map(Tree::moments));
+        for [own, spread] in moments {
             (mean, variance) = (mean + own, variance + spread);
         }
         (self.mean, self.sigma) = (mean, variance.sqrt());
@@ -139,6 +176,7 @@ impl Transform {
         let at_mean = 1.0 / self.sigma;
         let bears = |theta: f64| {
             self.singles.iter().all(|single| single.bears(theta, at_mean))
+                && self.perturbed.iter().all(|form| form.bears(theta))
                 && self.trees.iter().all(|tree| tree.bears(theta, at_mean))
         };
         let far = |sign: f64| {
@@ -161,15 +199,14 @@ impl Transform {
             let [own, first, second] = single.cumulants(theta);
             (k, k1, k2) = (k + own, k1 + first, k2 + second);
         }
-        if !self.trees.is_empty() {
-            let step = 1e-3 / self.sigma;
-            for tree in &self.trees {
-                let [below, at, above] = [theta - step, theta, theta + step].map(|theta| tree.log(theta));
-                k += at;
-                k1 += (above - below) / (2.0 * step);
-                k2 += (above - 2.0 * at + below) / (step * step);
-            }
-        }
+        let step = 1e-3 / self.sigma;
+        let mut add = |log: &dyn Fn(f64) -> f64| {
+            let [below, at, above] = [theta - step, theta, theta + step].map(log);
+            (k, k1) = (k + at, k1 + (above - below) / (2.0 * step));
+            k2 += (above - 2.0 * at + below) / (step * step);
+        };
+        self.perturbed.iter().for_each(|form| add(&|theta| form.log(theta)));
+        self.trees.iter().for_each(|tree| add(&|theta| tree.log(theta)));
         [k, k1, k2]
     }
 
@@ -178,16 +215,41 @@ impl Transform {
         self.singles.iter().map(|single| single.cumulants(theta)[0]).collect()
     }
 
-    /// `M(s)/M(theta)` for a block of points `s = theta + i t`; None where a tree is too large.
-    pub(super) fn ratios(&self, theta: f64, logs: &[f64], from: f64, step: f64, out: &mut [Complex]) -> Option<()> {
+    /// Writes `M(s)/M(theta)` of the points `s = theta + i t` of a block; returns how many are resolved, from the first on.
+    pub(super) fn ratios(&self, theta: f64, logs: &[f64], from: f64, step: f64, out: &mut [Complex]) -> usize {
         let at_theta = self.forms.log(Complex::from(theta)).re;
-        for (i, out) in out.iter_mut().enumerate() {
-            let s = Complex::new(theta, from + step * i as f64);
+        let points: Vec<Complex> = (0..out.len()).map(|i| Complex::new(theta, from + step * i as f64)).collect();
+        for (&s, out) in points.iter().zip(out.iter_mut()) {
             *out = (self.forms.log(s) - Complex::from(at_theta)).exp() * self.hats.ratio(theta, s.im);
         }
         for (single, &log) in self.singles.iter().zip(logs) {
             single.multiply(theta, log, from, step, out);
         }
-        self.trees.iter().all(|tree| tree.multiply(theta, from, step, out)).then_some(())
+        let forms =
+            self.perturbed.iter().fold(out.len(), |resolved, form| resolved.min(form.multiply(theta, &points, out)));
+        self.trees.iter().fold(forms, |resolved, tree| resolved.min(tree.multiply(theta, from, step, out)))
     }
+
+    /// `K(s) - K(theta)` at points beside the real axis, where no panel is summed; as many as are resolved, from the first on.
+    pub(super) fn bent_logs(&self, theta: f64, points: &[Complex]) -> Vec<Complex> {
+        let at_theta = self.forms.log(Complex::from(theta));
+        let mut logs: Vec<Complex> = points.iter().map(|&s| self.forms.log(s) - at_theta).collect();
+        for form in &self.perturbed {
+            let more = form.logs(theta, points);
+            logs.truncate(more.len());
+            logs.iter_mut().zip(more).for_each(|(log, more)| *log += more);
+        }
+        logs
+    }
+}
+
+/// Components that are summed over nodes, beside those in closed form.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Summed {
+    /// Single inputs only.
+    Singles,
+    /// Quadratic forms with higher powers too.
+    Perturbed,
+    /// Trees of products too.
+    Trees,
 }

@@ -25,6 +25,9 @@ const MOST: usize = 1 << 22;
 /// Products of a table's elements with the points of the contour so far, some 1e8: the contour ends there too.
 const EFFORT: f64 = (1u64 << 27) as f64;
 
+/// Products from which on a transform that has not begun to vanish never will in time: this part of it, by the inverse square of the products.
+const CHEAP: f64 = (1u64 << 20) as f64;
+const HOPELESS: f64 = 0.02;
 /// Sigmas of its neighbours that an input's nodes resolve the products with; half of them may add to the weight of a node.
 const REACH: f64 = 8.0;
 /// Points of a contour that share their nodes: next to the real axis, where nodes double from few points to few points, and beyond.
@@ -146,9 +149,10 @@ impl Tree {
         let table = self.table(place, level(top));
         let near = 0.5 * theta.abs() * node.near;
         let logs: Vec<f64> = table.values.iter().zip(&table.logs).map(|(g, log)| theta * g + log).collect();
-        let reach = |at: usize| logs[at] + near * table.z[at].abs();
-        let most = (0..logs.len()).map(reach).fold(f64::NEG_INFINITY, f64::max);
-        let kept: Vec<usize> = (0..logs.len()).filter(|&at| reach(at) > most - LEAST).collect();
+        // Products may add to any node as much as they take from the heaviest one.
+        let beside = |at: usize| near * table.z[at].abs();
+        let most = (0..logs.len()).map(|at| logs[at] - beside(at)).fold(f64::NEG_INFINITY, f64::max);
+        let kept: Vec<usize> = (0..logs.len()).filter(|&at| logs[at] + beside(at) > most - LEAST).collect();
         let of = |values: &[f64]| kept.iter().map(|&at| values[at]).collect();
         Tilted { z: of(&table.z), values: of(&table.values), logs: of(&logs) }
     }
@@ -159,6 +163,10 @@ impl Tree {
         const OWN_REACH: f64 = 4.0;
         if !self.closed_positive(theta) {
             return false;
+        }
+        let bounded = |node: &Node| node.law.support.iter().all(|end| end.is_finite());
+        if self.nodes.iter().all(|node| node.closed || bounded(node)) {
+            return true;
         }
         let done = self.up(theta, at_mean);
         self.nodes.iter().zip(&done).filter(|(node, _)| !node.closed).all(|(node, (own, _))| {
@@ -232,29 +240,34 @@ impl Tree {
         done
     }
 
-    /// Multiplies `M(s)/M(theta)` into the points of a block; false where the tables would be too large.
-    pub(super) fn multiply(&self, theta: f64, from: f64, step: f64, out: &mut [Complex]) -> bool {
+    /// Multiplies `M(s)/M(theta)` into the points of a block; returns how many are resolved before the tables are too large.
+    pub(super) fn multiply(&self, theta: f64, from: f64, step: f64, out: &mut [Complex]) -> usize {
         let shared = SHARED[usize::from(from > 0.0)];
-        let mut ended = false;
+        let (mut ended, all) = (false, out.len());
         for (block, out) in out.chunks_mut(shared).enumerate() {
             if ended {
                 out.fill(Complex::ZERO);
                 continue;
             }
-            if !self.few(theta, from + step * (block * shared) as f64, step, out) {
-                return false;
-            }
+            let Some(effort) = self.few(theta, from + step * (block * shared) as f64, step, out) else {
+                return block * shared;
+            };
             // Nodes double from block to block: what has vanished is not resolved any further.
-            ended = out.iter().all(|value| value.abs() < VANISHED);
+            let most = out.iter().map(|value| value.abs()).fold(0.0, f64::max);
+            ended = most < VANISHED;
+            if most > HOPELESS * (CHEAP / effort).powi(2) && effort > CHEAP {
+                return (block * shared + out.len()).min(all);
+            }
         }
-        true
+        all
     }
 
-    /// The same for points that share their nodes.
-    fn few(&self, theta: f64, from: f64, step: f64, out: &mut [Complex]) -> bool {
+    /// The same for points that share their nodes; the products of the largest table with the points so far, None where these are too many.
+    fn few(&self, theta: f64, from: f64, step: f64, out: &mut [Complex]) -> Option<f64> {
         let top = libm::hypot(theta, from + step * out.len() as f64);
         let done = self.up(theta, top);
         let points = from / step + out.len() as f64;
+        let mut effort: f64 = 0.0;
         let mut messages: Vec<Option<Message>> = Vec::with_capacity(self.nodes.len());
         let mut parents = vec![usize::MAX; self.nodes.len()];
         for (place, node) in self.nodes.iter().enumerate() {
@@ -268,8 +281,9 @@ impl Tree {
                     let (own, parent) = (&done[place].0, &done[parents[place]].0);
                     let elements = own.z.len() * parent.z.len();
                     if elements > MOST || elements as f64 * points > EFFORT {
-                        return false;
+                        return None;
                     }
+                    effort = effort.max(elements as f64 * points);
                     Some(Message::new(own, &parent.z, theta, node.product, from, step))
                 }
             });
@@ -282,7 +296,7 @@ impl Tree {
                 let s = Complex::new(theta, from + step * i as f64);
                 *out *= (self.parabola(root, s).constant - at_theta).exp();
             }
-            return true;
+            return Some(effort);
         }
         let weights: Vec<f64> = done[root].0.logs.iter().map(|log| Exp::of(log - done[root].1)).collect();
         let mut factors: Vec<Vec<Complex>> = done.iter().map(|(own, _)| vec![Complex::ONE; own.z.len()]).collect();
@@ -314,7 +328,7 @@ impl Tree {
             let sum = factors[root].iter().zip(&weights).fold(Complex::ZERO, |sum, (factor, &w)| sum + *factor * w);
             *out *= sum;
         }
-        true
+        Some(effort)
     }
 }
 

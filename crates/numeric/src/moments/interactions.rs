@@ -2,6 +2,8 @@
 
 use faer::Mat;
 
+use crate::power::{Rescale, Rescaling};
+
 /// Coefficients of `u_j u_k`, dense or sparse, whichever is cheaper.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Interactions {
@@ -23,6 +25,17 @@ pub(crate) enum Row<'a> {
     Sparse(&'a [(usize, f64)]),
     /// With every input, 0 where there is none.
     Dense(&'a [f64]),
+}
+
+impl Rescale for Interactions {
+    fn rescale(&mut self, by: &mut Rescaling) {
+        match &mut self.kind {
+            Kind::Sparse(rows) => rows.iter_mut().flatten().for_each(|(_, value)| value.rescale(by)),
+            Kind::Dense(matrix) => {
+                (0..matrix.ncols()).for_each(|j| (0..matrix.nrows()).for_each(|k| matrix[(k, j)].rescale(by)));
+            }
+        }
+    }
 }
 
 impl Interactions {

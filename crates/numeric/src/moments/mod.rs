@@ -34,6 +34,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 
 use crate::distribution::StandardMoments;
+use crate::power::rescale;
 use crate::shape::Four;
 use assemble::Assembly;
 
@@ -44,6 +45,9 @@ pub struct Moments {
     sigma: f64,
     shape: Option<(f64, f64)>,
 }
+
+rescale!(Moments { mean, sigma } without { shape });
+rescale!(Sampled { sigma } without { samples, skewness, kurtosis });
 
 impl From<&Option<Moments>> for Four<Option<f64>> {
     fn from(moments: &Option<Moments>) -> Self {
@@ -149,9 +153,9 @@ impl Contributions {
         }
     }
 
-    /// The same beside an independent part with this variance, of which nothing else is known: taken to be normal.
-    pub fn beside(self, variance: f64) -> Self {
-        let sigma = libm::hypot(self.moments.sigma(), variance.sqrt());
+    /// The same beside an independent part with this standard deviation, of which nothing else is known: taken to be normal.
+    pub fn beside(self, sigma: f64) -> Self {
+        let sigma = libm::hypot(self.moments.sigma(), sigma);
         if sigma == self.moments.sigma() {
             return self;
         }
@@ -185,8 +189,8 @@ impl Contributions {
 /// not say more of the kurtosis than `q^-4` roundings: line and parabola of an input that has only two values do that.
 ///
 /// ```
-/// use sensitol_numeric::distribution::StandardMoments;
-/// use sensitol_numeric::moments::{Interactions, Term, contributions};
+/// use crate::distribution::StandardMoments;
+/// use crate::moments::{Interactions, Term, contributions};
 /// // y = u1 u2 of two normal inputs: kurtosis 9.
 /// let normal = &StandardMoments::NORMAL;
 /// let nothing = Term::Quadratic { linear: 0.0, curvature: 0.0, moments: normal };
@@ -243,8 +247,8 @@ fn unit_of(terms: &[Term<'_>], interactions: &Interactions) -> Option<(f64, f64)
 /// `b_j = sd_j dF/dx_j`, `a_j = sd_j^2/2 d2F/dx_j^2`, `A_jk = sd_j sd_k d2F/dx_j dx_k`, and `c = F + sum_j a_j` is the mean.
 ///
 /// ```
-/// use sensitol_numeric::distribution::StandardMoments;
-/// use sensitol_numeric::moments::{Interactions, of_quadratic};
+/// use crate::distribution::StandardMoments;
+/// use crate::moments::{Interactions, of_quadratic};
 /// // u^2 - 1 of a normal input is chi-squared with one degree of freedom: skewness sqrt 8, kurtosis 15.
 /// let moments = of_quadratic(0.0, &[0.0], &[1.0], &Interactions::none(1), &[StandardMoments::NORMAL]);
 /// assert!((moments.skewness().unwrap() - 8f64.sqrt()).abs() < 1e-14);

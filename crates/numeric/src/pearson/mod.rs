@@ -32,19 +32,20 @@ pub use shape::PearsonType;
 
 use rand::RngExt;
 
+use crate::power::rescale;
 use standard::Standard;
 
 /// A member of the Pearson system.
 ///
 /// ```
-/// use sensitol_numeric::pearson::{Pearson, PearsonType};
+/// use crate::pearson::{Pearson, PearsonType};
 /// // Skewness 2, kurtosis 9, mean and sigma 1: the exponential distribution.
 /// let law = Pearson::new(1.0, 1.0, 2.0, 9.0)?;
 /// assert_eq!(law.kind(), PearsonType::III);
 /// assert_eq!(law.support(), [0.0, f64::INFINITY]);
 /// assert!((law.sf(3.0) - (-3.0f64).exp()).abs() < 1e-15);
 /// assert!((law.upper_quantile(1e-9) - 1e9f64.ln()).abs() < 1e-12);
-/// # Ok::<(), sensitol_numeric::pearson::PearsonError>(())
+/// # Ok::<(), crate::pearson::PearsonError>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct Pearson {
@@ -54,6 +55,8 @@ pub struct Pearson {
     kurtosis: [f64; 2],
     standard: Standard,
 }
+
+rescale!(Pearson { mean, sigma } without { skewness, kurtosis, standard });
 
 /// Laws with the same moments are the same.
 impl PartialEq for Pearson {

@@ -1,6 +1,8 @@
 //! Estimates with their standard errors.
 
 use super::Summary;
+use super::critical::beta_quantile;
+use crate::power::{Rescale, Rescaling, Unknown};
 
 /// A value that a sample estimates, and how uncertain it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -9,6 +11,19 @@ pub struct Estimate {
     pub value: f64,
     /// Its standard error; None where the sample does not tell.
     pub standard_error: Option<f64>,
+}
+
+impl Rescale for Estimate {
+    fn rescale(&mut self, by: &mut Rescaling) {
+        self.value.rescale(by);
+        self.standard_error.rescale(by);
+    }
+}
+
+impl Unknown for Estimate {
+    fn is_unknown(&self) -> bool {
+        self.value.is_nan()
+    }
 }
 
 /// Fewer values have no standard errors.
@@ -25,7 +40,7 @@ pub const FEWEST: u64 = 10;
 /// ```
 ///
 /// A kurtosis of 10 or more needs its eighth moment, which a sample of less than a million hardly has: there the standard
-/// error is too small.
+/// error is too small, and [`settled`](super::settled) leaves it out.
 pub fn of_moments(summary: &Summary) -> [Option<Estimate>; 4] {
     let n = summary.count() as f64;
     if summary.count() == 0 {
@@ -77,7 +92,7 @@ pub fn one_error(value: f64, [low, high]: [f64; 2]) -> f64 {
 /// The 95 % interval of a share of which `hits` of `n` were seen (Wilson 1927): never empty, never outside 0 to 1.
 ///
 /// ```
-/// use sensitol_numeric::sampling::wilson;
+/// use crate::sampling::wilson;
 /// let [low, high] = wilson(1000.0, 1000.0);
 /// assert!(low < 0.9963 && low > 0.996 && high == 1.0); // all of a thousand is not all
 /// ```
@@ -92,4 +107,111 @@ pub fn wilson(hits: f64, n: f64) -> [f64; 2] {
     let low = if hits == 0.0 { 0.0 } else { (middle - half).max(0.0) };
     let high = if hits == n { 1.0 } else { (middle + half).min(1.0) };
     [low, high]
+}
+
+/// The 95 % interval of a share of which `hits` of `n` were seen: exact, whatever the share is. `hits` may be the mean of several counts, and
+/// need not be whole.
+///
+/// Source: Clopper and Pearson, Biometrika 26 (1934).
+///
+/// ```
+/// use sensitol::internals::clopper_pearson;
+/// // None of 195 leaves 1 - 0.025^(1/195).
+/// let [low, high] = clopper_pearson(0.0, 195.0);
+/// assert!(low == 0.0 && (high - 0.018739).abs() < 1e-6);
+/// // Of 1 of 10 tables have 0.25 % to 44.5 %.
+/// let [low, high] = clopper_pearson(1.0, 10.0);
+/// assert!((low - 0.00253).abs() < 1e-5 && (high - 0.44502).abs() < 1e-5);
+/// ```
+pub fn clopper_pearson(hits: f64, n: f64) -> [f64; 2] {
+    /// The probability beyond either end, and the hits below which the lower end is 0 in double precision.
+    const SIDE: f64 = 0.025;
+    const NONE: f64 = 1e-3;
+    if n.is_nan() || n <= 0.0 {
+        return [0.0, 1.0];
+    }
+    let hits = hits.clamp(0.0, n);
+    // In closed form at the ends, where a shape would be 0; shares of many points are small beside 1.
+    let unseen = -libm::expm1(libm::log(SIDE) / n);
+    let low = match hits {
+        none if none < NONE => 0.0,
+        all if all >= n => 1.0 - unseen,
+        _ => beta_quantile(hits, n - hits + 1.0, SIDE),
+    };
+    let high = match hits {
+        0.0 => unseen,
+        all if all >= n => 1.0,
+        _ => beta_quantile(hits + 1.0, n - hits, 1.0 - SIDE),
+    };
+    [low, high]
+}
+
+/// The 95 % interval of a share by weighted points: that of Clopper and Pearson with as many points as would scatter as much (Korn and Graubard
+/// 1998). The share that no point shows is at most that of none of so many points as `one` is the weight of a single one shows.
+///
+/// `scatter` is the standard error by what the points differ by; where it is 0, all of them agree.
+///
+/// ```text
+/// n = p (1 - p)/scatter^2        high = p + hypot(high(n p of n) - p, high(0 of 1/one))
+/// ```
+pub fn weighted_interval(share: f64, scatter: f64, one: f64) -> [f64; 2] {
+    let [_, unseen] = clopper_pearson(0.0, 1.0 / one);
+    let points = share * (1.0 - share) / (scatter * scatter);
+    let [low, high] = match scatter > 0.0 && points.is_finite() && points > 0.0 {
+        true => clopper_pearson(share * points, points),
+        false => [share; 2],
+    };
+    let less = if scatter > 0.0 { share - low } else { unseen };
+    [(share - less).max(0.0), (share + libm::hypot(high - share, unseen)).min(1.0)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The probability of at most `k` of `n` at this share, term by term.
+    fn at_most(k: u32, n: u32, share: f64) -> f64 {
+        let mut term = libm::exp(f64::from(n) * libm::log1p(-share));
+        let mut sum = term;
+        for i in 0..k {
+            term *= f64::from(n - i) / f64::from(i + 1) * share / (1.0 - share);
+            sum += term;
+        }
+        sum
+    }
+
+    /// At its upper end what was seen or less has 2.5 %, at its lower end what was seen or more: by sums of the binomial distribution.
+    #[test]
+    fn the_ends_leave_a_fortieth_beyond() {
+        for (k, n) in [(1, 10), (3, 40), (1, 100_000), (2, 100_000), (25, 100_000), (400, 1000)] {
+            let [low, high] = clopper_pearson(f64::from(k), f64::from(n));
+            assert!((at_most(k, n, high) - 0.025).abs() < 1e-8, "{k} of {n}: {high}");
+            assert!((1.0 - at_most(k - 1, n, low) - 0.025).abs() < 1e-8, "{k} of {n}: {low}");
+        }
+    }
+
+    /// 0.025 = (1 - p)^n; of all the mirror image.
+    #[test]
+    fn none_and_all_have_one_end() {
+        let [low, high] = clopper_pearson(0.0, 1e5);
+        assert_eq!(low, 0.0);
+        assert!((high - 36.888e-6).abs() < 1e-9, "{high}");
+        let [low, high] = clopper_pearson(1e5, 1e5);
+        assert_eq!(high, 1.0);
+        assert!((1.0 - low - 36.888e-6).abs() < 1e-9, "{low}");
+    }
+
+    /// Points of one weight are plain ones, but for what they may all have overlooked; of none of them that is all.
+    #[test]
+    fn weights_that_are_equal_count_points() {
+        let n = 1000.0;
+        let share: f64 = 0.1;
+        let scatter = (share * (1.0 - share) / n).sqrt();
+        let [low, high] = weighted_interval(share, scatter, 1.0 / n);
+        let [plain_low, plain_high] = clopper_pearson(100.0, n);
+        let [_, unseen] = clopper_pearson(0.0, n);
+        assert!((low - plain_low).abs() < 1e-12);
+        assert!((high - share - libm::hypot(plain_high - share, unseen)).abs() < 1e-12);
+        assert_eq!(weighted_interval(0.0, 0.0, 1.0 / n), [0.0, unseen]);
+    }
 }

@@ -27,6 +27,11 @@ impl Normals {
         Self { dimensions, sobol, seed }
     }
 
+    /// Random points, whatever their number of variables.
+    pub fn random(dimensions: usize, seed: u64) -> Self {
+        Self { dimensions, sobol: None, seed }
+    }
+
     /// The first `rows` points of a stream: a column for every variable.
     pub fn columns(&self, stream: u64, rows: usize) -> Vec<Vec<f64>> {
         let column = |place: usize| {

@@ -20,7 +20,7 @@ type Directions = [u64; DIGITS as usize];
 /// point uniform and keeps the balance: each digit is flipped or not by a random bit that belongs to the digits before it.
 ///
 /// ```
-/// use sensitol_numeric::sampling::Sobol;
+/// use crate::sampling::Sobol;
 /// let plain = Sobol::new(3).expect("there are direction numbers for three dimensions");
 /// let mut column = [0.0; 4];
 /// plain.column(1, 0, None, &mut column);

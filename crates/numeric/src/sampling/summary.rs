@@ -11,7 +11,7 @@ const ORDER: usize = 8;
 /// digits.
 ///
 /// ```
-/// use sensitol_numeric::sampling::Summary;
+/// use crate::sampling::Summary;
 /// let mut sample = Summary::of(&[1.0, 2.0]);
 /// sample.merge(&Summary::of(&[3.0, 4.0]));
 /// assert_eq!((sample.count(), sample.mean(), sample.moment(2)), (4, 2.5, 1.25));

@@ -8,6 +8,7 @@
 
 mod chaos;
 mod correlated;
+mod derivative_origin;
 mod drawn;
 mod growth;
 mod inputs;
@@ -21,6 +22,7 @@ mod univariate;
 mod values;
 
 pub use chaos::{Chaos, DEPENDENT, Places, Sparse};
+pub use derivative_origin::DerivativeOrigin;
 pub use inputs::Inputs;
 pub use pooled::Pooled;
 pub use relocation::Relocation;
@@ -28,6 +30,7 @@ pub use shape::{InputShape, shapes};
 pub use univariate::Univariate;
 
 use crate::moments::{Contributions, Interactions, Term, contributions, exact};
+use crate::power::rescale;
 
 /// One characteristic's surrogate over N dimensions.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,6 +42,8 @@ pub struct Surrogate {
     /// The products.
     pub interactions: Interactions,
 }
+
+rescale!(Surrogate { centre, parts, interactions } without {});
 
 impl Surrogate {
     /// Moments and contributions; None when a part is unknown, or an input's tail makes its variance infinite.

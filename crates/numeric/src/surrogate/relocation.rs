@@ -27,9 +27,9 @@ impl Surrogate {
     /// Shapes: `moved` has length N. No evaluation.
     ///
     /// ```
-    /// use sensitol_numeric::moments::Interactions;
-    /// use sensitol_numeric::surrogate::{Surrogate, Univariate};
-    /// use sensitol_numeric::surrogate::Relocation;
+    /// use crate::moments::Interactions;
+    /// use crate::surrogate::{Surrogate, Univariate};
+    /// use crate::surrogate::Relocation;
     /// // y = u0 + u0 u1, and the mean of u1 moves by half a sigma: y = 1.5 u0 + u0 v1.
     /// let parts = vec![Some(Univariate::of_coefficients(&[1.0])), Some(Univariate::of_coefficients(&[0.0]))];
     /// let product = Interactions::of_pairs(2, [(0, 1, 1.0)]);
@@ -70,7 +70,7 @@ impl Univariate {
         let second = c2 + d * (3.0 * c3 + d * 6.0 * c4);
         let third = c3 + d * 4.0 * c4;
         let coefficients = [r * first, r * r * second, r * r * r * third, r * r * r * r * c4];
-        (constant, Self { coefficients, degree: self.degree })
+        (constant, Self { coefficients, ..*self })
     }
 
     /// With this much added to the factor of the square.

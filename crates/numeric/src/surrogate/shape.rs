@@ -14,6 +14,16 @@ pub struct InputShape {
     pub rule: Arc<Rule>,
 }
 
+impl InputShape {
+    /// Whether the rule integrates powers up to this one of a distribution with this shape exactly.
+    pub fn integrates(&self, distribution: &dyn Distribution, power: usize) -> bool {
+        let jacobi = distribution.jacobi(NODES);
+        let enough = jacobi.is_whole() || power < 2 * jacobi.order();
+        // Nodes of a long tail may stand in its place.
+        enough && *self.rule == jacobi.gauss()
+    }
+}
+
 /// Nodes that integrate the fourth power of a quartic, of degree 16, exactly.
 const NODES: usize = 9;
 /// The order that eight moments determine; fewer are known of Student's distribution with few degrees.

@@ -1,24 +1,29 @@
 //! One dimension's own part of a characteristic: a polynomial through the values at its nodes.
 
-use super::InputShape;
+use super::{DerivativeOrigin, InputShape};
 use crate::moments::Term;
+use crate::power::rescale;
 
 /// `g(u) = c1 u + c2 u^2 + c3 u^3 + c4 u^4`, of the degree that the nodes allow.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Univariate {
     pub(super) coefficients: [f64; 4],
     pub(super) degree: usize,
+    pub(super) origin: DerivativeOrigin,
 }
+
+rescale!(Univariate { coefficients } without { degree, origin });
 
 impl Univariate {
     /// The highest degree.
     pub const DEGREE: usize = 4;
 
-    /// A part of which the first coefficients are known: up to four.
+    /// A part of which the first coefficients are known, up to four, differentiated from a formula unless
+    /// [`with_origin`](Self::with_origin) says otherwise.
     pub fn of_coefficients(known: &[f64]) -> Self {
         let mut coefficients = [0.0; Self::DEGREE];
         coefficients[..known.len()].copy_from_slice(known);
-        Self { coefficients, degree: known.len() }
+        Self { coefficients, degree: known.len(), origin: DerivativeOrigin::Exact }
     }
 
     /// Through `(u, y(u) - y(0))` at one to four different nodes, none of them 0; None without any node.
@@ -27,7 +32,7 @@ impl Univariate {
     /// in symmetric pairs, so that an even function has slope 0 to the last bit.
     ///
     /// ```
-    /// use sensitol_numeric::surrogate::Univariate;
+    /// use crate::surrogate::Univariate;
     /// let parabola = Univariate::through(&[(-1.0, 2.0), (2.0, 8.0)]).unwrap();
     /// assert_eq!((parabola.slope(), parabola.second(), parabola.degree()), (0.0, Some(4.0), 2));
     /// ```
@@ -56,7 +61,17 @@ impl Univariate {
         } else {
             coefficients[..n].copy_from_slice(&newton(&chords));
         }
-        Some(Self { coefficients, degree: n })
+        Some(Self { coefficients, degree: n, origin: DerivativeOrigin::Evaluated })
+    }
+
+    /// Returns the part with its coefficients from this source.
+    pub fn with_origin(self, origin: DerivativeOrigin) -> Self {
+        Self { origin, ..self }
+    }
+
+    /// Source of its coefficients.
+    pub fn origin(&self) -> DerivativeOrigin {
+        self.origin
     }
 
     /// How far the part is known.
@@ -78,7 +93,11 @@ impl Univariate {
     /// `a g(u) + b h(u)`.
     pub(super) fn sum(&self, a: f64, other: &Self, b: f64) -> Self {
         let coefficient = |i: usize| a * self.coefficients[i] + b * other.coefficients[i];
-        Self { coefficients: std::array::from_fn(coefficient), degree: self.degree.max(other.degree) }
+        Self {
+            coefficients: std::array::from_fn(coefficient),
+            degree: self.degree.max(other.degree),
+            origin: self.origin.and(other.origin),
+        }
     }
 
     /// First derivative at the mean, per sigma.
@@ -95,6 +114,11 @@ impl Univariate {
     pub(super) fn parabola(&self) -> Option<[f64; 2]> {
         let [linear, curvature, third, fourth] = self.coefficients;
         (third == 0.0 && fourth == 0.0).then_some([linear, curvature])
+    }
+
+    /// The highest power with a coefficient that is not 0.
+    pub fn highest_power(&self) -> usize {
+        self.coefficients.iter().rposition(|of| *of != 0.0).map_or(0, |place| place + 1)
     }
 
     /// The largest coefficient, to scale by.

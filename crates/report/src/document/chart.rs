@@ -69,8 +69,8 @@ pub struct SpreadChart {
     pub limits: [Option<f64>; 2],
     /// The rejects beyond each limit, in words.
     pub rejects: [Option<String>; 2],
-    /// Ranges below the axis of a page, by name.
-    pub ranges: Vec<(String, [f64; 2])>,
+    /// Ranges below the axis of a page: name, ends, and the ends as they are shown.
+    pub ranges: Vec<(String, [f64; 2], [String; 2])>,
     /// Its value at the nominal dimensions.
     pub nominal: Option<f64>,
     /// Places that are marked on pages: value, kind (`mean` or `quantile`), name.

@@ -73,12 +73,34 @@ pub fn plain(value: f64) -> String {
 pub(crate) fn beside(value: f64, sigma: f64) -> String {
     match decimals(sigma, 5) {
         Some(decimals) if value.abs() < 1e9 => unsigned_zero(format!("{value:.decimals$}")),
-        _ => {
-            let ratio = libm::log10((value / sigma).abs().max(1.0)).floor();
-            let digits = if ratio.is_finite() { (ratio as usize + 5).min(17) } else { 6 };
-            significant(value, digits)
-        }
+        _ => significant(value, digits_beside(value, sigma)),
     }
+}
+
+/// The significant digits of a number beside its sigma, where decimals do not show it.
+fn digits_beside(value: f64, sigma: f64) -> usize {
+    let ratio = libm::log10((value / sigma).abs().max(1.0)).floor();
+    if ratio.is_finite() { (ratio as usize + 5).min(17) } else { 6 }
+}
+
+/// The ends of an interval that no value leaves, shown as [`carried`] and rounded outward: no value lies beyond the printed numbers.
+///
+/// An end within a millionth of the last digit of a printed number is that number: the rounding of a sum moves nothing outward by a digit.
+pub(crate) fn outward(ends: [f64; 2], sigma: f64, error: Option<f64>) -> [String; 2] {
+    /// A part of the last digit.
+    const ROUNDING: f64 = 1e-6;
+    let shown = |value: f64, sign: f64| {
+        let last = match (decimals(sigma, 5), of_error(error)) {
+            (Some(of_sigma), of_error) if value.abs() < 1e9 => {
+                power_of_ten(-(of_error.map_or(of_sigma, |of_error| of_error.min(of_sigma)) as f64))
+            }
+            _ if value == 0.0 => 0.0,
+            _ => power_of_ten(libm::log10(value.abs()).floor() - digits_beside(value, sigma) as f64 + 1.0),
+        };
+        // To the nearest from half a digit farther out is outward.
+        carried(value + sign * (0.5 - ROUNDING) * last, sigma, error)
+    };
+    [shown(ends[0], -1.0), shown(ends[1], 1.0)]
 }
 
 /// `-0.00` says no more than `0.00`.
@@ -195,6 +217,13 @@ pub(crate) fn carried(value: f64, sigma: f64, error: Option<f64>) -> String {
         (Some(of_sigma), Some(of_error)) if of_error < of_sigma && value.abs() < 1e9 => {
             unsigned_zero(format!("{value:.of_error$}"))
         }
+        (of_sigma, _) if of_sigma.is_none() || value.abs() >= 1e9 => {
+            // With an exponent, down to the second digit of the error.
+            let known = error.filter(|error| *error > 0.0 && error.is_finite());
+            let carried = known.map(|error| libm::log10(value.abs()).floor() - libm::log10(error).floor() + 2.0);
+            let digits = digits_beside(value, sigma);
+            significant(value, carried.map_or(digits, |carried| digits.min(carried.max(1.0) as usize)))
+        }
         _ => beside(value, sigma),
     }
 }
@@ -203,7 +232,14 @@ pub(crate) fn carried(value: f64, sigma: f64, error: Option<f64>) -> String {
 pub(crate) fn estimated(value: f64, error: Option<f64>) -> String {
     match error {
         Some(error) if error > 0.0 && error.is_finite() => {
-            let decimals = (1.0 - libm::log10(error).floor()).clamp(0.0, 15.0) as usize;
+            let decimals = 1.0 - libm::log10(error).floor();
+            let tiny = decimals > 15.0 && value.abs().max(error) < 1e-4;
+            if tiny || value.abs() >= 1e15 {
+                // With an exponent, down to the second digit of the error.
+                let digits = 2.0 + libm::log10((value / error).abs().max(1.0)).floor();
+                return significant(value, digits.min(17.0) as usize);
+            }
+            let decimals = decimals.clamp(0.0, 15.0) as usize;
             unsigned_zero(format!("{value:.decimals$}"))
         }
         Some(_) => plain(value),

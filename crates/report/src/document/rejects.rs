@@ -11,7 +11,7 @@ const REACH: f64 = 2.0;
 ///
 /// The first digit of the error is the last one printed. Rejects below half of what the interval of two errors allows are not told
 /// apart from none: then the interval's end is printed as a bound, the yield rounded down and the rejects rounded up. So are rejects
-/// fewer than any law tells.
+/// fewer than any law tells. The rejects of one side have the interval of their own, where that is known.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Rejects {
     /// Share below the lower limit.
@@ -20,12 +20,19 @@ pub(crate) struct Rejects {
     above: Option<f64>,
     /// One error of the sum; None where it is unknown.
     error: Option<f64>,
+    /// The 95 % interval of either side; None where it is unknown.
+    intervals: [Option<[f64; 2]>; 2],
 }
 
 impl Rejects {
     /// Shares from 0 to 1.
     pub(crate) fn new(below: Option<f64>, above: Option<f64>, error: Option<f64>) -> Self {
-        Self { below, above, error: error.filter(|error| *error > 0.0 && error.is_finite()) }
+        Self { below, above, error: error.filter(|error| *error > 0.0 && error.is_finite()), intervals: [None; 2] }
+    }
+
+    /// With the 95 % intervals of the rejects below and above.
+    pub(crate) fn within(self, intervals: [Option<[f64; 2]>; 2]) -> Self {
+        Self { intervals, ..self }
     }
 
     /// Of all limits together.
@@ -86,7 +93,7 @@ impl Rejects {
 
     /// The rejects below and above, each where there is a limit.
     pub(crate) fn by_side(self) -> [Option<String>; 2] {
-        [self.below, self.above].map(|share| Some(format!("{} ppm", self.ppm(share?))))
+        [0, 1].map(|side| Some(format!("{} ppm", self.side(side)?)))
     }
 
     /// All rejects, in parts per million; None without any limit.
@@ -96,21 +103,39 @@ impl Rejects {
 
     /// The rejects on either side, in parts per million.
     pub(crate) fn sides(self) -> String {
-        let side = |share: Option<f64>, name: &str| Some(format!("{} ppm {name}", self.ppm(share?)));
-        let sides: Vec<String> = [side(self.below, "below"), side(self.above, "above")].into_iter().flatten().collect();
+        let side = |(side, name): (usize, &str)| Some(format!("{} ppm {name}", self.side(side)?));
+        let sides: Vec<String> = [(0, "below"), (1, "above")].into_iter().filter_map(side).collect();
         sides.join(", ")
     }
 
-    fn ppm(self, share: f64) -> String {
-        if let Some(most) = self.bound(share) {
-            return format!("< {}", parts(most));
+    /// The rejects below (0) or above (1) in parts per million: by their own interval, and by the error of all where there is none.
+    fn side(self, side: usize) -> Option<String> {
+        let share = [self.below, self.above][side]?;
+        let Some([low, high]) = self.intervals[side] else { return Some(self.ppm(share)) };
+        let few = share > 0.0 && share < FEWEST;
+        // As two errors that reach beyond none: the interval is wider than twice the share.
+        if few || share < 0.5 * (high - low) {
+            return Some(format!("< {}", parts(high.clamp(FEWEST, 1.0))));
         }
-        let (ppm, exact) = (1e6 * share, significant(1e6 * share, DIGITS as usize));
-        let Some(error) = self.error else { return exact };
-        // As many digits of the share as stand before the error's second one.
-        let digits = libm::log10(ppm).floor() - libm::log10(1e6 * error).floor() + 1.0;
-        if digits >= f64::from(DIGITS) { exact } else { rounded(ppm, digits.max(1.0) as usize) }
+        let error = 0.5 * (high - low) / REACH;
+        Some(carried(share, Some(error).filter(|error| *error > 0.0)))
     }
+
+    fn ppm(self, share: f64) -> String {
+        match self.bound(share) {
+            Some(most) => format!("< {}", parts(most)),
+            None => carried(share, self.error),
+        }
+    }
+}
+
+/// Parts per million with the digits that an error carries.
+fn carried(share: f64, error: Option<f64>) -> String {
+    let (ppm, exact) = (1e6 * share, significant(1e6 * share, DIGITS as usize));
+    let Some(error) = error else { return exact };
+    // As many digits of the share as stand before the error's second one.
+    let digits = libm::log10(ppm).floor() - libm::log10(1e6 * error).floor() + 1.0;
+    if digits >= f64::from(DIGITS) { exact } else { rounded(ppm, digits.max(1.0) as usize) }
 }
 
 /// So many decimals that the first digit of the error is the last one.
@@ -178,6 +203,19 @@ mod tests {
         assert_eq!(text(9.831e-5, 9.831e-5, None), "> 99.9999999 % (< 0.0010 ppm)");
         assert_eq!(text(1234.56, 1e-7, None), "99.877 % (1235 ppm below, < 0.0010 ppm above)");
         assert_eq!(Rejects::all(1e-12, Some(1e-13)).with_error().unwrap(), "> 99.9999999 %");
+    }
+
+    /// None of 100,000 below, 8 % above: the bound of the one side is its own. Where a proof excludes a side, it has none.
+    #[test]
+    fn a_side_has_the_bound_of_its_own_count() {
+        let all = Rejects::new(Some(0.0), Some(0.08), Some(4e-4));
+        assert_eq!(all.sides(), "< 800 ppm below, 80000 ppm above");
+        let within = |below: [f64; 2]| all.within([Some(below), Some([0.0792, 0.0808])]).sides();
+        assert_eq!(within([0.0, 36.9e-6]), "< 37 ppm below, 80000 ppm above");
+        assert_eq!(within([0.0, 0.0]), "0 ppm below, 80000 ppm above");
+        // Of one point the interval is wider than it is large.
+        let one = Rejects::new(Some(1e-5), None, Some(1e-5)).within([Some([0.25e-6, 55.7e-6]), None]);
+        assert_eq!(one.sides(), "< 56 ppm below");
     }
 
     proptest::proptest! {

@@ -206,7 +206,7 @@ fn said(of: &SpreadChart) -> String {
         let beyond = rejected.as_ref().map(|rejected| format!(" with {rejected} beyond it")).unwrap_or_default();
         parts.extend(limit.map(|limit| format!("{name} {}{beyond}", plain(limit))));
     }
-    parts.extend(of.ranges.iter().map(|(name, [from, to])| format!("{name} {} to {}", number(*from), number(*to))));
+    parts.extend(of.ranges.iter().map(|(name, _, [from, to])| format!("{name} {from} to {to}")));
     parts.join(", ")
 }
 
@@ -222,7 +222,8 @@ fn drawing(of: &SpreadChart, frame: &Frame) -> Option<String> {
     let extents = || of_law.into_iter().chain(of_bins);
     let [low, high] = extents().reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])?;
     let near = |x: &f64| *x - high < FAR * (high - low) && low - *x < FAR * (high - low);
-    let ranges: Vec<&(String, [f64; 2])> = of.ranges.iter().filter(|range| range.1.iter().all(near)).collect();
+    let ranges: Vec<&(String, [f64; 2], [String; 2])> =
+        of.ranges.iter().filter(|range| range.1.iter().all(near)).collect();
     let others = limits.into_iter().flatten().chain(of.nominal).filter(near);
     let ends = [low, high].into_iter().chain(others).chain(ranges.iter().flat_map(|range| range.1));
     let scale = Extent::over(ends, 0.02, width)?;
@@ -354,7 +355,7 @@ fn drawing(of: &SpreadChart, frame: &Frame) -> Option<String> {
             beside(nominal, unit)
         );
     }
-    for (row, (name, [from, to])) in ranges.into_iter().enumerate() {
+    for (row, (name, [from, to], _)) in ranges.into_iter().enumerate() {
         svg += &range(&scale, limits, (name, [*from, *to]), base + NUMBERS + RANGE * (row as f64 + 0.5));
     }
     svg += &labels.svg();

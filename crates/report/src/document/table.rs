@@ -44,6 +44,8 @@ pub struct Column {
     pub terminal: bool,
     /// Whether pages show it.
     pub page: bool,
+    /// Whether it holds labels of the columns after it. A terminal without room for all columns keeps these beside it.
+    pub label: bool,
 }
 
 /// A table.
@@ -82,7 +84,7 @@ impl<'a, T> Columns<'a, T> {
         [terminal, page]: [bool; 2],
         cell: impl Fn(&T) -> Cell + 'a,
     ) -> Self {
-        self.0.push((Column { key, title, heading, terminal, page }, Box::new(cell)));
+        self.0.push((Column { key, title, heading, terminal, page, label: false }, Box::new(cell)));
         self
     }
 
@@ -170,7 +172,7 @@ impl DataTable {
 
     /// A table without titles, for terminals and pages.
     pub fn untitled<const N: usize>(rows: impl IntoIterator<Item = [Cell; N]>) -> Self {
-        let column = Column { key: "", title: "", heading: "", terminal: true, page: true };
+        let column = Column { key: "", title: "", heading: "", terminal: true, page: true, label: false };
         let rows: Vec<Vec<Cell>> = rows.into_iter().map(Vec::from).collect();
         Self {
             name: "",
@@ -180,6 +182,12 @@ impl DataTable {
             most: [usize::MAX; 2],
             rest: String::new(),
         }
+    }
+
+    /// The table of which these columns label those after them, beside the first one.
+    pub fn labelled_by(mut self, places: &[usize]) -> Self {
+        places.iter().for_each(|&place| self.columns[place].label = true);
+        self
     }
 
     /// The places of the columns that are wanted.

@@ -211,7 +211,7 @@ impl Page {
     }
 
     /// A table, indented by two and no wider than the page: names, in the first column, give way, and columns that have no room
-    /// stand in a table of their own below, with the names again.
+    /// stand in a table of their own below, with the names again. Columns with labels of their own stand there beside these.
     fn table(&mut self, table: &DataTable) {
         let most = if self.style.detail == Detail::Full { usize::MAX } else { table.most[0] };
         let places = table.places(|column| column.terminal);
@@ -226,34 +226,62 @@ impl Page {
         let right: Vec<bool> = places.iter().map(|&place| table.right(place)).collect();
         let widest = |column: usize| rows.iter().map(|row| width(&row[column])).max().unwrap_or(0).max(1);
         let widths: Vec<usize> = (0..places.len()).map(widest).collect();
-        let least = widths[0].min(SHORTEST) + GAP;
-        let (mut columns, mut taken) = (vec![0], least);
-        for (column, width) in widths.iter().enumerate().skip(1) {
-            if taken + width + GAP > self.style.width && columns.len() > 1 {
-                self.part(&rows, &columns, &widths, &right);
-                (columns, taken) = (vec![0], least);
-            }
-            columns.push(column);
-            taken += width + GAP;
+        let labels: Vec<bool> = places.iter().map(|&place| table.columns[place].label).collect();
+        for (index, columns) in self.parts(&widths, &labels).iter().enumerate() {
+            self.part(&rows, columns, (&widths, &right), index > 0);
         }
-        self.part(&rows, &columns, &widths, &right);
         if table.view.len() > most && !table.rest.is_empty() {
             self.folded(&format!("  {}", table.rest).into());
         }
     }
 
+    /// The columns that stand beside one another, as many as the page has room for. Each part begins with the labels of its columns: those of
+    /// the first column, or of the last column of labels before them.
+    fn parts(&self, widths: &[usize], labels: &[bool]) -> Vec<Vec<usize>> {
+        let least = |label: usize| widths[label].min(SHORTEST) + GAP;
+        let mut parts: Vec<Vec<usize>> = Vec::new();
+        let (mut columns, mut taken, mut label) = (vec![0], least(0), 0);
+        for column in 1..widths.len() {
+            // Columns up to the next labels stay together, as far as there is room for them at all.
+            let end = (column + 1..widths.len()).find(|&next| labels[next]).unwrap_or(widths.len());
+            let group: usize = widths[column..end].iter().map(|width| width + GAP).sum();
+            let needed = if labels[column] { group } else { widths[column] + GAP };
+            if taken + needed > self.style.width && columns.len() > 1 {
+                parts.push(std::mem::take(&mut columns));
+                // Labels that begin a part are its names.
+                let own = if labels[column] { column } else { label };
+                (columns, taken) = (vec![own], least(own));
+            }
+            if labels[column] {
+                label = column;
+            }
+            if columns[0] != column {
+                columns.push(column);
+                taken += widths[column] + GAP;
+            }
+        }
+        parts.push(columns);
+        parts
+    }
+
     /// Some columns of a table; below the first ones a row that has nothing in them is left out.
-    fn part(&mut self, rows: &[Vec<Vec<Letter>>], columns: &[usize], widths: &[usize], right: &[bool]) {
+    fn part(
+        &mut self,
+        rows: &[Vec<Vec<Letter>>],
+        columns: &[usize],
+        (widths, right): (&[usize], &[bool]),
+        below: bool,
+    ) {
         let total: usize = columns.iter().map(|&column| widths[column] + GAP).sum();
-        let names = widths[0].saturating_sub(total.saturating_sub(self.style.width)).max(SHORTEST);
-        let below = columns.get(1).is_some_and(|&column| column > 1);
+        let label = columns[0];
+        let names = widths[label].saturating_sub(total.saturating_sub(self.style.width)).max(SHORTEST);
         let said = |row: &&Vec<Vec<Letter>>| columns.iter().skip(1).any(|&column| trimmed(&row[column]) > 0);
         for row in rows.iter().filter(|row| !below || said(row)) {
             let mut line: Vec<Letter> = Vec::new();
             for &column in columns {
-                let first = column == 0;
-                let cell = if first { self.fitted(&row[0], names) } else { row[column].clone() };
-                let wanted = if first { widths[0].min(names) } else { widths[column] };
+                let first = column == label;
+                let cell = if first { self.fitted(&row[label], names) } else { row[column].clone() };
+                let wanted = if first { widths[label].min(names) } else { widths[column] };
                 let missing = wanted.saturating_sub(width(&cell));
                 let [before, after] = if right[column] { [missing, 0] } else { [0, missing] };
                 line.extend(spaces(GAP + before).chain(cell).chain(spaces(after)));
@@ -296,7 +324,9 @@ fn width(letters: &[Letter]) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Blocks, Cell};
+    use proptest::prelude::*;
+
+    use super::super::{Blocks, Cell, Columns};
     use super::*;
 
     const STYLE: Style = Style { detail: Detail::Short, unicode: true, color: true, width: 20 };
@@ -331,6 +361,102 @@ mod tests {
         let expected =
             ["  a            1.250", "  a nam… long  1.250", "  a         a word or two", "  a na…ong  a word or two"];
         assert_eq!(lines, expected);
+    }
+
+    /// Labels within a table go down with the columns that they label.
+    #[test]
+    fn labels_stay_beside_their_columns() {
+        let row = |[label, value, other, interval]: [&'static str; 4]| [label, value, other, interval].map(Cell::text);
+        let rows = [row(["mean", "1.25", "RSS", "0.5 .. 2"]), row(["", "", "worst case", "0 .. 3"])];
+        let page = |width: usize| {
+            let table = DataTable::untitled(rows.clone()).labelled_by(&[2]);
+            shown(|page| page.table(table), Style { color: false, width, ..STYLE })
+        };
+        assert_eq!(page(40), "  mean  1.25  RSS         0.5 .. 2\n              worst case  0 .. 3\n");
+        assert_eq!(page(24), "  mean  1.25\n  RSS         0.5 .. 2\n  worst case  0 .. 3\n");
+    }
+
+    /// A table of random groups: in every row a label and its values, each with letters of its own.
+    #[derive(Debug, Clone)]
+    struct Groups {
+        /// For every group the lengths of its label and of its values, by row; 0 for an empty cell.
+        lengths: Vec<Vec<Vec<usize>>>,
+        titled: bool,
+        width: usize,
+    }
+
+    fn groups() -> impl Strategy<Value = Groups> {
+        let shapes = (1..6usize, proptest::collection::vec(1..4usize, 1..4));
+        (shapes, any::<bool>(), 40..200usize).prop_flat_map(|((rows, values), titled, width)| {
+            let group = |values: usize| {
+                // Values as long as two numbers of 17 digits, labels as long as names.
+                let row = (1..45usize, proptest::collection::vec(0..40usize, values));
+                let row = row.prop_map(|(label, values)| std::iter::once(label).chain(values).collect::<Vec<_>>());
+                proptest::collection::vec(row, rows)
+            };
+            let lengths = values.into_iter().map(group).collect::<Vec<_>>();
+            lengths.prop_map(move |lengths| Groups { lengths, titled, width })
+        })
+    }
+
+    /// Letters that belong to one cell alone.
+    fn token(kind: char, [group, row, column]: [usize; 3], length: usize) -> String {
+        let name = format!("{kind}{group}{row}{column}");
+        if length == 0 { String::new() } else { format!("{name}{}", "-".repeat(length.saturating_sub(name.len()))) }
+    }
+
+    proptest! {
+        /// At every width a value stands on a line that begins with its own label, and in a table with titles below its own title.
+        #[test]
+        fn every_value_stands_beside_its_own_label(Groups { lengths, titled, width } in groups()) {
+            const TITLES: [[&str; 3]; 3] = [["t00", "t01", "t02"], ["t10", "t11", "t12"], ["t20", "t21", "t22"]];
+            let rows = lengths[0].len();
+            let mut columns = Columns::default();
+            let mut labels = Vec::new();
+            let mut place = 0;
+            for (group, of) in lengths.iter().enumerate() {
+                labels.push(place);
+                let label = move |row: &usize| Cell::text(token('n', [group, *row, 0], of[*row][0].max(4)));
+                columns = if titled { columns.named("", "", label) } else { columns.shown("", label) };
+                for column in 1..of[0].len() {
+                    let value = move |row: &usize| Cell::text(token('v', [group, *row, column], of[*row][column]));
+                    columns = columns.shown(if titled { TITLES[group][column - 1] } else { "" }, value);
+                }
+                place += of[0].len();
+            }
+            let table = columns.table("", 0..rows).labelled_by(&labels[1..]);
+            let page = shown(|page| page.table(table), Style { color: false, width, ..STYLE });
+            let mut header: &str = "";
+            let mut seen = 0;
+            for line in page.lines() {
+                if line.trim_start().starts_with('t') {
+                    header = line;
+                    continue;
+                }
+                // Names that give way keep their first letters.
+                let mut label = "";
+                for (at, word) in line.split(' ').scan(0, |at, word| {
+                    let begins = *at;
+                    *at += word.chars().count() + 1;
+                    Some((begins, word))
+                }) {
+                    match word.chars().next() {
+                        Some('n') => label = &word[1..3],
+                        Some('v') => {
+                            prop_assert_eq!(&word[1..3], label, "{}", &page);
+                            if titled {
+                                let title = format!("t{}{}", &word[1..2], word[3..4].parse::<usize>().unwrap() - 1);
+                                prop_assert_eq!(header.find(&title), Some(at), "{}\n{}", title, &page);
+                            }
+                            seen += 1;
+                        }
+                        _ => {}
+                    }
+                }
+            }
+            let filled = lengths.iter().flatten().flat_map(|row| &row[1..]).filter(|&&length| length > 0).count();
+            prop_assert_eq!(seen, filled, "{}", page);
+        }
     }
 
     /// Letters that take two columns of a terminal, or none, stand below others all the same.

@@ -60,7 +60,7 @@ const counting = (() => {
   };
 
   /// On which side of the limits each point lies: -1, 0 or 1.
-  const sides = ({ n, z, beside }, { centre, parts, pairs }, { lower, upper, unexplained }) => {
+  const sides = ({ n, z, beside }, { centre, parts, pairs }, { lower, upper, rounding, unexplained }) => {
     const y = new Float64Array(n).fill(centre);
     parts.forEach(([c1, c2, c3, c4], j) => {
       if (z[j] === null) return;
@@ -75,7 +75,7 @@ const counting = (() => {
       for (let i = 0; i < n; i++) y[i] += a * one[i] * other[i];
     });
     if (unexplained !== null) for (let i = 0; i < n; i++) y[i] += Math.sqrt(unexplained) * beside[i];
-    return Int8Array.from(y, (y) => lower !== null && y < lower ? -1 : upper !== null && y > upper ? 1 : 0);
+    return Int8Array.from(y, (y) => lower !== null && y < lower - rounding ? -1 : upper !== null && y > upper + rounding ? 1 : 0);
   };
 
   /// What the engine's settings gave, by characteristic: its points, and the side of each.

@@ -309,7 +309,10 @@ fn chain(one: &CharacteristicAnalysis, dimensions: &[DimensionReport]) -> Option
     let straight = |row: &&Sensitivity| row.first.is_some_and(|first| first != 0.0);
     let rows: Vec<&Sensitivity> = one.sensitivities.iter().filter(straight).collect();
     let curved = |row: &&&Sensitivity| row.curvature_share.is_some_and(|share| share > 1e-6);
-    if !(2..=LINKS).contains(&rows.len()) || rows.iter().any(|row| curved(&row)) || !one.interactions.is_empty() {
+    if !(2..=LINKS).contains(&rows.len())
+        || rows.iter().any(|row| curved(&row))
+        || one.interactions.iter().any(|pair| pair.mixed != Some(0.0))
+    {
         return None;
     }
     let links: Option<Vec<(&DimensionReport, f64)>> = (rows.iter())

@@ -44,9 +44,11 @@ const live = (() => {
     const fit = skewness === null ? null : pearson.law(mean, sigma, skewness, excess);
     const none = { below: null, above: null, rejected: null, yield: null, cp: null, cpk: null, met: null };
     const of_fit = fit === null ? none : limited(one, mean, sigma, fit.tails);
-    const here = { ...found, kurtosis: excess === null ? null : 3 + excess, shares, fit, pearson: of_fit.yield };
+    // Everything is in units of the scale.
+    const scale = one.scale ?? 1;
+    const here = { ...found, scale, kurtosis: excess === null ? null : 3 + excess, shares, fit, pearson: of_fit.yield };
     if (sigma === 0) {
-      return { ...here, law: null, by: "surface", error: 0, ...limited(one, mean, sigma, (x) => [mean < x ? 1 : 0, mean > x ? 1 : 0]) };
+      return { ...here, law: null, by: "surface", error: 0, ...limited(one, mean, sigma, (x) => [mean < x - one.rounding ? 1 : 0, mean > x + one.rounding ? 1 : 0]) };
     }
     // The law of the surface where the page can compute it; elsewhere the engine's with what points of the surface say of changes, and last
     // the Pearson fit, and the page says so.

@@ -16,7 +16,7 @@ const GREYS: [f64; 4] = [1e-3, 1e-2, 0.1, 0.5];
 
 /// Which dimensions act jointly, a triangle below their own shares; nothing where no interaction is seen or left out.
 pub(super) fn map(one: &CharacteristicAnalysis) -> Option<String> {
-    let examined = one.interactions.len();
+    let examined = one.examined_interactions;
     let strongest = one.interactions.iter().filter_map(|pair| pair.share).fold(0.0, f64::max);
     // The variance that nothing examined explains may be interactions.
     let left_out = one.left_out_share.unwrap_or(0.0);

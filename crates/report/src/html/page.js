@@ -35,8 +35,8 @@
   const figures = (found) => {
     const or = (x, text) => x === null ? "-" : text(x), ppm = (x) => significant(1e6 * x, 4);
     return {
-      mean: beside(found.mean, found.sigma),
-      sigma: beside(found.sigma, found.sigma),
+      mean: beside(found.scale * found.mean, found.scale * found.sigma),
+      sigma: beside(found.scale * found.sigma, found.scale * found.sigma),
       skewness: or(found.skewness, (x) => x.toFixed(4).replace(/^-(0\.0*)$/, "$1")),
       kurtosis: or(found.kurtosis, (x) => x.toFixed(4)),
       yield: or(found.rejected, share),

@@ -145,6 +145,9 @@ pub(super) fn pareto(report: &Report, one: &CharacteristicAnalysis) -> Option<St
     if of_model {
         text += "<p class=\"note\">Share by itself, and with every interaction; sigma is that of a dimension by itself.</p>\n";
     }
+    if all.iter().any(|share| share.value <= -0.5 * NEWS) {
+        text += "<p class=\"note\">A share below 0 lowers the variance: the dimension is correlated with others and varies against them.</p>\n";
+    }
     if !idle.is_empty() {
         let more = idle.len().saturating_sub(NAMED);
         let names = escaped(&idle[..idle.len() - more].join(", "));

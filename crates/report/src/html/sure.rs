@@ -116,8 +116,9 @@ pub(super) fn simulated(one: &SimulatedCharacteristic) -> Vec<Row> {
         Some(row(name, estimated(value, standard_error), standard_error.map(uncertainty), ends.unwrap_or_default()))
     });
     let yield_ = one.yield_.map(|share| {
-        let error = one_error(share.value, share.interval);
-        let ends = share.interval.map(yielded).join(" – ");
+        let interval = one.yield_interval().unwrap_or(share.interval);
+        let error = one_error(share.value, interval);
+        let ends = interval.map(yielded).join(" – ");
         row("yield", yielded(share.value), Some(format!("{} %", significant(100.0 * error, 2))), ends)
     });
     moments.chain(yield_).collect()

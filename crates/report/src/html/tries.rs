@@ -81,12 +81,19 @@ fn card((index, one): (usize, &Wanted)) -> String {
         )
     };
     let figures: String = FIGURES.into_iter().map(figure).collect();
+    let screened = match one.screened {
+        0 => String::new(),
+        1 => "<p class=\"note\">One interaction of this surface is estimated, without being examined.</p>\n".to_owned(),
+        count => format!(
+            "<p class=\"note\">{count} interactions of this surface are estimated, without being examined.</p>\n"
+        ),
+    };
     format!(
         r#"{head}<svg class="small" viewBox="0 0 640 200" preserveAspectRatio="none" role="img" aria-label="Density as analysed, dashed, and as set; thin: the Pearson fit"><path class="fit"/><path class="before"/><path class="now"/><path class="limit" data-limit="lower"/><path class="limit" data-limit="upper"/></svg>
 <table class="live"><thead><tr><td></td><th scope="col" class="n">analysed</th><th scope="col" class="n">as set</th></tr></thead><tbody>
 {figures}</tbody></table>
 <p class="note" data-by></p>
-</article>
+{screened}</article>
 "#
     )
 }

@@ -1,17 +1,17 @@
 //! Whether it works, of every report: a sentence, and a gauge for every characteristic.
 
+use crate::worst_case::WorstCaseFigures;
 use std::fmt::Write;
 
 use super::super::WarningReport;
-use super::super::bars::worst_case;
 use super::super::figures::{Figures, Named};
 use super::super::statistics::part;
 use super::super::sweep::{SweptPointReport, SweptReport};
+use super::super::worst_case::{KnownWorstCase, WorstCaseKind};
 use crate::analysis_document::CharacteristicSections;
-use crate::document::number::{beside, index, plain, plural, significant, yielded};
+use crate::document::number::{index, plain, plural, significant, yielded};
 use crate::document::rejects::Rejects;
 use crate::document::svg::escaped;
-use crate::statistics::CharacteristicStatistics;
 use sensitol::analysis::CharacteristicAnalysis;
 use sensitol::rare::{Beyond, RareCharacteristic};
 use sensitol::simulation::{SimulatedCharacteristic, YieldEstimate};
@@ -19,7 +19,7 @@ use sensitol_numeric::capability::Capability;
 use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::sampling::{Estimate, one_error};
 use sensitol_numeric::shape::finite;
-use sensitol_numeric::verdict::{Judged, Verdict, about, share};
+use sensitol_numeric::verdict::{Judged, Verdict};
 
 /// Claims of one kind that a sentence makes.
 const NAMED: usize = 6;
@@ -52,9 +52,7 @@ pub(super) struct JudgedCharacteristic<'r> {
     ppm: [Option<f64>; 2],
     sides: Vec<String>,
     cpk: Option<f64>,
-    worst: Option<[f64; 2]>,
-    /// By which numbers are rounded.
-    scale: f64,
+    worst: Option<KnownWorstCase>,
     /// The dimension that makes most of the variance, and its share.
     driver: Option<(&'r str, f64)>,
 }
@@ -113,7 +111,6 @@ impl<'r> JudgedCharacteristic<'r> {
             sides: Vec::new(),
             cpk: None,
             worst: None,
-            scale: 0.0,
             driver: None,
         }
     }
@@ -136,8 +133,7 @@ impl<'r> JudgedCharacteristic<'r> {
             interval: one.yield_interval(),
             ppm: [one.ppm_below(), one.ppm_above()],
             cpk: one.capability.as_ref().and_then(|of: &Capability| of.cpk),
-            worst: worst_case(one).map(|(_, ends)| ends),
-            scale: one.scale(),
+            worst: one.known_worst_case(),
             driver: all.max_by(|a, b| a.1.total_cmp(&b.1)),
             ..Self::of(one, place).rejecting(one.rejects())
         }
@@ -145,15 +141,15 @@ impl<'r> JudgedCharacteristic<'r> {
 
     /// Of a simulation.
     pub(super) fn simulated(place: usize, one: &'r SimulatedCharacteristic) -> Self {
-        let error = one.yield_.map(|share| one_error(share.value, share.interval));
         Self {
             verdict: one.verdict(),
             asked: asked(one.requirements()),
             yield_: one.yield_(),
-            interval: one.yield_.map(|share| share.interval),
+            interval: one.yield_interval(),
             ppm: [one.ppm_below(), one.ppm_above()],
             cpk: one.cpk,
-            ..Self::of(one, place).rejecting(Rejects::new(one.below, one.above, error))
+            ..Self::of(one, place)
+                .rejecting(Rejects::new(one.below, one.above, one.yield_error()).within(one.reject_intervals))
         }
     }
 
@@ -190,7 +186,6 @@ impl<'r> JudgedCharacteristic<'r> {
             let (a, b) = (rank(a), rank(b));
             a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
         })?;
-        let error = worst.error_estimate.as_ref().and_then(|estimate| estimate.yield_);
         let target = worst.requirements.iter().find_map(|judged| match judged.requirement {
             Requirement::Yield(target) => Some(target),
             _ => None,
@@ -202,7 +197,7 @@ impl<'r> JudgedCharacteristic<'r> {
             asked: asked(worst.requirements.clone()),
             at: format!("at {parameter} = {}", plain(worst.at)),
             yield_: worst.yield_,
-            interval: worst.yield_.and_then(|value| about(value, error)).map(share),
+            interval: worst.yield_interval,
             ppm: [worst.ppm_below, worst.ppm_above],
             ..Self::named(&one.name, [one.lower, one.upper], place).rejecting(worst.rejects())
         })
@@ -546,8 +541,15 @@ impl Table {
             let _ = write!(cells, "<td class=\"n\">{}</td>", one.cpk.map(index).unwrap_or_default());
         }
         if self.worst {
-            let ends = one.worst.map(|ends| ends.map(|end| beside(end, one.scale)));
-            let ends = ends.map(|[low, high]| format!("{low} –<br>{high}")).unwrap_or_default();
+            let ends = one.worst.as_ref().map(|KnownWorstCase { kind, texts: [low, high], .. }| {
+                let known = match kind {
+                    WorstCaseKind::Proven => "",
+                    WorstCaseKind::Found => "<br><small>found</small>",
+                    WorstCaseKind::Linear => "<br><small>linear</small>",
+                };
+                format!("{low} –<br>{high}{known}")
+            });
+            let ends = ends.unwrap_or_default();
             let _ = write!(cells, "<td class=\"n\">{ends}</td>");
         }
         cells + "</tr>\n"

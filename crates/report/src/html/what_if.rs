@@ -8,6 +8,7 @@ use sensitol::problem::Problem;
 use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::distribution::StandardMoments;
 use sensitol_numeric::law::TabulatedInput;
+use sensitol_numeric::power::Power;
 use sensitol_numeric::surrogate::InputShape;
 
 /// An entry of the study's `[dimensions]`: its name, and its keys with their values as TOML.
@@ -96,6 +97,8 @@ pub(super) struct Wanted {
     pub(super) unit: Option<String>,
     lower: Option<f64>,
     upper: Option<f64>,
+    /// By how much rounding may put a value beyond a limit on which it lies.
+    rounding: f64,
     target: Option<f64>,
     /// Why nothing can be tried; null where it can.
     pub(super) why: Option<String>,
@@ -103,6 +106,9 @@ pub(super) struct Wanted {
     parts: Vec<[f64; 4]>,
     pairs: Pairs,
     unexplained: Option<f64>,
+    /// The power of two by which all of these and the limits are divided, so that their squares are doubles; left out where it is 1.
+    #[serde(skip_serializing_if = "is_one")]
+    scale: f64,
     /// Whether the page computes the law of its surface.
     law: bool,
     /// Shares below and above the limits by the law of its surface at the study's settings, to which the page adds what points of the surface
@@ -112,6 +118,13 @@ pub(super) struct Wanted {
     why_fit: Option<&'static str>,
     /// How far below and above its yield by that law the interval reaches within which it is known; None where that is not known.
     reach: Option<[f64; 2]>,
+    /// Interactions of its surface that are estimates.
+    #[serde(skip)]
+    pub(super) screened: usize,
+}
+
+fn is_one(scale: &f64) -> bool {
+    *scale == 1.0
 }
 
 /// Products, column by column.
@@ -152,7 +165,12 @@ const INTERACT: &str = "dimensions interact that are not normal";
 
 /// Why the page shows the Pearson fit of a characteristic; None where it computes the law of its surface, which it does for sums of
 /// single inputs and products of normal ones.
-fn why_fit(found: &CharacteristicAnalysis, fit: &Fit, laws: &[Option<TabulatedInput>]) -> Option<&'static str> {
+fn why_fit(
+    found: &CharacteristicAnalysis,
+    fit: &Fit,
+    laws: &[Option<TabulatedInput>],
+    has_atoms: &dyn Fn(usize) -> bool,
+) -> Option<&'static str> {
     let Fit { surrogate, .. } = fit;
     let counts = |j: &usize| {
         surrogate.parts[*j].is_some_and(|part| part.largest() > 0.0)
@@ -162,7 +180,8 @@ fn why_fit(found: &CharacteristicAnalysis, fit: &Fit, laws: &[Option<TabulatedIn
     if counting().any(|j| laws[j].is_none()) {
         return Some("the distribution of a dimension is not in the page");
     }
-    if counting().all(|j| laws[j].as_ref().is_some_and(TabulatedInput::is_discrete)) {
+    // Sums over a contour halve the values that have a probability of their own.
+    if counting().all(has_atoms) {
         return Some("every dimension has a few values only");
     }
     let parabola = |j: usize| parabola(fit, j, laws[j].as_ref().is_some_and(TabulatedInput::is_normal));
@@ -224,13 +243,19 @@ impl WhatIf {
             Tried::of(&problem.dimensions()[d], index(shape, law))
         };
         let dimensions = surface.varying.iter().zip(&surface.shapes).zip(&laws).map(dimension).collect();
-        let all = analysis.characteristics.iter().zip(&fits);
-        let characteristics = all.map(|(found, fit)| {
+        let has_atoms = |j: usize| {
+            let law = problem.dimensions()[surface.varying[j]].law().and_then(|law| law.probability());
+            law.is_some_and(|law| !law.atoms().is_empty())
+        };
+        let all = analysis.characteristics.iter().zip(&fits).enumerate();
+        let characteristics = all.map(|(c, (found, fit))| {
             let one = &found.characteristic;
             let limits = one.limits();
+            let power = fit.as_ref().map_or(Power::ONE, size);
             let empty = || (0.0, Vec::new(), Pairs::default(), None);
-            let (centre, parts, pairs, unexplained) = fit.as_ref().map_or_else(|_| empty(), contents);
-            let why_fit = fit.as_ref().ok().and_then(|fit| why_fit(found, fit, &laws));
+            let (centre, parts, pairs, unexplained) = fit.as_ref().map_or_else(|_| empty(), |fit| contents(fit, power));
+            let divided = limits.times(power.inverse());
+            let why_fit = fit.as_ref().ok().and_then(|fit| why_fit(found, fit, &laws, &has_atoms));
             let law = fit.is_ok() && why_fit.is_none();
             let of_surface = found.surface_law.as_ref().filter(|_| why_fit == Some(INTERACT));
             let counted = of_surface
@@ -239,18 +264,21 @@ impl WhatIf {
             Wanted {
                 name: one.name().to_owned(),
                 unit: one.unit().map(str::to_owned),
-                lower: limits.lower(),
-                upper: limits.upper(),
+                lower: divided.lower(),
+                upper: divided.upper(),
+                rounding: power.inverse().times(problem.kept_limits(c).rounding()),
                 target: one.target_yield(),
                 why: fit.as_ref().err().map(ToString::to_string).or_else(|| endless(found)),
                 centre,
                 parts,
                 pairs,
                 unexplained,
+                scale: power.times(1.0),
                 law,
                 counted,
                 why_fit,
                 reach: reach(found, law || counted.is_some()),
+                screened: fit.as_ref().map_or(0, |fit| fit.screened),
             }
         });
         let characteristics = characteristics.collect();
@@ -298,16 +326,26 @@ impl WhatIf {
     }
 }
 
-fn contents(fit: &Fit) -> (f64, Vec<[f64; 4]>, Pairs, Option<f64>) {
-    let Fit { surrogate, unexplained } = fit;
-    let parts = surrogate.parts.iter().flatten().map(|part| part.coefficients()).collect();
+/// The power of two of the largest coefficient of a surface.
+fn size(fit: &Fit) -> Power {
+    let Fit { surrogate, .. } = fit;
+    let parts = surrogate.parts.iter().flatten().map(|part| part.largest());
+    let products = surrogate.interactions.pairs().into_iter().map(|(.., product)| product.abs());
+    Power::of(parts.chain(products).fold(surrogate.centre.abs(), f64::max))
+}
+
+/// Centre, parts, products and unexplained variance of a surface, divided by a power of two.
+fn contents(fit: &Fit, power: Power) -> (f64, Vec<[f64; 4]>, Pairs, Option<f64>) {
+    let Fit { surrogate, unexplained_sigma, .. } = fit;
+    let divided = |value: f64| power.inverse().times(value);
+    let parts = surrogate.parts.iter().flatten().map(|part| part.coefficients().map(divided)).collect();
     let mut pairs = Pairs::default();
     for (j, k, a) in surrogate.interactions.pairs() {
         pairs.j.push(j);
         pairs.k.push(k);
-        pairs.a.push(a);
+        pairs.a.push(divided(a));
     }
-    (surrogate.centre, parts, pairs, *unexplained)
+    (divided(surrogate.centre), parts, pairs, unexplained_sigma.map(|sigma| divided(sigma).powi(2)))
 }
 
 impl Cost {

@@ -5,17 +5,18 @@ use serde::Deserialize;
 use super::found::{Shown, TaskReport};
 use crate::html::WhatIf;
 use crate::{About, AllocationReport, CompareReport, RareReport, Report, SimulationReport, SweepReport, WrittenAnew};
-use sensitol::allocation::{AllocationOptions, CostBasis, Goal, Status, allocate_with};
+use sensitol::allocation::allocate_written;
+use sensitol::allocation::{AllocationOptions, CostBasis, Goal, Status};
 use sensitol::analysis::analyze_with;
 use sensitol::assembly::Run;
 use sensitol::compare::{CompareOptions, compare_with};
 use sensitol::method::Options;
 use sensitol::method::registry::procedure;
+use sensitol::problem::Problem;
 use sensitol::rare::{RareOptions, rare_with};
 use sensitol::simulation::{Pace, Sampler, SimulationOptions, simulate_with};
 use sensitol::sweep::sweep_with;
-use sensitol_study::Error;
-use sensitol_study::Study;
+use sensitol_study::{Error, Study};
 
 /// Points of a simulation unless the caller says otherwise, as the command line has it.
 const SAMPLES: u64 = 100_000;
@@ -208,7 +209,8 @@ pub fn done(study: &Study, asked: &Asked, run: &Run<'_>, counted: Counted<'_>) -
             });
             let goal = goal.zip(*cost_limit).map_or(Goal::LeastCost, |(goal, limit)| goal.within(limit));
             let task = study.allocation_task().relative_or_default(problem, basis, !recentre.is_empty()).towards(goal);
-            let found = allocate_with(problem, &task, &options, run).map_err(boxed)?;
+            let in_file = |problem: &Problem| study.written_dimensions(problem);
+            let found = allocate_written(problem, &task, &options, run, &in_file).map_err(boxed)?;
             // A run that was stopped before the model had its say is not a study yet.
             let confirmed = found.after.is_some() && found.status != Status::OutOfTime;
             let anew = confirmed.then(|| study.rewritten(&found.problem));

@@ -71,7 +71,7 @@ impl Of {
             Self::Mean => "mean",
             Self::Deviation => "standard dev",
             Self::Effect => "effect",
-            Self::Share => "contribution %",
+            Self::Share => "RSS %",
         }
     }
 }
@@ -345,15 +345,15 @@ fn totals(
     let middle = (format!("SUMPRODUCT({factors},{middles})"), sum(|row| row.middle));
     let (of_worst, of_rss) = (page.cell(line, Of::Half), page.cell(line + 1, Of::Half));
     let half = |kind: TotalKind| match kind {
-        TotalKind::WorstCase => (format!("SUM({effects})"), worst),
+        TotalKind::WorstCase | TotalKind::LinearWorstCase => (format!("SUM({effects})"), worst),
         TotalKind::Rss => (format!("SQRT(SUMSQ({effects}))"), rss),
         TotalKind::InflatedRss => (format!("{inflation}*{of_rss}"), INFLATION * rss),
         TotalKind::MeanShiftRss => {
             let formula = format!("{mean_shift}*{of_worst}+(1-{mean_shift})*{of_rss}");
             (formula, MEAN_SHIFT * worst + (1.0 - MEAN_SHIFT) * rss)
         }
-        // Of processes that the sheet does not have: as reported.
-        TotalKind::SixSigma => (String::new(), f64::NAN),
+        // Of processes and proofs that the sheet does not have: as reported.
+        TotalKind::SixSigma | TotalKind::ProvenWorstCase => (String::new(), f64::NAN),
         TotalKind::FirstOrder | TotalKind::SecondOrder => {
             (format!("{SIGMAS}*SQRT(SUMPRODUCT(({factors}*{deviations})^2))"), SIGMAS * sigma)
         }

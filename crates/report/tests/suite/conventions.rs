@@ -2,7 +2,7 @@
 
 use sensitol::distribution::{Distribution, Drifting};
 use sensitol::{CharacteristicAnalysis, Method, Options, analyze};
-use sensitol_report::{About, Detail, Report, Style, ToDocument, TotalKind, text};
+use sensitol_report::{About, Detail, Report, Style, TotalKind, text};
 use sensitol_study::Study;
 use sensitol_study::StudyText;
 use sensitol_testing::{case, close, dimension, faults, parse, relative, repository};

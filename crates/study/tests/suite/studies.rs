@@ -1,7 +1,7 @@
 //! Study files: both formats, every form of a dimension, and every fault with its place and its help.
 
-use sensitol::{Dimension, Method, analyze};
-use sensitol_study::{Study, StudyError};
+use sensitol::{Method, analyze};
+use sensitol_study::Study;
 use sensitol_testing::{INSTALLED, close, dimension, example_studies, faults, parse, relative};
 
 #[test]

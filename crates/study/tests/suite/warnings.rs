@@ -7,7 +7,6 @@ use sensitol::warning::aggregate::aggregated;
 use sensitol::warning::{Advice, Change, Counted, Ended, Figure, Loss, NameKind, Warning};
 use sensitol::{Method, StopReason, analyze};
 use sensitol_study::Study;
-use sensitol_testing::dimension;
 
 fn text(text: &str) -> String {
     text.to_owned()
@@ -53,6 +52,7 @@ fn every() -> Vec<Warning> {
         Warning::NominalOutsideLimits { dimensions: names(1) },
         Warning::NominalOutsideLimits { dimensions: names(2) },
         Warning::Overflow { characteristic: characteristic(), value: 1.5e200, limit: 1e100 },
+        Warning::Unrepresentable { characteristic: characteristic() },
         Warning::OutsideModel { output: text("H_req"), reason: text("below 2 t the flanges of the section overlap") },
         Warning::UnitMismatch {
             formula: text("characteristics.gap.formula"),
@@ -244,18 +244,21 @@ fn every() -> Vec<Warning> {
             switch: text("`abs(a)`"),
             change: Change::Kink,
             probability: 0.3,
+            points: None,
         },
         Warning::Switch {
             characteristic: characteristic(),
             switch: text("`sign(a)`"),
             change: Change::Jump,
             probability: 3e-6,
+            points: Some(0.3),
         },
         Warning::Switch {
             characteristic: characteristic(),
             switch: text("`ln(a)`"),
             change: Change::Edge,
             probability: 0.01,
+            points: None,
         },
         Warning::Pole { characteristic: characteristic(), switch: text("`1/a`"), probability: 1e-5 },
         Warning::FigureOff {
@@ -268,11 +271,44 @@ fn every() -> Vec<Warning> {
         Warning::HeavyPoint { characteristic: characteristic(), limit: 3.5, part: 0.7 },
         Warning::NothingBeyond { characteristic: characteristic(), limit: 3.5, points: 10_000, most: 3e-4 },
         Warning::PlainSampling { characteristic: characteristic(), limit: 3.5, plain: 312.4, evaluations: 1000 },
+        Warning::PlainFallback { characteristic: characteristic(), limit: 3.5, points: 7500 },
+        Warning::UnsettledMoments {
+            characteristic: characteristic(),
+            figures: vec!["skewness", "kurtosis"],
+            points: 100_000,
+            largest: 0.51,
+            ten_largest: 0.92,
+            switch: None,
+        },
+        Warning::UnsettledMoments {
+            characteristic: characteristic(),
+            figures: vec!["mean"],
+            points: 100_000,
+            largest: 0.01,
+            ten_largest: 0.03,
+            switch: Some(text("`a > 4.5`")),
+        },
         Warning::TargetErrorMissed { points: 4000 },
         proven(Ended::Converged, None, None),
         proven(Ended::Converged, None, Some(([0.1, 0.4], 1000))),
         proven(Ended::Budget, Some("no convergence"), None),
         proven(Ended::Stopped, None, None),
+        Warning::SurfaceLawRefuted {
+            characteristic: characteristic(),
+            test: "count",
+            limit: 0.14,
+            law: 0.060_073,
+            counted: 0.028_249,
+            error: 6.5e-4,
+        },
+        Warning::SurfaceLawRefuted {
+            characteristic: characteristic(),
+            test: "monotone",
+            limit: 0.14,
+            law: 0.060_073,
+            counted: 0.028_249,
+            error: 6.5e-4,
+        },
         Warning::FitReplaced { dimensions: names(1) },
         Warning::FitReplaced { dimensions: names(2) },
         Warning::NotConfirmed,

@@ -2,6 +2,7 @@
 
 mod drifting;
 mod extremes;
+mod units;
 
 use proptest::prelude::*;
 use rand::SeedableRng;

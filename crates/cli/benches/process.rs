@@ -17,7 +17,7 @@ fn process(c: &mut Criterion) {
             b.iter(|| {
                 let status = Command::new(env!("CARGO_BIN_EXE_sensitol"))
                     .args(arguments)
-                    .current_dir(env!("CARGO_MANIFEST_DIR"))
+                    .current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
                     .stdout(Stdio::null())
                     .status()
                     .unwrap();

@@ -1,0 +1,66 @@
+//! A law by inversion, with points of the surface where a contour does not resolve a limit.
+
+use std::sync::{Arc, OnceLock};
+
+use super::inversion::Inversion;
+use super::sampled::Sampled;
+use super::surface::Surface;
+use super::transform::{Summed, Transform};
+use super::{LawFigure, LawOptions, LawTail};
+
+/// Part of a probability from which on the error of a contour is worse than that of points.
+const POOR: f64 = 1e-3;
+
+/// A density per sigma that is a quarter of the largest one of a normal distribution.
+const PEAK: f64 = 0.1;
+/// An error below this is none that points could lower.
+const TRACE: f64 = 1e-8;
+
+/// The inversion of a whole surface.
+#[derive(Debug)]
+pub(super) struct Exact {
+    pub(super) inversion: Inversion,
+    /// Made when a limit is not resolved, as next to a corner of the law.
+    pub(super) points: OnceLock<Option<Sampled>>,
+    pub(super) options: LawOptions,
+}
+
+/// Whether the error of a probability is too large a part of it, or of its complement.
+pub(super) fn is_poor(figure: LawFigure) -> bool {
+    let smaller = figure.value.min(1.0 - figure.value).max(0.0);
+    figure.error.is_nan() || figure.value.is_nan() || figure.error > POOR * smaller + TRACE
+}
+
+impl Exact {
+    /// Probability beyond `y` on this side.
+    pub(super) fn tail(&self, surface: &Arc<Surface>, y: f64, tail: LawTail) -> LawFigure {
+        let own = self.inversion.tail(y, tail);
+        let better = |points: &Sampled| better(own, points.tail(y, tail, self.inversion.mean()));
+        if is_poor(own) { self.points(surface).map_or(own, better) } else { own }
+    }
+
+    /// Density per unit of `y`.
+    pub(super) fn density(&self, surface: &Arc<Surface>, y: f64) -> LawFigure {
+        let own = self.inversion.density(y);
+        let poor =
+            own.value.is_nan() || own.error.is_nan() || own.error > POOR * own.value.max(PEAK / self.inversion.sigma());
+        let better = |points: &Sampled| better(own, points.density(y, self.inversion.mean()));
+        if poor { self.points(surface).map_or(own, better) } else { own }
+    }
+
+    /// The law with every component sampled but for one direction.
+    fn points(&self, surface: &Arc<Surface>) -> Option<&Sampled> {
+        let make = || {
+            let components = surface.components();
+            let (transform, _) = Transform::of(surface, &[], Summed::Singles);
+            Sampled::of(surface, transform, &components, self.inversion.sigma(), &self.options)
+        };
+        self.points.get_or_init(make).as_ref()
+    }
+}
+
+/// The figure with the smaller error; that of points where they contradict a contour that is not resolved.
+fn better(own: LawFigure, points: LawFigure) -> LawFigure {
+    let contradicted = (own.value - points.value).abs() > own.error + points.error;
+    if points.error < own.error || contradicted || own.value.is_nan() { points } else { own }
+}

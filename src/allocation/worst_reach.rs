@@ -1,0 +1,62 @@
+//! How far a worst case reaches: by its slopes, and by the corners of the bands where slopes do not tell all of it.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::atomic::AtomicU64;
+
+use super::bands::Reach;
+use super::corners::{Band, Corners, Places};
+use super::cost::Priced;
+use super::response::Responses;
+use crate::problem::Problem;
+
+impl Responses {
+    /// Follows the formula itself in the worst cases that its surface does not tell, from the places that earlier stations know, which it
+    /// adds to; `asked` counts its values.
+    pub(super) fn follow_corners(
+        &mut self,
+        problem: &Problem,
+        known: &mut BTreeMap<usize, [Places; 2]>,
+        asked: &Arc<AtomicU64>,
+    ) {
+        let band = |d: usize| {
+            let Reach { middle, half, lean } = self.reach[d];
+            Band { dimension: d, middle, half, lean, sigma: self.dimensions[d].sigma() }
+        };
+        let bands: Vec<Band> = self.varying.iter().map(|&d| band(d)).collect();
+        for (c, of) in self.of.iter_mut().enumerate() {
+            let Some((worst, nominal)) = of.worst.as_mut().filter(|worst| worst.is_off()).zip(of.nominal) else {
+                continue;
+            };
+            let places = known.remove(&c).unwrap_or_default();
+            if let Some(corners) = Corners::of(problem, c, nominal, bands.clone(), worst.places(), places, asked) {
+                known.insert(c, corners.places());
+                worst.follow(corners);
+            }
+        }
+    }
+
+    /// The nominal value and how far the worst case lies beyond it, above or below, with nominals moved by `shifts`, in sigmas.
+    pub(super) fn worst_reach(
+        &self,
+        characteristic: usize,
+        factors: &[f64],
+        shifts: &[f64],
+        above: bool,
+    ) -> Option<(f64, f64)> {
+        let of = &self.of[characteristic];
+        let nominal = of.nominal?;
+        if let Some(worst) = &of.worst {
+            return Some((nominal, worst.reach_moved(factors, shifts, above).0));
+        }
+        let all = self.every_dimension();
+        let (constant, coefficients) = self.worst_case(characteristic, &all, above)?;
+        let wide = |(group, coefficient): (&Priced, &f64)| {
+            let d = group.members[0];
+            coefficient * factors[d] * self.dimensions[d].half_band()
+        };
+        let reach = constant + all.iter().zip(&coefficients).map(wide).sum::<f64>();
+        let moved = |(d, slope): (usize, &f64)| slope * shifts[d] * self.dimensions[d].sigma();
+        Some((nominal + of.slopes.as_ref()?.iter().enumerate().map(moved).sum::<f64>(), reach))
+    }
+}

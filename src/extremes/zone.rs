@@ -1,0 +1,336 @@
+//! Zones that some dimensions share: the worst case is taken over them, and not over the box about them.
+//!
+//! ```text
+//! disc      sum of u_j^2 <= 1          u_j: deviation from the middle of the band, in half bands
+//! rim       sum of u_j^2  = 1
+//! diamond   sum of |u_j| <= 1
+//! rows      the rows of measured parts, where no member has a tolerance of its own
+//! ```
+//!
+//! Over a zone the least value of a plane has a closed form, `-|g|` over a disc or rim, `-max |g_j|` over a diamond, and the least
+//! of all rows. Branch and bound takes it as the bound of a tangent plane, so that a plane is proven in one box.
+//! Source: R. T. Rockafellar, Convex Analysis (1970), section 13: support functions.
+
+use super::model::Region;
+use crate::assembly::formula::Interval;
+use crate::problem::Problem;
+use sensitol_numeric::correlation::JointLaw;
+
+/// Least and greatest distance of a box from the middle of a zone where it still counts as inside and outside: some roundings.
+pub(super) const EDGE: f64 = 1e-12;
+/// Rows beyond which the box about them stands for them: every box of a proof is held against every row.
+const MOST_ROWS: usize = 10_000;
+
+/// One zone of a characteristic.
+#[derive(Debug, Clone)]
+pub(super) struct Zone {
+    /// Its coordinates, by their places among the dimensions of the characteristic.
+    places: Vec<usize>,
+    shape: ZoneShape,
+    /// For every coordinate the ends of its band.
+    bands: Vec<[f64; 2]>,
+}
+
+#[derive(Debug, Clone)]
+enum ZoneShape {
+    Disc,
+    Rim,
+    Diamond,
+    /// For every row the value of each coordinate.
+    Rows(Vec<Vec<f64>>),
+}
+
+/// The zone or block that some coordinates of a characteristic share.
+#[derive(PartialEq)]
+enum Shared<'p> {
+    Block(usize),
+    Circle(&'p str),
+}
+
+/// The zones of these dimensions of a problem; those of measured rows shrink the box to the rows.
+pub(super) fn zones(problem: &Problem, dimensions: &[usize], region: &mut Region) -> Vec<Zone> {
+    let mut groups: Vec<(Shared<'_>, Vec<usize>)> = Vec::new();
+    for (place, &d) in dimensions.iter().enumerate() {
+        let block = problem.correlation().and_then(|of| Some(of.block_of(d)?.0));
+        let shared = match (block, problem.dimensions()[d].zone()) {
+            (Some(block), _) => Shared::Block(block),
+            (None, Some(zone)) => Shared::Circle(zone),
+            (None, None) => continue,
+        };
+        match groups.iter_mut().find(|(known, _)| *known == shared) {
+            Some((_, places)) => places.push(place),
+            None => groups.push((shared, vec![place])),
+        }
+    }
+    let mut zones = Vec::new();
+    for (shared, places) in groups {
+        // One coordinate alone goes from end to end: its zone says no more than its band.
+        if places.len() < 2 {
+            continue;
+        }
+        let shape = match shared {
+            Shared::Circle(_) => ZoneShape::Disc,
+            Shared::Block(block) => match &problem.correlation().expect("it has a block").blocks()[block].law {
+                JointLaw::Disc => ZoneShape::Disc,
+                JointLaw::Rim => ZoneShape::Rim,
+                JointLaw::Diamond => ZoneShape::Diamond,
+                JointLaw::Rows(_) => {
+                    let Some(rows) = rows_of(problem, dimensions, &places, block) else { continue };
+                    for (coordinate, &place) in places.iter().enumerate() {
+                        let column = || rows.iter().map(|row| row[coordinate]);
+                        region.lower[place] = column().fold(f64::INFINITY, f64::min);
+                        region.upper[place] = column().fold(f64::NEG_INFINITY, f64::max);
+                    }
+                    if rows.len() > MOST_ROWS {
+                        continue;
+                    }
+                    ZoneShape::Rows(rows)
+                }
+            },
+        };
+        let bands = places.iter().map(|&place| [region.lower[place], region.upper[place]]).collect();
+        zones.push(Zone { places, shape, bands });
+    }
+    zones
+}
+
+/// The measured rows of some coordinates; None where a drawing gives one of them a tolerance, which holds for parts that were not
+/// measured.
+fn rows_of(problem: &Problem, dimensions: &[usize], places: &[usize], block: usize) -> Option<Vec<Vec<f64>>> {
+    let correlation = problem.correlation()?;
+    let JointLaw::Rows(rows) = &correlation.blocks()[block].law else { return None };
+    let columns: Vec<Vec<f64>> = places
+        .iter()
+        .map(|&place| {
+            let d = dimensions[place];
+            let dimension = &problem.dimensions()[d];
+            let (_, coordinate) = correlation.block_of(d)?;
+            let (mean, sigma) = (dimension.mean(), dimension.sigma());
+            let values = rows.column(coordinate).iter().map(|u| mean + sigma * u).collect();
+            dimension.tolerance().is_none().then_some(values)
+        })
+        .collect::<Option<_>>()?;
+    Some((0..rows.len()).map(|row| columns.iter().map(|column| column[row]).collect()).collect())
+}
+
+impl Zone {
+    fn middle(&self, coordinate: usize) -> f64 {
+        let [lower, upper] = self.bands[coordinate];
+        0.5 * lower + 0.5 * upper
+    }
+
+    fn half(&self, coordinate: usize) -> f64 {
+        let [lower, upper] = self.bands[coordinate];
+        0.5 * upper - 0.5 * lower
+    }
+
+    /// The norm of a round zone or a diamond.
+    fn norm(&self, parts: impl Iterator<Item = f64>) -> f64 {
+        match self.shape {
+            ZoneShape::Diamond => parts.map(f64::abs).sum(),
+            _ => parts.fold(0.0, libm::hypot),
+        }
+    }
+
+    /// Distance of a point from the middle, in half bands.
+    fn radius(&self, x: &[f64]) -> f64 {
+        self.norm((self.places.iter().enumerate()).map(|(c, &place)| (x[place] - self.middle(c)) / self.half(c)))
+    }
+
+    /// Least and greatest distance of a box from the middle.
+    fn reach(&self, region: &[[f64; 2]]) -> [f64; 2] {
+        let ends = |coordinate: usize| {
+            let (middle, half) = (self.middle(coordinate), self.half(coordinate));
+            region[self.places[coordinate]].map(|x| (x - middle) / half)
+        };
+        let near = |coordinate: usize| {
+            let [from, to] = ends(coordinate);
+            if from <= 0.0 && to >= 0.0 { 0.0 } else { from.abs().min(to.abs()) }
+        };
+        let far = |coordinate: usize| ends(coordinate).map(f64::abs).into_iter().fold(0.0, f64::max);
+        let all = || 0..self.places.len();
+        [self.norm(all().map(near)), self.norm(all().map(far))]
+    }
+
+    fn rows_in<'z>(&'z self, rows: &'z [Vec<f64>], region: &'z [[f64; 2]]) -> impl Iterator<Item = &'z Vec<f64>> {
+        rows.iter().filter(|row| {
+            self.places.iter().zip(*row).all(|(&place, x)| (region[place][0]..=region[place][1]).contains(x))
+        })
+    }
+
+    /// Whether no place of a box lies within the zone.
+    pub(super) fn leaves_out(&self, region: &[[f64; 2]]) -> bool {
+        match &self.shape {
+            ZoneShape::Rows(rows) => self.rows_in(rows, region).next().is_none(),
+            ZoneShape::Rim => {
+                let [near, far] = self.reach(region);
+                near > 1.0 + EDGE || far < 1.0 - EDGE
+            }
+            ZoneShape::Disc | ZoneShape::Diamond => self.reach(region)[0] > 1.0 + EDGE,
+        }
+    }
+
+    /// Shrinks a box to the rows within it.
+    pub(super) fn shrink(&self, region: &mut [[f64; 2]]) {
+        let ZoneShape::Rows(rows) = &self.shape else { return };
+        let mut ends = vec![[f64::INFINITY, f64::NEG_INFINITY]; self.places.len()];
+        for row in self.rows_in(rows, region) {
+            ends.iter_mut().zip(row).for_each(|(end, &x)| *end = [end[0].min(x), end[1].max(x)]);
+        }
+        self.places.iter().zip(ends).for_each(|(&place, end)| region[place] = end);
+    }
+
+    /// Whether a dimension is free to take either end of a box, whatever the others are: it is not a coordinate of a zone, or the whole box lies within.
+    pub(super) fn frees(&self, place: usize, region: &[[f64; 2]]) -> bool {
+        !self.places.contains(&place)
+            || match self.shape {
+                ZoneShape::Disc | ZoneShape::Diamond => self.reach(region)[1] <= 1.0,
+                ZoneShape::Rim | ZoneShape::Rows(_) => false,
+            }
+    }
+
+    /// Whether a point lies within, but for rounding.
+    pub(super) fn contains(&self, x: &[f64]) -> bool {
+        match &self.shape {
+            ZoneShape::Rows(rows) => {
+                rows.iter().any(|row| self.places.iter().zip(row).all(|(&place, value)| x[place] == *value))
+            }
+            ZoneShape::Rim => (self.radius(x) - 1.0).abs() <= EDGE,
+            ZoneShape::Disc | ZoneShape::Diamond => self.radius(x) <= 1.0 + EDGE,
+        }
+    }
+
+    /// Moves a point that lies outside to the edge in its direction, or to the nearest row; `margin` keeps it off the edge.
+    pub(super) fn enter(&self, x: &mut [f64], margin: f64) {
+        let radius = self.radius(x);
+        match &self.shape {
+            ZoneShape::Rows(rows) => {
+                let distance = |row: &Vec<f64>| {
+                    let apart = row.iter().enumerate().map(|(c, value)| (value - x[self.places[c]]) / self.half(c));
+                    apart.fold(0.0, libm::hypot)
+                };
+                let nearest = rows.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+                let nearest = nearest.expect("a block has rows").clone();
+                self.places.iter().zip(nearest).for_each(|(&place, value)| x[place] = value);
+            }
+            // Of the middle every direction is as near.
+            ZoneShape::Rim if radius == 0.0 => x[self.places[0]] = self.bands[0][1],
+            ZoneShape::Rim => self.scale(x, radius),
+            ZoneShape::Disc | ZoneShape::Diamond if radius > 1.0 => self.scale(x, radius * (1.0 + margin)),
+            ZoneShape::Disc | ZoneShape::Diamond => {}
+        }
+    }
+
+    fn scale(&self, x: &mut [f64], radius: f64) {
+        for (coordinate, &place) in self.places.iter().enumerate() {
+            let middle = self.middle(coordinate);
+            x[place] = middle + (x[place] - middle) / radius;
+        }
+    }
+
+    /// The coordinates, by their places among the dimensions of the characteristic.
+    pub(super) fn places(&self) -> &[usize] {
+        &self.places
+    }
+
+    /// The least value over the zone of a plane with these slopes that is 0 at a point: a certain bound of it, and where it is. Only the
+    /// part of the zone counts that lies within a box, as far as the bound is easily had.
+    pub(super) fn lowest(&self, slopes: &[f64], about: &[f64], region: &[[f64; 2]]) -> (f64, Vec<f64>) {
+        let exactly = |x: f64| Interval::between(x, x);
+        let place = |coordinate: usize| self.places[coordinate];
+        let all = || 0..self.places.len();
+        let term = |c: usize, x: Interval| x.subtract(&exactly(about[place(c)])).multiply(&exactly(slopes[c]));
+        let sum = |terms: &mut dyn Iterator<Item = Interval>| terms.fold(exactly(0.0), |sum, term| sum.add(&term));
+        if let ZoneShape::Rows(rows) = &self.shape {
+            let value = |row: &Vec<f64>| sum(&mut all().map(|c| term(c, exactly(row[c])))).lower();
+            let least = self.rows_in(rows, region).map(|row| (value(row), row));
+            let least = least.min_by(|a, b| a.0.total_cmp(&b.0));
+            return least.map_or((f64::INFINITY, Vec::new()), |(value, row)| (value, row.clone()));
+        }
+        let half = |c: usize| {
+            let [lower, upper] = self.bands[c];
+            exactly(upper).subtract(&exactly(lower)).multiply(&exactly(0.5))
+        };
+        let middle = |c: usize| {
+            let [lower, upper] = self.bands[c];
+            exactly(upper).add(&exactly(lower)).multiply(&exactly(0.5))
+        };
+        let rise = |c: usize| half(c).multiply(&exactly(slopes[c]));
+        let greatest = match self.shape {
+            ZoneShape::Diamond => {
+                let size = |c: usize| rise(c).upper().max(-rise(c).lower());
+                exactly(all().map(size).fold(0.0, f64::max))
+            }
+            _ => sum(&mut all().map(|c| rise(c).squared())).sqrt(),
+        };
+        let bound = sum(&mut all().map(|c| term(c, middle(c)))).subtract(&greatest).lower();
+        (bound.max(self.lowest_at_edge(slopes, about, region)), self.lowest_place(slopes))
+    }
+
+    /// The same over the part of a box on this side of the edge's tangent, by weak duality:
+    ///
+    /// ```text
+    /// g (x - m) = (g + l n/h) (x - m) - l n (u - u_m)     n: normal of the edge in half bands h, u = x/h
+    /// n u <= 1                                            in the zone; on a rim n u >= 1 - |u - n|^2/2 too
+    /// ```
+    ///
+    /// Boxes along the edge are told apart by it, for its error goes with the square of their width.
+    fn lowest_at_edge(&self, slopes: &[f64], about: &[f64], region: &[[f64; 2]]) -> f64 {
+        let exactly = |x: f64| Interval::between(x, x);
+        let offset =
+            |x: f64, c: usize| exactly(x).subtract(&exactly(self.middle(c))).multiply(&exactly(1.0 / self.half(c)));
+        let parts: Vec<f64> =
+            self.places.iter().enumerate().map(|(c, &d)| (about[d] - self.middle(c)) / self.half(c)).collect();
+        let radius = self.norm(parts.iter().copied());
+        if radius == 0.0 {
+            return f64::NEG_INFINITY;
+        }
+        let normal: Vec<f64> = match self.shape {
+            ZoneShape::Diamond => parts.iter().map(|part| part.signum()).collect(),
+            _ => parts.iter().map(|part| part / radius).collect(),
+        };
+        let square: f64 = normal.iter().map(|n| n * n).sum();
+        let along: f64 = slopes.iter().zip(&normal).enumerate().map(|(c, (slope, n))| slope * self.half(c) * n).sum();
+        let multiplier = -along / square;
+        let is_rim = matches!(self.shape, ZoneShape::Rim);
+        if multiplier < 0.0 && !is_rim {
+            return f64::NEG_INFINITY;
+        }
+        let (mut tangential, mut reached, mut apart) = (exactly(0.0), exactly(0.0), exactly(0.0));
+        for (c, &d) in self.places.iter().enumerate() {
+            let per_half = exactly(multiplier).multiply(&exactly(normal[c])).multiply(&exactly(1.0 / self.half(c)));
+            let slope = exactly(slopes[c]).add(&per_half);
+            let [lower, upper] = region[d].map(|x| exactly(x).subtract(&exactly(about[d])));
+            tangential = tangential.add(&slope.multiply(&Interval::between(lower.lower(), upper.upper())));
+            reached = reached.add(&offset(about[d], c).multiply(&exactly(normal[c])));
+            let [from, to] = region[d].map(|x| offset(x, c).subtract(&exactly(normal[c])));
+            apart = apart.add(&Interval::between(from.lower(), to.upper()).squared());
+        }
+        // Normals are unit vectors but for rounding, and the edge has some too.
+        let edge = match multiplier < 0.0 {
+            true => exactly(1.0 - EDGE).subtract(&apart.multiply(&exactly(0.5))),
+            false => exactly(1.0 + EDGE),
+        };
+        tangential.subtract(&edge.subtract(&reached).multiply(&exactly(multiplier))).lower()
+    }
+
+    /// Where a plane with these slopes is least in a round zone or a diamond.
+    fn lowest_place(&self, slopes: &[f64]) -> Vec<f64> {
+        let rises: Vec<f64> = slopes.iter().enumerate().map(|(c, slope)| slope * self.half(c)).collect();
+        let steepest = (0..rises.len()).max_by(|&a, &b| rises[a].abs().total_cmp(&rises[b].abs())).unwrap_or(0);
+        let length = rises.iter().fold(0.0, |length, &rise| libm::hypot(length, rise));
+        let part = |c: usize| match self.shape {
+            _ if length == 0.0 => {
+                if c == 0 {
+                    1.0
+                } else {
+                    0.0
+                }
+            }
+            ZoneShape::Diamond if c != steepest => 0.0,
+            ZoneShape::Diamond => -rises[c].signum(),
+            _ => -rises[c] / length,
+        };
+        (0..rises.len()).map(|c| self.middle(c) + part(c) * self.half(c)).collect()
+    }
+}

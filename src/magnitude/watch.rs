@@ -1,0 +1,165 @@
+//! The watch for outputs of extreme size among the first answers of a function.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::store::Store;
+use crate::assembly::EvaluatorAccount;
+use crate::assembly::{
+    AssemblyFunction, Bounds, Composite, Derivatives, Directions, EvaluationError, Input, ModelInfo, Points,
+    Polynomial, Request, Responses, Run, Signature, Switches,
+};
+use crate::warning::Warning;
+use sensitol_numeric::power::Power;
+use sensitol_numeric::time::Instant;
+
+/// Points whose values say how large an output is. One alone may lie where a characteristic happens to vanish, as a deviation does at the
+/// nominal dimensions.
+const ENOUGH: usize = 2;
+
+/// The sizes of the first values of every output.
+#[derive(Debug)]
+pub(crate) struct Watch {
+    /// Whether enough was seen.
+    settled: AtomicBool,
+    /// Whether some output is of extreme size.
+    extreme: AtomicBool,
+    seen: Mutex<Seen>,
+}
+
+#[derive(Debug)]
+struct Seen {
+    /// Points with a value.
+    points: usize,
+    /// The greatest size of each output.
+    sizes: Vec<f64>,
+}
+
+impl Watch {
+    /// Of a function with so many outputs, of which nothing is known.
+    pub(super) fn new(outputs: usize) -> Self {
+        let seen = Mutex::new(Seen { points: 0, sizes: vec![0.0; outputs] });
+        Self { settled: AtomicBool::new(false), extreme: AtomicBool::new(false), seen }
+    }
+
+    /// Whether some output is of extreme size, so that the run is to begin anew.
+    pub(crate) fn is_extreme(&self) -> bool {
+        self.extreme.load(Ordering::Relaxed)
+    }
+
+    /// Takes the answers seen so far for all that will be seen: whether some output is of extreme size.
+    pub(crate) fn settle(&self) -> bool {
+        self.settled.store(true, Ordering::Relaxed);
+        let extreme = self.powers().iter().any(|power| !power.is_one());
+        self.extreme.fetch_or(extreme, Ordering::Relaxed) || extreme
+    }
+
+    /// The power of two of every output, by its greatest value so far.
+    pub(crate) fn powers(&self) -> Vec<Power> {
+        let seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
+        seen.sizes.iter().map(|&size| Power::of(size)).collect()
+    }
+
+    fn is_settled(&self) -> bool {
+        self.settled.load(Ordering::Relaxed)
+    }
+
+    /// Looks at the values of these outputs.
+    fn look(&self, outputs: &[usize], answers: &Responses) {
+        let enough = {
+            let mut seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
+            for (column, &output) in outputs.iter().enumerate() {
+                let size = answers.column(column).iter().fold(0.0f64, |size, value| size.max(value.abs()));
+                seen.sizes[output] = seen.sizes[output].max(size);
+            }
+            seen.points += answers.answered().count();
+            seen.points >= ENOUGH && seen.sizes.iter().any(|&size| size > 0.0)
+        };
+        if enough {
+            self.settle();
+        }
+    }
+}
+
+/// A function whose first answers are looked at. Once an output is of extreme size, nothing more is answered: every point stays open, as in a run that
+/// is stopped.
+pub(crate) struct WatchedFunction {
+    function: Arc<dyn AssemblyFunction>,
+    watch: Arc<Watch>,
+    /// Whether its outputs are those that are watched, rather than those of a model within.
+    looks: bool,
+    store: Arc<Store>,
+}
+
+impl WatchedFunction {
+    pub(super) fn new(function: Arc<dyn AssemblyFunction>, watch: Arc<Watch>, store: Arc<Store>) -> Self {
+        Self { function, watch, looks: true, store }
+    }
+
+    /// A model within the watched function, of which only the answers are kept.
+    pub(super) fn within(function: Arc<dyn AssemblyFunction>, watch: Arc<Watch>, store: Arc<Store>) -> Self {
+        Self { function, watch, looks: false, store }
+    }
+}
+
+impl AssemblyFunction for WatchedFunction {
+    forward_unscaled!();
+
+    fn bounds(&self, output: usize, region: &[[f64; 2]]) -> Option<Bounds> {
+        self.function.bounds(output, region)
+    }
+
+    fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
+        if self.watch.is_extreme() {
+            return;
+        }
+        if self.watch.is_settled() {
+            return self.function.evaluate(request, run, out);
+        }
+        let begun = Instant::now();
+        self.function.evaluate(request, run, out);
+        if self.signature().costly {
+            self.store.keep(request, out, begun.elapsed());
+        }
+        if self.looks {
+            self.watch.look(request.outputs, out);
+        }
+        if self.watch.is_extreme() {
+            out.reopen(out.rows(), out.outputs());
+        }
+    }
+
+    fn evaluate_columns(
+        &self,
+        rows: usize,
+        columns: &[&[f64]],
+        outputs: &[usize],
+        run: &Run<'_>,
+        out: &mut Responses,
+    ) -> bool {
+        // Answers that are to be looked at come by `evaluate`.
+        let settled = self.watch.is_settled() && !self.watch.is_extreme();
+        settled && self.function.evaluate_columns(rows, columns, outputs, run, out)
+    }
+
+    fn derivatives(&self, outputs: &[usize], directions: &Directions<'_>) -> Vec<Option<Derivatives>> {
+        self.function.derivatives(outputs, directions)
+    }
+
+    fn derivatives_per(
+        &self,
+        outputs: &[usize],
+        directions: &Directions<'_>,
+        exponents: &[i32],
+    ) -> Vec<Option<Derivatives>> {
+        self.function.derivatives_per(outputs, directions, exponents)
+    }
+
+    fn magnitudes(&self, outputs: &[usize], point: &[f64]) -> Vec<Option<f64>> {
+        self.function.magnitudes(outputs, point)
+    }
+
+    fn polynomial(&self, output: usize, centre: &[f64], scale: &[f64]) -> Option<Polynomial> {
+        self.function.polynomial(output, centre, scale)
+    }
+}
