@@ -226,8 +226,8 @@ fn document() -> String {
     let references = data("accuracy.json");
     let mut text = String::from(
         "# What every method costs, and how far it is off\n\n\
-         Written by the tests ([tests/suite/accuracy.rs](../tests/suite/accuracy.rs)) from the studies in\n\
-         [tests/data/accuracy](../tests/data/accuracy); `SENSITOL_UPDATE_DOCS=1 cargo test --test suite accuracy` writes it anew. The\n\
+         Written by the tests ([tests/accuracy/accuracy.rs](../tests/accuracy/accuracy.rs)) from the studies in\n\
+         [tests/data/accuracy](../tests/data/accuracy); `SENSITOL_UPDATE_DOCS=1 cargo test --test accuracy accuracy` writes it anew. The\n\
          references come from quadrature, closed forms and exact moments, by another program\n\
          ([accuracy.py](../tests/data/generators/accuracy.py)), and are known to 1e-7 of sigma or better.\n\n\
          Constants may be tuned on these functions. What is tuned on them they do not test: the functions by which errors are judged are\n\

@@ -1,7 +1,7 @@
 //! The cost of `auto` by itself, without verification: evaluations, true and estimated error of sigma at 1 % and 0.1 %, on
 //! examples and on functions that tests of costs are spoken of with.
 //!
-//! `cargo test --test suite auto_cost -- --ignored --nocapture` prints it.
+//! `cargo test --test engine auto_cost -- --ignored --nocapture` prints it.
 
 use rayon::prelude::*;
 use sensitol::simulation::{Sampler, SimulationOptions, simulate};

@@ -5,4 +5,5 @@ mod circles;
 mod constants;
 mod errors;
 mod sources;
+mod tuning;
 mod type_names;

@@ -6,7 +6,8 @@ use std::path::Path;
 
 use rayon::prelude::*;
 use sensitol::assembly::{AssemblyFunction, Request, Responses, Run, Signature};
-use sensitol::{Method, Options, Problem, Study, analyze};
+use sensitol::{Method, Options, Problem, analyze};
+use sensitol_study::Study;
 
 /// A formula as a model of which every evaluation costs something.
 #[derive(Debug)]

@@ -25,7 +25,9 @@ ROOT = Path(__file__).resolve().parents[2]
 KINDS = Path(__file__).with_name("kinds.toml")
 PAGE = ROOT / "docs" / "reference" / "tuning.md"
 BUILD = ROOT / "target" / "tuning"
-FOLDERS = ["analysis", "method", "simulation", "surrogate", "verification"]
+# By package: the engine, and the mathematics below it.
+PACKAGES = {"src": ["analysis", "method", "simulation", "verification"], "crates/numeric/src": ["surrogate"]}
+FOLDERS = [f"{package}/{folder}" for package, folders in PACKAGES.items() for folder in folders]
 DEFINITION = re.compile(
     r"^(?P<indent>\s*)(?P<public>pub(?:\([a-z]+\))? )?const (?P<name>[A-Z][A-Z_0-9]*): (?P<type>f64|usize|u64|u32|i32) =\s+(?P<value>[^;]+);",
     re.M,
@@ -43,13 +45,15 @@ SAME = 1e-9
 def constants():
     """Every constant: file, name, type, value as written, and what its comment says."""
     for folder in FOLDERS:
-        for path in sorted((ROOT / "src" / folder).rglob("*.rs")):
+        package = next(package for package in PACKAGES if folder.startswith(f"{package}/"))
+        for path in sorted((ROOT / folder).rglob("*.rs")):
             text = path.read_text().split("#[cfg(test)]\nmod tests {")[0]
             if path.name == "tests.rs":
                 continue
             for found in DEFINITION.finditer(text):
                 yield {
-                    "file": str(path.relative_to(ROOT / "src")),
+                    "file": str(path.relative_to(ROOT / package)),
+                    "path": str(path.relative_to(ROOT)),
                     "name": found["name"],
                     "type": found["type"],
                     "value": " ".join(found["value"].split()),
@@ -73,33 +77,35 @@ def meaning(before, indent):
 def scaled_copy(fixed):
     """The sources with every constant that is not fixed as a function of the environment."""
     source = BUILD / "tree"
-    (source / "src").parent.mkdir(parents=True, exist_ok=True)
-    if (source / "src").exists():
-        shutil.rmtree(source / "src")
-    shutil.copytree(ROOT / "src", source / "src")
+    shutil.rmtree(source, ignore_errors=True)
+    for folder in ["src", "crates"]:
+        shutil.copytree(ROOT / folder, source / folder, ignore=shutil.ignore_patterns("tests", "benches"))
     manifest = (ROOT / "Cargo.toml").read_text()
-    manifest = re.sub(r"\n\[workspace\]\n.*?\n\n", "\n[workspace]\n\n", manifest, flags=re.S)
+    manifest = re.sub(r"members = \[[^\]]*\]", 'members = ["crates/*"]', manifest)
     manifest = re.sub(r"\[\[bench\]\]\n[^\[]*", "", manifest)
     manifest = manifest.replace('missing_docs = "deny"', 'missing_docs = "allow"')
-    manifest = manifest.replace("[lints.rust]", '[lints.rust]\nnon_snake_case = "allow"\nunused = { level = "allow", priority = -1 }')
-    manifest = re.sub(r"\[\[bin\]\]\nname = .*?\n\n", "", manifest, flags=re.S)
+    lints = '[workspace.lints.rust]\nnon_snake_case = "allow"\nunused = { level = "allow", priority = -1 }'
+    manifest = manifest.replace("[workspace.lints.rust]", lints)
     (source / "Cargo.toml").write_text(manifest)
+    for command in (source / "crates").glob("*/Cargo.toml"):
+        command.write_text(re.sub(r"\[\[bench\]\]\n[^\[]*", "", command.read_text()))
     shutil.copy(ROOT / "Cargo.lock", source / "Cargo.lock")
     shutil.copy(ROOT / "README.md", source / "README.md")
     (source / "examples").mkdir(exist_ok=True)
     shutil.copy(Path(__file__).with_name("driver.rs"), source / "examples" / "driver.rs")
-    library = source / "src" / "lib.rs"
+    library = source / "crates" / "numeric" / "src" / "lib.rs"
     library.write_text(library.read_text() + TUNABLE)
     for one in constants():
         if key(one) in fixed:
             continue
-        path = source / "src" / one["file"]
+        path = source / one["path"]
         text = path.read_text()
 
         def variable(found):
             if found["name"] != one["name"]:
                 return found[0]
-            of = f'crate::tunable("{key(one)}", ({found["value"]}) as f64)'
+            home = "crate" if one["path"].startswith("crates/numeric/") else "sensitol_numeric"
+            of = f'{home}::tunable("{key(one)}", ({found["value"]}) as f64)'
             whole = found["type"] != "f64"
             of = f"{of}.round().max(1.0)" if whole else of
             return (
@@ -110,7 +116,7 @@ def scaled_copy(fixed):
         text = DEFINITION.sub(variable, text)
         path.write_text(called(text, one["name"]))
         if one["public"]:
-            for other in (source / "src").rglob("*.rs"):
+            for other in [*(source / "src").rglob("*.rs"), *(source / "crates").rglob("*.rs")]:
                 if other != path:
                     text = other.read_text()
                     if imports(text, one):
@@ -163,8 +169,8 @@ def compiled():
     # Those of the run before spare some builds.
     known = BUILD / "fixed.json"
     fixed = set(json.loads(known.read_text())) & {key(one) for one in constants()} if known.exists() else set()
-    command = ["cargo", "build", "--release", "--no-default-features", "--features", "study,report", "--example", "driver"]
-    environment = {**os.environ, "CARGO_TARGET_DIR": str(BUILD / "target"), "CARGO_PROFILE_RELEASE_LTO": "off"}
+    command = ["cargo", "build", "--release", "-p", "sensitol", "--example", "driver"]
+    environment = {**os.environ, "CARGO_TARGET_DIR": str(BUILD / "target")}
     for _ in range(30):
         source = scaled_copy(fixed)
         ran = subprocess.run([*command, "--message-format=json"], cwd=source, env=environment, capture_output=True, text=True)
@@ -177,10 +183,10 @@ def compiled():
             if not message or message.get("level") != "error":
                 continue
             for span in message["spans"]:
-                file = span["file_name"].removeprefix("src/")
+                file = span["file_name"]
                 for text in span["text"]:
                     for one in constants():
-                        of = one["file"] == file or one["public"]
+                        of = one["path"] == file or one["public"]
                         if of and re.search(rf"\b{one['name']}\b", text["text"]) and key(one) not in fixed:
                             found.add(key(one))
         if not found:
@@ -280,7 +286,7 @@ def written(rows, first, further):
     text = f"""# Constants, and what they do
 
 Written by [tests/tuning/measure.py](../../tests/tuning/measure.py), which doubles and halves every numeric constant of
-{", ".join(f"`src/{folder}`" for folder in FOLDERS[:-1])} and `src/{FOLDERS[-1]}` and runs the {len(names)} functions that constants may be tuned
+{", ".join(f"`{folder}`" for folder in FOLDERS[:-1])} and `{FOLDERS[-1]}` and runs the {len(names)} functions that constants may be tuned
 on ([docs/accuracy.md](../accuracy.md)) of at most 20 dimensions, all but `saturating-3`, in four ways: `auto` of a cheap model, `full` with check points,
 `auto` without any verification at 1 % and at 0.1 %. The functions by which errors are judged are not among them.
 

@@ -5,15 +5,13 @@ const engine = (() => {
   const load = async () => {
     const text = (id) => document.getElementById(id).textContent.trim();
     const script = (...ids) => URL.createObjectURL(new Blob(ids.map((id) => `${text(id)}\n`), { type: "text/javascript" }));
-    // Unpacked beside the page, so that the page answers meanwhile.
-    const worker = new Worker(script("unpack-worker"));
-    const unpacked = await new Promise((resolve, reject) => {
-      worker.onmessage = ({ data }) => (data ? resolve(data) : reject(new Error("the engine in this page is damaged")));
-      worker.onerror = ({ message }) => reject(new Error(message));
-      worker.postMessage(text("engine-packed"));
-    });
-    worker.terminate();
-    compiled = await WebAssembly.compile(unpacked);
+    const packed = Uint8Array.from(atob(text("engine-gzip")), (character) => character.charCodeAt(0));
+    const unpacked = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
+    try {
+      compiled = await WebAssembly.compile(await new Response(unpacked).arrayBuffer());
+    } catch (error) {
+      throw new Error(`the engine in this page is damaged: ${error.message ?? error}`);
+    }
     source = script("engine-glue", "engine-worker");
   };
   class Engine {

@@ -1,7 +1,7 @@
 //! Built-in closed-form models, a file each, and their registry.
 //!
 //! # A new model
-//! One new file with a `pub static` [`Model`], one line in [`ALL`], a test in `tests/suite/published.rs` with reference values
+//! One new file with a `pub static` [`Model`], one line in [`ALL`], a test in `tests/accuracy/published.rs` with reference values
 //! from an independent source, and a study in `examples/`.
 
 mod compression_clearance;

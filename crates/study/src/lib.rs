@@ -264,7 +264,7 @@ impl Study {
     ///     gap = { formula = "a - b", lower = 0.1 }
     /// "#, "gap.toml")?;
     /// assert_eq!(study.problem.dimensions().len(), 2);
-    /// # Ok::<(), sensitol::Error>(())
+    /// # Ok::<(), sensitol_study::StudyError>(())
     /// ```
     pub fn from_toml(text: &str, name: &str) -> Result<Self, StudyError> {
         Self::from_text(StudyText::toml(name, text))

@@ -1,6 +1,6 @@
 """Lists under additive rows with their least costs, by HiGHS; writes ../allocation-lists.json.
 
-Needs highspy 1.15 (pip). The problems follow from seeds by arithmetic that every language rounds alike; tests/suite/allocation_lists.rs makes
+Needs highspy 1.15 (pip). The problems follow from seeds by arithmetic that every language rounds alike; tests/allocation/allocation_lists.rs makes
 them again. `--time` prints milliseconds of HiGHS, one thread, in place of writing.
 """
 

@@ -1,6 +1,6 @@
 """Functions whose moments have closed forms, from light tails to heavy ones: mean, sigma, skewness, kurtosis.
 
-None of them was used to choose from which share of its largest points on a moment of a sample has not settled (src/sampling/largest.rs).
+None of them was used to choose from which share of its largest points on a moment of a sample has not settled (crates/numeric/src/sampling/largest.rs).
 Raw moments 1 to 4 are exact (fractions, or exponentials in 40 digits) for products and powers; cumulants add up for sums. A moment that is
 infinite is null. Needs mpmath.
 """

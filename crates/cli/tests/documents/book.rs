@@ -59,7 +59,7 @@ fn blocks(page: &str, language: &str) -> Vec<String> {
 /// Every block of the page for Rust is an example of rustdoc, which `cargo test` runs.
 #[test]
 fn examples_in_rust_are_those_of_rustdoc() {
-    let examples: BTreeSet<String> = ["src/lib.rs", "src/study/mod.rs", "src/report/to_document.rs"]
+    let examples: BTreeSet<String> = ["src/lib.rs", "crates/study/src/lib.rs", "crates/report/src/to_document.rs"]
         .iter()
         .map(|file| {
             let text = read(file);

@@ -80,7 +80,7 @@ fn page(document: &str, test: &str, text: &str) {
     let line = found.lines().zip(text.lines()).take_while(|(found, text)| found == text).count() + 1;
     assert!(
         found == text,
-        "{document} is not what the program says, from line {line} on: SENSITOL_UPDATE_DOCS=1 cargo test --test suite \
+        "{document} is not what the program says, from line {line} on: SENSITOL_UPDATE_DOCS=1 cargo test -p sensitol-cli --test documents \
          docs::{test} writes it anew"
     );
 }

@@ -1,6 +1,6 @@
 //! Signals at random moments against runs with an external model and a journal: no corrupt journal, no orphan, no half file.
 //!
-//! `SENSITOL_STORM=400 cargo test --test suite storm` sends that many signals; without it a few.
+//! `SENSITOL_STORM=400 cargo test -p sensitol-cli --test external storm` sends that many signals; without it a few.
 
 use std::collections::BTreeMap;
 use std::os::unix::process::ExitStatusExt;

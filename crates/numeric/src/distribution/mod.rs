@@ -5,7 +5,7 @@
 //!
 //! # A new distribution
 //! One new file with a type that implements [`Distribution`], one line in the list below, one arm where study files
-//! name distributions (`study/dimension/kinds.rs`), and one row in `tests/suite/distributions/densities.rs`.
+//! name distributions (`study/dimension/kinds.rs`), and one row in `crates/testing/src/densities.rs`.
 
 mod beta;
 mod central_moments;

@@ -1,5 +1,5 @@
-// The law of a surface over independent inputs, by its transform along a contour through the saddle point: the counterpart of src/law for
-// sums of single inputs and quadratic forms of normal ones. tests/suite/html.rs holds the two together.
+// The law of a surface over independent inputs, by its transform along a contour through the saddle point: the counterpart of crates/numeric/src/law for
+// sums of single inputs and quadratic forms of normal ones. crates/cli/tests/reports/html.rs holds the two together.
 const surface = (() => {
   "use strict";
 

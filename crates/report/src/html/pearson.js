@@ -1,4 +1,4 @@
-// The Pearson law of four moments by one engine for all types: the counterpart of src/pearson, with its names and constants.
+// The Pearson law of four moments by one engine for all types: the counterpart of crates/numeric/src/pearson, with its names and constants.
 const pearson = (() => {
   "use strict";
   const { add, multiply, times, twoProduct, twoSum, value } = mathematics;

@@ -1,5 +1,5 @@
-// The moments of a surrogate and their Pearson law, as the engine computes them: src/surrogate/relocation.rs, src/moments and
-// src/pearson, of which every function here has its counterpart. tests/browser holds the two together.
+// The moments of a surrogate and their Pearson law, as the engine computes them: crates/numeric/src/surrogate/relocation.rs, crates/numeric/src/moments and
+// crates/numeric/src/pearson, of which every function here has its counterpart. tests/browser holds the two together.
 const mathematics = (() => {
   "use strict";
 
