@@ -4,8 +4,8 @@
 //! Gauss rules, which supply evaluation nodes and quadrature.
 //!
 //! # A new distribution
-//! One new file with a type that implements [`Distribution`], one line in the list below, one arm where study files
-//! name distributions (`study/dimension/kinds.rs`), and one row in `tests/suite/distributions/densities.rs`.
+//! One new file with a type that implements [`Distribution`], one line in the list below, one arm where study files name distributions
+//! (`crates/study/src/dimension/kinds.rs`), and one row in `crates/testing/src/densities.rs`.
 
 mod beta;
 mod central_moments;
