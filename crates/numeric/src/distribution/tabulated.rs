@@ -77,6 +77,7 @@ impl Tabulated {
                 "scores of a table are those of a normal distribution, from -{FARTHEST} to {FARTHEST}, not {score}"
             ));
         }
+        // The table covers only this part of the normal distribution's probability; take it from the nearer tail to keep its digits.
         let (first, last) = (scores[0], scores[scores.len() - 1]);
         let (below, above) = (standard_normal::cdf(first), standard_normal::sf(last));
         let within = if first > 0.0 { standard_normal::sf(first) - above } else { standard_normal::cdf(last) - below };
@@ -92,6 +93,7 @@ impl Tabulated {
             moments: StandardMoments::from_standard([0.0; 6]),
             jacobi: Jacobi::new(Vec::new(), Vec::new()),
         };
+        // Moments and recurrence follow from the finished cubics.
         let mut fine = law.discretised();
         [law.mean, law.sigma] = fine.standardise();
         (law.moments, law.jacobi) = (fine.moments(), fine.jacobi(ORDER));

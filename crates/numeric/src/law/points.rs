@@ -8,8 +8,8 @@ use crate::sampling::{SOBOL_DIMENSIONS, Sobol};
 
 /// Number of replicates, whose scatter gives the error.
 pub(super) const REPLICATES: usize = 16;
-/// Number of standard errors of the mean of 16 replicates that bound the error. Student's distribution with 15 degrees of freedom leaves 1
-/// % beyond.
+/// Number of standard errors of the mean of 16 replicates that bound the error. Student's distribution with 15 degrees of freedom leaves
+/// 1 % beyond.
 pub const QUANTILE: f64 = 2.95;
 /// Share of the own distribution in the mixture of a proposal. No weight exceeds its inverse.
 const OWN: f64 = 0.25;

@@ -34,6 +34,7 @@ pub(super) fn straightened(
 ) -> Option<Straightened> {
     let correlation = correlation?;
     let products = surrogate.interactions.pairs();
+    // A zone is straight if both its coordinates have linear parts and no products.
     let plane = |block: &Block| -> Option<Zone> {
         let &[j, k] = &block.members[..] else { return None };
         if matches!(block.law, JointLaw::Rows(_))
@@ -52,6 +53,7 @@ pub(super) fn straightened(
     if zones.is_empty() {
         return None;
     }
+    // Replace the coordinates: a diamond by its two uniform variables, a disc or rim by its projection onto the gradient.
     let (mut surrogate, mut inputs) = (surrogate.clone(), inputs.to_vec());
     for Zone { members: [j, k], slopes: [a, b], diamond } in &zones {
         let slopes = match diamond {
