@@ -32,10 +32,10 @@ pub fn outliers(values: &[f64]) -> Vec<usize> {
 
 /// Generalised extreme Studentised deviate test for up to `most` outliers at the significance `level`.
 ///
-/// The value farthest from the mean is removed `most` times. Its distance `R` in sigmas (divisor `n - 1`) is compared with `(m-1) t /
-/// sqrt((m - 2 + t^2) m)`. There `m` values are left, and `t` is the quantile `1 - level/2m` of Student's distribution with `m - 2` degrees
-/// of freedom. All values up to the last that exceeds it are outliers. For one value this is Grubbs' test, which is exact. For several
-/// values it is accurate from about 15 values on.
+/// The value farthest from the mean is removed `most` times. Its distance `R` in sigmas (divisor `n - 1`) is compared with
+/// `(m-1) t / sqrt((m - 2 + t^2) m)`. There `m` values are left, and `t` is the quantile `1 - level/2m` of Student's distribution with
+/// `m - 2` degrees of freedom. All values up to the last that exceeds it are outliers. For one value this is Grubbs' test, which is exact.
+/// For several values it is accurate from about 15 values on.
 ///
 /// Source: Rosner, Percentage points for a generalized ESD many-outlier procedure, Technometrics 25 (1983).
 pub fn extreme(values: &[f64], level: f64, most: usize) -> Vec<usize> {

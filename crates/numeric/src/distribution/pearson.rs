@@ -181,8 +181,9 @@ impl Recurrence {
         StandardMoments { excess: self.excess, ..StandardMoments::from_standard([m3, m4, m5, m6, m7, m8]) }
     }
 
-    /// Recurrence of the polynomials for a density with `(sigma p)' = tau p`, here with `sigma = C0 + C1 z + C2 z^2` and `tau = -(C0 + C2)
-    /// z`. One formula covers those of Jacobi, Laguerre, Hermite, Bessel and Romanovski (Koepf and Schmersau 1998, theorem 1).
+    /// Recurrence of the polynomials for a density with `(sigma p)' = tau p`, here with `sigma = C0 + C1 z + C2 z^2` and
+    /// `tau = -(C0 + C2) z`. One formula covers those of Jacobi, Laguerre, Hermite, Bessel and Romanovski (Koepf and Schmersau 1998,
+    /// theorem 1).
     fn jacobi(&self, order: usize) -> Jacobi {
         let (a, b, c, d) = (self.c2, self.c1, self.c0, -(self.c0 + self.c2));
         let finite = (1..=order).take_while(|n| self.has_moment(2 * n)).count();

@@ -84,8 +84,8 @@ impl Distribution for Trapezoidal {
         self.half * ((a * a + b * b) / 3.0).sqrt()
     }
 
-    /// Moments from the cumulants of two uniform variables of half-widths `a` and `b`, which add: `a^2/3, -2 a^4/15, 16 a^6/63, -16
-    /// a^8/15`.
+    /// Moments from the cumulants of two uniform variables of half-widths `a` and `b`, which add:
+    /// `a^2/3, -2 a^4/15, 16 a^6/63, -16 a^8/15`.
     fn standard_moments(&self) -> StandardMoments {
         let [a, b] = self.halves().map(|half| half * half);
         let v = (a + b) / 3.0;

@@ -25,8 +25,8 @@
 //!
 //! One further part that was not measured may lie beyond all others. It is taken to lie `K` sigmas from the mean. For a limit at `d` sigmas
 //! it is rejected with the probability `h = Phi((K sqrt S - d)/sqrt(1 - S))`, and has the weight `w = h/n`. The interval is that of a
-//! weighted count (Fay and Feuer 1997). The lower end follows from mean `p` and variance `sum V/n`, the upper end from `p + sum w` and `sum
-//! V/n + sum w^2`. The upper end is never above that of the same rows paired to one sample, as above.
+//! weighted count (Fay and Feuer 1997). The lower end follows from mean `p` and variance `sum V/n`, the upper end from `p + sum w` and
+//! `sum V/n + sum w^2`. The upper end is never above that of the same rows paired to one sample, as above.
 //!
 //! The assumption is `K`: five sigmas, or one and a half times the distance of the farthest value of the sample.
 
@@ -93,8 +93,8 @@ impl MeasuredSample {
         samples
     }
 
-    /// Sample as an input of a characteristic, with this share of the variance. The share counts as 1 if it is NaN, and if the sample is
-    /// correlated with other dimensions. In that case the interval is that of a count.
+    /// Sample as an input of a characteristic, with this share of the variance. The share counts as 1 if it is NaN or if the sample is
+    /// correlated with other dimensions. A correlated sample gives the interval of a count.
     pub fn with_share(&self, share: f64) -> MeasuredInput {
         let share = if share.is_nan() || self.is_correlated { 1.0 } else { share.clamp(0.0, 1.0) };
         // A part that was not measured then has an unknown distance from the mean and counts as rejected.
