@@ -1,4 +1,4 @@
-//! The beta distribution over a band.
+//! Beta distribution over a band.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use super::{
     Distribution, DistributionError, Jacobi, Probability, Scaled, StandardMoments, between, finite, interval, positive,
 };
 
-/// Beta distribution over an interval: density `t^(alpha-1) (1-t)^(beta-1)` at the share `t` of it.
+/// Beta distribution over an interval, with density `t^(alpha-1) (1-t)^(beta-1)` at the fraction `t` of the interval.
 ///
 /// ```
 /// use crate::distribution::{Beta, Distribution};
@@ -27,24 +27,24 @@ pub struct Beta {
     half: f64,
     alpha: f64,
     beta: f64,
-    /// The law of the standardised variable.
+    /// Distribution of the standardised variable.
     law: Pearson,
-    /// The law next to the two ends.
+    /// Series next to the two ends; None if an exponent is too large for one.
     ends: [Option<End>; 2],
 }
 
-/// The range of the shape parameters: beyond, the law cannot be told from two atoms, or from a normal distribution.
+/// Range of the shape parameters. Beyond it the distribution cannot be distinguished from two atoms or from a normal distribution.
 const RANGE: [f64; 2] = [1e-3, 1e9];
 const RANGE_WORDS: &str = "from 0.001 to 1e9";
 
 impl Beta {
-    /// Between `lower` and `upper`, with exponents from 0.001 to 1e9.
+    /// Distribution between `lower` and `upper`, with exponents from 0.001 to 1e9.
     pub fn new(lower: f64, upper: f64, alpha: f64, beta: f64) -> Result<Self, DistributionError> {
         let [middle, half] = interval(lower, upper)?;
         Self::about(middle, half, alpha, beta)
     }
 
-    /// From `middle - half` to `middle + half`.
+    /// Distribution from `middle - half` to `middle + half`.
     pub fn about(middle: f64, half: f64, alpha: f64, beta: f64) -> Result<Self, DistributionError> {
         let (middle, half) = (finite("the middle", middle)?, positive("the half width", half)?);
         let alpha = between("alpha", alpha, RANGE, RANGE_WORDS)?;
@@ -66,18 +66,18 @@ impl Beta {
         2.0 * self.half
     }
 
-    /// In sigmas from the mean.
+    /// Deviation from the mean in sigmas.
     fn u(&self, x: f64) -> f64 {
         (x - self.mean()) / self.sigma()
     }
 
-    /// The shares of the interval below and above.
+    /// Fractions of the interval below and above `x`.
     fn shares(&self, x: f64) -> [f64; 2] {
         let off = x - self.middle;
         [self.half + off, self.half - off].map(|distance| (distance / self.width()).clamp(0.0, 1.0))
     }
 
-    /// Probabilities below and above.
+    /// Probabilities below and above `x`.
     fn masses(&self, x: f64) -> [f64; 2] {
         let [low, high] = self.shares(x);
         if let Some(below) = self.ends[0].and_then(|end| end.mass(low)) {
@@ -131,7 +131,7 @@ impl Distribution for Beta {
         [self.middle - self.half, self.middle + self.half]
     }
 
-    /// Jacobi polynomials, with the differences from the mean carried out:
+    /// Coefficients of Jacobi polynomials, with the differences from the mean carried out:
     /// `alpha[k] = 2 k (k+n-1) (beta - alpha) / (sigma n (2k+n-2)(2k+n))`,
     /// `beta[k] = k (k+alpha-1)(k+beta-1)(k+n-2) / (sigma^2 (2k+n-2)^2 (2k+n-1)(2k+n-3))`, sigma on an interval of 1.
     fn jacobi(&self, order: usize) -> Jacobi {
@@ -146,7 +146,7 @@ impl Distribution for Beta {
             k / twice * ((k + a - 1.0) / twice) * ((k + b - 1.0) / (twice + 1.0)) * ((k + n - 2.0) / (twice - 1.0))
                 / (sigma * sigma)
         };
-        // The first of either are those of every standardised variable, and undefined fractions for n = 1 and 2.
+        // The first coefficients are those of every standardised variable. The formulas would give 0/0 for n = 1 and 2.
         let alphas = (0..order).map(|k| if k == 0 { 0.0 } else { alpha(k) });
         let betas = (1..=order).map(|k| if k == 1 { 1.0 } else { beta(k) });
         Jacobi::new(alphas.collect(), betas.collect())
@@ -171,12 +171,12 @@ impl Probability for Beta {
         let (a, b) = (self.alpha, self.beta);
         let factor = self.ends.iter().flatten().map(End::log_density_factor).next();
         let Some(log_factor) = factor else { return Some(self.law.pdf(self.u(x)) / self.sigma()) };
-        // Of the smaller share, which has the digits, the larger one is the complement.
+        // The smaller fraction has all its digits, and the larger one is its complement.
         let [log_low, log_high] = match low < high {
             true => [libm::log(low), libm::log1p(-low)],
             false => [libm::log1p(-high), libm::log(high)],
         };
-        // Powers of 0 at an end: infinite, 1 or 0.
+        // At an end the power of 0 is infinite, 1 or 0.
         let power = |log: f64, exponent: f64| if exponent == 0.0 { 0.0 } else { exponent * log };
         Some(libm::exp(log_factor + power(log_low, a - 1.0) + power(log_high, b - 1.0)) / self.width())
     }
@@ -197,7 +197,7 @@ impl Probability for Beta {
         if checked(p).is_nan() { f64::NAN } else { self.inverse([1.0 - p, p], self.law.upper_quantile(p)) }
     }
 
-    /// By the rejection methods of Cheng (1978), as `rand_distr` has them.
+    /// Random values by the rejection methods of Cheng (1978), from `rand_distr`.
     fn fill(&self, rng: &mut dyn Rng, out: &mut [f64]) {
         let law = rand_distr::Beta::new(self.alpha, self.beta).expect("exponents within a range of their own");
         let [lower, upper] = self.support();

@@ -1,10 +1,10 @@
-//! A distribution of which only moments are known.
+//! Distribution of which only moments are known.
 
 use super::{Distribution, DistributionError, Jacobi, Probability, StandardMoments, finite, positive};
 
-/// Known by its mean and its central moments 2 to 8 alone, as a quality system exports them.
+/// Distribution known only by its mean and its central moments 2 to 8, as a quality system exports them.
 ///
-/// The derivative methods need no more than this. Sampling does, and refuses such a dimension.
+/// The derivative methods need only these. Sampling needs the whole distribution and rejects such a dimension.
 ///
 /// ```
 /// use crate::distribution::{CentralMoments, Distribution};
@@ -24,10 +24,10 @@ pub struct CentralMoments {
 }
 
 impl CentralMoments {
-    /// `central` holds the central moments `m2 ..= m8` in powers of the dimension's unit.
+    /// Distribution with the central moments `m2 ..= m8`, in powers of the dimension's unit.
     ///
     /// # Errors
-    /// When a value is not finite, `m2` is not above 0, or no distribution has these moments.
+    /// Returns an error if a value is not finite, `m2` is not above 0, or no distribution has these moments.
     pub fn new(mean: f64, central: [f64; 7]) -> Result<Self, DistributionError> {
         const NAMES: [&str; 7] = ["m2", "m3", "m4", "m5", "m6", "m7", "m8"];
         finite("mean", mean)?;
@@ -37,7 +37,7 @@ impl CentralMoments {
         positive("m2", central[0])?;
         let standard = StandardMoments::from_central(&central);
         for (name, value) in NAMES.into_iter().zip(&standard.raw()[2..]) {
-            // A sigma so small that the moments scaled by it leave the range of a double.
+            // Sigma may be so small that the moments scaled by it leave the range of a double.
             finite(name, *value)?;
         }
         Ok(Self { mean, sigma: central[0].sqrt(), jacobi: Jacobi::from_moments(&standard)?, standard })
@@ -61,7 +61,7 @@ impl Distribution for CentralMoments {
         self.standard
     }
 
-    /// Unknown, hence unbounded.
+    /// Unbounded interval, because the support is unknown.
     fn support(&self) -> [f64; 2] {
         [f64::NEG_INFINITY, f64::INFINITY]
     }

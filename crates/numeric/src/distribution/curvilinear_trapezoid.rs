@@ -1,4 +1,4 @@
-//! The curvilinear trapezoid: a rectangle whose ends are not known exactly.
+//! Curvilinear trapezoid: a rectangle whose ends are not known exactly.
 
 use std::sync::Arc;
 
@@ -10,8 +10,8 @@ use super::{
 };
 use crate::power::Power;
 
-/// Uniform distribution over an interval whose two ends are off by the same unknown amount, uniform within an inexactness
-/// `d`: both ends outwards, or both inwards. With the half width `w` the variance is `w^2/3 + d^2/9`, and the density
+/// Uniform distribution over an interval whose two ends are off by the same unknown amount, either both outward or both inward. The amount
+/// is uniform up to an inexactness `d`. With the half-width `w` the variance is `w^2/3 + d^2/9`, and the density is
 ///
 /// ```text
 /// ln((w + d)/(w - d))/(4 d)    up to w - d from the middle
@@ -34,14 +34,14 @@ pub struct CurvilinearTrapezoid {
     inexactness: f64,
 }
 
-/// `e + (1 - e) ln(1 - e)`, without cancellation: the sum of `e^k/(k (k - 1))` where `e` is small.
+/// `e + (1 - e) ln(1 - e)` without cancellation. For a small `e` it is the sum of `e^k/(k (k - 1))`.
 fn wedge(e: f64) -> f64 {
-    /// Where the difference has lost no more than four roundings; below, the terms fall by this.
+    /// Argument above which the difference loses at most four roundings. Below it the terms of the series fall by this factor.
     const SMALL: f64 = 0.25;
     if e > SMALL {
         return if e >= 1.0 { 1.0 } else { e + (1.0 - e) * libm::log1p(-e) };
     }
-    // 0.25^27 is below a rounding.
+    // 0.25^27 is below a rounding error.
     (2..=27).rev().fold(0.0, |sum, k| {
         let k = f64::from(k);
         e * sum + 1.0 / (k * (k - 1.0))
@@ -50,18 +50,18 @@ fn wedge(e: f64) -> f64 {
 }
 
 impl CurvilinearTrapezoid {
-    /// Between ends that are near `lower` and `upper`, each off by `inexactness` at most, which is above 0 and below half
-    /// their distance.
+    /// Distribution between ends near `lower` and `upper`, each off by at most `inexactness`. That must be above 0 and below half their
+    /// distance.
     pub fn new(lower: f64, upper: f64, inexactness: f64) -> Result<Self, DistributionError> {
         let [middle, half] = interval(lower, upper)?;
         Self::about(middle, half, inexactness)
     }
 
-    /// From about `middle - half` to about `middle + half`.
+    /// Distribution from about `middle - half` to about `middle + half`.
     pub fn about(middle: f64, half: f64, inexactness: f64) -> Result<Self, DistributionError> {
         let (middle, half) = (finite("the middle", middle)?, positive("the half width", half)?);
         let value = finite("inexactness", inexactness)?;
-        // A part of 1e-12 is told from a rectangle by nothing.
+        // A smaller inexactness than 1e-12 of the half-width cannot be distinguished from a rectangle.
         if !(value >= 1e-12 * half && value < half) {
             let range = "above 0 and below half the band";
             return Err(DistributionError::OutOfRange { parameter: "inexactness", value, range });
@@ -69,24 +69,25 @@ impl CurvilinearTrapezoid {
         Ok(Self { middle, half, inexactness })
     }
 
-    /// The end of the flat part, and that of the support, as distances from the middle.
+    /// Ends of the flat part and of the support, as distances from the middle.
     fn ends(&self) -> [f64; 2] {
         [self.half - self.inexactness, self.half + self.inexactness]
     }
 
-    /// The density over the flat part.
+    /// Density over the flat part.
     fn height(&self) -> f64 {
         let part = self.inexactness / self.half;
         0.5 * libm::atanh(part) / self.inexactness
     }
 
-    /// Probability beyond a place beside the flat part, a part `e` of the way from the end of the support to the middle.
+    /// Probability beyond a point outside the flat part. The point lies at the fraction `e` of the way from the end of the support to the
+    /// middle.
     fn beyond(&self, e: f64) -> f64 {
         let [_, end] = self.ends();
         end / (4.0 * self.inexactness) * wedge(e)
     }
 
-    /// Probability above this distance from the middle.
+    /// Probability beyond this signed distance from the middle, on one side.
     fn above(&self, t: f64) -> f64 {
         let [flat, end] = self.ends();
         match t {
@@ -97,7 +98,7 @@ impl CurvilinearTrapezoid {
         }
     }
 
-    /// The distance from the middle above which the probability is `p`, one half at most.
+    /// Distance from the middle beyond which one side has the probability `p`, at most one half.
     fn at(&self, p: f64) -> f64 {
         let [flat, end] = self.ends();
         let (widest, beside) = (2.0 * self.inexactness / end, self.beyond(2.0 * self.inexactness / end));
@@ -108,7 +109,7 @@ impl CurvilinearTrapezoid {
             return end;
         }
         let wanted = p * 4.0 * self.inexactness / end;
-        // `e^2/2` is the first term: the root lies below.
+        // `e^2/2` is the first term, so the root lies below this start.
         let start = (2.0 * wanted).sqrt().min(widest);
         let e = root([0.0, widest.next_up()], start, |e| (wedge(e) / wanted - 1.0, -libm::log1p(-e) / wanted));
         end - end * e
@@ -129,13 +130,13 @@ impl Distribution for CurvilinearTrapezoid {
     }
 
     fn sigma(&self) -> f64 {
-        // In a unit of its own, a width of extreme size has a square.
+        // Scale to a unit of its own, so that the square of an extreme width does not overflow.
         let unit = Power::of(self.half);
         let [half, inexactness] = [self.half, self.inexactness].map(|width| unit.inverse().times(width));
         unit.times((half * half / 3.0 + inexactness * inexactness / 9.0).sqrt())
     }
 
-    /// With `q = d/w` and the half width as unit: `((1 + q)^(n+1) - (1 - q)^(n+1))/(2 q (n+1)^2)`, carried out.
+    /// Even moments. With `q = d/w` and the half-width as unit they are `((1 + q)^(n+1) - (1 - q)^(n+1))/(2 q (n+1)^2)`, carried out.
     fn standard_moments(&self) -> StandardMoments {
         let q = (self.inexactness / self.half).powi(2);
         let v = 1.0 / 3.0 + q / 9.0;
@@ -150,7 +151,7 @@ impl Distribution for CurvilinearTrapezoid {
         [self.middle - end, self.middle + end]
     }
 
-    /// From Gauss-Legendre over the interval and over its inexactness, which is exact.
+    /// Coefficients from Gauss-Legendre over the interval and over its inexactness, which is exact.
     fn jacobi(&self, order: usize) -> Jacobi {
         let (part, rule) = (self.inexactness / self.half, legendre(order + 2));
         let mut pieces = Discretised::default();
@@ -162,7 +163,7 @@ impl Distribution for CurvilinearTrapezoid {
         pieces.symmetric_jacobi(order)
     }
 
-    /// Width and inexactness scale alike.
+    /// Copy with width and inexactness scaled alike.
     fn scaled(&self, factor: f64, moved: f64) -> Option<Scaled> {
         let scaled = Self::about(self.middle + moved, self.half * factor, self.inexactness * factor);
         Some(scaled.map(|scaled| Arc::new(scaled) as _))
@@ -183,7 +184,7 @@ impl Probability for CurvilinearTrapezoid {
         })
     }
 
-    /// The ends of the flat part.
+    /// Ends of the flat part.
     fn corners(&self) -> Vec<f64> {
         let [flat, _] = self.ends();
         vec![self.middle - flat, self.middle + flat]

@@ -1,9 +1,9 @@
-//! A distribution as a fine quadrature with positive weights: the stable way to moments and recurrences without a closed form.
+//! Distribution as a fine quadrature with positive weights, a stable way to moments and recurrences without a closed form.
 
 use super::{Distribution, Jacobi, StandardMoments, Uniform};
 use crate::power::Power;
 
-/// How far recurrences go that are computed once and kept.
+/// Greatest order of recurrences that are computed once and kept.
 pub(super) const ORDER: usize = 16;
 
 /// Points and their probabilities, which need not sum to 1.
@@ -21,7 +21,7 @@ impl Discretised {
         }
     }
 
-    /// Adds a density over an interval, by Gauss-Legendre with this rule of [`legendre`].
+    /// Adds a density over an interval by this Gauss-Legendre rule of [`legendre`].
     pub(super) fn piece(&mut self, [from, to]: [f64; 2], rule: &[(f64, f64)], density: impl Fn(f64) -> f64) {
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
         for (node, weight) in rule {
@@ -30,16 +30,16 @@ impl Discretised {
         }
     }
 
-    /// Moves and scales the points to mean 0 and variance 1; the mean and the sigma that they had.
+    /// Moves and scales the points to mean 0 and variance 1. Returns their previous mean and sigma.
     pub(super) fn standardise(&mut self) -> [f64; 2] {
         let total: f64 = self.weights.iter().sum();
         self.weights.iter_mut().for_each(|weight| *weight /= total);
         let mean = self.mean(|x| x);
         self.points.iter_mut().for_each(|point| *point -= mean);
-        // The rest that the rounding of the mean has left.
+        // Remove the rest that the rounding of the mean has left.
         let rest = self.mean(|x| x);
         self.points.iter_mut().for_each(|point| *point -= rest);
-        // In a unit of their own, points of extreme size have squares.
+        // Scale to a unit of their own, so that squares of extreme points do not overflow.
         let unit = Power::of(self.points.iter().fold(0.0, |size: f64, point| size.max(point.abs())));
         self.points.iter_mut().for_each(|point| *point = unit.inverse().times(*point));
         let sigma = self.mean(|x| x * x).sqrt();
@@ -56,8 +56,8 @@ impl Discretised {
         StandardMoments::from_standard([3, 4, 5, 6, 7, 8].map(|order| self.mean(|u| u.powi(order))))
     }
 
-    /// The recurrence of the standardised points, by the procedure of Stieltjes (Gautschi 2004, 2.2.3.1) with
-    /// orthonormal polynomials; it ends early where there are no more points than that.
+    /// Recurrence of the standardised points, by the procedure of Stieltjes (Gautschi 2004, 2.2.3.1) with orthonormal polynomials. It ends
+    /// early if there are fewer points than `order`.
     pub(super) fn jacobi(&self, order: usize) -> Jacobi {
         let (mut alpha, mut beta) = (Vec::with_capacity(order), Vec::with_capacity(order));
         let (mut before, mut current) = (vec![0.0; self.points.len()], vec![1.0; self.points.len()]);
@@ -84,13 +84,13 @@ impl Discretised {
         Jacobi::new(alpha, beta)
     }
 
-    /// [`jacobi`](Self::jacobi) of a symmetric distribution, symmetric to the last bit.
+    /// [`jacobi`](Self::jacobi) of a symmetric distribution, made symmetric to the last bit.
     pub(super) fn symmetric_jacobi(&self, order: usize) -> Jacobi {
         self.jacobi(order).symmetric()
     }
 }
 
-/// Nodes and weights of Gauss-Legendre on -1 ..= 1, the weights summing to 2.
+/// Nodes and weights of Gauss-Legendre on -1 ..= 1, with weights that sum to 2.
 pub(super) fn legendre(nodes: usize) -> Vec<(f64, f64)> {
     let uniform = Uniform::about(0.0, 1.0).expect("a valid interval");
     let rule = uniform.jacobi(nodes).gauss();

@@ -1,4 +1,4 @@
-//! A normal distribution whose mean drifts.
+//! Normal distribution whose mean drifts.
 
 use std::sync::Arc;
 
@@ -12,8 +12,8 @@ use super::{
     standard_normal, ziggurat,
 };
 
-/// Normal within a lot, the means of lots uniform within `drift` on either side: tool wear between two settings, or one
-/// setting after the other. The variance is `sigma^2 + drift^2/3`.
+/// Normal distribution within a lot, with the means of lots uniform within `drift` on either side. It describes tool wear between two
+/// settings, or one setting after another. The variance is `sigma^2 + drift^2/3`.
 ///
 /// ```
 /// use crate::distribution::{Distribution, Drifting};
@@ -24,39 +24,39 @@ use super::{
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drifting {
     mean: f64,
-    /// Within a lot.
+    /// Sigma within a lot.
     within: f64,
     drift: f64,
-    /// Of Gauss-Legendre over -1 to 1, with weights that sum to 1.
+    /// Gauss-Legendre rule over -1 to 1, with weights that sum to 1.
     rule: Vec<(f64, f64)>,
 }
 
-/// Nodes of that rule: over a phase of [`SMOOTH`] it is exact to the last digits.
+/// Nodes of the rule over the lots. Up to a product of [`SMOOTH`] it is exact to the last digits.
 const NODES: usize = 24;
-/// Below this product of the half width, in sigmas of a lot, and the logarithmic slope of a tail the rule serves; above, a
-/// difference of closed forms has lost no more than two digits.
+/// Greatest product of the half-width, in sigmas of a lot, and the logarithmic slope of a tail for which the rule is used. Above it a
+/// difference of closed forms loses at most two digits.
 const SMOOTH: f64 = 2.0;
 
 impl Drifting {
-    /// With the mean of all lots, the sigma of one lot, and the greatest distance of a lot's mean from that of all; the latter two
-    /// above 0.
+    /// Distribution with the mean of all lots, the sigma of one lot, and the greatest distance of a lot's mean from that of all. The last
+    /// two must be above 0.
     pub fn new(mean: f64, sigma: f64, drift: f64) -> Result<Self, DistributionError> {
         let (mean, within, drift) = (finite("mean", mean)?, positive("sigma", sigma)?, positive("drift", drift)?);
         let rule = legendre(NODES).into_iter().map(|(node, weight)| (node, 0.5 * weight)).collect();
         Ok(Self { mean, within, drift, rule })
     }
 
-    /// In sigmas of a lot from the mean, and the drift so too.
+    /// Deviation from the mean and drift, both in sigmas of a lot.
     fn z(&self, x: f64) -> [f64; 2] {
         [(x - self.mean) / self.within, self.drift / self.within]
     }
 
-    /// The mean over all lots of a function of the distance from the lot's mean.
+    /// Mean over all lots of a function of the distance from the lot's mean.
     fn over_lots(&self, z: f64, h: f64, f: impl Fn(f64) -> f64) -> f64 {
         self.rule.iter().map(|(node, weight)| weight * f(z + h * node)).sum()
     }
 
-    /// Probability above a place that is not below the mean.
+    /// Probability above `z`, which is not below the mean.
     fn above(&self, z: f64, h: f64) -> f64 {
         match h * (1.0 + z) <= SMOOTH {
             true => self.over_lots(z, h, standard_normal::sf),
@@ -64,7 +64,7 @@ impl Drifting {
         }
     }
 
-    /// Density there, per sigma of a lot.
+    /// Density at `z`, per sigma of a lot.
     fn height(&self, z: f64, h: f64) -> f64 {
         match h * (1.0 + z) <= SMOOTH {
             true => self.over_lots(z, h, standard_normal::density),
@@ -80,7 +80,7 @@ impl Drifting {
         }
     }
 
-    /// Where the probability above is `p`, in sigmas of a lot.
+    /// Value above which the probability is `p`, in sigmas of a lot.
     fn with_above(&self, p: f64) -> f64 {
         let h = self.drift / self.within;
         match p {
@@ -99,7 +99,7 @@ impl Drifting {
     }
 }
 
-/// The integral of the normal tail beyond a place: `density(z) - z sf(z)`.
+/// Integral of the normal tail beyond `z`: `density(z) - z sf(z)`.
 fn beyond(z: f64) -> f64 {
     if z == f64::INFINITY { 0.0 } else { standard_normal::density(z) - z * standard_normal::sf(z) }
 }
@@ -117,7 +117,7 @@ impl Distribution for Drifting {
         libm::hypot(self.within, self.drift / 3f64.sqrt())
     }
 
-    /// The cumulants of the uniform part: `-2 d^4/15, 16 d^6/63, -16 d^8/15`.
+    /// Moments from the cumulants of the uniform part: `-2 d^4/15, 16 d^6/63, -16 d^8/15`.
     fn standard_moments(&self) -> StandardMoments {
         let part = (self.drift / self.sigma()).powi(2);
         let cumulants = [-2.0 / 15.0 * part.powi(2), 16.0 / 63.0 * part.powi(3), -16.0 / 15.0 * part.powi(4)];
@@ -129,7 +129,7 @@ impl Distribution for Drifting {
         [f64::NEG_INFINITY, f64::INFINITY]
     }
 
-    /// From Gauss-Hermite within a lot and Gauss-Legendre over the lots, which is exact.
+    /// Coefficients from Gauss-Hermite within a lot and Gauss-Legendre over the lots, which is exact.
     fn jacobi(&self, order: usize) -> Jacobi {
         let within = Normal::new(0.0, 1.0).expect("the standard normal distribution").jacobi(order + 2).gauss();
         let mut points = Discretised::default();
@@ -142,7 +142,7 @@ impl Distribution for Drifting {
         points.symmetric_jacobi(order)
     }
 
-    /// The sigma of a lot scales; the drift stays, as a shift does.
+    /// Copy with the sigma of a lot scaled. The drift stays, like a shift.
     fn scaled(&self, factor: f64, moved: f64) -> Option<Scaled> {
         let scaled = Self::new(self.mean + moved, self.within * factor, self.drift);
         Some(scaled.map(|scaled| Arc::new(scaled) as _))

@@ -1,26 +1,27 @@
-//! Incomplete gamma and beta functions next to an end of the support, where what counts is the distance to it.
+//! Incomplete gamma and beta functions next to an end of the support, as functions of the distance to it.
 
 use super::inverse::root;
 
-/// The law near an end where its density goes like `t^(a-1)`, `t` the distance in the law's own unit.
+/// Distribution near an end where its density behaves like `t^(a-1)`, with the distance `t` in the distribution's own unit.
 ///
 /// ```text
 /// gamma  P(t) = t^a e^-t / Gamma(a+1)           sum t^n / ((a+1) ... (a+n))
 /// beta   P(t) = t^a (1-t)^b Gamma(a+b)/(Gamma(a+1) Gamma(b))  sum t^n (a+b) ... (a+b+n-1) / ((a+1) ... (a+n))
 /// ```
 ///
-/// (DLMF 8.7.1 and 8.17.8; every term is positive.) Exponents are small enough for the gamma functions to keep their digits.
+/// Formulas: DLMF 8.7.1 and 8.17.8. Every term is positive. Exponents are small enough for the gamma functions to keep their digits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct End {
     a: f64,
-    /// The exponent at the other end of a beta distribution; None for a gamma.
+    /// Exponent at the other end of a beta distribution; None for a gamma distribution.
     b: Option<f64>,
     log_factor: f64,
-    /// Up to where it is used.
+    /// Greatest distance for which the series is used.
     pub(super) border: f64,
 }
 
-/// `log(Gamma(b + a)/Gamma(b))`; for a large `b` by the difference of two Stirling series, of which each has lost digits.
+/// `log(Gamma(b + a)/Gamma(b))`. For a large `b` it is the difference of two Stirling series, because logarithms of gamma functions have
+/// lost digits there.
 fn log_gamma_rise(a: f64, b: f64) -> f64 {
     if b <= LARGEST {
         return libm::lgamma(a + b) - libm::lgamma(b);
@@ -29,9 +30,9 @@ fn log_gamma_rise(a: f64, b: f64) -> f64 {
     (b - 0.5) * libm::log1p(a / b) + a * (libm::log(a + b) - 1.0) + rest(a + b) - rest(b)
 }
 
-/// Above this exponent logarithms of gamma functions have lost digits, and nothing lies next to the end anyway.
+/// Greatest exponent. Above it logarithms of gamma functions lose digits, and the probability next to the end is negligible.
 const LARGEST: f64 = 200.0;
-/// Log of the smallest distance.
+/// Logarithm of the smallest positive double.
 const LEAST: f64 = -745.0;
 
 impl End {
@@ -42,12 +43,12 @@ impl End {
     pub(super) fn of_beta(a: f64, b: f64) -> Option<Self> {
         (a <= LARGEST).then(|| {
             let log_factor = log_gamma_rise(a, b) - libm::lgamma(a + 1.0);
-            // Where the terms at least halve.
+            // Border up to which each term is at most half the previous one.
             Self { a, b: Some(b), log_factor, border: 0.5 * ((a + 1.0) / (a + b)).min(1.0) }
         })
     }
 
-    /// The logarithm of what stands before the powers in the density by `t`.
+    /// Logarithm of the constant factor of the density by `t`.
     pub(super) fn log_density_factor(&self) -> f64 {
         self.log_factor + libm::log(self.a)
     }
@@ -62,7 +63,7 @@ impl End {
         sum
     }
 
-    /// The logarithm of the mass between the end and `t`, and its slope by `log t`.
+    /// Logarithm of the mass between the end and `t`, and its slope by `log t`.
     fn log_mass(&self, t: f64) -> (f64, f64) {
         let (sum, a) = (self.sum(t), self.a);
         let (fall, slope) = match self.b {
@@ -72,13 +73,13 @@ impl End {
         (self.log_factor + a * libm::log(t) + fall + libm::log(sum), slope)
     }
 
-    /// The mass between the end and `t`, where `t` is not beyond the border.
+    /// Mass between the end and `t`. Returns None if `t` is beyond the border.
     pub(super) fn mass(&self, t: f64) -> Option<f64> {
         let held = t <= self.border;
         held.then(|| if t > 0.0 { libm::exp(self.log_mass(t).0) } else { 0.0 })
     }
 
-    /// The distance within which the mass is `p`, where that is not beyond the border.
+    /// Distance within which the mass is `p`. Returns None if it is beyond the border.
     pub(super) fn quantile(&self, p: f64) -> Option<f64> {
         let log_p = libm::log(p);
         if p == 0.0 {

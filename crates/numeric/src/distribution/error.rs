@@ -1,8 +1,8 @@
-//! The faults of distributions, and the checks that all of them use.
+//! Errors of distributions, and the checks that all of them use.
 
 use crate::pearson::PearsonError;
 
-/// The faults of a distribution's parameters.
+/// Invalid parameters of a distribution.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DistributionError {
@@ -11,15 +11,15 @@ pub enum DistributionError {
     NotFinite {
         /// Name of the parameter.
         parameter: &'static str,
-        /// The value given.
+        /// Value as given.
         value: f64,
     },
-    /// A spread that must be above 0 is not.
+    /// A spread is not above 0.
     #[error("{parameter} must be above 0, not {value}")]
     NotPositive {
         /// Name of the parameter.
         parameter: &'static str,
-        /// The value given.
+        /// Value as given.
         value: f64,
     },
     /// The upper end of an interval is not above its lower end.
@@ -30,25 +30,25 @@ pub enum DistributionError {
         /// Upper end as given.
         upper: f64,
     },
-    /// A parameter outside its range.
+    /// A parameter is outside its range.
     #[error("{parameter} must be {range}, not {value}")]
     OutOfRange {
         /// Name of the parameter.
         parameter: &'static str,
-        /// The value given.
+        /// Value as given.
         value: f64,
-        /// The range that it must be in.
+        /// Permitted range, in words.
         range: &'static str,
     },
     /// The mean of a distribution that begins at an origin does not lie above it.
     #[error("the mean {mean} must lie above the origin {origin}, where the distribution begins")]
     NotAboveOrigin {
-        /// The mean.
+        /// Mean as given.
         mean: f64,
-        /// Where the distribution begins.
+        /// Least value of the distribution.
         origin: f64,
     },
-    /// A tail so long, or a spread so small, that doubles cannot describe it.
+    /// A tail is so long, or a spread so small, that doubles cannot describe it.
     #[error(
         "sigma {sigma} is {:.3e} times the distance {distance} of the mean from the origin: \
          {least:e} to {largest} times can be computed",
@@ -59,12 +59,12 @@ pub enum DistributionError {
         sigma: f64,
         /// Distance of the mean from the origin.
         distance: f64,
-        /// The least ratio.
+        /// Least ratio of sigma to the distance.
         least: f64,
-        /// The largest ratio.
+        /// Largest ratio of sigma to the distance.
         largest: f64,
     },
-    /// Student's distribution with so few degrees of freedom that its variance is infinite.
+    /// A Student distribution has so few degrees of freedom that its variance is infinite.
     #[error(
         "a student distribution of {degrees} degrees of freedom has no sigma, by which every method scales: it needs more than 2, as \
          four readings give; with fewer, state a sigma from experience, or give measured values"
@@ -73,27 +73,27 @@ pub enum DistributionError {
         /// Degrees of freedom as given.
         degrees: f64,
     },
-    /// The parameters are possible, but what follows from them is beyond doubles.
+    /// The parameters are valid, but figures that follow from them are beyond the range of doubles.
     #[error("this distribution cannot be computed: {reason}")]
     NoLaw {
-        /// Why not.
+        /// Reason, as text.
         reason: String,
     },
-    /// A mixture of nothing.
+    /// A mixture has no parts.
     #[error("a mixture needs at least one part")]
     NoParts,
-    /// A part of a mixture with a weight that is none.
+    /// The weight of a part of a mixture is not a number above 0.
     #[error("the weight of part `{part}` must be a number above 0, not {weight}")]
     BadWeight {
-        /// The part.
+        /// Name of the part.
         part: String,
-        /// Its weight as given.
+        /// Weight as given.
         weight: f64,
     },
-    /// A part of a mixture that is known by moments alone.
+    /// A part of a mixture is known by moments alone.
     #[error("part `{part}` is known by moments alone: a mixture needs whole distributions")]
     NotWhole {
-        /// The part.
+        /// Name of the part.
         part: String,
     },
     /// No distribution has these moments.
@@ -102,29 +102,29 @@ pub enum DistributionError {
          (its pivot is {pivot:.3e} after scaling by sigma)"
     )]
     ImpossibleMoments {
-        /// The highest moment of the first leading matrix that fails: 4, 6 or 8.
+        /// Highest moment of the first leading matrix that fails: 4, 6 or 8.
         moment: usize,
-        /// The negative pivot, of standardised moments.
+        /// Negative pivot, of standardised moments.
         pivot: f64,
     },
-    /// Measured values that are all the same, or none at all.
+    /// All measured values are equal, or there are none.
     #[error("{}", no_variation(*count, *value))]
     NoVariation {
-        /// How many there are.
+        /// Number of values.
         count: usize,
-        /// Their value.
+        /// Common value of all; None if there are no values.
         value: Option<f64>,
     },
-    /// No Pearson law has these moments.
+    /// No Pearson distribution has these moments.
     #[error("no Pearson law fits: {0}")]
     Pearson(PearsonError),
-    /// A Pearson law with tails so long that a moment is infinite.
+    /// The tails of a Pearson distribution are so long that a moment is infinite.
     #[error(
         "the Pearson law with skewness {skewness:.4} and kurtosis {kurtosis:.4} has tails so long that its moment of \
          order {order} is infinite, and moments up to 8 are needed"
     )]
     InfiniteMoment {
-        /// The lowest order whose moment is infinite.
+        /// Lowest order whose moment is infinite.
         order: usize,
         /// Third standardised moment.
         skewness: f64,
@@ -149,7 +149,7 @@ pub(crate) fn positive(parameter: &'static str, value: f64) -> Result<f64, Distr
     if finite(parameter, value)? > 0.0 { Ok(value) } else { Err(DistributionError::NotPositive { parameter, value }) }
 }
 
-/// Middle and half width of an interval.
+/// Middle and half-width of an interval.
 pub(crate) fn interval(lower: f64, upper: f64) -> Result<[f64; 2], DistributionError> {
     finite("the lower limit", lower)?;
     finite("the upper limit", upper)?;
@@ -160,7 +160,7 @@ pub(crate) fn interval(lower: f64, upper: f64) -> Result<[f64; 2], DistributionE
     Ok([lower + half, half])
 }
 
-/// A value between two others; `range` is what it must be, in words.
+/// Value if it lies between two others, an error otherwise. `range` is the permitted range in words.
 pub(crate) fn between(
     parameter: &'static str,
     value: f64,

@@ -1,12 +1,12 @@
-//! The exponential distribution.
+//! Exponential distribution.
 
 use super::probability::checked;
 use super::tail::above_origin;
 use super::{Distribution, DistributionError, Jacobi, Probability, StandardMoments};
 
-/// Exponential distribution from an origin on: its sigma is the distance of the mean from there.
+/// Exponential distribution from an origin on. Its sigma is the distance of the mean from the origin.
 ///
-/// It does not scale with a tolerance: its mean fixes it.
+/// It does not scale with a tolerance, because its mean fixes it.
 ///
 /// ```
 /// use crate::distribution::{Distribution, Exponential};
@@ -22,12 +22,12 @@ pub struct Exponential {
 }
 
 impl Exponential {
-    /// `mean` must lie above `origin`.
+    /// Distribution from `origin` on. `mean` must lie above `origin`.
     pub fn new(origin: f64, mean: f64) -> Result<Self, DistributionError> {
         Ok(Self { origin, mean, sigma: above_origin(origin, mean)? })
     }
 
-    /// Distance from the origin in sigmas, 0 below it.
+    /// Distance from the origin in sigmas, 0 below the origin.
     fn t(&self, x: f64) -> f64 {
         let t = (x - self.origin) / self.sigma;
         if t < 0.0 { 0.0 } else { t }
@@ -51,7 +51,7 @@ impl Distribution for Exponential {
         self.sigma
     }
 
-    /// Cumulants `(n-1)!`.
+    /// Moments from the cumulants `(n-1)!`.
     fn standard_moments(&self) -> StandardMoments {
         StandardMoments::from_cumulants([2.0, 6.0, 24.0, 120.0, 720.0, 5040.0])
     }
@@ -60,7 +60,7 @@ impl Distribution for Exponential {
         [self.origin, f64::INFINITY]
     }
 
-    /// Laguerre polynomials: coefficients `2 n` and `n^2`.
+    /// Coefficients `2 n` and `n^2` of Laguerre polynomials.
     fn jacobi(&self, order: usize) -> Jacobi {
         Jacobi::new((0..order).map(|n| 2.0 * n as f64).collect(), (1..=order).map(|n| (n * n) as f64).collect())
     }

@@ -1,4 +1,4 @@
-//! The gamma distribution.
+//! Gamma distribution.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use super::probability::checked;
 use super::tail::ratio;
 use super::{Distribution, DistributionError, Jacobi, Probability, Scaled, StandardMoments};
 
-/// Gamma distribution from an origin on, of given mean and sigma.
+/// Gamma distribution from an origin on, with given mean and sigma.
 ///
 /// ```
 /// use crate::distribution::{Distribution, Gamma};
@@ -26,18 +26,18 @@ pub struct Gamma {
     sigma: f64,
     shape: f64,
     scale: f64,
-    /// The law of the standardised variable.
+    /// Distribution of the standardised variable.
     law: Pearson,
-    /// The law next to the origin.
+    /// Series next to the origin; None if the shape is too large for one.
     end: Option<End>,
 }
 
-/// The largest sigma by the distance of the mean from the origin.
+/// Largest ratio of sigma to the distance of the mean from the origin.
 const LARGEST: f64 = 30.0;
 
 impl Gamma {
-    /// `mean` must lie above `origin`, `sigma` be at most 30 times that distance. The shape is the square of the one by
-    /// the other.
+    /// Distribution from `origin` on. `mean` must lie above `origin`, and `sigma` be at most 30 times that distance. The shape is the
+    /// square of the distance over sigma.
     pub fn new(origin: f64, mean: f64, sigma: f64) -> Result<Self, DistributionError> {
         let [_, ratio] = ratio(origin, mean, sigma, LARGEST)?;
         let shape = 1.0 / (ratio * ratio);
@@ -46,7 +46,7 @@ impl Gamma {
         Ok(Self { origin, mean, sigma, shape, scale: sigma * ratio, law, end: End::of_gamma(shape) })
     }
 
-    /// Sigma by the distance of the mean from the origin.
+    /// Ratio of sigma to the distance of the mean from the origin.
     fn ratio(&self) -> f64 {
         self.scale / self.sigma
     }
@@ -81,7 +81,7 @@ impl Distribution for Gamma {
         self.sigma
     }
 
-    /// Cumulants `(n-1)! shape^(1-n/2)`.
+    /// Moments from the cumulants `(n-1)! shape^(1-n/2)`.
     fn standard_moments(&self) -> StandardMoments {
         let r = self.ratio();
         let cumulant = |(factorial, power): (f64, i32)| factorial * r.powi(power);
@@ -94,7 +94,7 @@ impl Distribution for Gamma {
         [self.origin, f64::INFINITY]
     }
 
-    /// Laguerre polynomials: `alpha[n] = 2 n r` and `beta[n] = n (1 + (n-1) r^2)` with `r^2` one over the shape.
+    /// Coefficients of Laguerre polynomials: `alpha[n] = 2 n r` and `beta[n] = n (1 + (n-1) r^2)` with `r^2` one over the shape.
     fn jacobi(&self, order: usize) -> Jacobi {
         let r = self.ratio();
         let alpha = (0..order).map(|n| 2.0 * n as f64 * r).collect();
@@ -102,7 +102,7 @@ impl Distribution for Gamma {
         Jacobi::new(alpha, beta)
     }
 
-    /// Sigma scales, mean and origin stay: the shape follows.
+    /// Copy with sigma scaled. Mean and origin stay, so the shape changes.
     fn scaled(&self, factor: f64, _: f64) -> Option<Scaled> {
         Some(Self::new(self.origin, self.mean, self.sigma * factor).map(|scaled| Arc::new(scaled) as _))
     }
@@ -148,7 +148,7 @@ impl Probability for Gamma {
         if checked(p).is_nan() { f64::NAN } else { self.inverse(1.0 - p, self.law.upper_quantile(p)) }
     }
 
-    /// By the rejection method of Marsaglia and Tsang (2000), as `rand_distr` has it.
+    /// Random values by the rejection method of Marsaglia and Tsang (2000), from `rand_distr`.
     fn fill(&self, rng: &mut dyn Rng, out: &mut [f64]) {
         let law = rand_distr::Gamma::new(self.shape, self.scale).expect("a positive shape and scale");
         out.iter_mut().for_each(|value| *value = self.origin + rng.sample(law));

@@ -1,11 +1,11 @@
-//! Where an increasing function is 0: Newton's method between bounds that close in.
+//! Root of an increasing function: Newton's method between bounds that close in.
 
-/// Steps that an iteration may take; five to eight when all is well, sixty when it can only halve.
+/// Greatest number of steps. Five to eight are usual, sixty if only halving is possible.
 const STEPS: usize = 200;
 
-/// The root of an increasing function between `low` and `high`, to the last digits. `off` gives the value and the slope,
-/// the latter 0, infinite or NaN where it is of no use. Where the function jumps over 0, the place of the jump; where it
-/// is 0 on an interval, a place in it.
+/// Root of an increasing function between `low` and `high`, to the last digits. `off` gives the value and the slope. A slope of 0, infinity
+/// or NaN is not used. If the function jumps over 0, the result is the position of the jump. If it is 0 on an interval, the result lies in
+/// that interval.
 pub(super) fn root([mut low, mut high]: [f64; 2], start: f64, off: impl Fn(f64) -> (f64, f64)) -> f64 {
     let mut x = if start > low && start < high { start } else { 0.5 * low + 0.5 * high };
     let mut width = high - low;

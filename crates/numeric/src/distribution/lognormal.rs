@@ -1,4 +1,4 @@
-//! The lognormal distribution.
+//! Lognormal distribution.
 
 use std::sync::Arc;
 
@@ -7,8 +7,7 @@ use rand::Rng;
 use super::tail::ratio;
 use super::{Distribution, DistributionError, Jacobi, Probability, Scaled, StandardMoments, standard_normal, ziggurat};
 
-/// Lognormal distribution from an origin on, of given mean and sigma: the logarithm of the distance from the origin is
-/// normal.
+/// Lognormal distribution from an origin on, with given mean and sigma. The logarithm of the distance from the origin is normal.
 ///
 /// ```
 /// use crate::distribution::{Distribution, Lognormal};
@@ -22,7 +21,7 @@ pub struct Lognormal {
     origin: f64,
     mean: f64,
     sigma: f64,
-    /// Of the mean from the origin.
+    /// Distance of the mean from the origin.
     distance: f64,
     /// Variance of `x/distance`.
     v: f64,
@@ -30,11 +29,11 @@ pub struct Lognormal {
     tau: f64,
 }
 
-/// The largest sigma by the distance of the mean from the origin: beyond, the recurrence overflows.
+/// Largest ratio of sigma to the distance of the mean from the origin. Beyond it the recurrence overflows.
 const LARGEST: f64 = 1e4;
-/// The cumulants of a lognormal variable of mean 1 and variance v are the numbers of connected graphs on n labelled
-/// vertices, by edges from n-1 on, as coefficients of powers of v: `E x^n = (1+v)^(n(n-1)/2)` counts all graphs, and
-/// cumulants count what is connected (OEIS A062734). Rows for n = 3 to 8.
+/// Cumulants of a lognormal variable of mean 1 and variance v, as coefficients of powers of v. They are the numbers of connected graphs on
+/// n labelled vertices, by edges from n-1 on: `E x^n = (1+v)^(n(n-1)/2)` counts all graphs, and cumulants count connected ones (OEIS
+/// A062734). Rows for n = 3 to 8.
 const CONNECTED: [&[f64]; 6] = [
     &[3.0, 1.0],
     &[16.0, 15.0, 6.0, 1.0],
@@ -71,20 +70,20 @@ const CONNECTED: [&[f64]; 6] = [
 ];
 
 impl Lognormal {
-    /// `mean` must lie above `origin`, `sigma` be at most 10 000 times that distance.
+    /// Distribution from `origin` on. `mean` must lie above `origin`, and `sigma` be at most 10 000 times that distance.
     pub fn new(origin: f64, mean: f64, sigma: f64) -> Result<Self, DistributionError> {
         let [distance, ratio] = ratio(origin, mean, sigma, LARGEST)?;
         let v = ratio * ratio;
         Ok(Self { origin, mean, sigma, distance, v, tau: libm::log1p(v).sqrt() })
     }
 
-    /// The logarithm in its own sigmas.
+    /// Standardised logarithm.
     fn z(&self, x: f64) -> f64 {
         if x.is_nan() {
             return x;
         }
         let off = (x - self.mean) / self.distance;
-        // Next to the mean by the distance from that, else from the origin: with the digits that x has.
+        // Next to the mean use the deviation from it, elsewhere the distance from the origin. Either keeps the digits of x.
         let log =
             if off.abs() < 0.5 { libm::log1p(off) } else { libm::log(((x - self.origin) / self.distance).max(0.0)) };
         log / self.tau + 0.5 * self.tau
@@ -113,8 +112,8 @@ impl Distribution for Lognormal {
         self.sigma
     }
 
-    /// Cumulants as polynomials in `v = (sigma/distance)^2` with positive coefficients: skewness `(3 + v) sqrt v`, excess
-    /// `16 v + 15 v^2 + 6 v^3 + v^4`, and so on.
+    /// Moments from cumulants, which are polynomials in `v = (sigma/distance)^2` with positive coefficients: skewness `(3 + v) sqrt v`,
+    /// excess `16 v + 15 v^2 + 6 v^3 + v^4`, and so on.
     fn standard_moments(&self) -> StandardMoments {
         let root = self.v.sqrt();
         // v^(n-1) sum of c v^i, divided by v^(n/2).
@@ -129,10 +128,10 @@ impl Distribution for Lognormal {
         [self.origin, f64::INFINITY]
     }
 
-    /// Stieltjes-Wigert polynomials. With `w = 1 + v`, standardised and free of cancellation,
+    /// Coefficients of Stieltjes-Wigert polynomials. With `w = 1 + v`, standardised and free of cancellation,
     /// `alpha[n] = (w^(2n) - 1 + w^(n-1) (w^n - 1))/sqrt v` and `beta[n] = w^(3n-3) (w^n - 1)/v`.
     ///
-    /// Other distributions have the same moments, and the same rules.
+    /// Other distributions have the same moments, and therefore the same rules.
     fn jacobi(&self, order: usize) -> Jacobi {
         let log = libm::log1p(self.v);
         let less_one = |power: f64| libm::expm1(power * log);
@@ -142,12 +141,12 @@ impl Distribution for Lognormal {
             (less_one(2.0 * n) + power(n - 1.0) * less_one(n)) / self.v.sqrt()
         };
         let beta = |n: usize| power(3.0 * n as f64 - 3.0) * less_one(n as f64) / self.v;
-        // As far as doubles hold them.
+        // Stop before the coefficients overflow.
         let known = (0..order).take_while(|&n| alpha(n).is_finite() && beta(n + 1).is_finite()).count();
         Jacobi::new((0..known).map(alpha).collect(), (1..=known).map(beta).collect())
     }
 
-    /// Sigma scales, mean and origin stay: the shape follows.
+    /// Copy with sigma scaled. Mean and origin stay, so the shape changes.
     fn scaled(&self, factor: f64, _: f64) -> Option<Scaled> {
         Some(Self::new(self.origin, self.mean, self.sigma * factor).map(|scaled| Arc::new(scaled) as _))
     }

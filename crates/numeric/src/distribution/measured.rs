@@ -1,4 +1,4 @@
-//! The law of measured values.
+//! Empirical distribution of measured values.
 
 use rand::{Rng, RngExt};
 
@@ -6,10 +6,10 @@ use super::{
     Distribution, DistributionError, Jacobi, Probability, Resample, Reweighted, Sample, StandardMoments, probability,
 };
 
-/// Measured values, each with the same probability: the empirical law.
+/// Measured values, each with the same probability: the empirical distribution.
 ///
-/// Its distribution function is a staircase, its quantiles are measured values, and it never leaves their range. All
-/// moments are of this law: see [`Sample`].
+/// Its distribution function is a staircase, its quantiles are measured values, and no value lies outside their range. All moments are
+/// those of this distribution: see [`Sample`].
 ///
 /// ```
 /// use crate::distribution::{Distribution, Measured};
@@ -26,14 +26,14 @@ pub struct Measured {
     jacobi: Jacobi,
 }
 
-/// The highest order that quadrature asks for at once; a higher order is computed when it is needed.
+/// Highest order that quadrature needs at once. A higher order is computed when it is needed.
 const ORDER: usize = 9;
 
 impl Measured {
-    /// Of these values, in any order.
+    /// Distribution of these values, in any order.
     ///
     /// # Errors
-    /// When a value is not finite, or there are not two different ones.
+    /// Returns an error if a value is not finite, or if there are not two different ones.
     pub fn new(values: &[f64]) -> Result<Self, DistributionError> {
         let sample = Sample::new(values)?;
         Ok(Self { moments: sample.moments(), jacobi: sample.jacobi(ORDER), sample })
@@ -43,12 +43,12 @@ impl Measured {
         count as f64 / self.sample.len() as f64
     }
 
-    /// The value at this place of all in ascending order.
+    /// Value at this index in ascending order.
     fn at(&self, rank: usize) -> f64 {
         self.sample.values()[self.sample.atom(rank)]
     }
 
-    /// How many values are at most `x`.
+    /// Number of values that are at most `x`.
     fn at_most(&self, x: f64) -> usize {
         match self.sample.values().partition_point(|&value| value <= x) {
             0 => 0,
@@ -56,7 +56,7 @@ impl Measured {
         }
     }
 
-    /// The least count whose share is at least `p`: by the shares themselves, for `p n` is rounded.
+    /// Least count whose share is at least `p`. Shares are compared directly, because `p n` is rounded.
     fn least_count(&self, p: f64) -> usize {
         let mut count = ((p * self.sample.len() as f64).ceil() as usize).min(self.sample.len());
         while count > 0 && self.share(count - 1) >= p {
@@ -115,14 +115,14 @@ impl Resample for Measured {
     }
 }
 
-/// A staircase: `cdf` of the least value is its share, not 0.
+/// Staircase: `cdf` of the least value is its share, not 0.
 impl Probability for Measured {
-    /// There is none: the values are atoms.
+    /// Returns None, because the values are atoms.
     fn density(&self, _: f64) -> Option<f64> {
         None
     }
 
-    /// The distinct values with their shares.
+    /// Distinct values with their shares.
     fn atoms(&self) -> Vec<(f64, f64)> {
         let share = |&count: &u32| self.share(count as usize);
         self.sample.values().iter().copied().zip(self.sample.counts().iter().map(share)).collect()
@@ -136,7 +136,7 @@ impl Probability for Measured {
         if x.is_nan() { f64::NAN } else { self.share(self.sample.len() - self.at_most(x)) }
     }
 
-    /// Of probability 0 the least value.
+    /// Least value whose `cdf` is at least `p`; for `p` of 0 the least value.
     fn quantile(&self, p: f64) -> f64 {
         match probability::checked(p) {
             p if p.is_nan() => p,
@@ -144,7 +144,7 @@ impl Probability for Measured {
         }
     }
 
-    /// The least value with no more than `p` above it.
+    /// Least value with at most `p` above it.
     fn upper_quantile(&self, p: f64) -> f64 {
         let p = probability::checked(p);
         if p.is_nan() {

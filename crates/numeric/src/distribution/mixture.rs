@@ -1,4 +1,4 @@
-//! A mixture of distributions: two machines, two suppliers.
+//! Mixture of distributions, such as two machines or two suppliers.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use super::probability::{checked, clamped};
 use super::{Distribution, DistributionError, Jacobi, Probability, Scaled, StandardMoments};
 use crate::power::Power;
 
-/// Values that come from one of several sources, each with its own distribution and its share.
+/// Distribution of values from several sources, each with its own distribution and share.
 ///
 /// ```
 /// use std::sync::Arc;
@@ -25,12 +25,12 @@ use crate::power::Power;
 /// ```
 #[derive(Debug, Clone)]
 pub struct Mixture {
-    /// Weights sum to 1.
+    /// Sources, with weights that sum to 1.
     parts: Vec<Part>,
     mean: f64,
     sigma: f64,
     moments: StandardMoments,
-    /// As far as the parts' own recurrences go.
+    /// Recurrence, as far as the parts' own recurrences extend.
     jacobi: Jacobi,
     atoms: Atoms,
 }
@@ -40,17 +40,17 @@ pub struct Mixture {
 struct Atoms {
     values: Vec<f64>,
     shares: Vec<f64>,
-    /// The probability of at most each of the values, and of more.
+    /// Probability of a value of at most each of the values. `above` holds that of a greater value.
     upto: Vec<f64>,
     above: Vec<f64>,
-    /// Whether there is nothing else.
+    /// True if the atoms are the whole distribution.
     whole: bool,
 }
 
 impl Atoms {
-    /// Of all parts, whose weights sum to 1.
+    /// Atoms of all parts, whose weights sum to 1.
     fn of(parts: &[Part]) -> Self {
-        /// Shares are rounded.
+        /// Least total of the shares that counts as 1, because shares are rounded.
         const WHOLE: f64 = 1.0 - 1e-12;
         let own = |part: &Part| -> Vec<(f64, f64)> {
             Mixture::law(part).atoms().into_iter().map(|(x, share)| (x, part.weight * share)).collect()
@@ -77,9 +77,9 @@ impl Atoms {
         Self { values, shares, upto, above, whole }
     }
 
-    /// The least value with at least this probability at and below it, or with no more than it above.
+    /// Least value with at least this probability at or below it, or with at most this probability above it.
     fn inverse(&self, p: f64, upper: bool) -> f64 {
-        /// Sums of shares are rounded.
+        /// Relative rounding error of sums of shares.
         const ROUNDING: f64 = 1e-14;
         let place = match upper {
             true => self.above.partition_point(|&above| above > p * (1.0 + ROUNDING)),
@@ -88,7 +88,7 @@ impl Atoms {
         self.values[place.min(self.values.len() - 1)]
     }
 
-    /// The value that only rounding separates from this one; itself where there is none.
+    /// Atom that differs from `x` only by rounding, or `x` if there is none.
     fn snapped(&self, x: f64, rounding: f64) -> f64 {
         let after = self.values.partition_point(|&value| value < x);
         let beside = self.values[after.saturating_sub(1)..].iter().take(2);
@@ -99,21 +99,21 @@ impl Atoms {
 /// One source of a mixture.
 #[derive(Debug, Clone)]
 pub struct Part {
-    /// Its common name.
+    /// Common name of the source.
     pub name: String,
-    /// Its share, relative to those of the others.
+    /// Share of the source, relative to those of the others.
     pub weight: f64,
-    /// How it varies.
+    /// Distribution of the values from this source.
     pub distribution: Arc<dyn Distribution>,
 }
 
-/// Part of sigma within which a quantile is at a value with a probability of its own: a search ends next to the jump.
+/// Part of sigma within which a quantile counts as at an atom. A search ends next to the jump.
 const ON_AN_ATOM: f64 = 1e-12;
-/// Part of sigma below which two bounds of a quantile are one.
+/// Part of sigma below which two bounds of a quantile count as equal.
 const SAME: f64 = 1e-15;
 
 impl Mixture {
-    /// Of at least one part; weights must be above 0 and need not sum to 1.
+    /// Mixture of at least one part. Weights must be above 0 and need not sum to 1.
     pub fn new(mut parts: Vec<Part>) -> Result<Self, DistributionError> {
         if parts.is_empty() {
             return Err(DistributionError::NoParts);
@@ -130,7 +130,7 @@ impl Mixture {
         parts.iter_mut().for_each(|part| part.weight /= total);
         let first = parts[0].distribution.mean();
         let mean = first + weighted(&parts, |part| part.mean() - first);
-        // In a unit of their own, deviations of extreme size have squares.
+        // Scale to a unit of their own, so that squares of extreme deviations do not overflow.
         let size = |part: &Part| (part.distribution.mean() - mean).abs().max(part.distribution.sigma());
         let unit = Power::of(parts.iter().map(size).fold(0.0, f64::max));
         let square = |deviation: f64| unit.inverse().times(deviation).powi(2);
@@ -157,7 +157,7 @@ impl Mixture {
         self.parts.iter().map(|part| part.weight * f(Self::law(part))).sum()
     }
 
-    /// Where the tail has this probability: between the least and the greatest of the parts' own quantiles.
+    /// Value beyond which the tail has this probability. It lies between the least and the greatest quantile of the parts.
     fn inverse(&self, p: f64, upper: bool) -> f64 {
         if checked(p).is_nan() {
             return f64::NAN;
@@ -177,7 +177,7 @@ impl Mixture {
         if high - low <= SAME * self.sigma {
             return low;
         }
-        // Counted from the mean, whose rounding then does not end the search too early.
+        // Count from the mean, so that the rounding of large values does not end the search too early.
         let off = |u: f64| {
             let x = self.mean + u;
             let tail = self.sum(|law| if upper { law.sf(x) } else { law.cdf(x) });
@@ -194,8 +194,8 @@ fn weighted(parts: &[Part], f: impl Fn(&dyn Distribution) -> f64) -> f64 {
     parts.iter().map(|part| part.weight * f(part.distribution.as_ref())).sum()
 }
 
-/// Moments about the common mean by the binomial theorem. In the excess the parts' own normal fourth moments cancel against 3 by
-/// algebra: with `d` a part's offset and `1 + r` its variance, in common sigmas, it is
+/// Moments about the common mean by the binomial theorem. In the excess the parts' own normal fourth moments cancel against 3 by algebra.
+/// With `d` a part's offset and `1 + r` its variance, in common sigmas, the excess is
 /// `sum weight (excess (1+r)^2 + 4 skewness (1+r)^(3/2) d + 6 r d^2 + d^4 + 3 r^2)`, because `sum weight (r + d^2) = 0`.
 fn standard_moments(parts: &[Part], mean: f64, sigma: f64) -> StandardMoments {
     let shape = |part: &dyn Distribution| ((part.mean() - mean) / sigma, part.sigma() / sigma, part.standard_moments());
@@ -220,7 +220,7 @@ fn standard_moments(parts: &[Part], mean: f64, sigma: f64) -> StandardMoments {
     StandardMoments::with_excess(moment(3), excess, [5, 6, 7, 8].map(moment))
 }
 
-/// From the parts' Gauss rules of one order more, which integrate all polynomials that the recurrence needs.
+/// Recurrence from the parts' Gauss rules of one order more, which integrate all polynomials that it needs.
 fn jacobi(parts: &[Part], mean: f64, sigma: f64) -> Jacobi {
     let own: Vec<Jacobi> = parts.iter().map(|part| part.distribution.jacobi(ORDER)).collect();
     let known = own.iter().filter(|jacobi| !jacobi.is_whole()).map(|jacobi| jacobi.order() - 1).min();
@@ -259,12 +259,12 @@ impl Distribution for Mixture {
         ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], [lower, upper]| [low.min(lower), high.max(upper)])
     }
 
-    /// One order less than the least that a part knows, 15 at most.
+    /// Recurrence up to one order less than the shortest one of a part, at most 15.
     fn jacobi(&self, order: usize) -> Jacobi {
         self.jacobi.truncated(order)
     }
 
-    /// Every part scales as it would by itself; None where one does not. Distances between parts that are shifts stay.
+    /// Copy with every part scaled as by itself. Returns None if a part does not scale. Distances between parts count as shifts and stay.
     fn scaled(&self, factor: f64, moved: f64) -> Option<Scaled> {
         let mut parts = Vec::with_capacity(self.parts.len());
         for part in &self.parts {
@@ -282,12 +282,12 @@ impl Distribution for Mixture {
 }
 
 impl Probability for Mixture {
-    /// None where a part has none.
+    /// Density of all parts. Returns None if a part has no density.
     fn density(&self, x: f64) -> Option<f64> {
         self.parts.iter().map(|part| Some(part.weight * Self::law(part).density(x)?)).sum()
     }
 
-    /// Those of the parts, and the finite ends of their supports.
+    /// Corners of the parts, and the finite ends of their supports.
     fn corners(&self) -> Vec<f64> {
         let own = |part: &Part| {
             let ends = part.distribution.support().into_iter().filter(|end| end.is_finite());
@@ -323,7 +323,7 @@ impl Probability for Mixture {
         self.inverse(p, true)
     }
 
-    /// Each value from a part drawn by weight; a part's own values are drawn as it draws them.
+    /// Random values, each from a part drawn by weight and by the part's own method.
     fn fill(&self, rng: &mut dyn Rng, out: &mut [f64]) {
         for value in out {
             let mut left: f64 = rng.random();

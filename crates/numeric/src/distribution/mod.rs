@@ -1,11 +1,11 @@
 //! Input distributions, one file each, behind one trait.
 //!
-//! Everything that the derivative methods need of a distribution is its mean, its sigma, its standardised
-//! moments and its support; a [`Jacobi`] matrix gives Gauss rules, from which evaluation nodes and quadrature come.
+//! The derivative methods need the mean, the sigma, the standardised moments and the support of a distribution. A [`Jacobi`] matrix gives
+//! Gauss rules, which supply evaluation nodes and quadrature.
 //!
 //! # A new distribution
-//! One new file with a type that implements [`Distribution`], one line in the list below, one arm where study files
-//! name distributions (`study/dimension/kinds.rs`), and one row in `crates/testing/src/densities.rs`.
+//! One new file with a type that implements [`Distribution`], one line in the list below, one arm where study files name distributions
+//! (`crates/study/src/dimension/kinds.rs`), and one row in `crates/testing/src/densities.rs`.
 
 mod beta;
 mod central_moments;
@@ -77,14 +77,14 @@ pub(crate) use error::{finite, positive};
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// A distribution that follows from another one by scaling, or why there is none.
+/// Distribution that follows from another one by scaling, or the error of its parameters.
 pub type Scaled = Result<Arc<dyn Distribution>, DistributionError>;
 
-/// A probability distribution of one dimension, with sigma above 0.
+/// Probability distribution of one dimension, with sigma above 0.
 ///
-/// A dimension that does not vary has no distribution at all, so an implementation never divides by zero.
+/// A dimension that does not vary has no distribution, so an implementation never divides by zero.
 pub trait Distribution: Debug + Send + Sync {
-    /// The name that study files use, such as `normal`.
+    /// Name in study files, such as `normal`.
     fn name(&self) -> &'static str;
 
     /// Mean, in the dimension's own unit.
@@ -93,37 +93,35 @@ pub trait Distribution: Debug + Send + Sync {
     /// Standard deviation, in the dimension's own unit; finite and above 0.
     fn sigma(&self) -> f64;
 
-    /// Moments 3 to 8 of `u = (x - mean)/sigma`, analytic wherever a closed form exists; NaN where the distribution has none, as
-    /// Student's has of orders that its degrees of freedom do not exceed.
+    /// Moments 3 to 8 of `u = (x - mean)/sigma`, analytic wherever a closed form exists. Moments that do not exist are NaN, as those of
+    /// Student's distribution of an order not below its degrees of freedom.
     fn standard_moments(&self) -> StandardMoments;
 
-    /// Smallest and largest possible value, in the dimension's own unit; infinite where there is no bound or where
-    /// it is unknown.
+    /// Smallest and largest possible value, in the dimension's own unit; infinite if there is no bound or if it is unknown.
     fn support(&self) -> [f64; 2];
 
-    /// The recurrence coefficients of the orthogonal polynomials of `u = (x - mean)/sigma` up to `order`, or as far
-    /// as they are known: a distribution known by eight moments ends at order 4, one with `m` atoms at order `m`.
+    /// Recurrence coefficients of the orthogonal polynomials of `u = (x - mean)/sigma` up to `order`, or as far as they are known. A
+    /// distribution known by eight moments ends at order 4, one with `m` atoms at order `m`.
     fn jacobi(&self, order: usize) -> Jacobi;
 
-    /// Density, probabilities, quantiles and samples; None where only moments are known.
+    /// Density, probabilities, quantiles and samples. Returns None if only moments are known.
     fn probability(&self) -> Option<&dyn Probability>;
 
-    /// The distribution of the same kind when the tolerance is `factor` times as wide and the middle of its band moves by
-    /// `moved`; None where the tolerance does not say how it varies.
+    /// Distribution of the same kind for a tolerance that is `factor` times as wide, with the band middle moved by `moved`. Returns None if
+    /// the distribution does not follow from the tolerance.
     ///
-    /// A normal distribution and those over the band keep their shape: widths scale, the middle moves, and a `shift` of
-    /// the mean against it stays. Those with a tail get a sigma `factor` times as large at the same mean and origin, so
-    /// that their shape changes. Exponential and Rayleigh distributions, whose mean is all that they have, and those
-    /// known by moments or by data do not scale.
+    /// A normal distribution and those over the band keep their shape: widths scale, the middle moves, and a `shift` of the mean against it
+    /// stays. Those with a tail get a sigma `factor` times as large at the same mean and origin, so their shape changes. Exponential and
+    /// Rayleigh distributions have the mean as only parameter and do not scale. Those known by moments or by data do not scale either.
     ///
     /// # Errors
-    /// When the scaled parameters are out of range.
+    /// Returns an error if the scaled parameters are out of range.
     fn scaled(&self, factor: f64, moved: f64) -> Option<Scaled> {
         let _ = (factor, moved);
         None
     }
 
-    /// The measured values that the law follows from; None where it was given by parameters.
+    /// Measured values that the distribution was made from. Returns None if it was given by parameters.
     fn measured(&self) -> Option<&dyn Resample> {
         None
     }

@@ -1,4 +1,4 @@
-//! The normal distribution.
+//! Normal distribution.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use super::{
     ziggurat,
 };
 
-/// Normal distribution of given mean and sigma.
+/// Normal distribution with given mean and sigma.
 ///
 /// ```
 /// use crate::distribution::{Distribution, Normal};
@@ -24,10 +24,10 @@ pub struct Normal {
 }
 
 impl Normal {
-    /// Its name in study files.
+    /// Name in study files.
     pub const NAME: &'static str = "normal";
 
-    /// `sigma` must be above 0.
+    /// Distribution with this mean and sigma. `sigma` must be above 0.
     pub fn new(mean: f64, sigma: f64) -> Result<Self, DistributionError> {
         Ok(Self { mean: finite("mean", mean)?, sigma: positive("sigma", sigma)? })
     }
@@ -54,7 +54,7 @@ impl Distribution for Normal {
         [f64::NEG_INFINITY, f64::INFINITY]
     }
 
-    /// Hermite polynomials: `He[n+1] = u He[n] - n He[n-1]`.
+    /// Coefficients of Hermite polynomials: `He[n+1] = u He[n] - n He[n-1]`.
     fn jacobi(&self, order: usize) -> Jacobi {
         Jacobi::new(vec![0.0; order], (1..=order).map(|n| n as f64).collect())
     }

@@ -1,23 +1,23 @@
-//! Values that do not belong to the others.
+//! Outliers among measured values.
 
 use crate::pearson::Pearson;
 use crate::power::Power;
 
-/// The share of clean normal samples in which some value is named all the same.
+/// Share of clean normal samples in which a value is flagged nevertheless.
 const FALSE_ALARMS: f64 = 0.01;
-/// At most this share of the values is looked at, and
+/// Greatest share of the values that is tested.
 const SHARE: f64 = 0.1;
-/// at most so many.
+/// Greatest number of values that is tested.
 const MOST: usize = 50;
-/// Fewer values tell nothing: Student's law, by its moments, needs more than 4 degrees of freedom.
+/// Fewest values of a test. Student's distribution by its moments needs more than 4 degrees of freedom.
 const LEAST: usize = 7;
 
-/// The indices of values that lie farther out than those of a normal sample of this size, farthest first.
+/// Indices of values that lie farther out than those of a normal sample of this size, farthest first.
 ///
-/// The generalised extreme Studentised deviate test: as [`extreme`] has it, for up to a tenth of the values at 1 % of false
-/// alarms for the sample as a whole, whatever its size. It is not fooled by outliers that hide one another, and a
-/// thousand clean values raise it as rarely as thirty do, which no fixed number of sigmas does. A law with long tails or
-/// a strong skewness has values that a normal law has not: they are named too, and it is for people to say what they are.
+/// Method: the generalised extreme Studentised deviate test of [`extreme`], for up to a tenth of the values. The rate of false alarms is
+/// 1 % for the whole sample at any size. Outliers that hide one another are found. A thousand clean values raise an alarm as rarely as
+/// thirty do, which no fixed number of sigmas achieves. A distribution with long tails or strong skewness has values that a normal
+/// distribution does not have. They are flagged too, and a person must judge them.
 ///
 /// ```
 /// use crate::distribution::outliers::outliers;
@@ -30,18 +30,18 @@ pub fn outliers(values: &[f64]) -> Vec<usize> {
     extreme(values, FALSE_ALARMS, most)
 }
 
-/// The test itself, for up to `most` outliers at the significance `level`.
+/// Generalised extreme Studentised deviate test for up to `most` outliers at the significance `level`.
 ///
-/// The value farthest from the mean is taken out `most` times, and its distance `R` in sigmas (divisor `n - 1`) compared
-/// with `(m-1) t / sqrt((m - 2 + t^2) m)`, where `m` values are left and `t` is the quantile `1 - level/2m` of Student's
-/// law with `m - 2` degrees of freedom. All up to the last that exceeds it are outliers. Of one value this is Grubbs'
-/// test, which is exact; of several, accurate from about 15 values on.
+/// The value farthest from the mean is removed `most` times. Its distance `R` in sigmas (divisor `n - 1`) is compared with
+/// `(m-1) t / sqrt((m - 2 + t^2) m)`. There `m` values are left, and `t` is the quantile `1 - level/2m` of Student's distribution with
+/// `m - 2` degrees of freedom. All values up to the last that exceeds it are outliers. For one value this is Grubbs' test, which is exact.
+/// For several values it is accurate from about 15 values on.
 ///
 /// Source: Rosner, Percentage points for a generalized ESD many-outlier procedure, Technometrics 25 (1983).
 pub fn extreme(values: &[f64], level: f64, most: usize) -> Vec<usize> {
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_unstable_by(|&a, &b| values[a].total_cmp(&values[b]));
-    // In a unit of their own, deviations of extreme size have squares.
+    // Scale to a unit of their own, so that squares of extreme deviations do not overflow.
     let ends = [order.first(), order.last()].map(|end| end.map_or(0.0, |&i| values[i]));
     let unit = Power::of(ends[1] - ends[0]).inverse();
     let (mut found, mut taken) = (0, Vec::new());
@@ -55,7 +55,7 @@ pub fn extreme(values: &[f64], level: f64, most: usize) -> Vec<usize> {
         let (first, last) = (left[0], left[left.len() - 1]);
         let low = off(first).abs() > off(last).abs();
         let farthest = if low { first } else { last };
-        // Only equal values are left, or the scale of the values is beyond a double.
+        // Only equal values are left, or the scale of the values is beyond the range of a double.
         if !(sigma > 0.0 && sigma.is_finite()) {
             break;
         }
@@ -69,10 +69,10 @@ pub fn extreme(values: &[f64], level: f64, most: usize) -> Vec<usize> {
     taken
 }
 
-/// The largest deviation that the farthest of `m` values may have, in sigmas.
+/// Largest deviation, in sigmas, that the farthest of `m` values may have.
 fn critical(m: f64, level: f64) -> f64 {
     let freedom = m - 2.0;
-    // Student's law is the symmetric Pearson law with long tails.
+    // Student's distribution is the symmetric Pearson distribution with long tails.
     let student = Pearson::with_excess(0.0, (freedom / (freedom - 2.0)).sqrt(), 0.0, 6.0 / (freedom - 4.0))
         .expect("more than 4 degrees of freedom");
     let t = student.upper_quantile(0.5 * level / m);

@@ -1,14 +1,14 @@
-//! The Pearson law as distribution of a dimension, fitted to measured values or given by four moments.
+//! Pearson distribution of a dimension, fitted to measured values or given by four moments.
 
 use super::{Distribution, DistributionError, Jacobi, Probability, Resample, Reweighted, Sample, StandardMoments};
 use crate::pearson::Pearson;
 
-/// The member of the Pearson system with a given mean, sigma, skewness and kurtosis.
+/// Member of the Pearson system with a given mean, sigma, skewness and kurtosis.
 ///
-/// Fitted to measured values it has their first four moments as they are, with the divisor `n`, as [`Sample`] has them:
-/// a characteristic that is linear in the dimension has the same four moments by either law. They are biased in small
-/// samples (of a normal law by a part `1/2n` of sigma and by about `-6/n` in the kurtosis), which a correction would
-/// pay for with a larger scatter; what the scatter makes of the result is in the report's sampling interval.
+/// Fitted to measured values it has their first four moments with the divisor `n`, as in [`Sample`]. A characteristic that is linear in the
+/// dimension then has the same four moments by either distribution. These moments are biased in small samples: for a normal distribution by
+/// `1/2n` of sigma and by about `-6/n` in the kurtosis. A correction would increase the scatter. The effect of the scatter on the result is
+/// in the report's sampling interval.
 ///
 /// ```
 /// use crate::distribution::{Distribution, PearsonLaw};
@@ -28,18 +28,18 @@ pub struct PearsonLaw {
     fit: Option<Fit>,
 }
 
-/// The values that a law was fitted to.
+/// Values that a distribution was fitted to.
 #[derive(Debug, Clone, PartialEq)]
 struct Fit {
     sample: Sample,
 }
 
 impl PearsonLaw {
-    /// With sigma above 0, and the kurtosis given by its excess over 3.
+    /// Distribution with sigma above 0, and the kurtosis given by its excess over 3.
     ///
     /// # Errors
-    /// When no distribution has these moments, or the tails of the one that has are so long that one of its moments up to
-    /// the eighth is infinite.
+    /// Returns an error if no distribution has these moments, or if the tails of the one that has are so long that a moment up to the
+    /// eighth is infinite.
     pub fn new(mean: f64, sigma: f64, skewness: f64, excess: f64) -> Result<Self, DistributionError> {
         let law = Pearson::with_excess(mean, sigma, skewness, excess).map_err(DistributionError::Pearson)?;
         let recurrence = Recurrence::new(skewness, excess);
@@ -49,11 +49,11 @@ impl PearsonLaw {
         Ok(Self { law, moments: recurrence.moments(), recurrence, fit: None })
     }
 
-    /// With the first four moments of measured values.
+    /// Distribution with the first four moments of measured values.
     ///
     /// # Errors
-    /// As [`new`](Self::new); values of which there are two different ones only have moments that no Pearson law has. And
-    /// when a value is not finite, or there are not two different ones.
+    /// Returns the errors of [`new`](Self::new): samples with only two different values have moments that no Pearson distribution has. Also
+    /// returns an error if a value is not finite, or if there are not two different ones.
     pub fn fitted(values: &[f64]) -> Result<Self, DistributionError> {
         let sample = Sample::new(values)?;
         let moments = sample.moments();
@@ -75,7 +75,7 @@ impl Distribution for PearsonLaw {
         self.law.sigma()
     }
 
-    /// By the recurrence that Pearson's equation gives for the moments.
+    /// Moments by the recurrence that follows from Pearson's equation.
     fn standard_moments(&self) -> StandardMoments {
         self.moments
     }
@@ -84,7 +84,7 @@ impl Distribution for PearsonLaw {
         self.law.support()
     }
 
-    /// In closed form, up to the highest even moment that is finite.
+    /// Coefficients in closed form, up to the highest even moment that is finite.
     fn jacobi(&self, order: usize) -> Jacobi {
         self.recurrence.jacobi(order)
     }
@@ -103,20 +103,20 @@ impl Resample for Fit {
         &self.sample
     }
 
-    /// The law with the first four moments of the resample; higher ones are NaN where they are infinite.
+    /// Distribution with the first four moments of the resample. Higher moments are NaN if they are infinite.
     fn reweighted(&self, counts: &[u32]) -> Reweighted {
         let empirical = self.sample.reweighted(counts);
         if empirical.stretch == 0.0 {
             return empirical;
         }
         let recurrence = Recurrence::new(empirical.moments.skewness, empirical.moments.excess);
-        // Two values only: every law with these four moments consists of them, and the rule is theirs.
+        // With two values only, the two atoms are the only distribution with these four moments, and the rule is theirs.
         let rule = if empirical.rule.nodes.len() > 2 { recurrence.jacobi(RULE).gauss() } else { empirical.rule };
         Reweighted { moments: recurrence.moments(), rule, ..empirical }
     }
 }
 
-/// Nodes that integrate the fourth power of a quartic exactly.
+/// Number of nodes, which integrate the fourth power of a quartic exactly.
 const RULE: usize = 9;
 
 impl Probability for PearsonLaw {
@@ -141,7 +141,7 @@ impl Probability for PearsonLaw {
     }
 }
 
-/// `(C0 + C1 z + C2 z^2) p' = -(C1 + D z) p`, as in [`crate::pearson`], and what follows from it by partial integration.
+/// Coefficients of `(C0 + C1 z + C2 z^2) p' = -(C1 + D z) p`, as in [`crate::pearson`], and their consequences by partial integration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Recurrence {
     c0: f64,
@@ -165,12 +165,12 @@ impl Recurrence {
         }
     }
 
-    /// The density falls as the power `-D/C2`: the moment is finite where that is below `-(order + 1)`.
+    /// True if the moment is finite. The density falls as the power `-D/C2`, which must be below `-(order + 1)`.
     fn has_moment(&self, order: usize) -> bool {
         self.c2 <= 0.0 || self.d > (order + 1) as f64 * self.c2
     }
 
-    /// `(D - (n + 2) C2) m[n+1] = n (C0 m[n-1] + C1 m[n])`; NaN from the first moment on that is infinite.
+    /// Moments by `(D - (n + 2) C2) m[n+1] = n (C0 m[n-1] + C1 m[n])`; NaN from the first infinite one on.
     fn moments(&self) -> StandardMoments {
         let mut m = [1.0, 0.0, 1.0, self.skewness, 3.0 + self.excess, 0.0, 0.0, 0.0, 0.0];
         for n in 4..8 {
@@ -181,9 +181,9 @@ impl Recurrence {
         StandardMoments { excess: self.excess, ..StandardMoments::from_standard([m3, m4, m5, m6, m7, m8]) }
     }
 
-    /// The polynomials that belong to a density with `(sigma p)' = tau p`, here with `sigma = C0 + C1 z + C2 z^2` and
-    /// `tau = -(C0 + C2) z`: those of Jacobi, Laguerre, Hermite, Bessel and Romanovski in one formula (Koepf and
-    /// Schmersau 1998, theorem 1).
+    /// Recurrence of the polynomials for a density with `(sigma p)' = tau p`, here with `sigma = C0 + C1 z + C2 z^2` and
+    /// `tau = -(C0 + C2) z`. One formula covers those of Jacobi, Laguerre, Hermite, Bessel and Romanovski (Koepf and Schmersau 1998,
+    /// theorem 1).
     fn jacobi(&self, order: usize) -> Jacobi {
         let (a, b, c, d) = (self.c2, self.c1, self.c0, -(self.c0 + self.c2));
         let finite = (1..=order).take_while(|n| self.has_moment(2 * n)).count();

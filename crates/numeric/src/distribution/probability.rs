@@ -1,4 +1,4 @@
-//! The probabilities of a distribution that is known whole.
+//! Probabilities of a distribution that is completely known.
 
 use rand::{Rng, RngExt};
 
@@ -6,11 +6,11 @@ use super::standard_normal;
 
 /// Density, probabilities, quantiles and samples, in the dimension's own unit.
 ///
-/// Both tails are asked for by name, because `1 - cdf` and `quantile(1 - p)` have lost the digits that a small tail needs.
-/// At an end of the support the nearer tail is 0 and the other one 1; NaN gives NaN.
+/// Each tail has a function of its own, because `1 - cdf` and `quantile(1 - p)` lose the digits that a small tail needs. At an end of the
+/// support the nearer tail is 0 and the other one 1. NaN gives NaN.
 ///
-/// Accuracy: relative 1e-12 of either probability, quantiles of probabilities from 1e-12 to 1 - 1e-12 to 1e-12 sigma,
-/// unless a distribution says otherwise.
+/// Accuracy, unless a distribution states another one: either probability to 1e-12 relative, quantiles of probabilities from 1e-12 to 1 -
+/// 1e-12 to 1e-12 sigma.
 ///
 /// ```
 /// use crate::distribution::{Distribution, Normal};
@@ -22,39 +22,39 @@ use super::standard_normal;
 /// # Ok::<(), crate::distribution::DistributionError>(())
 /// ```
 pub trait Probability: Send + Sync {
-    /// Density per unit of `x`; None where there is none, as for measured values, which are atoms.
+    /// Density per unit of `x`. Returns None if there is none, as for measured values, which are atoms.
     fn density(&self, x: f64) -> Option<f64>;
 
-    /// Probability of at most `x`: the cumulative distribution function.
+    /// Probability of a value of at most `x`: the cumulative distribution function.
     fn cdf(&self, x: f64) -> f64;
 
-    /// Probability of more than `x`: the survival function.
+    /// Probability of a value above `x`: the survival function.
     fn sf(&self, x: f64) -> f64;
 
-    /// The least value whose `cdf` is at least `p`; NaN where `p` is not a probability.
+    /// Least value whose `cdf` is at least `p`. Returns NaN if `p` is not a probability.
     fn quantile(&self, p: f64) -> f64;
 
-    /// The value above which the probability is `p`, with the digits of a small `p`; NaN where `p` is not a probability.
+    /// Value above which the probability is `p`, with the digits of a small `p`. Returns NaN if `p` is not a probability.
     fn upper_quantile(&self, p: f64) -> f64;
 
-    /// Where the density is not smooth inside the support, ascending: corners and jumps at which a quadrature splits.
+    /// Points inside the support at which the density is not smooth, ascending: corners and jumps at which a quadrature splits.
     ///
     /// Empty by default: the density is smooth between the ends of the support.
     fn corners(&self) -> Vec<f64> {
         Vec::new()
     }
 
-    /// Values that have a probability of their own, ascending, with that probability; empty where there is a density.
+    /// Values that have a probability of their own, ascending, with that probability. Empty if there is a density only.
     fn atoms(&self) -> Vec<(f64, f64)> {
         Vec::new()
     }
 
-    /// Density of what is not in the [`atoms`](Self::atoms).
+    /// Density of the part outside the [`atoms`](Self::atoms).
     fn smooth_density(&self, x: f64) -> f64 {
         self.density(x).unwrap_or(0.0)
     }
 
-    /// Puts quantiles in the place of probabilities above 0, counted from the nearer end: `p` from below, `-p` from above.
+    /// Replaces probabilities by quantiles. The probabilities are above 0, counted from the nearer end: `p` from below, `-p` from above.
     fn quantiles(&self, tails: &mut [f64]) {
         for tail in tails {
             *tail = if *tail < 0.0 { self.upper_quantile(-*tail) } else { self.quantile(*tail) };
@@ -70,22 +70,22 @@ pub trait Probability: Send + Sync {
     }
 }
 
-/// The value that stands where `z` stands in a standard normal distribution, with the digits of the nearer tail.
+/// Value with the same probability below it as `z` has in the standard normal distribution, with the digits of the nearer tail.
 pub fn behind_normal(law: &dyn Probability, z: f64) -> f64 {
     if z < 0.0 { law.quantile(standard_normal::cdf(z)) } else { law.upper_quantile(standard_normal::sf(z)) }
 }
 
-/// A random probability of at most one half and the end that it is counted from, so that both tails are as fine.
+/// Random probability of at most one half and the end that it is counted from, so that both tails are equally fine.
 pub(super) fn random_tail(rng: &mut dyn Rng) -> (f64, bool) {
     (0.5 * rng.sample::<f64, _>(rand_distr::Open01), rng.random())
 }
 
-/// A probability that rounding has not pushed out of its range; NaN stays NaN.
+/// Probability limited to its range against rounding. NaN stays NaN.
 pub(super) fn clamped(p: f64) -> f64 {
     p.clamp(0.0, 1.0)
 }
 
-/// `p` if it is a probability, NaN if not.
+/// Returns `p` if it is a probability, NaN otherwise.
 pub(super) fn checked(p: f64) -> f64 {
     if (0.0..=1.0).contains(&p) { p } else { f64::NAN }
 }

@@ -1,14 +1,14 @@
-//! The Rayleigh distribution.
+//! Rayleigh distribution.
 
 use std::f64::consts::PI;
 
 use super::tail::above_origin;
 use super::{Distribution, DistributionError, Jacobi, Probability, StandardMoments, Weibull};
 
-/// Rayleigh distribution from an origin on: the length of a vector with two equal normal components, such as the offset of
-/// two axes. Its sigma is `sqrt(4/pi - 1)` of the distance of the mean from the origin.
+/// Rayleigh distribution from an origin on: the length of a vector with two equal normal components, such as the offset of two axes. Its
+/// sigma is `sqrt(4/pi - 1)` times the distance of the mean from the origin.
 ///
-/// It is the Weibull distribution of shape 2, and does not scale with a tolerance: its mean fixes it.
+/// It is the Weibull distribution of shape 2. It does not scale with a tolerance, because its mean fixes it.
 ///
 /// ```
 /// use crate::distribution::{Distribution, Rayleigh};
@@ -23,7 +23,7 @@ pub struct Rayleigh {
 }
 
 impl Rayleigh {
-    /// `mean` must lie above `origin`.
+    /// Distribution from `origin` on. `mean` must lie above `origin`.
     pub fn new(origin: f64, mean: f64) -> Result<Self, DistributionError> {
         let sigma = above_origin(origin, mean)? * (4.0 / PI - 1.0).sqrt();
         Ok(Self { law: Weibull::with_shape(origin, mean, 2.0)?, sigma })
@@ -51,7 +51,7 @@ impl Distribution for Rayleigh {
         self.law.support()
     }
 
-    /// Up to order 16.
+    /// Coefficients up to order 16.
     fn jacobi(&self, order: usize) -> Jacobi {
         self.law.jacobi(order)
     }

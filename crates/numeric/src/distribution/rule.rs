@@ -4,33 +4,33 @@ use faer::{Mat, Side};
 
 use super::{Distribution, DistributionError, StandardMoments};
 
-/// The recurrence of the monic orthogonal polynomials of a standardised variable:
+/// Recurrence of the monic orthogonal polynomials of a standardised variable:
 /// `p[n+1] = (u - alpha[n]) p[n] - beta[n] p[n-1]`, with `alpha[0..n]` and `beta[1..=n]`.
 ///
-/// A last beta of 0 says that the distribution consists of just that many atoms.
+/// A last beta of 0 means that the distribution consists of exactly as many atoms as the order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Jacobi {
     alpha: Vec<f64>,
     beta: Vec<f64>,
 }
 
-/// A leading moment matrix whose last pivot, relative to its last diagonal element, is below this is taken for
-/// singular: the moments of a distribution with few atoms are only as exact as they were typed.
+/// Relative pivot below which a leading moment matrix counts as singular. The moments of a distribution with few atoms are only as exact as
+/// they were typed. The pivot is relative to the last diagonal element.
 const SINGULAR: f64 = 1e-12;
-/// Below minus this, relative again, the moments are impossible.
+/// Relative size of a negative pivot above which the moments are impossible.
 const IMPOSSIBLE: f64 = 1e-9;
 
 impl Jacobi {
-    /// `alpha[0 ..= n-1]` and `beta[1 ..= n]`: as many of one as of the other.
+    /// Recurrence with `alpha[0 ..= n-1]` and `beta[1 ..= n]`, equally many of both.
     pub fn new(alpha: Vec<f64>, beta: Vec<f64>) -> Self {
         assert_eq!(alpha.len(), beta.len(), "a Jacobi matrix needs as many alphas as betas");
         Self { alpha, beta }
     }
 
-    /// Of order 4, or of as many atoms as there are, from moments 3 to 8 by the Chebyshev algorithm (Gautschi 1982).
+    /// Recurrence of order 4, or of as many atoms as there are, from moments 3 to 8 by the Chebyshev algorithm (Gautschi 1982).
     ///
     /// # Errors
-    /// [`DistributionError::ImpossibleMoments`] when a leading moment matrix has a negative determinant.
+    /// [`DistributionError::ImpossibleMoments`] if a leading moment matrix has a negative determinant.
     pub fn from_moments(moments: &StandardMoments) -> Result<Self, DistributionError> {
         let raw = moments.raw();
         let (mut alpha, mut beta) = (vec![0.0], Vec::new());
@@ -59,37 +59,37 @@ impl Jacobi {
         Ok(Self { alpha, beta })
     }
 
-    /// How many coefficients of each kind there are.
+    /// Number of coefficients of each kind.
     pub fn order(&self) -> usize {
         self.alpha.len()
     }
 
-    /// The first `order` coefficients, or all where there are fewer.
+    /// First `order` coefficients, or all if there are fewer.
     pub(crate) fn truncated(&self, order: usize) -> Self {
         let order = order.min(self.order());
         Self { alpha: self.alpha[..order].to_vec(), beta: self.beta[..order].to_vec() }
     }
 
-    /// The same with every alpha 0, which the recurrence of a symmetric distribution has but for rounding.
+    /// Copy with every alpha 0. In the recurrence of a symmetric distribution they differ from 0 only by rounding.
     pub(super) fn symmetric(mut self) -> Self {
         self.alpha.fill(0.0);
         self
     }
 
-    /// Whether it describes its distribution whole: one of as many atoms as its order.
+    /// True if the recurrence describes the whole distribution: one of as many atoms as its order.
     pub(crate) fn is_whole(&self) -> bool {
         self.beta.last() == Some(&0.0)
     }
 
-    /// The Gauss rule with as many nodes as the order: exact for polynomials up to degree `2 order - 1`.
+    /// Gauss rule with as many nodes as the order, exact for polynomials up to degree `2 order - 1`.
     pub fn gauss(&self) -> Rule {
         Rule::of_matrix(&self.alpha, &self.beta[..self.order() - 1])
     }
 
-    /// The rule with one node more than the order, one of them at the mean: exact up to degree `2 order`.
+    /// Rule with one node more than the order, one of them at the mean, exact up to degree `2 order`.
     ///
-    /// None when no such rule exists: the Gauss rule already has a node there (as one with an odd number of atoms
-    /// about its mean), or has it so nearly that the extra node would lie far out.
+    /// Returns None if no such rule exists. The Gauss rule then already has a node there, as for an odd number of atoms about its mean. Or
+    /// it nearly has one, so that the extra node would lie far out.
     pub fn gauss_with_mean(&self) -> Option<Rule> {
         let (mut before, mut at_mean) = (0.0, 1.0);
         for n in 0..self.order() {
@@ -113,18 +113,17 @@ impl Jacobi {
 /// Nodes and weights of a quadrature over a standardised variable; the weights sum to 1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rule {
-    /// Where, in units of sigma about the mean, ascending.
+    /// Nodes in units of sigma about the mean, ascending.
     pub nodes: Vec<f64>,
-    /// With which probability.
+    /// Probabilities of the nodes.
     pub weights: Vec<f64>,
 }
 
 impl Rule {
-    /// The Gauss rule of a distribution with so many nodes, exact for polynomials up to degree `2 nodes - 1`: all of its
-    /// atoms, if it has no more than that.
+    /// Gauss rule of a distribution with this number of nodes, exact for polynomials up to degree `2 nodes - 1`. A distribution with fewer
+    /// atoms gives all of its atoms.
     ///
-    /// Of moments 2 to 8 alone follow rules of up to five nodes: more are not to be had, and of five one is the mean, which
-    /// is exact up to degree 8.
+    /// Moments 2 to 8 alone determine rules of at most five nodes. Of five nodes one is the mean, and the rule is exact up to degree 8.
     ///
     /// ```
     /// use crate::distribution::{Distribution, Exponential};
@@ -142,10 +141,10 @@ impl Rule {
         }
     }
 
-    /// The rule with the mean and one node on either side that match moments 1 to 4; where one of these would lie outside
-    /// the support, the Gauss rule of three nodes, which matches five.
+    /// Rule with the mean and one node on either side that match moments 1 to 4. If one of these would lie outside the support, the Gauss
+    /// rule of three nodes, which matches five.
     ///
-    /// The nodes are `s/2 +- sqrt(f - 3 s^2/4)` with skewness `s` and kurtosis `f`. A distribution of two or three atoms has these.
+    /// The nodes are `s/2 +- sqrt(f - 3 s^2/4)` with skewness `s` and kurtosis `f`. A distribution of two or three atoms gives its atoms.
     ///
     /// Source: Seo and Kwak (2002), equations for the levels and weights of an input.
     pub fn three_point(distribution: &dyn Distribution) -> Self {
@@ -160,7 +159,7 @@ impl Rule {
         matched.filter(inside).unwrap_or_else(|| Self::of(distribution, 3))
     }
 
-    /// `E[f(u)]` by this rule.
+    /// Expectation `E[f(u)]` by this rule.
     ///
     /// ```
     /// use crate::distribution::{Distribution, Normal};
@@ -172,8 +171,8 @@ impl Rule {
         self.nodes.iter().zip(&self.weights).map(|(&u, &weight)| weight * f(u)).sum()
     }
 
-    /// The node at this level of the distribution: a rule that integrates every power that is asked of it is as good as the
-    /// distribution itself.
+    /// Node at the probability `level` from below. For powers that the rule integrates exactly it is as good as a quantile of the
+    /// distribution.
     pub fn at_level(&self, level: f64) -> f64 {
         let mut below = 0.0;
         for (node, weight) in self.nodes.iter().zip(&self.weights) {
@@ -197,9 +196,9 @@ impl Rule {
             .expect("the eigenvalues of a small symmetric matrix of finite numbers");
         let mut nodes: Vec<f64> = (0..n).map(|i| eigen.S()[i]).collect();
         let mut weights: Vec<f64> = (0..n).map(|i| eigen.U()[(0, i)].powi(2)).collect();
-        // The eigenvalues are good beside the largest of them, the weights beside 1; a far node of a long tail needs
-        // its own digits, because high powers of it count. One that weighs more has them, and the polynomials would
-        // rather lose some where nodes lie close together.
+        // Eigenvalues are exact relative to the largest of them, weights relative to 1. A far node of a long tail needs relative accuracy
+        // of its own, because high powers of it count. Heavier nodes have it already, and for nodes close together the polynomials would
+        // lose digits.
         let light: Vec<usize> = (0..n).filter(|&i| weights[i] < LIGHT).collect();
         for i in light {
             let left = if i > 0 { nodes[i] - nodes[i - 1] } else { f64::INFINITY };
@@ -209,7 +208,7 @@ impl Rule {
             }
         }
         if diagonal.iter().all(|&alpha| alpha == 0.0) {
-            // A symmetric distribution has a symmetric rule, to the last bit: odd moments of it then are exactly 0.
+            // A symmetric distribution gets a rule that is symmetric to the last bit, so that its odd moments are exactly 0.
             for i in 0..n.div_ceil(2) {
                 let (node, weight) = (0.5 * (nodes[n - 1 - i] - nodes[i]), 0.5 * (weights[i] + weights[n - 1 - i]));
                 (nodes[i], nodes[n - 1 - i]) = (-node, node);
@@ -222,19 +221,19 @@ impl Rule {
     }
 }
 
-/// A weight below this has lost digits as the square of an eigenvector's component.
+/// Weight below which the square of an eigenvector's component has lost digits.
 const LIGHT: f64 = 1e-4;
 
-/// A node after one step of Newton's method towards the root of the last orthogonal polynomial, and its weight: one over the
-/// sum of the squares of the orthonormal polynomials below it (Christoffel), in which nothing cancels. None where the step
-/// is longer than `within`, or a double does not hold the result.
+/// Node after one step of Newton's method towards the root of the last orthogonal polynomial, and its weight. The weight is one over the
+/// sum of the squares of the orthonormal polynomials below it (Christoffel), in which nothing cancels. Returns None if the step is longer
+/// than `within`, or if a double does not hold the result.
 fn polished(node: f64, within: f64, alpha: &[f64], beta: &[f64]) -> Option<(f64, f64)> {
     let at = |u: f64| {
         let ([mut before, mut p], [mut slope_before, mut slope]) = ([0.0, 1.0], [0.0, 0.0]);
         let mut sum = 1.0;
         for n in 0..alpha.len() {
             let root = if n == 0 { 0.0 } else { beta[n - 1].sqrt() };
-            // The last polynomial has no norm of its own; nor has its root.
+            // The last polynomial has no norm of its own. Its root does not depend on one.
             let norm = beta.get(n).map_or(1.0, |beta| beta.sqrt());
             let next = ((u - alpha[n]) * p - root * before) / norm;
             let next_slope = (p + (u - alpha[n]) * slope - root * slope_before) / norm;

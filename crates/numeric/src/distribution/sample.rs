@@ -1,53 +1,52 @@
-//! Measured values: the distinct ones with their counts, and the moments of the law that has them as atoms.
+//! Measured values: the distinct ones with their counts, and the moments of the distribution that has them as atoms.
 
 use rand::{Rng, RngExt};
 
 use super::{DistributionError, Jacobi, Rule, StandardMoments, finite, positive};
 use crate::elementary::Double;
 
-/// Measured values as a law that gives each of them the same probability, `1/n`.
+/// Measured values as a distribution that gives each of them the same probability, `1/n`.
 ///
-/// Mean, sigma and moments are those of this one law: sigma divides by `n`, not by `n - 1`, as do the moments 3 to 8 that
-/// belong to it; quantiles and resamples are of the same law. By how much a sample of this size may be off is what
-/// resamples tell.
+/// Mean, sigma and moments are those of this one distribution. Sigma divides by `n`, not by `n - 1`, and so do moments 3 to 8. Quantiles
+/// and resamples belong to the same distribution. The error of a sample of this size is estimated by resamples.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sample {
     values: Vec<f64>,
     counts: Vec<u32>,
-    /// How many measured values are at most each of the distinct ones.
+    /// Number of measured values that are at most each of the distinct ones.
     upto: Vec<usize>,
     mean: f64,
     sigma: f64,
     standard: Vec<f64>,
 }
 
-/// A law that follows from a sample, after the measured values count otherwise.
+/// Distribution of a sample after the counts of its values have changed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reweighted {
-    /// How far the mean moves, in sigmas of the sample.
+    /// Change of the mean, in sigmas of the sample.
     pub shift: f64,
-    /// The new sigma, in sigmas of the sample; 0 where only one distinct value is left.
+    /// New sigma, in sigmas of the sample; 0 if only one distinct value is left.
     pub stretch: f64,
-    /// Moments 3 to 8 of `v = (u - shift)/stretch`; NaN where the law has none.
+    /// Moments 3 to 8 of `v = (u - shift)/stretch`; NaN for those that do not exist.
     pub moments: StandardMoments,
-    /// A rule that integrates polynomials of `v`.
+    /// Rule that integrates polynomials of `v`.
     pub rule: Rule,
 }
 
-/// A law that follows from measured values.
+/// Distribution that follows from measured values.
 pub trait Resample: Sync {
-    /// The values.
+    /// Measured values.
     fn sample(&self) -> &Sample;
 
-    /// The law that follows when the distinct value `i` was measured `counts[i]` times, not all of them 0.
+    /// Distribution if the distinct value `i` had been measured `counts[i]` times, not all of them 0.
     fn reweighted(&self, counts: &[u32]) -> Reweighted;
 }
 
 impl Sample {
-    /// Of these values, in any order.
+    /// Sample of these values, in any order.
     ///
     /// # Errors
-    /// When a value is not finite, or there are not two different ones.
+    /// Returns an error if a value is not finite, or if there are not two different ones.
     ///
     /// ```
     /// use crate::distribution::sample::Sample;
@@ -80,8 +79,8 @@ impl Sample {
             Some(*sum)
         });
         let upto = upto.collect();
-        // From one of the values, so that a large offset costs no digit of the deviations; relative to the largest
-        // deviation, so that no square leaves the range of a double.
+        // Count from one of the values, so that a large offset costs no digit of the deviations. Scale by the largest deviation, so that no
+        // square leaves the range of a double.
         let origin = values[values.len() / 2];
         let scale = values.iter().map(|value| (value - origin).abs()).fold(0.0, f64::max);
         positive("the range of the measured values", scale)?;
@@ -95,38 +94,38 @@ impl Sample {
         Ok(Self { mean: origin + scale * mean, sigma: scale * sigma, values, counts, upto, standard })
     }
 
-    /// How many values were measured.
+    /// Number of measured values.
     #[expect(clippy::len_without_is_empty, reason = "a sample without values cannot be")]
     pub fn len(&self) -> usize {
         self.upto[self.upto.len() - 1]
     }
 
-    /// The distinct values, ascending.
+    /// Distinct values, ascending.
     pub fn values(&self) -> &[f64] {
         &self.values
     }
 
-    /// How often each of them was measured.
+    /// Number of times that each distinct value was measured.
     pub fn counts(&self) -> &[u32] {
         &self.counts
     }
 
-    /// How many measured values are at most each of the distinct ones.
+    /// Number of measured values that are at most each of the distinct ones.
     pub fn upto(&self) -> &[usize] {
         &self.upto
     }
 
-    /// Their mean.
+    /// Mean of the values.
     pub fn mean(&self) -> f64 {
         self.mean
     }
 
-    /// Root of the mean squared deviation: of the law that has these values, hence divided by `n`.
+    /// Root of the mean squared deviation, divided by `n` as for the distribution that has these values.
     pub fn sigma(&self) -> f64 {
         self.sigma
     }
 
-    /// `(value - mean)/sigma` of the distinct values.
+    /// Standardised distinct values, `(value - mean)/sigma`.
     pub fn standard(&self) -> &[f64] {
         &self.standard
     }
@@ -136,10 +135,9 @@ impl Sample {
         moments(&self.standard, &self.counts)
     }
 
-    /// The recurrence of the law that has these values as atoms, up to `order` or the number of distinct values.
+    /// Recurrence of the distribution that has these values as atoms, up to `order` or the number of distinct values.
     ///
-    /// Gragg and Harwood (1984): the atoms are added one by one by plane rotations, which is stable for any number of
-    /// them.
+    /// Method: Gragg and Harwood (1984). The atoms are added one by one by plane rotations, which is stable for any number of them.
     pub fn jacobi(&self, order: usize) -> Jacobi {
         let atoms = self.values.len();
         let rows = order.min(atoms);
@@ -161,7 +159,7 @@ impl Sample {
         }
         alpha.truncate(rows);
         beta.remove(0);
-        // Known exactly: mean 0, variance 1, and no more atoms than there are.
+        // These are known exactly: mean 0, variance 1, and the number of atoms.
         alpha[0] = 0.0;
         beta[0] = 1.0;
         if rows == atoms {
@@ -170,7 +168,7 @@ impl Sample {
         Jacobi::new(alpha, beta)
     }
 
-    /// As many values as were measured, drawn from them with replacement: how often each distinct one comes.
+    /// Draws as many values as were measured, with replacement, and writes the count of each distinct one.
     pub fn draw(&self, rng: &mut dyn Rng, counts: &mut Vec<u32>) {
         counts.clear();
         counts.resize(self.values.len(), 0);
@@ -179,12 +177,12 @@ impl Sample {
         }
     }
 
-    /// The distinct value that stands at this place of all measured values in ascending order.
+    /// Index of the distinct value at this rank of all measured values in ascending order.
     pub(super) fn atom(&self, rank: usize) -> usize {
         if self.values.len() == self.len() { rank } else { self.upto.partition_point(|&upto| upto <= rank) }
     }
 
-    /// Of the law that has these values as atoms; see [`Resample::reweighted`].
+    /// [`Resample::reweighted`] of the distribution that has these values as atoms.
     pub(super) fn reweighted(&self, counts: &[u32]) -> Reweighted {
         let total: f64 = counts.iter().map(|&count| f64::from(count)).sum();
         let present = || self.standard.iter().zip(counts).filter(|&(_, &count)| count > 0);

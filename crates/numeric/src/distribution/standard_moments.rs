@@ -1,9 +1,9 @@
 //! Moments of a standardised variable, and the cumulant-like combinations that the moment formulas need.
 
-/// Moments 3 to 8 of `u = (x - mean)/sigma`, with the combinations in which the Gaussian part is already gone.
+/// Moments 3 to 8 of `u = (x - mean)/sigma`, with combinations from which the Gaussian part is already removed.
 ///
-/// `excess`, `h6`, `h7` and `h8` are stored, not derived, because a distribution that knows them in closed form keeps
-/// digits that the subtraction would lose: for a normal they are 0, 8, 0 and 48 exactly.
+/// `excess`, `h6`, `h7` and `h8` are stored instead of derived. A distribution with closed forms for them keeps digits that the subtraction
+/// would lose. For a normal distribution they are 0, 8, 0 and 48 exactly.
 ///
 /// ```text
 /// excess = m4 - 3
@@ -25,20 +25,20 @@ pub struct StandardMoments {
     pub m7: f64,
     /// Eighth moment.
     pub m8: f64,
-    /// `cum(v, v, u, u)` with `v = u^2 - 1`.
+    /// Joint cumulant `cum(v, v, u, u)` with `v = u^2 - 1`.
     pub h6: f64,
-    /// `cum(v, v, v, u)` with `v = u^2 - 1`.
+    /// Joint cumulant `cum(v, v, v, u)` with `v = u^2 - 1`.
     pub h7: f64,
-    /// `cum(v, v, v, v)` with `v = u^2 - 1`.
+    /// Joint cumulant `cum(v, v, v, v)` with `v = u^2 - 1`.
     pub h8: f64,
 }
 
 impl StandardMoments {
-    /// The moments of the standard normal distribution.
+    /// Moments of the standard normal distribution.
     pub const NORMAL: Self =
         Self { skewness: 0.0, excess: 0.0, m5: 0.0, m6: 15.0, m7: 0.0, m8: 105.0, h6: 8.0, h7: 0.0, h8: 48.0 };
 
-    /// From central moments `m2 ..= m8` of any scale; `m2` must be above 0.
+    /// Standardises central moments `m2 ..= m8` of any scale. `m2` must be above 0.
     ///
     /// The standard deviation is divided out one power at a time, so that no power of it overflows or underflows.
     ///
@@ -60,7 +60,7 @@ impl StandardMoments {
         Self::from_standard([3, 4, 5, 6, 7, 8].map(standard))
     }
 
-    /// From moments `m3 ..= m8` of a variable that has mean 0 and variance 1.
+    /// Collects moments `m3 ..= m8` of a variable that has mean 0 and variance 1.
     pub fn from_standard([m3, m4, m5, m6, m7, m8]: [f64; 6]) -> Self {
         Self {
             skewness: m3,
@@ -75,13 +75,13 @@ impl StandardMoments {
         }
     }
 
-    /// From moments `m3, m5 ..= m8` and the excess kurtosis, where that is known better than by `m4 - 3`.
+    /// Collects moments `m3, m5 ..= m8` and the excess kurtosis, if that is known more accurately than `m4 - 3`.
     pub(super) fn with_excess(skewness: f64, excess: f64, [m5, m6, m7, m8]: [f64; 4]) -> Self {
         Self { excess, ..Self::from_standard([skewness, 3.0 + excess, m5, m6, m7, m8]) }
     }
 
-    /// From standardised cumulants `k3 ..= k8`: nothing is subtracted, so that a nearly normal distribution keeps the
-    /// digits of what tells it from the normal one.
+    /// Computes moments from standardised cumulants `k3 ..= k8`. Nothing is subtracted, so that a nearly normal distribution keeps the
+    /// digits of its difference from the normal one.
     ///
     /// ```
     /// use crate::distribution::StandardMoments;
@@ -103,9 +103,9 @@ impl StandardMoments {
         }
     }
 
-    /// Of a law with Pearson's equation `(1 + c1 u + c2 u^2) p' = -(c1 + (1 + 3 c2) u) p` and `c2 <= 0`: beta and gamma.
+    /// Moments of a distribution with Pearson's equation `(1 + c1 u + c2 u^2) p' = -(c1 + (1 + 3 c2) u) p` and `c2 <= 0`: beta and gamma.
     ///
-    /// `m[n+1] = n (m[n-1] + c1 m[n]) / (1 - (n-1) c2)`, all of one sign; the excess is `3 (c1 m3 + 2 c2)/(1 - 2 c2)`.
+    /// Formula: `m[n+1] = n (m[n-1] + c1 m[n]) / (1 - (n-1) c2)`, all of one sign. The excess is `3 (c1 m3 + 2 c2)/(1 - 2 c2)`.
     pub(super) fn of_pearson(c1: f64, c2: f64) -> Self {
         let mut m = [1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
         for n in 2..8 {
@@ -116,13 +116,13 @@ impl StandardMoments {
         Self::with_excess(m[3], excess, [m[5], m[6], m[7], m[8]])
     }
 
-    /// Whether every one of them is a finite number.
+    /// True if every moment is a finite number.
     pub fn are_finite(&self) -> bool {
         let of_fourth_powers = [self.h6, self.h7, self.h8];
         self.raw().iter().chain(&of_fourth_powers).all(|moment| moment.is_finite())
     }
 
-    /// Fourth moment: the kurtosis, 3 for a normal.
+    /// Fourth moment: the kurtosis, 3 for a normal distribution.
     pub fn kurtosis(&self) -> f64 {
         3.0 + self.excess
     }

@@ -1,10 +1,10 @@
-//! The standard normal distribution function and its inverse, to the last digits in both tails.
+//! Standard normal distribution function and its inverse, to the last digits in both tails.
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 use crate::elementary::{Elementary, Ln, Work, on_this_processor};
 
-/// Density.
+/// Density at `z`.
 pub fn density(z: f64) -> f64 {
     libm::exp(-0.5 * z * z) / (2.0 * PI).sqrt()
 }
@@ -19,7 +19,7 @@ pub fn sf(z: f64) -> f64 {
     cdf(-z)
 }
 
-/// Below which the probability is `p`: algorithm AS 241, PPND16 (Wichura 1988), about 1e-16 relative.
+/// Value below which the probability is `p`: algorithm AS 241, PPND16 (Wichura 1988), about 1e-16 relative.
 pub fn quantile(p: f64) -> f64 {
     let q = p - 0.5;
     if q.abs() <= CENTRAL {
@@ -28,19 +28,19 @@ pub fn quantile(p: f64) -> f64 {
     if p < 0.5 { lower_tail(p) } else { -lower_tail(1.0 - p) }
 }
 
-/// Puts quantiles in the place of probabilities, as [`Probability::quantiles`](super::Probability::quantiles).
+/// Replaces probabilities by quantiles, as [`Probability::quantiles`](super::Probability::quantiles).
 pub(crate) fn quantiles(tails: &mut [f64]) {
     quantiles_about((0.0, 1.0), tails);
 }
 
-/// The same of the normal distribution of a mean and sigma.
+/// Replaces probabilities by quantiles of the normal distribution with this mean and sigma.
 pub(super) fn quantiles_about(place: (f64, f64), tails: &mut [f64]) {
     for tails in tails.chunks_mut(LANES) {
         on_this_processor(Quantiles { place, values: tails });
     }
 }
 
-/// Half the range of probabilities that one approximation serves.
+/// Greatest distance of a probability from one half for which the central approximation is used.
 const CENTRAL: f64 = 0.425;
 
 #[inline(always)]
@@ -49,8 +49,9 @@ fn central(q: f64) -> f64 {
     q * polynomial(&CENTRE[0], r) / polynomial(&CENTRE[1], r)
 }
 
-/// Probabilities that are taken together, and that are looked at for tails at once.
+/// Probabilities that are computed together.
 const LANES: usize = 256;
+/// Probabilities that are tested for tails at once, one bit each.
 const LOOK: usize = 64;
 
 struct Quantiles<'a> {
@@ -61,7 +62,7 @@ struct Quantiles<'a> {
 impl Work for Quantiles<'_> {
     type Output = ();
 
-    /// Those of the tails, picked out and side by side, and the centre's for all: the same as one by one.
+    /// Quantiles with the same bits as one by one: the tails are collected and computed side by side, the centre is computed for all.
     #[inline(always)]
     fn work(self) {
         let Self { place: (mean, sigma), values } = self;
@@ -69,7 +70,7 @@ impl Work for Quantiles<'_> {
         let mut count = 0;
         let (looks, rest) = values.as_chunks::<LOOK>();
         for (look, values) in looks.iter().enumerate() {
-            // Bits that a look over all of them finds, so that the few are gone over and not each.
+            // One bit for each value in a tail, so that only those few are visited.
             let mut left = (0..LOOK).fold(0, |all, lane| all | u64::from(is_in_tail(values[lane])) << lane);
             while left != 0 {
                 let lane = left.trailing_zeros() as usize;
@@ -109,23 +110,23 @@ fn is_in_tail(value: f64) -> bool {
     (value.abs() - 0.5).abs() > CENTRAL
 }
 
-/// A quantile counted from below where the probability was, and from above where that was negative.
+/// Sign for the end that the probability was counted from: `quantile` itself from below, its negative from above.
 #[inline(always)]
 fn from_end(tail: f64, quantile: f64) -> f64 {
     if tail < 0.0 { -quantile } else { quantile }
 }
 
-/// Above which the probability is `p`.
+/// Value above which the probability is `p`.
 pub fn upper_quantile(p: f64) -> f64 {
     -quantile(p)
 }
 
-/// Mills' ratio, the probability above `z` by the density there, of a `z` that is not negative: nothing underflows.
+/// Mills' ratio for a `z` that is not negative: the probability above `z` over the density there. Nothing underflows.
 pub(crate) fn mills(z: f64) -> f64 {
     if z < 4.0 {
         return (0.5 * PI).sqrt() * libm::erfc(z * FRAC_1_SQRT_2) * libm::exp(0.5 * z * z);
     }
-    // Laplace's continued fraction z + 1/(z + 2/(z + ...)), from where it has converged.
+    // Laplace's continued fraction z + 1/(z + 2/(z + ...)), with enough terms to converge.
     let terms = (60.0 + 800.0 / (z * z)) as u32;
     let fraction = (1..=terms).rev().fold(z, |below, n| z + f64::from(n) / below);
     1.0 / fraction
@@ -146,7 +147,7 @@ fn lower_tail(p: f64) -> f64 {
     -polynomial(&FAR[0], r) / polynomial(&FAR[1], r)
 }
 
-/// The quantile of a probability in the tail, and whether it is too far out for this, or too small a number.
+/// Quantile of a probability in the tail, and true if the probability is too far out or too small for this approximation.
 #[inline(always)]
 fn near_tail(p: f64) -> (f64, bool) {
     let (logarithm, apart) = Ln::lane(p);
@@ -161,7 +162,7 @@ fn polynomial(coefficients: &[f64; 8], r: f64) -> f64 {
     ((((((h * r + g) * r + f) * r + e) * r + d) * r + c) * r + b) * r + a
 }
 
-/// Numerator and denominator for `|p - 1/2| <= 0.425`.
+/// Coefficients of numerator and denominator for `|p - 1/2| <= 0.425`.
 const CENTRE: [[f64; 8]; 2] = [
     [
         3.387_132_872_796_366_5,
@@ -184,7 +185,7 @@ const CENTRE: [[f64; 8]; 2] = [
         5_226.495_278_852_854,
     ],
 ];
-/// Down to `exp(-25)`.
+/// Coefficients of numerator and denominator for probabilities down to `exp(-25)`.
 const TAIL: [[f64; 8]; 2] = [
     [
         1.423_437_110_749_683_5,
@@ -207,7 +208,7 @@ const TAIL: [[f64; 8]; 2] = [
         1.050_750_071_644_416_9e-9,
     ],
 ];
-/// Beyond.
+/// Coefficients of numerator and denominator for probabilities below `exp(-25)`.
 const FAR: [[f64; 8]; 2] = [
     [
         6.657_904_643_501_103,

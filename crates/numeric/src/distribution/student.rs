@@ -10,11 +10,11 @@ use super::probability::checked;
 use super::{Distribution, DistributionError, Jacobi, Probability, Scaled, StandardMoments, finite, positive};
 use crate::pearson::Pearson;
 
-/// Student's t distribution about a mean, with a number of degrees of freedom above 2: what is known of a value by the mean of
-/// few readings, or by a certificate that states degrees of freedom.
+/// Student's t distribution about a mean, with more than 2 degrees of freedom. It describes a value that is known by the mean of few
+/// readings, or by a certificate that states degrees of freedom.
 ///
-/// Its moment of order `n` exists where `degrees > n`; those that do not are NaN: with 4 degrees or fewer the kurtosis, with 3 or
-/// fewer the skewness. With 2 or fewer there is no sigma, and no such dimension.
+/// The moment of order `n` exists if `degrees > n`, and is NaN otherwise: with 4 degrees or fewer the kurtosis, with 3 or fewer the
+/// skewness. With 2 or fewer there is no sigma, and such a dimension is an error.
 ///
 /// ```
 /// use crate::distribution::{Distribution, Student};
@@ -33,25 +33,25 @@ pub struct Student {
     law: Tail,
 }
 
-/// How probabilities are computed, in sigmas.
+/// Method that computes probabilities, in sigmas.
 #[derive(Debug, Clone, PartialEq)]
 enum Tail {
-    /// With a kurtosis: Pearson's type VII.
+    /// Pearson's type VII, if the kurtosis exists.
     Pearson(Box<Pearson>),
-    /// Without: series of the incomplete beta function.
+    /// Series of the incomplete beta function, if it does not.
     Series(Series),
 }
 
-/// `t` with four degrees or fewer.
+/// Distribution of `t` with four degrees or fewer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Series {
     degrees: f64,
-    /// `B(degrees/2, 1/2)`.
+    /// Beta function `B(degrees/2, 1/2)`.
     beta: f64,
 }
 
 impl Student {
-    /// With this mean, sigma above 0, and degrees of freedom above 2.
+    /// Distribution with this mean, sigma above 0, and degrees of freedom above 2.
     pub fn new(mean: f64, sigma: f64, degrees: f64) -> Result<Self, DistributionError> {
         let (mean, sigma) = (finite("mean", mean)?, positive("sigma", sigma)?);
         finite("degrees", degrees)?;
@@ -68,8 +68,8 @@ impl Student {
         Ok(Self { mean, sigma, degrees, law })
     }
 
-    /// With this scale, `sigma sqrt((degrees - 2)/degrees)`: the standard uncertainty of a certificate, or `s/sqrt n` of `n` readings with
-    /// `n - 1` degrees.
+    /// Distribution with this scale, `sigma sqrt((degrees - 2)/degrees)`: the standard uncertainty of a certificate, or `s/sqrt n` of `n`
+    /// readings with `n - 1` degrees.
     pub fn with_scale(mean: f64, scale: f64, degrees: f64) -> Result<Self, DistributionError> {
         let scale = positive("scale", scale)?;
         if finite("degrees", degrees)? <= 2.0 {
@@ -82,7 +82,7 @@ impl Student {
         (x - self.mean) / self.sigma
     }
 
-    /// Probability above, in sigmas.
+    /// Probability above `u`, in sigmas.
     fn above(&self, u: f64) -> f64 {
         match &self.law {
             Tail::Pearson(law) => law.sf(u),
@@ -91,7 +91,7 @@ impl Student {
         }
     }
 
-    /// Where the probability above is `p`, in sigmas.
+    /// Value in sigmas above which the probability is `p`.
     fn with_above(&self, p: f64) -> f64 {
         match &self.law {
             Tail::Pearson(law) => law.upper_quantile(p),
@@ -100,7 +100,7 @@ impl Student {
         }
     }
 
-    /// A moment of even order of the standardised variable, NaN where there is none:
+    /// Moment of even order of the standardised variable, NaN if it does not exist:
     /// `(2k - 1)!! (n - 2)^(k-1) / ((n - 4) .. (n - 2k))`.
     fn even(&self, k: i32) -> f64 {
         let n = self.degrees;
@@ -110,7 +110,7 @@ impl Student {
         (2..=k).map(|i| f64::from(2 * i - 1) * (n - 2.0) / (n - f64::from(2 * i))).product()
     }
 
-    /// An odd moment: 0 where there is one.
+    /// Moment of odd order: 0, or NaN if it does not exist.
     fn odd(&self, order: f64) -> f64 {
         if self.degrees > order { 0.0 } else { f64::NAN }
     }
@@ -122,19 +122,19 @@ impl Series {
         Self { degrees, beta: libm::exp(log) * PI.sqrt() }
     }
 
-    /// `t` of a sigma.
+    /// Ratio of `t` to the deviation in sigmas.
     fn per_sigma(&self) -> f64 {
         (self.degrees / (self.degrees - 2.0)).sqrt()
     }
 
-    /// `(1 + t^2/n)^(-(n+1)/2) / (sqrt n B)`.
+    /// Density `(1 + t^2/n)^(-(n+1)/2) / (sqrt n B)` of `t`.
     fn density(&self, t: f64) -> f64 {
         let n = self.degrees;
         libm::exp(-0.5 * (n + 1.0) * log_1p_square(t / n.sqrt())) / (n.sqrt() * self.beta)
     }
 
-    /// Of a `t` that is not negative: half the regularised incomplete beta function of `n/(n + t^2)`, or what that of the
-    /// complement leaves of a half.
+    /// Probability above a `t` that is not negative: half the regularised incomplete beta function of `n/(n + t^2)`, or one half minus half
+    /// that of the complement.
     fn above(&self, t: f64) -> f64 {
         let (n, r) = (self.degrees, t / self.degrees.sqrt());
         let (a, b) = (0.5 * n, 0.5);
@@ -150,7 +150,7 @@ impl Series {
         0.5 * power / (a * self.beta) * sum(a, b, 1.0 / (1.0 + r * r))
     }
 
-    /// Of a probability of one half at most; in `z` with `t = sinh z` the logarithm of the tail is nearly straight.
+    /// Value above which the probability is `p`, at most one half. In `z` with `t = sinh z` the logarithm of the tail is nearly straight.
     fn with_above(&self, p: f64) -> f64 {
         match p {
             _ if p.is_nan() => return p,
@@ -163,17 +163,17 @@ impl Series {
             let above = self.above(t);
             (libm::log(p / above), self.density(t) * libm::cosh(z) / above)
         };
-        // Beyond, nothing is left of a probability.
+        // Beyond z = 700 every probability underflows to 0.
         libm::sinh(root([0.0, 700.0], -libm::log(2.0 * p) / self.degrees + 0.5, off))
     }
 }
 
-/// `ln(1 + r^2)`, also where the square overflows.
+/// `ln(1 + r^2)`, also if the square overflows.
 fn log_1p_square(r: f64) -> f64 {
     if r.abs() > 1e100 { 2.0 * libm::log(r.abs()) } else { libm::log1p(r * r) }
 }
 
-/// `sum over k of (a + b)_k/(a + 1)_k x^k`, of positive terms, for `x` of one half at most.
+/// Sum over k of `(a + b)_k/(a + 1)_k x^k`, of positive terms, for an `x` of at most one half.
 fn sum(a: f64, b: f64, x: f64) -> f64 {
     let (mut total, mut term, mut k) = (1.0, 1.0, 0.0);
     while term > 1e-17 * total {
@@ -197,7 +197,7 @@ impl Distribution for Student {
         self.sigma
     }
 
-    /// NaN from the first order on that the degrees of freedom do not exceed.
+    /// Moments; NaN from the first order on that is not below the degrees of freedom.
     fn standard_moments(&self) -> StandardMoments {
         let excess = if self.degrees > 4.0 { 6.0 / (self.degrees - 4.0) } else { f64::NAN };
         StandardMoments::with_excess(self.odd(3.0), excess, [self.odd(5.0), self.even(3), self.odd(7.0), self.even(4)])
@@ -207,8 +207,8 @@ impl Distribution for Student {
         [f64::NEG_INFINITY, f64::INFINITY]
     }
 
-    /// Up to the highest even moment that is finite, `beta[k] = k (n - 2) (n - k + 1) / ((n - 2k) (n - 2k + 2))`. Without a kurtosis a
-    /// normal distribution's stands in for it: nodes at which a model can be evaluated, and a variance that is right.
+    /// Coefficients up to the highest even moment that is finite, `beta[k] = k (n - 2) (n - k + 1) / ((n - 2k) (n - 2k + 2))`. If there is
+    /// no kurtosis, those of a normal distribution are used: they give nodes at which a model can be evaluated, and the right variance.
     fn jacobi(&self, order: usize) -> Jacobi {
         let n = self.degrees;
         let beta = |k: usize| {
@@ -258,7 +258,7 @@ impl Probability for Student {
         self.mean + self.sigma * self.with_above(checked(p))
     }
 
-    /// As `rand_distr` has it: a normal value by the root of a chi-squared one.
+    /// Random values by the method of `rand_distr`: a normal value over the root of a chi-squared one.
     fn fill(&self, rng: &mut dyn Rng, out: &mut [f64]) {
         let law = rand_distr::StudentT::new(self.degrees).expect("degrees above 2");
         let scale = self.sigma * ((self.degrees - 2.0) / self.degrees).sqrt();

@@ -1,16 +1,17 @@
-//! A distribution that is known by a table of its quantiles.
+//! Distribution that is known by a table of its quantiles.
 
 use super::discretised::{Discretised, ORDER, legendre};
 use super::inverse::root;
 use super::probability::{checked, clamped};
 use super::{Distribution, DistributionError, Jacobi, Probability, StandardMoments, finite, standard_normal};
 
-/// A table of quantiles over normal scores: the value at the score `z` has the probability `Phi(z)` below it.
+/// Table of quantiles over normal scores: the value at the score `z` has the probability `Phi(z)` below it.
 ///
-/// Between the lines of the table the value is a cubic of the score that never turns back (Fritsch and Carlson 1980), with the
-/// slopes of the polynomial through five lines: with lines `h` apart, a smooth law is met to the order `h^4`. The table's
-/// first and last line are the ends of the support; the little that a normal distribution has beyond their scores is shared
-/// out, so that the probability is 1 in all. Over scores most laws are nearly straight, which they are not over probabilities.
+/// Between the lines of the table the value is a monotone cubic of the score (Fritsch and Carlson 1980). Its slopes are those of the
+/// polynomial through five lines. With lines `h` apart, a smooth distribution is met to the order `h^4`.
+///
+/// The table's first and last line are the ends of the support. A normal distribution has a little probability beyond their scores, which
+/// is spread over the table, so that the total is 1. Over scores most distributions are nearly straight, over probabilities they are not.
 ///
 /// ```
 /// use crate::distribution::{Distribution, Tabulated};
@@ -25,9 +26,9 @@ use super::{Distribution, DistributionError, Jacobi, Probability, StandardMoment
 pub struct Tabulated {
     scores: Vec<f64>,
     values: Vec<f64>,
-    /// Of the value by the score, at every line.
+    /// Slope of the value by the score, at every line.
     slopes: Vec<f64>,
-    /// The probability of a normal distribution below, between and above the ends of the table.
+    /// Probability of a normal distribution below the table. `within` and `above` are those inside and above it.
     below: f64,
     within: f64,
     above: f64,
@@ -37,20 +38,20 @@ pub struct Tabulated {
     jacobi: Jacobi,
 }
 
-/// Scores beyond this have no probability that a double can tell from 0.
+/// Greatest score. Beyond it a double cannot distinguish the probability from 0.
 const FARTHEST: f64 = 37.0;
-/// A table with more lines than this is smooth enough that its joints are none to a quadrature.
+/// Greatest number of lines at which the joints count as corners. A longer table is smooth enough for a quadrature.
 const JOINTS: usize = 33;
-/// The widest piece that one rule of quadrature covers, in scores.
+/// Widest piece, in scores, that one rule of quadrature covers.
 const WIDEST: f64 = 0.25;
-/// A slope is at least this share of the least slope beside it, so that no density is infinite.
+/// Least slope as a fraction of the lesser secant beside it, so that no density is infinite.
 const LEAST: f64 = 1e-3;
 
 impl Tabulated {
-    /// From scores and values of the same number, two or more, both ascending.
+    /// Distribution from equally many scores and values, at least two, both ascending.
     ///
     /// # Errors
-    /// When the two differ in length, a number is not finite, or one is not above that before it.
+    /// Returns an error if the two differ in length, a number is not finite, or one is not above the previous one.
     pub fn new(scores: &[f64], values: &[f64]) -> Result<Self, DistributionError> {
         let wrong = |reason: String| Err(DistributionError::NoLaw { reason });
         if scores.len() != values.len() || scores.len() < 2 {
@@ -76,6 +77,7 @@ impl Tabulated {
                 "scores of a table are those of a normal distribution, from -{FARTHEST} to {FARTHEST}, not {score}"
             ));
         }
+        // The table covers only this part of the normal distribution's probability; take it from the nearer tail to keep its digits.
         let (first, last) = (scores[0], scores[scores.len() - 1]);
         let (below, above) = (standard_normal::cdf(first), standard_normal::sf(last));
         let within = if first > 0.0 { standard_normal::sf(first) - above } else { standard_normal::cdf(last) - below };
@@ -91,6 +93,7 @@ impl Tabulated {
             moments: StandardMoments::from_standard([0.0; 6]),
             jacobi: Jacobi::new(Vec::new(), Vec::new()),
         };
+        // Moments and recurrence follow from the finished cubics.
         let mut fine = law.discretised();
         [law.mean, law.sigma] = fine.standardise();
         (law.moments, law.jacobi) = (fine.moments(), fine.jacobi(ORDER));
@@ -100,7 +103,7 @@ impl Tabulated {
         Ok(law)
     }
 
-    /// By Gauss-Legendre over the scores, piece by piece: on each the value is a cubic and the density entire.
+    /// Quadrature by Gauss-Legendre over the scores, piece by piece. On each piece the value is a cubic and the density is entire.
     fn discretised(&self) -> Discretised {
         let rule = legendre(16);
         let mut fine = Discretised::default();
@@ -119,7 +122,7 @@ impl Tabulated {
         fine
     }
 
-    /// Value and slope at a score of this piece: Hermite's cubic.
+    /// Value and slope at a score of this piece, by Hermite's cubic.
     fn at(&self, piece: usize, z: f64) -> [f64; 2] {
         let width = self.scores[piece + 1] - self.scores[piece];
         let rise = self.values[piece + 1] - self.values[piece];
@@ -142,7 +145,7 @@ impl Tabulated {
         self.at(piece, z)[0].clamp(self.values[piece], self.values[piece + 1])
     }
 
-    /// The score of a value within the support, and the slope there.
+    /// Score of a value within the support, and the slope at that score.
     fn score(&self, x: f64) -> [f64; 2] {
         let piece = self.values.partition_point(|&value| value <= x).clamp(1, self.values.len() - 1) - 1;
         let [from, to] = [self.scores[piece], self.scores[piece + 1]];
@@ -156,7 +159,7 @@ impl Tabulated {
     }
 }
 
-/// The slope at every line: of the polynomial through the five lines about it, as far as the cubics stay ascending with it.
+/// Slope at every line: that of the polynomial through the five lines about it, limited so that the cubics stay ascending.
 fn slopes(scores: &[f64], values: &[f64]) -> Vec<f64> {
     let lines = scores.len();
     let secant = |i: usize| (values[i + 1] - values[i]) / (scores[i + 1] - scores[i]);
@@ -167,19 +170,19 @@ fn slopes(scores: &[f64], values: &[f64]) -> Vec<f64> {
             let slope = polynomial_slope(&scores[stencil.clone()], &values[stencil], i - from);
             let beside = [i.checked_sub(1).map(secant), (i + 1 < lines).then(|| secant(i))];
             let least = beside.into_iter().flatten().fold(f64::INFINITY, f64::min);
-            // Three times the smaller secant is the bound of Fritsch and Carlson.
+            // Three times the lesser secant is the bound of Fritsch and Carlson.
             slope.clamp(LEAST * least, 3.0 * least)
         })
         .collect()
 }
 
-/// The slope of the polynomial through all points, at one of them.
+/// Slope of the polynomial through all points, at one of them.
 fn polynomial_slope(x: &[f64], y: &[f64], at: usize) -> f64 {
     let others = |j: usize| (0..x.len()).filter(move |&m| m != j && m != at);
     (0..x.len())
         .filter(|&j| j != at)
         .map(|j| {
-            // Of the rise from `at` to `j` by Lagrange's basis; the rises, not the values, so that nothing cancels.
+            // Term of the rise from `at` to `j` in Lagrange's basis. Rises instead of values avoid cancellation.
             let basis: f64 = others(j).map(|m| (x[at] - x[m]) / (x[j] - x[m])).product();
             (y[j] - y[at]) / (x[j] - x[at]) * basis
         })
@@ -207,7 +210,7 @@ impl Distribution for Tabulated {
         [self.values[0], self.values[self.values.len() - 1]]
     }
 
-    /// Up to order 16.
+    /// Coefficients up to order 16.
     fn jacobi(&self, order: usize) -> Jacobi {
         self.jacobi.truncated(order)
     }

@@ -1,8 +1,8 @@
-//! The common part of the kinds with a tail: they begin at an origin, and their mean lies above it.
+//! Common checks of distributions with a tail, which begin at an origin and have their mean above it.
 
 use super::{DistributionError, finite, positive};
 
-/// How far the mean lies above the origin.
+/// Distance of the mean above the origin.
 pub(super) fn above_origin(origin: f64, mean: f64) -> Result<f64, DistributionError> {
     finite("origin", origin)?;
     finite("mean", mean)?;
@@ -14,10 +14,10 @@ pub(super) fn above_origin(origin: f64, mean: f64) -> Result<f64, DistributionEr
     }
 }
 
-/// The least sigma that is computed, by the distance of the mean from the origin: far below what doubles can resolve.
+/// Least ratio of sigma to the distance of the mean from the origin, far below the resolution of doubles.
 const LEAST: f64 = 1e-12;
 
-/// Distance of the mean from the origin, and sigma by that.
+/// Distance of the mean from the origin, and ratio of sigma to it.
 pub(super) fn ratio(origin: f64, mean: f64, sigma: f64, largest: f64) -> Result<[f64; 2], DistributionError> {
     let distance = above_origin(origin, mean)?;
     let ratio = positive("sigma", sigma)? / distance;

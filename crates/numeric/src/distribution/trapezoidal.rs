@@ -1,4 +1,4 @@
-//! The symmetric trapezoidal distribution.
+//! Symmetric trapezoidal distribution.
 
 use std::sync::Arc;
 
@@ -8,8 +8,8 @@ use super::{
     Distribution, DistributionError, Jacobi, Probability, Scaled, StandardMoments, between, finite, interval, positive,
 };
 
-/// Trapezoidal distribution over an interval: flat over its middle part, falling in straight lines to both ends. It is the
-/// sum of two uniform variables.
+/// Trapezoidal distribution over an interval: flat over its middle part, falling in straight lines to both ends. It is the sum of two
+/// uniform variables.
 ///
 /// ```
 /// use crate::distribution::{Distribution, Trapezoidal, Uniform};
@@ -25,30 +25,30 @@ pub struct Trapezoidal {
 }
 
 impl Trapezoidal {
-    /// Between `lower` and `upper`; `top` is the share of the interval over which the density is flat: 0 for a triangle, 1
+    /// Distribution between `lower` and `upper`. `top` is the fraction of the interval over which the density is flat: 0 for a triangle, 1
     /// for a uniform distribution.
     pub fn new(lower: f64, upper: f64, top: f64) -> Result<Self, DistributionError> {
         let [middle, half] = interval(lower, upper)?;
         Self::about(middle, half, top)
     }
 
-    /// From `middle - half` to `middle + half`.
+    /// Distribution from `middle - half` to `middle + half`.
     pub fn about(middle: f64, half: f64, top: f64) -> Result<Self, DistributionError> {
         let (middle, half) = (finite("the middle", middle)?, positive("the half width", half)?);
         Ok(Self { middle, half, top: between("top", top, [0.0, 1.0], "from 0 to 1")? })
     }
 
-    /// Half widths of the two uniform variables, with the interval's as unit.
+    /// Half-widths of the two uniform variables, in half-widths of the interval.
     fn halves(&self) -> [f64; 2] {
         [0.5 * (1.0 + self.top), 0.5 * (1.0 - self.top)]
     }
 
-    /// The density in the middle, over the interval from -1 to 1.
+    /// Density in the middle, over the interval from -1 to 1.
     fn height(&self) -> f64 {
         1.0 / (1.0 + self.top)
     }
 
-    /// Probability below a place in the interval from -1 to 1.
+    /// Probability below `y` in the interval from -1 to 1.
     fn below(&self, y: f64) -> f64 {
         let (y, h, ramp) = (y.clamp(-1.0, 1.0), self.height(), 1.0 - self.top);
         if y > 0.0 {
@@ -58,7 +58,7 @@ impl Trapezoidal {
         if to_end < ramp { 0.5 * h * to_end * to_end / ramp } else { h * (to_end - 0.5 * ramp) }
     }
 
-    /// Where the probability below is `p`, one half at most.
+    /// Value below which the probability is `p`, at most one half, in the interval from -1 to 1.
     fn lower_half(&self, p: f64) -> f64 {
         let (h, ramp) = (self.height(), 1.0 - self.top);
         if p < 0.5 * h * ramp { (2.0 * p * ramp / h).sqrt() - 1.0 } else { p / h + 0.5 * ramp - 1.0 }
@@ -84,7 +84,8 @@ impl Distribution for Trapezoidal {
         self.half * ((a * a + b * b) / 3.0).sqrt()
     }
 
-    /// The cumulants of two uniform variables of half widths `a` and `b` add: `a^2/3, -2 a^4/15, 16 a^6/63, -16 a^8/15`.
+    /// Moments from the cumulants of two uniform variables of half-widths `a` and `b`, which add:
+    /// `a^2/3, -2 a^4/15, 16 a^6/63, -16 a^8/15`.
     fn standard_moments(&self) -> StandardMoments {
         let [a, b] = self.halves().map(|half| half * half);
         let v = (a + b) / 3.0;
@@ -97,7 +98,7 @@ impl Distribution for Trapezoidal {
         [self.middle - self.half, self.middle + self.half]
     }
 
-    /// From Gauss-Legendre on the three straight pieces, which is exact.
+    /// Coefficients from Gauss-Legendre on the three straight pieces, which is exact.
     fn jacobi(&self, order: usize) -> Jacobi {
         let (top, rule) = (self.top, legendre(order + 2));
         let mut pieces = Discretised::default();
@@ -130,7 +131,7 @@ impl Probability for Trapezoidal {
         Some(of_top * self.height() / self.half)
     }
 
-    /// The ends of the flat part.
+    /// Ends of the flat part.
     fn corners(&self) -> Vec<f64> {
         match self.top {
             1.0 => Vec::new(),

@@ -1,4 +1,4 @@
-//! The triangular distribution.
+//! Triangular distribution.
 
 use std::sync::Arc;
 
@@ -8,8 +8,7 @@ use super::{
     Distribution, DistributionError, Jacobi, Probability, Scaled, StandardMoments, between, finite, interval, positive,
 };
 
-/// Triangular distribution over an interval: its density rises from one end in a straight line to the mode and falls to
-/// the other end.
+/// Triangular distribution over an interval: its density rises in a straight line from one end to the mode and falls to the other end.
 ///
 /// ```
 /// use crate::distribution::{Distribution, Triangular};
@@ -26,7 +25,7 @@ pub struct Triangular {
 }
 
 impl Triangular {
-    /// Between `lower` and `upper`, with the mode between them or at one of them.
+    /// Distribution between `lower` and `upper`, with the mode between them or at one of them.
     pub fn new(lower: f64, mode: f64, upper: f64) -> Result<Self, DistributionError> {
         let [middle, half] = interval(lower, upper)?;
         finite("mode", mode)?;
@@ -40,18 +39,18 @@ impl Triangular {
         Self::about(middle, half, ((mode - middle) / half).clamp(-1.0, 1.0))
     }
 
-    /// From `middle - half` to `middle + half` with the mode at `middle + lean half`, `lean` from -1 to 1.
+    /// Distribution from `middle - half` to `middle + half` with the mode at `middle + lean half`, `lean` from -1 to 1.
     pub fn about(middle: f64, half: f64, lean: f64) -> Result<Self, DistributionError> {
         let (middle, half) = (finite("the middle", middle)?, positive("the half width", half)?);
         Ok(Self { middle, half, lean: between("lean", lean, [-1.0, 1.0], "from -1 to 1")? })
     }
 
-    /// Place within the interval, from -1 to 1.
+    /// Position within the interval, from -1 to 1.
     fn y(&self, x: f64) -> f64 {
         ((x - self.middle) / self.half).clamp(-1.0, 1.0)
     }
 
-    /// The probabilities below and above, each a sum of positive terms.
+    /// Probabilities below and above, each a sum of positive terms.
     fn masses(&self, y: f64) -> [f64; 2] {
         let e = self.lean;
         let (to_end, to_mode) = if y < e { (1.0 + y, 1.0 + e) } else { (1.0 - y, 1.0 - e) };
@@ -85,8 +84,8 @@ impl Distribution for Triangular {
         self.half * ((3.0 + self.lean * self.lean) / 18.0).sqrt()
     }
 
-    /// Polynomials in the lean `e` over powers of the variance `(3 + e^2)/18` of the interval from -1 to 1, such as
-    /// `m3 = -e (9 - e^2)/135`; the kurtosis is 12/5 always.
+    /// Moments as polynomials in the lean `e` over powers of the variance. On the interval from -1 to 1 the variance is `(3 + e^2)/18`, and
+    /// `m3 = -e (9 - e^2)/135`. The kurtosis is always 12/5.
     fn standard_moments(&self) -> StandardMoments {
         let (d, e2) = (-self.lean, self.lean * self.lean);
         let v = (3.0 + e2) / 18.0;
@@ -107,7 +106,7 @@ impl Distribution for Triangular {
         [self.middle - self.half, self.middle + self.half]
     }
 
-    /// From Gauss-Legendre on the two straight pieces, which is exact.
+    /// Coefficients from Gauss-Legendre on the two straight pieces, which is exact.
     fn jacobi(&self, order: usize) -> Jacobi {
         let (e, rule) = (self.lean, legendre(order + 2));
         let mut pieces = Discretised::default();
@@ -117,7 +116,7 @@ impl Distribution for Triangular {
         if e == 0.0 { pieces.symmetric_jacobi(order) } else { pieces.jacobi(order) }
     }
 
-    /// The mode keeps its place in the band.
+    /// Copy with the band scaled. The mode keeps its relative position.
     fn scaled(&self, factor: f64, moved: f64) -> Option<Scaled> {
         let scaled = Self::about(self.middle + moved, self.half * factor, self.lean);
         Some(scaled.map(|scaled| Arc::new(scaled) as _))
@@ -140,7 +139,7 @@ impl Probability for Triangular {
         Some(of_peak / self.half)
     }
 
-    /// The mode.
+    /// Mode, unless it is at an end.
     fn corners(&self) -> Vec<f64> {
         if self.lean.abs() < 1.0 { vec![self.middle + self.half * self.lean] } else { Vec::new() }
     }

@@ -1,4 +1,4 @@
-//! The normal distribution cut at two limits.
+//! Normal distribution cut at two limits.
 
 use std::sync::Arc;
 
@@ -15,10 +15,10 @@ use super::{
     standard_normal,
 };
 
-/// Normal distribution of which only what lies within two limits is left, as after sorting.
+/// Normal distribution restricted to the values within two limits, as after sorting.
 ///
-/// Its mean and sigma follow; mean and sigma of the normal distribution before the cut are the parent's. A parent that is
-/// wide beside the limits leaves a uniform distribution, a narrow one the normal itself.
+/// The parent is the normal distribution before the cut. Mean and sigma after the cut follow from those of the parent. A parent that is
+/// wide relative to the limits leaves a uniform distribution, a narrow one stays normal.
 ///
 /// ```
 /// use crate::distribution::{Distribution, TruncatedNormal};
@@ -40,26 +40,27 @@ pub struct TruncatedNormal {
     jacobi: Jacobi,
 }
 
-/// The log of the density may fall by this before the rest of it is left out of the moments.
+/// Fall of the logarithm of the density from its peak beyond which values are left out of the moments.
 const FALL: f64 = 120.0;
-/// Sigmas by which the parent's mean may lie outside the limits.
+/// Greatest distance of the parent's mean outside the limits, in sigmas.
 const FARTHEST: f64 = 40.0;
-/// Pieces of the interval, with as many nodes on each.
+/// Pieces of the interval for the moments.
 const PIECES: usize = 32;
+/// Nodes of Gauss-Legendre on each piece.
 const NODES: usize = 16;
-/// A product of width and steepness below which one rule of this many nodes integrates to all digits.
+/// Greatest product of width and steepness for which one rule integrates to all digits.
 const SHORT: f64 = 2.0;
-/// Acceptance below which samples are drawn by the quantile function.
+/// Acceptance rate below which random values are drawn by the quantile function.
 const ACCEPTED: f64 = 0.25;
 
 impl TruncatedNormal {
-    /// The normal distribution with this mean and sigma, cut at `lower` and `upper`; the mean may lie outside them.
+    /// Normal distribution with this mean and sigma, cut at `lower` and `upper`. The mean may lie outside them.
     pub fn new(lower: f64, upper: f64, mean: f64, sigma: f64) -> Result<Self, DistributionError> {
         let [middle, half] = interval(lower, upper)?;
         Self::about(middle, half, finite("mean", mean)? - middle, sigma)
     }
 
-    /// The normal distribution with mean `middle + shift` and this sigma, cut at `middle - half` and `middle + half`.
+    /// Normal distribution with mean `middle + shift` and this sigma, cut at `middle - half` and `middle + half`.
     pub fn about(middle: f64, half: f64, shift: f64, sigma: f64) -> Result<Self, DistributionError> {
         let (middle, half) = (finite("the middle", middle)?, positive("the half width", half)?);
         let (shift, parent) = (finite("shift", shift)?, positive("sigma", sigma)?);
@@ -83,7 +84,7 @@ impl TruncatedNormal {
         Ok(Self { middle, half, shift, parent, cut, mean: middle + mean, sigma: parent * sigma, moments, jacobi })
     }
 
-    /// In sigmas of the parent from its mean.
+    /// Deviation from the parent's mean in its sigmas.
     fn z(&self, x: f64) -> f64 {
         ((x - self.middle) - self.shift) / self.parent
     }
@@ -112,7 +113,7 @@ impl Distribution for TruncatedNormal {
         self.sigma
     }
 
-    /// By Gauss-Legendre: the closed forms lose every digit where the parent is wide beside the limits.
+    /// Moments by Gauss-Legendre. The closed forms lose every digit if the parent is wide relative to the limits.
     fn standard_moments(&self) -> StandardMoments {
         self.moments
     }
@@ -121,12 +122,12 @@ impl Distribution for TruncatedNormal {
         [self.middle - self.half, self.middle + self.half]
     }
 
-    /// Up to order 16.
+    /// Coefficients up to order 16.
     fn jacobi(&self, order: usize) -> Jacobi {
         self.jacobi.truncated(order)
     }
 
-    /// The parent's sigma scales with the band; a shift of its mean stays.
+    /// Copy with the parent's sigma scaled like the band. A shift of its mean stays.
     fn scaled(&self, factor: f64, moved: f64) -> Option<Scaled> {
         let scaled = Self::about(self.middle + moved, self.half * factor, self.shift, self.parent * factor);
         Some(scaled.map(|scaled| Arc::new(scaled) as _))
@@ -161,7 +162,7 @@ impl Probability for TruncatedNormal {
         self.x(self.cut.quantile([1.0 - p, p]))
     }
 
-    /// Rejection from the parent where a good part of it is left.
+    /// Random values by rejection from the parent, or by the quantile function if the cut leaves little of the parent.
     fn fill(&self, rng: &mut dyn Rng, out: &mut [f64]) {
         let [low, high] = self.cut.ends;
         let rejects = standard_normal::cdf(high) - standard_normal::cdf(low) > ACCEPTED;
@@ -181,11 +182,11 @@ impl Probability for TruncatedNormal {
     }
 }
 
-/// The standard normal density between two ends, relative to its largest value there.
+/// Standard normal density between two ends, relative to its largest value there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Cut {
     ends: [f64; 2],
-    /// Where it is largest.
+    /// Value with the largest density.
     peak: f64,
     total: f64,
 }
@@ -197,13 +198,12 @@ impl Cut {
         cut
     }
 
-    /// Density at `z` by that at the peak.
+    /// Density at `z` relative to that at the peak.
     fn weight(&self, z: f64) -> f64 {
         libm::exp(-0.5 * (z - self.peak) * (z + self.peak))
     }
 
-    /// Integral of [`weight`](Self::weight) between two places inside, all of it positive terms or differences without
-    /// cancellation.
+    /// Integral of [`weight`](Self::weight) between two values inside, as positive terms or differences without cancellation.
     fn mass(&self, from: f64, to: f64) -> f64 {
         if from < 0.0 && to > 0.0 {
             return self.mass(from, 0.0) + self.mass(0.0, to);
@@ -221,7 +221,7 @@ impl Cut {
         half * LEGENDRE.iter().map(pair).sum::<f64>()
     }
 
-    /// Probabilities below and above.
+    /// Probabilities below and above `z`.
     fn masses(&self, z: f64) -> [f64; 2] {
         if z.is_nan() {
             return [f64::NAN; 2];
@@ -231,7 +231,7 @@ impl Cut {
         [clamped(self.mass(low, z) / self.total), clamped(self.mass(z, high) / self.total)]
     }
 
-    /// Where the probabilities below and above are these, the smaller one exact.
+    /// Value with these probabilities below and above it. The smaller one is used.
     fn quantile(&self, [below, above]: [f64; 2]) -> f64 {
         let [low, high] = self.ends;
         let (lower, p) = if below <= above { (true, below) } else { (false, above) };
@@ -241,7 +241,7 @@ impl Cut {
         if p == 0.0 {
             return if lower { low } else { high };
         }
-        // As if it were flat, or as if it were not cut.
+        // Start as for a flat density, or as for a normal one without a cut.
         let flat = if lower { low + p * (high - low) } else { high - p * (high - low) };
         let uncut = if lower { standard_normal::quantile(p) } else { standard_normal::upper_quantile(p) };
         let start = if high - low < 1.0 || self.peak != 0.0 { flat } else { uncut };
@@ -254,10 +254,10 @@ impl Cut {
         root([low, high], start, off)
     }
 
-    /// Gauss-Legendre on pieces of where the density counts.
+    /// Gauss-Legendre on pieces of the interval in which the density counts.
     fn discretised(&self) -> Discretised {
         let [low, high] = self.ends;
-        // Where the log of the density has fallen by that much: (z^2 - peak^2)/2 = FALL.
+        // Distance at which the logarithm of the density has fallen by FALL: (z^2 - peak^2)/2 = FALL.
         let reach = 2.0 * FALL / (self.peak.abs() + (self.peak * self.peak + 2.0 * FALL).sqrt());
         let (from, to) = (low.max(self.peak - reach), high.min(self.peak + reach));
         let (rule, width) = (legendre(NODES), (to - from) / PIECES as f64);

@@ -9,7 +9,7 @@ use super::{
     probability,
 };
 
-/// One of two values, either with probability one half: a pin that lies on one side of its hole or the other.
+/// Distribution of two values, each with probability one half, such as a pin that lies on one side of its hole or the other.
 ///
 /// ```
 /// use crate::distribution::{Distribution, TwoValues};
@@ -24,13 +24,13 @@ pub struct TwoValues {
 }
 
 impl TwoValues {
-    /// `lower` must be below `upper`.
+    /// Distribution of `lower` and `upper`. `lower` must be below `upper`.
     pub fn new(lower: f64, upper: f64) -> Result<Self, DistributionError> {
         let [middle, half] = interval(lower, upper)?;
         Self::about(middle, half)
     }
 
-    /// `mean - half` and `mean + half`; `half` must be above 0.
+    /// Distribution of `mean - half` and `mean + half`. `half` must be above 0.
     pub fn about(mean: f64, half: f64) -> Result<Self, DistributionError> {
         Ok(Self { mean: finite("the middle", mean)?, half: positive("the half width", half)? })
     }
@@ -49,7 +49,7 @@ impl Distribution for TwoValues {
         self.half
     }
 
-    /// `u` is -1 or 1, so that even moments are 1 and `u^2 - 1` is always 0.
+    /// Moments of `u`, which is -1 or 1: even moments are 1, and `u^2 - 1` is always 0.
     fn standard_moments(&self) -> StandardMoments {
         StandardMoments { skewness: 0.0, excess: -2.0, m5: 0.0, m6: 1.0, m7: 0.0, m8: 1.0, h6: 0.0, h7: 0.0, h8: 0.0 }
     }
@@ -58,7 +58,7 @@ impl Distribution for TwoValues {
         [self.mean - self.half, self.mean + self.half]
     }
 
-    /// Two atoms: the polynomial of order 2 is 0 at both.
+    /// Coefficients of two atoms: the polynomial of order 2 is 0 at both.
     fn jacobi(&self, order: usize) -> Jacobi {
         let order = order.min(2);
         Jacobi::new(vec![0.0; order], [1.0, 0.0][..order].to_vec())
@@ -73,9 +73,9 @@ impl Distribution for TwoValues {
     }
 }
 
-/// A staircase of two steps.
+/// Staircase of two steps.
 impl Probability for TwoValues {
-    /// There is none: both values are atoms.
+    /// Returns None, because both values are atoms.
     fn density(&self, _: f64) -> Option<f64> {
         None
     }
@@ -98,7 +98,7 @@ impl Probability for TwoValues {
         1.0 - self.cdf(x)
     }
 
-    /// Of probability 0 the lower value.
+    /// Least value whose `cdf` is at least `p`; for `p` of 0 the lower value.
     fn quantile(&self, p: f64) -> f64 {
         match probability::checked(p) {
             p if p.is_nan() => p,
@@ -107,7 +107,7 @@ impl Probability for TwoValues {
         }
     }
 
-    /// The least value with no more than `p` above it.
+    /// Least value with at most `p` above it.
     fn upper_quantile(&self, p: f64) -> f64 {
         match probability::checked(p) {
             p if p.is_nan() => p,

@@ -1,4 +1,4 @@
-//! The U-shaped distribution.
+//! U-shaped distribution.
 
 use std::sync::Arc;
 
@@ -8,10 +8,10 @@ use super::{
     Distribution, DistributionError, Jacobi, Probability, Scaled, StandardMoments, finite, interval, positive,
 };
 
-/// U-shaped distribution over an interval: the density grows with the square of the distance from the middle, `3 y^2/2` over
-/// the interval from -1 to 1. Its sigma is `sqrt(3/5)` of the half width.
+/// U-shaped distribution over an interval. The density grows with the square of the distance from the middle, `3 y^2/2` over the interval
+/// from -1 to 1. Its sigma is `sqrt(3/5)` times the half-width.
 ///
-/// It describes what stays near either end, such as a size that is reworked until it just fits.
+/// It describes values that stay near either end, such as a size that is reworked until it just fits.
 ///
 /// ```
 /// use crate::distribution::{Distribution, UShaped};
@@ -26,18 +26,18 @@ pub struct UShaped {
 }
 
 impl UShaped {
-    /// Between `lower` and `upper`.
+    /// Distribution between `lower` and `upper`.
     pub fn new(lower: f64, upper: f64) -> Result<Self, DistributionError> {
         let [middle, half] = interval(lower, upper)?;
         Self::about(middle, half)
     }
 
-    /// From `middle - half` to `middle + half`.
+    /// Distribution from `middle - half` to `middle + half`.
     pub fn about(middle: f64, half: f64) -> Result<Self, DistributionError> {
         Ok(Self { middle: finite("the middle", middle)?, half: positive("the half width", half)? })
     }
 
-    /// Probability above a place in the interval from -1 to 1, with the digits of its distance from the end.
+    /// Probability above `y` in the interval from -1 to 1, with the digits of its distance from the end.
     fn above(y: f64) -> f64 {
         let y = y.clamp(-1.0, 1.0);
         0.5 * (1.0 - y) * (1.0 + y + y * y)
@@ -61,7 +61,7 @@ impl Distribution for UShaped {
         self.half * 0.6f64.sqrt()
     }
 
-    /// Even moments over the interval from -1 to 1 are `3/(n + 3)`.
+    /// Moments from the even ones over the interval from -1 to 1, which are `3/(n + 3)`.
     fn standard_moments(&self) -> StandardMoments {
         let even = |order: i32| 3.0 / f64::from(order + 3) / 0.6f64.powi(order / 2);
         StandardMoments::with_excess(0.0, -38.0 / 21.0, [0.0, even(6), 0.0, even(8)])
@@ -71,10 +71,10 @@ impl Distribution for UShaped {
         [self.middle - self.half, self.middle + self.half]
     }
 
-    /// From Gauss-Legendre, which is exact.
+    /// Coefficients from Gauss-Legendre, which is exact.
     fn jacobi(&self, order: usize) -> Jacobi {
         let mut pieces = Discretised::default();
-        // An even number of nodes: one at the middle would weigh nothing.
+        // An even number of nodes, because a node at the middle would have no weight.
         pieces.piece([-1.0, 1.0], &legendre(2 * order.div_ceil(2) + 2), |y| 1.5 * y * y);
         pieces.standardise();
         pieces.symmetric_jacobi(order)

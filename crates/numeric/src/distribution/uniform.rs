@@ -1,4 +1,4 @@
-//! The uniform distribution.
+//! Uniform distribution.
 
 use std::sync::Arc;
 
@@ -25,13 +25,13 @@ pub struct Uniform {
 }
 
 impl Uniform {
-    /// `lower` must be below `upper`.
+    /// Distribution between `lower` and `upper`. `lower` must be below `upper`.
     pub fn new(lower: f64, upper: f64) -> Result<Self, DistributionError> {
         let [middle, half] = interval(lower, upper)?;
         Self::about(middle, half)
     }
 
-    /// From `mean - half` to `mean + half`; `half` must be above 0.
+    /// Distribution from `mean - half` to `mean + half`. `half` must be above 0.
     pub fn about(mean: f64, half: f64) -> Result<Self, DistributionError> {
         Ok(Self { mean: finite("the middle", mean)?, half: positive("the half width", half)? })
     }
@@ -50,7 +50,7 @@ impl Distribution for Uniform {
         self.half / 3f64.sqrt()
     }
 
-    /// Even moments are `3^(r/2)/(r+1)`: 9/5, 27/7 and 9; the rest are the fractions that follow from them.
+    /// Even moments are `3^(r/2)/(r+1)`: 9/5, 27/7 and 9. The other fields follow from them as fractions.
     fn standard_moments(&self) -> StandardMoments {
         StandardMoments {
             skewness: 0.0,
@@ -69,7 +69,7 @@ impl Distribution for Uniform {
         [self.mean - self.half, self.mean + self.half]
     }
 
-    /// Legendre polynomials on `-sqrt 3 ..= sqrt 3`: coefficients `3 n^2/(4 n^2 - 1)`.
+    /// Coefficients `3 n^2/(4 n^2 - 1)` of Legendre polynomials on `-sqrt 3 ..= sqrt 3`.
     fn jacobi(&self, order: usize) -> Jacobi {
         let beta = (1..=order).map(|n| (n * n) as f64 * 3.0 / (4 * n * n - 1) as f64).collect();
         Jacobi::new(vec![0.0; order], beta)

@@ -1,4 +1,4 @@
-//! The Weibull distribution.
+//! Weibull distribution.
 
 use std::sync::Arc;
 
@@ -8,8 +8,8 @@ use super::probability::checked;
 use super::tail::{above_origin, ratio};
 use super::{Distribution, DistributionError, Jacobi, Probability, Scaled, StandardMoments, between, positive};
 
-/// Weibull distribution from an origin on, of given mean and sigma, or mean and shape: `P(above x) = exp(-t^shape)` at the
-/// distance `t` from the origin in units of the scale.
+/// Weibull distribution from an origin on, with given mean and sigma, or mean and shape: `P(above x) = exp(-t^shape)` at the distance `t`
+/// from the origin in units of the scale.
 ///
 /// ```
 /// use crate::distribution::{Distribution, Weibull};
@@ -23,18 +23,18 @@ pub struct Weibull {
     origin: f64,
     mean: f64,
     sigma: f64,
-    /// One over the shape.
+    /// Inverse of the shape.
     power: f64,
     scale: f64,
-    /// The mean's distance from the origin by the scale, minus 1.
+    /// Ratio of the mean's distance from the origin to the scale, minus 1.
     off: f64,
     moments: StandardMoments,
     jacobi: Jacobi,
 }
 
-/// The largest sigma by the distance of the mean from the origin: shape 0.09.
+/// Largest ratio of sigma to the distance of the mean from the origin, at a shape of 0.09.
 const LARGEST: f64 = 1e3;
-/// Zeta's values at 2, 3 and so on.
+/// Values of the zeta function at 2, 3 and so on.
 const ZETA: [f64; 23] = [
     1.644_934_066_848_226_4,
     1.202_056_903_159_594_2,
@@ -60,9 +60,9 @@ const ZETA: [f64; 23] = [
     1.000_000_119_219_926,
     1.000_000_059_608_189,
 ];
-/// Euler's constant.
+/// Euler-Mascheroni constant.
 const EULER: f64 = 0.577_215_664_901_532_9;
-/// Below this argument, logarithms of gamma functions are summed as series.
+/// Argument below which logarithms of gamma functions are summed as series.
 const SMALL: f64 = 0.1;
 
 /// `log Gamma(1 + x)`, with all its digits next to 0.
@@ -79,7 +79,7 @@ fn zeta_series(x: f64, factor: impl Fn(f64) -> f64) -> f64 {
     ZETA.iter().enumerate().rev().map(term).sum()
 }
 
-/// `log(1 + (sigma/mean)^2)` at the inverse shape: `log Gamma(1 + 2x) - 2 log Gamma(1 + x)`, which is nearly `zeta(2) x^2`.
+/// `log(1 + (sigma/mean)^2)` as a function of the inverse shape: `log Gamma(1 + 2x) - 2 log Gamma(1 + x)`, nearly `zeta(2) x^2`.
 fn log_spread(power: f64) -> f64 {
     if power < 0.5 * SMALL {
         return zeta_series(power, |n| libm::exp2(n) - 2.0);
@@ -88,11 +88,12 @@ fn log_spread(power: f64) -> f64 {
 }
 
 impl Weibull {
-    /// `mean` must lie above `origin`, `sigma` be at most 1000 times that distance; the shape is solved for.
+    /// Distribution from `origin` on. `mean` must lie above `origin`, and `sigma` be at most 1000 times that distance. The shape is
+    /// computed.
     pub fn new(origin: f64, mean: f64, sigma: f64) -> Result<Self, DistributionError> {
         let [_, ratio] = ratio(origin, mean, sigma, LARGEST)?;
         let wanted = libm::log1p(ratio * ratio);
-        // Log against log the spread is nearly straight, slope 2 at the small end and 1 at the large one.
+        // In logarithms the spread is nearly straight over the inverse shape, with slope 2 at the small end and 1 at the large one.
         let off = |log_power: f64| {
             let power = libm::exp(log_power);
             let spread = log_spread(power);
@@ -105,7 +106,7 @@ impl Weibull {
         Self::build(origin, mean, sigma, power)
     }
 
-    /// Of this shape, from 0.09 to 1e12.
+    /// Distribution with this shape, from 0.09 to 1e12.
     pub fn with_shape(origin: f64, mean: f64, shape: f64) -> Result<Self, DistributionError> {
         let distance = above_origin(origin, mean)?;
         let shape = between("shape", positive("shape", shape)?, [0.09, 1e12], "from 0.09 to 1e12")?;
@@ -126,14 +127,13 @@ impl Weibull {
         Ok(Self { origin, mean, sigma, power, scale, off, moments, jacobi })
     }
 
-    /// Its shape.
     pub(crate) fn shape(&self) -> f64 {
         1.0 / self.power
     }
 
-    /// The logarithm of the distance from the origin, in units of the scale.
+    /// Logarithm of the distance from the origin, in units of the scale.
     fn log(&self, x: f64) -> f64 {
-        // For a large shape all values lie next to the scale: by the distance from the mean, which has the digits.
+        // For a large shape all values lie next to the scale. Then use the deviation from the mean, which keeps the digits.
         let beside = (x - self.mean) / self.scale + self.off;
         match beside.abs() < 0.5 {
             true => libm::log1p(beside),
@@ -142,12 +142,12 @@ impl Weibull {
         }
     }
 
-    /// `t^shape`: the negative logarithm of the probability above.
+    /// Hazard `t^shape`: the negative logarithm of the probability above.
     fn hazard(&self, x: f64) -> f64 {
         libm::exp(self.log(x) / self.power)
     }
 
-    /// Where the logarithm of the hazard is this.
+    /// Value at which the logarithm of the hazard is `log_hazard`.
     fn at_hazard(&self, log_hazard: f64) -> f64 {
         let log = self.power * log_hazard;
         if log.abs() < 0.5 {
@@ -158,10 +158,10 @@ impl Weibull {
     }
 }
 
-/// The distribution of `t - 1` by the trapezoidal rule in the logarithm of the hazard, which converges like `exp(-c/step)`:
-/// the central moments of closed forms are differences of gamma functions that agree to most of their digits.
+/// Quadrature of `t - 1` by the trapezoidal rule in the logarithm of the hazard, which converges like `exp(-c/step)`. In closed form the
+/// central moments are differences of gamma functions that agree in most of their digits.
 fn discretised(power: f64) -> Discretised {
-    // Moments up to the 2 ORDER + 2nd weigh hazards around this.
+    // Moments up to order 2 ORDER + 2 have their weight at hazards around this one.
     let peak = (2 * ORDER + 2) as f64 * power;
     let step = (0.7 / (1.0 + peak).sqrt()).min(0.2);
     let (from, to) = (-160.0, libm::log(2.0 * peak + 140.0));
@@ -187,7 +187,7 @@ impl Distribution for Weibull {
         self.sigma
     }
 
-    /// By quadrature of positive terms: in closed form they are differences of gamma functions, which cancel.
+    /// Moments by quadrature of positive terms. In closed form they are differences of gamma functions, which cancel.
     fn standard_moments(&self) -> StandardMoments {
         self.moments
     }
@@ -196,12 +196,12 @@ impl Distribution for Weibull {
         [self.origin, f64::INFINITY]
     }
 
-    /// Up to order 16.
+    /// Coefficients up to order 16.
     fn jacobi(&self, order: usize) -> Jacobi {
         self.jacobi.truncated(order)
     }
 
-    /// Sigma scales, mean and origin stay: the shape follows.
+    /// Copy with sigma scaled. Mean and origin stay, so the shape changes.
     fn scaled(&self, factor: f64, _: f64) -> Option<Scaled> {
         Some(Self::new(self.origin, self.mean, self.sigma * factor).map(|scaled| Arc::new(scaled) as _))
     }

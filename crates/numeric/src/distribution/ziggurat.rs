@@ -1,4 +1,4 @@
-//! Random normal and uniform values, a block at a time.
+//! Random normal and uniform values, computed in blocks.
 
 use std::cell::RefCell;
 use std::sync::LazyLock;
@@ -8,13 +8,13 @@ use rand_distr::Open01;
 
 use crate::elementary::{Elementary, Exp, Ln, Work, on_this_processor};
 
-/// Layers: the density is cut into as many pieces of one area.
+/// Number of layers of equal area into which the density is cut.
 const LAYERS: usize = 1024;
-/// Where the tail begins, which with its rectangle is the first piece.
+/// Beginning of the tail, which together with its rectangle is the first layer.
 const TAIL: f64 = 4.038_849_846_109_504;
-/// Fewer values than this are not worth a block.
+/// Fewest values for which a block pays.
 const FEW: usize = 8;
-/// Values that are looked over at once for doubtful ones.
+/// Values that are tested at once for lying outside the inner part of their layer.
 const LOOK: usize = 32;
 /// Random words that are drawn at once.
 const WORDS: usize = 256;
@@ -22,15 +22,15 @@ const WORDS: usize = 256;
 /// Mean and sigma of the standard normal distribution.
 pub(crate) const STANDARD: (f64, f64) = (0.0, 1.0);
 
-/// Widths of the layers and the density at their ends.
+/// Widths of the layers and the density at their edges.
 struct Layers {
     width: [f64; LAYERS + 1],
     height: [f64; LAYERS + 1],
-    /// The outer and the inner width of every layer.
+    /// Outer and inner width of every layer.
     both: [Both; LAYERS],
 }
 
-/// Two numbers that one load takes, and no border between lines of a cache parts.
+/// Two numbers that one load reads and that share a cache line.
 #[derive(Clone, Copy)]
 #[repr(align(16))]
 struct Both([f64; 2]);
@@ -49,11 +49,11 @@ static NORMAL: LazyLock<Layers> = LazyLock::new(|| {
     Layers { width, height: width.map(density), both }
 });
 
-/// Fills `out` with independent values of the normal distribution of a mean and sigma, by the ziggurat (Marsaglia and Tsang 2000) in the
-/// form of Doornik (2005): a layer by ten bits of a word, a place in it by 52 others.
+/// Fills `out` with independent values of the normal distribution with this mean and sigma. Method: the ziggurat (Marsaglia and Tsang 2000)
+/// in the form of Doornik (2005), with the layer from ten bits of a word and the position in it from 52 others.
 ///
-/// `rand_distr` has the same, one value after the other; most of the time is the call. Here one in 300 wants more than a table
-/// and a comparison, and comes after the block.
+/// `rand_distr` implements it for one value at a time, where the call takes most of the time. Here one value in 300 needs more than a table
+/// and a comparison, and these values are computed after the block.
 pub(crate) fn normals(rng: &mut dyn Rng, (mean, sigma): (f64, f64), out: &mut [f64]) {
     let layers = &*NORMAL;
     if out.len() < FEW {
@@ -71,26 +71,26 @@ pub(crate) fn normals(rng: &mut dyn Rng, (mean, sigma): (f64, f64), out: &mut [f
 }
 
 thread_local! {
-    /// One a thread: made anew for every call, it would be cleared every time.
+    /// One buffer for each thread, because a new one in every call would have to be cleared.
     static ROOM: RefCell<Room> =
         const { RefCell::new(Room { words: [[0; 8]; WORDS], widths: [[0.0; 2]; WORDS], doubtful: [0; WORDS / LOOK] }) };
 }
 
-/// Room in which a block of values is made.
+/// Buffer in which a block of values is computed.
 struct Room {
     words: [[u8; 8]; WORDS],
-    /// The outer and the inner width of every word's layer, side by side as in the table: one load and one store for both.
+    /// Outer and inner width of every word's layer, side by side as in the table: one load and one store for both.
     widths: [[f64; 2]; WORDS],
-    /// Of every look, which of its words lie in no layer's inner part.
+    /// Bit mask for each group of `LOOK` words of those that lie outside the inner part of their layer.
     doubtful: [u32; WORDS / LOOK],
 }
 
 impl Room {
-    /// Draws so many values of a mean and sigma; what stands behind them is of no use.
+    /// Draws this number of values with a mean and sigma into the front of `out`. The values behind them have no meaning.
     fn fill(&mut self, rng: &mut dyn Rng, place: (f64, f64), drawn: usize, out: &mut [f64; WORDS]) {
         let layers = &*NORMAL;
         rng.fill_bytes(self.words[..drawn].as_flattened_mut());
-        // All of them, so that the loops have a length that is known.
+        // Compute the whole block, so that the loops have a constant length.
         on_this_processor(Inner { layers, room: &mut *self, place, out: &mut *out });
         for (look, &doubtful) in self.doubtful.iter().enumerate() {
             let mut left = doubtful;
@@ -107,7 +107,7 @@ impl Room {
     }
 }
 
-/// The values of words that lie in the inner part of their layer, and where some do not.
+/// Work item: the values of words inside the inner part of their layer, and a mask of the others.
 struct Inner<'a> {
     layers: &'a Layers,
     room: &'a mut Room,
@@ -118,7 +118,7 @@ struct Inner<'a> {
 impl Work for Inner<'_> {
     type Output = ();
 
-    /// Tables first, one by one; then what goes side by side.
+    /// Reads the tables one by one first, then computes side by side.
     #[inline(always)]
     fn work(self) {
         let Self { layers, room: Room { words, widths, doubtful }, place: (mean, sigma), out } = self;
@@ -138,7 +138,7 @@ impl Work for Inner<'_> {
                 any |= u64::from(beyond(x, lane));
                 *value = mean + sigma * x;
             }
-            // One look in ten has some.
+            // One group in ten has a bit set.
             *doubtful = 0;
             if any != 0 {
                 *doubtful = (0..LOOK).fold(0, |all, lane| all | u32::from(beyond(place(lane), lane)) << lane);
@@ -167,7 +167,7 @@ impl Layers {
         }
     }
 
-    /// The value of a word that lies in no layer's inner part; None where it is rejected.
+    /// Value of a word outside the inner part of its layer. Returns None if it is rejected.
     #[cold]
     fn settled(&self, word: u64, rng: &mut dyn Rng) -> Option<f64> {
         let (layer, x) = self.place(word);
@@ -177,7 +177,7 @@ impl Layers {
             return (height < Exp::of(-0.5 * x * x)).then_some(x);
         }
         loop {
-            // Marsaglia's (1964) tail.
+            // Tail by the method of Marsaglia (1964).
             let beyond = -Ln::of(rng.sample(Open01)) / TAIL;
             if -2.0 * Ln::of(rng.sample(Open01)) >= beyond * beyond {
                 return Some((TAIL + beyond).copysign(x));
@@ -186,15 +186,15 @@ impl Layers {
     }
 }
 
-/// A number from -1 to below 1 in steps of 2^-51, by the upper bits of a word.
+/// Number from -1 to below 1 in steps of 2^-51, from the upper bits of a word.
 #[inline(always)]
 fn symmetric(word: u64) -> f64 {
     f64::from_bits(word >> 12 | 0x4000_0000_0000_0000) - 3.0
 }
 
-/// Fills `out` with independent numbers evenly spread about a mean.
+/// Fills `out` with independent numbers, uniform within `half` about a mean.
 pub(crate) fn uniforms(rng: &mut dyn Rng, (mean, half): (f64, f64), out: &mut [f64]) {
-    // The words stand where the numbers will.
+    // Write the random words into the memory of the numbers.
     rng.fill_bytes(bytemuck::cast_slice_mut(out));
     on_this_processor(Even { place: (mean, half), out });
 }
@@ -209,7 +209,7 @@ impl Work for Even<'_> {
 
     #[inline(always)]
     fn work(self) {
-        /// Half a step, so that -1 is as far as 1.
+        /// Half a step, which makes the interval symmetric.
         const MIDDLE: f64 = 1.0 / (1u64 << 52) as f64;
         let (mean, half) = self.place;
         for value in self.out {

@@ -1,7 +1,7 @@
-//! Points that several laws over the same inputs share, thick where a limit is broken.
+//! Points that several surface distributions over the same inputs share, dense where a limit is exceeded.
 //!
-//! Inputs are functions of independent normal scores. A quarter of the points are those of the own law; of the others every broken
-//! limit has its part, by its probability:
+//! Inputs are functions of independent normal scores. A quarter of the points are drawn from the inputs' own distribution. The other points
+//! are divided among the limits in proportion to their reject rates, and each of them lies beyond a cut near its limit:
 //!
 //! ```text
 //! t = a'z beyond c          a: unit vector of covariances of the characteristic with the scores
@@ -9,11 +9,13 @@
 //! w(z) = 1 / (share of own points + sum over limits of share 1{t > c} / P(t > c))
 //! ```
 //!
-//! A point beyond no cut has the weight 4 at most, so that a surface which no direction explains loses a factor of 2 in its error
-//! and no more. Sources: the sample of each rare event by its own share, A. B. Owen, Y. Maximov and M. Chertkov, "Importance
-//! sampling the union of rare events", Electronic Journal of Statistics 13 (2019); weights by the mixture, E. Veach and L. Guibas,
-//! "Optimally combining sampling techniques", SIGGRAPH 1995, and A. Owen and Y. Zhou, Journal of the American Statistical
-//! Association 95 (2000). There the events are half-spaces; here a half-space is put about each.
+//! A point beyond no cut has a weight of at most 4. A surface that no direction explains therefore loses at most a factor of 2 in its
+//! error.
+//!
+//! Sources: a sample for each rare event in proportion to its probability, A. B. Owen, Y. Maximov and M. Chertkov, "Importance sampling the
+//! union of rare events", Electronic Journal of Statistics 13 (2019); weights by the mixture, E. Veach and L. Guibas, "Optimally combining
+//! sampling techniques", SIGGRAPH 1995, and A. Owen and Y. Zhou, Journal of the American Statistical Association 95 (2000). There the
+//! events are half-spaces. Here each event is enclosed by a half-space.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -30,62 +32,61 @@ use crate::correlation::Block;
 use crate::distribution::standard_normal;
 use crate::sampling::{SOBOL_DIMENSIONS, Sobol, tails};
 
-/// Points in every replicate.
+/// Points of each replicate.
 pub(super) const POINTS: usize = 1 << 11;
-/// How many of them are of the inputs' own distributions.
+/// Points of each replicate that are drawn from the inputs' own distribution.
 const OWN: usize = POINTS / 4;
-/// Seed of the points.
 const SEED: u64 = 1;
-/// Deviations of what a direction does not explain, by which its cut is nearer than the limit: of what breaks the limit a
-/// thousandth is left to the own points.
+/// Distance of a cut inside its limit, in standard deviations of the part that the direction does not explain. At three of them a
+/// thousandth of the rejects lies before the cut and is left to the points of the own distribution.
 const NEARER: f64 = 3.0;
-/// Values of surfaces that are listed at most: of a hundred inputs and ten characteristics 2^14 combinations.
+/// Greatest number of surface values that are listed: for a hundred inputs and ten characteristics 2^14 combinations.
 const LISTED: usize = 1 << 24;
-/// Combinations that are taken together.
+/// Combinations that are evaluated together.
 const ROWS: usize = 1 << 10;
-/// A direction that explains less of the variance serves no cut.
+/// Least share of the variance that a direction must explain for its cut to be used.
 const LEAST_EXPLAINED: f64 = 0.25;
 
 /// One side of the limits of a law.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Limit {
-    /// The place of the law among all.
+    /// Index of the law among all characteristics.
     pub(super) of: usize,
     pub(super) side: LawTail,
 }
 
-/// The counts of one replicate.
+/// Counts of exceeded limits in one replicate.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Counts {
-    /// Mean of the broken limits.
+    /// Mean number of exceeded limits.
     pub(super) broken: f64,
-    /// Mean of the broken limits beyond the first.
+    /// Mean number of exceeded limits beyond the first.
     pub(super) beyond: f64,
-    /// Sum of squares of the weights of points that break a limit, each by the limits that it breaks.
+    /// Sum over the points of the squared weight times the number of exceeded limits.
     pub(super) squares: f64,
 }
 
-/// All inputs that count for any of the laws, by their positions.
+/// All inputs that any of the laws depends on, ordered by their positions.
 pub(super) struct CommonPoints<'a> {
     characteristics: &'a [(&'a SurfaceLaw, SpecLimits)],
     laws: Vec<(usize, Arc<Input>)>,
-    /// Places in `laws` of correlated inputs, and the factor of their normal variables.
+    /// Indices in `laws` of the correlated inputs. `factor` maps independent normal scores to their correlated normal variables.
     members: Vec<usize>,
     factor: Mat<f64>,
-    /// Those of them that vary together as a whole.
+    /// Blocks of correlated inputs that have one joint distribution.
     blocks: Vec<Block>,
     sobol: Option<Sobol>,
     cuts: Vec<Cut>,
 }
 
-/// A half-space of the scores about what breaks a limit.
+/// Half-space of the scores that holds nearly all points beyond a limit.
 struct Cut {
-    /// Unit vector by places in `laws`, out of the limit.
+    /// Unit vector by indices of `laws`, pointing beyond the limit.
     direction: Vec<f64>,
     score: f64,
-    /// Of the own law beyond the cut.
+    /// Probability of the half-space in the inputs' own distribution.
     probability: f64,
-    /// Points of a replicate that are drawn beyond it.
+    /// Points of a replicate that are drawn beyond the cut.
     rows: std::ops::Range<usize>,
 }
 
@@ -120,7 +121,7 @@ impl<'a> CommonPoints<'a> {
         points
     }
 
-    /// Half-spaces about the limits, with the points that are not of the own law divided among them.
+    /// Half-spaces about the limits. The points outside the own distribution are divided among them.
     fn cuts(&self, tails: &[(Limit, LawFigure)]) -> Vec<Cut> {
         let scores = self.scores(0);
         let directions: Vec<Option<(Vec<f64>, f64)>> =
@@ -130,7 +131,7 @@ impl<'a> CommonPoints<'a> {
             let Some((direction, explained)) = &directions[limit.of] else { continue };
             let apart = NEARER * (1.0 - explained * explained).max(0.0).sqrt();
             let score = explained * standard_normal::upper_quantile(tail.value) - apart;
-            // Where half of all points or more were beyond, those of the own law do as well.
+            // At a limit that half of all points or more exceed, the points of the own distribution suffice.
             if tail.value > 0.0 && score > 0.0 {
                 let out = if limit.side == LawTail::Upper { 1.0 } else { -1.0 };
                 let direction = direction.iter().map(|a| out * a).collect();
@@ -149,8 +150,8 @@ impl<'a> CommonPoints<'a> {
         cuts.into_iter().map(|(cut, _)| cut).collect()
     }
 
-    /// The unit vector of covariances of a law with the scores, and the correlation with the score along it; None where that is
-    /// small. Products of independent inputs have no part in it.
+    /// Unit vector of the covariances of a law with the scores, and the correlation of the law with the score along it. Returns None if the
+    /// direction explains too little variance. Products of independent inputs do not contribute.
     fn direction(&self, law: &SurfaceLaw, scores: &[Vec<f64>]) -> Option<(Vec<f64>, f64)> {
         let mut covariances = vec![0.0; self.laws.len()];
         for (place, (position, input)) in self.laws.iter().enumerate() {
@@ -172,7 +173,7 @@ impl<'a> CommonPoints<'a> {
         Some((covariances, explained))
     }
 
-    /// The counts of broken limits over the points of a replicate.
+    /// Counts the exceeded limits at the points of a replicate.
     pub(super) fn counts(&self, replicate: usize) -> Counts {
         let mut columns = self.scores(replicate);
         let weights = self.draw(&mut columns);
@@ -187,7 +188,7 @@ impl<'a> CommonPoints<'a> {
         counts
     }
 
-    /// How many laws break a limit at every point: a column for every input.
+    /// Number of laws outside their limits at every point. `columns` has one column for every input.
     fn broken(&self, columns: &[Vec<f64>], points: usize) -> Vec<usize> {
         let mut broken = vec![0usize; points];
         for (law, limits) in self.characteristics {
@@ -205,8 +206,8 @@ impl<'a> CommonPoints<'a> {
         broken
     }
 
-    /// The mean of the broken limits beyond the first over all combinations of values; None where an input has a density, and where there
-    /// are too many of them.
+    /// Mean number of exceeded limits beyond the first, by summing over all combinations of values. Returns None if an input has a density
+    /// or if there are too many combinations.
     pub(super) fn listed(&self) -> Option<LawFigure> {
         if !self.laws.iter().all(|(_, input)| input.is_discrete()) {
             return None;
@@ -232,18 +233,18 @@ impl<'a> CommonPoints<'a> {
             }
         });
         take(&mut columns, &mut weights);
-        // Shares are rounded, and so is every product of them.
+        // Probabilities of the values are rounded, and so is every product of them.
         Some(LawFigure::new(sum, 4.0 * f64::EPSILON * (self.laws.len() + 1) as f64 * sum))
     }
 
-    /// Independent normal scores of the own law: a column for every input.
+    /// Independent normal scores of the own distribution, one column for every input.
     fn scores(&self, replicate: usize) -> Vec<Vec<f64>> {
         let mut digits = vec![0; POINTS];
         let column = |dimension: usize| {
             let key = mixed(mixed(mixed(SEED) ^ replicate as u64).wrapping_add(dimension as u64));
             match &self.sobol {
                 Some(sobol) if dimension < SOBOL_DIMENSIONS => sobol.digits(dimension, 0, &mut digits),
-                // Random digits, scrambled like the others.
+                // Beyond the dimensions of the Sobol' sequence: random digits, scrambled like the others.
                 _ => {
                     digits.iter_mut().enumerate().for_each(|(i, digits)| *digits = mixed(key ^ i as u64).reverse_bits())
                 }
@@ -256,7 +257,7 @@ impl<'a> CommonPoints<'a> {
         (0..self.laws.len()).map(column).collect()
     }
 
-    /// Puts the points of every cut beyond it; the weights of all points.
+    /// Moves the points of every cut beyond it and returns the weights of all points.
     fn draw(&self, scores: &mut [Vec<f64>]) -> Vec<f64> {
         let along = |scores: &[Vec<f64>], cut: &Cut, rows: std::ops::Range<usize>| {
             let mut t = vec![0.0; rows.len()];
@@ -274,6 +275,7 @@ impl<'a> CommonPoints<'a> {
                 column[cut.rows.clone()].iter_mut().zip(&moves).for_each(|(z, by)| *z += a * by);
             }
         }
+        // Weight by the mixture: own density over the sum of the densities that points are drawn from.
         let cut_rows: usize = self.cuts.iter().map(|cut| cut.rows.len()).sum();
         let mut ratios = vec![(POINTS - cut_rows) as f64; POINTS];
         for cut in &self.cuts {
@@ -284,7 +286,7 @@ impl<'a> CommonPoints<'a> {
         ratios.into_iter().map(|sum| POINTS as f64 / sum).collect()
     }
 
-    /// From independent normal scores to the inputs, in sigmas off their means.
+    /// Turns independent normal scores into standardised inputs, in place.
     fn inputs(&self, columns: &mut [Vec<f64>]) {
         if !self.members.is_empty() {
             self.correlate(columns);
@@ -294,7 +296,7 @@ impl<'a> CommonPoints<'a> {
         }
     }
 
-    /// From independent normal scores of the correlated inputs to their normal variables.
+    /// Turns the independent normal scores of the correlated inputs into their correlated normal variables, in place.
     fn correlate(&self, columns: &mut [Vec<f64>]) {
         let (mut z, mut scratch) = (vec![0.0; self.laws.len()], Vec::new());
         for point in 0..POINTS {

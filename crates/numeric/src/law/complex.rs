@@ -1,10 +1,10 @@
-//! Complex numbers, with the crate's own elementary functions: the same bits on every processor.
+//! Complex numbers on the crate's own elementary functions, so that results have the same bits on every processor.
 
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub};
 
 use crate::elementary::{Cos, Elementary, Exp, Sin};
 
-/// `re + i im`.
+/// Complex number `re + i im`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Complex {
     pub(super) re: f64,
@@ -19,7 +19,7 @@ impl Complex {
         Self { re, im }
     }
 
-    /// `exp(i angle)`.
+    /// Unit complex number `exp(i angle)`.
     pub(super) fn cis(angle: f64) -> Self {
         Self { re: Cos::of(angle), im: Sin::of(angle) }
     }
@@ -28,12 +28,12 @@ impl Complex {
         Self::cis(self.im) * Exp::of(self.re)
     }
 
-    /// The principal logarithm.
+    /// Principal logarithm.
     pub(super) fn ln(self) -> Self {
         Self { re: 0.5 * libm::log(self.square()), im: libm::atan2(self.im, self.re) }
     }
 
-    /// `|z|^2`.
+    /// Squared modulus `|z|^2`.
     pub(super) fn square(self) -> f64 {
         self.re * self.re + self.im * self.im
     }

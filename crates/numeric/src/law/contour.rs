@@ -1,7 +1,8 @@
 //! Contours through the saddle point, and the values of the transform on them, which many limits share.
 //!
-//! Tilts stand on a ladder: the contour of a limit is a function of the limit alone, whatever has been asked before, so that
-//! results do not depend on order or threads. Limits are counted from the centre of the surface. A contour keeps the transform at its points; each further limit costs one sum.
+//! Tilts stand on a fixed ladder, so the contour of a limit depends on the limit alone and not on earlier calls. Results therefore do not
+//! depend on order or threads. Limits are counted from the centre of the surface. A contour keeps the transform at its points. Each further
+//! limit costs one sum.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -11,18 +12,18 @@ use super::complex::Complex;
 use super::single_sum::BLOCK;
 use super::transform::Transform;
 
-/// From rung to rung; the nearest rung costs half a digit at 40 sigma, and nothing nearer.
+/// Ratio of neighbouring tilts on the ladder, `2^(1/4)`. Using the nearest one costs half a digit at 40 sigma and nothing closer in.
 const STEP: f64 = 1.189_207_115_002_721;
-/// The least tilt by sigma.
+/// Least tilt, times sigma.
 const LEAST: f64 = 1.2;
-/// The largest tilt by sigma where a domain has no end: of closed forms; of panels; of trees.
+/// Greatest tilt, times sigma, where the domain of the transform has no end: for closed forms, for panels, for trees.
 const MOST: [f64; 3] = [1e9, 3000.0, 300.0];
-/// Logarithm of the part of a tail that the sum may take from its neighbours.
+/// Negative logarithm of the greatest relative error that a neighbouring image may add to a tail in Poisson's formula.
 const NEIGHBOUR: f64 = 32.0;
-/// The same for the neighbour that the end of the domain bounds.
+/// Negative logarithm of the factor by which the image on the side of the domain's end has decayed.
 const ROOM: f64 = 80.0;
 
-/// One side's tilts, and what has been computed on them.
+/// Tilts of one side of the law, and the contours computed for them.
 #[derive(Debug)]
 pub(super) struct Side {
     tail: LawTail,
@@ -32,19 +33,19 @@ pub(super) struct Side {
     contours: Mutex<BTreeMap<Key, Arc<Contour>>>,
 }
 
-/// A tilt and what belongs to it.
+/// Tilt with its cumulants and the range of limits that use it.
 #[derive(Debug, Clone, Copy)]
 struct Rung {
     theta: f64,
     cumulants: [f64; 3],
-    /// Up to which limit it is used.
+    /// Farthest limit that uses this tilt.
     until: f64,
 }
 
-/// Rung, spacing, and the direction in which the contour is bent.
+/// Rung index, doublings of the spacing, and the direction in which the contour is bent.
 type Key = (usize, u32, i8);
 
-/// `s = theta + bend t^2 + i t`, in steps of `t`.
+/// Contour `s = theta + bend t^2 + i t`, in equal steps of `t`.
 #[derive(Debug)]
 pub(super) struct Contour {
     pub(super) theta: f64,
@@ -52,16 +53,16 @@ pub(super) struct Contour {
     pub(super) bend: f64,
     /// `K(theta)`.
     pub(super) log: f64,
-    /// The same of every single input.
+    /// Contribution of every single input to `K(theta)`.
     logs: Vec<f64>,
     values: Mutex<Values>,
 }
 
 #[derive(Debug, Default)]
 struct Values {
-    /// `M(s)/M(theta)`; its logarithm where the contour is bent.
+    /// `M(s)/M(theta)`, or its logarithm if the contour is bent.
     at: Vec<Complex>,
-    /// Whether sums over nodes resolve no point farther out.
+    /// True if sums over nodes resolve no point farther out.
     ended: bool,
 }
 
@@ -85,7 +86,7 @@ impl Side {
         self.tail.sign()
     }
 
-    /// The rung whose saddle point is nearest to a limit.
+    /// Rung whose saddle point is nearest to a limit.
     fn rung(&self, transform: &Transform, y: f64) -> (usize, Rung) {
         let mut rungs = self.rungs.lock().unwrap_or_else(PoisonError::into_inner);
         for place in 0.. {
@@ -107,13 +108,11 @@ impl Side {
         unreachable!("the last rung is used up to infinity")
     }
 
-    /// The contour for a limit.
     pub(super) fn contour(&self, transform: &Transform, y: f64) -> Arc<Contour> {
         self.contour_to(transform, y, y)
     }
 
-    /// The contour for one limit, with points so near to each other that it serves all of this side up to another one, which may lie
-    /// farther out.
+    /// Contour for one limit, with points so dense that it also serves every limit of this side up to `farthest`.
     pub(super) fn contour_to(&self, transform: &Transform, y: f64, farthest: f64) -> Arc<Contour> {
         let (place, rung) = self.rung(transform, y);
         let (theta, [log, _, spread]) = (rung.theta, rung.cumulants);
@@ -122,7 +121,8 @@ impl Side {
             LawTail::Lower => -transform.domain[0],
         };
         let room = end - theta.abs();
-        // By Poisson's formula the sum is sum_m exp(theta m D) sf(y + m D): far enough from both neighbours.
+        // By Poisson's formula the sum is sum_m exp(theta m D) sf(y + m D). The spacing D keeps both neighbours m = -1 and m = 1
+        // negligible.
         let below = |y: f64| (NEIGHBOUR + (theta * y - log).max(0.0)) / theta.abs();
         let least = below(if rung.until.is_finite() { rung.until } else { transform.mean })
             .max(if room.is_finite() { ROOM / room } else { 0.0 })
@@ -130,7 +130,7 @@ impl Side {
         let doublings = libm::ceil(2.0 * libm::log2(below(farthest) / least)).max(0.0);
         let spacing = least * libm::exp2(0.5 * doublings);
         let bend = match transform.vertex {
-            // 0.12 of the distance that a parabola can be bent by without leaving the domain.
+            // A parabola can be bent by this part of the distance without leaving the domain.
             Some(vertex) => {
                 let size = if room.is_finite() { theta.abs().max(room) } else { theta.abs() };
                 (0.12 / size).copysign(y - vertex)
@@ -148,19 +148,18 @@ impl Side {
 }
 
 impl Contour {
-    /// With this tilt and these steps, whatever the law is.
+    /// Contour with this tilt and these steps for any law.
     pub(super) fn fixed(transform: &Transform, theta: f64, step: f64, bend: f64) -> Self {
         let [log, ..] = transform.cumulants(theta);
         Self { theta, step, bend, log, logs: transform.logs(theta), values: Mutex::default() }
     }
 
-    /// The point of this index.
     pub(super) fn s(&self, index: usize) -> Complex {
         let t = self.step * index as f64;
         Complex::new(self.theta + self.bend * t * t, t)
     }
 
-    /// `exp(K(s) - K(theta) - (s - theta) y)` at the points up to `count`; fewer where sums over nodes ended it.
+    /// `exp(K(s) - K(theta) - (s - theta) y)` at the first `count` points. The result is shorter if sums over nodes ended the contour.
     pub(super) fn integrand(&self, transform: &Transform, y: f64, count: usize) -> Vec<Complex> {
         let mut values = self.values.lock().unwrap_or_else(PoisonError::into_inner);
         while values.at.len() < count && !values.ended {
@@ -173,7 +172,7 @@ impl Contour {
         }
     }
 
-    /// A block of points more.
+    /// Computes one more block of points.
     fn extend(&self, transform: &Transform, values: &mut Values) {
         let first = values.at.len();
         let mut block = vec![Complex::ONE; BLOCK];

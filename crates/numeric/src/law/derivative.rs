@@ -1,7 +1,7 @@
-//! Derivatives of a tail by tolerances, from the contour, the panels or the points that give the tail itself.
+//! Derivatives of a tail by the tolerances, from the same contour, panels or points as the tail itself.
 //!
-//! A tolerance that grows by a part `e` makes `z_j` to `(1 + e) z_j` at fixed shape: the surface changes by
-//! `z_j dy/dz_j`, and `dK = s E[z_j dy/dz_j exp(s y)]/E[exp(s y)]`.
+//! If a tolerance grows by the fraction `e` at fixed shape, `z_j` becomes `(1 + e) z_j`. The surface then changes by `e z_j dy/dz_j`, and
+//! `dK = s E[z_j dy/dz_j exp(s y)]/E[exp(s y)]`.
 
 use faer::Mat;
 
@@ -17,7 +17,7 @@ use super::tree::Tree;
 use super::{Kind, LawFigure, LawTail, SurfaceLaw};
 use crate::elementary::{Work, on_this_processor};
 
-/// Of all inputs of the surrogate, 0 for one without a part in the surface; None where the law is a step function.
+/// Derivatives by all inputs of the surrogate, 0 for one without a part in the surface. Returns None if the law is a step function.
 pub(super) fn tail_derivatives(law: &SurfaceLaw, y: f64, tail: LawTail) -> Option<Vec<LawFigure>> {
     let [least, most] = law.range;
     if y.is_nan() || law.step {
@@ -37,11 +37,12 @@ pub(super) fn tail_derivatives(law: &SurfaceLaw, y: f64, tail: LawTail) -> Optio
     Some(all)
 }
 
-/// Of all inputs of a surface that an exact law has taken; 0 for the others.
+/// Derivatives of a tail of an inverted law by all inputs of the surface, 0 for inputs outside its transform.
 pub(super) fn exact_derivatives(law: &Inversion, surface: &Surface, y: f64, tail: LawTail) -> Vec<LawFigure> {
     law.derivatives(y, tail, |contour, count| {
         let mut changes = vec![vec![Complex::ZERO; count]; surface.len()];
         let transform = &law.transform;
+        // Uniform variables and quadratic forms have closed derivatives, single inputs take quadrature, the rest takes differences.
         for hat in &transform.hats.inputs {
             for (at, change) in changes[hat.input].iter_mut().enumerate() {
                 let s = contour.s(at);
@@ -83,7 +84,7 @@ pub(super) fn exact_derivatives(law: &Inversion, surface: &Surface, y: f64, tail
     })
 }
 
-/// `x coth x - 1`, the change of `log(sinh x/x)` by the logarithm of `x`, for an `x` whose real part is not 0.
+/// `x coth x - 1`, the derivative of `log(sinh x/x)` by the logarithm of `x`. The real part of `x` must not be 0.
 fn x_coth_x_less_one(x: Complex) -> Complex {
     if x.square() < 0.04 {
         let square = x * x;
@@ -91,13 +92,13 @@ fn x_coth_x_less_one(x: Complex) -> Complex {
         let coefficients = [1.0 / 3.0, -1.0 / 45.0, 2.0 / 945.0, -1.0 / 4725.0, 2.0 / 93555.0, -1382.0 / 638_512_875.0];
         return coefficients.iter().rev().fold(Complex::ZERO, |sum, &c| (sum + Complex::from(c)) * square);
     }
-    // Even in x: with the real part that is not negative the exponential falls.
+    // The function is even in x: with a real part that is not negative the exponential falls.
     let x = if x.re < 0.0 { -x } else { x };
     let small = (-(x * 2.0)).exp();
     x * (Complex::ONE + small) / (Complex::ONE - small) - Complex::ONE
 }
 
-/// `s (b_j mu_j + 2 (mu_j (H mu)_j + (Sigma H)_jj))` with the tilted mean `mu` and covariance `Sigma` of the form.
+/// Adds `s (b_j mu_j + 2 (mu_j (H mu)_j + (Sigma H)_jj))`, with the tilted mean `mu` and covariance `Sigma` of the form.
 fn of_block(block: &Block, contour: &Contour, changes: &mut [Vec<Complex>]) {
     let count = changes.first().map_or(0, Vec::len);
     let images = block.images();
@@ -106,10 +107,10 @@ fn of_block(block: &Block, contour: &Contour, changes: &mut [Vec<Complex>]) {
     }
 }
 
-/// Points of a contour that are taken side by side.
+/// Points of a contour that are computed side by side.
 const LANES: usize = 16;
 
-/// The changes at some points of the contour.
+/// Work item: the changes of one form at `LANES` points of the contour.
 struct BlockChanges<'a> {
     block: &'a Block,
     images: Option<&'a Mat<f64>>,
@@ -129,7 +130,7 @@ impl Work for BlockChanges<'_> {
         let axis = |j: usize, i: usize| block.axes.as_ref().map_or(1.0, |axes| axes[(j, i)]);
         let image = |j: usize, i: usize| images.map_or(block.curvatures[0], |images| images[(j, i)]);
         let s: [Complex; LANES] = std::array::from_fn(|lane| contour.s(first + lane));
-        // Of every axis the tilted mean and variance at all points.
+        // Tilted mean and variance of every axis at all points.
         let tilted = |(a, slope): (&f64, &f64)| -> [[Complex; LANES]; 2] {
             let inverse = s.map(|s| Complex::ONE / (Complex::ONE - s * (2.0 * a)));
             [std::array::from_fn(|lane| s[lane] * inverse[lane] * *slope), inverse]
@@ -154,7 +155,7 @@ impl Work for BlockChanges<'_> {
     }
 }
 
-/// The transform of a component along a contour by its value at the tilt, and the logarithm of that.
+/// Transform of a component along a contour divided by its value at the tilt, and the logarithm of that value.
 type Ratios = (Vec<Complex>, f64);
 
 fn tree_ratios(tree: &Tree, contour: &Contour, count: usize) -> Ratios {
@@ -174,7 +175,7 @@ fn form_ratios(form: &PerturbedForm, contour: &Contour, count: usize) -> Ratios 
     (all, form.log(contour.theta))
 }
 
-/// Changes of the transform of a component by differences along the same contour: 1e-8 relative.
+/// Changes of the transform of a component by central differences along the same contour, with a relative error of 1e-8.
 fn by_differences(
     members: &[usize],
     surface: &Surface,
@@ -191,7 +192,7 @@ fn by_differences(
         let level = (log_more - log_less) / (2.0 * PART);
         for (at, change) in changes[j].iter_mut().enumerate() {
             let turn = (more[at] - less[at]) * (0.5 / PART) / own[at];
-            // Where the transform has vanished, or is not resolved, its change does not count.
+            // A change counts as 0 where the transform has vanished or is not resolved.
             *change = if turn.is_finite() { turn + Complex::from(level) } else { Complex::ZERO };
         }
     }

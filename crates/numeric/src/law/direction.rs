@@ -1,9 +1,9 @@
-//! The surface along one direction, which is integrated by its own distribution function (preintegration).
+//! Polynomial of the surface along one direction, which is integrated by its own distribution function (preintegration).
 //!
-//! Coordinates `v` are independent; the inputs follow from them as `z = M v`, where `M` mixes normal inputs only, and
-//! correlated inputs of other distributions are functions of mixed normal variables. Among the normal inputs the direction
-//! is the steepest one, `L'p` with `p_j = E[g_j']`, which is made the first axis of the block (Liu and Owen 2023); otherwise
-//! the single input of largest variance. An input with atoms is never the direction.
+//! Coordinates `v` are independent, and the inputs are `z = M v`. `M` mixes normal inputs only. Correlated inputs of other distributions
+//! are functions of mixed normal variables. Among the normal inputs the direction is the steepest one, `L'p` with `p_j = E[g_j']`. It
+//! becomes the first axis of the block (Liu and Owen 2023). Otherwise the direction is the single input of largest variance. An input with
+//! atoms is never the direction.
 
 use std::sync::Arc;
 
@@ -14,30 +14,30 @@ use super::input::Input;
 use super::polynomial::{Quartic, value};
 use super::surface::Surface;
 
-/// Coordinates of a part of the surface, and the one that is integrated.
+/// Coordinates of a part of the surface, and the one among them that is integrated.
 #[derive(Debug, Clone)]
 pub(super) struct Direction {
     surface: Arc<Surface>,
-    /// Inputs that are mixtures of normal coordinates of the same places.
+    /// Inputs that are mixtures of normal coordinates with the same indices. `axes` is the mixing matrix.
     block: Vec<usize>,
     axes: Mat<f64>,
-    /// Inputs that are functions of mixed normal variables: not normal themselves, or correlated with such.
+    /// Inputs that are functions of mixed normal variables: those that are not normal themselves, and those correlated with such.
     behind: Vec<usize>,
     behind_factor: Mat<f64>,
-    /// The coordinate that is integrated; None where none can be.
+    /// Coordinate that is integrated; None if there is none.
     along: Option<usize>,
-    /// How the inputs move along it: those that do, and all by their places.
+    /// Slopes of the inputs by the direction: pairs (input, slope) of those that are not 0. `slope_of` holds all by index.
     slopes: Vec<(usize, f64)>,
     slope_of: Vec<f64>,
-    /// The inputs that belong to this part of the surface.
+    /// Inputs of this part of the surface.
     members: Vec<usize>,
 }
 
 impl Direction {
-    /// Of these inputs, which form whole components.
+    /// Coordinates and direction of these inputs, which form whole components. Returns None if a correlation has no factor.
     pub(super) fn of(surface: &Arc<Surface>, members: &[usize]) -> Option<Self> {
         let own = |j: &usize| members.contains(j);
-        // Correlation with an input of another distribution.
+        // Inputs that are linked by correlation to one that is not normal.
         let mut behind: Vec<usize> = Vec::new();
         if let Some(correlated) = &surface.correlated {
             let odd = |j: &usize| !surface.inputs[*j].is_normal();
@@ -76,7 +76,7 @@ impl Direction {
         });
         let norm = strength.sqrt();
         steepest.iter_mut().for_each(|d| *d /= if norm > 0.0 { norm } else { 1.0 });
-        // Slopes that change their signs have no mean: then the direction in which they are steepest in the mean square.
+        // Slopes that change sign average out. Then take the direction of the largest mean square of the slope.
         let strength = match swinging(surface, &block, &axes, &steepest) {
             Some((direction, squares)) => {
                 steepest = direction;
@@ -84,6 +84,7 @@ impl Direction {
             }
             None => strength,
         };
+        // Prefer the normal direction unless a single free input has the larger variance.
         let by_normal = m > 0 && (strength > 0.0 || other.is_none()) && other.is_none_or(|(_, most)| strength >= most);
         if by_normal && strength > 0.0 {
             axes = reflected(&axes, &steepest);
@@ -110,22 +111,22 @@ impl Direction {
         })
     }
 
-    /// The law of the direction.
+    /// Distribution of the direction.
     pub(super) fn input(&self) -> Option<&Input> {
         self.along.map(|j| self.surface.inputs[j].as_ref())
     }
 
-    /// The inputs of this part of the surface.
+    /// Inputs of this part of the surface.
     pub(super) fn members(&self) -> &[usize] {
         &self.members
     }
 
-    /// The coordinate that is integrated.
+    /// Coordinate that is integrated.
     pub(super) fn coordinate(&self) -> Option<usize> {
         self.along
     }
 
-    /// How the inputs move with a coordinate, where that is linear.
+    /// Slopes of the inputs by a coordinate, if the inputs are linear in it.
     pub(super) fn column(&self, coordinate: usize) -> Vec<(usize, f64)> {
         match self.block.binary_search(&coordinate) {
             Ok(b) => {
@@ -136,17 +137,17 @@ impl Direction {
         }
     }
 
-    /// The same coordinates and direction of another surface over the same inputs.
+    /// Identical coordinates and direction for another surface over the same inputs.
     pub(super) fn over(&self, surface: &Arc<Surface>) -> Self {
         Self { surface: Arc::clone(surface), ..self.clone() }
     }
 
-    /// How the inputs move along the direction.
+    /// Slopes of the inputs by the direction, without those that are 0.
     pub(super) fn slopes(&self) -> &[(usize, f64)] {
         &self.slopes
     }
 
-    /// The same part of the surface with every coordinate sampled.
+    /// Identical part of the surface with every coordinate sampled and no direction.
     pub(super) fn without(mut self) -> Self {
         self.along = None;
         self.slopes.clear();
@@ -154,7 +155,7 @@ impl Direction {
         self
     }
 
-    /// Variance along the direction, at the mean of the others.
+    /// Variance along the direction, with the other coordinates at their means.
     pub(super) fn variance(&self) -> f64 {
         let Some(input) = self.input() else { return 0.0 };
         let terms = self.terms(&self.surface);
@@ -165,17 +166,17 @@ impl Direction {
         over(&|z| (value(&along, z) - mean).powi(2))
     }
 
-    /// The other coordinates, each by the place of its input.
+    /// Other coordinates, each by the index of its input.
     pub(super) fn rest(&self) -> Vec<usize> {
         self.members.iter().copied().filter(|&j| Some(j) != self.along).collect()
     }
 
-    /// Whether a coordinate is a normal variable behind an input.
+    /// True if a coordinate is a normal variable behind an input.
     pub(super) fn is_behind(&self, coordinate: usize) -> bool {
         self.behind.contains(&coordinate)
     }
 
-    /// Inputs from coordinates, in place; both by the places of the surface.
+    /// Turns coordinates into inputs, in place. Both are indexed like the inputs of the surface.
     pub(super) fn mix(&self, v: &mut [f64], scratch: &mut Vec<f64>) {
         for (members, axes) in [(&self.block, &self.axes), (&self.behind, &self.behind_factor)] {
             if members.len() < 2 && !std::ptr::eq(members, &self.behind) {
@@ -196,7 +197,7 @@ impl Direction {
         }
     }
 
-    /// The products of a surface with the same inputs and parts.
+    /// Products of a surface with the same inputs and parts, sorted by their order along the direction.
     pub(super) fn terms(&self, surface: &Surface) -> Terms {
         let products: Vec<(usize, usize, f64)> =
             surface.products().filter(|(j, _, _)| self.members.binary_search(j).is_ok()).collect();
@@ -208,7 +209,7 @@ impl Direction {
         Terms { products, linear, square }
     }
 
-    /// The surface about its centre as a polynomial of the direction, at inputs for which the direction is 0.
+    /// Surface about its centre as a polynomial along the direction. `z` are inputs at which the direction is 0.
     pub(super) fn along(&self, z: &[f64], terms: &Terms) -> Quartic {
         let mut c = [0.0; 5];
         c[0] = terms.products.iter().map(|&(j, k, b)| b * z[j] * z[k]).sum();
@@ -220,12 +221,12 @@ impl Direction {
         c
     }
 
-    /// Whether several inputs are mixtures of normal coordinates.
+    /// True if several inputs are mixtures of normal coordinates.
     pub(super) fn is_mixed(&self) -> bool {
         self.block.len() > 1
     }
 
-    /// The input that is the direction by itself.
+    /// Single input that is the direction by itself.
     pub(super) fn own(&self) -> Option<usize> {
         if let [(j, _)] = self.slopes[..] { Some(j) } else { None }
     }
@@ -235,16 +236,16 @@ impl Direction {
     }
 }
 
-/// The products of a surface as a direction sees them.
+/// Products of a surface, expanded along a direction: constant, linear and quadratic.
 #[derive(Debug, Clone)]
 pub(super) struct Terms {
     products: Vec<(usize, usize, f64)>,
-    /// Of the inputs that move with the direction: `d_j b_jk` with the place of `k`.
+    /// Linear terms `d_j b_jk z_k` of the inputs `j` that move with the direction.
     linear: Vec<(usize, usize, f64)>,
     square: f64,
 }
 
-/// Adds the expansion of a part about `z` in steps of `d` (Taylor).
+/// Adds the Taylor expansion of a part about `z` in steps of `d`.
 #[inline]
 pub(super) fn shifted(part: &Quartic, z: f64, d: f64, c: &mut Quartic) {
     if d == 0.0 {
@@ -270,16 +271,16 @@ const BINOMIAL: [[f64; 5]; 5] = [
     [1.0, 4.0, 6.0, 4.0, 1.0],
 ];
 
-/// The direction of the largest mean square of the slope among normal inputs, and that mean square; None where the mean slope leads nearly
-/// as far, or inputs are many.
+/// Direction of the largest mean square of the slope among normal inputs, and that mean square. Returns None if the mean slope is nearly as
+/// steep, or if there are too many inputs.
 ///
 /// ```text
 /// E[dy/dz_j dy/dz_k] = sum_n n! d_jn d_kn rho_jk^n,   dy/dz_j = sum_n d_jn He_n(z_j) + sum_k b_jk z_k
 /// ```
 fn swinging(surface: &Surface, block: &[usize], axes: &Mat<f64>, steepest: &[f64]) -> Option<(Vec<f64>, f64)> {
-    /// Inputs at most: the direction is an eigenvector.
+    /// Greatest number of inputs, because the direction is an eigenvector.
     const MOST: usize = 64;
-    /// Factor of the mean squares from which on another direction is worth it.
+    /// Factor of the mean squares from which on the other direction pays.
     const WORTH: f64 = 2.0;
     let m = block.len();
     if m == 0 || m > MOST {
@@ -306,13 +307,13 @@ fn swinging(surface: &Surface, block: &[usize], axes: &Mat<f64>, steepest: &[f64
         return None;
     }
     let vector: Vec<f64> = (0..m).map(|a| eigen.U()[(a, m - 1)]).collect();
-    // Of the two signs that in which the largest component is positive.
+    // Choose the sign that makes the largest component positive.
     let largest =
         vector.iter().fold(0.0f64, |largest, d| if d.abs() > largest.abs() * (1.0 + 1e-9) { *d } else { largest });
     Some((vector.iter().map(|d| d * largest.signum()).collect(), most))
 }
 
-/// The axes after a reflection that makes this unit vector the first of them.
+/// Axes after a reflection that makes this unit vector the first of them.
 fn reflected(axes: &Mat<f64>, unit: &[f64]) -> Mat<f64> {
     let m = unit.len();
     // Householder: v = unit + sign e1, H = I - 2 v v'/|v|^2 maps e1 to -sign unit.

@@ -1,4 +1,4 @@
-//! A law by inversion, with points of the surface where a contour does not resolve a limit.
+//! Distribution by inversion, with points of the surface where a contour does not resolve a limit.
 
 use std::sync::{Arc, OnceLock};
 
@@ -8,31 +8,31 @@ use super::surface::Surface;
 use super::transform::{Summed, Transform};
 use super::{LawFigure, LawOptions, LawTail};
 
-/// Part of a probability from which on the error of a contour is worse than that of points.
+/// Relative error of a probability above which points are better than a contour.
 const POOR: f64 = 1e-3;
 
-/// A density per sigma that is a quarter of the largest one of a normal distribution.
+/// Density per sigma that sets the scale of density errors: a quarter of the peak of a normal distribution.
 const PEAK: f64 = 0.1;
-/// An error below this is none that points could lower.
+/// Absolute error that points cannot lower.
 const TRACE: f64 = 1e-8;
 
-/// The inversion of a whole surface.
+/// Inversion of a whole surface.
 #[derive(Debug)]
 pub(super) struct Exact {
     pub(super) inversion: Inversion,
-    /// Made when a limit is not resolved, as next to a corner of the law.
+    /// Points of the surface, made when a limit is not resolved, as next to a corner of the density.
     pub(super) points: OnceLock<Option<Sampled>>,
     pub(super) options: LawOptions,
 }
 
-/// Whether the error of a probability is too large a part of it, or of its complement.
+/// True if the error is too large relative to a probability or its complement.
 pub(super) fn is_poor(figure: LawFigure) -> bool {
     let smaller = figure.value.min(1.0 - figure.value).max(0.0);
     figure.error.is_nan() || figure.value.is_nan() || figure.error > POOR * smaller + TRACE
 }
 
 impl Exact {
-    /// Probability beyond `y` on this side.
+    /// Probability beyond `y` on one side.
     pub(super) fn tail(&self, surface: &Arc<Surface>, y: f64, tail: LawTail) -> LawFigure {
         let own = self.inversion.tail(y, tail);
         let better = |points: &Sampled| better(own, points.tail(y, tail, self.inversion.mean()));
@@ -48,7 +48,7 @@ impl Exact {
         if poor { self.points(surface).map_or(own, better) } else { own }
     }
 
-    /// The law with every component sampled but for one direction.
+    /// Distribution with every component sampled except along one direction.
     fn points(&self, surface: &Arc<Surface>) -> Option<&Sampled> {
         let make = || {
             let components = surface.components();
@@ -59,7 +59,7 @@ impl Exact {
     }
 }
 
-/// The figure with the smaller error; that of points where they contradict a contour that is not resolved.
+/// Figure with the smaller error. Points win if they contradict the contour or if the contour returned NaN.
 fn better(own: LawFigure, points: LawFigure) -> LawFigure {
     let contradicted = (own.value - points.value).abs() > own.error + points.error;
     if points.error < own.error || contradicted || own.value.is_nan() { points } else { own }

@@ -1,52 +1,52 @@
 //! Quadratic forms of normal inputs: the logarithm of `E exp(s y)` in closed form.
 //!
-//! With `R = L L'` the correlation of a component, `H` its curvatures with half the products beside them, and
-//! `Q'L'H L Q = diag(a)`, `beta = Q'L'b`:
+//! Notation: `R = L L'` is the correlation of a component. `H` has its curvatures on the diagonal and half the products beside them. `Q`
+//! diagonalises it: `Q'L'H L Q = diag(a)`, and `beta = Q'L'b`.
 //!
 //! ```text
 //! K(s) = sum_i beta_i^2 s^2/(2 (1 - 2 a_i s)) - 1/2 log(1 - 2 a_i s)
 //! ```
 //!
-//! The logarithm is the principal one of every factor, never of a product. This replaces the inversions of Imhof (1961) and
-//! Davies (1980), whose errors are absolute.
+//! The logarithm is the principal one of every factor, never of a product. This replaces the inversions of Imhof (1961) and Davies (1980),
+//! whose errors are absolute.
 
 use faer::{Mat, Side};
 
 use super::complex::Complex;
 use super::surface::Surface;
 
-/// An eigenvalue below this part of the largest of its component is rounding of 0.
+/// Relative size below which an eigenvalue is rounding of 0, by the largest one of its component.
 const ZERO: f64 = 1e-15;
 
 /// All components that are parabolas and products of normal inputs.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Forms {
     pub(super) blocks: Vec<Block>,
-    /// Sum of `beta^2` where there is no curvature.
+    /// Sum of `beta^2` over the axes without curvature.
     straight: f64,
-    /// Curvatures and slopes of the others.
+    /// Curvature and slope of every curved axis.
     curved: Vec<[f64; 2]>,
 }
 
-/// One component.
+/// Quadratic form of one component.
 #[derive(Debug, Clone)]
 pub(super) struct Block {
-    /// Places in the surface.
+    /// Indices of the inputs in the surface.
     pub members: Vec<usize>,
-    /// `L Q`: the inputs by independent normal variables; None for a single input, which is its own.
+    /// `L Q`: the inputs as combinations of independent normal variables; None for a single input.
     pub(super) axes: Option<Mat<f64>>,
-    /// `a_i`, 0 where it is rounding.
+    /// `a_i`, set to 0 where it is only rounding.
     pub(super) curvatures: Vec<f64>,
-    /// `beta_i`.
+    /// Slopes `beta_i` along the axes.
     pub(super) slopes: Vec<f64>,
-    /// `b_j`.
+    /// Slopes `b_j` by the inputs.
     pub(super) linear: Vec<f64>,
-    /// `H`; None for a single input.
+    /// Matrix `H`; None for a single input.
     form: Option<Mat<f64>>,
 }
 
 impl Block {
-    /// None where the eigenvalues of the form could not be computed.
+    /// Quadratic form of the members. Returns None if the eigenvalues cannot be computed.
     pub(super) fn of(surface: &Surface, members: &[usize]) -> Option<Self> {
         let slope = |j: usize| surface.parts[j][1];
         if let [j] = *members {
@@ -73,13 +73,13 @@ impl Block {
         Some(Self { members: members.to_vec(), axes: Some(axes), curvatures, slopes, linear, form: Some(form) })
     }
 
-    /// `H L Q`; None for a single input.
+    /// Product `H L Q`. Returns None for a single input.
     pub(super) fn images(&self) -> Option<Mat<f64>> {
         Some(self.form.as_ref()? * self.axes.as_ref()?)
     }
 }
 
-/// `H` of the members: curvatures, with half the products beside them.
+/// `H` of the members: curvatures on the diagonal, half the products beside it.
 pub(super) fn form(surface: &Surface, members: &[usize]) -> Mat<f64> {
     let m = members.len();
     let mut form = Mat::<f64>::zeros(m, m);
@@ -94,7 +94,7 @@ pub(super) fn form(surface: &Surface, members: &[usize]) -> Mat<f64> {
     form
 }
 
-/// `L` with `L L'` the correlation of the members; None inside where they are uncorrelated.
+/// `L` with `L L'` the correlation of the members. The inner option is None if they are uncorrelated, the outer one if there is no factor.
 pub(super) fn factor(surface: &Surface, members: &[usize]) -> Option<Option<Mat<f64>>> {
     let Some(correlated) = &surface.correlated else { return Some(None) };
     if !members.iter().any(|&j| correlated.place(j).is_some()) {
@@ -121,7 +121,7 @@ impl Forms {
         self.blocks.push(block);
     }
 
-    /// Whether there is no curvature: a normal distribution.
+    /// True if there is no curvature, so that the distribution is normal.
     pub(super) fn is_normal(&self) -> bool {
         self.curved.is_empty()
     }
@@ -134,22 +134,22 @@ impl Forms {
         self.straight + self.curved.iter().map(|[a, slope]| 2.0 * a * a + slope * slope).sum::<f64>()
     }
 
-    /// The lowest and the highest `s` at which `E exp(s y)` exists.
+    /// Lowest and highest `s` at which `E exp(s y)` exists.
     pub(super) fn domain(&self) -> [f64; 2] {
         self.curved.iter().fold([f64::NEG_INFINITY, f64::INFINITY], |[low, high], &[a, _]| {
             if a > 0.0 { [low, high.min(0.5 / a)] } else { [low.max(0.5 / a), high] }
         })
     }
 
-    /// Where the parabolas together have their vertex, if all of the form is curved enough that its transform decays like a
-    /// power only: there the law has a corner, and on either side of it the contour can be bent.
+    /// Value at the common vertex of all parabolas. Returns None unless every axis is curved so much that the transform decays only like a
+    /// power. The density then has a corner at the vertex, and on either side of it the contour can be bent.
     ///
-    /// `more` are curvatures and slopes of forms beside these.
+    /// `more` holds curvatures and slopes of further forms.
     pub(super) fn vertex(&self, more: &[[f64; 2]]) -> Option<f64> {
         let all = || self.curved.iter().chain(more).filter(|parabola| **parabola != [0.0, 0.0]);
         let least = all().map(|[a, _]| a.abs()).fold(f64::INFINITY, f64::min);
         let steepest = all().map(|[_, slope]| slope.abs()).fold(0.0, f64::max);
-        // Slopes far beyond the curvatures decay like those of a normal distribution first.
+        // Slopes far beyond the curvatures first decay like those of a normal distribution.
         let bent = self.straight == 0.0 && all().count() > 0 && 30.0 * least > steepest;
         bent.then(|| -all().map(|[a, slope]| slope * slope / (4.0 * a)).sum::<f64>())
     }
@@ -167,7 +167,7 @@ impl Forms {
         })
     }
 
-    /// `K(s)`.
+    /// Logarithm `K(s)` of the transform.
     pub(super) fn log(&self, s: Complex) -> Complex {
         let square = s * s;
         let (mut sum, mut modulus, mut angle) = (square * (0.5 * self.straight), 1.0, 0.0);
@@ -183,6 +183,7 @@ impl Forms {
                     (square.im * q.re - square.re * q.im) * factor,
                 );
             }
+            // Multiply the moduli and take one logarithm for many, before the product overflows.
             angle += libm::atan2(q.im, q.re);
             modulus *= norm;
             if !(1e-200..=1e200).contains(&modulus) {

@@ -1,11 +1,11 @@
-//! Inputs whose transform is a product of `sinh(a s)/(a s)`: uniform, symmetric triangular and trapezoidal ones with a
-//! straight part, which are sums of one or two uniform variables of half widths `a`.
+//! Inputs whose transform is a product of factors `sinh(a s)/(a s)`: uniform, symmetric triangular and symmetric trapezoidal. Their part of
+//! the surface is straight. They are sums of one or two uniform variables of half-widths `a`.
 
 use super::complex::Complex;
 use super::input::Input;
 use super::polynomial::Quartic;
 
-/// Half widths of all uniform variables of a surface.
+/// Half-widths of all uniform variables of a surface.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Hats {
     halves: Vec<f64>,
@@ -15,17 +15,17 @@ pub(super) struct Hats {
 /// One input as a sum of uniform variables.
 #[derive(Debug, Clone)]
 pub(super) struct Hat {
-    /// Place in the surface.
+    /// Index of the input in the surface.
     pub(super) input: usize,
-    /// Half widths in sigmas of the input, times its slope.
+    /// Half-widths in sigmas of the input, times its slope.
     pub(super) halves: Vec<f64>,
 }
 
-/// Below this the quotient is summed as a series, which loses nothing.
+/// Argument below which the quotient is summed as a series, to full accuracy.
 const SMALL: f64 = 0.5;
 
 impl Hat {
-    /// None where the part is curved or the distribution another one.
+    /// Uniform variables of an input. Returns None if the part is curved or the distribution is of another family.
     pub(super) fn of(input: usize, law: &Input, part: &Quartic) -> Option<Self> {
         if part[2..].iter().any(|&c| c != 0.0) {
             return None;
@@ -100,6 +100,7 @@ const FIRST: [f64; 9] = [
     -3617.0 / 162_820_783_125.0,
     87_734.0 / 38_979_295_480_125.0,
 ];
+/// Coefficients of the second derivative of `log(sinh x/x)` by `x`: each is that of `FIRST` times its power `2n + 1`.
 const SECOND: [f64; 9] = {
     let mut second = FIRST;
     let mut n = 0;
@@ -110,7 +111,7 @@ const SECOND: [f64; 9] = {
     second
 };
 
-/// `sinh x/x - 1` by `x^2`.
+/// `sinh x/x - 1` as a series in `square = x^2`.
 fn quotient_less_one(square: f64) -> f64 {
     let (mut term, mut sum) = (1.0, 0.0);
     for n in 1..10 {
@@ -120,7 +121,7 @@ fn quotient_less_one(square: f64) -> f64 {
     sum
 }
 
-/// `sinh(x + i y)/(x + i y)` by `sinh(x)/x`, for an `x` that is not negative.
+/// `sinh(x + i y)/(x + i y)` divided by `sinh(x)/x`, for an `x` that is not negative.
 fn ratio(x: f64, y: f64) -> Complex {
     if x.abs().max(y.abs()) < SMALL {
         let square = Complex::new(x, y) * Complex::new(x, y);
@@ -132,7 +133,7 @@ fn ratio(x: f64, y: f64) -> Complex {
         return sum * (1.0 / (1.0 + quotient_less_one(x * x)));
     }
     let turn = Complex::cis(y);
-    // sinh(x + iy) = cosh y sinh x ... by its real and imaginary parts, over exp(x)/2.
+    // sinh(x + iy) = sinh x cos y + i cosh x sin y, divided by exp(x)/2 against overflow.
     let small = libm::exp(-2.0 * x);
     let (sinh, cosh) =
         (if x < SMALL { 2.0 * x * (1.0 + quotient_less_one(x * x)) * libm::exp(-x) } else { 1.0 - small }, 1.0 + small);
@@ -144,7 +145,7 @@ fn ratio(x: f64, y: f64) -> Complex {
 mod tests {
     use super::*;
 
-    /// The two ways of the quotient meet where one gives way to the other; either is good to some units in the last place.
+    /// Series and closed form meet at their boundary. Each is right to some units in the last place.
     #[test]
     fn the_series_meets_the_closed_form() {
         for x in [0.0, 1e-9, 0.2, 0.499] {
@@ -161,7 +162,7 @@ mod tests {
         }
         let hats = Hats { halves: vec![1.0], inputs: Vec::new() };
         let (below, above) = (hats.cumulants(0.5 - 1e-13), hats.cumulants(0.5 + 1e-13));
-        // The derivatives by s are below 1, and the places 2e-13 apart.
+        // The derivatives by s are below 1, and the two arguments are 2e-13 apart.
         below.iter().zip(above).for_each(|(below, above)| assert!((below - above).abs() < 2e-13, "{below} {above}"));
     }
 }

@@ -1,5 +1,5 @@
-//! The choices that a tail was computed with, to compute others with them: through an optimisation figures then are smooth in the
-//! coefficients of the surface, because neither a contour nor a point changes from one to the next.
+//! Choices that a tail was computed with, reused so that tails vary smoothly in an optimisation. Figures are smooth in the coefficients of
+//! the surface because neither the contour nor the points change from one computation to the next.
 
 use std::sync::Arc;
 
@@ -8,9 +8,9 @@ use super::inversion::Line;
 use super::sampled::Held;
 use super::{Kind, LawFigure, LawTail, SurfaceLaw};
 
-/// The contour, or the direction, points and proposal, of one tail.
+/// Contour, or direction, points and proposal, of one tail.
 ///
-/// Choose it again where an optimisation ends: it stays right for other coefficients, but not as accurate.
+/// Choose it again at the end of an optimisation: with other coefficients it stays right but becomes less accurate.
 #[derive(Debug, Clone)]
 pub struct HeldTail {
     tail: LawTail,
@@ -21,7 +21,7 @@ pub struct HeldTail {
 enum HeldKind {
     Line(Line),
     Points(Arc<Held>),
-    /// Panels and lists need nothing.
+    /// Panels and lists take no choices.
     Nothing,
 }
 
@@ -35,8 +35,8 @@ impl HeldTail {
         Self { tail, kind }
     }
 
-    /// The tail of a law beyond a limit, along this contour or at these points; the law's own where its structure is another
-    /// one.
+    /// Tail of another law beyond a limit, along this contour or at these points. Falls back to [`SurfaceLaw::tail`] if the structure of
+    /// that law differs.
     pub fn tail(&self, law: &SurfaceLaw, y: f64) -> LawFigure {
         let [least, most] = law.range;
         let own = || law.tail(y, self.tail);

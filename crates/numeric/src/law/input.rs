@@ -1,4 +1,4 @@
-//! An input in units of its sigma about its mean: probabilities, quantiles, and panels on which its density is smooth.
+//! Standardised input: probabilities, quantiles, and panels on which its density is smooth.
 
 use std::sync::{Arc, LazyLock, OnceLock};
 
@@ -6,57 +6,57 @@ use super::LawTail;
 use super::polynomial::{Quartic, derivative, roots, value};
 use crate::distribution::{Distribution, Normal, Probability, Uniform, behind_normal, standard_normal};
 
-/// The part of an unbounded input beyond these tails is left out of quadratures: its part of a probability of 1e-30 is
-/// below the rounding of a double.
+/// Tail probability at which quadratures over an unbounded input end. What lies beyond adds less than the rounding of a double to a
+/// probability of 1e-30.
 const FAR: f64 = 1e-40;
-/// A panel whose mass by Gauss is within this part of the mass by the distribution function resolves the density.
+/// Relative difference of a panel's mass by Gauss and by the distribution function up to which the panel resolves the density.
 const RESOLVED: f64 = 1e-12;
-/// A panel below this mass is not split further; its weights are scaled to its mass.
+/// Mass below which a panel is not split further. Its weights are scaled to its mass.
 const LIGHT: f64 = 1e-18;
-/// Panels of an input at most: a density that wants more is not piecewise smooth.
+/// Greatest number of panels of an input. A density that needs more is not piecewise smooth.
 const MOST_PANELS: usize = 600;
-/// Radians of phase to a rule of 16 nodes, which then is exact to 1e-15.
+/// Radians of phase for each rule of 16 nodes, which is then exact to 1e-15.
 const PHASE: f64 = 9.0;
-/// Widest piece, in sigmas: 16 nodes resolve a normal density over it.
+/// Greatest width of a piece, in sigmas: 16 nodes resolve a normal density over it.
 const WIDEST: f64 = 1.5;
 
-/// Nodes and weights of Gauss-Legendre with 16 nodes over the interval from 0 to 1.
+/// Nodes and weights of the Gauss-Legendre rule with 16 nodes over the interval from 0 to 1.
 pub(super) static GAUSS: LazyLock<Vec<(f64, f64)>> = LazyLock::new(|| {
     let rule = Uniform::about(0.0, 1.0).expect("an interval").jacobi(16).gauss();
     rule.nodes.iter().map(|z| 0.5 + 0.5 * z / 3f64.sqrt()).zip(rule.weights.iter().copied()).collect()
 });
 
-/// One standardised input.
+/// One standardised input with its distribution.
 #[derive(Debug, Clone)]
 pub(super) struct Input {
     law: Arc<dyn Distribution>,
     mean: f64,
     sigma: f64,
     normal: bool,
-    /// Values with a probability of their own, ascending.
+    /// Values with a probability of their own, as (value, probability), ascending.
     pub(super) atoms: Vec<(f64, f64)>,
-    /// The share of what has a density.
+    /// Probability of the part that has a density.
     pub(super) smooth: f64,
-    /// Made when first asked for: sums of normal inputs need none.
+    /// Panels, made at the first use: sums of normal inputs need none.
     panels: OnceLock<Vec<Panel>>,
-    /// Where the density is not smooth.
+    /// Points at which the density is not smooth.
     corners: Vec<f64>,
-    /// Where quadratures begin and end.
+    /// Least and greatest value of quadratures.
     pub(super) ends: [f64; 2],
-    /// Least and greatest value, infinite where there is none.
+    /// Least and greatest value, infinite if there is none.
     pub(super) support: [f64; 2],
 }
 
-/// An interval on which the density is smooth.
+/// Interval on which the density is smooth.
 #[derive(Debug, Clone, Copy)]
 struct Panel {
     from: f64,
     to: f64,
-    /// By what the weights are multiplied, so that they sum to the mass: 1 where the density is resolved.
+    /// Factor that makes the weights sum to the mass of the panel: 1 if the density is resolved.
     factor: f64,
 }
 
-/// Places and probabilities.
+/// Nodes of a quadrature with their probabilities.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Nodes {
     pub(super) z: Vec<f64>,
@@ -64,7 +64,7 @@ pub(super) struct Nodes {
 }
 
 impl Input {
-    /// Of this distribution; None where only its moments are known.
+    /// Input of this distribution. Returns None if only its moments are known.
     pub(super) fn of(law: &Arc<dyn Distribution>) -> Option<Self> {
         let probability = law.probability()?;
         let (mean, sigma) = (law.mean(), law.sigma());
@@ -82,10 +82,10 @@ impl Input {
         Some(Self { law, mean, sigma, normal, atoms, smooth, panels, corners, ends, support })
     }
 
-    /// Whether its tails fall as so low a power that quadratures reach out farther than their nodes resolve: Student's distribution
-    /// with fewer than 18 degrees of freedom.
+    /// True if the tails fall with so low a power that quadratures extend farther than their nodes resolve. This holds for Student's
+    /// distribution with fewer than 18 degrees of freedom.
     pub(super) fn falls_as_a_power(&self) -> bool {
-        /// In sigmas; the same distribution with 18 degrees ends at 157.
+        /// Greatest extent in sigmas. With 18 degrees of freedom the distribution ends at 157.
         const FARTHEST: f64 = 200.0;
         self.law.name() == "student" && self.ends[1] > FARTHEST
     }
@@ -94,7 +94,7 @@ impl Input {
         self.normal
     }
 
-    /// Whether every value has a probability of its own.
+    /// True if every value has a probability of its own.
     pub(super) fn is_discrete(&self) -> bool {
         self.smooth == 0.0
     }
@@ -107,17 +107,17 @@ impl Input {
         self.mean + self.sigma * z
     }
 
-    /// Probability of at most `z`.
+    /// Probability of a value of at most `z`.
     pub(super) fn cdf(&self, z: f64) -> f64 {
         match self.normal {
             true => standard_normal::cdf(z),
-            // The end itself may be rounded into the support.
+            // The end itself may be rounded to a point inside the support.
             false if z <= self.support[0] && self.atoms.is_empty() => 0.0,
             false => self.probability().cdf(self.x(z)),
         }
     }
 
-    /// Probability of more than `z`.
+    /// Probability of a value above `z`.
     pub(super) fn sf(&self, z: f64) -> f64 {
         match self.normal {
             true => standard_normal::sf(z),
@@ -126,7 +126,7 @@ impl Input {
         }
     }
 
-    /// Density of what is not in the atoms, per sigma.
+    /// Density per sigma of the part outside the atoms.
     pub(super) fn density(&self, z: f64) -> f64 {
         if self.normal {
             standard_normal::density(z)
@@ -135,7 +135,7 @@ impl Input {
         }
     }
 
-    /// Half widths of the uniform variables, in sigmas, whose sum the input is; None where it is not such a sum.
+    /// Half-widths in sigmas of the uniform variables whose sum the input is. Returns None if it is not such a sum.
     pub(super) fn uniform_halves(&self) -> Option<Vec<f64>> {
         let half = 0.5 * (self.ends[1] - self.ends[0]);
         let middle = 0.5 * (self.ends[1] + self.ends[0]);
@@ -151,15 +151,15 @@ impl Input {
         }
     }
 
-    /// Probability between two places, from the nearer tail, so that it keeps its digits.
+    /// Probability between two values, from the nearer tail so that it keeps its digits.
     pub(super) fn mass(&self, from: f64, to: f64) -> f64 {
         let mass = if from > 0.0 { self.sf(from) - self.sf(to) } else { self.cdf(to) - self.cdf(from) };
         mass.max(0.0)
     }
 
-    /// Probability between two places that may be infinite or lie close together.
+    /// Probability between two values, which may be infinite or lie close together.
     pub(super) fn between(&self, from: f64, to: f64) -> f64 {
-        /// Below this width a difference of probabilities loses digits that the density has.
+        /// Width in sigmas below which a difference of probabilities loses digits and the density is integrated.
         const NARROW: f64 = 0.05;
         let width = to - from;
         if from == f64::NEG_INFINITY {
@@ -175,7 +175,7 @@ impl Input {
         self.mass(from, to)
     }
 
-    /// Probability that a polynomial of the input lies strictly beyond 0.
+    /// Probability that a polynomial of the input lies strictly above 0 (upper tail) or below 0 (lower tail).
     pub(super) fn beyond(&self, polynomial: &Quartic, tail: LawTail) -> f64 {
         let counts = |z: f64| value(polynomial, z) * tail.sign() > 0.0;
         let places = roots(polynomial, self.ends);
@@ -197,7 +197,7 @@ impl Input {
         roots(polynomial, self.ends).as_slice().iter().map(at).sum()
     }
 
-    /// The panels on which the density is smooth, with the factor of its weights.
+    /// Panels on which the density is smooth, with the factor of their weights.
     pub(super) fn panels(&self) -> impl Iterator<Item = ([f64; 2], f64)> + '_ {
         self.smooth_panels().iter().map(|panel| ([panel.from, panel.to], panel.factor))
     }
@@ -217,7 +217,7 @@ impl Input {
         z.clamp(self.ends[0], self.ends[1])
     }
 
-    /// The value that stands where `score` stands in a standard normal distribution.
+    /// Value with the same probability below it as `score` has in the standard normal distribution.
     pub(super) fn at_score(&self, score: f64) -> f64 {
         match self.normal {
             true => score,
@@ -227,7 +227,7 @@ impl Input {
         }
     }
 
-    /// Places where something is not smooth: the ends, and corners of the density.
+    /// Points at which the density is not smooth: the ends and the corners.
     pub(super) fn breaks(&self) -> Vec<f64> {
         let mut breaks: Vec<f64> = self.corners.iter().copied().chain(self.ends).collect();
         breaks.retain(|z| (self.ends[0]..=self.ends[1]).contains(z));
@@ -236,8 +236,8 @@ impl Input {
         breaks
     }
 
-    /// Panels on which 16 nodes give the mass of the distribution function: halved until they do, which grades them towards
-    /// an end where the density is a broken power.
+    /// Panels on which 16 nodes give the mass of the distribution function. They are halved until they do. This grades them towards an end
+    /// where the density behaves like a broken power.
     fn resolved(&self) -> Vec<Panel> {
         let atom_mass = |from: f64, to: f64| -> f64 {
             self.atoms.iter().filter(|(z, _)| *z > from && *z <= to).map(|(_, p)| p).sum()
@@ -250,19 +250,20 @@ impl Input {
         while let Some((from, to)) = open.pop() {
             let mass = self.mass(from, to) - atom_mass(from, to);
             let by_gauss = gauss(from, to);
-            // The resolution of a difference of two probabilities.
+            // Rounding error of a difference of two probabilities.
             let rounding = 4e-16 * if from > 0.0 { self.sf(from) } else { self.cdf(to) };
             let half = 0.5 * (from + to);
-            // Places are rounded, and next to an end of the support the density feels it.
+            // Node positions are rounded, which changes the density next to an end of the support.
             let blurred = 4.0 * f64::EPSILON * from.abs().max(to.abs()) / (to - from);
             let resolved = RESOLVED + blurred;
-            // Some distribution functions have fewer digits than their densities.
+            // Some distribution functions have fewer digits than their densities. Then compare the rule with its two halves.
             let agree =
                 || (by_gauss - gauss(from, half) - gauss(half, to)).abs() <= (0.1 * RESOLVED + blurred) * by_gauss;
             if (by_gauss - mass).abs() <= resolved * mass + rounding || agree() {
                 panels.push(Panel { from, to, factor: 1.0 });
                 continue;
             }
+            // Split the panel, or scale its weights to the mass if it is too light or too narrow.
             let middle = 0.5 * (from + to);
             let wide = middle > from && middle < to && to - from > 1e-14 * (self.ends[1] - self.ends[0]);
             if mass > LIGHT && wide && panels.len() + open.len() < MOST_PANELS {
@@ -275,13 +276,13 @@ impl Input {
         panels
     }
 
-    /// Nodes and weights of an expectation of `exp(i phase)`, whose phase is `top` times the polynomial and moves at
-    /// least by `near` a sigma.
+    /// Nodes and weights of an expectation of `exp(i phase)`. The phase over an interval is taken as `top` times the sum of the change of
+    /// the polynomial and `near` for each sigma.
     pub(super) fn nodes(&self, part: &Quartic, top: f64, near: f64) -> Nodes {
         self.nodes_within(part, top, near, [f64::NEG_INFINITY, f64::INFINITY])
     }
 
-    /// The same, without the panels that lie outside of an interval.
+    /// Nodes of [`Self::nodes`] inside an interval.
     pub(super) fn nodes_within(&self, part: &Quartic, top: f64, near: f64, [low, high]: [f64; 2]) -> Nodes {
         let mut nodes = Nodes::default();
         let extremes = roots(&derivative(part), self.ends);
@@ -303,16 +304,16 @@ impl Input {
         nodes
     }
 
-    /// A piece on which the polynomial is monotone, in intervals of little phase.
+    /// Adds nodes of a piece on which the polynomial is monotone, in intervals of small phase.
     fn piece(&self, nodes: &mut Nodes, [from, to]: [f64; 2], factor: f64, part: &Quartic, top: f64, near: f64) {
         let mut open = vec![(from, to)];
         while let Some((from, to)) = open.pop() {
             let phase = top * ((value(part, to) - value(part, from)).abs() + near * (to - from));
-            // Far out in a long tail densities vary with the logarithm of the distance.
+            // Far out in a long tail, densities vary with the logarithm of the distance.
             let widest = WIDEST.max(0.2 * from.abs().min(to.abs()));
             let wanted = (phase / PHASE).max((to - from) / widest).ceil();
             let middle = 0.5 * (from + to);
-            // A monotone quartic may run through most of its phase in a small part of the interval: halves first.
+            // A monotone quartic may run through most of its phase in a small part of the interval, so halve it first.
             if wanted > 1.0 && middle > from && middle < to && nodes.z.len() < (1 << 17) {
                 open.push((middle, to));
                 open.push((from, middle));
@@ -359,8 +360,8 @@ mod tests {
         laws.iter().map(|law| Input::of(law).unwrap()).collect()
     }
 
-    /// Mean 0 and variance 1 by definition, the third moment from the distribution's closed form; the weights are good to the
-    /// 1e-12 of the distribution functions.
+    /// Mean 0 and variance 1 hold by definition, the third moment by the distribution's closed form. The weights are as exact as the
+    /// distribution functions, 1e-12.
     #[test]
     fn nodes_have_the_moments_of_the_input() {
         for input in inputs() {
@@ -378,7 +379,7 @@ mod tests {
         }
     }
 
-    /// `E exp(i t z)` of a uniform input is `sin(t sqrt 3)/(t sqrt 3)`: 9 rad to 16 nodes keep 1e-14.
+    /// `E exp(i t z)` of a uniform input is `sin(t sqrt 3)/(t sqrt 3)`. Nine radians for 16 nodes keep 1e-14.
     #[test]
     fn nodes_resolve_a_phase() {
         let input = &inputs()[1];

@@ -4,10 +4,9 @@
 //! sf(y) = 1/pi int_0^inf Re[ exp(K(s) - s y)/s ] dt,  s = theta + i t, theta > 0;   cdf: theta < 0, sign changed
 //! ```
 //!
-//! so that a tail is computed as what it is, with its own relative accuracy (Rice 1980; Lugannani and Rice 1980; Abate and
-//! Whitt 1992; Trefethen and Weideman 2014). Where the transform decays too slowly to be summed to its end (uniform inputs,
-//! atoms), a smooth window ends the sum: that changes the result only where a corner of the law lies within 110/T of the limit.
-//! T is doubled until two windows agree.
+//! Each tail is summed directly, with a relative accuracy of its own (Rice 1980; Lugannani and Rice 1980; Abate and Whitt 1992; Trefethen
+//! and Weideman 2014). For uniform inputs and atoms the transform decays too slowly to be summed to its end. A smooth window then ends the
+//! sum. It changes the result only if the density has a corner within 110/T of the limit. T is doubled until two windows agree.
 
 use std::cell::Cell;
 use std::f64::consts::PI;
@@ -21,41 +20,44 @@ use crate::distribution::standard_normal;
 
 /// Points of the first window.
 const FIRST: usize = 64;
-/// Points of the last one, where panels and trees are summed, with closed forms and atoms, which are cheaper, and with few nodes beside these.
+/// Points of the last window if panels or trees are summed.
 const LAST: usize = 1 << 11;
+/// Points of the last window for closed forms and atoms, which cost less for each point.
 const LAST_CHEAP: usize = 1 << 14;
+/// Points of the last window for perturbed forms, which take a few nodes for each point.
 const LAST_PERTURBED: usize = 1 << 13;
-/// The error of a contour that ended early, by the difference of its windows: these agree by chance before they do for good.
+/// Factor from the difference of windows to the error of a contour that ended early. Such windows may agree by chance.
 const ENDED_EARLY: f64 = 40.0;
-/// Points of a contour below which nothing is known.
+/// Fewest points of a contour from which a figure is computed.
 const FEWEST: usize = 8;
-/// A term that is below this part of the sum ends it.
+/// Relative size of the remainder at which the sum ends.
 const ENDED: f64 = 1e-14;
-/// Two windows agree,
+/// Relative difference at which two windows agree.
 const AGREED: f64 = 1e-11;
-/// or do so well enough for a quantile, which moves by no more than a third of that in sigmas.
+/// Relative difference of two windows that suffices for a quantile, which moves by at most a third of it in sigmas.
 const NEARLY: f64 = 1e-8;
-/// How steeply a window falls: at its ends it is 1e-13 off 1 and 0.
+/// Steepness of a window: at its ends it differs from 1 and 0 by 1e-13.
 const STEEPNESS: f64 = 10.4;
-/// The part that a window leaves, by the sum: its own ends.
+/// Relative part of the sum that a window loses at its own ends.
 const LEFT: f64 = 4e-13;
-/// Relative accuracy that the sums are stated to have: rounding of the transform, and the neighbours of the sum.
+/// Stated relative error of the sums: rounding of the transform and the images in Poisson's formula.
 const RELATIVE: f64 = 1e-12;
-/// Within so many sigmas of the mean either tail has its own contour; beyond, the larger one is the complement.
+/// Distance from the mean, in sigmas, within which either tail has its own contour. Beyond it the larger tail is the complement.
 const CENTRAL: f64 = 1.5;
 
-/// The law of a sum of components whose transform is known.
+/// Distribution of a sum of components with known transform.
 #[derive(Debug)]
 pub(super) struct Inversion {
     pub(super) transform: Transform,
-    /// Of the surface: limits are counted from it.
+    /// Centre of the surface, from which limits are counted.
     centre: f64,
-    /// Values with a probability of their own, about the centre, ascending: they are left out of the sums, which would halve them.
+    /// Values with a probability of their own, about the centre, ascending. Sums along a contour would halve those at the limit, so they
+    /// are kept out of the sums.
     jumps: Vec<(f64, f64)>,
     sides: [Side; 2],
 }
 
-/// The quantity that is summed along a contour.
+/// Quantity that is summed along a contour.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Quantity {
     LawTail(LawTail),
@@ -68,13 +70,13 @@ impl Inversion {
         Self { transform, centre, jumps: Vec::new(), sides }
     }
 
-    /// With these values, each with a probability of its own.
+    /// Adds these values, each with a probability of its own.
     pub(super) fn with_jumps(self, jumps: impl Iterator<Item = (f64, f64)>) -> Self {
         let jumps = jumps.map(|(y, weight)| (y - self.centre, weight)).collect();
         Self { jumps, ..self }
     }
 
-    /// The probability of the values strictly beyond a limit that is counted from the centre.
+    /// Probability of the separate values strictly beyond a limit that is counted from the centre.
     fn jumps_beyond(&self, y: f64, tail: LawTail) -> f64 {
         let beyond = |at: f64| tail.sign() * (at - y) > 0.0;
         self.jumps.iter().filter(|(at, _)| beyond(*at)).map(|(_, weight)| weight).sum()
@@ -88,13 +90,13 @@ impl Inversion {
         self.transform.sigma
     }
 
-    /// Whether sums over nodes resolve the law: on both sides of the mean, where the sides also sum to 1, and farther out.
+    /// True if sums over nodes resolve the distribution at the mean, where both sides must also sum to 1, and farther out on both sides.
     pub(super) fn is_resolved(&self) -> bool {
-        /// Part of a tail that the stated error may be; points do as well beyond.
+        /// Greatest relative error of a tail. Beyond it points are as good.
         const RESOLVED: f64 = 1e-4;
-        /// Tilts by sigma whose limits are tried: as many sigmas out of a normal law.
+        /// Tilts times sigma whose limits are tried. In a normal distribution these are the same numbers of sigmas from the mean.
         const TILTS: [f64; 2] = [1.5, 3.0];
-        /// Part of the domain that a tilt is kept within.
+        /// Fraction of the domain to which a tilt is limited.
         const INNER: f64 = 0.7;
         if self.transform.are_sums_closed() {
             return true;
@@ -116,13 +118,13 @@ impl Inversion {
             && sides.iter().all(|&tail| TILTS.iter().all(|&tilt| good(&sum(limit(tail, tilt), tail))))
     }
 
-    /// The mean about the centre under a tilt, or under the nearest one that the law bears.
+    /// Mean about the centre under a tilt, or under the nearest tilt inside the domain.
     pub(super) fn tilted_mean(&self, theta: f64) -> f64 {
         let [low, high] = self.transform.domain;
         self.transform.cumulants(theta.clamp(0.9 * low, 0.9 * high))[1]
     }
 
-    /// Probability beyond `y` on this side.
+    /// Probability beyond `y` on one side.
     pub(super) fn tail(&self, y: f64, tail: LawTail) -> LawFigure {
         let y = y - self.centre;
         if let Some(z) = self.normal(y) {
@@ -135,7 +137,7 @@ impl Inversion {
         if own == tail { found } else { found.complement() }
     }
 
-    /// A tail of what has a density, and the values beyond the limit.
+    /// Adds the separate values beyond the limit to the tail of the part with a density.
     fn with_jumps_beyond(&self, smooth: LawFigure, y: f64, tail: LawTail) -> LawFigure {
         LawFigure::new((smooth.value + self.jumps_beyond(y, tail)).min(1.0), smooth.error)
     }
@@ -151,14 +153,14 @@ impl Inversion {
         self.sum(y, tail, Quantity::Density)
     }
 
-    /// A contour for several limits of one side: right at the first of these places, and still so up to the second, which lies farther
-    /// out. None where every limit has its own at little cost.
+    /// Contour for several limits of one side: exact at the first of these limits and up to the second, which lies farther out. Returns
+    /// None for a quadratic form, for which a contour for each limit costs little.
     pub(super) fn shared(&self, tail: LawTail, [y, farthest]: [f64; 2]) -> Option<Arc<Contour>> {
         let many = !self.transform.is_form();
         many.then(|| self.side(tail).contour_to(&self.transform, y - self.centre, farthest - self.centre))
     }
 
-    /// A tail and the density along a contour that was chosen for several limits; `points` is how many the last of them took.
+    /// A tail and the density along a contour that several limits share. `points` holds the points that the last limit took.
     pub(super) fn tail_and_density(
         &self,
         contour: &Contour,
@@ -168,18 +170,18 @@ impl Inversion {
     ) -> [LawFigure; 2] {
         let y = y - self.centre;
         let (value, window) = self.along(contour, y, Quantity::LawTail(tail), Extent::Nearly(points.get()));
-        // The window before the last one, so that two are compared again.
+        // Begin the next limit at the window before the last one, so that two windows are compared again.
         points.set(window.points / 2);
         let (density, _) = self.along(contour, y, Quantity::Density, Extent::Fixed(window));
         [self.with_jumps_beyond(value, y, tail), density]
     }
 
-    /// Whether the law is a normal distribution.
+    /// True if the distribution is normal.
     pub(super) fn is_normal(&self) -> bool {
         self.transform.forms.is_normal() && self.transform.is_form()
     }
 
-    /// The standardised limit, where the law is normal.
+    /// Standardised limit. Returns None if the distribution is not normal.
     fn normal(&self, y: f64) -> Option<f64> {
         self.is_normal().then(|| (y - self.transform.mean) / self.sigma())
     }
@@ -188,13 +190,13 @@ impl Inversion {
         &self.sides[usize::from(tail == LawTail::Upper)]
     }
 
-    /// Of a limit that is counted from the centre.
+    /// Quantity at a limit that is counted from the centre.
     fn sum(&self, y: f64, tail: LawTail, quantity: Quantity) -> LawFigure {
         let contour = self.side(tail).contour(&self.transform, y);
         self.along(&contour, y, quantity, Extent::From(FIRST)).0
     }
 
-    /// The sum along a contour, over as many points as it takes or as many as it is told; and how many these were.
+    /// Sum along a contour over the points that `extent` requests, and the window that was used.
     fn along(&self, contour: &Contour, y: f64, quantity: Quantity, extent: Extent) -> (LawFigure, Window) {
         let transform = &self.transform;
         let most = match (transform.is_cheap(), transform.is_perturbed()) {
@@ -228,7 +230,7 @@ impl Inversion {
                 break (plain, left, largest, window(false));
             }
             let now = windowed(&terms);
-            // A contour that has ended is compared with shorter windows: the same one again would agree.
+            // A contour that has ended is compared with shorter windows, because the same window again would agree.
             let off = if ended { shortened(&terms, now) } else { (now - previous).abs() };
             if off < agreed * now.abs() || count >= most || ended {
                 let factor = if ended { ENDED_EARLY } else { 4.0 };
@@ -237,7 +239,7 @@ impl Inversion {
             }
             (previous, count) = (now, 2 * count);
         };
-        // The rounding error of the sum.
+        // Rounding error of the sum.
         let rounding = 1e-15 * (window.points as f64).sqrt() * largest;
         let level = libm::exp(contour.log - contour.theta * y) * contour.step / PI;
         let value = level * sum;
@@ -245,7 +247,7 @@ impl Inversion {
         (LawFigure::new(value, level * (off + rounding) + RELATIVE * value), window)
     }
 
-    /// The contour and the window of a tail, and whether it is computed as the complement of the other one.
+    /// Contour and window of a tail, and whether the tail is computed as the complement of the other one.
     pub(super) fn held(&self, y: f64, tail: LawTail) -> Line {
         let y = y - self.centre;
         let outward = tail.sign() * (y - self.transform.mean) / self.sigma();
@@ -262,7 +264,7 @@ impl Inversion {
         }
     }
 
-    /// The tail of this law along the contour of another one; None where its transform does not exist there.
+    /// Tail of this distribution along the contour of another one. Returns None if the transform does not exist there.
     pub(super) fn tail_along(&self, y: f64, line: &Line) -> Option<LawFigure> {
         let [low, high] = self.transform.domain;
         if !(low < line.theta && line.theta < high) {
@@ -275,7 +277,7 @@ impl Inversion {
         Some(if line.complement { found.complement() } else { found })
     }
 
-    /// The derivatives of a tail by something of which `changes` gives the derivatives of `K` at a point of the contour.
+    /// Derivatives of a tail by parameters. `changes` gives the derivatives of `K` by them at the points of the contour.
     pub(super) fn derivatives(
         &self,
         y: f64,
@@ -285,7 +287,7 @@ impl Inversion {
         let line = self.held(y, tail);
         let y = y - self.centre;
         let contour = self.side(line.tail).contour(&self.transform, y);
-        // A derivative decays more slowly than what it is of.
+        // A derivative decays more slowly than the tail itself.
         let count = 2 * line.window.points;
         let terms = weighed(&contour, contour.integrand(&self.transform, y, count), Quantity::LawTail(line.tail));
         let sign = if line.complement { -1.0 } else { 1.0 };
@@ -302,7 +304,7 @@ impl Inversion {
 }
 
 impl Inversion {
-    /// The terms of the sum at the first points, the first one halved, without the values that have a probability of their own:
+    /// Terms of the sum at the first points, with the first one halved and without the separate values:
     ///
     /// ```text
     /// M(s) - sum_k p_k exp(s y_k)
@@ -319,25 +321,25 @@ impl Inversion {
     }
 }
 
-/// Over how many points a sum is taken.
+/// Number of points of a sum.
 #[derive(Debug, Clone, Copy)]
 enum Extent {
-    /// Over so many, and more where they do not agree with fewer.
+    /// At least these points, and more until two windows agree.
     From(usize),
-    /// The same, with fewer digits.
+    /// At least these points, and more until two windows agree well enough for a quantile.
     Nearly(usize),
-    /// As another one.
+    /// Points and window of another sum.
     Fixed(Window),
 }
 
-/// How many points a sum has, and whether it ends with a window.
+/// Number of points of a sum, and whether a smooth window ends it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Window {
     points: usize,
     smooth: bool,
 }
 
-/// A contour with the points on it that give a tail.
+/// Contour with the points on it that give a tail.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Line {
     tail: LawTail,
@@ -348,7 +350,7 @@ pub(super) struct Line {
     window: Window,
 }
 
-/// Values of the integrand as the terms of the sum: the first one halved.
+/// Turns values of the integrand into terms of the sum and halves the first one.
 fn weighed(contour: &Contour, mut terms: Vec<Complex>, quantity: Quantity) -> Vec<Complex> {
     for (index, term) in terms.iter_mut().enumerate() {
         let s = contour.s(index);
@@ -356,7 +358,7 @@ fn weighed(contour: &Contour, mut terms: Vec<Complex>, quantity: Quantity) -> Ve
             *term = *term / (s * tail.sign());
         }
         if contour.bend != 0.0 {
-            // ds = (2 bend t + i) dt, and an i goes to the front.
+            // ds = (2 bend t + i) dt, and the factor i is taken out of the sum.
             *term *= Complex::new(1.0, -2.0 * contour.bend * s.im);
         }
     }
@@ -366,15 +368,15 @@ fn weighed(contour: &Contour, mut terms: Vec<Complex>, quantity: Quantity) -> Ve
     terms
 }
 
-/// The largest difference of shorter windows to the whole one.
+/// Largest difference between shorter windows and the whole one.
 fn shortened(terms: &[Complex], whole: f64) -> f64 {
-    /// Eighths of the window.
+    /// Lengths of the shorter windows, in eighths of the whole one.
     const EIGHTHS: [usize; 2] = [6, 7];
     let off = |eighths: usize| (windowed(&terms[..terms.len() * eighths / 8]) - whole).abs();
     EIGHTHS.iter().map(|&eighths| off(eighths)).fold(0.0, f64::max)
 }
 
-/// The sum of the real parts under a window that falls smoothly to 0 at the end.
+/// Sum of the real parts under a window that falls smoothly to 0 at the end.
 fn windowed(terms: &[Complex]) -> f64 {
     let n = terms.len() as f64;
     let window = |index: usize| 0.5 * libm::erfc(STEEPNESS * (index as f64 / n - 0.5));

@@ -1,12 +1,12 @@
-//! The probability that several characteristics keep their limits together, on common points.
+//! Probability that several characteristics keep their limits together, on common points.
 //!
 //! ```text
 //! P(any limit broken) = sum of the tails - E[ (number of broken limits - 1)+ ]
 //! ```
 //!
-//! The tails are those of each law; only the second term is sampled. Where failures are rare or far apart it is small, and so
-//! is its error. Of two sums of normal inputs it is exact too, and where all inputs have values with probabilities of their own: their
-//! combinations are listed. A value on a limit keeps it in all of them.
+//! Each tail comes from its own distribution, and only the second term is sampled. If rejects are rare or do not coincide, that term and
+//! its error are small. It is exact for two sums of normal inputs. It is also exact if all inputs have values with probabilities of their
+//! own, because their combinations are listed. A value on a limit counts as kept in every branch.
 
 use super::common_points::{CommonPoints, Counts, Limit};
 use super::points::{QUANTILE, REPLICATES};
@@ -15,11 +15,11 @@ use super::{LawFigure, LawTail, SurfaceLaw};
 use crate::characteristic::SpecLimits;
 use crate::parallel::prelude::*;
 
-/// The share of assemblies that keep all limits, for laws over the same inputs in the same order.
+/// Share of assemblies that keep all limits, for distributions over the same inputs in the same order.
 ///
-/// Points are common to all laws, and most of them lie where a limit is broken. Cost: 2^15 values of every surface. The error has the part of 16
-/// replicates and those of the tails. Laws over other inputs give the yield of characteristics that share the input of each
-/// position.
+/// Points are common to all surfaces, and most of them lie where a limit is exceeded. Cost: 2^15 values of every surface. The error
+/// combines the scatter of 16 replicates and the errors of the tails. For surfaces over different inputs the result is the yield of
+/// characteristics that share the input of each position.
 ///
 /// ```
 /// use std::sync::Arc;
@@ -53,15 +53,15 @@ pub fn joint_yield(characteristics: &[(&SurfaceLaw, SpecLimits)]) -> LawFigure {
     LawFigure::new((1.0 - sum.value + common.value).max(least).min(most), sum.error + common.error)
 }
 
-/// The rejects of every law.
+/// Reject rate of every characteristic.
 fn by_law(tails: &[(Limit, LawFigure)], laws: usize) -> Vec<f64> {
     let mut rejects = vec![0.0; laws];
     tails.iter().for_each(|(limit, tail)| rejects[limit.of] += tail.value);
     rejects
 }
 
-/// Within which several yields leave a joint one, whatever they have in common: at most the least of them, and no less than would be left if no
-/// assembly broke two of them (Fréchet 1935).
+/// Bounds of a joint yield from the reject rates alone, for any dependence. It is at most the least single yield. It is at least the yield
+/// if no assembly were rejected twice (Fréchet 1935).
 ///
 /// ```text
 /// max(0, 1 - sum of all rejects) <= P(all kept) <= 1 - max of the rejects
@@ -71,7 +71,7 @@ pub fn joint_bounds(rejects: &[f64]) -> [f64; 2] {
     [(1.0 - rejects.iter().sum::<f64>()).max(0.0).min(most), most]
 }
 
-/// The rejects of several characteristics by their limits: the sum of the tails, and by how much that counts assemblies twice.
+/// Reject rates of several characteristics: the sum of the tails, and the amount by which that sum counts assemblies twice.
 pub fn rejected(characteristics: &[(&SurfaceLaw, SpecLimits)]) -> (f64, LawFigure) {
     let limited = limited(characteristics);
     let tails = tails(&limited);
@@ -82,7 +82,6 @@ fn limited<'a>(characteristics: &[(&'a SurfaceLaw, SpecLimits)]) -> Vec<(&'a Sur
     characteristics.iter().filter(|(_, limits)| limits.exist()).copied().collect()
 }
 
-/// The rejects of every limit.
 fn tails(limited: &[(&SurfaceLaw, SpecLimits)]) -> Vec<(Limit, LawFigure)> {
     let of = |(of, (law, limits)): (usize, &(&SurfaceLaw, SpecLimits))| {
         let tail = |side: LawTail, y: Option<f64>| y.map(|y| (Limit { of, side }, law.tail(y, side)));
@@ -91,13 +90,14 @@ fn tails(limited: &[(&SurfaceLaw, SpecLimits)]) -> Vec<(Limit, LawFigure)> {
     limited.iter().enumerate().flat_map(of).flatten().collect()
 }
 
-/// The mean of the broken limits beyond the first: none of one law, exact of two sums of normal inputs and of lists, sampled of all others.
+/// Mean number of exceeded limits beyond the first: 0 for one characteristic, exact for two sums of normal inputs and for lists of values,
+/// sampled otherwise.
 ///
 /// ```text
 /// E[ (number broken - 1)+ ] = sum of the tails * mean(w (number broken - 1)+) / mean(w number broken)
 /// ```
 ///
-/// The sum of the tails is known, so that the points only say which part of it breaks another limit as well.
+/// The sum of the tails is known, so the points only supply the fraction of it that exceeds another limit as well.
 fn overlap(limited: &[(&SurfaceLaw, SpecLimits)], tails: &[(Limit, LawFigure)]) -> LawFigure {
     if limited.len() < 2 {
         return LawFigure::new(0.0, 0.0);
@@ -122,7 +122,7 @@ fn overlap(limited: &[(&SurfaceLaw, SpecLimits)], tails: &[(Limit, LawFigure)]) 
     let (share, scale) = (beyond / broken, tails / broken);
     let off = |counts: &Counts| scale * (counts.beyond - share * counts.broken);
     let variance = counts.iter().map(|counts| off(counts) * off(counts)).sum::<f64>() / (n - 1.0);
-    // As for every other sampled figure; and that no point breaks two limits is not a proof that none does.
+    // The error has the same confidence as every other sampled figure. If no point exceeds two limits, a bound for rare events applies.
     let breaking = n * broken * broken / mean(|counts| counts.squares);
     let fewest = if beyond == 0.0 { tails * (3.0 / breaking).min(1.0) } else { 0.0 };
     LawFigure::new(tails * share, (QUANTILE * (variance / n).sqrt()).max(fewest))

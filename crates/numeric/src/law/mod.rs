@@ -1,12 +1,12 @@
-//! The law of a surface: yields, tails and quantiles that are those of the surface, not of four of its moments.
+//! Distribution of a surface: yields, tails and quantiles of the surface itself instead of those of its four moments.
 //!
 //! ```text
 //! y = c + sum_j g_j(z_j) + sum_{j<k} b_jk z_j z_k        z_j: inputs about their means in units of their sigmas
 //! ```
 //!
-//! has a distribution that follows from the coefficients and the inputs' distributions, without an evaluation of the model.
-//! Four moments do not determine it: the Pearson law with the exact moments is off by up to 0.04 in probability for
-//! quadratic forms and by factors at 1 ppm. There are three branches, chosen by the structure of the surface:
+//! This surface has a distribution that follows from the coefficients and the inputs' distributions, without an evaluation of the model.
+//! Four moments do not determine it. The Pearson distribution with the exact moments is off by up to 0.04 in probability for quadratic
+//! forms and by factors at 1 ppm. The structure of the surface selects one of three branches:
 //!
 //! | branch | surfaces | how | error |
 //! |---|---|---|---|
@@ -14,8 +14,8 @@
 //! | [single](Branch::Single) | one or two inputs | Gauss panels in the one, roots and distribution function of the other | 1e-12 relative |
 //! | [sampled](Branch::Sampled) | everything else | one direction by its own distribution function, the others by scrambled Sobol' points, tilted in the tails | from 16 replicates |
 //!
-//! Every figure comes with its own numerical error. That is the error of the law of this surface: how far the surface is from
-//! the model is another question.
+//! Every figure comes with its own numerical error. This is the error for the given surface. The difference between surface and model is
+//! not included.
 
 mod common_points;
 mod complex;
@@ -73,15 +73,15 @@ use surface::Surface;
 use transform::{Summed, Transform};
 use zones::{Straightened, Zone, straightened};
 
-/// A number and what its computation leaves uncertain.
+/// Computed number with its numerical error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct LawFigure {
-    /// The number.
+    /// Computed number.
     pub value: f64,
-    /// Estimated largest numerical error, in the unit of the number; 0 where it is exact.
+    /// Estimated largest numerical error, in the unit of the number; 0 if it is exact.
     pub error: f64,
-    /// Whether the number is 0 or 1 because no value of the surface lies beyond the limit, or within it.
+    /// True if the number is 0 or 1 because no value of the surface lies beyond the limit, or none within it.
     pub proven: bool,
 }
 
@@ -107,7 +107,7 @@ impl LawFigure {
         Self { value, error: 0.0, proven: true }
     }
 
-    /// Of points that were counted.
+    /// Figure from counted points.
     pub const fn counted(value: f64, error: f64) -> Self {
         Self::new(value, error)
     }
@@ -121,17 +121,17 @@ impl LawFigure {
     }
 }
 
-/// One end of a distribution.
+/// One tail of a distribution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum LawTail {
-    /// Below a limit.
+    /// Values below a limit.
     Lower,
-    /// Above a limit.
+    /// Values above a limit.
     Upper,
 }
 
 impl LawTail {
-    /// 1 above, -1 below.
+    /// Returns 1 for the upper tail, -1 for the lower one.
     pub fn sign(self) -> f64 {
         match self {
             Self::Lower => -1.0,
@@ -147,22 +147,22 @@ impl LawTail {
     }
 }
 
-/// How a law is computed.
+/// Method that computes the distribution of a surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Branch {
-    /// The transform inverted along a contour; also lists of values where every input consists of atoms.
+    /// Transform inverted along a contour. If every input consists of atoms, a list of values.
     Exact,
     /// One or two inputs: Gauss panels and roots.
     Single,
-    /// Points, with one direction integrated.
+    /// Sampled points, with one direction integrated.
     Sampled,
 }
 
-/// Why a surface has no law.
+/// Reason why a surface has no distribution.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LawError {
-    /// Not as many inputs as parts.
+    /// The number of inputs differs from the number of parts.
     #[error("a surface of {parts} parts needs as many inputs, not {inputs}")]
     Shapes {
         /// Parts of the surface.
@@ -170,57 +170,57 @@ pub enum LawError {
         /// Inputs given.
         inputs: usize,
     },
-    /// A part that could not be fitted.
+    /// A part of the surface could not be fitted.
     #[error("the surface has no part for input {position}")]
     UnknownPart {
         /// Position of the input.
         position: usize,
     },
-    /// An input of which only moments are known.
+    /// Only the moments of an input are known.
     #[error("input {position} is known by its moments only, which do not determine the distribution of the surface")]
     MomentsOnly {
         /// Position of the input.
         position: usize,
     },
-    /// An input whose tail falls as a power: no panels resolve both it and the middle.
+    /// The tail of an input falls so slowly that no panels resolve both it and the middle.
     #[error("input {position} has too long a tail for a transform")]
     LongTail {
-        /// Position of the input among those that count.
+        /// Position of the input among those with a part in the surface.
         position: usize,
     },
-    /// A coefficient that is not a finite number.
+    /// A coefficient is not a finite number.
     #[error("a coefficient of the surface is not a finite number")]
     NotFinite,
     /// A decomposition of a matrix did not converge.
     #[error("the correlated inputs or the products of the surface have no eigenvalues")]
     NoEigenvalues,
-    /// The variance is not a finite number above 0 although inputs count.
+    /// The variance is not a finite number above 0 although the surface depends on inputs.
     #[error("the surface has no finite variance")]
     NoVariance,
 }
 
-/// The limits on the cost of a surface's law.
+/// Options that bound the cost of a surface distribution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LawOptions {
     /// Points of the sampled branch, in 16 replicates; rounded up to a power of two.
     pub points: usize,
-    /// Seed of its points.
+    /// Seed of the points of the sampled branch.
     pub seed: u64,
-    /// Whether products that form a tree are computed: a limit takes milliseconds, quantiles of quartics of several inputs half a second.
-    /// Otherwise they belong to the sampled branch.
+    /// True if products that form a tree are inverted exactly. A limit then takes milliseconds, and quantiles of quartics of several inputs
+    /// take half a second. If false, such surfaces belong to the sampled branch.
     pub trees: bool,
-    /// By how much rounding may move a value of the surface; what its own coefficients say where that is more.
+    /// Rounding error of a value of the surface. If the estimate from the surface's own coefficients is larger, that one is used.
     pub rounding: f64,
 }
 
 impl Default for LawOptions {
-    /// 2^13 points, and trees.
+    /// Options with 2^13 points and with trees.
     fn default() -> Self {
         Self { points: 1 << 13, seed: 1, trees: true, rounding: 0.0 }
     }
 }
 
-/// The distribution of a surface.
+/// Distribution of a surface.
 ///
 /// ```
 /// use std::sync::Arc;
@@ -243,28 +243,28 @@ impl Default for LawOptions {
 #[derive(Debug)]
 pub struct SurfaceLaw {
     surface: Arc<Surface>,
-    /// The surface over its own inputs, where the coordinates of a zone have been replaced.
+    /// Surface over its own inputs. It differs from `surface` if the coordinates of a zone were replaced.
     given: Arc<Surface>,
     zones: Vec<Zone>,
-    /// Of the own inputs.
+    /// Correlation of the own inputs.
     correlation: Option<Correlation>,
     kind: Kind,
     range: [f64; 2],
     mean: f64,
     sigma: f64,
     step: bool,
-    /// By how much rounding may move a value.
+    /// Rounding error of a value of the surface.
     rounding: f64,
-    /// The largest probability of a single value that is neither listed nor summed apart; 0 where there is none.
+    /// Largest probability of a single value that is neither listed nor summed separately; 0 if there is none.
     jump: f64,
 }
 
-/// Values with a probability of their own that are summed apart beside a density, at most.
+/// Greatest number of values with a probability of their own that are summed separately beside a density.
 const MOST_JUMPS: usize = 1 << 12;
 
 #[derive(Debug)]
 enum Kind {
-    /// One value.
+    /// Single value of a constant surface.
     Point(f64),
     Steps(Steps),
     Exact(Box<Exact>),
@@ -273,18 +273,19 @@ enum Kind {
 }
 
 impl SurfaceLaw {
-    /// Of a fitted surface, its inputs' distributions in the order of the parts, and how these vary together.
+    /// Distribution of a fitted surface. `inputs` are in the order of its parts, `correlation` describes how they vary together.
     ///
-    /// Cost: no evaluation of the model. Eigenvalues where normal inputs interact, `O(N^3)`; panels of the other inputs.
+    /// Cost: no evaluation of the model; eigenvalues if normal inputs interact, `O(N^3)`; panels of the other inputs.
     ///
     /// # Errors
-    /// When a part of the surface or the distribution of an input that counts is unknown, or a coefficient is not finite.
+    /// Returns an error if a part of the surface or the distribution of an input with a part is unknown, or if a coefficient is not finite.
     pub fn of(
         surrogate: &Surrogate,
         inputs: &[Arc<dyn Distribution>],
         correlation: Option<&Correlation>,
         options: &LawOptions,
     ) -> Result<Self, LawError> {
+        // Replace the coordinates of zones by independent inputs where the surface allows it, and remember the given surface.
         if let Some(Straightened { surrogate: plain, inputs: others, correlation: left, zones }) =
             straightened(surrogate, inputs, correlation)
         {
@@ -307,6 +308,7 @@ impl SurfaceLaw {
             let at = surface.centre;
             return Ok(made(Kind::Point(at), [at; 2], [at, 0.0], 0.0));
         }
+        // Inputs that all consist of atoms give a list of values. Beside a density a few such values are summed separately.
         let discrete = surface.inputs.iter().all(|input| input.is_discrete());
         let jumps = match steps::atoms(&surface, rounding) {
             Some(values) if discrete => return Ok(Self::step_function(surface, correlation, rounding, values)),
@@ -319,6 +321,7 @@ impl SurfaceLaw {
             true => Ok(made(kind, range, [mean, sigma], jump)),
             false => Err(LawError::NoVariance),
         };
+        // One or two inputs take panels and roots, unless a pair is a quadratic form of normal inputs, which is exact.
         let parabolas = (0..surface.len()).all(|j| surface.is_normal_parabola(j));
         if surface.len() <= 2 && !(parabolas && surface.len() == 2) {
             let members: Vec<usize> = (0..surface.len()).collect();
@@ -329,6 +332,7 @@ impl SurfaceLaw {
         if let Some(position) = surface.inputs.iter().position(|input| input.falls_as_a_power()) {
             return Err(LawError::LongTail { position });
         }
+        // Invert the transform. If nodes do not resolve it, keep only single inputs in it and sample the other components.
         let components = surface.components();
         let summed = if options.trees { Summed::Trees } else { Summed::Perturbed };
         let jumps = jumps.unwrap_or_default();
@@ -351,10 +355,10 @@ impl SurfaceLaw {
         with(Kind::Sampled(Box::new(sampled)), [mean, sigma])
     }
 
-    /// [`of`](Self::of) of inputs that all have values with probabilities of their own, whose sums are few: such as those on a grid, however
-    /// many combinations there are. None of anything else.
+    /// List form of [`of`](Self::of), for inputs that all have values with probabilities of their own and few different sums, as on a grid.
+    /// The number of combinations does not matter. Returns None for all other inputs.
     ///
-    /// Cost: a list of 2^20 values at most, for every component.
+    /// Cost: a list of at most 2^20 values for every component.
     pub fn of_list(
         surrogate: &Surrogate,
         inputs: &[Arc<dyn Distribution>],
@@ -380,20 +384,20 @@ impl SurfaceLaw {
         Self { surface, given, zones, correlation, kind, range, mean, sigma, step: true, rounding, jump: 0.0 }
     }
 
-    /// Probability strictly below a limit, so that a limit itself is kept.
+    /// Probability strictly below a limit. A value on the limit keeps it.
     pub fn below(&self, y: f64) -> LawFigure {
         self.tail(y, LawTail::Lower)
     }
 
-    /// Probability strictly above a limit.
+    /// Probability strictly above a limit. A value on the limit keeps it.
     pub fn above(&self, y: f64) -> LawFigure {
         self.tail(y, LawTail::Upper)
     }
 
-    /// Probability strictly beyond a limit, computed as what it is and not as a complement.
+    /// Probability strictly beyond a limit, computed directly and not as a complement.
     ///
-    /// Exactly 0 or 1, and said to be proven, where the limit lies outside of the range. NaN gives NaN. A value that only rounding
-    /// separates from the limit is on it.
+    /// The result is exactly 0 or 1, and marked as proven, if the limit lies outside the range. NaN gives NaN. A value that differs from
+    /// the limit by no more than rounding counts as on it.
     pub fn tail(&self, y: f64, tail: LawTail) -> LawFigure {
         if y.is_nan() {
             return LawFigure::new(f64::NAN, f64::INFINITY);
@@ -412,7 +416,7 @@ impl SurfaceLaw {
             Kind::Steps(steps) => steps.tail(y, tail),
             Kind::Exact(exact) => {
                 let found = exact.tail(&self.surface, y, tail);
-                // A sum over a contour halves a jump at the limit.
+                // A sum along a contour halves a jump at the limit.
                 LawFigure { error: found.error + self.jump, ..found }
             }
             Kind::Single(single) => single.tail(y, tail),
@@ -420,18 +424,18 @@ impl SurfaceLaw {
         }
     }
 
-    /// The place beyond which a value breaks a limit: farther off than rounding where values have a probability of their own.
+    /// Value beyond which a limit is exceeded. It is moved outward by the rounding error if values have probabilities of their own.
     fn beyond(&self, y: f64, tail: LawTail) -> f64 {
         let jumps = self.surface.inputs.iter().all(|input| !input.atoms.is_empty());
         if jumps { y + tail.sign() * self.rounding } else { y }
     }
 
-    /// The limits that values of the surface keep.
+    /// Limits with the rounding error of the surface allowed.
     fn kept(&self, limits: SpecLimits) -> KeptLimits {
         KeptLimits::moved(limits, self.rounding)
     }
 
-    /// Density per unit of `y`; 0 where the law is a step function, NaN where points are drawn of which none can be integrated.
+    /// Density per unit of `y`. It is 0 if the law is a step function, and NaN if points are sampled and no direction can be integrated.
     pub fn density(&self, y: f64) -> LawFigure {
         let [least, most] = self.range;
         if y.is_nan() {
@@ -448,7 +452,7 @@ impl SurfaceLaw {
         }
     }
 
-    /// [`density`](Self::density) for a drawing: where points are drawn, from those of the law itself, which do for where it is visible.
+    /// [`density`](Self::density) for a drawing. The sampled branch uses untilted points, which suffice where the density is visible.
     pub fn drawn_density(&self, y: f64) -> LawFigure {
         let [least, most] = self.range;
         match &self.kind {
@@ -457,9 +461,9 @@ impl SurfaceLaw {
         }
     }
 
-    /// The limit beyond which this tail has the probability `p`; NaN where `p` is not a probability.
+    /// Limit beyond which this tail has the probability `p`. Returns NaN if `p` is not a probability.
     ///
-    /// At 0 the end of the range that the tail points to, which may be infinite; at 1 the other one.
+    /// `p` of 0 gives the end of the range on the side of the tail, which may be infinite; `p` of 1 gives the other end.
     pub fn quantile(&self, tail: LawTail, p: f64) -> LawFigure {
         if !(0.0..=1.0).contains(&p) {
             return LawFigure::new(f64::NAN, f64::INFINITY);
@@ -481,34 +485,34 @@ impl SurfaceLaw {
         }
     }
 
-    /// Several quantiles at once, each from a place that is nearly right: to 1e-7 sigma, or to a small part of what points leave open.
+    /// Several quantiles at once, each from an approximate starting value. The error is 1e-7 sigma, or a small part of the sampling error.
     ///
-    /// Those of one tail share a contour or points. Cost: three or four limits on it for each.
+    /// Quantiles of one tail share a contour or points. Cost: three or four limits on it for each.
     pub fn quantiles(&self, sought: &[Sought]) -> Vec<LawFigure> {
         quantile::quantiles(self, sought)
     }
 
-    /// The derivatives of a tail's probability by the logarithm of every input's tolerance, at fixed shape: the slope of input
-    /// `j` follows its tolerance, a curvature its square, a product both; None where the law is a step function.
+    /// Derivatives of a tail's probability by the logarithm of every input's tolerance, at fixed shape. The slope of input `j` scales with
+    /// its tolerance, a curvature with the square, a product with both tolerances. Returns None if the law is a step function.
     ///
     /// ```text
     /// exact             d sf/d log T_j = 1/pi int Re[ exp(K - s y)/s dK/d log T_j ] dt
     /// single, sampled   d sf/d log T_j = E[ sum_roots f(w) z_j dy/dz_j / |dy/dw| ]
     /// ```
     ///
-    /// Shapes: as many as the surrogate has parts; 0 for an input that does not count. Cost: about that of one limit for each
-    /// input of the exact branch, one sample for all of them in the others.
+    /// The result has one entry for each part of the surrogate, 0 for an input without a part. Cost: about one limit for each input in the
+    /// exact branch, one sample for all of them in the others.
     pub fn tail_derivatives(&self, y: f64, tail: LawTail) -> Option<Vec<LawFigure>> {
         derivative::tail_derivatives(self, y, tail)
     }
 
-    /// The contour, points and proposals with which this tail is computed, to compute those of other laws of the same
-    /// structure with them: their figures then are smooth in the coefficients.
+    /// Contour, points and proposals of this tail. Tails of other laws of the same structure that are computed with them are smooth in the
+    /// coefficients.
     pub fn hold(&self, y: f64, tail: LawTail) -> HeldTail {
         HeldTail::of(self, y, tail)
     }
 
-    /// How the law is computed.
+    /// Branch by which the distribution is computed.
     pub fn branch(&self) -> Branch {
         match self.kind {
             Kind::Point(_) | Kind::Steps(_) | Kind::Exact(_) => Branch::Exact,
@@ -517,24 +521,24 @@ impl SurfaceLaw {
         }
     }
 
-    /// Whether all inputs consist of atoms, so that probabilities jump from value to value and there is no density.
+    /// True if all inputs consist of atoms. Probabilities then jump from value to value and there is no density.
     pub fn is_step_function(&self) -> bool {
         self.step
     }
 
-    /// An interval that no value of the surface leaves; infinite where there is no bound.
+    /// Interval that contains every value of the surface; infinite if there is no bound.
     ///
-    /// Without products it is the range itself. With products it may be wider.
+    /// Without products it is the exact range. With products it may be wider.
     pub fn range(&self) -> [f64; 2] {
         self.range
     }
 
-    /// The mean of the law.
+    /// Mean of the surface.
     pub fn mean(&self) -> f64 {
         self.mean
     }
 
-    /// Its standard deviation.
+    /// Standard deviation of the surface.
     pub fn sigma(&self) -> f64 {
         self.sigma
     }

@@ -1,31 +1,31 @@
-//! Expectations of a function of one input by Gauss panels that are halved where two rules differ.
+//! Expectations of a function of one input by Gauss panels, which are halved as long as two rules differ.
 
 use super::input::{GAUSS, Input};
 
-/// Part of the whole by which two rules on a panel may differ: all digits,
+/// Greatest difference of two rules on a panel, relative to the whole, for full accuracy.
 pub(super) const EXACT: f64 = 1e-15;
-/// or as many as a quantile takes.
+/// Greatest difference of two rules on a panel, relative to the whole, for a quantile.
 pub(super) const NEARLY: f64 = 1e-10;
-/// Panels at most.
+/// Greatest number of panels.
 const MOST: usize = 6000;
-/// Halvings of a panel at most: a kink is then known to the last digit.
+/// Greatest number of halvings of a panel: a kink is then located to the last digit.
 const DEEPEST: usize = 52;
 
-/// An expectation and what its panels leave uncertain.
+/// Expectation with the numerical error of its panels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Expectation {
     pub(super) value: f64,
     pub(super) error: f64,
 }
 
-/// `E f(z)` of a function that is smooth between these places and a few others.
+/// `E f(z)` of a function that is smooth except at the `splits` and a few other points.
 pub(super) fn expectation(input: &Input, splits: &[f64], tolerance: f64, f: impl Fn(f64) -> f64) -> Expectation {
     let rule = |from: f64, to: f64, factor: f64| -> f64 {
         let width = to - from;
         let at = |x: f64| {
             let z = from + width * x;
             let density = input.density(z);
-            // A place next to an end may be rounded onto it, where a broken power is infinite.
+            // A node next to an end may be rounded onto it, where a broken power is infinite.
             if density > 0.0 && density.is_finite() { density * f(z) } else { 0.0 }
         };
         factor * width * GAUSS.iter().map(|(x, w)| w * at(*x)).sum::<f64>()
@@ -50,7 +50,7 @@ pub(super) fn expectation(input: &Input, splits: &[f64], tolerance: f64, f: impl
         let middle = 0.5 * (from + to);
         let (left, right) = (rule(from, middle, factor), rule(middle, to, factor));
         let off = (left + right - coarse).abs();
-        // A narrow spike that the first rule has missed makes the whole larger.
+        // A narrow spike that the first rule missed makes the whole larger.
         total += left.abs() + right.abs() - coarse.abs();
         taken += 1;
         let fine = off <= tolerance * total || !(from < middle && middle < to);

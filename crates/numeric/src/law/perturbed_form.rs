@@ -1,17 +1,18 @@
-//! Quadratic forms of normal inputs with third and fourth powers beside them, as angles about a stationary point have.
+//! Quadratic forms of normal inputs with added third and fourth powers, as in angles about a stationary point.
 //!
-//! The surface is expanded anew about the saddle point `x*` of a tilt `theta`, which is exact for quartics. With `z = L x` of independent
-//! normal `x`, the axes `eta` of the curvature there, and `gamma` and `beta` the place and the slopes along them:
+//! The surface is expanded anew about the saddle point `x*` of a tilt `theta`, which is exact for quartics. The inputs are `z = L x` with
+//! independent normal `x`, and `eta` are the axes of the curvature at the saddle point. `gamma` and `beta` are the position and the slopes
+//! along these axes:
 //!
 //! ```text
 //! x*   = argmax theta y(L x) - |x|^2/2
 //! K(s) = s y* - |x*|^2/2 + sum_i (s beta_i - gamma_i)^2/(2 q_i) - 1/2 log q_i + log E exp(s sum_j c3 v_j^3 + c4 v_j^4),   q_i = 1 - 2 a_i s
 //! ```
 //!
-//! The `v_j` of the inputs with higher powers are normal under the complex tilt: the contour of integration turns with `s`, so that nothing
-//! oscillates. Their expectation is a product of Gauss-Hermite rules, refined until two of them agree. Where none do the contour ends. Source of
-//! the expansion: O. E. Barndorff-Nielsen and D. R. Cox, Asymptotic Techniques for Use in Statistics (1989), 6.2; of the turned rules:
-//! D. Huybrechs and S. Vandewalle, SIAM Journal on Numerical Analysis 44 (2006).
+//! The `v_j` of the inputs with higher powers are normal under the complex tilt. The contour of integration turns with `s`, so the
+//! integrand does not oscillate. Their expectation is a product of Gauss-Hermite rules, refined until two of them agree. If none agree, the
+//! contour ends. Source of the expansion: O. E. Barndorff-Nielsen and D. R. Cox, Asymptotic Techniques for Use in Statistics (1989), 6.2;
+//! of the turned rules: D. Huybrechs and S. Vandewalle, SIAM Journal on Numerical Analysis 44 (2006).
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
@@ -25,21 +26,22 @@ use super::polynomial::{Quartic, derivative, value};
 use super::surface::Surface;
 use crate::distribution::{Normal, Rule};
 
-/// Inputs with higher powers at most: the nodes of a product rule are a power of their number.
+/// Greatest number of inputs with higher powers: the nodes of a product rule grow as a power with this exponent.
 const MOST_BENT: usize = 4;
-/// Inputs of a block at most: every tilt takes eigenvalues.
+/// Greatest number of inputs of a block, because every tilt takes eigenvalues.
 const MOST_MEMBERS: usize = 48;
-/// Nodes of a product rule at most: a contour of a hundred points takes some hundredths of a second.
+/// Greatest number of nodes of a product rule: a contour of a hundred points takes some hundredths of a second.
 const MOST_NODES: usize = 4096;
-/// Nodes along one input: half as many again from each to the next.
+/// Numbers of nodes along one input, each up to half as many again as the last.
 const NODES: [usize; 12] = [4, 6, 8, 10, 13, 16, 20, 24, 30, 36, 44, 54];
-/// Two rules agree within this part of the transform on the real axis.
+/// Difference at which two rules agree, relative to the transform on the real axis.
 const AGREED: f64 = 3e-14;
-/// Points of a contour from one test of the rules to the next: a transform varies little between neighbours.
+/// Points of a contour between two tests of the rules. A transform varies little between neighbours.
 const TESTED: usize = 8;
-/// A factor of curvature `1 - 2 a theta` below this is the end of the domain.
+/// Least value of a factor `1 - 2 a theta`. Below it the domain of the transform has ended.
 const LEAST_FACTOR: f64 = 1e-3;
-/// An exponent of higher powers at the complex mean up to which the contour is shifted there; a larger one grows along it.
+/// Greatest exponent of the higher powers at the complex mean for which the nodes are shifted to that mean. A larger one grows along the
+/// contour.
 const SHIFTED: f64 = 1.0;
 
 static RULES: LazyLock<Vec<Rule>> = LazyLock::new(|| {
@@ -47,27 +49,27 @@ static RULES: LazyLock<Vec<Rule>> = LazyLock::new(|| {
     NODES.iter().map(|&nodes| Rule::of(&normal, nodes)).collect()
 });
 
-/// A block of normal inputs of which a few have higher powers.
+/// Block of normal inputs, a few of which have higher powers.
 #[derive(Debug)]
 pub(super) struct PerturbedForm {
-    /// Places in the surface.
+    /// Indices of the inputs in the surface.
     pub(super) members: Vec<usize>,
     parts: Vec<Quartic>,
     /// Curvatures, with half the products beside them.
     form: Mat<f64>,
-    /// `L` of the correlation; None where the members are uncorrelated.
+    /// `L` of the correlation; None if the members are uncorrelated.
     factor: Option<Mat<f64>>,
-    /// Members with higher powers, by their order in the block.
+    /// Members with higher powers, by their index in the block.
     bent: Vec<usize>,
     expansions: Mutex<BTreeMap<u64, Option<Arc<Expansion>>>>,
 }
 
-/// The block about the saddle point of a tilt.
+/// Block expanded about the saddle point of a tilt.
 #[derive(Debug)]
 struct Expansion {
-    /// Value of the surface there.
+    /// Value of the surface at the saddle point.
     at: f64,
-    /// `|x*|^2/2`.
+    /// Half the squared distance of the saddle point, `|x*|^2/2`.
     distance: f64,
     /// `a_i`, `beta_i` and `gamma_i` of every axis.
     axes: Vec<[f64; 3]>,
@@ -77,23 +79,23 @@ struct Expansion {
     powers: Vec<[f64; 2]>,
     /// `K(theta)`.
     log: f64,
-    /// The rule that resolves the real axis.
+    /// Index of the rule that resolves the real axis.
     level: usize,
 }
 
-/// The bent inputs under a complex tilt: means, a lower triangular factor of their covariance, and the part in closed form.
+/// Bent inputs under a complex tilt: means, a lower triangular factor of their covariance, and the part in closed form.
 struct ComplexTilt {
     s: Complex,
     means: [Complex; MOST_BENT],
     factor: [[Complex; MOST_BENT]; MOST_BENT],
-    /// Slopes of the exponent along the rules where these stay about 0 in place of the means.
+    /// Slopes of the exponent along the rules if the nodes are centred on 0 instead of the means.
     slopes: Option<[Complex; MOST_BENT]>,
     /// `K(s)` without the expectation.
     closed: Complex,
 }
 
 impl PerturbedForm {
-    /// Returns None if an input is not normal, or too many have higher powers.
+    /// Block of these members. Returns None if an input is not normal, or if too many have higher powers.
     pub(super) fn of(surface: &Surface, members: &[usize]) -> Option<Self> {
         let parts: Vec<Quartic> = members.iter().map(|&j| surface.parts[j]).collect();
         let bent: Vec<usize> = (0..parts.len()).filter(|&a| parts[a][3] != 0.0 || parts[a][4] != 0.0).collect();
@@ -105,7 +107,7 @@ impl PerturbedForm {
         Some(Self { members: members.to_vec(), parts, form, factor, bent, expansions: Mutex::default() })
     }
 
-    /// Returns mean and variance, by Hermite polynomials: `E He_n(z_j) He_n(z_k) = n! rho^n`.
+    /// Mean and variance, by Hermite polynomials: `E He_n(z_j) He_n(z_k) = n! rho^n`.
     pub(super) fn moments(&self) -> [f64; 2] {
         let m = self.members.len();
         let correlation = match &self.factor {
@@ -137,12 +139,12 @@ impl PerturbedForm {
         self.expansion(0.0).map_or(Vec::new(), |about| about.axes.iter().map(|&[a, slope, _]| [a, slope]).collect())
     }
 
-    /// Whether a tilt exists, as far as the powers beside the form are small.
+    /// True if the expansion about this tilt exists, which requires that the powers beside the form are small.
     pub(super) fn bears(&self, theta: f64) -> bool {
         self.expansion(theta).is_some()
     }
 
-    /// Returns `K` at a real tilt; NaN where it does not exist.
+    /// `K` at a real tilt. Returns NaN if it does not exist.
     pub(super) fn log(&self, theta: f64) -> f64 {
         self.expansion(theta).map_or(f64::NAN, |about| about.log)
     }
@@ -180,11 +182,13 @@ impl PerturbedForm {
         (about.log.is_finite() && expectation.re > 0.0).then_some(about)
     }
 
-    /// The maximum of `theta y - |x|^2/2` that is reached from the origin by Newton's method in steps of the tilt.
+    /// Maximum of `theta y - |x|^2/2`, followed from the origin by Newton's method while the tilt grows in steps.
     fn saddle(&self, theta: f64) -> Option<Vec<f64>> {
+        /// Steps of the tilt from 0 to `theta`.
         const TILTS: usize = 8;
+        /// Greatest number of Newton steps for each tilt.
         const STEPS: usize = 12;
-        /// Of the length of `x`, and of one sigma.
+        /// Tolerance of the Newton step, relative to the larger of the length of `x` and one sigma.
         const NEAR: f64 = 1e-13;
         let m = self.members.len();
         let mut x = vec![0.0; m];
@@ -196,7 +200,7 @@ impl PerturbedForm {
                 let (slopes, curvature) = (self.slopes(&z), self.curvature(&z));
                 let gap = Mat::from_fn(m, 1, |a, _| theta * slopes[a] - x[a]);
                 let bowl = Mat::from_fn(m, m, |a, b| f64::from(u8::from(a == b)) - 2.0 * theta * curvature[(a, b)]);
-                // No maximum any more: the domain has ended.
+                // No Cholesky factor: there is no maximum any more and the domain has ended.
                 let step = bowl.llt(Side::Lower).ok()?.solve(&gap);
                 x.iter_mut().enumerate().for_each(|(a, x)| *x += step[(a, 0)]);
                 moved = (0..m).map(|a| step[(a, 0)].abs()).fold(0.0, f64::max);
@@ -205,7 +209,7 @@ impl PerturbedForm {
                     break;
                 }
             }
-            // Rounding of the slopes is all that is left.
+            // Accept a last step that is only the rounding of the slopes.
             if moved.is_nan() || moved > 1e3 * NEAR * x.iter().fold(1.0f64, |length, x| length.max(x.abs())) {
                 return None;
             }
@@ -213,7 +217,7 @@ impl PerturbedForm {
         Some(x)
     }
 
-    /// `L x`.
+    /// Correlated normal inputs `L x`.
     fn mixed(&self, x: &[f64]) -> Vec<f64> {
         match &self.factor {
             Some(factor) => (0..x.len()).map(|a| x.iter().enumerate().map(|(b, x)| factor[(a, b)] * x).sum()).collect(),
@@ -221,7 +225,7 @@ impl PerturbedForm {
         }
     }
 
-    /// The surface about its centre.
+    /// Surface about its centre.
     fn value(&self, z: &[f64]) -> f64 {
         let m = z.len();
         let products = (0..m).flat_map(|a| (0..a).map(move |b| (a, b)));
@@ -229,7 +233,7 @@ impl PerturbedForm {
         own + products.map(|(a, b)| 2.0 * self.form[(a, b)] * z[a] * z[b]).sum::<f64>()
     }
 
-    /// Its slopes by `x`.
+    /// Slopes of the surface by `x`.
     fn slopes(&self, z: &[f64]) -> Vec<f64> {
         let m = z.len();
         let beside = |a: usize| (0..m).filter(|&b| b != a).map(|b| 2.0 * self.form[(a, b)] * z[b]).sum::<f64>();
@@ -240,7 +244,7 @@ impl PerturbedForm {
         }
     }
 
-    /// Half its second derivatives by `x`.
+    /// Half the second derivatives of the surface by `x`.
     fn curvature(&self, z: &[f64]) -> Mat<f64> {
         let mut form = self.form.clone();
         for &a in &self.bent {
@@ -252,20 +256,20 @@ impl PerturbedForm {
         }
     }
 
-    /// Multiplies `M(s)/M(theta)` into the points of a block; returns how many of them are resolved, from the first on.
+    /// Multiplies `M(s)/M(theta)` into the points of a block and returns the number of resolved points, counted from the first.
     pub(super) fn multiply(&self, theta: f64, points: &[Complex], out: &mut [Complex]) -> usize {
         let logs = self.logs(theta, points);
         logs.iter().zip(out).for_each(|(log, out)| *out *= log.exp());
         logs.len()
     }
 
-    /// `K(s) - K(theta)` at some points; as many as are resolved, from the first on.
+    /// `K(s) - K(theta)` at the points that are resolved, counted from the first.
     pub(super) fn logs(&self, theta: f64, points: &[Complex]) -> Vec<Complex> {
         let Some(about) = self.expansion(theta) else { return Vec::new() };
         let mut logs = Vec::with_capacity(points.len());
         let mut level = about.level;
         for points in points.chunks(TESTED) {
-            // The last point of each few has the largest phase.
+            // The last point of each group has the largest phase.
             let last = about.tilt(points[points.len() - 1]);
             let scale = libm::exp(last.closed.re - about.log);
             match about.resolved(&last, level, scale) {
@@ -282,7 +286,7 @@ impl PerturbedForm {
 }
 
 impl Expansion {
-    /// The bent inputs under a tilt.
+    /// Bent inputs under a tilt.
     fn tilt(&self, s: Complex) -> ComplexTilt {
         let k = self.powers.len();
         let mut closed = s * self.at - Complex::from(self.distance);
@@ -301,7 +305,8 @@ impl Expansion {
         }
         let factor = complex_factor(covariance, k);
         let grown = (0..k).map(|j| self.power(s, j, means[j])).fold(Complex::ZERO, |sum, more| sum + more);
-        // Far out along the complex means higher powers may grow; the rules then stay about the saddle point, and turn by their slopes.
+        // Far out along the complex means the higher powers may grow. The nodes then stay about the saddle point, and slopes in the
+        // exponent account for the means.
         let stays = grown.abs() > SHIFTED && (0..k).all(|j| factor[j][j] != Complex::ZERO);
         if stays {
             for j in 0..k {
@@ -320,7 +325,7 @@ impl Expansion {
         s * (v * v * v) * (v * fourth + Complex::from(third))
     }
 
-    /// The first rule from this one on that agrees with the next one, and the expectation by that; None where none does.
+    /// First rule from `from` on that agrees with the next one, and the expectation by that next one. Returns None if no two rules agree.
     fn resolved(&self, tilt: &ComplexTilt, from: usize, scale: f64) -> Option<(usize, Complex)> {
         let k = self.powers.len() as u32;
         let mut before = self.expectation(tilt, from);
@@ -337,12 +342,12 @@ impl Expansion {
         None
     }
 
-    /// The expectation of the higher powers by a product of rules.
+    /// Expectation of the higher powers by a product of rules.
     fn expectation(&self, tilt: &ComplexTilt, level: usize) -> Complex {
         self.nested(tilt, &RULES[level], 0, tilt.means)
     }
 
-    /// The sum over one rule and all those after it.
+    /// Sum over the rule of input `j` and the rules of all inputs after it.
     fn nested(&self, tilt: &ComplexTilt, rule: &Rule, j: usize, means: [Complex; MOST_BENT]) -> Complex {
         let last = j + 1 == self.powers.len();
         let mut sum = Complex::ZERO;
@@ -364,9 +369,9 @@ impl Expansion {
     }
 }
 
-/// The lower triangular factor of a complex symmetric matrix, `C = F F'` without conjugation; a column of zeros where a pivot vanishes.
+/// Lower triangular factor of a complex symmetric matrix, `C = F F'` without conjugation. A vanishing pivot gives a column of zeros.
 fn complex_factor(covariance: [[Complex; MOST_BENT]; MOST_BENT], k: usize) -> [[Complex; MOST_BENT]; MOST_BENT] {
-    /// Part of a variance below which a pivot is rounding.
+    /// Relative part of a variance below which a pivot is rounding.
     const NONE: f64 = 1e-13;
     let mut factor = [[Complex::ZERO; MOST_BENT]; MOST_BENT];
     for j in 0..k {
@@ -374,7 +379,7 @@ fn complex_factor(covariance: [[Complex; MOST_BENT]; MOST_BENT], k: usize) -> [[
         if own.abs() <= NONE * covariance[j][j].abs() {
             continue;
         }
-        // Either root does: the rules are symmetric.
+        // Either root will do, because the rules are symmetric.
         factor[j][j] = (own.ln() * 0.5).exp();
         for i in j + 1..k {
             let rest = (0..j).fold(covariance[i][j], |rest, l| rest - factor[i][l] * factor[j][l]);

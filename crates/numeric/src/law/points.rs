@@ -1,4 +1,4 @@
-//! The points of the sampled branch: what the surface is along the direction, at scrambled Sobol' points of the others.
+//! Points of the sampled branch: polynomials of the surface along the direction, at scrambled Sobol' points of the other coordinates.
 
 use super::direction::{Direction, Terms};
 use super::polynomial::Quartic;
@@ -6,35 +6,35 @@ use super::tilt::{Proposal, Tilts};
 use crate::parallel::prelude::*;
 use crate::sampling::{SOBOL_DIMENSIONS, Sobol};
 
-/// Replicates: what they differ by is the error.
+/// Number of replicates, whose scatter gives the error.
 pub(super) const REPLICATES: usize = 16;
-/// Standard errors of the mean of 16 replicates that bound the error: Student's distribution with 15 degrees of freedom leaves
+/// Number of standard errors of the mean of 16 replicates that bound the error. Student's distribution with 15 degrees of freedom leaves
 /// 1 % beyond.
 pub const QUANTILE: f64 = 2.95;
-/// Share of the own law in the mixture of a proposal: no point weighs more than its inverse.
+/// Share of the own distribution in the mixture of a proposal. No weight exceeds its inverse.
 const OWN: f64 = 0.25;
 
-/// Points in replicates one after the other.
+/// Sampled points, one replicate after the other.
 #[derive(Debug)]
 pub(super) struct Sample {
-    /// The surface about its centre along the direction.
+    /// Surface about its centre as polynomials along the direction.
     pub(super) full: Vec<Quartic>,
-    /// The same of the control; empty where there is none.
+    /// Control variate as polynomials along the direction; empty if there is none.
     pub(super) control: Vec<Quartic>,
-    /// Own probability by the proposal's; empty where the points are those of the own law.
+    /// Ratio of the own probability to that of the proposal; empty if the points follow the own distribution.
     pub(super) weights: Vec<f64>,
 }
 
-/// The surfaces that are evaluated at the points.
+/// Surfaces that are evaluated at the points.
 pub(super) struct Along<'a> {
     pub(super) direction: &'a Direction,
     pub(super) full: &'a Terms,
-    /// The control over its own parts.
+    /// Control variate with the direction over its own parts.
     pub(super) control: Option<(&'a Direction, &'a Terms)>,
 }
 
 impl Sample {
-    /// Of so many points in every replicate, a power of two.
+    /// Sample with this number of points in every replicate, a power of two.
     pub(super) fn of(along: &Along<'_>, tilts: &Tilts, proposal: Option<&Proposal>, points: usize, seed: u64) -> Self {
         let rows = visit(along.direction, tilts, proposal, points, seed, |z, weight| {
             let full = along.direction.along(z, along.full);
@@ -48,7 +48,7 @@ impl Sample {
     }
 }
 
-/// A function of the inputs and the weight at every point, replicate after replicate; the direction is at 0.
+/// Evaluates `f` at the inputs and the weight of every point, replicate after replicate. The coordinate of the direction is 0.
 #[expect(clippy::needless_range_loop, reason = "a point is a row over all columns")]
 pub(super) fn visit<T: Send>(
     direction: &Direction,
@@ -62,10 +62,10 @@ pub(super) fn visit<T: Send>(
     let own: Vec<Vec<f64>> = tilts.cells[..sampled.len()].iter().map(|cells| cells.masses().to_vec()).collect();
     let modes = proposal.map_or(&[][..], |proposal| &proposal.modes);
     let tilted = modes.iter().map(|mode| (mode.masses.as_slice(), (1.0 - OWN) * mode.share));
-    // A part of the own law bounds every weight, so that a mode which no tilt leads to is still seen.
+    // A share of the own distribution bounds every weight, so that a mode without a tilt of its own is still sampled.
     let own = std::iter::once((own.as_slice(), if modes.is_empty() { 1.0 } else { OWN }));
     let masses: Vec<(&[Vec<f64>], f64)> = tilted.chain(own).collect();
-    // Running sums, by mode and coordinate.
+    // Cumulative masses of the cells, by mode and coordinate.
     let sums: Vec<Vec<Vec<f64>>> =
         masses.iter().map(|(masses, _)| masses.iter().map(|m| running(m)).collect()).collect();
     let dimensions = sampled.len() + usize::from(masses.len() > 1);
@@ -79,7 +79,7 @@ pub(super) fn visit<T: Send>(
                     Some(sobol) if dimension < SOBOL_DIMENSIONS => {
                         sobol.column(dimension, 0, Some(key(dimension)), &mut column);
                     }
-                    // Beyond the direction numbers random ones: what many coordinates do together averages out.
+                    // Beyond the direction numbers take random coordinates. The joint effect of many coordinates averages out.
                     _ => column.iter_mut().enumerate().for_each(|(i, u)| {
                         *u = (mixed(key(dimension) ^ i as u64) >> 12) as f64 / (1u64 << 52) as f64;
                     }),
@@ -90,6 +90,7 @@ pub(super) fn visit<T: Send>(
         let mut rows = Vec::with_capacity(points);
         let (mut z, mut scratch) = (vec![0.0; direction.surface().len()], Vec::new());
         for point in 0..points {
+            // Draw the mode by the last coordinate, then a cell of every coordinate by the masses of that mode.
             let mode = match masses.len() {
                 1 => 0,
                 modes => {
@@ -139,7 +140,7 @@ fn running(masses: &[f64]) -> Vec<f64> {
     std::iter::once(0.0).chain(sums).collect()
 }
 
-/// The finaliser of SplitMix64 (Steele, Lea and Flood 2014).
+/// Finaliser of SplitMix64 (Steele, Lea and Flood 2014).
 pub(super) fn mixed(word: u64) -> u64 {
     let word = word.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let word = (word ^ word >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);

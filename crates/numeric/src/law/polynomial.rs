@@ -1,20 +1,19 @@
 //! Quartics: values, extremes and real roots.
 
-/// `c[0] + c[1] z + ... + c[4] z^4`.
+/// Coefficients of `c[0] + c[1] z + ... + c[4] z^4`.
 pub(super) type Quartic = [f64; 5];
 
-/// Its value.
+/// Value of the polynomial at `z`.
 #[inline(always)]
 pub(super) fn value(c: &Quartic, z: f64) -> f64 {
     (((c[4] * z + c[3]) * z + c[2]) * z + c[1]) * z + c[0]
 }
 
-/// Its derivative.
 pub(super) fn derivative(c: &Quartic) -> Quartic {
     [c[1], 2.0 * c[2], 3.0 * c[3], 4.0 * c[4], 0.0]
 }
 
-/// A few real numbers in ascending order: roots, or the places between which a function is monotone.
+/// Up to four real numbers in ascending order: roots, or the boundaries between which a function is monotone.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Few {
     values: [f64; 4],
@@ -34,19 +33,19 @@ impl Few {
     }
 }
 
-/// The places between `low` and `high` where the polynomial changes its sign, ascending.
+/// Arguments between `low` and `high` at which the polynomial changes its sign, ascending.
 ///
-/// Of a line and a parabola in closed form; of a higher degree between the extremes, where it is monotone, by Newton's method
-/// between bounds. A double root is none: nothing changes its sign there.
+/// Lines and parabolas are solved in closed form. A higher degree is solved between its extremes, where it is monotone, by Newton's method
+/// between bounds. A double root is left out because the sign does not change there.
 pub(super) fn roots(c: &Quartic, interval: [f64; 2]) -> Few {
     of_degree(4, c, interval)
 }
 
-/// The same of a polynomial of this degree at most: that of its derivative is less whatever overflows.
+/// [`roots`] of a polynomial of degree `most` or less. The bound makes the recursion over derivatives end even if products overflow.
 fn of_degree(most: usize, c: &Quartic, [low, high]: [f64; 2]) -> Few {
     let reach = low.abs().max(high.abs());
     let mut degree = most;
-    // A coefficient that moves nothing within the interval is not a coefficient.
+    // Drop a leading coefficient that is negligible over the whole interval.
     let scale = (1..5).map(|k| c[k].abs() * reach.powi(k as i32)).fold(0.0, f64::max);
     while degree > 0 && c[degree].abs() * reach.powi(degree as i32) <= 1e-17 * scale {
         degree -= 1;
@@ -70,7 +69,7 @@ fn parabola(c: &Quartic, low: f64, high: f64) -> Few {
     if discriminant <= 0.0 {
         return Few::default();
     }
-    // The sum without cancellation, the other root by their product.
+    // One root from the sum without cancellation, the other one from their product.
     let sum = -0.5 * (c[1] + discriminant.sqrt().copysign(c[1]));
     let (a, b) = (sum / c[2], if sum == 0.0 { 0.0 } else { c[0] / sum });
     if sum == 0.0 {
@@ -95,7 +94,7 @@ fn between_extremes(degree: usize, c: &Quartic, low: f64, high: f64) -> Few {
     found
 }
 
-/// The root between two places where a polynomial has different signs.
+/// Root between two arguments at which a polynomial has different signs.
 fn bracketed(c: &Quartic, slope: &Quartic, mut low: f64, mut high: f64, falling: bool) -> f64 {
     let mut z = 0.5 * (low + high);
     let mut width = high - low;
@@ -125,13 +124,13 @@ fn bracketed(c: &Quartic, slope: &Quartic, mut low: f64, mut high: f64, falling:
 pub(super) fn range(c: &Quartic, [low, high]: [f64; 2]) -> [f64; 2] {
     let at = |z: f64| match z.is_finite() {
         true => value(c, z),
-        // Of the leading coefficient at infinity; the constant where there is no other.
+        // At infinity the leading coefficient decides, or the constant if there is no other.
         false => match (1..5).rev().find(|&k| c[k] != 0.0) {
             Some(k) => c[k] * z.signum().powi(k as i32) * f64::INFINITY,
             None => c[0],
         },
     };
-    // Cauchy's bound holds every extreme.
+    // Cauchy's bound encloses every extreme.
     let slope = derivative(c);
     let lead = (0..5).rev().find(|&k| slope[k] != 0.0);
     let bound = lead.map_or(0.0, |k| 1.0 + (0..k).map(|i| (slope[i] / slope[k]).abs()).fold(0.0, f64::max));
@@ -154,7 +153,7 @@ mod tests {
         c
     }
 
-    /// Four simple roots of distance 1 are conditioned like their coefficients, of some hundred units in the last place.
+    /// Four simple roots at distances of about 1 are as well conditioned as their coefficients: some hundred units in the last place.
     #[test]
     fn roots_of_a_quartic_are_found_inside_the_interval_only() {
         let c = of_roots([-2.0, -0.5, 1.0, 3.0]);
@@ -166,7 +165,7 @@ mod tests {
         assert_eq!(roots(&c, [-1.0, 2.0]).as_slice().len(), 2);
     }
 
-    /// Found by a fuzz target: products that overflow are no numbers, and compare with nothing.
+    /// Found by a fuzz target: overflowing products become NaN, and every comparison with NaN is false.
     #[test]
     fn what_overflows_has_an_end() {
         let whole = [f64::NEG_INFINITY, f64::INFINITY];

@@ -1,11 +1,11 @@
-//! The probability of a quadrant of two normal variables.
+//! Probability of a quadrant of two normal variables.
 //!
 //! ```text
 //! P(X > h, Y > k) = Q(h) Q(k) + 1/(2 pi) int_0^asin(rho) exp(-(h^2 + k^2 - 2 h k sin t)/(2 cos^2 t)) dt
 //! ```
 //!
-//! Source: R. L. Plackett, "A reduction formula for normal multivariate integrals", Biometrika 41 (1954). The integral is a sum over
-//! panels of the rule of Gauss with sixteen nodes; its error is the difference from half as many panels.
+//! Source: R. L. Plackett, "A reduction formula for normal multivariate integrals", Biometrika 41 (1954). The integral is summed over
+//! panels by Gauss's rule with sixteen nodes. Its error is the difference from half as many panels.
 
 use super::surface::Surface;
 use super::{LawFigure, SurfaceLaw};
@@ -13,11 +13,12 @@ use crate::characteristic::SpecLimits;
 use crate::distribution::standard_normal;
 use crate::pearson::LEGENDRE;
 
+/// Number of panels of the finer of two rules.
 const PANELS: usize = 16;
-/// A larger error leaves the quadrant to points.
+/// Greatest error of a quadrant. Beyond it points are used instead.
 const WORST: f64 = 1e-9;
 
-/// Both of two standard normal variables of this correlation beyond `h` and `k`.
+/// Probability that two standard normal variables of this correlation lie beyond `h` and `k` at once.
 fn quadrant(h: f64, k: f64, correlation: f64) -> LawFigure {
     let end = libm::asin(correlation.clamp(-1.0, 1.0));
     let inner = |t: f64| {
@@ -40,7 +41,7 @@ fn quadrant(h: f64, k: f64, correlation: f64) -> LawFigure {
     LawFigure::new(value.max(0.0), (fine - coarse).abs() + f64::EPSILON)
 }
 
-/// The probability that both of two sums of normal inputs break a limit; None of any other surfaces.
+/// Probability that two sums of normal inputs both exceed a limit. Returns None for all other surfaces.
 pub(super) fn both_broken([first, second]: [(&SurfaceLaw, SpecLimits); 2]) -> Option<LawFigure> {
     let [a, b] = [slopes(&first.0.surface)?, slopes(&second.0.surface)?];
     let positions = first.0.surface.places.len().max(second.0.surface.places.len());
@@ -72,7 +73,7 @@ pub(super) fn both_broken([first, second]: [(&SurfaceLaw, SpecLimits); 2]) -> Op
     (all.error <= WORST && all.value.is_finite()).then_some(all)
 }
 
-/// The slope of every input by its position; None where the surface is not a sum of normal inputs.
+/// Slope of every input by its position. Returns None if the surface is not a sum of normal inputs.
 fn slopes(surface: &Surface) -> Option<Vec<(usize, f64)>> {
     let straight = |place: usize| {
         let bent = surface.parts[place][2..].iter().any(|&coefficient| coefficient != 0.0);
@@ -89,8 +90,8 @@ fn slopes(surface: &Surface) -> Option<Vec<(usize, f64)>> {
 mod tests {
     use super::*;
 
-    /// At the origin the quadrant is 1/4 + asin(rho)/(2 pi): Sheppard 1899. Two independent variables multiply, and the same variable twice
-    /// leaves one tail. The rule is exact to rounding, but beside a correlation of 1, where panels are as coarse as they are.
+    /// At the origin the quadrant is 1/4 + asin(rho)/(2 pi) (Sheppard 1899). Two independent variables multiply, and the same variable
+    /// twice leaves one tail. The rule is exact to rounding except near a correlation of 1, which the panels resolve only coarsely.
     #[test]
     fn quadrants_are_those_of_closed_forms() {
         for rho in [-0.99, -0.4, 0.0, 0.3, 0.95] {

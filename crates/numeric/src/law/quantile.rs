@@ -1,4 +1,4 @@
-//! Quantiles: the limit beyond which a tail has a given probability, by its logarithm.
+//! Quantiles: the limit beyond which a tail has a given probability, found by the logarithm of the probability.
 
 use std::cell::Cell;
 use std::sync::Arc;
@@ -10,26 +10,28 @@ use super::sampled::{Choice, Sampled};
 use super::single::Single;
 use super::{Kind, LawFigure, LawTail, SurfaceLaw};
 
-/// Steps at most: a dozen when all is well.
+/// Greatest number of steps. A dozen is usual.
 const STEPS: usize = 200;
-/// Part of sigma within which two limits are one.
+/// Part of sigma within which two limits count as equal.
 const SAME: f64 = 1e-14;
 
-/// The limit at which a tail of the law has the probability `p`, above 0 and at most one half.
+/// Limit at which a tail of the law has the probability `p`, above 0 and at most one half.
 pub(super) fn quantile(law: &SurfaceLaw, tail: LawTail, p: f64) -> LawFigure {
     let (mean, sigma) = (law.mean(), law.sigma());
     let sign = tail.sign();
-    // Outward from the mean; positive while the tail is too heavy.
+    // Logarithm of the tail over `p` at a distance outward from the mean. It is positive while the tail is too heavy.
     let open = Cell::new(0.0);
     let gap = |u: f64| {
         let figure = law.tail(mean + sign * u, tail);
-        // A small part of what the tail itself leaves open is not a difference. Next to nothing beside a large error is one.
+        // A gap below a small part of the tail's own error counts as none. Dividing by at least p keeps a tiny tail with a large error
+        // searched.
         open.set(OPEN * figure.error / figure.value.max(p));
         libm::log(figure.value.max(1e-305) / p)
     };
     let [least, most] = law.range();
     let end = if tail == LawTail::Upper { most - mean } else { mean - least };
     let other = if tail == LawTail::Upper { mean - least } else { most - mean };
+    // Bracket the quantile: inward until the tail is too heavy, then outward until it is too light.
     let (mut low, mut at_low) = (0.0, gap(0.0));
     let mut width = sigma;
     while at_low < 0.0 && -low < other {
@@ -50,7 +52,7 @@ pub(super) fn quantile(law: &SurfaceLaw, tail: LawTail, p: f64) -> LawFigure {
         if high - low <= scale {
             break;
         }
-        // Regula falsi with the weights of Anderson and Björck, and a halving where it does not close in.
+        // Regula falsi with the weights of Anderson and Björck. Bisect if the interval does not shrink.
         let secant = low + (high - low) * at_low / (at_low - at_high);
         let u = if halve || !(secant > low && secant < high) { 0.5 * (low + high) } else { secant };
         let before = high - low;
@@ -69,7 +71,7 @@ pub(super) fn quantile(law: &SurfaceLaw, tail: LawTail, p: f64) -> LawFigure {
         }
         halve = high - low > 0.5 * before && !halve;
     }
-    // Where the bounds were one from the start there was no step.
+    // If the bounds were equal from the start, there was no step.
     let best = if best.is_nan() { 0.5 * (low + high) } else { best };
     let y = mean + sign * best;
     let (off, density) = (law.tail(y, tail).error, law.density(y).value);
@@ -82,38 +84,42 @@ fn weight(now: f64, before: f64) -> f64 {
     if weight > 0.0 { weight } else { 0.5 }
 }
 
-/// A quantile that is sought beside others: its tail, its probability, and where another law has it with its own density there.
+/// Quantile that is computed together with others: its tail and probability, and a starting value from another distribution.
 #[derive(Debug, Clone, Copy)]
 pub struct Sought {
+    /// Tail whose probability is given.
     pub tail: LawTail,
-    /// Above 0 and at most one half.
+    /// Probability of the tail, above 0 and at most one half.
     pub p: f64,
+    /// Starting value: this quantile of another distribution.
     pub near: f64,
+    /// Density of that other distribution at the starting value.
     pub density: f64,
 }
 
-/// A quantile that is sought beside others is found within this part of sigma,
+/// Error, in parts of sigma, within which a quantile beside others is found.
 const NEAR: f64 = 1e-7;
-/// or this part of what a sample leaves open,
+/// Error, in parts of the sampling error, within which a quantile is found.
 const OPEN: f64 = 0.02;
-/// in so many steps, or by the search of [`quantile`]: a jump takes 30 halvings.
+/// Greatest number of steps before the search of [`quantile`] takes over. A jump takes 30 halvings.
 const MANY: usize = 80;
-/// Of the way from the mean to the farthest quantile: the tilt of a limit there serves all of them. At three sigma it costs a digit.
+/// Fraction of the way from the mean to the farthest quantile at which the shared tilt is chosen. It serves all quantiles and costs a digit
+/// at three sigma.
 const SHARED: f64 = 0.7;
-/// Sigmas beyond the farthest place at which a shared contour is still right.
+/// Distance beyond the farthest quantile, in sigmas, up to which a shared contour is still exact.
 const MARGIN: f64 = 0.5;
-/// Probabilities below this are sought with a tilt of their own where points are drawn: above it own points do as well.
+/// Probability below which a sampled quantile takes a tilt of its own. Above it untilted points are as good.
 const TILTED: f64 = 5e-3;
 
-/// Several quantiles together: those of one tail share a contour, or points. None of them is looked for far from its place, so that a
-/// quantile takes three or four values of the law.
+/// Several quantiles together. Those of one tail share a contour or points. Each search begins near its result, so that a quantile takes
+/// three or four values of the law.
 pub(super) fn quantiles(law: &SurfaceLaw, sought: &[Sought]) -> Vec<LawFigure> {
     let sides = [LawTail::Lower, LawTail::Upper].map(|tail| Together::of(law, tail, sought));
     let one = |of: &Sought| near(law, &sides[usize::from(of.tail == LawTail::Upper)], of);
     sought.iter().map(one).collect()
 }
 
-/// Newton's method on the logarithm of a tail between bounds, which are halved where it does not close in.
+/// Newton's method on the logarithm of a tail between bounds, which are halved if it does not converge.
 fn near(law: &SurfaceLaw, side: &Together<'_>, sought: &Sought) -> LawFigure {
     let Sought { tail, p, near, density } = *sought;
     let (sign, sigma) = (tail.sign(), law.sigma());
@@ -133,7 +139,7 @@ fn near(law: &SurfaceLaw, side: &Together<'_>, sought: &Sought) -> LawFigure {
             break;
         }
         let here = libm::log(value.value / p);
-        // The tail is too heavy: the quantile lies farther out.
+        // If the tail is too heavy, the quantile lies farther out.
         let outward = (here > 0.0) == (tail == LawTail::Upper);
         if outward {
             low = at
@@ -148,7 +154,7 @@ fn near(law: &SurfaceLaw, side: &Together<'_>, sought: &Sought) -> LawFigure {
         let known = (value.error / value.value.max(p) / slope).abs();
         open = if known.is_finite() { known } else { open };
         let close = (NEAR * sigma).max(if open.is_finite() { OPEN * open } else { 0.0 });
-        // The slope of another law says nothing of how close a place is: next to a corner it may be infinite.
+        // The density of another distribution is no evidence of convergence: next to a corner it may be infinite.
         let close_enough = step.abs() <= close && (measured.is_some() || here.abs() <= NEAR);
         if here == 0.0 || close_enough {
             return LawFigure::new((at + step).clamp(low, high), open + close);
@@ -156,6 +162,7 @@ fn near(law: &SurfaceLaw, side: &Together<'_>, sought: &Sought) -> LawFigure {
         if high - low <= close {
             return LawFigure::new(0.5 * (low + high), open.min(high - low) + close);
         }
+        // Take the Newton step if steps shrink and it stays inside, halve a finite bracket otherwise, or widen an open one.
         last = here.is_finite().then_some((at, here)).or(last);
         let closing = step.abs() <= 0.5 * steps[0] && inner(at + step, low, high);
         steps = [steps[1], step.abs()];
@@ -169,20 +176,21 @@ fn near(law: &SurfaceLaw, side: &Together<'_>, sought: &Sought) -> LawFigure {
         };
     }
     match side {
-        // Its search takes panels with all digits, hundreds of times.
+        // The search by `quantile` would take panels at full accuracy, hundreds of times.
         Together::Panels(_) => LawFigure::new(f64::NAN, f64::INFINITY),
         _ => law.quantile(tail, p),
     }
 }
 
-/// The common part of the quantiles of one tail.
+/// Shared state of the quantiles of one tail.
 enum Together<'l> {
-    /// A contour, and how many points of it the last limit took.
+    /// Contour, and the number of its points that the last limit took.
     Line(&'l Inversion, Arc<Contour>, Cell<usize>),
-    /// The points of a sample, and a contour of its control.
+    /// Points of a sample, and a contour of its control variate.
     Points(&'l Sampled, Option<(&'l Inversion, Arc<Contour>, Cell<usize>)>),
-    /// Panels with fewer digits.
+    /// Panels at reduced accuracy.
     Panels(&'l Single),
+    /// No shared state: every quantile is searched by itself.
     Nothing,
 }
 
@@ -204,7 +212,7 @@ impl<'l> Together<'l> {
         }
     }
 
-    /// The points with which a quantile is sought from here on.
+    /// Points and estimate for the search of one quantile.
     fn choice(&self, at: f64, tail: LawTail, p: f64) -> Choice {
         match self {
             Self::Points(sampled, _) => sampled.choice((p < TILTED).then_some(at), tail),
@@ -212,7 +220,7 @@ impl<'l> Together<'l> {
         }
     }
 
-    /// A tail, and the slope of its logarithm where that comes with it.
+    /// Tail at `y`, and the slope of its logarithm if the density comes with it.
     fn at(&self, law: &SurfaceLaw, y: f64, tail: LawTail, choice: &Choice) -> (LawFigure, Option<f64>) {
         match self {
             Self::Line(inversion, contour, points) => {

@@ -1,9 +1,9 @@
-//! Surfaces with cycles of products, or with a tail that no transform bears: components that must be sampled are, and
-//! everything else is integrated.
+//! Surfaces with cycles of products, or with a tail for which no transform exists. Components that need it are sampled. All others are
+//! integrated.
 //!
-//! The integrand is the exact law of all other components, where that is wide enough, or one direction of the sampled ones by its
-//! own distribution function. The nearest exact surface, without the products that make it inexact, is the control:
-//! `P = P_exact + mean(1 - 1_control)` at the same points.
+//! The integrand is the exact distribution of all other components if that is wide enough. Otherwise it is the distribution function along
+//! one direction of the sampled ones. The control variate is the nearest surface with an exact distribution, which lacks the products that
+//! prevent it: `P = P_exact + mean(1 - 1_control)` at the same points.
 
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -21,19 +21,19 @@ use super::tilt::{Proposal, Tilts};
 use super::transform::{Summed, Transform};
 use super::{LawFigure, LawOptions, LawTail};
 
-/// Sigma of the exact components by that along the direction from which on they take its place.
+/// Least ratio of the sigma of the exact components to that along the direction at which they replace the direction.
 const WIDE: f64 = 0.5;
-/// A plain estimate of this relative error rules where a tilted one contradicts it, which may have seen one of two modes.
+/// Relative error below which a plain estimate overrules a tilted one that contradicts it. The tilted one may have seen one of two modes.
 const GOOD: f64 = 0.1;
 
-/// The law of a surface of which a part is sampled.
+/// Distribution of a surface of which a part is sampled.
 #[derive(Debug)]
 pub(super) struct Sampled {
     surface: Arc<Surface>,
     direction: Direction,
     tilts: Arc<Tilts>,
     full: Terms,
-    /// The exact law of the components that are not sampled.
+    /// Exact distribution of the components that are not sampled, as a table and as an inversion.
     others: Option<(Table, Inversion)>,
     control: Option<Control>,
     points: usize,
@@ -42,18 +42,19 @@ pub(super) struct Sampled {
     tilted: Mutex<BTreeMap<(LawTail, usize), Arc<Sample>>>,
 }
 
-/// The nearest surface whose law is exact.
+/// Control variate: the nearest surface whose distribution is exact.
 #[derive(Debug)]
 struct Control {
     surface: Arc<Surface>,
-    /// The direction over its parts.
+    /// Direction over the parts of the control variate.
     direction: Direction,
     terms: Terms,
     law: Inversion,
 }
 
 impl Control {
-    /// Chooses among surfaces that keep the products of normal inputs, those of parabolas or none; None where none of them has an exact law.
+    /// Nearest surface that keeps the products of normal inputs, those of parabolas, or none. Returns None if none has an exact
+    /// distribution.
     fn of(surface: &Surface, direction: &Direction) -> Option<Self> {
         let normal = |j: usize, k: usize| surface.inputs[j].is_normal() && surface.inputs[k].is_normal();
         let parabolas = |j: usize, k: usize| surface.is_normal_parabola(j) && surface.is_normal_parabola(k);
@@ -82,16 +83,16 @@ impl Control {
     }
 }
 
-/// Points and estimate for several limits of one tail.
+/// Points and kind of estimate that several limits of one tail share.
 #[derive(Debug, Default)]
 pub(super) struct Choice {
-    /// Rung and proposal of the tilt; None for own points.
+    /// Rung and proposal of the tilt; None for points of the own distribution.
     tilted: Option<(usize, Arc<Proposal>)>,
-    /// Whether beside the control; None until a limit has been estimated.
+    /// True if the control variate is used; None until a limit has been estimated.
     beside: Cell<Option<bool>>,
 }
 
-/// The quantity that is averaged.
+/// Quantity that is averaged.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Quantity {
     LawTail(LawTail),
@@ -99,7 +100,7 @@ enum Quantity {
 }
 
 impl Sampled {
-    /// Of the components that are left when the transform has taken those that it can.
+    /// Sampled distribution of the components that the transform does not contain.
     pub(super) fn of(
         surface: &Arc<Surface>,
         transform: Transform,
@@ -111,7 +112,7 @@ impl Sampled {
         members.sort_unstable();
         let direction = Direction::of(surface, &members)?;
         let wide = !transform.is_empty() && transform.sigma >= WIDE * direction.variance().sqrt();
-        // About the centre, which belongs to the sampled part.
+        // The centre of the surface belongs to the sampled part, so these components have the centre 0.
         let others = match wide {
             true => {
                 let law = Inversion::new(transform, 0.0);
@@ -119,7 +120,7 @@ impl Sampled {
             }
             false => None,
         };
-        // Without a table one direction of all inputs is integrated.
+        // Without a table, one direction of all inputs is integrated.
         let direction = match &others {
             Some(_) => direction.without(),
             None => Direction::of(surface, &(0..surface.len()).collect::<Vec<_>>())?,
@@ -141,7 +142,7 @@ impl Sampled {
         })
     }
 
-    /// Of the smaller tail what it is, of the larger one the complement: no point may lie in the smaller one.
+    /// Tail beyond `y`. The smaller tail is estimated and the larger one is its complement, because few points lie in the smaller one.
     pub(super) fn tail(&self, y: f64, tail: LawTail, mean: f64) -> LawFigure {
         let nearer = if y < mean { LawTail::Lower } else { LawTail::Upper };
         let found = self.figure(y, nearer, Quantity::LawTail(nearer)).clamped();
@@ -153,7 +154,7 @@ impl Sampled {
         self.figure(y, tail, Quantity::Density)
     }
 
-    /// Density by the points of the law itself.
+    /// Density by points of the own distribution.
     pub(super) fn plain_density(&self, y: f64) -> LawFigure {
         if let Some(coordinate) = self.only() {
             return self.convolved(coordinate, y, Quantity::Density);
@@ -181,7 +182,7 @@ impl Sampled {
         }
     }
 
-    /// The only sampled coordinate, where the others have an exact law: that takes panels and no points.
+    /// Only sampled coordinate, if the others have an exact distribution. It is integrated by panels instead of points.
     fn only(&self) -> Option<usize> {
         match *self.tilts.sampled() {
             [coordinate] if self.others.is_some() && !self.direction.is_behind(coordinate) => Some(coordinate),
@@ -195,7 +196,7 @@ impl Sampled {
         }
         let (_, beside, found) = self.chosen(y, tail, quantity);
         let found = if beside { found.beside } else { Some(found.alone) }.unwrap_or(found.alone);
-        // No point beyond the limit: the rule of three.
+        // If no point lies beyond the limit, the error follows from the rule of three.
         let fewest = 3.0 / (REPLICATES * self.points) as f64;
         match quantity {
             Quantity::LawTail(_) if found.value <= 0.0 => LawFigure::new(0.0, found.error.max(fewest)),
@@ -210,13 +211,13 @@ impl Sampled {
         })
     }
 
-    /// The estimate that rules: the proposal and its rung, None for the own law; whether beside the control; and the estimates.
+    /// Estimate that is used: rung and proposal (None for the own distribution), true if the control variate is used, and both estimates.
     fn chosen(&self, y: f64, tail: LawTail, quantity: Quantity) -> (Option<(usize, Arc<Proposal>)>, bool, Estimates) {
         let off = y - self.surface.centre;
         let exact = self.exact(y, quantity);
         let plain = self.estimates(&self.direction, &self.sample(None), off, quantity, exact);
         let own = plain.best();
-        // In the middle no tilt does better.
+        // In the middle of the distribution a tilt does not improve the estimate.
         if own.value > 0.0 && own.error < 1e-3 * own.value {
             return (None, plain.is_beside(), plain);
         }
@@ -227,7 +228,7 @@ impl Sampled {
         let sample = self.sample(Some((tail, rung, &proposal)));
         let tilted = self.estimates(&self.direction, &sample, off, quantity, exact);
         let found = tilted.best();
-        // Own points that lie beyond the limit refute a tilt that has not seen them, however few they are.
+        // Untilted points beyond the limit, however few, refute a tilted estimate that lies significantly below them.
         let unseen = found.value < own.value - own.error - found.error;
         let contradicted =
             unseen || own.error < GOOD * own.value && (found.value - own.value).abs() > 2.0 * (found.error + own.error);
@@ -237,7 +238,7 @@ impl Sampled {
         }
     }
 
-    /// With what several limits of a tail are estimated: own points, or those of the tilt that leads to a limit where that does better.
+    /// Points and estimate for several limits of a tail: untilted points, or those tilted to a limit if they give the smaller error.
     pub(super) fn choice(&self, tilted_to: Option<f64>, tail: LawTail) -> Choice {
         match tilted_to.filter(|_| self.only().is_none()) {
             None => Choice::default(),
@@ -248,12 +249,12 @@ impl Sampled {
         }
     }
 
-    /// The exact law of the control.
+    /// Exact distribution of the control variate.
     pub(super) fn control(&self) -> Option<&Inversion> {
         self.control.as_ref().filter(|_| self.only().is_none()).map(|control| &control.law)
     }
 
-    /// A tail by the estimate that was chosen for several limits, beside what `exact` says of the control.
+    /// Tail by the shared choice of points and estimate. `exact` computes the tail of the control variate.
     pub(super) fn tail_by(
         &self,
         y: f64,
@@ -268,13 +269,13 @@ impl Sampled {
         let sample = self.sample(choice.tilted.as_ref().map(|(rung, proposal)| (tail, *rung, proposal.as_ref())));
         let exact = if choice.beside.get() == Some(false) { None } else { exact() };
         let found = self.estimates(&self.direction, &sample, y - self.surface.centre, quantity, exact);
-        // The estimate of the first limit is used for them all: no quantile lies on a jump from one estimate to the other.
+        // The estimate of the first limit is used for them all, so that no quantile lies on a jump between two estimates.
         let beside = choice.beside.get().unwrap_or_else(|| found.is_beside());
         choice.beside.set(Some(beside));
         found.beside.filter(|_| beside).unwrap_or(found.alone)
     }
 
-    /// The points and the estimate that rules a tail.
+    /// Points and estimate that give a tail.
     pub(super) fn held(&self, y: f64, tail: LawTail, mean: f64) -> Held {
         let nearer = if y < mean { LawTail::Lower } else { LawTail::Upper };
         let quantity = Quantity::LawTail(nearer);
@@ -289,7 +290,7 @@ impl Sampled {
         Held { direction, tilts, proposal, beside, nearer, tail, points: self.points, seed: self.seed }
     }
 
-    /// The tail of this law at the points of another one; None where the structure differs.
+    /// Tail of this distribution at the points of another one. Returns None if the structure differs.
     pub(super) fn tail_held(&self, y: f64, held: &Held) -> Option<LawFigure> {
         let same = self.surface.len() == held.direction.surface().len()
             && self.direction.members() == held.direction.members()
@@ -314,7 +315,7 @@ impl Sampled {
         Some(if held.nearer == held.tail { found } else { found.complement() })
     }
 
-    /// The derivatives of a tail by the logarithms of the tolerances of all inputs, by their places.
+    /// Derivatives of a tail by the logarithms of the tolerances of all inputs, by their indices.
     pub(super) fn derivatives(&self, y: f64, tail: LawTail, mean: f64) -> Vec<LawFigure> {
         let nearer = if y < mean { LawTail::Lower } else { LawTail::Upper };
         let sign = if nearer == tail { 1.0 } else { -1.0 };
@@ -331,6 +332,7 @@ impl Sampled {
             let mut sums = vec![0.0; n];
             let polynomial = self.direction.along(z, &self.full);
             let weight = weight * nearer.sign();
+            // Along a direction only the crossings count; beside an exact distribution its density and its own slopes do.
             match self.direction.input() {
                 Some(input) => pathwise(&self.surface, &self.direction, input, z, polynomial, off, weight, &mut sums),
                 None => {
@@ -354,7 +356,7 @@ impl Sampled {
             .collect()
     }
 
-    /// One coordinate beside an exact law: panels.
+    /// One coordinate beside an exact distribution, integrated by panels.
     fn convolved(&self, coordinate: usize, y: f64, quantity: Quantity) -> LawFigure {
         let off = y - self.surface.centre;
         let part = &self.surface.parts[coordinate];
@@ -363,23 +365,23 @@ impl Sampled {
         LawFigure::new(found.value, found.error + self.tabulated() * found.value)
     }
 
-    /// The relative error of the integrand.
+    /// Relative error of the integrand.
     fn tabulated(&self) -> f64 {
         self.others.as_ref().map_or(1e-12, |(table, _)| table.error)
     }
 
-    /// The exact law of the other components at what is left of a limit.
+    /// Exact distribution of the other components, at the limit minus the sampled part.
     fn beside(&self, y: f64, quantity: Quantity) -> f64 {
         match (&self.others, quantity) {
             (Some((table, _)), Quantity::LawTail(tail)) => table.tail(y, tail),
             (Some((table, _)), Quantity::Density) => table.density(y),
             (None, Quantity::LawTail(tail)) => f64::from(u8::from(tail.sign() * -y > 0.0)),
-            // An indicator has no density.
+            // An indicator function has no density.
             (None, Quantity::Density) => f64::NAN,
         }
     }
 
-    /// The mean over a sample, by itself and beside the control.
+    /// Mean over a sample, with and without the control variate.
     fn estimates(
         &self,
         direction: &Direction,
@@ -418,7 +420,7 @@ impl Sampled {
     }
 }
 
-/// The mean over a sample by itself, and beside the control where there is one.
+/// Mean over a sample without the control variate, and with it if there is one.
 #[derive(Debug, Clone, Copy)]
 struct Estimates {
     alone: LawFigure,
@@ -430,7 +432,7 @@ impl Estimates {
         self.beside.is_some_and(|beside| beside.error < self.alone.error && beside.value > 0.0)
     }
 
-    /// Whichever scatters less.
+    /// Estimate with the smaller error.
     fn best(&self) -> LawFigure {
         if self.is_beside() { self.beside.unwrap_or(self.alone) } else { self.alone }
     }
@@ -460,7 +462,7 @@ pub(super) fn add_moves(surface: &Surface, members: &[usize], z: &[f64], weight:
     }
 }
 
-/// Adds `weight f(w) z_j dy/dz_j/|dy/dw|` of every member at the places where the surface crosses a limit along a direction.
+/// Adds `weight f(w) z_j dy/dz_j/|dy/dw|` of every member at the points where the surface crosses a limit along a direction.
 #[expect(clippy::too_many_arguments, reason = "what a crossing is made of")]
 pub(super) fn pathwise(
     surface: &Surface,
@@ -483,7 +485,7 @@ pub(super) fn pathwise(
     }
 }
 
-/// The mean of replicates, and its error.
+/// Mean of replicates, and its error.
 fn of_replicates(means: &[f64]) -> (f64, f64) {
     let n = means.len() as f64;
     let mean = means.iter().sum::<f64>() / n;

@@ -1,4 +1,4 @@
-//! Surfaces of one or two inputs: Gauss panels in the one, roots and the distribution function of the other.
+//! Surfaces of one or two inputs: Gauss panels in one input, roots and the distribution function of the other.
 
 use super::direction::{Direction, Terms};
 use super::input::Input;
@@ -10,18 +10,18 @@ use super::{LawFigure, LawTail};
 /// Relative accuracy of the distribution functions of the inputs.
 const RELATIVE: f64 = 2e-12;
 
-/// A surface of which one coordinate is left when a direction has been integrated; or none.
+/// Surface with at most one coordinate left after a direction has been integrated.
 #[derive(Debug)]
 pub(super) struct Single {
     direction: Direction,
     outer: Option<usize>,
-    /// The inner input, where neither it nor the outer one is a mixture, and the coefficient of their product.
+    /// Inner input, if neither it nor the outer one is a mixture. `product` is the coefficient of their product.
     apart: Option<usize>,
     product: f64,
 }
 
 impl Single {
-    /// None where more than one coordinate is left, or nothing can be the direction.
+    /// Surface along this direction. Returns None if more than one coordinate is left, or if there is no direction.
     pub(super) fn of(direction: Direction) -> Option<Self> {
         let rest = direction.rest();
         direction.input()?;
@@ -39,12 +39,12 @@ impl Single {
         self.figure(y, EXACT, |input, polynomial| input.beyond(polynomial, tail)).clamped()
     }
 
-    /// The same with the digits that a quantile takes, for a small part of the cost.
+    /// Tail with the accuracy that a quantile needs, at a small part of the cost.
     pub(super) fn tail_nearly(&self, y: f64, tail: LawTail) -> LawFigure {
         self.figure(y, NEARLY, |input, polynomial| input.beyond(polynomial, tail)).clamped()
     }
 
-    /// The derivatives of a tail by the logarithms of the tolerances of the inputs.
+    /// Derivatives of a tail by the logarithms of the tolerances of the inputs.
     pub(super) fn derivatives(&self, y: f64, tail: LawTail) -> Vec<LawFigure> {
         let surface = self.direction.surface();
         let n = surface.len();
@@ -76,7 +76,7 @@ impl Single {
         self.figure(y, EXACT, |input, polynomial| input.density_of(polynomial))
     }
 
-    /// The surface less a limit along the direction.
+    /// Surface minus a limit, as a polynomial along the direction.
     fn along(&self, terms: &Terms, outer: Option<(usize, f64)>, off: f64) -> Quartic {
         if let (Some((place, z)), Some(own)) = (outer, self.apart) {
             let surface = self.direction.surface();
@@ -95,14 +95,14 @@ impl Single {
         polynomial
     }
 
-    /// Where an integrand over the outer input is not smooth.
+    /// Values of the outer input at which the integrand is not smooth.
     fn splits(&self, y: f64, outer: usize) -> Vec<f64> {
         let Some(inner) = self.direction.input() else { return Vec::new() };
         let surface = self.direction.surface();
         let (off, law) = (surface.centre - y, &surface.inputs[outer]);
         let terms = self.direction.terms(surface);
         let mut splits = Vec::new();
-        // Where the limit crosses an end or a corner of the inner law.
+        // Values at which the limit crosses an end or a corner of the inner distribution.
         if let Some(own) = self.direction.own().filter(|_| !inner.is_normal()) {
             for at in inner.breaks() {
                 let mut part = surface.parts[outer];
@@ -112,8 +112,8 @@ impl Single {
             }
         }
         for tail in [LawTail::Lower, LawTail::Upper] {
-            // Where all or nothing of the inner law is beyond the limit, also in a small part of the outer one: the farthest
-            // value that the inner input reaches.
+            // Values between which the limit separates no part or all of the inner distribution. The test takes the farthest value that the
+            // inner input gives.
             let reach = |z: f64| match (tail, range(&self.along(&terms, Some((outer, z)), off), inner.ends)) {
                 (LawTail::Lower, [least, _]) => -least,
                 (LawTail::Upper, [_, most]) => most,
@@ -123,7 +123,7 @@ impl Single {
         splits
     }
 
-    /// The expectation over the outer input of something that the inner one does at the limit.
+    /// Expectation over the outer input of a figure `f` of the inner one.
     fn figure(&self, y: f64, tolerance: f64, f: impl Fn(&Input, &Quartic) -> f64) -> LawFigure {
         let Some(inner) = self.direction.input() else { return LawFigure::new(f64::NAN, f64::INFINITY) };
         let surface = self.direction.surface();
@@ -133,18 +133,18 @@ impl Single {
             return LawFigure::new(value, RELATIVE * value);
         };
         let integrand = |z: f64| f(inner, &self.along(&terms, Some((outer, z)), off));
-        // Where few digits are wanted, halving finds what is not smooth by itself.
+        // At reduced accuracy, halving finds the points that are not smooth by itself.
         let splits = if tolerance == EXACT { self.splits(y, outer) } else { Vec::new() };
         let found = expectation(&surface.inputs[outer], &splits, tolerance, integrand);
         LawFigure::new(found.value, found.error + RELATIVE * found.value)
     }
 }
 
-/// The places where a function of the outer input passes 0, also those next to an extreme that hardly does.
+/// Arguments at which a function of the outer input crosses 0, also those next to an extreme that barely exceeds it.
 fn crossings(law: &Input, f: impl Fn(f64) -> f64) -> Vec<f64> {
-    /// Places between which a function is taken to have no more than one extreme.
+    /// Intervals of a grid between whose points a function is taken to have at most one extreme.
     const GRID: usize = 96;
-    /// Halvings, to the last digit of a place.
+    /// Number of halvings, which locate a crossing to the last digit.
     const HALVINGS: usize = 60;
     let [low, high] = law.ends;
     let place = |i: usize| low + (high - low) * i as f64 / GRID as f64;
@@ -152,7 +152,7 @@ fn crossings(law: &Input, f: impl Fn(f64) -> f64) -> Vec<f64> {
     let mut extremes = Vec::new();
     for three in known.windows(3) {
         let [(a, at_a), (_, at_b), (c, at_c)] = [three[0], three[1], three[2]];
-        // A largest value that stays below 0 on the grid.
+        // A local maximum on the grid that stays below 0 may exceed 0 between grid points.
         if at_b <= 0.0 && at_b >= at_a && at_b >= at_c {
             extremes.push(largest(&f, a, c));
         }
@@ -174,7 +174,7 @@ fn crossings(law: &Input, f: impl Fn(f64) -> f64) -> Vec<f64> {
     found
 }
 
-/// Where a function with one extreme between two places is largest, by the golden section.
+/// Maximum point of a function with one extreme in an interval, by golden section search.
 fn largest(f: &impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     const SECTION: f64 = 0.618_033_988_749_894_8;
     for _ in 0..60 {

@@ -1,4 +1,4 @@
-//! One input by itself: `M(s) = E exp(s g(z))` by Gauss panels that resolve its phase.
+//! Transform of one input by itself: `M(s) = E exp(s g(z))` by Gauss panels that resolve its phase.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -8,20 +8,20 @@ use super::input::Input;
 use super::polynomial::{Quartic, value};
 use crate::elementary::{Elementary, Exp, Work, on_this_processor};
 
-/// Nodes whose weight under a tilt is below `exp` of minus this, relative to the heaviest, are left out.
+/// Negative logarithm of the least weight under a tilt, relative to the largest. Nodes with less weight are left out.
 pub(super) const LEAST: f64 = 46.0;
-/// Points of a contour that are taken together, by a rotation from one to the next.
+/// Points of a contour that are computed together, by a rotation from one to the next.
 pub(super) const BLOCK: usize = 64;
 
-/// An input that has no products with others.
+/// Input that has no products with others.
 #[derive(Debug)]
 pub(super) struct Single {
-    /// Place in the surface.
+    /// Index of the input in the surface.
     pub(super) input: usize,
     law: Arc<Input>,
     part: Quartic,
-    /// By the binary logarithm of the largest `|s|` that they resolve, and the tilt that they are made for, where they do
-    /// not serve all.
+    /// Tables by the binary logarithm of the largest `|s|` that they resolve. The second key is the tilt that a table was made for, or 0 if
+    /// it serves all tilts.
     tables: Mutex<BTreeMap<(i32, u64), Arc<Table>>>,
 }
 
@@ -33,7 +33,7 @@ pub(super) struct Table {
     pub(super) logs: Vec<f64>,
 }
 
-/// The level of tables that resolve `|s|` up to `top`.
+/// Level of the tables that resolve `|s|` up to `top`: its binary logarithm, rounded up.
 pub(super) fn level(top: f64) -> i32 {
     libm::ceil(libm::log2(top.max(1e-300))) as i32
 }
@@ -47,13 +47,13 @@ impl Table {
     }
 }
 
-/// The nodes that weigh under a tilt: values of the part, and weights relative to the largest.
+/// Nodes with noticeable weight under a tilt: values of the part, and weights relative to the largest.
 #[derive(Debug, Default)]
 pub(super) struct Tilted {
     pub(super) z: Vec<f64>,
     pub(super) values: Vec<f64>,
     pub(super) weights: Vec<f64>,
-    /// Logarithm of what the weights have been divided by.
+    /// Logarithm of the divisor of the weights.
     pub(super) log: f64,
 }
 
@@ -76,8 +76,8 @@ impl Single {
         table
     }
 
-    /// The nodes that resolve `top` and weigh under a tilt. Far beyond the tilt itself only the interval that weighs is
-    /// resolved, which a large tilt has made small.
+    /// Nodes that resolve `top` and have weight under a tilt. If `top` is far beyond the tilt, only the interval with weight is resolved. A
+    /// large tilt has made that interval small.
     fn table_at(&self, theta: f64, top: f64) -> Arc<Table> {
         /// Levels beyond that of the tilt from which on the interval is found first.
         const BEYOND: i32 = 2;
@@ -92,14 +92,14 @@ impl Single {
             let live = |at: &usize| exponent(*at) > most - LEAST;
             let first = (0..coarse.z.len()).find(live).unwrap_or(0);
             let last = (0..coarse.z.len()).rev().find(live).unwrap_or(0);
-            // Up to the next nodes, which do not weigh any more.
+            // Extend to the next nodes on either side, which have no noticeable weight.
             let low = if first > 0 { coarse.z[first - 1] } else { f64::NEG_INFINITY };
             let high = coarse.z.get(last + 1).copied().unwrap_or(f64::INFINITY);
             [low, high]
         })
     }
 
-    /// Whether the input consists of atoms.
+    /// True if the input consists of atoms.
     pub(super) fn is_discrete(&self) -> bool {
         self.law.is_discrete()
     }
@@ -149,7 +149,7 @@ impl Single {
         on_this_processor(Rotate::new(now, &turn, out));
     }
 
-    /// Whether the ends at which an unbounded input is cut weigh nothing under a tilt.
+    /// True if an unbounded input has negligible weight under a tilt at the ends where it is cut.
     pub(super) fn bears(&self, theta: f64, at_mean: f64) -> bool {
         if self.law.support.iter().all(|end| end.is_finite()) {
             return true;
@@ -163,9 +163,9 @@ impl Single {
     }
 }
 
-/// Whether the ends at which an unbounded input is cut weigh nothing, by places and logarithms of weights.
+/// True if an unbounded input has negligible weight at the ends where it is cut. `exponents` gives values and logarithms of weights.
 pub(super) fn own_ends_weigh_nothing<I: Iterator<Item = (f64, f64)>>(law: &Input, exponents: impl Fn() -> I) -> bool {
-    /// Logarithm of the part of the whole that a cut end may weigh.
+    /// Negative logarithm of the greatest relative weight of a cut end.
     const NOTHING: f64 = 32.0;
     let open = [0, 1].map(|end| law.support[end].is_infinite());
     if !open.contains(&true) || law.is_discrete() {
@@ -178,7 +178,7 @@ pub(super) fn own_ends_weigh_nothing<I: Iterator<Item = (f64, f64)>>(law: &Input
     exponents().all(|(z, e)| (!(open[0] && z < low + edge) || cut(e)) && (!(open[1] && z > high - edge) || cut(e)))
 }
 
-/// Sums of numbers that all rotate, each by its own angle from one sum to the next.
+/// Sums of complex numbers, each of which rotates by its own angle from one sum to the next.
 struct Rotate<'a> {
     re: Vec<f64>,
     im: Vec<f64>,

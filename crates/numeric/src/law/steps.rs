@@ -1,7 +1,7 @@
-//! A surface of atoms only: a step function, by the list of its values.
+//! Surface of inputs that are atoms only: a step function, as the list of its values.
 //!
-//! Combinations are listed all together where they are few. Of many, those of every component are listed by themselves, and their sums are
-//! taken one component after the other: values on a grid then stay few.
+//! A few combinations are listed all together. If there are many, each component is listed by itself, and the sums are formed one component
+//! after the other. Values on a grid then stay few.
 
 use std::collections::BTreeMap;
 
@@ -10,13 +10,13 @@ use super::surface::Surface;
 use super::{LawFigure, LawTail};
 use crate::correlation::{Atom, Block, JointLaw};
 
-/// Combinations that are listed at most.
+/// Greatest number of combinations that are listed.
 const MOST: usize = 1 << 20;
 
-/// A place of one or several inputs: its probability, and where each of them is.
+/// Atom of one or several inputs: its probability, and the value of each input by index.
 type Place = (f64, Vec<(usize, f64)>);
 
-/// A value and its probability.
+/// Value with its probability.
 pub(super) type Weighed = (f64, f64);
 
 /// Values in ascending order with the probabilities on either side.
@@ -24,17 +24,18 @@ pub(super) type Weighed = (f64, f64);
 pub(super) struct Steps {
     values: Vec<f64>,
     weights: Vec<f64>,
-    /// Probability of at most each of the values, summed from the lower end, and of at least, from the upper one.
+    /// Probability of a value of at most each of the values, summed from the lower end. `down` holds that of at least each, from the upper
+    /// end.
     up: Vec<f64>,
     down: Vec<f64>,
 }
 
-/// Inputs that take their values together, or by themselves, with the values that have a probability of their own.
+/// Groups of inputs that take their values together, with their atoms. An input outside all blocks is a group of its own.
 #[derive(Debug)]
 pub(super) struct Groups(Vec<Vec<Place>>);
 
 impl Groups {
-    /// None where an input has no such values, or inputs are correlated otherwise than by rows.
+    /// Groups of these inputs. Returns None if an input has no atoms, or if inputs are correlated other than by rows.
     pub(super) fn of<'i>(
         inputs: impl ExactSizeIterator<Item = &'i Input>,
         correlated: &[usize],
@@ -42,7 +43,7 @@ impl Groups {
     ) -> Option<Self> {
         let mut groups: Vec<Vec<Place>> = Vec::new();
         let mut grouped = vec![false; inputs.len()];
-        // Inputs of one group take their places together.
+        // Inputs of one block take their values together.
         for block in blocks {
             if !matches!(block.law, JointLaw::Rows(_)) {
                 return None;
@@ -69,18 +70,18 @@ impl Groups {
         Self::of(surface.inputs.iter().map(|input| input.as_ref()), members, blocks)
     }
 
-    /// How many combinations there are; None of more than `most`.
+    /// Number of combinations. Returns None if there are more than `most`.
     pub(super) fn count(&self, most: usize) -> Option<usize> {
         let all = self.0.iter().map(Vec::len);
         all.into_iter().try_fold(1usize, |count, own| count.checked_mul(own).filter(|&count| count <= most))
     }
 
-    /// The largest probability of one combination.
+    /// Largest probability of one combination.
     fn likeliest(&self) -> f64 {
         self.0.iter().map(|group| group.iter().map(|(share, _)| *share).fold(0.0, f64::max)).product()
     }
 
-    /// Visits every combination with its probability, the inputs at their places in `z`.
+    /// Visits every combination with its probability. `z` holds the values of the inputs.
     pub(super) fn each(&self, z: &mut [f64], mut visit: impl FnMut(&[f64], f64)) {
         let count: usize = self.0.iter().map(Vec::len).product();
         let mut places = vec![0; self.0.len()];
@@ -102,7 +103,7 @@ impl Groups {
         }
     }
 
-    /// The groups of every component of a surface, with its members.
+    /// Groups of every component of a surface, with its members.
     fn by_component(self, surface: &Surface) -> Vec<(Vec<usize>, Self)> {
         let components = surface.components();
         let mut own: BTreeMap<usize, Vec<Vec<Place>>> = BTreeMap::new();
@@ -115,8 +116,8 @@ impl Groups {
     }
 }
 
-/// The values of a surface that have a probability of their own, those that only rounding separates as one; None where an input has no
-/// such values, or there are too many.
+/// Atoms of a surface, with values merged that only rounding separates. Returns None if an input has no atoms, or if there are too many
+/// combinations.
 pub(super) fn atoms(surface: &Surface, rounding: f64) -> Option<Vec<Weighed>> {
     let groups = Groups::of_surface(surface)?;
     let mut z = vec![0.0; surface.len()];
@@ -140,13 +141,13 @@ pub(super) fn atoms(surface: &Surface, rounding: f64) -> Option<Vec<Weighed>> {
     Some(sums)
 }
 
-/// The largest probability that a single value of a surface has, where no two combinations of its inputs make the same one; 0 of a surface
+/// Largest probability of a single value of a surface, if no two combinations of its inputs give the same value. Returns 0 for a surface
 /// with a density.
 pub(super) fn largest_jump(surface: &Surface) -> f64 {
     Groups::of_surface(surface).map_or(0.0, |groups| groups.likeliest())
 }
 
-/// In ascending order; values nearer to each other than rounding are one.
+/// Sorts the values and merges those that are nearer to each other than the rounding error.
 fn merged(mut found: Vec<Weighed>, rounding: f64) -> Vec<Weighed> {
     found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
     found.dedup_by(|next, kept| {
@@ -158,7 +159,7 @@ fn merged(mut found: Vec<Weighed>, rounding: f64) -> Vec<Weighed> {
 }
 
 impl Steps {
-    /// Of values with probabilities that sum to 1, ascending, at least one.
+    /// Step function of at least one value, ascending, with probabilities that sum to 1.
     pub(super) fn new(values: Vec<Weighed>) -> Self {
         let (values, weights): (Vec<f64>, Vec<f64>) = values.into_iter().unzip();
         let summed = |weights: &mut dyn Iterator<Item = &f64>| -> Vec<f64> {
@@ -175,7 +176,7 @@ impl Steps {
         Self { values, weights, up, down }
     }
 
-    /// Probability strictly beyond a place.
+    /// Probability strictly beyond `y`.
     pub(super) fn tail(&self, y: f64, tail: LawTail) -> LawFigure {
         let value = match tail {
             LawTail::Lower => match self.values.partition_point(|value| *value < y) {
@@ -190,9 +191,9 @@ impl Steps {
         LawFigure::new(value.min(1.0), 4.0 * f64::EPSILON * value)
     }
 
-    /// The least value with at least this probability at and below it, or above it no more than `p`.
+    /// Least value with at least this probability at or below it (lower tail), or with at most `p` above it (upper tail).
     pub(super) fn quantile(&self, tail: LawTail, p: f64) -> f64 {
-        /// Sums of shares are rounded.
+        /// Relative rounding error of sums of probabilities.
         const ROUNDING: f64 = 1e-14;
         let last = self.values.len() - 1;
         let place = match tail {

@@ -1,4 +1,4 @@
-//! The surface over the inputs that count, its range, and how it falls into independent components.
+//! Surface over the inputs with a part in it, its range, and its independent components.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -14,28 +14,28 @@ use crate::distribution::Distribution;
 use crate::elementary::{Work, on_this_processor};
 use crate::surrogate::Surrogate;
 
-/// `y = centre + sum g_j(z_j) + sum b_jk z_j z_k` over the inputs that have a part in it.
+/// Surface `y = centre + sum g_j(z_j) + sum b_jk z_j z_k` over the inputs that have a part in it.
 #[derive(Debug, Clone)]
 pub(super) struct Surface {
     pub(super) centre: f64,
     pub(super) inputs: Vec<Arc<Input>>,
     pub(super) parts: Vec<Quartic>,
-    /// Products with others, ascending by the other.
+    /// Products with other inputs, as (other input, coefficient), ascending.
     pub(super) neighbours: Vec<Vec<(usize, f64)>>,
-    /// How inputs vary together.
+    /// Joint variation of the inputs.
     pub(super) correlated: Option<Correlated>,
-    /// For each of the surrogate's inputs its place here; None where it has no part in the surface.
+    /// Index in this surface of each of the surrogate's inputs; None for an input without a part in the surface.
     pub(super) places: Vec<Option<usize>>,
 }
 
 /// Correlated inputs of a surface.
 #[derive(Debug, Clone)]
 pub(super) struct Correlated {
-    /// Places in the surface, ascending.
+    /// Indices in the surface, ascending.
     pub(super) members: Vec<usize>,
-    /// Correlation of the normal variables behind them.
+    /// Correlation of the normal variables behind the members.
     pub(super) normal: Mat<f64>,
-    /// Members that vary together as a whole, by places in the surface.
+    /// Blocks of members with one joint distribution, by indices in the surface.
     pub(super) blocks: Vec<Block>,
 }
 
@@ -53,7 +53,7 @@ impl Correlated {
         }
     }
 
-    /// Whether two inputs vary together.
+    /// True if two inputs vary together.
     pub(super) fn linked(&self, a: usize, b: usize) -> bool {
         self.between(a, b) != 0.0 || self.blocks.iter().any(|block| [a, b].iter().all(|j| block.members.contains(j)))
     }
@@ -79,7 +79,7 @@ impl Surface {
             }
             coefficients.push(quartic);
         }
-        // Gone over twice rather than listed: there may be half a million.
+        // Products are iterated twice instead of listed, because there may be half a million.
         let products = || surrogate.interactions.each_pair().filter(|&(_, _, value)| value != 0.0);
         let mut of_each = vec![0; n];
         for (j, k, value) in products() {
@@ -94,7 +94,7 @@ impl Surface {
         for position in (0..n).filter(|&position| counts[position]) {
             places[position] = Some(inputs.len());
             parts.push(coefficients[position]);
-            // Inputs of one and the same law share what is found out about it.
+            // Inputs with one and the same distribution object share its panels.
             let input = match made.entry(Arc::as_ptr(&laws[position]).cast()) {
                 Entry::Occupied(known) => Arc::clone(known.get()),
                 Entry::Vacant(new) => {
@@ -116,40 +116,39 @@ impl Surface {
         Ok(Self { centre: finite(surrogate.centre)?, inputs, parts, neighbours, correlated, places })
     }
 
-    /// How many inputs count.
+    /// Number of inputs with a part in the surface.
     pub(super) fn len(&self) -> usize {
         self.inputs.len()
     }
 
-    /// The coefficient of a product.
+    /// Coefficient of a product.
     pub(super) fn product(&self, j: usize, k: usize) -> f64 {
         let row = &self.neighbours[j];
         row.binary_search_by_key(&k, |&(k, _)| k).map_or(0.0, |at| row[at].1)
     }
 
-    /// Every product once, `j < k`.
+    /// Every product once, with `j < k`.
     pub(super) fn products(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
         let rows = self.neighbours.iter().enumerate();
         rows.flat_map(|(j, row)| row.iter().filter(move |(k, _)| *k > j).map(move |&(k, value)| (j, k, value)))
     }
 
-    /// Whether the part is a parabola of a normal input.
+    /// True if the part is a parabola of a normal input.
     pub(super) fn is_normal_parabola(&self, j: usize) -> bool {
         self.inputs[j].is_normal() && self.parts[j][3] == 0.0 && self.parts[j][4] == 0.0
     }
 
-    /// Whether the input is correlated with another.
+    /// True if the input is correlated with another one.
     pub(super) fn is_correlated(&self, j: usize) -> bool {
         self.correlated.as_ref().is_some_and(|correlated| correlated.place(j).is_some())
     }
 
-    /// The surface itself.
     pub(super) fn value(&self, z: &[f64]) -> f64 {
         let own: f64 = self.parts.iter().zip(z).map(|(part, &z)| value(part, z)).sum();
         self.centre + own + self.products().map(|(j, k, b)| b * z[j] * z[k]).sum::<f64>()
     }
 
-    /// The part that these inputs add to the centre, with the products among them; `members` ascending.
+    /// Contribution of these inputs to the value, with the products among them. `members` must be ascending.
     pub(super) fn value_of(&self, members: &[usize], z: &[f64]) -> f64 {
         let own = |&j: &usize| {
             let within = |(k, _): &&(usize, f64)| *k > j && members.binary_search(k).is_ok();
@@ -159,8 +158,7 @@ impl Surface {
         members.iter().map(own).sum()
     }
 
-    /// The sum of the magnitudes of the centre and of all parts and products, each where it is largest among the values of its inputs that
-    /// have a probability of their own.
+    /// Sum of the magnitudes of the centre and of all parts and products, each at the largest atoms of its inputs.
     pub(super) fn magnitude(&self) -> f64 {
         let farthest: Vec<f64> =
             self.inputs.iter().map(|input| input.atoms.iter().map(|(z, _)| z.abs()).fold(0.0, f64::max)).collect();
@@ -170,12 +168,12 @@ impl Surface {
         self.centre.abs() + parts + products
     }
 
-    /// The surface itself at some points: a column for every input.
+    /// Values of the surface at some points. `z` has one column for every input.
     pub(super) fn values(&self, z: &[&[f64]], points: usize) -> Vec<f64> {
         on_this_processor(Values { surface: self, z, points })
     }
 
-    /// Sets of inputs that depend on each other, by products or by correlation; each ascending.
+    /// Sets of inputs that depend on each other by products or by correlation, each ascending.
     pub(super) fn components(&self) -> Vec<Vec<usize>> {
         let n = self.len();
         let mut of: Vec<Option<usize>> = vec![None; n];
@@ -206,7 +204,7 @@ impl Surface {
         components
     }
 
-    /// The same surface with those products only that are kept.
+    /// Copy of the surface with only those products that `keep` selects.
     pub(super) fn with_products(&self, keep: impl Fn(usize, usize) -> bool) -> Self {
         let row = |(j, row): (usize, &Vec<(usize, f64)>)| row.iter().copied().filter(|&(k, _)| keep(j, k)).collect();
         let neighbours = self.neighbours.iter().enumerate().map(row).collect();
@@ -215,8 +213,8 @@ impl Surface {
         Self { centre: *centre, inputs, parts, neighbours, correlated, places }
     }
 
-    /// The same surface with the nearest parabola in place of every higher part of a normal input: `z^3` as `3 z`, `z^4` as `6 z^2 - 3`.
-    /// Constants stay in the parts.
+    /// Copy of the surface with the nearest parabola in place of every higher part of a normal input: `3 z` for `z^3`, `6 z^2 - 3` for
+    /// `z^4`. Constants stay in the parts.
     pub(super) fn with_normal_parabolas(&self) -> Self {
         let parabola = |(part, input): (&Quartic, &Arc<Input>)| match (input.is_normal(), *part) {
             (true, [c0, c1, c2, c3, c4]) => [c0 - 3.0 * c4, c1 + 3.0 * c3, c2 + 6.0 * c4, 0.0, 0.0],
@@ -226,8 +224,8 @@ impl Surface {
         Self { parts, ..self.clone() }
     }
 
-    /// The variance of the difference to another surface over the same inputs, as far as these are uncorrelated: of parts of normal inputs by
-    /// Hermite polynomials, and of products.
+    /// Variance of the difference to another surface over the same inputs. Inputs are treated as uncorrelated, and parts as those of normal
+    /// inputs, by Hermite polynomials.
     pub(super) fn squared_distance(&self, other: &Self) -> f64 {
         let parts: f64 = (0..self.len())
             .map(|j| {
@@ -238,7 +236,7 @@ impl Surface {
         parts + self.products().map(|(j, k, b)| (b - other.product(j, k)).powi(2)).sum::<f64>()
     }
 
-    /// The surface where one input varies by this factor more.
+    /// Copy of the surface with one input scaled by this factor.
     pub(super) fn scaled(&self, input: usize, by: f64) -> Self {
         let mut scaled = self.clone();
         scaled.parts[input].iter_mut().enumerate().for_each(|(k, c)| *c *= by.powi(k as i32));
@@ -250,7 +248,7 @@ impl Surface {
         scaled
     }
 
-    /// The range of what other inputs than these add to the centre; products among them are not bounded.
+    /// Range of the contribution of all other inputs. It is infinite if one of them has products.
     pub(super) fn range_without(&self, members: &[usize]) -> [f64; 2] {
         let others = (0..self.len()).filter(|j| members.binary_search(j).is_err());
         others.fold([0.0; 2], |[low, high], j| match self.neighbours[j].is_empty() {
@@ -262,7 +260,7 @@ impl Surface {
         })
     }
 
-    /// An interval that no value of the surface leaves: exact without products, wider than needed with them.
+    /// Interval that contains every value of the surface: exact without products, possibly wider with them.
     pub(super) fn range(&self) -> [f64; 2] {
         let mut total = [self.centre; 2];
         for (part, input) in self.parts.iter().zip(&self.inputs) {
@@ -275,7 +273,7 @@ impl Surface {
             total[0] += corners.iter().copied().fold(f64::INFINITY, f64::min);
             total[1] += corners.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         }
-        // Infinite of both signs: no bound.
+        // Infinities of both signs sum to NaN: there is no bound.
         let low = if total[0].is_nan() { f64::NEG_INFINITY } else { total[0] };
         let high = if total[1].is_nan() { f64::INFINITY } else { total[1] };
         // The rounding errors of the sums are added on either side, so that the bounds are a proof.
@@ -284,7 +282,7 @@ impl Surface {
     }
 }
 
-/// Points that are taken together.
+/// Points that are computed together.
 const LANES: usize = 256;
 
 struct Values<'a> {
@@ -296,7 +294,7 @@ struct Values<'a> {
 impl Work for Values<'_> {
     type Output = Vec<f64>;
 
-    /// Every sum in the order of [`Surface::value`].
+    /// Values with every sum in the order of [`Surface::value`].
     #[inline(always)]
     fn work(self) -> Vec<f64> {
         let Self { surface, z, points } = self;

@@ -1,5 +1,5 @@
-//! The tails of an exact law, tabulated once: they take the place of a direction's distribution function where the rest of a
-//! surface is sampled.
+//! Tails of an exact distribution in a table. If the rest of a surface is sampled, they replace the distribution function along a
+//! direction.
 
 use super::LawTail;
 use super::complex::Complex;
@@ -7,24 +7,24 @@ use super::derivative::exact_derivatives;
 use super::inversion::Inversion;
 use super::surface::Surface;
 
-/// Places per sigma.
+/// Entries for each sigma.
 const PER_SIGMA: f64 = 24.0;
-/// A tail below this ends the table on its side.
+/// Tail probability below which the table ends.
 const LEAST: f64 = 1e-40;
-/// Places to either side of the mean at most.
+/// Greatest number of entries on either side of the mean.
 const MOST: usize = 1200;
 
-/// The relative error of cubics where a density is smooth.
+/// Relative error of cubics where a density is smooth.
 const SMOOTH: f64 = 1e-7;
 
-/// The largest relative error of a table that takes the place of a direction.
+/// Largest relative error of a table that replaces a direction.
 const COARSE: f64 = 1e-4;
 
-/// Whether the transform has vanished where a wave is as short as a few places of a table.
+/// True if the transform has vanished at waves as short as a few entries of a table.
 fn is_smooth(law: &Inversion) -> bool {
-    /// Waves by the inverse of sigma: 2.5 to 4 places each.
+    /// Frequencies that are tested, times sigma: 2.5 to 4 entries for each wave.
     const WAVES: [f64; 4] = [36.0, 44.0, 52.0, 60.0];
-    /// A tilt of the middle, by the inverse of sigma.
+    /// Tilt for a limit near the middle, times sigma.
     const TILT: f64 = 1.2;
     let (transform, sigma) = (&law.transform, law.sigma());
     let [low, high] = transform.domain;
@@ -43,16 +43,16 @@ fn is_smooth(law: &Inversion) -> bool {
 pub(super) struct Table {
     from: f64,
     step: f64,
-    /// Logarithm and slope of the lower tail and of the upper one.
+    /// Logarithm of the lower tail and its slope. `upper` holds those of the upper tail.
     lower: Vec<[f64; 2]>,
     upper: Vec<[f64; 2]>,
     density: Vec<f64>,
-    /// Largest relative difference of a tail to the law itself between places, and at least [`SMOOTH`].
+    /// Largest relative difference of a tail to the distribution itself between entries, and at least [`SMOOTH`].
     pub(super) error: f64,
 }
 
 impl Table {
-    /// Returns None where the law has steps or corners, between which no cubic leads.
+    /// Table of a distribution. Returns None if it has steps or corners, which no cubic interpolates.
     pub(super) fn of(law: &Inversion, range: [f64; 2]) -> Option<Self> {
         if !is_smooth(law) {
             return None;
@@ -63,7 +63,7 @@ impl Table {
                 let y = mean + tail.sign() * step * place as f64;
                 tail.sign() * (y - end) >= 0.0 || law.tail(y, tail).value < LEAST
             };
-            // The tail falls all the way.
+            // Bisect for the last entry, because the tail falls monotonically.
             let (mut low, mut high) = (0, MOST);
             while high - low > 1 {
                 let middle = (low + high) / 2;
@@ -88,9 +88,9 @@ impl Table {
         (table.error <= COARSE).then_some(table)
     }
 
-    /// Largest relative difference of the smaller tail to the law itself, halfway between places.
+    /// Largest relative difference of the smaller tail to the distribution itself, halfway between entries.
     fn difference(&self, law: &Inversion) -> f64 {
-        /// A tail below this part of its own is far out, where the law itself loses digits.
+        /// Tail probability below which entries are not compared, because the distribution itself loses digits there.
         const TRACE: f64 = 1e-12;
         let last = self.lower.len() - 1;
         let mut most = 0.0f64;
@@ -116,7 +116,7 @@ impl Table {
         let place = (y - self.from) / self.step;
         if place <= 0.0 || place >= last as f64 {
             let outside = (place <= 0.0) == (tail == LawTail::Lower);
-            // Beyond the table the tail goes on as an exponential function does.
+            // Beyond the table the tail is extrapolated as an exponential function.
             let [log, slope] = if place <= 0.0 { values[0] } else { values[last] };
             let off = if place <= 0.0 { y - self.from } else { y - self.from - self.step * last as f64 };
             return if outside { libm::exp(log + slope * off) } else { 1.0 };
@@ -127,7 +127,7 @@ impl Table {
         libm::exp(hermite(t, a, da * self.step, b, db * self.step)).min(1.0)
     }
 
-    /// Density at a place, by a line between the places of the table's tails.
+    /// Density at `y`, by Hermite's cubic between entries with slopes from central differences; 0 beyond the table.
     pub(super) fn density(&self, y: f64) -> f64 {
         let place = (y - self.from) / self.step;
         let last = self.density.len() - 1;
@@ -142,17 +142,17 @@ impl Table {
     }
 }
 
-/// Derivatives of a tail by the tolerances of the inputs of an exact law.
+/// Derivatives of a tail by the tolerances of the inputs of an exact distribution.
 #[derive(Debug)]
 pub(super) struct Slopes {
     from: f64,
     step: f64,
-    /// By place: of every input of the surface.
+    /// Derivatives at every entry, one for each input of the surface.
     values: Vec<Vec<f64>>,
 }
 
 impl Table {
-    /// The derivatives of a tail at every fourth place of the table.
+    /// Derivatives of a tail at every fourth entry of the table.
     pub(super) fn slopes(&self, law: &Inversion, surface: &Surface, tail: LawTail) -> Slopes {
         const EVERY: usize = 4;
         let step = self.step * EVERY as f64;
@@ -166,7 +166,7 @@ impl Table {
 }
 
 impl Slopes {
-    /// At a limit, by a cubic through four places; 0 beyond the table.
+    /// Derivative at a limit, by a cubic through four entries; 0 beyond the table.
     pub(super) fn at(&self, input: usize, y: f64) -> f64 {
         let place = (y - self.from) / self.step;
         if place < 0.0 || place >= (self.values.len() - 1) as f64 {

@@ -1,4 +1,4 @@
-//! An input as a table of nodes, for those who compute laws elsewhere: the pages of reports.
+//! Input as a table of nodes, for programs that compute distributions elsewhere, such as the pages of reports.
 
 use std::sync::Arc;
 
@@ -7,35 +7,35 @@ use serde::Serialize;
 use super::input::{Input, Nodes};
 use crate::distribution::Distribution;
 
-/// Phase per sigma that the nodes of a bounded input resolve, and of an unbounded one.
+/// Phase per sigma that the nodes resolve, for a bounded and for an unbounded input.
 const TOP: [f64; 2] = [100.0, 14.0];
-/// The part of an unbounded input beyond these tails is left out: a page shows no probability of that size.
+/// Tail probability at which the nodes of an unbounded input end. A page shows no probability of that size.
 const FAR: f64 = 1e-22;
-/// Nodes at most: a table of twice as many numbers.
+/// Greatest number of nodes. The table has twice as many numbers.
 const MOST: usize = 3000;
-/// Numbers nearer to each other are the same.
+/// Relative difference below which two numbers count as equal.
 const SAME: f64 = 1e-11;
-/// The slope alone.
+/// Polynomial `z` itself.
 const LINE: [f64; 5] = [0.0, 1.0, 0.0, 0.0, 0.0];
 
-/// A standardised input.
+/// Standardised input as a table.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TabulatedInput {
     normal: bool,
-    /// Least and greatest value; null where there is none.
+    /// Least and greatest value; null if there is none.
     support: [Option<f64>; 2],
-    /// Half widths of the uniform variables whose sum it is; empty where it is not such a sum.
+    /// Half-widths of the uniform variables whose sum the input is; empty if it is not such a sum.
     halves: Vec<f64>,
-    /// Places, and their weights.
+    /// Nodes, in sigmas. Their weights are in `w`.
     z: Vec<f64>,
     w: Vec<f64>,
-    /// The phase per sigma that the nodes resolve; null where they are all its values.
+    /// Phase per sigma that the nodes resolve; null if the nodes are all values of the input.
     top: Option<f64>,
 }
 
 impl TabulatedInput {
-    /// Of this distribution, without nodes where a closed form serves polynomials of this degree; None where only its moments are
-    /// known, and where it takes too many nodes.
+    /// Table of this distribution, without nodes if a closed form covers polynomials of this degree. Returns None if only the moments of
+    /// the distribution are known, or if it takes too many nodes.
     pub fn of(law: &Arc<dyn Distribution>, degree: usize) -> Option<Self> {
         let input = Input::of(law)?;
         let end = |end: f64| Some(end).filter(|end| end.is_finite());
@@ -54,7 +54,7 @@ impl TabulatedInput {
         (found.z.len() <= MOST).then_some(found)
     }
 
-    /// Whether both are the same but for the rounding of their units.
+    /// True if both tables are equal except for rounding from different units.
     pub fn is_near(&self, other: &Self) -> bool {
         let near = |a: &[f64], b: &[f64]| {
             a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() <= SAME * a.abs().max(b.abs()).max(1.0))
@@ -68,7 +68,7 @@ impl TabulatedInput {
             && near(&self.w, &other.w)
     }
 
-    /// Whether it is a normal distribution.
+    /// True if the distribution is normal.
     pub fn is_normal(&self) -> bool {
         self.normal
     }

@@ -1,12 +1,12 @@
-//! Proposals for a tail: every coordinate by its own law times `exp(theta h)`, `h` the surface along it at a mean-field centre.
+//! Proposals for a tail. Every coordinate has its own distribution times `exp(theta h)`, with `h` the surface along it at a mean-field
+//! centre.
 //!
-//! The centre is the mean under the proposal itself, and `theta` such that the surface's mean under the proposal is the limit
-//! (Siegmund 1976; Asmussen and Glynn 2007, VI). Tilting by `h` and not by a shift covers both ends of a parabola. The laws are
-//! cells of constant tilt between exact values of the distribution function, so that weights are exact.
+//! The centre is the mean under the proposal itself. `theta` is such that the surface's mean under the proposal equals the limit (Siegmund
+//! 1976; Asmussen and Glynn 2007, VI). Tilting by `h` instead of shifting covers both ends of a parabola. The distributions are cells of
+//! constant tilt between exact values of the distribution function, so that weights are exact.
 //!
-//! A mean field that starts from the middle does not see a symmetric product, whose two signs are equally far out. Therefore it
-//! also starts from both ends of the eigenvector of the products that leads farthest to this side; where several centres
-//! remain, the proposal is their mixture.
+//! A mean field that starts from the middle misses a symmetric product, whose two signs are equally far out. Therefore it also starts from
+//! both ends of the eigenvector of the products that leads farthest to this side. If several centres remain, the proposal is their mixture.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -24,31 +24,32 @@ use crate::elementary::{Elementary, Exp};
 const CELLS: usize = 96;
 /// Probability beyond the outermost inner edges.
 const OUTER: f64 = 1e-16;
-/// Part of the own law in every proposal.
+/// Share of the own distribution in every coordinate of a proposal.
 const OWN: f64 = 0.02;
-/// Tilts of the ladder by the natural unit: the first and from one to the next.
+/// First tilt of the ladder, in units of one over sigma.
 const FIRST: f64 = 0.4;
+/// Ratio of neighbouring tilts of the ladder.
 const STEP: f64 = 1.3;
-/// The largest tilt by the natural unit: beyond, the mean cannot be moved to the limit.
+/// Largest tilt, in units of one over sigma. Beyond it the mean cannot be moved to the limit.
 const MOST: f64 = 3000.0;
-/// Sweeps of a mean field.
+/// Sweeps of a mean field over all coordinates.
 const SWEEPS: usize = 8;
-/// Centres whose logarithm of the mass is this far below the best are left out.
+/// Difference of the logarithms of the mass to the best centre beyond which a centre is left out.
 const NEGLIGIBLE: f64 = 7.0;
 
-/// A coordinate's law as cells.
+/// Distribution of a coordinate as cells.
 #[derive(Debug, Clone)]
 pub(super) struct Cells {
-    /// Edges, one more than masses; the atoms themselves where there is no density.
+    /// Edges, one more than masses. Without a density they are the atoms.
     edges: Vec<f64>,
     masses: Vec<f64>,
-    /// Their logarithms.
+    /// Logarithms of the masses.
     logs: Vec<f64>,
-    /// Probability below each cell, and above it.
+    /// Probability below each edge. `above` holds that above it.
     below: Vec<f64>,
     above: Vec<f64>,
     centres: Vec<f64>,
-    /// The law; None for a normal variable behind an input.
+    /// Distribution of the coordinate; None for a normal variable behind an input.
     law: Option<std::sync::Arc<Input>>,
 }
 
@@ -68,7 +69,7 @@ impl Cells {
         let (low, high) = (quantile(OUTER), quantile(-OUTER));
         let mut edges: Vec<f64> = (0..=CELLS).map(|i| low + (high - low) * i as f64 / CELLS as f64).collect();
         let ends = law.as_ref().map_or([f64::NEG_INFINITY, f64::INFINITY], |law| law.ends);
-        // Next to an end of the support a tail lies in a small part of it.
+        // Next to an end of the support, a tail occupies a small part of it and needs fine cells.
         for (end, sign) in [(ends[0], 1.0), (ends[1], -1.0)] {
             let support = law.as_ref().map_or(f64::INFINITY, |law| law.support[usize::from(sign < 0.0)]);
             if support.is_finite() {
@@ -95,7 +96,7 @@ impl Cells {
         Self { masses, logs, centres: (0..cells).map(centre).collect(), edges, below, above, law }
     }
 
-    /// The place in a cell with this share of its mass below it.
+    /// Value in a cell with this share of the cell's mass below it.
     pub(super) fn place(&self, cell: usize, share: f64) -> f64 {
         if self.below.is_empty() {
             return self.edges[cell];
@@ -117,10 +118,10 @@ impl Cells {
     }
 }
 
-/// One centre's proposal.
+/// Proposal of one centre.
 #[derive(Debug, Clone)]
 pub(super) struct Mode {
-    /// Of every sampled coordinate the masses of its cells, which sum to 1.
+    /// Masses of the cells of every sampled coordinate, which sum to 1 for each coordinate.
     pub(super) masses: Vec<Vec<f64>>,
     /// Share in the mixture.
     pub(super) share: f64,
@@ -128,14 +129,14 @@ pub(super) struct Mode {
     log: f64,
 }
 
-/// A tilt with the mean that it leads to.
+/// Proposal of one tilt, with the mean of the surface under it.
 #[derive(Debug, Clone)]
 pub(super) struct Proposal {
     pub(super) modes: Vec<Mode>,
     mean: f64,
 }
 
-/// The tilts of one side.
+/// Proposals of one side, by growing tilts.
 #[derive(Debug)]
 struct Ladder {
     tail: LawTail,
@@ -143,18 +144,18 @@ struct Ladder {
     rungs: Mutex<Vec<std::sync::Arc<Proposal>>>,
 }
 
-/// The coordinates of a part of the surface, ready to be tilted.
+/// Coordinates of a part of the surface, with everything needed to tilt them.
 #[derive(Debug)]
 pub(super) struct Tilts {
-    /// Coordinates, by their places in the surface; the sampled ones first.
+    /// Coordinates by their indices in the surface, the sampled ones first.
     coordinates: Vec<usize>,
     sampled: usize,
     pub(super) cells: Vec<Cells>,
     columns: Vec<Vec<(usize, f64)>>,
-    /// `B d` of every column, and `d'B d/2`.
+    /// `B d` of every column `d`. `squares` holds `d'B d/2`.
     images: Vec<Vec<(usize, f64)>>,
     squares: Vec<f64>,
-    /// Coordinates that do not enter linearly: they keep their own law.
+    /// True for coordinates that do not enter linearly. They keep their own distribution.
     frozen: Vec<bool>,
     unit: f64,
     ladders: [Ladder; 2],
@@ -194,9 +195,9 @@ impl Tilts {
         &self.coordinates[..self.sampled]
     }
 
-    /// The first rung whose mean lies beyond a limit; the last one where the mean cannot be moved there.
+    /// First rung whose mean lies beyond a limit, or the last one if the mean cannot be moved there.
     ///
-    /// `others` is the tilted mean of what is not sampled.
+    /// `others` gives the tilted mean of the components that are not sampled.
     pub(super) fn proposal(
         &self,
         surface: &Surface,
@@ -209,7 +210,7 @@ impl Tilts {
         for place in 0.. {
             let size = FIRST * STEP.powi(place as i32);
             if size > MOST {
-                // As far as the mean can be moved.
+                // The last rung moves the mean as far as possible.
                 return rungs.last().map(|last| (rungs.len() - 1, std::sync::Arc::clone(last)));
             }
             if place == rungs.len() {
@@ -227,7 +228,7 @@ impl Tilts {
         None
     }
 
-    /// The centres of a tilt, from those of the one before and from the starts.
+    /// Centres of a tilt, from those of the previous tilt and from the starts.
     fn solved(&self, surface: &Surface, theta: f64, before: &[Mode], starts: &[Vec<f64>]) -> Proposal {
         let origin = vec![0.0; self.coordinates.len()];
         let from = match before.is_empty() {
@@ -249,7 +250,7 @@ impl Tilts {
         found.retain(|(mode, _)| mode.log > best - NEGLIGIBLE);
         let total: f64 = found.iter().map(|(mode, _)| libm::exp(mode.log - best)).sum();
         let mean = found.iter().map(|(mode, mean)| mean * libm::exp(mode.log - best)).sum::<f64>() / total;
-        // No centre gets less than a tenth of an equal part.
+        // Every centre gets at least a tenth of an equal share.
         let floor = 0.1 / found.len() as f64;
         let share = |mode: &Mode| (libm::exp(mode.log - best) / total).max(floor);
         let sum: f64 = found.iter().map(|(mode, _)| share(mode)).sum();
@@ -257,7 +258,7 @@ impl Tilts {
         Proposal { modes, mean }
     }
 
-    /// The mean field from a start: its proposal, and the mean of the surface (about its centre) under it.
+    /// Mean field from a start: its proposal, and the mean of the surface about its centre under it.
     fn field(&self, surface: &Surface, theta: f64, mut m: Vec<f64>) -> (Mode, f64) {
         let n = self.coordinates.len();
         let (mut z, mut image) = (vec![0.0; surface.len()], vec![0.0; surface.len()]);
@@ -285,11 +286,11 @@ impl Tilts {
                 let sum: f64 = own.iter().sum();
                 own.iter_mut().for_each(|own| *own /= sum);
                 let mean: f64 = own.iter().zip(&cells.centres).map(|(q, c)| q * c).sum();
-                // Damped: two coordinates that drive each other would swing.
+                // Damped, because two coordinates that drive each other would oscillate.
                 m[place] += 0.8 * (mean - m[place]);
                 let at = value(&h, m[place]);
                 more += own.iter().zip(&values).map(|(q, h)| q * h).sum::<f64>() - at;
-                // log of the mass that the tilt gives to this coordinate beside its centre's own exponent.
+                // Logarithm of the mass that the tilt gives to this coordinate, without the exponent at its centre.
                 log += most + libm::log(sum) - theta * at;
                 add(&mut z, &mut image, place, m[place]);
             }
@@ -303,7 +304,7 @@ impl Tilts {
         (Mode { masses, share: 1.0, centre: m, log: log + theta * at }, at + more)
     }
 
-    /// The surface along a coordinate, about its centre but for a constant, where that coordinate is 0.
+    /// Surface along a coordinate, up to a constant. `z` and `image` hold the other coordinates, with this one at 0.
     fn along(&self, surface: &Surface, place: usize, z: &[f64], image: &[f64]) -> Quartic {
         let mut c = [0.0; 5];
         for &(j, d) in &self.columns[place] {
@@ -315,10 +316,10 @@ impl Tilts {
     }
 }
 
-/// Starts of mean fields to either side: both ends of the eigenvector of the products with the least and the greatest
-/// eigenvalue, where there is one of that sign.
+/// Starts of mean fields to either side: both ends of the eigenvector of the products with the least and with the greatest eigenvalue, if
+/// that has the sign of the side.
 fn starts(columns: &[Vec<(usize, f64)>], images: &[Vec<(usize, f64)>]) -> [Vec<Vec<f64>>; 2] {
-    /// Sigmas of the farthest coordinate.
+    /// Greatest coordinate of a start, in sigmas.
     const REACH: f64 = 2.0;
     let n = columns.len();
     let size = images.iter().flatten().chain(columns.iter().flatten()).map(|&(j, _)| j + 1).max().unwrap_or(0);

@@ -1,4 +1,4 @@
-//! `K(s) = log E exp(s (y - centre))` of a sum of independent components, and where it exists.
+//! `K(s) = log E exp(s (y - centre))` of a sum of independent components, and the domain in which it exists.
 
 use super::complex::Complex;
 use super::forms::{Block, Forms};
@@ -8,12 +8,12 @@ use super::single_sum::Single;
 use super::surface::Surface;
 use super::tree::Tree;
 
-/// A tilt up to this many by sigma is looked for.
+/// Greatest tilt that is searched, times sigma.
 const FARTHEST: f64 = 2000.0;
-/// Below this, by sigma, a tail is too heavy to be tilted.
+/// Least tilt, times sigma, that must exist. Otherwise the tail is too heavy to be tilted.
 const LEAST_TILT: f64 = 0.3;
 
-/// The sum of those components of a surface whose transform is known.
+/// Sum of those components of a surface whose transform is known.
 #[derive(Debug)]
 pub(super) struct Transform {
     pub(super) forms: Forms,
@@ -21,16 +21,16 @@ pub(super) struct Transform {
     pub(super) singles: Vec<Single>,
     pub(super) perturbed: Vec<PerturbedForm>,
     pub(super) trees: Vec<Tree>,
-    /// About the centre of the surface, as everything here.
+    /// Mean about the centre of the surface. All values here are counted from that centre.
     pub(super) mean: f64,
     pub(super) sigma: f64,
-    /// Lowest and highest real part of `s`; infinite where none was found.
+    /// Lowest and highest real part of `s`; infinite if no bound was found.
     pub(super) domain: [f64; 2],
-    /// Where the contour cannot be bent, because there the law of a quadratic form has a corner; None where it has none.
+    /// Value about which the contour cannot be bent, because the density of a quadratic form has a corner there; None if it has none.
     pub(super) vertex: Option<f64>,
 }
 
-/// A component's kind.
+/// Component of a known kind.
 enum Kind {
     Form(Block),
     Hat(Hat),
@@ -56,8 +56,8 @@ impl Kind {
 }
 
 impl Transform {
-    /// Of a surface's components, and the components that it does not take: neither tree nor form, or too heavy a tail, or a kind that is
-    /// not to be summed.
+    /// Transform of a surface's components, and the components outside it. Those are neither tree nor form, have too heavy a tail, or are
+    /// of a kind that `summed` excludes.
     pub(super) fn of(surface: &Surface, components: &[Vec<usize>], summed: Summed) -> (Self, Vec<Vec<usize>>) {
         let mut transform = Self {
             forms: Forms::default(),
@@ -92,7 +92,8 @@ impl Transform {
         (transform, left)
     }
 
-    /// Takes out the components whose own tail is too heavy for a tilt of the whole. A perturbed form that bears none may be a tree.
+    /// Removes the components whose own tail is too heavy for a tilt of the whole. A perturbed form without such a tilt may still be a
+    /// tree.
     fn without_heavy_components(&mut self, surface: &Surface, summed: Summed) -> Vec<Vec<usize>> {
         let least = LEAST_TILT / self.sigma;
         let mut left: Vec<Vec<usize>> = Vec::new();
@@ -116,7 +117,7 @@ impl Transform {
         left
     }
 
-    /// The vertex of quadratic forms that are all there is, with or without higher powers beside them.
+    /// Vertex of quadratic forms, with or without higher powers. Returns None if there are other components.
     fn corner(&self) -> Option<f64> {
         if !self.is_perturbed() {
             return None;
@@ -125,37 +126,37 @@ impl Transform {
         self.forms.vertex(&parabolas)
     }
 
-    /// Whether there is no component at all.
+    /// True if there is no component.
     pub(super) fn is_empty(&self) -> bool {
         self.forms.blocks.is_empty() && self.hats.is_empty() && self.is_closed()
     }
 
-    /// Whether there are quadratic forms of normal inputs only.
+    /// True if all components are quadratic forms of normal inputs.
     pub(super) fn is_form(&self) -> bool {
         self.hats.is_empty() && self.is_closed()
     }
 
-    /// Whether no panel is summed.
+    /// True if no component is summed over nodes.
     pub(super) fn is_closed(&self) -> bool {
         self.singles.is_empty() && self.are_sums_closed()
     }
 
-    /// Whether there are closed forms and atoms only, so that a contour may have many points.
+    /// True if there are closed forms and atoms only, so that a contour may have many points.
     pub(super) fn is_cheap(&self) -> bool {
         self.are_sums_closed() && self.singles.iter().all(Single::is_discrete)
     }
 
-    /// Whether there are quadratic forms, with higher powers beside some of them, and nothing else.
+    /// True if there are only quadratic forms, with or without higher powers.
     pub(super) fn is_perturbed(&self) -> bool {
         self.hats.is_empty() && self.singles.is_empty() && self.trees.is_empty()
     }
 
-    /// Whether no component has products beside curved parts that only a sum over nodes resolves: only such a contour may end early.
+    /// True if no component combines products and curved parts, which only a sum over nodes resolves. Otherwise a contour may end early.
     pub(super) fn are_sums_closed(&self) -> bool {
         self.trees.is_empty() && self.perturbed.is_empty()
     }
 
-    /// Mean and sigma.
+    /// Computes mean and sigma.
     fn measure(&mut self) {
         let (mut mean, mut variance) = (self.forms.mean(), self.forms.variance() + self.hats.variance());
         for single in &self.singles {
@@ -169,8 +170,10 @@ impl Transform {
         (self.mean, self.sigma) = (mean, variance.sqrt());
     }
 
-    /// The domain: of the forms in closed form; of the others as far as no cut end of an unbounded input weighs anything.
+    /// Domain of the transform. For forms it is a closed form. For other components it ends before a cut end of an unbounded input has
+    /// weight.
     fn reach(&self) -> [f64; 2] {
+        /// Factor from one tilt of the search to the next.
         const GROWTH: f64 = 1.25;
         let [low, high] = self.forms.domain();
         let at_mean = 1.0 / self.sigma;
@@ -190,8 +193,8 @@ impl Transform {
         [low.max(-far(-1.0)), high.min(far(1.0))]
     }
 
-    /// `[K, K', K'']` at a real `theta` within the domain; the derivatives of trees by differences, which are good for a
-    /// contour.
+    /// `[K, K', K'']` at a real `theta` within the domain. The derivatives of trees and perturbed forms are differences, which are accurate
+    /// enough to choose a contour.
     pub(super) fn cumulants(&self, theta: f64) -> [f64; 3] {
         let (forms, hats) = (self.forms.cumulants(theta), self.hats.cumulants(theta));
         let [mut k, mut k1, mut k2] = std::array::from_fn(|order| forms[order] + hats[order]);
@@ -215,7 +218,7 @@ impl Transform {
         self.singles.iter().map(|single| single.cumulants(theta)[0]).collect()
     }
 
-    /// Writes `M(s)/M(theta)` of the points `s = theta + i t` of a block; returns how many are resolved, from the first on.
+    /// Writes `M(s)/M(theta)` at the points `s = theta + i t` of a block. Returns the number of resolved points, counted from the first.
     pub(super) fn ratios(&self, theta: f64, logs: &[f64], from: f64, step: f64, out: &mut [Complex]) -> usize {
         let at_theta = self.forms.log(Complex::from(theta)).re;
         let points: Vec<Complex> = (0..out.len()).map(|i| Complex::new(theta, from + step * i as f64)).collect();
@@ -230,7 +233,7 @@ impl Transform {
         self.trees.iter().fold(forms, |resolved, tree| resolved.min(tree.multiply(theta, from, step, out)))
     }
 
-    /// `K(s) - K(theta)` at points beside the real axis, where no panel is summed; as many as are resolved, from the first on.
+    /// `K(s) - K(theta)` at the resolved points of a bent contour, counted from the first. No component may be a single input or a tree.
     pub(super) fn bent_logs(&self, theta: f64, points: &[Complex]) -> Vec<Complex> {
         let at_theta = self.forms.log(Complex::from(theta));
         let mut logs: Vec<Complex> = points.iter().map(|&s| self.forms.log(s) - at_theta).collect();
@@ -243,13 +246,13 @@ impl Transform {
     }
 }
 
-/// Components that are summed over nodes, beside those in closed form.
+/// Kinds of components that may be summed over nodes, in addition to closed forms. Each includes the ones before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Summed {
     /// Single inputs only.
     Singles,
-    /// Quadratic forms with higher powers too.
+    /// Quadratic forms with higher powers.
     Perturbed,
-    /// Trees of products too.
+    /// Trees of products.
     Trees,
 }

@@ -1,13 +1,13 @@
 //! Inputs whose products form a tree: `M(s)` by nested sums.
 //!
-//! The branch below input `j` is a function of the value `u` of its parent,
+//! The message of the branch below input `j` is a function of the value `u` of its parent,
 //!
 //! ```text
 //! m_j(u) = E[ exp(s (g_j(z) + b z u)) prod_children m_k(z) ]
 //! ```
 //!
-//! which is `exp` of a parabola in `u` where the branch consists of parabolas of normal inputs, and a table over the
-//! parent's nodes otherwise. Every message is divided by itself at the real part of `s`, so that nothing overflows.
+//! The message is `exp` of a parabola in `u` if the branch consists of parabolas of normal inputs. Otherwise it is a table over the
+//! parent's nodes. Every message is divided by its value at the real part of `s`, so that nothing overflows.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -18,48 +18,50 @@ use super::single_sum::{Table, level, own_ends_weigh_nothing};
 use super::surface::Surface;
 use crate::elementary::{Elementary, Exp};
 
-/// Nodes whose weight may be below `exp` of minus this, relative to the heaviest, are left out: 1e-17 of the whole.
+/// Negative logarithm of the least weight, relative to the largest, that a node may have: 1e-17 of the whole.
 const LEAST: f64 = 40.0;
-/// Elements of a table of products at most: beyond, the contour ends where it is, with the error that this leaves.
+/// Greatest number of elements of a table of products. Beyond it the contour ends, with the error that this leaves.
 const MOST: usize = 1 << 22;
-/// Products of a table's elements with the points of the contour so far, some 1e8: the contour ends there too.
+/// Greatest product of a table's elements and the points of the contour so far, about 1e8. The contour also ends there.
 const EFFORT: f64 = (1u64 << 27) as f64;
 
-/// Products from which on a transform that has not begun to vanish never will in time: this part of it, by the inverse square of the products.
+/// Product of elements and points from which on the contour may be given up, because the transform has not begun to vanish.
 const CHEAP: f64 = (1u64 << 20) as f64;
+/// Relative size of the transform, at a product of `CHEAP`, above which the contour is given up. It falls with the inverse square of the
+/// product.
 const HOPELESS: f64 = 0.02;
-/// Sigmas of its neighbours that an input's nodes resolve the products with; half of them may add to the weight of a node.
+/// Sigmas of its neighbours up to which an input's nodes resolve the products. Half of them may add to the weight of a node.
 const REACH: f64 = 8.0;
-/// Points of a contour that share their nodes: next to the real axis, where nodes double from few points to few points, and beyond.
+/// Points of a contour that share their nodes: next to the real axis, where the nodes double every few points, and beyond.
 const SHARED: [usize; 2] = [8, 64];
-/// A transform that stays below this part of itself on the real axis for a block of points is rounding.
+/// Relative size below which the transform of a whole block of points is only rounding.
 const VANISHED: f64 = 1e-15;
 const EVERYWHERE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
-/// A tree of products, from the leaves to the root.
+/// Tree of products, from the leaves to the root.
 #[derive(Debug)]
 pub(super) struct Tree {
     nodes: Vec<Node>,
     tables: Mutex<BTreeMap<(usize, i32), Arc<Table>>>,
 }
 
-/// An input with the branch below it.
+/// Input with the branch below it.
 #[derive(Debug)]
 struct Node {
-    /// Place in the surface.
+    /// Index of the input in the surface.
     input: usize,
     law: Arc<super::input::Input>,
     part: Quartic,
     children: Vec<usize>,
     /// Coefficient of the product with the parent.
     product: f64,
-    /// By what other inputs may move the exponent at most, per sigma of this one and unit of `s`.
+    /// Greatest change of the exponent by other inputs, per sigma of this one and unit of `s`.
     near: f64,
-    /// Whether the branch consists of parabolas of normal inputs.
+    /// True if the branch consists of parabolas of normal inputs.
     closed: bool,
 }
 
-/// A node's own sums at one tilt.
+/// Sums of one node at one tilt.
 struct Tilted {
     z: Vec<f64>,
     values: Vec<f64>,
@@ -67,7 +69,7 @@ struct Tilted {
     logs: Vec<f64>,
 }
 
-/// `exp(constant + linear u + square u^2)`.
+/// Message `exp(constant + linear u + square u^2)`.
 #[derive(Clone, Copy)]
 struct Parabola {
     constant: Complex,
@@ -76,14 +78,14 @@ struct Parabola {
 }
 
 impl Tree {
-    /// None where the products among the members are no tree.
+    /// Tree of the products among the members. Returns None if they form no tree.
     pub(super) fn of(surface: &Surface, members: &[usize]) -> Option<Self> {
         let degree = |j: usize| surface.neighbours[j].len();
         let edges: usize = members.iter().map(|&j| degree(j)).sum();
         if edges != 2 * (members.len() - 1) || members.iter().any(|&j| surface.is_correlated(j)) {
             return None;
         }
-        // The hub; an input whose branch has no closed form, where there is a choice.
+        // Choose as root the input with most products, preferably one whose branch has no closed form.
         let root = *members.iter().min_by_key(|&&j| (surface.is_normal_parabola(j), usize::MAX - degree(j), j))?;
         let mut order = vec![(root, usize::MAX)];
         let mut next = 0;
@@ -114,15 +116,14 @@ impl Tree {
         Some(Self { nodes, tables: Mutex::default() })
     }
 
-    /// Places in the surface, ascending.
+    /// Indices of the inputs in the surface, ascending.
     pub(super) fn sorted(&self) -> Vec<usize> {
         let mut members: Vec<usize> = self.nodes.iter().map(|node| node.input).collect();
         members.sort_unstable();
         members
     }
 
-    /// Mean and variance: the inputs are independent with mean 0 and variance 1, so that products have no covariance with
-    /// anything else.
+    /// Mean and variance. The inputs are independent with mean 0 and variance 1, so products have no covariance with other terms.
     pub(super) fn moments(&self) -> [f64; 2] {
         self.nodes.iter().fold([0.0; 2], |[mean, variance], node| {
             let nodes = node.law.nodes(&node.part, 0.0, 0.0);
@@ -143,13 +144,13 @@ impl Tree {
         Arc::clone(table)
     }
 
-    /// The nodes of an input that can weigh under a tilt.
+    /// Nodes of an input that can have weight under a tilt.
     fn live(&self, place: usize, theta: f64, top: f64) -> Tilted {
         let node = &self.nodes[place];
         let table = self.table(place, level(top));
         let near = 0.5 * theta.abs() * node.near;
         let logs: Vec<f64> = table.values.iter().zip(&table.logs).map(|(g, log)| theta * g + log).collect();
-        // Products may add to any node as much as they take from the heaviest one.
+        // Products may add as much to any node as they take from the heaviest one.
         let beside = |at: usize| near * table.z[at].abs();
         let most = (0..logs.len()).map(|at| logs[at] - beside(at)).fold(f64::NEG_INFINITY, f64::max);
         let kept: Vec<usize> = (0..logs.len()).filter(|&at| logs[at] + beside(at) > most - LEAST).collect();
@@ -157,7 +158,7 @@ impl Tree {
         Tilted { z: of(&table.z), values: of(&table.values), logs: of(&logs) }
     }
 
-    /// Whether a tilt exists: closed branches do, and no end at which an unbounded input is cut weighs anything.
+    /// True if a tilt exists: closed branches exist, and no cut end of an unbounded input has weight.
     pub(super) fn bears(&self, theta: f64, at_mean: f64) -> bool {
         /// Sigmas of the parent that may add to the weight of a node.
         const OWN_REACH: f64 = 4.0;
@@ -176,7 +177,7 @@ impl Tree {
         })
     }
 
-    /// Whether the closed branches exist at a real tilt.
+    /// True if the closed branches exist at a real tilt.
     fn closed_positive(&self, theta: f64) -> bool {
         (0..self.nodes.len()).filter(|&place| self.nodes[place].closed).all(|place| {
             let parabola = self.parabola(place, Complex::from(theta));
@@ -184,7 +185,7 @@ impl Tree {
         })
     }
 
-    /// The message of a closed branch.
+    /// Message of a closed branch.
     fn parabola(&self, place: usize, s: Complex) -> Parabola {
         let node = &self.nodes[place];
         let zero = Parabola { constant: Complex::ZERO, linear: Complex::ZERO, square: Complex::ZERO };
@@ -209,7 +210,7 @@ impl Tree {
         tilted.last().map_or(0.0, |(_, log)| *log)
     }
 
-    /// All nodes at a real tilt, the branches below in their logarithms, and the logarithm of the message of the root.
+    /// All nodes at a real tilt, with the branches below included in their logarithms, and the logarithm of each node's own message.
     fn up(&self, theta: f64, top: f64) -> Vec<(Tilted, f64)> {
         let s = Complex::from(theta);
         let mut done: Vec<(Tilted, f64)> = Vec::with_capacity(self.nodes.len());
@@ -240,7 +241,8 @@ impl Tree {
         done
     }
 
-    /// Multiplies `M(s)/M(theta)` into the points of a block; returns how many are resolved before the tables are too large.
+    /// Multiplies `M(s)/M(theta)` into the points of a block. Returns the number of points that are resolved before the tables grow too
+    /// large.
     pub(super) fn multiply(&self, theta: f64, from: f64, step: f64, out: &mut [Complex]) -> usize {
         let shared = SHARED[usize::from(from > 0.0)];
         let (mut ended, all) = (false, out.len());
@@ -252,7 +254,7 @@ impl Tree {
             let Some(effort) = self.few(theta, from + step * (block * shared) as f64, step, out) else {
                 return block * shared;
             };
-            // Nodes double from block to block: what has vanished is not resolved any further.
+            // Nodes double from block to block, so a transform that has vanished is not resolved any further.
             let most = out.iter().map(|value| value.abs()).fold(0.0, f64::max);
             ended = most < VANISHED;
             if most > HOPELESS * (CHEAP / effort).powi(2) && effort > CHEAP {
@@ -262,7 +264,8 @@ impl Tree {
         all
     }
 
-    /// The same for points that share their nodes; the products of the largest table with the points so far, None where these are too many.
+    /// Multiplies the transform into points that share their nodes. Returns the largest product of table elements and points so far, or
+    /// None if it is too large.
     fn few(&self, theta: f64, from: f64, step: f64, out: &mut [Complex]) -> Option<f64> {
         let top = libm::hypot(theta, from + step * out.len() as f64);
         let done = self.up(theta, top);
@@ -273,6 +276,7 @@ impl Tree {
         for (place, node) in self.nodes.iter().enumerate() {
             node.children.iter().for_each(|&child| parents[child] = place);
         }
+        // Build the tables of all open branches first: they decide if the block is affordable.
         for (place, node) in self.nodes.iter().enumerate() {
             let open = !node.closed && parents[place] != usize::MAX;
             messages.push(match open {
@@ -290,7 +294,7 @@ impl Tree {
         }
         let root = self.nodes.len() - 1;
         if self.nodes[root].closed {
-            // Only parabolas of normal inputs.
+            // The whole tree consists of parabolas of normal inputs.
             let at_theta = self.parabola(root, Complex::from(theta)).constant;
             for (i, out) in out.iter_mut().enumerate() {
                 let s = Complex::new(theta, from + step * i as f64);
@@ -304,6 +308,7 @@ impl Tree {
         for (i, out) in out.iter_mut().enumerate() {
             let t = from + step * i as f64;
             let s = Complex::new(theta, t);
+            // From the leaves to the root: the own phase of every node times the messages of its children.
             for (place, node) in self.nodes.iter().enumerate().filter(|(_, node)| !node.closed) {
                 let own = &done[place].0;
                 let mut factor = std::mem::take(&mut factors[place]);
@@ -340,7 +345,7 @@ fn log_sum(tilted: &Tilted, slope: f64) -> f64 {
     most + libm::log(both().map(|e| Exp::of(e - most)).sum::<f64>())
 }
 
-/// A message as a table: for every node of the parent weights of the own nodes that sum to 1, and how they rotate.
+/// Message as a table: for every node of the parent the weights of the own nodes, which sum to 1, and their rotation to the next point.
 struct Message {
     now: Vec<Complex>,
     turn: Vec<Complex>,
@@ -362,7 +367,7 @@ impl Message {
         Self { now, turn, own: own.z.len() }
     }
 
-    /// The message at every node of the parent, and on to the next point.
+    /// Writes the message at every node of the parent and advances to the next point.
     fn next(&mut self, factors: &[Complex], out: &mut Vec<Complex>) {
         out.clear();
         let rows = self.now.chunks_exact_mut(self.own.max(1)).zip(self.turn.chunks_exact(self.own.max(1)));

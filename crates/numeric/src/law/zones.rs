@@ -1,7 +1,7 @@
-//! Zones in which a surface is a plane: their two coordinates as inputs of their own.
+//! Zones in which a surface is a plane, with their two coordinates as independent inputs.
 //!
-//! A line through a disc, or its rim, varies as one coordinate with the slope `hypot(a, b)`. A diamond's coordinates are half the sum and half
-//! the difference of two independent uniform variables.
+//! The projection of a disc or of its rim onto a line varies as one coordinate with the slope `hypot(a, b)`. A diamond's coordinates are
+//! half the sum and half the difference of two independent uniform variables.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use crate::correlation::{Block, Correlation, JointLaw};
 use crate::distribution::{Distribution, Uniform};
 use crate::surrogate::{Surrogate, Univariate};
 
-/// A surface without the zones in which it is a plane.
+/// Surface without the zones in which it is a plane.
 pub(super) struct Straightened {
     pub(super) surrogate: Surrogate,
     pub(super) inputs: Vec<Arc<dyn Distribution>>,
@@ -18,7 +18,7 @@ pub(super) struct Straightened {
     pub(super) zones: Vec<Zone>,
 }
 
-/// A zone, by the positions of its coordinates, with their slopes.
+/// Zone by the positions of its coordinates, with their slopes.
 #[derive(Debug, Clone)]
 pub(super) struct Zone {
     members: [usize; 2],
@@ -26,7 +26,7 @@ pub(super) struct Zone {
     diamond: bool,
 }
 
-/// None where there is no such zone.
+/// Surface with independent inputs in place of such zones. Returns None if there is no such zone.
 pub(super) fn straightened(
     surrogate: &Surrogate,
     inputs: &[Arc<dyn Distribution>],
@@ -34,6 +34,7 @@ pub(super) fn straightened(
 ) -> Option<Straightened> {
     let correlation = correlation?;
     let products = surrogate.interactions.pairs();
+    // A zone is straight if both its coordinates have linear parts and no products.
     let plane = |block: &Block| -> Option<Zone> {
         let &[j, k] = &block.members[..] else { return None };
         if matches!(block.law, JointLaw::Rows(_))
@@ -52,6 +53,7 @@ pub(super) fn straightened(
     if zones.is_empty() {
         return None;
     }
+    // Replace the coordinates: a diamond by its two uniform variables, a disc or rim by its projection onto the gradient.
     let (mut surrogate, mut inputs) = (surrogate.clone(), inputs.to_vec());
     for Zone { members: [j, k], slopes: [a, b], diamond } in &zones {
         let slopes = match diamond {
@@ -71,7 +73,7 @@ pub(super) fn straightened(
 }
 
 impl Zone {
-    /// Derivatives by the logarithms of the own inputs' tolerances as those by the coordinates', in place.
+    /// Turns derivatives by the tolerances of the replacing inputs into those by the zone's coordinates, in place.
     pub(super) fn distribute(&self, derivatives: &mut [LawFigure]) {
         let ([j, k], [a, b]) = (self.members, self.slopes);
         let part = |figure: LawFigure, by: f64| match by.is_finite() {

@@ -1,23 +1,23 @@
-//! Quantiles of the distributions that intervals rest on, where the library's own search does not end.
+//! Quantiles of beta and Student distributions for intervals, for arguments at which the library's own search does not converge.
 //!
-//! Newton's method for the inverse of the incomplete beta function (Algorithm AS 109) starts at 0.0001 or above, and never leaves there
-//! where the quantile is far smaller. Here the quantile is bracketed and bisected.
+//! Newton's method for the inverse of the incomplete beta function (Algorithm AS 109) starts at 0.0001 or above. It stays there if the
+//! quantile is far smaller. Here the quantile is bracketed and bisected.
 
 use statrs::distribution::{ContinuousCDF, Gamma, StudentsT};
 use statrs::function::beta::beta_reg;
 
 use crate::distribution::standard_normal;
 
-/// The sum of the shapes above which continued fractions are replaced by the gamma and the normal distribution.
+/// Sum of the shapes above which the gamma or the normal distribution replaces continued fractions.
 const MANY: f64 = 1e7;
-/// The smaller shape above which a beta distribution of that sum is normal but for its skewness.
+/// Lesser shape above which a beta distribution with that sum is normal except for its skewness.
 const LARGE: f64 = 1e4;
-/// Bisections of a bracket whose ends differ by a factor of two: down to the last digit.
+/// Bisections of a bracket whose ends differ by a factor of two, down to the last digit.
 const BISECTIONS: usize = 54;
-/// Degrees of freedom from which on four terms about the normal quantile leave 1e-12.
+/// Degrees of freedom from which on four terms about the normal quantile have an error of at most 1e-12.
 const NEARLY_NORMAL: f64 = 1000.0;
 
-/// The quantile of the beta distribution with the shapes `a` and `b`, for `p` between 0 and 1.
+/// Quantile of the beta distribution with the shapes `a` and `b`, for `p` between 0 and 1.
 ///
 /// Accuracy: 1e-8 of the quantile up to `a + b` of 1e7, 1e-5 above.
 ///
@@ -33,7 +33,7 @@ pub(crate) fn beta_quantile(a: f64, b: f64, p: f64) -> f64 {
         let gamma = Gamma::new(a, 1.0).map_or(f64::NAN, |law| law.inverse_cdf(p));
         return 2.0 * gamma / (2.0 * b + a - 1.0 + gamma);
     }
-    // Between two numbers that differ by a factor of two.
+    // Bracket the quantile between two numbers that differ by a factor of two.
     let mut low = a / (a + b);
     while low > f64::MIN_POSITIVE && beta_reg(a, b, low) > p {
         low *= 0.5;
@@ -49,7 +49,7 @@ pub(crate) fn beta_quantile(a: f64, b: f64, p: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// The quantile of a beta distribution with large shapes, from its mean, sigma and skewness.
+/// Quantile of a beta distribution with large shapes, from its mean, sigma and skewness.
 fn nearly_normal_quantile(a: f64, b: f64, p: f64) -> f64 {
     let (z, sum) = (standard_normal::quantile(p), a + b);
     let sigma = (a / sum * (b / sum) / (sum + 1.0)).sqrt();
@@ -57,7 +57,7 @@ fn nearly_normal_quantile(a: f64, b: f64, p: f64) -> f64 {
     a / sum + sigma * (z + skewness * (z * z - 1.0) / 6.0)
 }
 
-/// The quantile of Student's distribution with so many degrees of freedom; infinite without any.
+/// Quantile of Student's distribution with this number of degrees of freedom; infinite if there are none.
 ///
 /// Source: Abramowitz and Stegun (1964), equation 26.7.5, for many degrees of freedom.
 pub fn student_quantile(p: f64, freedom: f64) -> f64 {
@@ -89,7 +89,7 @@ mod tests {
         }
     }
 
-    /// `P(X <= k)` of a Poisson variable, and of a binomial one with very many points, by its sum.
+    /// `P(X <= k)` of a Poisson variable approximates a binomial one with very many points. It is summed directly.
     #[test]
     fn many_points_are_those_of_poisson() {
         let n = 1e12;
@@ -98,7 +98,8 @@ mod tests {
         assert!((sum - 0.025).abs() < 1e-8, "{high}: {sum}");
     }
 
-    /// Of half of very many points the interval is normal, about 1/2 with sigma `1/(2 sqrt(2 a + 1))`; and both sides of a switch agree.
+    /// If half of very many points are hits, the interval is normal, about 1/2 with sigma `1/(2 sqrt(2 a + 1))`. Both methods agree where
+    /// they switch.
     #[test]
     fn many_hits_among_many_points_are_normal() {
         let a: f64 = 5e7;
@@ -117,7 +118,7 @@ mod tests {
         for (freedom, value) in [(10.0, 2.228), (120.0, 1.980), (1e9, 1.960)] {
             assert!((student_quantile(0.975, freedom) - value).abs() < 5e-4, "{freedom}");
         }
-        // Both ways agree where they meet.
+        // Both methods agree where they switch.
         let [below, above] = [NEARLY_NORMAL - 1e-6, NEARLY_NORMAL].map(|freedom| student_quantile(0.999, freedom));
         assert!((below - above).abs() < 1e-8, "{below} {above}");
     }

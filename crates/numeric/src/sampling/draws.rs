@@ -16,17 +16,17 @@ use crate::elementary::{Work, on_this_processor};
 use crate::names::UnknownName;
 use crate::points::Points;
 
-/// How points are drawn.
+/// Method that draws points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Sampler {
     /// Independent random points.
     Random,
-    /// Sobol's points, scrambled anew in every replicate.
+    /// Sobol' points, scrambled anew in every replicate.
     Sobol,
 }
 
 impl Sampler {
-    /// The method that it makes of a simulation.
+    /// Name of the simulation method with this sampler.
     pub fn method(self) -> &'static str {
         match self {
             Self::Random => "monte-carlo",
@@ -34,7 +34,7 @@ impl Sampler {
         }
     }
 
-    /// Its name on the command line.
+    /// Name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Random => "random",
@@ -57,42 +57,42 @@ impl FromStr for Sampler {
     }
 }
 
-/// Why a problem cannot be sampled.
+/// Reason why a problem cannot be sampled.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SamplingError {
-    /// A dimension whose distribution is unknown.
+    /// The distribution of a dimension is unknown.
     #[error(
         "dimension `{dimension}` is known by its moments only, which cannot be sampled: give it a distribution, or use a \
          derivative method"
     )]
     MomentsOnly {
-        /// The dimension.
+        /// Name of the dimension.
         dimension: String,
     },
-    /// More dimensions than there are direction numbers for.
+    /// More dimensions vary than there are direction numbers for.
     #[error("{dimensions} dimensions vary, and there are Sobol' points for {SOBOL_DIMENSIONS}: use random ones")]
     TooManyDimensions {
-        /// How many vary.
+        /// Number of dimensions that vary.
         dimensions: usize,
     },
 }
 
-/// A range of points: which replicate, the first, how many.
+/// Range of points: replicate, first point, number of points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Portion {
-    /// Random points have one replicate; Sobol's as many as have been scrambled apart.
+    /// Replicate: always one for random points, and one for each scrambling of Sobol' points.
     pub replicate: u64,
-    /// A multiple of the portion's size, or of the next power of two above it.
+    /// First point: a multiple of the portion's size, or of the next power of two above it.
     pub first: u64,
-    /// How many points.
+    /// Number of points.
     pub rows: usize,
 }
 
-/// The source of points: every portion can be had at any time, by itself, and is always the same.
+/// Source of points. Every portion can be drawn at any time, independently of the others, and is always the same.
 ///
-/// Every dimension has its own stream, so that what is not asked changes nothing, and every portion its own seed, so that
-/// nothing depends on the number of threads.
+/// Every dimension has its own stream, so that leaving one out does not change the others. Every portion has its own seed, so that points
+/// do not depend on the number of threads.
 pub struct Draws<'a> {
     dimensions: &'a [Dimension],
     varying: Vec<(usize, &'a dyn Probability)>,
@@ -101,28 +101,28 @@ pub struct Draws<'a> {
     seed: u64,
 }
 
-/// Room in which portions are drawn, one after the other.
+/// Buffers for drawing portions one after the other.
 #[derive(Default)]
 pub struct Room {
     stream: Stream,
     digits: Vec<u64>,
-    /// Columns of the correlated dimensions.
+    /// Columns of normal variables of the correlated dimensions.
     normals: Vec<Vec<f64>>,
 }
 
-/// The correlated dimensions: their places among the varying ones, and the factor of their normal variables.
+/// Correlated dimensions: their indices among the varying ones, and the factor of their normal variables.
 struct Correlated<'a> {
     correlation: &'a Correlation,
-    /// Ascending, as the members are.
+    /// Indices among the varying dimensions, ascending like the members.
     places: Vec<usize>,
     factor: Mat<f64>,
 }
 
 impl<'a> Draws<'a> {
-    /// From these dimensions.
+    /// Source of points of these dimensions.
     ///
     /// # Errors
-    /// When a dimension is known by moments only, or too many vary for Sobol's points.
+    /// Returns an error if a dimension is known by moments only, or if too many vary for Sobol' points.
     pub fn new(
         dimensions: &'a [Dimension],
         correlation: Option<&'a Correlation>,
@@ -153,14 +153,14 @@ impl<'a> Draws<'a> {
         Ok(Self { dimensions, varying, correlated, sobol, seed })
     }
 
-    /// The points of a portion; dimensions that do not vary have their nominal value.
+    /// Points of a portion. Dimensions that do not vary have their nominal value.
     pub fn points(&self, portion: Portion) -> Points {
         let mut points = Points::repeated(&[], 0);
         self.write(portion, &mut Room::default(), &mut points);
         points
     }
 
-    /// The same in the place of other points.
+    /// Writes the points of a portion over other points.
     pub fn write(&self, portion: Portion, room: &mut Room, points: &mut Points) {
         points.resize(portion.rows, self.dimensions.len());
         for (d, dimension) in self.dimensions.iter().enumerate().filter(|(_, one)| one.distribution().is_none()) {
@@ -185,12 +185,12 @@ impl<'a> Draws<'a> {
         self.correlated.as_ref().is_some_and(|correlated| correlated.places.binary_search(&place).is_ok())
     }
 
-    /// A key that belongs to the seed, the portion's stream and the dimension.
+    /// Key of a dimension in a stream, derived from the seed.
     fn key(&self, stream: u64, place: usize) -> u64 {
         mixed(mixed(mixed(self.seed).wrapping_add(stream)).wrapping_add(place as u64))
     }
 
-    /// The stream of a dimension in a portion.
+    /// Generator of a dimension, started for a portion.
     fn generator<'s>(&self, portion: Portion, place: usize, stream: &'s mut Stream) -> &'s mut Stream {
         stream.begin(self.key(mixed(portion.replicate) ^ portion.first, place));
         stream
@@ -203,7 +203,7 @@ impl<'a> Draws<'a> {
         tails(digits, self.key(portion.replicate, place), out);
     }
 
-    /// Normal variables, made to vary together, and the inputs that they stand for.
+    /// Writes the correlated dimensions: draws normal variables, correlates them, and turns them into inputs.
     fn together(&self, correlated: &Correlated<'_>, portion: Portion, room: &mut Room, points: &mut Points) {
         let Room { stream, digits, normals } = room;
         normals.resize_with(correlated.places.len(), Vec::new);
@@ -219,6 +219,7 @@ impl<'a> Draws<'a> {
         }
         let correlation = correlated.correlation;
         let members = correlation.members();
+        // Blocks with one joint distribution are applied first, point by point.
         for block in correlation.blocks() {
             let places: Vec<usize> =
                 block.members.iter().map(|d| members.binary_search(d).expect("a block's member")).collect();
@@ -236,7 +237,7 @@ impl<'a> Draws<'a> {
             }
         }
         for (j, (&place, transform)) in correlated.places.iter().zip(correlation.transforms()).enumerate() {
-            // A zone's points are places already.
+            // Points of a zone are already standardised coordinates.
             let in_zone = correlation
                 .block_of(members[j])
                 .is_some_and(|(block, _)| !matches!(correlation.blocks()[block].law, JointLaw::Rows(_)));
@@ -255,7 +256,7 @@ impl<'a> Draws<'a> {
     }
 }
 
-/// Columns times factors, added up in their order, about a mean in units of a sigma.
+/// Work item: columns times factors, summed in their order, then scaled by a sigma and moved to a mean.
 struct Combined<'a> {
     terms: &'a [(f64, &'a [f64])],
     place: (f64, f64),
@@ -275,7 +276,7 @@ impl Work for Combined<'_> {
             if terms.is_empty() {
                 out.fill(0.0);
             }
-            // Three at a time; where there are no more, nothing is added.
+            // Take three terms at a time. Missing ones have the factor 0.
             for (group, terms) in terms.chunks(3).enumerate() {
                 let nothing = (0.0, terms[0].1);
                 let [a, b, c] = match *terms {
@@ -301,7 +302,8 @@ impl Work for Combined<'_> {
     }
 }
 
-/// Digits from the bottom up, scrambled, as probabilities, each the middle of its cell, counted from the nearer end and negative from above.
+/// Scrambles digits in bottom-up order and turns them into probabilities. Each is the middle of its cell, counted from the nearer end and
+/// negative from above.
 pub fn tails(digits: &[u64], key: u64, out: &mut [f64]) {
     on_this_processor(Tails { digits, key, out });
 }

@@ -1,15 +1,15 @@
-//! Estimates with their standard errors.
+//! Estimates with their standard errors, and confidence intervals of shares.
 
 use super::Summary;
 use super::critical::beta_quantile;
 use crate::power::{Rescale, Rescaling, Unknown};
 
-/// A value that a sample estimates, and how uncertain it is.
+/// Value that a sample estimates, with its uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
-    /// The value.
+    /// Estimated value.
     pub value: f64,
-    /// Its standard error; None where the sample does not tell.
+    /// Standard error; None if the sample does not determine one.
     pub standard_error: Option<f64>,
 }
 
@@ -26,21 +26,22 @@ impl Unknown for Estimate {
     }
 }
 
-/// Fewer values have no standard errors.
+/// Fewest values of a sample for which moments have standard errors.
 pub const FEWEST: u64 = 10;
 
-/// The four moments of a sample of independent values.
+/// Estimates of the four moments from a sample of independent values.
 ///
-/// The standard errors are those of the asymptotic normal law of a smooth function of moments, by its influence function
-/// (Serfling 1980, section 6.3) with the sample's own moments: with `u = (y - mean)/sigma`, skewness `s`, kurtosis `k`,
+/// The standard errors are those of the asymptotic normal distribution of a smooth function of moments. They follow from its influence
+/// function (Serfling 1980, section 6.3) with the sample's own moments. With `u = (y - mean)/sigma`, skewness `s` and kurtosis `k`, the
+/// influence functions are
 ///
 /// ```text
 /// mean: sigma u                 sigma: sigma (u^2 - 1)/2
 /// skewness: u^3 - s - 3 u - (3/2) s (u^2 - 1)        kurtosis: u^4 - k - 4 s u - 2 k (u^2 - 1)
 /// ```
 ///
-/// A kurtosis of 10 or more needs its eighth moment, which a sample of less than a million hardly has: there the standard
-/// error is too small, and [`settled`](super::settled) leaves it out.
+/// For a kurtosis of 10 or more the error depends on the eighth moment, which a sample of less than a million values hardly determines. The
+/// standard error is then too small, and [`settled`](super::settled) removes it.
 pub fn of_moments(summary: &Summary) -> [Option<Estimate>; 4] {
     let n = summary.count() as f64;
     if summary.count() == 0 {
@@ -60,14 +61,14 @@ pub fn of_moments(summary: &Summary) -> [Option<Estimate>; 4] {
         return [exact(mean), exact(0.0), None, None];
     };
     let (s, k) = (a[3], a[4]);
-    // E[p(u)^2] of a polynomial.
+    // Standard error of the mean of a polynomial in u: the root of E[p(u)^2] over n.
     let spread = |p: [f64; 5]| {
         let terms = (0..25).map(|i| p[i / 5] * p[i % 5] * a[i / 5 + i % 5]);
         (terms.sum::<f64>().max(0.0) / n).sqrt()
     };
-    // Its own moments say nothing of how uncertain a handful of values leaves them.
+    // The moments of a handful of values do not determine their own uncertainty.
     let known = summary.count() >= FEWEST;
-    // Powers that leave the range of doubles are 0 or infinite: what rests on them is unknown, and no 0.
+    // Powers beyond the range of doubles are 0 or infinite. Figures that depend on them are unknown, not 0.
     let whole = |order: usize| summary.moment(order).is_normal();
     let estimate = |of: [usize; 2], value, error| {
         let error = Some(error).filter(|_| known && whole(of[1]));
@@ -84,12 +85,12 @@ pub fn of_moments(summary: &Summary) -> [Option<Estimate>; 4] {
     ]
 }
 
-/// One error of a value with a 95 % interval: half of the way to its farther end, as two errors are to reach both.
+/// Standard error of a value with a 95 % interval: half of the distance to the farther end, so that two errors extend to both ends.
 pub fn one_error(value: f64, [low, high]: [f64; 2]) -> f64 {
     0.5 * (high - value).max(value - low)
 }
 
-/// The 95 % interval of a share of which `hits` of `n` were seen (Wilson 1927): never empty, never outside 0 to 1.
+/// 95 % interval of a share from `hits` among `n` points (Wilson 1927). It is never empty and stays within 0 to 1.
 ///
 /// ```
 /// use crate::sampling::wilson;
@@ -109,8 +110,8 @@ pub fn wilson(hits: f64, n: f64) -> [f64; 2] {
     [low, high]
 }
 
-/// The 95 % interval of a share of which `hits` of `n` were seen: exact, whatever the share is. `hits` may be the mean of several counts, and
-/// need not be whole.
+/// 95 % interval of a share from `hits` among `n` points, exact for every share. `hits` may be the mean of several counts and need not be a
+/// whole number.
 ///
 /// Source: Clopper and Pearson, Biometrika 26 (1934).
 ///
@@ -124,14 +125,15 @@ pub fn wilson(hits: f64, n: f64) -> [f64; 2] {
 /// assert!((low - 0.00253).abs() < 1e-5 && (high - 0.44502).abs() < 1e-5);
 /// ```
 pub fn clopper_pearson(hits: f64, n: f64) -> [f64; 2] {
-    /// The probability beyond either end, and the hits below which the lower end is 0 in double precision.
+    /// Probability beyond either end.
     const SIDE: f64 = 0.025;
+    /// Number of hits below which the lower end is 0 in double precision.
     const NONE: f64 = 1e-3;
     if n.is_nan() || n <= 0.0 {
         return [0.0, 1.0];
     }
     let hits = hits.clamp(0.0, n);
-    // In closed form at the ends, where a shape would be 0; shares of many points are small beside 1.
+    // Closed form at the ends, where a shape would be 0. `expm1` keeps the digits of a small share.
     let unseen = -libm::expm1(libm::log(SIDE) / n);
     let low = match hits {
         none if none < NONE => 0.0,
@@ -146,10 +148,11 @@ pub fn clopper_pearson(hits: f64, n: f64) -> [f64; 2] {
     [low, high]
 }
 
-/// The 95 % interval of a share by weighted points: that of Clopper and Pearson with as many points as would scatter as much (Korn and Graubard
-/// 1998). The share that no point shows is at most that of none of so many points as `one` is the weight of a single one shows.
+/// 95 % interval of a share by weighted points: that of Clopper and Pearson for the number of plain points with the same scatter (Korn and
+/// Graubard 1998). Points may all miss a share. That share is bounded by the upper end for no hit among `1/one` points, with `one` the
+/// weight of a single point.
 ///
-/// `scatter` is the standard error by what the points differ by; where it is 0, all of them agree.
+/// `scatter` is the standard error from the differences between the points; it is 0 if all of them agree.
 ///
 /// ```text
 /// n = p (1 - p)/scatter^2        high = p + hypot(high(n p of n) - p, high(0 of 1/one))
@@ -169,7 +172,7 @@ pub fn weighted_interval(share: f64, scatter: f64, one: f64) -> [f64; 2] {
 mod tests {
     use super::*;
 
-    /// The probability of at most `k` of `n` at this share, term by term.
+    /// Probability of at most `k` hits among `n` at this share, term by term.
     fn at_most(k: u32, n: u32, share: f64) -> f64 {
         let mut term = libm::exp(f64::from(n) * libm::log1p(-share));
         let mut sum = term;
@@ -180,7 +183,8 @@ mod tests {
         sum
     }
 
-    /// At its upper end what was seen or less has 2.5 %, at its lower end what was seen or more: by sums of the binomial distribution.
+    /// At the upper end, at most `k` hits have a probability of 2.5 %, and at the lower end at least `k` hits have. Both follow from sums
+    /// of the binomial distribution.
     #[test]
     fn the_ends_leave_a_fortieth_beyond() {
         for (k, n) in [(1, 10), (3, 40), (1, 100_000), (2, 100_000), (25, 100_000), (400, 1000)] {
@@ -190,7 +194,7 @@ mod tests {
         }
     }
 
-    /// 0.025 = (1 - p)^n; of all the mirror image.
+    /// No hit: 0.025 = (1 - p)^n. All hits: the mirror image.
     #[test]
     fn none_and_all_have_one_end() {
         let [low, high] = clopper_pearson(0.0, 1e5);
@@ -201,7 +205,8 @@ mod tests {
         assert!((1.0 - low - 36.888e-6).abs() < 1e-9, "{low}");
     }
 
-    /// Points of one weight are plain ones, but for what they may all have overlooked; of none of them that is all.
+    /// Points of equal weight count as plain points, except for the share that all of them may have missed. Without a hit only that share
+    /// is left.
     #[test]
     fn weights_that_are_equal_count_points() {
         let n = 1000.0;

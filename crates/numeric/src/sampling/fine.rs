@@ -1,16 +1,16 @@
-//! Counts in fine bins: quantiles of any number of values in flat memory.
+//! Counts in fine bins: quantiles of any number of values in constant memory.
 
 use crate::elementary::{Work, on_this_processor};
 
-/// The bins: even from each power of two to the next of `1 + |u|`, `u` in units of a spread about a middle, so that they are
-/// fine in the centre, wider far out, and reach as far as anything goes.
+/// Scale of the bins: equal widths from each power of two of `1 + |u|` to the next, with `u` in units of a spread about a middle. Bins are
+/// fine in the centre, wider far out, and cover every value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scale {
     middle: f64,
     spread: f64,
 }
 
-/// How many values lie in each bin. Whole numbers, so that the order of the values does not matter to the last bit.
+/// Number of values in each bin. Counts are whole numbers, so that the order of the values does not change the last bit.
 #[derive(Debug, Clone)]
 pub struct Fine {
     scale: Scale,
@@ -18,20 +18,20 @@ pub struct Fine {
     total: u64,
 }
 
-/// Bins between two powers of two, as a power of two: 1/1024 of a spread at the middle.
+/// Binary logarithm of the number of bins between two powers of two: a bin is 1/1024 of a spread at the middle.
 const EVEN: u32 = 10;
-/// Powers of two on either side; what is farther out than a million spreads counts in the last bin.
+/// Powers of two on either side. Values farther out than a million spreads count in the last bin.
 const OCTAVES: usize = 20;
-/// Bins on either side.
+/// Number of bins on either side.
 const SIDE: usize = OCTAVES << EVEN;
 
 impl Scale {
-    /// About a middle with a spread, as a first look at the values gave them; where nothing is spread, 1 stands for it.
+    /// Scale about a middle with a spread, as estimated from the first values. A spread of 0 counts as 1.
     pub fn about(middle: f64, spread: f64) -> Self {
         Self { middle, spread: if spread > 0.0 && spread.is_finite() { spread } else { 1.0 } }
     }
 
-    /// The bin of a value: exponent and first digits of `1 + |u|` as they stand in the double. A value on an edge lies above it.
+    /// Bin of a value: exponent and first digits of `1 + |u|` in the bits of the double. A value on an edge belongs to the bin above it.
     #[inline(always)]
     pub fn bin(&self, value: f64) -> u32 {
         const UNUSED: u32 = f64::MANTISSA_DIGITS - 1 - EVEN;
@@ -43,12 +43,12 @@ impl Scale {
         (SIDE as i32 + place).clamp(0, 2 * SIDE as i32 - 1) as u32
     }
 
-    /// The bins of some values.
+    /// Bins of several values.
     pub fn bins(&self, values: &[f64]) -> Vec<u32> {
         on_this_processor(Bins { scale: self, values })
     }
 
-    /// The lower end of a bin, or a place within one.
+    /// Lower end of a bin, or for a fraction a point within it.
     fn edge(&self, place: f64) -> f64 {
         let even = f64::from(1u32 << EVEN);
         let from_middle = place - SIDE as f64;
@@ -79,7 +79,7 @@ impl Work for Bins<'_> {
 }
 
 impl Fine {
-    /// Nothing yet.
+    /// Empty counts.
     pub fn new(scale: Scale) -> Self {
         Self { scale, counts: vec![0; 2 * SIDE], total: 0 }
     }
@@ -91,31 +91,31 @@ impl Fine {
         self.total += bins.len() as u64;
     }
 
-    /// Takes in the counts of another on the same scale.
+    /// Adds the counts of another sample on the same scale.
     pub fn merge(&mut self, other: &Self) {
         assert_eq!(self.scale, other.scale, "bins of one scale");
         self.counts.iter_mut().zip(&other.counts).for_each(|(count, more)| *count += more);
         self.total += other.total;
     }
 
-    /// How many values.
+    /// Number of values.
     pub fn total(&self) -> u64 {
         self.total
     }
 
-    /// Every bin with values: its ends, and how many.
+    /// Every bin with values: its ends, and its count.
     pub fn filled(&self) -> impl Iterator<Item = ([f64; 2], u64)> + '_ {
         let ends = |bin: usize| [self.scale.edge(bin as f64), self.scale.edge(bin as f64 + 1.0)];
         self.counts.iter().enumerate().filter(|(_, count)| **count > 0).map(move |(bin, &count)| (ends(bin), count))
     }
 
-    /// The value below which `rank` of the values lie, interpolated within its bin; None where there are not as many.
+    /// Value below which `rank` of the values lie, interpolated within its bin. Returns None if there are fewer values.
     pub fn at_rank(&self, rank: f64) -> Option<f64> {
         let (bin, below) = self.bin_of_rank(rank)?;
         Some(self.scale.edge(bin as f64 + (rank - below) / self.counts[bin] as f64))
     }
 
-    /// The bin that holds this rank, and how many values lie below it.
+    /// Bin that holds this rank, and the number of values below it.
     fn bin_of_rank(&self, rank: f64) -> Option<(usize, f64)> {
         if self.total == 0 || !(0.0..=self.total as f64).contains(&rank) {
             return None;
@@ -130,8 +130,8 @@ impl Fine {
         None
     }
 
-    /// How far the interpolation at this rank may be off: an eighth of the bin for a density that changes by all of itself from
-    /// one neighbour to the other, and less as it changes less.
+    /// Greatest error of the interpolation at this rank. It is an eighth of the bin for a density that changes by its own size between
+    /// neighbouring bins, and less if it changes less.
     pub fn blur(&self, rank: f64) -> f64 {
         let Some((bin, _)) = self.bin_of_rank(rank) else { return 0.0 };
         let density = |bin: usize| self.counts.get(bin).map_or(0.0, |&count| count as f64 / self.scale.width(bin));
@@ -143,8 +143,8 @@ impl Fine {
         }
     }
 
-    /// About `bins` equal intervals from `low` to `high`, and how many values lie in each; the first and the last one reach
-    /// to the ends given. Their inner edges are those of the fine bins, so that every value is counted where it is.
+    /// About `bins` equal intervals from `low` to `high`, and the count of each. The first and the last one extend to the ends given. Inner
+    /// edges are those of the fine bins, so that every value is counted in the right interval.
     pub fn histogram(&self, [least, greatest]: [f64; 2], [low, high]: [f64; 2], bins: usize) -> (Vec<f64>, Vec<u64>) {
         let (mut edges, mut counts) = (vec![least], Vec::new());
         let mut from = 0;

@@ -1,10 +1,10 @@
-//! Primitive polynomials and initial direction numbers for Sobol' sequences, of Joe and Kuo (2008).
+//! Primitive polynomials and initial direction numbers for Sobol' sequences, by Joe and Kuo (2008).
 
 use std::sync::LazyLock;
 
-/// Their notice, a byte 0, and their numbers; `tests/data/generators/joe_kuo.py` writes it and says how.
+/// Notice of the authors, a byte 0, and the numbers. `tests/data/generators/joe_kuo.py` writes the file and describes its format.
 const TABLE: &[u8] = include_bytes!("joe_kuo.bin");
-/// Where the numbers begin.
+/// Index of the first number in the table, behind the byte 0.
 const NUMBERS: usize = {
     let mut place = 0;
     while TABLE[place] != 0 {
@@ -13,22 +13,22 @@ const NUMBERS: usize = {
     place + 1
 };
 
-/// The dimensions that there are direction numbers for. The first takes none of the table.
+/// Number of dimensions with direction numbers. The first one takes none from the table.
 pub const SOBOL_DIMENSIONS: usize = 2048;
 
-/// The polynomial and the initial numbers that the direction numbers of a dimension follow from.
+/// Polynomial and initial numbers from which the direction numbers of a dimension follow.
 #[derive(Clone, Copy)]
 pub(super) struct Start {
-    /// The degree of its polynomial: as many initial numbers.
+    /// Degree of the polynomial, and number of initial numbers.
     pub(super) degree: usize,
     /// Coefficients of the polynomial between the first and the last, highest first.
     pub(super) middle: u64,
-    /// Where the bits of the initial numbers begin.
+    /// Index of the first bit of the initial numbers.
     bits: usize,
 }
 
 impl Start {
-    /// Of a dimension of the table, the second from 0 on.
+    /// Start of a dimension of the table. Line 0 belongs to the second dimension.
     pub(super) fn of(line: usize) -> Option<Self> {
         static STARTS: LazyLock<Vec<Start>> = LazyLock::new(|| {
             let (mut polynomial, mut bits) = (0, 0);
@@ -44,7 +44,7 @@ impl Start {
         STARTS.get(line).copied()
     }
 
-    /// The initial number of a digit below the degree: odd, with as many bits as there are digits up to this one.
+    /// Initial number of a digit below the degree: odd, with one bit for each digit up to this one.
     pub(super) fn initial(self, digit: usize) -> u64 {
         let first = self.bits + digit * digit.saturating_sub(1) / 2;
         let bytes = &TABLE[NUMBERS + SOBOL_DIMENSIONS - 1..];

@@ -1,11 +1,11 @@
-//! Means and covariances of several quantities seen together, that can be merged.
+//! Means and covariances of several quantities observed together, which can be merged.
 
-/// Count, means and sums of products about them; flat in the size of the sample.
+/// Count, means and sums of products about the means. Memory does not grow with the sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Joint<const M: usize> {
     count: u64,
     means: [f64; M],
-    /// `sum (a_i - mean_i)(a_k - mean_k)`.
+    /// Sums of products `sum (a_i - mean_i)(a_k - mean_k)`.
     products: [[f64; M]; M],
 }
 
@@ -16,7 +16,7 @@ impl<const M: usize> Default for Joint<M> {
 }
 
 impl<const M: usize> Joint<M> {
-    /// Of these rows, in two passes.
+    /// Sums of these rows, in two passes.
     pub fn of(rows: &[[f64; M]]) -> Self {
         let mut joint = Self { count: rows.len() as u64, ..Self::default() };
         let n = rows.len().max(1) as f64;
@@ -30,7 +30,7 @@ impl<const M: usize> Joint<M> {
         joint
     }
 
-    /// Takes in another sample (Pébay 2008, equation 3.12).
+    /// Adds another sample (Pébay 2008, equation 3.12).
     pub fn merge(&mut self, other: &Self) {
         if other.count == 0 {
             return;
@@ -51,22 +51,22 @@ impl<const M: usize> Joint<M> {
         }
     }
 
-    /// How many rows.
+    /// Number of rows.
     pub fn count(&self) -> u64 {
         self.count
     }
 
-    /// Their means.
+    /// Means of the quantities.
     pub fn means(&self) -> &[f64; M] {
         &self.means
     }
 
-    /// `sum (a_i - mean_i)(a_k - mean_k)`.
+    /// Sums of products `sum (a_i - mean_i)(a_k - mean_k)`.
     pub fn products(&self) -> &[[f64; M]; M] {
         &self.products
     }
 
-    /// Standard error of the sum of the means by these factors; None for fewer than two rows.
+    /// Standard error of the sum of the means times these factors. Returns None for fewer than two rows.
     pub fn standard_error(&self, by: &[f64; M]) -> Option<f64> {
         let n = self.count as f64;
         let sum: f64 = (0..M * M).map(|i| by[i / M] * by[i % M] * self.products[i / M][i % M]).sum();
@@ -78,8 +78,7 @@ impl<const M: usize> Joint<M> {
 mod tests {
     use super::*;
 
-    /// Merged parts are the whole: of (1, 2), (3, 5), (4, -1), (0, 0) the products about the means (2, 1.5) are 10, 21 and
-    /// 1 by hand.
+    /// Merged parts equal the whole. For (1, 2), (3, 5), (4, -1), (0, 0) the products about the means (2, 1.5) are 10, 21 and 1 by hand.
     #[test]
     fn parts_merge_to_the_whole() {
         let rows = [[1.0, 2.0], [3.0, 5.0], [4.0, -1.0], [0.0, 0.0]];
@@ -87,7 +86,7 @@ mod tests {
             let mut joint = Joint::of(&rows[..cut]);
             joint.merge(&Joint::of(&rows[cut..]));
             assert_eq!(joint.count(), 4);
-            // A few roundings of sums near 20.
+            // Tolerance: a few roundings of sums near 20.
             let near = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-13, "{found} for {expected}");
             near(joint.means()[0], 2.0);
             near(joint.means()[1], 1.5);

@@ -1,4 +1,4 @@
-//! Points of the inputs' joint distribution, random or quasi-random, and what is estimated from them.
+//! Random and quasi-random points of the inputs' joint distribution, and estimates from them.
 
 mod critical;
 mod draws;

@@ -6,15 +6,15 @@ use super::stream::Stream;
 use crate::distribution::{standard_normal, ziggurat};
 use crate::parallel::prelude::*;
 
-/// Up to so many variables the points are Sobol's: beyond, a few thousand of them are no more even than random ones.
+/// Greatest number of variables for which Sobol' points are used. With more, a few thousand of them are no more even than random points.
 const QUASI: usize = 256;
 
-/// Numbers that are worth a task for every variable.
+/// Fewest numbers in all columns for which every variable becomes a parallel task.
 const MANY: usize = 1 << 17;
 
-/// Points of independent standard normal variables: Sobol's, scrambled anew in every stream, or random ones for many variables.
+/// Points of independent standard normal variables: Sobol' points, scrambled anew in every stream, or random ones for many variables.
 ///
-/// Every stream can be had at any time and is always the same.
+/// Every stream can be drawn at any time and is always the same.
 pub struct Normals {
     dimensions: usize,
     sobol: Option<Sobol>,
@@ -22,17 +22,18 @@ pub struct Normals {
 }
 
 impl Normals {
+    /// Sobol' points up to 256 variables, random points beyond.
     pub fn new(dimensions: usize, seed: u64) -> Self {
         let sobol = if dimensions <= QUASI { Sobol::new(dimensions) } else { None };
         Self { dimensions, sobol, seed }
     }
 
-    /// Random points, whatever their number of variables.
+    /// Random points for any number of variables.
     pub fn random(dimensions: usize, seed: u64) -> Self {
         Self { dimensions, sobol: None, seed }
     }
 
-    /// The first `rows` points of a stream: a column for every variable.
+    /// First `rows` points of a stream, as one column for every variable.
     pub fn columns(&self, stream: u64, rows: usize) -> Vec<Vec<f64>> {
         let column = |place: usize| {
             let key = mixed(mixed(mixed(self.seed).wrapping_add(stream)).wrapping_add(place as u64));

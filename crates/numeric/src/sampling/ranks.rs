@@ -1,17 +1,17 @@
-//! First-order Sobol' indices from a sample that is there already: neighbours in the order of an input have nearly its value in common.
+//! First-order Sobol' indices from an existing sample: neighbours in the order of an input have nearly the same value of that input.
 //!
 //! ```text
 //! S = (1/n sum y_(i) y_(i+1) - m^2) / v        y_(i) in the order of the input, the last beside the first;  m, v: mean and variance of y
 //! ```
 //!
-//! Source: Gamboa, Gremaud, Klein and Lagnoux (2022), Bernoulli 28, 2345. The error is that of the jackknife, by leaving out one point.
+//! Source: Gamboa, Gremaud, Klein and Lagnoux (2022), Bernoulli 28, 2345. The error is that of the jackknife that leaves out one point.
 
-/// Fewer points have no neighbours to speak of.
+/// Fewest points of a sample. With fewer, neighbours are too far apart.
 const FEWEST: usize = 16;
 
-/// The index of an input and its standard error; None for too few points, and where nothing varies.
+/// First-order index of an input and its standard error. Returns None if there are too few points or if `y` does not vary.
 ///
-/// Shapes: `x` and `y` are as long as each other; points with a value that is not finite are left out. Cost: `n log n`.
+/// Shapes: `x` and `y` have equal lengths. Points with a value that is not finite are left out. Cost: `n log n`.
 ///
 /// ```
 /// use crate::sampling::rank_first;
@@ -29,7 +29,7 @@ pub fn rank_first(x: &[f64], y: &[f64]) -> Option<(f64, f64)> {
     rows.sort_by(|a, b| a.0.total_cmp(&b.0));
     let n = count as f64;
     let mean = rows.iter().map(|row| row.1).sum::<f64>() / n;
-    // About the mean, so that nothing large is subtracted.
+    // Count from the mean, so that nothing large is subtracted.
     let y: Vec<f64> = rows.iter().map(|row| row.1 - mean).collect();
     let squares: f64 = y.iter().map(|y| y * y).sum();
     let sum: f64 = y.iter().sum();

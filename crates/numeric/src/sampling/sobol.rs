@@ -1,23 +1,23 @@
-//! Sobol's sequence with nested uniform scrambling.
+//! Sobol' sequence with nested uniform scrambling.
 
 use super::joe_kuo::{SOBOL_DIMENSIONS, Start};
 use crate::elementary::{Work, on_this_processor};
 
-/// Binary digits of a coordinate: the index of a point has as many.
+/// Binary digits of a coordinate, and of the index of a point.
 const DIGITS: u32 = 52;
-/// Digits that are scrambled one by one; below them all at once, which makes no difference before the 2^42nd point.
+/// Digits that are scrambled one by one. The digits below share one hash, which makes no difference before the 2^42nd point.
 const NESTED: u32 = 42;
-/// Digits that take their random bits from one hash: a tree of six levels has 63 nodes.
+/// Digits that take their random bits from one hash. A tree of six levels has 63 nodes.
 const GROUP: u32 = 6;
 
-/// The direction numbers of one dimension, digits from the top of the word down.
+/// Direction numbers of one dimension, with digits from the top of the word down.
 type Directions = [u64; DIGITS as usize];
 
-/// A sequence of points in the unit cube, any 2^m of them spread more evenly than random ones.
+/// Sequence of points in the unit cube. Every aligned block of 2^m points is spread more evenly than random points.
 ///
-/// Point `i` has the coordinates `v_1 i_1 xor v_2 i_2 xor ...` with the binary digits of `i` and the direction numbers of
-/// Joe and Kuo (2008), whose two-dimensional projections are good. Owen's nested uniform scrambling (1995) makes every
-/// point uniform and keeps the balance: each digit is flipped or not by a random bit that belongs to the digits before it.
+/// Point `i` has the coordinates `v_1 i_1 xor v_2 i_2 xor ...`, with the binary digits of `i` and the direction numbers of Joe and Kuo
+/// (2008), whose two-dimensional projections are good. Owen's nested uniform scrambling (1995) makes every point uniform and keeps the
+/// balance: each digit is flipped by a random bit that depends on the digits before it.
 ///
 /// ```
 /// use crate::sampling::Sobol;
@@ -32,22 +32,22 @@ pub struct Sobol {
 }
 
 impl Sobol {
-    /// In so many dimensions; None beyond [`SOBOL_DIMENSIONS`].
+    /// Sequence in this number of dimensions. Returns None beyond [`SOBOL_DIMENSIONS`].
     pub fn new(dimensions: usize) -> Option<Self> {
         (dimensions <= SOBOL_DIMENSIONS).then(|| Self { directions: (0..dimensions).map(directions).collect() })
     }
 
-    /// Coordinates of the points `first ..` of one dimension, from 0 to below 1; with a key scrambled.
+    /// Coordinates of the points from `first` on in one dimension, from 0 to below 1. With a key they are scrambled.
     ///
     /// # Panics
-    /// When `first` is not a multiple of the least power of two that holds the points.
+    /// Panics if `first` is not a multiple of the least power of two that holds the points.
     pub fn column(&self, dimension: usize, first: u64, key: Option<u64>, out: &mut [f64]) {
         let mut digits = vec![0; out.len()];
         self.digits(dimension, first, &mut digits);
         on_this_processor(Coordinates { digits: &digits, key, out });
     }
 
-    /// The same as words, digits from the bottom up as scrambling wants them, not scrambled.
+    /// Coordinates as words that are not scrambled, with digits from the bottom up as scrambling needs them.
     pub(crate) fn digits(&self, dimension: usize, first: u64, out: &mut [u64]) {
         let directions = &self.directions[dimension];
         let block = out.len().next_power_of_two() as u64;
@@ -58,7 +58,7 @@ impl Sobol {
     }
 }
 
-/// Points of a block: twice as many with every digit, those before and their images.
+/// Work item: points of a block. Every digit doubles them by the images of the previous points.
 struct Images<'a> {
     directions: &'a Directions,
     start: u64,
@@ -97,7 +97,7 @@ impl Work for Coordinates<'_> {
     fn work(self) {
         let of = |digits: u64| (digits >> (64 - DIGITS)) as f64 / (1u64 << DIGITS) as f64;
         let points = self.out.iter_mut().zip(self.digits);
-        // Loops, as a closure over two may stay a function of its own, for the least processor.
+        // Plain loops: a closure over two iterators may not be inlined for the baseline processor.
         match self.key {
             Some(key) => {
                 for (value, &digits) in points {
@@ -118,7 +118,7 @@ fn directions(dimension: usize) -> Directions {
     let mut v = [0; DIGITS as usize];
     let place = |digit: usize, m: u64| m << (63 - digit);
     let Some(start) = dimension.checked_sub(1).and_then(Start::of) else {
-        // Van der Corput's sequence.
+        // The first dimension is van der Corput's sequence.
         v.iter_mut().enumerate().for_each(|(digit, v)| *v = place(digit, 1));
         return v;
     };
@@ -135,17 +135,17 @@ fn directions(dimension: usize) -> Directions {
     v
 }
 
-/// Scrambles digits by a key of their dimension: each is flipped by a random bit that belongs to those above it. Exact, and five times
-/// the work of [`scrambled`]: for laws, whose points are few and are used again and again.
+/// Scrambles digits by a key of their dimension: each is flipped by a random bit that depends on those above it. This is exact and costs
+/// five times as much as [`scrambled`]. It serves surface distributions, whose points are few and are reused.
 ///
-/// The bits of a tree of [`GROUP`] digits, 63 of them, are those of one hash of the digits above the tree.
+/// The 63 bits of a tree of [`GROUP`] digits come from one hash of the digits above the tree.
 #[inline(always)]
 fn nested(digits: u64, key: u64) -> u64 {
     let mut flips = 0;
     for group in 0..NESTED / GROUP {
         let depth = group * GROUP;
         let hash = hashed(digits, depth, key);
-        // The digits of this group below a mark: shortened, they number the nodes of the tree from 1 on.
+        // Digits of this group below a marker bit. Shortened from the right, they number the nodes of the tree from 1 on.
         let own = digits << depth >> (64 - GROUP) | 1 << GROUP;
         let bits = (0..GROUP).fold(0, |bits, level| bits << 1 | hash >> (own >> (GROUP - level)) & 1);
         flips |= bits << (64 - GROUP - depth);
@@ -153,23 +153,22 @@ fn nested(digits: u64, key: u64) -> u64 {
     digits ^ flips ^ hashed(digits, NESTED, key) >> NESTED
 }
 
-/// A hash of the digits above a depth, with a mark below them that tells how many they are.
+/// Hash of the digits above a depth. A marker bit below them encodes their number.
 #[inline(always)]
 fn hashed(digits: u64, depth: u32, key: u64) -> u64 {
     let above = if depth == 0 { 0 } else { digits >> (64 - depth) << (64 - depth) };
     mixed(above ^ 1 << (63 - depth) ^ key)
 }
 
-/// Scrambles digits of large samples, which come from the bottom up and leave from the top down: each is flipped by a bit that belongs
-/// to those above it.
+/// Scrambles digits of large samples: each is flipped by a bit that depends on those above it. Digits come from the bottom up and are
+/// returned from the top down.
 ///
-/// Sums and products carry from a bit to higher ones only, so that in the reversed word a digit changes with those above it alone
-/// (Laine and Karras 2011; Burley 2020, in 32 bits). Two rounds with random summands and factors: whether two points agree in a
-/// digit after the first in which they differ is then even to all appearances, which is what the variance follows from (Owen
-/// 1997).
+/// Sums and products carry only from a bit to higher ones. In the reversed word a digit therefore depends only on those above it (Laine and
+/// Karras 2011; Burley 2020, in 32 bits). There are two rounds with random summands and factors. In the digits after the first difference
+/// two points then agree with even probability, as far as tests show. The variance formula needs this (Owen 1997).
 #[inline(always)]
 pub(crate) fn scrambled(digits: u64, key: u64) -> u64 {
-    /// Any even numbers without a pattern.
+    /// Even multipliers without a pattern.
     const EVEN: [u64; 4] = [0x9e37_79b9_7f4a_7c16, 0xbf58_476d_1ce4_e5b8, 0x94d0_49bb_1331_11ea, 0xd6e8_feb8_6659_fd92];
     let (first, factors, second) = (mixed(key ^ 1), mixed(key ^ 2), mixed(key ^ 3));
     let mut x = digits.wrapping_add(first);
@@ -183,10 +182,10 @@ pub(crate) fn scrambled(digits: u64, key: u64) -> u64 {
     x.reverse_bits()
 }
 
-/// The step of SplitMix64: 2^64 by the golden ratio, odd.
+/// Step of SplitMix64: 2^64 divided by the golden ratio, rounded to odd.
 pub(super) const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// A bijection of words that leaves no pattern: the finaliser of SplitMix64 (Steele, Lea and Flood 2014, after Stafford).
+/// Bijection of words without visible pattern: the finaliser of SplitMix64 (Steele, Lea and Flood 2014, after Stafford).
 #[inline(always)]
 pub(crate) fn mixed(word: u64) -> u64 {
     let word = word.wrapping_add(GOLDEN);
@@ -199,10 +198,10 @@ pub(crate) fn mixed(word: u64) -> u64 {
 mod tests {
     use super::*;
 
-    /// Two points with `i` digits in common keep them and differ in the next; in every digit after that they agree for half of all
-    /// keys, and for a quarter in any two: what the variance of nested uniform scrambling needs (Owen 1997). Words with few digits, as
-    /// the first points have, and words full of them. Shares of 20,000 keys are within 6 of their standard errors, 0.0035 and
-    /// 0.0031; there are some 40,000 of them.
+    /// Two points with `i` common digits keep them and differ in the next one. In every later digit they agree for half of all keys, and in
+    /// any two later digits for a quarter, as the variance of nested uniform scrambling requires (Owen 1997). Tested are words with few
+    /// digits, like the first points, and words full of digits. Shares of 20,000 keys must be within 6 of their standard errors, 0.0035 and
+    /// 0.0031. There are about 40,000 such shares.
     #[test]
     fn digits_after_the_first_difference_are_independent() {
         const KEYS: u64 = 20_000;

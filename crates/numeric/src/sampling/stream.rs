@@ -1,4 +1,4 @@
-//! Random words, sixteen generators side by side.
+//! Random words from sixteen generators side by side.
 
 use std::convert::Infallible;
 
@@ -7,33 +7,33 @@ use rand::TryRng;
 use super::sobol::{GOLDEN, mixed};
 use crate::elementary::{Work, on_this_processor};
 
-/// Generators: as many as the compiler puts into vectors; a word takes 0.28 ns with 16, 1 ns with 8 or 1. The words do not depend on
-/// the processor.
+/// Number of generators, chosen for vector instructions: a word takes 0.28 ns with 16, 1 ns with 8 or 1. The words do not depend on the
+/// processor.
 const LANES: usize = 16;
 
-/// Sixteen xoshiro256++ (Blackman and Vigna 2021), a word of each in turn, so that one instruction makes several words.
+/// Sixteen xoshiro256++ generators (Blackman and Vigna 2021) that give a word each in turn, so that one instruction makes several words.
 ///
-/// The states are consecutive words of SplitMix64, as its authors recommend.
+/// States are consecutive words of SplitMix64, as its authors recommend.
 #[derive(Debug, Clone)]
 pub(crate) struct Stream {
     state: State,
-    /// The words of the last step, and how many of them were taken.
+    /// Words of the last step. `taken` counts those that were used.
     row: [[u8; 8]; LANES],
     taken: usize,
 }
 
-/// Four words of every generator.
+/// State of all generators, four words each.
 type State = [[u64; LANES]; 4];
 
 impl Stream {
-    /// Different keys give streams that have nothing in common.
+    /// Stream of this key. Different keys give independent streams.
     pub(crate) fn new(key: u64) -> Self {
         let mut stream = Self { state: [[0; LANES]; 4], row: [[0; 8]; LANES], taken: LANES };
         stream.begin(key);
         stream
     }
 
-    /// Becomes the stream of another key.
+    /// Restarts as the stream of another key.
     pub(crate) fn begin(&mut self, key: u64) {
         on_this_processor(Seeded { key, state: &mut self.state });
         self.taken = LANES;
@@ -59,14 +59,14 @@ impl Work for Seeded<'_> {
 
     #[inline(always)]
     fn work(self) {
-        // One loop over all words: nested loops were unrolled, and had four words in an instruction where eight have room.
+        // One loop over all words. Nested loops were unrolled and used four words for each instruction, where eight fit.
         for (word, by) in self.state.as_flattened_mut().iter_mut().zip(&APART) {
             *word = mixed(self.key.wrapping_add(*by));
         }
     }
 }
 
-/// How far the words of SplitMix64 that the states begin with are from the key: four in turn for every generator.
+/// Offsets from the key of the SplitMix64 words that form the initial states: four consecutive ones for every generator.
 const APART: [u64; 4 * LANES] = {
     let mut apart = [0; 4 * LANES];
     let mut index = 0;
@@ -78,7 +78,7 @@ const APART: [u64; 4 * LANES] = {
     apart
 };
 
-/// The next word of every generator. The states stay where they are: in a copy of them the compiler would take one after the other.
+/// Writes the next word of every generator. States are updated in place, because the compiler would not vectorise a copy of them.
 #[inline(always)]
 fn step(state: &mut State, words: &mut [[u8; 8]; LANES]) {
     let [a, b, c, d] = state;
@@ -99,7 +99,7 @@ impl Default for Stream {
     }
 }
 
-/// Whole steps into bytes.
+/// Work item: writes whole steps as bytes.
 struct Rows<'a> {
     state: &'a mut State,
     rows: &'a mut [[[u8; 8]; LANES]],
@@ -129,7 +129,7 @@ impl TryRng for Stream {
 
     fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Infallible> {
         let (words, rest) = bytes.as_chunks_mut::<8>();
-        // The numbers that are left of the last step come first.
+        // Words left from the last step come first.
         let left = (LANES - self.taken).min(words.len());
         let (before, words) = words.split_at_mut(left);
         before.copy_from_slice(&self.row[self.taken..self.taken + left]);
@@ -154,7 +154,7 @@ mod tests {
     use rand::{Rng, SeedableRng};
     use rand_xoshiro::Xoshiro256PlusPlus;
 
-    /// Every lane is the generator of `rand_xoshiro`, whose seed is where its four words of SplitMix64 begin.
+    /// Every lane equals the generator of `rand_xoshiro` that is seeded with the first of its four SplitMix64 words.
     #[test]
     fn lanes_are_the_generators_of_the_library() {
         let key = 0x1234_5678_9abc_def0;
@@ -167,7 +167,7 @@ mod tests {
         }
     }
 
-    /// However the words are taken, they are the same; what is left of a word is lost.
+    /// Words have the same order however they are taken. The rest of a partly used word is lost.
     #[test]
     fn words_come_in_order_however_they_are_taken() {
         let mut stream = Stream::new(7);

@@ -1,14 +1,13 @@
-//! Mean and central moments of a sample, up to the eighth, that can be merged.
+//! Mean and central moments of a sample up to the eighth, which can be merged.
 
 use crate::elementary::{Work, on_this_processor};
 
 /// Highest moment: the standard error of a kurtosis needs the eighth.
 const ORDER: usize = 8;
 
-/// Count, mean and central sums of a sample; flat in its size.
+/// Count, mean and central sums of a sample. Memory does not grow with the sample.
 ///
-/// Sums are about the sample's own mean and merged pairwise (Pébay 2008, equation 2.1), so that a mean far from 0 costs no
-/// digits.
+/// Sums are about the sample's own mean and are merged pairwise (Pébay 2008, equation 2.1), so that a mean far from 0 costs no digits.
 ///
 /// ```
 /// use crate::sampling::Summary;
@@ -20,14 +19,14 @@ const ORDER: usize = 8;
 pub struct Summary {
     count: u64,
     mean: f64,
-    /// `sum (y - mean)^r` for r = 2 to 8.
+    /// Sums `sum (y - mean)^r` for r = 2 to 8.
     sums: [f64; ORDER - 1],
     least: f64,
     greatest: f64,
 }
 
 impl Summary {
-    /// Of these values, in two passes.
+    /// Sums of these values, in two passes.
     pub fn of(values: &[f64]) -> Self {
         let Some(&first) = values.first() else { return Self::default() };
         let mean = first + on_this_processor(Apart(values)) / values.len() as f64;
@@ -52,7 +51,7 @@ impl Summary {
         }
     }
 
-    /// Takes in another sample.
+    /// Adds another sample.
     pub fn merge(&mut self, other: &Self) {
         if other.count == 0 {
             return;
@@ -72,7 +71,7 @@ impl Summary {
         };
         let mut sums = [0.0; ORDER - 1];
         for order in 2..=ORDER {
-            // About the new mean, each sample is moved as a whole.
+            // Move each sample as a whole to the new mean, by the binomial theorem.
             let moved = |of: &Self, by: f64| {
                 let mut binomial = 1.0;
                 let mut power = 1.0;
@@ -91,17 +90,17 @@ impl Summary {
         (self.least, self.greatest) = (self.least.min(other.least), self.greatest.max(other.greatest));
     }
 
-    /// How many values.
+    /// Number of values.
     pub fn count(&self) -> u64 {
         self.count
     }
 
-    /// Their mean.
+    /// Mean of the values.
     pub fn mean(&self) -> f64 {
         self.mean
     }
 
-    /// The least and the greatest value.
+    /// Least and greatest value.
     pub fn range(&self) -> [f64; 2] {
         [self.least, self.greatest]
     }
@@ -116,7 +115,7 @@ impl Summary {
         (self.sums[0] / (self.count.max(2) - 1) as f64).sqrt()
     }
 
-    /// Standardised moments `a_0 ..= a_8`; None where nothing varies.
+    /// Standardised moments `a_0 ..= a_8`. Returns None if the values do not vary.
     pub fn standardised(&self) -> Option<[f64; ORDER + 1]> {
         let sigma = self.moment(2).sqrt();
         if self.count < 2 || sigma <= 0.0 || !sigma.is_finite() {
@@ -124,17 +123,17 @@ impl Summary {
         }
         let mut moments = [1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
         for (order, moment) in moments.iter_mut().enumerate().skip(3) {
-            // One power at a time: none of them leaves the range of a double.
+            // Divide one power at a time, so that none leaves the range of a double.
             *moment = (0..order).fold(self.moment(order), |moment, _| moment / sigma);
         }
         Some(moments)
     }
 }
 
-/// Sums that run beside each other, on any processor as many: a sum belongs to the order in which it is taken.
+/// Number of sums that run side by side. It is equal on every processor, because a sum depends on its order.
 const LANES: usize = 8;
 
-/// Sums of values, at least one, about the first of them, so that the sum of large values does not round.
+/// Work item: sum of values about the first of them, so that large values do not lose digits. There must be at least one value.
 struct Apart<'a>(&'a [f64]);
 
 impl Work for Apart<'_> {
@@ -154,15 +153,15 @@ impl Work for Apart<'_> {
     }
 }
 
-/// Powers of deviations from the mean, and the ends, of every lane.
+/// Work item: powers of deviations from the mean, and least and greatest values, of every lane.
 struct Powers<'a> {
     blocks: &'a [[f64; LANES]],
     mean: f64,
     lanes: &'a mut Lanes,
 }
 
-/// Sums of powers from the second on, and the ends. Written where they stand: added up within the work, the compiler would turn
-/// rows into columns at every block.
+/// Sums of powers from the second on, and least and greatest values. The lanes are written in place: if they were summed within the work,
+/// the compiler would transpose them at every block.
 struct Lanes {
     sums: [[f64; LANES]; ORDER - 1],
     least: [f64; LANES],
