@@ -1,6 +1,6 @@
-//! Moments of a surface over blocks whose places are too many to be pooled: sampled from the surface, with standard errors.
+//! Moments of a surface over blocks with too many places for pooling: sampled from the surface, with standard errors.
 //!
-//! No model is evaluated, the sample does not depend on any seed of a study, and blocks are drawn by their places.
+//! No model is evaluated, the sample does not depend on the seed of a study, and blocks are drawn by their places.
 
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
@@ -12,16 +12,19 @@ use crate::moments::{Contributions, Moments, Sampled};
 use crate::parallel::prelude::*;
 use crate::sampling::Summary;
 
-/// Operations that the sample takes at most, about; it is never smaller than some thousand points.
+/// Rough bound for the operations of the sample.
 const EFFORT: usize = 1 << 27;
+/// Least number of points of the sample, whatever the effort.
 const FEWEST: usize = 1 << 14;
+/// Greatest number of points of the sample.
 const MOST: usize = 1 << 20;
 
-/// One group of the sample.
+/// Group of points of the sample, with its own seed.
 struct Group {
     summary: Summary,
-    /// Of every part its line times the whole, its rest times the whole.
+    /// Product of every part's line with the whole.
     lines: Vec<f64>,
+    /// Product of every part's rest with the whole.
     rests: Vec<f64>,
     products: Vec<f64>,
 }
@@ -73,7 +76,7 @@ pub(super) fn contributions(setting: &Setting<'_>) -> Contributions {
     }
 }
 
-/// The mean of an input's own part.
+/// Mean of an input's univariate part.
 fn mean_of(setting: &Setting<'_>, j: usize) -> f64 {
     match setting.block_of[j] {
         None => setting.parts[j].term(&setting.shapes[j]).mean(),
