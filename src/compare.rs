@@ -194,7 +194,7 @@ pub struct Ran {
     pub figures: Vec<Figures>,
     /// Errors of the figures, for every characteristic.
     pub errors: Vec<Errors>,
-    /// Verdict of the method for every characteristic with a target yield, None without one.
+    /// Verdict of the method for every characteristic. None if it has no target yield.
     pub verdicts: Vec<Option<Verdict>>,
     /// For every characteristic, true if no other method has a smaller error with as many evaluations or fewer.
     pub pareto: Vec<bool>,

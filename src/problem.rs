@@ -397,7 +397,7 @@ impl Problem {
         &*self.function
     }
 
-    /// Counts of the processes of an external model so far. Returns None without such a model.
+    /// Counts of the processes of an external model so far. Returns None if there is no external model.
     pub(crate) fn evaluator(&self) -> Option<EvaluatorSummary> {
         self.function.account().map(|account| account.counts)
     }

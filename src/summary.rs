@@ -77,7 +77,7 @@ pub struct RunSummary {
     pub seed: Option<u64>,
     /// Reason for an early end. None if the run was completed.
     pub stopped: Option<StopReason>,
-    /// Starts, crashes and retries of the processes of an external model. None without such a model.
+    /// Starts, crashes and retries of the processes of an external model. None if there is no external model.
     pub evaluator: Option<EvaluatorSummary>,
 }
 

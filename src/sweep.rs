@@ -143,6 +143,7 @@ fn swept(
     if values.is_empty() {
         return Err(SweepError::NoValue);
     }
+    // Make a problem for every value. All share one gatherer in place of the model.
     let gatherer = Arc::new(Gatherer::over(problem));
     let problems: Vec<Problem> = values
         .iter()
@@ -160,11 +161,13 @@ fn swept(
     // Divide the budget equally.
     let budget = options.budget.map(|budget| budget / values.len());
     let options = &Options { budget, verify: options.verify.or(Some(0)), ..options.clone() };
+    // Check every problem before anything is evaluated.
     for problem in &problems {
         options.method.procedure().fits(problem, options)?;
     }
     let mut analyses: Vec<Option<Analysis>> = vec![None; values.len()];
     let mut stopped = false;
+    // Run the open analyses, then evaluate the points that they lack, until all are done.
     for round in 1.. {
         for (problem, analysis) in problems.iter().zip(&mut analyses).filter(|(_, analysis)| analysis.is_none()) {
             if run.stopped() {

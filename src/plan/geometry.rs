@@ -85,8 +85,8 @@ impl Geometry {
         Point::One([AtNode { dimension: dimension as u32, node }])
     }
 
-    /// Values of a characteristic at the nodes of one dimension minus its centre, with their places in sigmas, ascending. Returns None
-    /// without a value at the means.
+    /// Values of a characteristic at the nodes of one dimension minus its centre, with their places in sigmas, ascending. Returns None if there
+    /// is no value at the means.
     pub fn samples(&self, known: &KnownAnswers, characteristic: usize, dimension: usize) -> Option<Vec<(f64, f64)>> {
         let centre = known.value(&Point::Centre, characteristic)?;
         let axis = self.axis(dimension);

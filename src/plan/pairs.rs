@@ -13,8 +13,8 @@ pub enum PairChoice {
     None,
     /// Every pair on which some characteristic can depend jointly.
     All,
-    /// As many pairs as there are dimensions: those with the largest product of univariate variance shares, in the characteristic with the
-    /// largest one. They are ranked after the axes are evaluated.
+    /// Pairs with the largest product of univariate variance shares, in the characteristic with the largest one: as many as there are
+    /// dimensions. They are ranked after the axes are evaluated.
     Strongest,
     /// Neighbours in the order of the dimensions, the last with the first: as many pairs as dimensions.
     Adjacent,

@@ -78,7 +78,7 @@ warnings! {
     UnusedName = "unused-name" by study::unused_name {
         /// The kind of the names.
         kind: NameKind,
-        /// Their names.
+        /// The unused names.
         names: Vec<String>,
     };
     /// Near the nominal dimensions the assembly can move or jam.
@@ -455,7 +455,7 @@ warnings! {
         by: f64,
         /// The places between which the jump lies, in sigmas from the mean.
         between: [f64; 2],
-        /// The same places as values of the dimension.
+        /// The places as values of the dimension.
         at: Option<[f64; 2]>,
         /// Further dimensions with a jump.
         others: Vec<String>,
@@ -464,7 +464,7 @@ warnings! {
     InteractionsLeftOut = "interactions-left-out" by surface::interactions_left_out {
         /// The characteristic.
         characteristic: String,
-        /// Their share of the variance.
+        /// The share of the variance by these terms.
         share: f64,
     };
     /// Model and surrogate differ at the check points.

@@ -330,7 +330,7 @@ impl Dimension {
         self.nominal
     }
 
-    /// Lower and upper deviation from the nominal. Returns None without a tolerance band.
+    /// Lower and upper deviation from the nominal. Returns None if there is no tolerance band.
     pub fn tolerance(&self) -> Option<[f64; 2]> {
         self.tolerance
     }

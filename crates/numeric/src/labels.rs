@@ -37,7 +37,7 @@ impl Labels {
         self.texts().iter().all(Option::is_none)
     }
 
-    /// Texts in one line: the description first, then the others with their names. Returns None without any.
+    /// Texts in one line: the description first, then the others with their names. Returns None if there is no text.
     pub fn line(&self) -> Option<String> {
         let one = |(name, text): (&str, Option<&str>)| {
             let text = text?.split_whitespace().collect::<Vec<_>>().join(" ");

@@ -50,6 +50,7 @@ pub mod prelude {
 /// Functions of rayon that this crate calls, on iterators of the standard library.
 #[cfg(all(target_family = "wasm", target_os = "unknown"))]
 pub mod prelude {
+    /// Conversion into an iterator, under the name of rayon.
     pub trait IntoParallelIterator: IntoIterator + Sized {
         fn into_par_iter(self) -> Self::IntoIter {
             self.into_iter()
@@ -58,6 +59,7 @@ pub mod prelude {
 
     impl<I: IntoIterator> IntoParallelIterator for I {}
 
+    /// Iterators over a slice, under the names of rayon.
     pub trait ParallelSlice<T> {
         fn par_iter(&self) -> std::slice::Iter<'_, T>;
         fn par_iter_mut(&mut self) -> std::slice::IterMut<'_, T>;
@@ -83,6 +85,7 @@ pub mod prelude {
         }
     }
 
+    /// Further adapters of iterators, under the names of rayon.
     pub trait ParallelIterator: Iterator + Sized {
         fn flat_map_iter<U: IntoIterator, F: FnMut(Self::Item) -> U>(self, each: F) -> std::iter::FlatMap<Self, U, F> {
             self.flat_map(each)

@@ -162,7 +162,7 @@ pub fn judged(characteristic: &Characteristic, judge: impl Fn(Requirement) -> Ju
     characteristic.requirements().into_iter().map(judge).collect()
 }
 
-/// Worst of all verdicts: missed before inconclusive before met. Returns None without any.
+/// Worst of all verdicts: missed before inconclusive before met. Returns None if there are no verdicts.
 pub fn worst(all: impl IntoIterator<Item = Verdict>) -> Option<Verdict> {
     let rank = |verdict: &Verdict| match verdict {
         Verdict::Met => 0,
@@ -172,7 +172,7 @@ pub fn worst(all: impl IntoIterator<Item = Verdict>) -> Option<Verdict> {
     all.into_iter().max_by_key(rank)
 }
 
-/// Interval of an estimate and two errors on either side. Returns None without an error.
+/// Interval of an estimate and two errors on either side. Returns None if the error is unknown.
 pub fn about(value: f64, error: Option<f64>) -> Option<[f64; 2]> {
     let reach = ERRORS * error.filter(|error| error.is_finite())?;
     Some([value - reach, value + reach])

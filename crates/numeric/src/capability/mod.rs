@@ -98,7 +98,7 @@ fn width(narrow: f64, wide: f64) -> Option<f64> {
     (wide > 0.0).then_some(narrow / wide)
 }
 
-/// Distance of the nearer limit from `middle`, each in units of its own side. Returns None without a limit.
+/// Distance of the nearer limit from `middle`, each in units of its own side. Returns None if there is no limit.
 fn nearer(limits: SpecLimits, middle: f64, down: f64, up: f64) -> Option<f64> {
     let below = limits.lower().map(|lower| width(middle - lower, down));
     let above = limits.upper().map(|upper| width(upper - middle, up));
@@ -151,7 +151,7 @@ impl Capability {
         Self { below: None, above: None, cp, cpk, cp_percentile: None, cpk_percentile: None }
     }
 
-    /// Share of assemblies outside the limits. Returns None without any limit.
+    /// Share of assemblies outside the limits. Returns None if there is no limit.
     pub fn rejected(&self) -> Option<f64> {
         match (self.below, self.above) {
             (None, None) => None,
@@ -159,17 +159,17 @@ impl Capability {
         }
     }
 
-    /// Share of assemblies within the limits. Returns None without any limit.
+    /// Share of assemblies within the limits. Returns None if there is no limit.
     pub fn yield_(&self) -> Option<f64> {
         self.rejected().map(|rejected| 1.0 - rejected)
     }
 
-    /// Assemblies below the lower limit, per million. Returns None without that limit.
+    /// Assemblies below the lower limit, per million. Returns None if that limit does not exist.
     pub fn ppm_below(&self) -> Option<f64> {
         self.below.map(|share| 1e6 * share)
     }
 
-    /// Assemblies above the upper limit, per million. Returns None without that limit.
+    /// Assemblies above the upper limit, per million. Returns None if that limit does not exist.
     pub fn ppm_above(&self) -> Option<f64> {
         self.above.map(|share| 1e6 * share)
     }

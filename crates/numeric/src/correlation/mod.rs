@@ -108,6 +108,7 @@ impl Correlation {
         members.sort_unstable();
         members.dedup();
         let place = |d: usize| members.binary_search(&d).expect("an end of a pair is a member");
+        // Check the pairs together first, so that the error names the nearest possible correlations.
         let mut target = Mat::identity(members.len(), members.len());
         for &([a, b], value) in &pairs {
             target[(place(a), place(b))] = value;
@@ -117,6 +118,8 @@ impl Correlation {
         if let Some(nearest) = matrix::nearest_if_indefinite(&target) {
             return Err(CorrelationError::indefinite(|nearest| Refusal::NoSuchMatrix { nearest }, &names(), &nearest));
         }
+        // Solve for the correlation of the normal variables pair by pair. A correlation beyond the range of its two distributions is an
+        // error.
         let transforms = transforms(dimensions, &members);
         let mut normal = Mat::identity(members.len(), members.len());
         for (index, &([a, b], value)) in pairs.iter().enumerate() {
@@ -145,6 +148,8 @@ impl Correlation {
                 &seen,
             ));
         }
+        // Correlations within blocks follow from their joint distributions. The matrix of normal variables leaves them out, since blocks
+        // have their own map.
         for Block { members, law } in &blocks {
             for (a, &d) in members.iter().enumerate() {
                 for (b, &e) in members.iter().enumerate().filter(|&(b, _)| b != a) {

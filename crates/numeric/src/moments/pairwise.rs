@@ -236,6 +236,7 @@ impl Parts<'_> {
         for k in j + 1..n {
             let of_k = self.weights[k];
             let (rows, columns) = (of_j.len(), of_k.len());
+            // Sum the conditional means of products through a third variable, and their squares one by one for the 4-cycles.
             let mut through = vec![0.0; rows * columns];
             let mut each = 0.0;
             for &l in partners.iter().filter(|&&l| !self.table(k, l).is_empty()) {
@@ -251,6 +252,7 @@ impl Parts<'_> {
                 through.iter_mut().zip(one).for_each(|(sum, one)| *sum += one);
             }
             sums[2] += self.norm(j, k, &through) - each;
+            // Assemble S_jk from these, the products of the univariate parts, and the direct part.
             let direct = self.table(j, k);
             let mut s: Vec<f64> = (0..rows * columns)
                 .map(|at| {

@@ -82,14 +82,9 @@ pub(super) enum Roots {
         ends: [End; 2],
     },
     /// Double root, at which the support begins.
-    Double {
-        at: f64,
-    },
+    Double { at: f64 },
     /// Complex roots `centre ± i width`.
-    Complex {
-        centre: f64,
-        width: f64,
-    },
+    Complex { centre: f64, width: f64 },
 }
 
 /// Form of the density at an end of the support: `p ~ x^(alpha - 1) (1 - k x)^(b - 1)` at distance `x`.

@@ -43,7 +43,7 @@ const CURVED: usize = 16;
 const SEVERAL: usize = 10;
 /// Least number of points for every column that is chosen.
 const POINTS: usize = 3;
-/// Greatest number of columns.
+/// Greatest number of columns in a regression.
 const COLUMNS: usize = 80;
 /// Columns that may be added in a row without an improvement before the search ends.
 const PATIENCE: usize = 12;
@@ -135,7 +135,7 @@ impl Sparse {
 }
 
 impl Chaos {
-    /// Candidates for these inputs, `order` with the most important first. `surface` is None without a known surface, and Some(true) if its
+    /// Candidates for these inputs, `order` with the most important first. `surface` is None if no surface is known, and Some(true) if its
     /// higher powers are candidates too.
     pub fn new(shapes: &[InputShape], order: &[usize], surface: Option<bool>) -> Self {
         let recurrences: Vec<Recurrence> = shapes.iter().map(|shape| Recurrence::of(&shape.rule)).collect();
@@ -271,6 +271,7 @@ impl Chaos {
         if rows < 2 * POINTS {
             return nothing;
         }
+        // Tabulate the polynomials of each input once, since products share them.
         let table: Vec<Vec<Vec<f64>>> = (self.recurrences.iter().zip(places.u))
             .map(|(recurrence, u)| (1..=recurrence.alpha.len()).map(|degree| recurrence.column(u, degree)).collect())
             .collect();
@@ -285,6 +286,7 @@ impl Chaos {
                 column
             }
         };
+        // Centre and normalise the columns, so that their products with the residual are comparable. A constant column stays 0.
         let mut columns = Mat::<f64>::zeros(rows, self.terms.len());
         for (index, term) in self.terms.iter().enumerate() {
             let column = column(term);
@@ -298,6 +300,7 @@ impl Chaos {
         if chosen.is_empty() {
             return nothing;
         }
+        // Fit the chosen terms once more by least squares in their own scale, which gives the coefficients.
         let raw: Vec<Vec<f64>> = chosen.iter().map(|&index| self.column(&self.terms[index], places)).collect();
         let matrix = Mat::from_fn(rows, 1 + raw.len(), |i, j| if j == 0 { 1.0 } else { raw[j - 1][i] });
         let mut right = Mat::from_fn(rows, 1, |i, _| y[i]);
@@ -349,6 +352,7 @@ fn pursue(columns: &Mat<f64>, y: &[f64]) -> Vec<usize> {
     let mut leverage = vec![1.0 / rows as f64; rows];
     let mut basis: Vec<Vec<f64>> = Vec::new();
     let (mut chosen, mut barred): (Vec<usize>, Vec<bool>) = (Vec::new(), vec![false; count]);
+    // Corrected leave-one-out error: residuals are divided by one minus the leverage.
     let score = |left: &[f64], leverage: &[f64], taken: usize| {
         let out: f64 = left.iter().zip(leverage).map(|(r, h)| (r / (1.0 - h).max(1e-3)).powi(2)).sum();
         let p = 1.0 + taken as f64;
@@ -357,6 +361,7 @@ fn pursue(columns: &Mat<f64>, y: &[f64]) -> Vec<usize> {
     let (mut best, mut length) = (score(&left, &leverage, 0), 0);
     let whole: f64 = y.iter().map(|y| y * y).sum();
     while chosen.len() < most && chosen.len() < length + PATIENCE {
+        // Choose the column with the largest product with the residual. Equal ones are decided by their order.
         let residual = Mat::from_fn(rows, 1, |i, _| left[i]);
         let mut parts = Mat::<f64>::zeros(count, 1);
         matmul(&mut parts, Accum::Replace, columns.transpose(), &residual, 1.0, Par::Seq);
@@ -377,6 +382,7 @@ fn pursue(columns: &Mat<f64>, y: &[f64]) -> Vec<usize> {
         if size <= DEPENDENT {
             continue;
         }
+        // Subtract the part along the new column from the residual, and update the leverages.
         own.iter_mut().for_each(|value| *value /= size);
         let along: f64 = own.iter().zip(&left).map(|(a, b)| a * b).sum();
         for ((left, leverage), own) in left.iter_mut().zip(&mut leverage).zip(&own) {
@@ -389,6 +395,7 @@ fn pursue(columns: &Mat<f64>, y: &[f64]) -> Vec<usize> {
         if found < best {
             (best, length) = (found, chosen.len());
         }
+        // Stop at a residual of rounding errors.
         if left.iter().map(|r| r * r).sum::<f64>() < 1e-26 * whole {
             break;
         }

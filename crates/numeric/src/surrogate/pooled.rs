@@ -247,12 +247,14 @@ impl<'a> Setting<'a> {
         let (mut linear, mut curvature, mut mean_shift) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
         let mut products = BTreeMap::new();
         let share = |covariance: f64| if variance > 0.0 { covariance / variance } else { 0.0 };
+        // Inputs outside the blocks: the covariance of an independent part with the whole is its variance. Correlated inputs follow below.
         for j in (0..n).filter(|&j| self.block_of[j].is_none()) {
             let term = self.parts[j].term(&self.shapes[j]);
             let part = term.part(1.0);
             (linear[j], curvature[j]) = (share(part.p * part.p), share(part.curved));
             mean_shift[j] = term.mean();
         }
+        // Correlated inputs outside the blocks: take the shares of their own surface, relative to the whole.
         let (rest, _) = self.components();
         if self.correlation.without_blocks().is_some() && !rest.is_empty() {
             let found = self.rest(&rest);
@@ -268,6 +270,7 @@ impl<'a> Setting<'a> {
                 }
             }
         }
+        // Members of blocks: covariance of line, rest and products with the conditional mean, over all combinations of places.
         for component in &pooled.components {
             let own = |j: usize| self.block_of[j].is_some_and(|(block, _)| component.blocks.contains(&block));
             let members: Vec<usize> = (0..n).filter(|&j| own(j)).collect();
@@ -293,6 +296,7 @@ impl<'a> Setting<'a> {
             }
             products.extend(inner.iter().zip(&of_pairs).map(|(&(j, k, _), &sum)| ((j, k), share(sum))));
         }
+        // Products of two inputs of which at most one is in a block.
         for &(j, k, value) in &self.pairs {
             let covariance = match (self.block_of[j], self.block_of[k]) {
                 (Some(_), Some(_)) => continue,
