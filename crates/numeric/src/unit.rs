@@ -9,6 +9,7 @@ use std::f64::consts::PI;
 /// Exponents of metre, kilogram, second, ampere, kelvin, mole and candela.
 pub(crate) type Dimension = [f64; 7];
 
+/// Inch in metres, exact by definition.
 const INCH: f64 = 0.0254;
 /// Pound-force in newton: 0.45359237 kg times 9.80665 m/s².
 const POUND_FORCE: f64 = 4.4482216152605;
