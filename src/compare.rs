@@ -1,4 +1,4 @@
-//! The trade of speed for accuracy, measured: every method on one problem, against a reference that states its own error.
+//! Comparison of accuracy and cost: every method on one problem, measured against a reference with a known standard error.
 
 use std::fmt;
 use std::time::Duration;
@@ -19,7 +19,7 @@ use sensitol_numeric::shape::seconds;
 use sensitol_numeric::time::Instant;
 use sensitol_numeric::verdict::Verdict;
 
-/// The most that may be spent.
+/// Limits and seed of a comparison.
 ///
 /// ```
 /// use sensitol::compare::CompareOptions;
@@ -27,11 +27,11 @@ use sensitol_numeric::verdict::Verdict;
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct CompareOptions {
-    /// Most evaluations of one method, the reference excepted.
+    /// Greatest number of evaluations of one method, the reference excepted. None for the default rules.
     pub budget: Option<usize>,
-    /// Points of the reference.
+    /// Points of the reference. None for the usual number.
     pub reference: Option<u64>,
-    /// The seed of the methods that draw points; the reference has another.
+    /// Seed of the methods that draw points. The reference has another one.
     pub seed: u64,
 }
 
@@ -42,21 +42,21 @@ impl Default for CompareOptions {
 }
 
 impl CompareOptions {
-    /// With at most so many evaluations of one method.
+    /// Sets the greatest number of evaluations of one method.
     #[must_use]
     pub fn with_budget(mut self, evaluations: usize) -> Self {
         self.budget = Some(evaluations);
         self
     }
 
-    /// With a reference of so many points.
+    /// Sets the number of points of the reference.
     #[must_use]
     pub fn with_reference(mut self, points: u64) -> Self {
         self.reference = Some(points);
         self
     }
 
-    /// With this seed.
+    /// Sets the seed.
     #[must_use]
     pub fn with_seed(mut self, seed: u64) -> Self {
         self.seed = seed;
@@ -64,31 +64,31 @@ impl CompareOptions {
     }
 }
 
-/// Points of the reference of a cheap model: quasi-random, so that its own error is below what methods differ by.
+/// Points of the reference of a cheap model. They are quasi-random, so that its own error is below the differences between methods.
 const REFERENCE: u64 = 1 << 20;
-/// Points of the reference of a costly model.
+/// Points of the reference of a costly model, which evaluates fewer.
 const COSTLY_REFERENCE: u64 = 2000;
-/// Points of the Monte Carlo methods that stand beside the others, as far as the reference reaches.
+/// Sample sizes of the Monte Carlo methods, used if they are smaller than the reference.
 const SAMPLES: [u64; 4] = [100, 1000, 10_000, 100_000];
-/// Points of the quasi-random ones: 16 replicates of a power of two.
+/// Sample sizes of the quasi-random methods: 16 replicates of a power of two.
 const QUASI: [u64; 3] = [256, 4096, 65_536];
-/// An error is told from the reference's own when it is larger than so many of its standard errors.
+/// Least ratio of a resolved error to the standard error of the reference.
 pub const RESOLVED: f64 = 2.0;
 
-/// A method as it was run: a derivative method, or so many points.
+/// Method as it was run: a derivative method, or a sample with this number of points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Contender {
-    /// A method of the registry.
+    /// Derivative method of the registry.
     Method(Method),
-    /// Random points.
+    /// Monte Carlo with this number of random points.
     MonteCarlo(u64),
-    /// Sobol's points.
+    /// Quasi-Monte Carlo with this number of Sobol' points.
     QuasiMonteCarlo(u64),
 }
 
 impl Contender {
-    /// Its name.
+    /// Name in reports, with the number of points of a sample.
     pub fn name(self) -> String {
         match self {
             Self::Method(method) => method.name().to_owned(),
@@ -104,12 +104,12 @@ impl Serialize for Contender {
     }
 }
 
-/// The results of a method for one characteristic. Unknown values are None.
+/// Results of a method for one characteristic. Unknown values are None.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Figures {
-    /// First moment.
+    /// Expected value.
     pub mean: Option<f64>,
     /// Standard deviation.
     pub sigma: Option<f64>,
@@ -124,48 +124,47 @@ pub struct Figures {
 
 rescale!(Figures { mean, sigma } without { skewness, kurtosis, yield_ });
 
-/// How far a method is off the reference: the mean in sigmas, sigma relative, the others as they are.
+/// Errors of a method against the reference: that of the mean in sigmas, that of sigma relative, the others absolute.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
 #[non_exhaustive]
 pub struct Errors {
-    /// How far.
+    /// Absolute differences from the reference.
     #[serde(flatten)]
     pub off: Figures,
-    /// The reference's own standard error, in the same units: what is not larger than twice this is not resolved.
+    /// Standard errors of the reference, in the same units. Differences up to twice these are not resolved.
     #[serde(rename = "reference_standard_error")]
     pub reference: Figures,
 }
 
 impl Errors {
-    /// Root of the sum of squares of the errors of mean and sigma: how far off the bulk is, in sigmas; None where one of
-    /// them is unknown.
+    /// Overall error, in sigmas: root of the sum of squares of the errors of mean and sigma. Returns None if one of them is unknown.
     pub fn overall(&self) -> Option<f64> {
         Some(libm::hypot(self.off.mean?, self.off.sigma?))
     }
 
-    /// The part of that error that the reference itself may have.
+    /// Part of the overall error that may be due to the reference.
     pub fn floor(&self) -> f64 {
         RESOLVED * libm::hypot(self.reference.mean.unwrap_or(0.0), self.reference.sigma.unwrap_or(0.0))
     }
 
-    /// Whether the reference tells the overall error from none.
+    /// True if the overall error exceeds the part that may be due to the reference.
     pub fn resolved(&self) -> bool {
         self.overall().is_some_and(|overall| overall > self.floor())
     }
 }
 
-/// Errors with what follows from them, as they are written.
+/// Errors with derived figures, as serialised.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ErrorShape<'r> {
     #[serde(flatten, serialize_with = "Errors::serialize")]
     #[cfg_attr(feature = "schema", schemars(with = "Errors"))]
     own: &'r Errors,
-    /// Root of the sum of squares of the errors of mean and sigma.
+    /// Overall error, in sigmas: root of the sum of squares of the errors of mean and sigma.
     overall: Option<f64>,
-    /// Whether the reference tells that from 0.
+    /// True if the reference resolves the overall error.
     resolved: bool,
 }
 
@@ -175,67 +174,67 @@ impl Serialize for Errors {
     }
 }
 
-/// One method, as it was run.
+/// Method that was run, with its results.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Ran {
-    /// Which.
+    /// Method or sample that was run.
     #[serde(rename = "method")]
     pub contender: Contender,
-    /// Its points and time.
+    /// Points and time of the run.
     pub run: RunSummary,
-    /// Points that it takes, those included that were known already, from another method or an earlier run.
+    /// Points that the method needs, including those known from another method or an earlier run.
     pub evaluations: u64,
-    /// Time within the model; of points that were known, what others took on average.
+    /// Time within the model. Points that were known count with the average time of the others.
     #[serde(rename = "evaluation_s", serialize_with = "seconds")]
     pub evaluation: Duration,
-    /// Seconds besides.
+    /// Time outside the model.
     #[serde(rename = "engine_s", serialize_with = "seconds")]
     pub engine: Duration,
-    /// Its figures for every characteristic.
+    /// Figures for every characteristic.
     pub figures: Vec<Figures>,
-    /// How far that is off.
+    /// Errors of the figures, for every characteristic.
     pub errors: Vec<Errors>,
-    /// For every characteristic with a target yield, what the method says of it.
+    /// Verdict of the method for every characteristic. None if it has no target yield.
     pub verdicts: Vec<Option<Verdict>>,
-    /// For every characteristic, whether no other method has a smaller error for as many evaluations or fewer.
+    /// For every characteristic, true if no other method has a smaller error with as many evaluations or fewer.
     pub pareto: Vec<bool>,
 }
 
-/// One method that was not run.
+/// Method that was not run, with the reason.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct NotRun {
-    /// Which.
+    /// Method or sample that was not run.
     #[serde(rename = "method")]
     #[cfg_attr(feature = "schema", schemars(with = "String"))]
     pub contender: Contender,
-    /// The evaluations that it needs.
+    /// Evaluations that the method needs, if that is known.
     pub evaluations: Option<u64>,
-    /// Seconds that the model would have taken, at the speed of those that ran.
+    /// Time in seconds that the model would have taken, at the speed of the methods that ran.
     pub projected_s: Option<f64>,
-    /// Why not.
+    /// Reason for not running it.
     pub reason: NotRunReason,
 }
 
-/// Why a method was not run.
+/// Reason for not running a method.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum NotRunReason {
-    /// It takes more evaluations than the reference of a costly model, and no budget allows that.
+    /// The method needs more evaluations than the reference of a costly model, and no budget allows that.
     OverReference,
-    /// A sample as long as the reference would be measured by its equal.
+    /// The sample has as many points as the reference or more, which therefore cannot measure it.
     LongerThanReference,
-    /// It takes more than the budget.
+    /// The method needs more evaluations than the budget.
     OverBudget,
-    /// The run was stopped before its turn came.
+    /// The run was stopped before this method.
     StoppedBefore,
-    /// The run was stopped before it was done.
+    /// The run was stopped during this method.
     Stopped,
-    /// It does not fit the problem, or the model cannot be used.
+    /// The method does not fit the problem, or the model cannot be used.
     Impossible {
-        /// Why, in words.
+        /// Error message in words.
         message: String,
     },
 }
@@ -253,36 +252,36 @@ impl fmt::Display for NotRunReason {
     }
 }
 
-/// The results of a comparison.
+/// Results of a comparison.
 #[derive(Debug, Clone, Serialize)]
 pub struct Comparison {
-    /// The reference that all are measured by.
+    /// Reference for all methods.
     pub reference: Simulation,
-    /// The methods that ran, fewest evaluations first.
+    /// Methods that ran, fewest evaluations first.
     pub ran: Vec<Ran>,
-    /// Those that did not.
+    /// Methods that were not run.
     pub not_run: Vec<NotRun>,
-    /// The points and time of all of it, the reference included, and why it ended early.
+    /// Points and time of the whole comparison, including the reference, and the reason for an early end.
     #[serde(flatten)]
     pub run: RunSummary,
 }
 
-/// Why a problem cannot be compared.
+/// Error of a comparison.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CompareError {
-    /// There is no reference.
+    /// The reference cannot be computed.
     #[error(transparent)]
     Reference(#[from] SimulationError),
 }
 
 /// Runs every method that the budget allows, and a reference.
 ///
-/// Evaluations: those of the methods, and of the reference a million for a cheap model and two thousand for a costly one,
-/// unless the options say otherwise.
+/// Evaluations: those of the methods, and of the reference. The reference has a million points for a cheap model and two thousand for a
+/// costly one, unless the options set another number.
 ///
 /// # Errors
-/// When the problem cannot be simulated. A method that does not fit is not an error: it is named with the reason.
+/// If the problem cannot be simulated. A method that does not fit is no error: it is listed with the reason.
 ///
 /// ```
 /// use sensitol::compare::{CompareOptions, Contender, compare};
@@ -298,7 +297,7 @@ pub fn compare(problem: &Problem, options: &CompareOptions) -> Result<Comparison
     compare_with(problem, options, &Run::to_the_end())
 }
 
-/// [`compare`], stopping when told to.
+/// Runs [`compare`], and stops early if `run` is stopped.
 pub fn compare_with(problem: &Problem, options: &CompareOptions, run: &Run<'_>) -> Result<Comparison, CompareError> {
     at_any_size(problem, run, |problem, run| compared(problem, options, run))
 }
@@ -328,7 +327,7 @@ fn compared(problem: &Problem, options: &CompareOptions, run: &Run<'_>) -> Resul
     let samples = options.reference.unwrap_or(if costly { COSTLY_REFERENCE } else { REFERENCE });
     let mut comparison =
         Comparer { problem, options, run, ran: Vec::new(), not_run: Vec::new(), lost: RunSummary::default() };
-    // The cheap ones first: should time run out, the most is known.
+    // Run the cheap methods first, so that most results are known if time runs out.
     let adaptive = |procedure: &&&dyn Procedure| procedure.method() == Method::Auto;
     for procedure in method::ALL.iter().filter(|one| !adaptive(one)).chain(method::ALL.iter().filter(adaptive)) {
         comparison.method(procedure.method(), costly.then_some(samples));
@@ -339,7 +338,7 @@ fn compared(problem: &Problem, options: &CompareOptions, run: &Run<'_>) -> Resul
     }
     let reference = simulate_with(
         problem,
-        // Another stream than those that are compared with it.
+        // Use another random stream than the methods that are compared with it.
         &SimulationOptions {
             samples,
             sampler: sampler(problem, costly),
@@ -356,7 +355,7 @@ fn compared(problem: &Problem, options: &CompareOptions, run: &Run<'_>) -> Resul
     })
 }
 
-/// Quasi-random points where there are any, and none has been paid for already.
+/// Quasi-random points if there are enough dimensions of them and the model is cheap. Random points of a costly model may be known already.
 fn sampler(problem: &Problem, costly: bool) -> Sampler {
     let varying = problem.dimensions().iter().filter(|dimension| dimension.sigma() > 0.0).count();
     if costly || varying > sensitol_numeric::sampling::SOBOL_DIMENSIONS { Sampler::Random } else { Sampler::Sobol }
@@ -368,7 +367,7 @@ struct Comparer<'a> {
     run: &'a Run<'a>,
     ran: Vec<Ran>,
     not_run: Vec<NotRun>,
-    /// The cost of methods that were stopped before they were done.
+    /// Cost of methods that were stopped early.
     lost: RunSummary,
 }
 
@@ -377,10 +376,10 @@ impl Comparer<'_> {
         self.not_run.push(NotRun { contender, evaluations, projected_s: None, reason });
     }
 
-    /// Unless the budget allows it, nothing that is costly is evaluated more often than the `reference`.
+    /// Runs a method. Without a budget, a costly method is refused if it needs more evaluations than the `reference`.
     fn method(&mut self, method: Method, reference: Option<u64>) {
         let contender = Contender::Method(method);
-        // Compared are the methods themselves, by a reference of their own.
+        // Compare the methods without verification, since the reference measures them.
         let options = Options { budget: self.options.budget, verify: Some(0), ..Options::from(method) };
         let cost = match method.procedure().fits(self.problem, &options) {
             Ok(cost) => Some(cost.evaluations as u64),
@@ -402,7 +401,7 @@ impl Comparer<'_> {
             }
             Ok(analysis) => self.ran.push(of_analysis(contender, &analysis, begun.elapsed())),
             Err(mut error) => {
-                // A sentence has the figures of the problem as it was given.
+                // The message must show figures in the units of the problem as it was given.
                 error.rescale(|name| self.problem.power_of(name));
                 self.refuse(contender, cost, impossible(&error));
             }
@@ -415,7 +414,7 @@ impl Comparer<'_> {
             Contender::QuasiMonteCarlo(samples) => (samples, Sampler::Sobol),
             Contender::Method(_) => return,
         };
-        // A sample as long as the reference would be measured by its equal.
+        // The reference cannot measure a sample of its own size.
         if samples >= reference {
             return self.refuse(contender, Some(samples), NotRunReason::LongerThanReference);
         }
@@ -498,7 +497,7 @@ fn of_analysis(contender: Contender, analysis: &Analysis, took: Duration) -> Ran
 }
 
 fn of_simulation(contender: Contender, found: &Simulation, took: Duration, costly: bool) -> Ran {
-    // A sample of a model that is not costly counts the time of every thread, of which a short one has no use for all.
+    // A cheap model counts the time of all threads. A short sample does not use them all.
     let portions = found.samples.div_ceil(ROWS as u64).max(1);
     let at_once = if costly { 1 } else { u64::from(threads()).min(portions) as u32 };
     let evaluation = found.run.in_model / at_once;
@@ -549,14 +548,14 @@ fn errors(found: &Figures, reference: &SimulatedCharacteristic) -> Errors {
     }
 }
 
-/// Which methods are not dominated on a characteristic. Errors that the reference does not resolve are equal: the cheapest
-/// of these methods is on the front, and what costs more is not.
+/// True for every method that is not dominated on a characteristic. Errors below the resolution of the reference are equal: only the
+/// cheapest of these methods is on the front.
 fn front(ran: &[Ran], c: usize) -> Vec<bool> {
     let error = |ran: &Ran| ran.errors[c].overall().map(|overall| overall.max(ran.errors[c].floor()));
     let mut best = f64::INFINITY;
     let mut front = vec![false; ran.len()];
     for at in 0..ran.len() {
-        // Of as many evaluations only the smallest error counts.
+        // Among methods with equal evaluations only the smallest error counts.
         let equals = ran.iter().filter(|other| other.evaluations == ran[at].evaluations);
         let least = equals.filter_map(error).fold(f64::INFINITY, f64::min);
         let own = error(&ran[at]).unwrap_or(f64::INFINITY);

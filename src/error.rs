@@ -1,4 +1,4 @@
-//! Every error of the library in one type, for who passes them on.
+//! Single error type for all errors of the library.
 
 use crate::allocation::{AllocateError, CostError};
 use crate::analysis::NoFit;
@@ -25,11 +25,11 @@ use sensitol_numeric::pearson::PearsonError;
 use sensitol_numeric::requirement::RequirementError;
 use sensitol_numeric::sampling::SamplingError;
 
-/// Any error of the library.
+/// Error of the library.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// A distribution's parameters are impossible.
+    /// The parameters of a distribution are impossible.
     #[error(transparent)]
     Distribution(#[from] DistributionError),
     /// A dimension is impossible.
@@ -41,10 +41,10 @@ pub enum Error {
     /// A gauge or a guard band is impossible.
     #[error(transparent)]
     Inspection(#[from] InspectionError),
-    /// A formula cannot be read.
+    /// A formula has an error.
     #[error(transparent)]
     Formula(#[from] FormulaError),
-    /// A surface has no distribution that can be computed.
+    /// The distribution of a surface cannot be computed.
     #[error(transparent)]
     Law(#[from] LawError),
     /// Formulas do not fit together.
@@ -53,10 +53,10 @@ pub enum Error {
     /// Dimensions, function and characteristics do not fit together.
     #[error(transparent)]
     Problem(#[from] ProblemError),
-    /// Dimensions cannot vary together so.
+    /// The correlations of dimensions are impossible.
     #[error(transparent)]
     Correlation(#[from] CorrelationError),
-    /// No distribution has the moments.
+    /// No distribution has these moments.
     #[error(transparent)]
     Pearson(#[from] PearsonError),
     /// The problem cannot be simulated.
@@ -86,7 +86,7 @@ pub enum Error {
     /// Closure conditions do not determine an assembly.
     #[error(transparent)]
     Conditions(#[from] ConditionsError),
-    /// There is no such fit of ISO 286.
+    /// A fit of ISO 286 does not exist.
     #[error(transparent)]
     Fit(#[from] FitError),
     /// A problem cannot be sampled.
@@ -104,13 +104,13 @@ pub enum Error {
     /// A parameter cannot be swept.
     #[error(transparent)]
     Sweep(#[from] SweepError),
-    /// A name stands for nothing.
+    /// A name is unknown.
     #[error(transparent)]
     UnknownName(#[from] UnknownName),
 }
 
 impl Error {
-    /// The text to write instead, where that can be said.
+    /// Advice on the text to write instead. Returns None if there is none.
     ///
     /// ```
     /// use sensitol::{Error, fits};
@@ -126,7 +126,7 @@ impl Error {
         }
     }
 
-    /// The actions to take, beside changing what is written; the most promising first.
+    /// Actions to take other than changes of the text, the most promising first.
     pub fn advice(&self) -> Vec<Advice> {
         match self {
             Self::Method(error) => error.advice(),

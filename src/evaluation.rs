@@ -1,4 +1,4 @@
-//! Evaluates what a plan asks for, and keeps count.
+//! Evaluation of the points of a plan, with counts and times.
 
 mod any_size;
 pub mod history;
@@ -17,35 +17,35 @@ use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::parallel::{Rooms, join};
 use sensitol_numeric::time::Instant;
 
-/// Coordinates that one batch holds at most: 64 MiB. A million points in a thousand dimensions are cut into batches.
+/// Greatest number of coordinates in one batch: 64 MiB. A million points in a thousand dimensions are divided into batches.
 pub(crate) const BATCH: usize = 1 << 23;
 
-/// The results of evaluating a plan.
+/// Results of the evaluation of a plan.
 #[derive(Debug, Clone)]
 pub struct Evaluated {
-    /// Every answer.
+    /// Answers by point and characteristic.
     pub known: KnownAnswers,
-    /// Derivatives by every dimension that the model sent, by point and characteristic.
+    /// Derivatives by every dimension that the model returned, by point and characteristic.
     pub gradients: HashMap<(Point, usize), Vec<f64>>,
     /// Points sent to the model.
     pub evaluations: usize,
     /// Points whose answers were known from an earlier run.
     pub reused: usize,
-    /// Where the model answered the nominal point otherwise than before.
+    /// Changed answers of the model to the nominal point.
     pub non_repeatable: Vec<NonRepeatable>,
-    /// In how many stages.
+    /// Stages evaluated.
     pub stages: usize,
-    /// Points sent again.
+    /// Points sent again because an answer was a failure, or was not trusted.
     pub retried: usize,
-    /// Why it was stopped before the plan was done; None where it was not.
+    /// Reason for the stop before the plan was done. None if it was not stopped.
     pub stopped: Option<StopReason>,
     /// Time within the model.
     pub in_model: Duration,
 }
 
-/// Evaluates stage after stage until the plan lacks nothing, or the run is stopped.
+/// Evaluates stage after stage until the plan needs no more points, or the run is stopped.
 ///
-/// Evaluations: as [`Plan::cost`] says, and more only where the model fails.
+/// Evaluations: those of [`Plan::cost`], and more only if the model fails.
 pub(crate) fn evaluate(problem: &Problem, plan: &dyn Plan, run: &Run<'_>) -> Evaluated {
     let mut evaluated = Evaluated::nothing(problem);
     while let Some(stage) = plan.next(&evaluated.known) {
@@ -58,7 +58,7 @@ pub(crate) fn evaluate(problem: &Problem, plan: &dyn Plan, run: &Run<'_>) -> Eva
 }
 
 impl Evaluated {
-    /// Nothing yet.
+    /// Result without any evaluation.
     pub(crate) fn nothing(problem: &Problem) -> Self {
         Self {
             known: KnownAnswers::nothing(problem.characteristics().len()),
@@ -73,7 +73,7 @@ impl Evaluated {
         }
     }
 
-    /// In numbers.
+    /// Counts and times as a summary.
     pub(crate) fn summary(&self) -> RunSummary {
         RunSummary {
             evaluations: self.evaluations as u64,
@@ -87,7 +87,7 @@ impl Evaluated {
         }
     }
 
-    /// Evaluates one stage; the points are by the nodes of this plan.
+    /// Evaluates one stage, whose points refer to the nodes of this plan.
     pub(crate) fn add(&mut self, problem: &Problem, plan: &dyn Plan, stage: &Stage, run: &Run<'_>) {
         self.stages += 1;
         self.known.reserve(stage.points.len());
@@ -99,7 +99,7 @@ impl Evaluated {
         }
     }
 
-    /// The same, with as many points in a batch as a model can want.
+    /// Evaluates points in the largest batches, for a costly model.
     fn add_in_batches(&mut self, desk: &Desk<'_>, points: &[(Point, Purpose)]) {
         let rows = (BATCH / desk.centre.len()).max(1);
         let mut room = Points::repeated(&[], 0);
@@ -114,9 +114,10 @@ impl Evaluated {
         }
     }
 
-    /// The same for a function that is cheap: small batches beside each other, and what they answered is taken in beside the next ones.
+    /// Evaluates points of a cheap function in small batches in parallel. Answers of one group of batches are stored while the next group
+    /// is evaluated.
     fn add_side_by_side(&mut self, desk: &Desk<'_>, points: &[(Point, Purpose)]) {
-        /// Batches between two looks at whether the run is stopped.
+        /// Batches between two checks of the stop of the run.
         const TASKS: usize = 64;
         let rows = near_rows(desk.centre.len());
         let rooms = Rooms::none();
@@ -140,7 +141,7 @@ impl Evaluated {
         }
     }
 
-    /// Keeps the answers of a batch.
+    /// Stores the answers of a batch.
     fn take_in(&mut self, batch: &[(Point, Purpose)], out: &Responses, run: &Run<'_>) {
         for (row, (point, _)) in batch.iter().enumerate() {
             self.learn(point, row, out, run);
@@ -156,7 +157,7 @@ impl Evaluated {
         self.non_repeatable.extend(out.non_repeatable().iter().cloned());
     }
 
-    /// Counts what was evaluated before for another plan, whose answers are of no use here.
+    /// Adds the cost of evaluations for another plan, whose answers are not used here.
     pub(crate) fn add_spent(&mut self, spent: Self) {
         self.evaluations += spent.evaluations;
         self.reused += spent.reused;
@@ -166,7 +167,7 @@ impl Evaluated {
         self.non_repeatable.extend(spent.non_repeatable);
     }
 
-    /// Counts an evaluation beside the plan.
+    /// Adds the cost of an evaluation outside the plan.
     pub(crate) fn count(&mut self, out: &Responses, run: &Run<'_>) {
         let rows = out.answered().count();
         if rows < out.rows() {
@@ -179,7 +180,7 @@ impl Evaluated {
         self.non_repeatable.extend(out.non_repeatable().iter().cloned());
     }
 
-    /// A row that is still open was not finished: it was sent only if some of it was answered.
+    /// Stores the answers of a row. An open row was not finished: it counts as evaluated only if some of its outputs have an answer.
     fn learn(&mut self, point: &Point, row: usize, out: &Responses, run: &Run<'_>) {
         let mut place = None;
         for characteristic in 0..out.outputs() {
@@ -197,7 +198,7 @@ impl Evaluated {
     }
 }
 
-/// The model, the plan and the run that evaluate the points of a stage.
+/// Model, plan and run that evaluate the points of a stage.
 struct Desk<'a> {
     problem: &'a Problem,
     plan: &'a dyn Plan,
@@ -206,11 +207,11 @@ struct Desk<'a> {
 }
 
 impl Desk<'_> {
-    /// The answers at some points. `room` holds copies of the centre, before and after.
+    /// Answers at some points. `room` holds copies of the centre before and after the call.
     fn answers(&self, room: &mut Points, batch: &[(Point, Purpose)]) -> Responses {
         let Self { problem, plan, centre, run } = self;
         if room.rows() != batch.len() {
-            // The old room goes first, so that there are never two.
+            // Drop the old buffer before the new one is allocated, to save memory.
             *room = Points::repeated(&[], 0);
             *room = Points::repeated(centre, batch.len());
         }

@@ -1,8 +1,9 @@
 //! Statistical tolerance analysis of any assembly function.
 //!
-//! An [`AssemblyFunction`] gives the key characteristics of an assembly from its dimensions: a formula, a closed-form model, a Rust function, an
-//! external program. [`analyze`] evaluates it at the points of a [`Method`] and returns an [`Analysis`]: for each characteristic the first four
-//! moments, yield and capability, sensitivities and contributions, each with an error estimate, and the number of evaluations.
+//! An [`AssemblyFunction`] computes the key characteristics of an assembly from its dimensions. It may be a formula, a closed-form model, a
+//! Rust function, or an external program. [`analyze`] evaluates it at the points of a [`Method`] and returns an [`Analysis`]. For each
+//! characteristic it contains the first four moments, yield and capability, sensitivities and contributions, each with an error estimate,
+//! and the number of evaluations.
 //!
 //! ```
 //! use sensitol::{Characteristic, Closure, Dimension, Method, Problem, SpecLimits, analyze};
@@ -23,8 +24,8 @@
 //!
 //! # A model of your own
 //!
-//! Implement [`AssemblyFunction`] where a closure is not enough: where evaluations fail, run in parallel, or cost something. Points come in
-//! batches; a point without a result gets an [`EvaluationError`](assembly::EvaluationError), and the analysis goes on without it.
+//! Implement [`AssemblyFunction`] if a closure is not enough: if evaluations can fail, run in parallel, or are costly. Points come in
+//! batches. A point without a result gets an [`EvaluationError`](assembly::EvaluationError), and the analysis continues without it.
 //!
 //! ```
 //! use sensitol::assembly::{EvaluationError, Input, Output, Request, Responses, Run, Signature};
@@ -65,14 +66,23 @@
 //!
 //! # Reading a result
 //!
-//! Unknown values are `None`. [`CharacteristicAnalysis::error_estimate`] has the error of each figure, [`CharacteristicAnalysis::requirements`]
-//! the verdict on each requirement (met, missed or inconclusive), [`Analysis::warnings`] every assumption that fails, as data with advice.
+//! Unknown values are `None`.
+//!
+//! - [`CharacteristicAnalysis::error_estimate`] holds the error of each figure.
+//! - [`CharacteristicAnalysis::requirements`] holds the verdict on each requirement: met, missed or inconclusive.
+//! - [`Analysis::warnings`] holds every assumption that fails, as data with advice.
 //!
 //! # Features
 //!
-//! Without default features the library has the numbers only, needs 67 other crates, and builds for browsers (`wasm32-unknown-unknown`), where
-//! it runs on one thread. `study` reads TOML, JSON and CSV, `report` writes text, JSON, CSV, Markdown and SVG, `html` pages; `process` runs
-//! external programs, `journal` keeps their answers, `cli` is the command with all of them.
+//! The only feature is `schema`: JSON schemas of the results.
+//!
+//! This package computes. It builds for browsers too (`wasm32-unknown-unknown`), where it runs on one thread. Other packages add to it:
+//!
+//! - `sensitol-study` reads studies (TOML, JSON and tables).
+//! - `sensitol-report` writes reports (text, JSON, CSV, Markdown, SVG, HTML and workbooks).
+//! - `sensitol-external` runs external programs, and keeps a journal of their answers.
+//! - `sensitol-models` holds the published models.
+//! - `sensitol-cli` is the command `sensitol`.
 
 pub mod allocation;
 pub mod analysis;

@@ -1,4 +1,4 @@
-//! The names of the methods.
+//! Methods by name.
 
 use std::fmt;
 use std::str::FromStr;
@@ -7,7 +7,7 @@ use serde::{Serialize, Serializer};
 
 use sensitol_numeric::names::UnknownName;
 
-/// A method by name.
+/// Analysis method by name.
 ///
 /// ```
 /// use sensitol::Method;
@@ -18,11 +18,11 @@ use sensitol_numeric::names::UnknownName;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Method {
-    /// Root of the sum of squares: first order.
+    /// First order: root of the sum of squares.
     Rss,
-    /// Sum of absolute values: first order.
+    /// First order: sum of absolute values.
     WorstCase,
-    /// First and second derivatives, no mixed ones.
+    /// First and second derivatives, without mixed ones.
     SecondOrder,
     /// Five-point axes and the strongest interactions.
     SixN,
@@ -30,20 +30,20 @@ pub enum Method {
     Full,
     /// Every second derivative by the published four-point stencil.
     Classic,
-    /// Every dimension by itself, integrated by its own Gauss rule.
+    /// Every dimension alone, integrated by its own Gauss rule.
     DimensionReduction,
-    /// Every two dimensions together, integrated by products of their Gauss rules.
+    /// Every pair of dimensions, integrated by products of their Gauss rules.
     BivariateDimensionReduction,
     /// All combinations of three levels of every dimension.
     ThreePoint,
     /// A quadratic fitted by least squares to a central composite design.
     ResponseSurface,
-    /// As few evaluations as the wanted accuracy takes.
+    /// Fewest evaluations that reach the wanted accuracy.
     Auto,
 }
 
 impl Method {
-    /// Every method, in the order in which they are listed.
+    /// Methods in the order in which they are listed.
     pub const ALL: [Self; 11] = [
         Self::Auto,
         Self::Rss,
@@ -58,7 +58,7 @@ impl Method {
         Self::ResponseSurface,
     ];
 
-    /// Its name in study files and on the command line.
+    /// Name in study files and on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Rss => "rss",
@@ -75,7 +75,7 @@ impl Method {
         }
     }
 
-    /// Whether it has a surrogate that can stand beside the model, rather than integrals only.
+    /// True if the method fits a surrogate. Methods of integration only compute integrals.
     pub(crate) fn has_surrogate(self) -> bool {
         !matches!(self, Self::DimensionReduction | Self::BivariateDimensionReduction | Self::ThreePoint)
     }

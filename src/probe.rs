@@ -1,9 +1,9 @@
-//! Whether a model can be trusted, and how it is best asked: repeatability, order, errors, noise, speed.
+//! Probe of a model before an analysis: repeatability, order of points, errors, noise, speed.
 //!
-//! Evaluations: `2N + 55` for N varying dimensions, one where it gives no value. The points are always the same ones.
+//! Evaluations: `2N + 55` for N varying dimensions, or one if the nominal dimensions have no value. The points are always the same.
 //!
-//! Source of the noise level: Moré and Wild, Estimating Computational Noise, SIAM J. Sci. Comput. 33 (2011), algorithm
-//! ECnoise: the standard deviation of differences of order k of values at equal distances, where it no longer depends on k.
+//! Source of the noise level: Moré and Wild, Estimating Computational Noise, SIAM J. Sci. Comput. 33 (2011), algorithm ECnoise. The level
+//! is the standard deviation from differences of order k of values at equal distances, at an order from which it no longer depends on k.
 
 use std::time::Duration;
 
@@ -16,71 +16,75 @@ use sensitol_numeric::time::Instant;
 
 /// Points in the two passes that must agree.
 const SCATTERED: usize = 8;
-/// The second pass goes to them in this order, each by itself: from the nominal point in steps of a third. The other way round it
-/// would cross the same edges, and a model that flips on a long way would flip at the same places.
+/// Order of the points in the second pass. Each point is approached alone, from the nominal point in steps of a third. A mere reversal
+/// would cross the same edges, and a model that flips on a long step would flip at the same places.
 const SHUFFLED: [usize; SCATTERED] = [5, 2, 7, 0, 3, 6, 1, 4];
+/// Points on the way from the nominal point to another, both included.
 const STEPS: usize = 4;
-/// Points of the noise estimate, and their distance as a part of the tolerances.
+/// Points of the noise estimate.
 const LINE: usize = 9;
+/// Distance of the points of the noise estimate, as a part of the tolerances.
 const CLOSE: f64 = 1e-5;
-/// How far outside the tolerances a point is taken at which the model may well fail.
+/// Place outside the tolerances, in half bands, at which the model is likely to fail.
 const FAR: f64 = 30.0;
-/// Noise may spoil a slope by this part at the least step.
+/// Error of a slope by noise, as a part of it, that is accepted at the least step.
 const SPOILT: f64 = 1e-3;
-/// Differences and noise are no doubt up to this part of what the tolerances move: a sentinel takes no notice of them either.
+/// Greatest differences and noise that are accepted, as a part of the range within the tolerances. The check of repeated nominal points
+/// during an analysis ignores them too.
 const HARMLESS: f64 = 1e-7;
-/// From this part on they are a fault: a second difference of such noise is of the size of real curvature.
+/// Least differences and noise that are a fault, as a part of the range within the tolerances. A second difference of such noise is of the
+/// size of real curvature.
 const HARMFUL: f64 = 1e-3;
-/// Points without a value that are named.
+/// Greatest number of points without a value that a message names.
 const NAMED: usize = 5;
-/// One point without a value in so many is too much.
+/// Reciprocal of the greatest share of points without a value that is only doubtful.
 const MANY: usize = 5;
 
-/// The results of a probe.
+/// Results of a probe.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Probe {
-    /// The description that an external program gives of itself.
+    /// Description that an external program gives of itself.
     pub adapter: Option<ModelInfo>,
-    /// Its points and time.
+    /// Points and time of the probe.
     pub run: RunSummary,
-    /// From nothing to ready.
+    /// Time from nothing until the model is ready.
     pub start: Duration,
-    /// For a point by itself, and for one of many.
+    /// Time for a single point.
     pub alone: Duration,
-    /// For a point among others.
+    /// Time per point, for a batch of several.
     pub together: Duration,
-    /// The checks, with their faults.
+    /// Checks with their findings.
     pub checks: Vec<Check>,
-    /// The results of every characteristic.
+    /// Results of every characteristic.
     pub characteristics: Vec<Probed>,
 }
 
-/// One thing that a model should do.
+/// Check of one property that a model should have.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Check {
-    /// What.
+    /// Property that is checked, in words.
     pub what: &'static str,
-    /// Whether it does.
+    /// Finding of the check.
     pub verdict: Finding,
 }
 
-/// The result of a check.
+/// Result of a check.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Finding {
-    /// It is as it should be.
+    /// The model has the property.
     Passed,
-    /// An analysis gets along with it, and should not have to.
+    /// The model lacks the property, in a way that an analysis can handle.
     Doubtful(String),
-    /// It is not as it should be.
+    /// The model lacks the property.
     Failed(String),
-    /// There were no values to check it with.
+    /// There were no values for the check.
     NotChecked,
 }
 
 impl Finding {
-    /// The fault, where there is one.
+    /// Fault in words. Returns None if there is none.
     pub fn fault(&self) -> Option<&str> {
         match self {
             Self::Doubtful(fault) | Self::Failed(fault) => Some(fault),
@@ -88,37 +92,37 @@ impl Finding {
         }
     }
 
-    /// A fault, or none.
+    /// Finding from a fault: failed if there is one, else passed.
     fn of(fault: Option<String>) -> Self {
         fault.map_or(Self::Passed, Self::Failed)
     }
 }
 
-/// One characteristic.
+/// Results of one characteristic.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Probed {
-    /// Its name.
+    /// Name of the characteristic.
     pub name: String,
-    /// Its value at the nominal dimensions.
+    /// Value at the nominal dimensions. None if there is none.
     pub nominal: Option<f64>,
-    /// Standard deviation of what is random in its last digits; None where no level shows.
+    /// Standard deviation of the noise in a value. None if no level can be determined.
     pub noise: Option<f64>,
-    /// For every dimension, the least step in sigmas at which noise spoils the slope by no more than a thousandth; None
-    /// where the characteristic does not react to it, or the noise is unknown.
+    /// Least step of every dimension, in sigmas, at which noise changes the slope by at most a thousandth. None if the characteristic does
+    /// not react to the dimension, or the noise is unknown.
     pub least_step: Vec<Option<f64>>,
-    /// The dimensions to which it does not react within one sigma.
+    /// Dimensions to which the characteristic does not react within one sigma.
     pub silent: Vec<String>,
 }
 
 impl Probe {
-    /// Whether nothing is as it should not be, and everything could be checked.
+    /// True if no check failed, and every check was possible.
     pub fn passed(&self) -> bool {
         self.checks.iter().all(|check| matches!(check.verdict, Finding::Passed | Finding::Doubtful(_)))
     }
 }
 
-/// The checks that follow once the nominal dimensions have values.
+/// Checks that need values at the nominal dimensions.
 const LATER: [&str; 8] = [TWICE, NOISE, WITHIN, ORDER, AFTER, FAILING, REACTS, RUNS];
 const TWICE: &str = "the same point twice has the same values";
 const NOISE: &str = "noise is small beside what the tolerances move";
@@ -129,16 +133,16 @@ const FAILING: &str = "the nominal values are the same after points where it may
 const REACTS: &str = "every characteristic reacts to some dimension";
 const RUNS: &str = "its processes go on running";
 
-/// Most evaluations of a probe: fewer where the nominal dimensions have no values.
+/// Greatest number of evaluations of a probe. There are fewer if the nominal dimensions have no values.
 pub fn evaluations(problem: &Problem) -> usize {
     let run = Run::to_the_end();
     2 * Asked { problem, run: &run }.varying().len() + (1 + STEPS) * SCATTERED + LINE + 6
 }
 
-/// Probes the model of a problem. Without any value at the nominal dimensions nothing else is asked.
+/// Probes the model of a problem. Without any value at the nominal dimensions, no other point is evaluated.
 ///
 /// # Errors
-/// When the model cannot be used at all.
+/// If the model cannot be used at all.
 pub fn probe(problem: &Problem, run: &Run<'_>) -> Result<Probe, EvaluationError> {
     let begun = Instant::now();
     let adapter = problem.function().prepare(problem.outputs())?;
@@ -161,7 +165,7 @@ pub fn probe(problem: &Problem, run: &Run<'_>) -> Result<Probe, EvaluationError>
     let mut checks = Vec::new();
     let mut check = |what, verdict| checks.push(Check { what, verdict });
 
-    // The first point may warm something up.
+    // The first point may include a warm-up, so its time is used only if it has no value.
     let begun = Instant::now();
     let first = ask(std::slice::from_ref(&nominal));
     let alone = begun.elapsed();
@@ -199,21 +203,21 @@ pub fn probe(problem: &Problem, run: &Run<'_>) -> Result<Probe, EvaluationError>
         })
         .collect();
     let after = ask(std::slice::from_ref(&nominal));
-    // Whether these fail is the model's business; what matters is what comes after.
+    // These points may fail. The check is about the values after them.
     let outside: Vec<Vec<f64>> = [FAR, -FAR].map(|far| asked.along(&nominal, far)).to_vec();
     ask(&outside);
     let failing = ask(std::slice::from_ref(&nominal));
     let steps: Vec<Vec<f64>> = asked.steps(&nominal);
     let stepped = ask(&steps);
 
-    // The ranges over which the tolerances move the outputs, by everything that was evaluated within them.
+    // Range of each output within the tolerances, over all points evaluated there.
     let moved: Vec<f64> = (0..names.len()).map(|c| spread(&[&first, &forward, &walked, &stepped], c)).collect();
     check(TWICE, repeats(&names, &first, &second, &moved));
     check(NOISE, quiet(&names, &noise, &moved));
     check(WITHIN, asked.within(&nominal, &[(&scattered, &forward), (&line, &close), (&steps, &stepped)]));
     let ends: Vec<(usize, usize)> =
         SHUFFLED.iter().enumerate().map(|(turn, &row)| (row, STEPS * turn + STEPS - 1)).collect();
-    // Values that repeat as well as that are the same.
+    // Tolerance of equality: values this close are the same.
     let by: Vec<f64> = (0..names.len()).map(|c| (10.0 * noise[c].unwrap_or(0.0)).max(HARMLESS * moved[c])).collect();
     let same = |rows: &[(usize, usize)], a: &Responses, b: &Responses| same(&names, rows, a, b, &by);
     check(ORDER, same(&ends, &forward, &walked));
@@ -223,7 +227,7 @@ pub fn probe(problem: &Problem, run: &Run<'_>) -> Result<Probe, EvaluationError>
     let varying = asked.varying();
     let characteristics = names.iter().enumerate().map(|(c, name)| {
         let change = |index: usize| Some((stepped.value(2 * index, c)? - stepped.value(2 * index + 1, c)?).abs() / 2.0);
-        // Over a step of h sigmas noise makes `noise / h` of a slope that is `change` per sigma.
+        // Over a step of h sigmas, noise changes a slope of `change` per sigma by `noise / h`.
         let step = |index: usize| {
             let (change, noise) = (change(index)?, noise[c]?);
             (change > 10.0 * noise && change > 0.0).then_some(noise / change / SPOILT)
@@ -259,7 +263,7 @@ pub fn probe(problem: &Problem, run: &Run<'_>) -> Result<Probe, EvaluationError>
     Ok(Probe { adapter, run, start, alone, together, checks, characteristics })
 }
 
-/// From one point to another one, both included.
+/// Points in equal steps from one point to another, both included.
 fn walk(from: &[f64], to: &[f64]) -> Vec<Vec<f64>> {
     let last = STEPS - 1;
     let part =
@@ -284,13 +288,13 @@ impl Asked<'_> {
         (0..self.problem.dimensions().len()).filter(|&d| self.problem.dimensions()[d].sigma() > 0.0).collect()
     }
 
-    /// All dimensions off the nominal by a part of what they reach.
+    /// Point with all dimensions off the nominal by this part of their half bands.
     fn along(&self, nominal: &[f64], part: f64) -> Vec<f64> {
         let dimensions = self.problem.dimensions();
         nominal.iter().zip(dimensions).map(|(x, dimension)| x + part * dimension.half_band()).collect()
     }
 
-    /// A point within the tolerances: fractions of the golden ratio, which fill any box evenly.
+    /// Point within the tolerances, by fractions of the golden ratio, which fill any box evenly.
     fn scattered(&self, index: usize) -> Vec<f64> {
         let fraction = |d: usize| (0.5 + (1 + index + SCATTERED * d) as f64 * 0.618_033_988_749_894_9).fract();
         let place = |(d, dimension): (usize, &sensitol_numeric::dimension::Dimension)| {
@@ -300,7 +304,7 @@ impl Asked<'_> {
         self.problem.dimensions().iter().enumerate().map(place).collect()
     }
 
-    /// Whether all points within the tolerances have values, and which have none.
+    /// Checks that all points within the tolerances have values, and names those without.
     fn within(&self, nominal: &[f64], asked: &[(&Vec<Vec<f64>>, &Responses)]) -> Finding {
         let outputs = self.problem.outputs().len();
         let mut failed: Vec<String> = Vec::new();
@@ -323,7 +327,7 @@ impl Asked<'_> {
         if failed.len() * MANY > points { Finding::Failed(fault) } else { Finding::Doubtful(fault) }
     }
 
-    /// The dimensions of a point that are not nominal.
+    /// Text of a point: the dimensions that are not nominal.
     fn place(&self, nominal: &[f64], point: &[f64]) -> String {
         let moved = self.problem.dimensions().iter().zip(nominal.iter().zip(point)).filter(|(_, (x, at))| x != at);
         let mut words: Vec<String> = moved.map(|(dimension, (_, at))| format!("{} = {at}", dimension.name())).collect();
@@ -337,7 +341,7 @@ impl Asked<'_> {
         words.join(", ")
     }
 
-    /// One sigma up and down for every dimension that varies.
+    /// Points one sigma up and one down for every dimension that varies.
     fn steps(&self, nominal: &[f64]) -> Vec<Vec<f64>> {
         let step = |d: usize, sigmas: f64| {
             let mut point = nominal.to_vec();
@@ -352,7 +356,7 @@ fn reason(out: &Responses, row: usize, c: usize) -> String {
     out.error(row, c).map_or("it was not evaluated".to_owned(), ToString::to_string)
 }
 
-/// Whether two answers to the same points are the same but for this much, by pairs of their rows.
+/// Compares two answers to the same points within tolerances, by pairs of their rows.
 fn same(names: &[String], rows: &[(usize, usize)], a: &Responses, b: &Responses, by: &[f64]) -> Finding {
     let mut compared = false;
     for &(row, other) in rows {
@@ -373,7 +377,7 @@ fn same(names: &[String], rows: &[(usize, usize)], a: &Responses, b: &Responses,
     if compared { Finding::Passed } else { Finding::NotChecked }
 }
 
-/// How far a characteristic varies over these answers; 0 without any.
+/// Range of a characteristic over these answers, 0 without any.
 fn spread(answers: &[&Responses], c: usize) -> f64 {
     let values = || answers.iter().flat_map(|out| (0..out.rows()).filter_map(|row| out.value(row, c)));
     let [least, most] =
@@ -381,7 +385,7 @@ fn spread(answers: &[&Responses], c: usize) -> f64 {
     (most - least).max(0.0)
 }
 
-/// Whether the same point has the same values: a difference far below what the tolerances move is a doubt.
+/// Checks that the same point has the same values. A difference far below the range within the tolerances is doubtful only.
 fn repeats(names: &[String], first: &Responses, second: &Responses, moved: &[f64]) -> Finding {
     let exact = same(names, &[(0, 0)], first, second, &vec![0.0; names.len()]);
     let Finding::Failed(fault) = exact else { return exact };
@@ -393,7 +397,7 @@ fn repeats(names: &[String], first: &Responses, second: &Responses, moved: &[f64
     if (0..names.len()).all(harmless) { Finding::Doubtful(fault) } else { Finding::Failed(fault) }
 }
 
-/// Whether the noise of every characteristic is small beside what the tolerances move.
+/// Checks that the noise of every characteristic is small compared with its range within the tolerances.
 fn quiet(names: &[String], noise: &[Option<f64>], moved: &[f64]) -> Finding {
     let share = |c: usize| noise[c].filter(|_| moved[c] > 0.0).map(|noise| noise / moved[c]);
     let Some((c, share)) = (0..names.len()).filter_map(|c| Some((c, share(c)?))).max_by(|a, b| a.1.total_cmp(&b.1))
@@ -416,7 +420,7 @@ fn quiet(names: &[String], noise: &[Option<f64>], moved: &[f64]) -> Finding {
     }
 }
 
-/// Whether the processes of an external model ran through.
+/// Checks that the processes of an external model did not fail.
 fn runs(problem: &Problem) -> Finding {
     let Some(account) = problem.function().account().filter(EvaluatorAccount::has_failures) else {
         return Finding::Passed;
@@ -426,12 +430,12 @@ fn runs(problem: &Problem) -> Finding {
     Finding::Doubtful(format!("{failures} failed, and {} were started in all{cause}", account.counts.starts))
 }
 
-/// The noise in values at equal distances; None where their differences show none.
+/// Noise in values at equal distances. Returns None if their differences show none.
 fn level(values: &[f64]) -> Option<f64> {
     let mut differences = values.to_vec();
     let mut levels: Vec<(f64, bool)> = Vec::new();
     let mut gamma = 1.0;
-    // In a unit of their own, differences of extreme size have squares.
+    // Divide by a power of two, so that squares of extreme differences do not overflow or underflow.
     let unit = Power::of(values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max));
     for order in 1..values.len() {
         differences = differences.windows(2).map(|pair| pair[1] - pair[0]).collect();
@@ -445,7 +449,7 @@ fn level(values: &[f64]) -> Option<f64> {
     if values.windows(2).all(|pair| pair[0] == pair[1]) {
         return None;
     }
-    // Three orders that agree, and differences that go either way: what is left is noise and no slope.
+    // Three orders agree and differences have both signs: the rest is noise and no slope.
     let settled = |three: &[(f64, bool)]| {
         let (least, most) = three
             .iter()

@@ -1,4 +1,4 @@
-//! The problem: dimensions, an assembly function, and the characteristics asked of it.
+//! Problem: dimensions, an assembly function, and the characteristics that are asked of it.
 
 use std::sync::{Arc, OnceLock};
 
@@ -12,24 +12,24 @@ use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::names::nearest;
 use sensitol_numeric::power::Power;
 
-/// N dimensions, K characteristics, and the assembly function between them.
+/// Problem of N dimensions, K characteristics, and the assembly function between them.
 #[derive(Clone)]
 pub struct Problem {
     dimensions: Vec<Dimension>,
     correlation: Option<Correlation>,
     characteristics: Vec<Characteristic>,
-    /// For every characteristic, the output of the function that it is.
+    /// Output of the function for every characteristic.
     outputs: Vec<usize>,
     function: Arc<dyn AssemblyFunction>,
-    /// Pairs of dimensions, by name, whose product the function is known to have.
+    /// Pairs of dimensions, by name, whose product the function is known to contain.
     products: Arc<[(String, String)]>,
-    /// The sizes of the outputs, during a run that is about them.
+    /// Sizes of the outputs, during a run that determines or uses them.
     magnitudes: Option<Magnitudes>,
-    /// For every characteristic its limits as computed values keep them, made when first asked for.
+    /// Limits of every characteristic for computed values, computed on first use.
     kept: OnceLock<Vec<KeptLimits>>,
 }
 
-/// Why dimensions, function and characteristics do not fit together.
+/// Error of dimensions, function and characteristics that do not fit together.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ProblemError {
@@ -39,38 +39,38 @@ pub enum ProblemError {
     /// There is no characteristic.
     #[error("a problem needs at least one characteristic")]
     NoCharacteristic,
-    /// Two dimensions, or two characteristics, bear one name.
+    /// Two dimensions, or two characteristics, have the same name.
     #[error("the name `{name}` is given twice")]
     DuplicateName {
-        /// The name.
+        /// Name that is given twice.
         name: String,
     },
-    /// The function has other inputs than the problem has dimensions.
+    /// The inputs of the function differ from the dimensions of the problem.
     #[error("the assembly function's inputs are {expected}, the dimensions are {found}", expected = list(expected), found = list(found))]
     InputMismatch {
-        /// The function's inputs.
+        /// Inputs of the function.
         expected: Vec<String>,
-        /// The problem's dimensions.
+        /// Dimensions of the problem.
         found: Vec<String>,
     },
     /// A characteristic is not an output of the function.
     #[error("there is no characteristic `{name}`; known: {known}", known = list(known))]
     UnknownCharacteristic {
-        /// The name asked for.
+        /// Name of the characteristic that was asked for.
         name: String,
-        /// The most similar one.
+        /// Most similar name, if any.
         nearest: Option<String>,
-        /// The names that exist.
+        /// Names that exist.
         known: Vec<String>,
     },
-    /// A dimension varies otherwise in a state.
+    /// The tolerance of a dimension differs in a state.
     #[error(
         "the tolerance of `{dimension}` is another one in `{state}`, and one tolerance must do for all: write it as a number, not as percent"
     )]
     StateTolerance {
-        /// The dimension.
+        /// Name of the dimension.
         dimension: String,
-        /// The state.
+        /// Name of the state.
         state: String,
     },
 }
@@ -81,7 +81,7 @@ fn list(names: &[String]) -> String {
 
 impl std::fmt::Debug for Problem {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        // The function is a black box here too.
+        // The function has no Debug output.
         let mut parts = f.debug_struct("Problem");
         parts
             .field("dimensions", &self.dimensions)
@@ -92,11 +92,10 @@ impl std::fmt::Debug for Problem {
 }
 
 impl Problem {
-    /// With every output of the function as a characteristic without limits.
+    /// Problem with every output of the function as a characteristic without limits.
     ///
     /// # Errors
-    /// When there is no dimension or output, a name stands twice, or the function names inputs that are not the
-    /// dimensions in this order.
+    /// If there is no dimension or output, a name appears twice, or the inputs of the function differ from the dimensions in this order.
     pub fn new(
         dimensions: impl IntoIterator<Item = Dimension>,
         function: impl AssemblyFunction + 'static,
@@ -131,15 +130,15 @@ impl Problem {
         problem.checked()
     }
 
-    /// With dimensions that vary together; without pairs, all independent.
+    /// Sets correlations of dimensions. Without pairs, all are independent.
     ///
     /// # Errors
-    /// When these dimensions cannot be correlated so: see [`CorrelationError`].
+    /// If these dimensions cannot be correlated in this way: see [`CorrelationError`].
     pub fn correlated(self, pairs: &[Pair]) -> Result<Self, CorrelationError> {
         self.jointly(pairs, Vec::new())
     }
 
-    /// The same beside blocks of dimensions that vary together by rows or within a zone.
+    /// Sets correlations of dimensions, and blocks of dimensions with a joint distribution of rows or a zone.
     pub fn jointly(mut self, pairs: &[Pair], blocks: Vec<Block>) -> Result<Self, CorrelationError> {
         self.correlation = match (pairs, &blocks[..]) {
             ([], []) => None,
@@ -148,10 +147,10 @@ impl Problem {
         Ok(self)
     }
 
-    /// With these characteristics instead: outputs of the function by name, with limits and targets.
+    /// Replaces the characteristics: outputs of the function by name, with limits and targets.
     ///
     /// # Errors
-    /// When there is none, one stands twice, or one is not an output of the function.
+    /// If there is none, one appears twice, or one is not an output of the function.
     pub fn asking(mut self, characteristics: impl IntoIterator<Item = Characteristic>) -> Result<Self, ProblemError> {
         let outputs = &self.function.signature().outputs;
         self.characteristics = characteristics.into_iter().collect();
@@ -164,10 +163,10 @@ impl Problem {
         self.checked()
     }
 
-    /// With only those of its characteristics that bear one of these names, in the problem's order.
+    /// Keeps only the characteristics with these names, in the order of the problem.
     ///
     /// # Errors
-    /// When a name is none of its characteristics'.
+    /// If a name is not one of its characteristics.
     pub fn only(mut self, names: &[impl AsRef<str>]) -> Result<Self, ProblemError> {
         for name in names.iter().map(AsRef::as_ref) {
             if !self.characteristics.iter().any(|characteristic| characteristic.name() == name) {
@@ -182,33 +181,34 @@ impl Problem {
         self.checked()
     }
 
-    /// With another dimension of the same name and kind in one place, and another function of the same signature.
+    /// Replaces the dimension in one place by one of the same name and kind, and the function by one of the same signature.
     pub(crate) fn replacing(&self, place: usize, dimension: Dimension, function: Arc<dyn AssemblyFunction>) -> Self {
         let mut problem = self.with_function(function);
-        // Correlation is of standardised variables: it does not see where a dimension is.
+        // Correlation is that of standardised variables, so the place of a dimension does not affect it.
         problem.dimensions[place] = dimension;
         problem
     }
 
-    /// Pairs of dimensions, by name, whose product the function is known to have.
+    /// Pairs of dimensions, by name, whose product the function is known to contain.
     pub(crate) fn products(&self) -> &[(String, String)] {
         &self.products
     }
 
-    /// Knows that these pairs of dimensions interact: every method of second order that takes differences takes in their exact mixed
-    /// derivative, without an evaluation, where the function knows it.
+    /// Sets pairs of dimensions that are known to interact. Every method of second order by differences then uses their exact mixed
+    /// derivative without an evaluation, if the function has it.
     pub fn with_products(self, products: Vec<(String, String)>) -> Self {
         Self { products: products.into(), ..self }
     }
 
-    /// As a run sees it first, which finds out how large the outputs are.
+    /// Problem for the first part of a run, which determines the size of the outputs.
     pub(crate) fn watched(&self) -> Self {
         let magnitudes = Magnitudes::watching(self.function.signature().outputs.len());
         let function = magnitudes.wrapped(Arc::clone(&self.function));
         Self { function, magnitudes: Some(magnitudes), kept: OnceLock::new(), ..self.clone() }
     }
 
-    /// With every output divided by its power of two, and the characteristics with it; `seen` are the magnitudes of the run that found them out.
+    /// Problem with every output and its characteristic divided by a power of two. `seen` are the magnitudes of the run that determined the
+    /// powers.
     pub(crate) fn divided(&self, powers: Vec<Power>, seen: &Magnitudes) -> Self {
         let magnitudes = seen.known(powers);
         let function = magnitudes.wrapped(Arc::clone(&self.function));
@@ -217,7 +217,7 @@ impl Problem {
         Self { function, characteristics, magnitudes: Some(magnitudes), kept: OnceLock::new(), ..self.clone() }
     }
 
-    /// The dimensions of another problem with characteristics and function of this one: what a run found, in the units in which it was asked.
+    /// Problem with the dimensions of `found`, and the characteristics and function of this one: the result of a run in the original units.
     pub(crate) fn restored(&self, found: &Self) -> Self {
         Self {
             function: Arc::clone(&self.function),
@@ -228,23 +228,23 @@ impl Problem {
         }
     }
 
-    /// The sizes of the outputs, during a run that is about them.
+    /// Sizes of the outputs, during a run that determines or uses them.
     pub(crate) fn magnitudes(&self) -> Option<&Magnitudes> {
         self.magnitudes.as_ref()
     }
 
-    /// The power of two by which a characteristic is divided.
+    /// Power of two by which a characteristic is divided.
     pub(crate) fn power(&self, characteristic: usize) -> Power {
         self.magnitudes.as_ref().map_or(Power::ONE, |of| of.power(self.outputs[characteristic]))
     }
 
-    /// The power of two by which the characteristic of this name is divided; 1 where there is none.
+    /// Power of two by which the characteristic of this name is divided, 1 if there is none.
     pub(crate) fn power_of(&self, name: &str) -> Power {
         let place = self.characteristics.iter().position(|one| one.name() == name);
         place.map_or(Power::ONE, |place| self.power(place))
     }
 
-    /// With another function for the outputs as they are undivided.
+    /// Replaces the function by another, whose outputs are not divided yet.
     pub(crate) fn with_undivided(&self, function: Arc<dyn AssemblyFunction>) -> Self {
         let function = match &self.magnitudes {
             Some(magnitudes) => magnitudes.wrapped(function),
@@ -253,18 +253,18 @@ impl Problem {
         self.with_function(function)
     }
 
-    /// With another function of the same signature.
+    /// Replaces the function by one of the same signature.
     pub(crate) fn with_function(&self, function: Arc<dyn AssemblyFunction>) -> Self {
         Self { function, kept: OnceLock::new(), ..self.clone() }
     }
 
-    /// With other dimensions of the same names: other tolerances, other nominal values; what is correlated stays so.
+    /// Replaces the dimensions by others of the same names, with other tolerances or nominal values. Correlations are kept.
     ///
     /// # Errors
-    /// When these dimensions cannot be correlated so.
+    /// If these dimensions cannot be correlated in this way.
     ///
     /// # Panics
-    /// When the names are others.
+    /// If the names differ.
     pub fn with_dimensions(mut self, dimensions: Vec<Dimension>) -> Result<Self, CorrelationError> {
         let names = |dimensions: &[Dimension]| dimensions.iter().map(|one| one.name().to_owned()).collect::<Vec<_>>();
         assert_eq!(names(&dimensions), names(&self.dimensions), "other dimensions");
@@ -284,17 +284,18 @@ impl Problem {
         self.jointly(&pairs, blocks)
     }
 
-    /// The name of a characteristic in a state.
+    /// Name of a characteristic in a state.
     pub fn in_state(characteristic: &str, state: &str) -> String {
         States::name(characteristic, state)
     }
 
-    /// With every characteristic once in each state: problems of the same dimensions with other nominal values, or other functions.
+    /// Problem with every characteristic once in each state. States are problems of the same dimensions with other nominal values, or other
+    /// functions.
     ///
     /// # Errors
-    /// When a dimension varies otherwise about its nominal value in a state.
+    /// If the distribution of a dimension about its nominal value differs in a state.
     pub fn in_states(&self, states: &[(&str, &Self)]) -> Result<Self, ProblemError> {
-        /// The error of decimal numbers, relative to the half band and to the nominal value.
+        /// Rounding of decimal numbers, relative to the half band and to the nominal value.
         const SAME: [f64; 2] = [1e-9, 1e-13];
         let mut all = Vec::new();
         let mut characteristics = Vec::new();
@@ -333,7 +334,7 @@ impl Problem {
         Ok(self)
     }
 
-    /// Columns of points in sigmas off the means, of the dimensions at these places: what a surrogate is asked at.
+    /// Columns of points in sigmas off the means, for the dimensions at these places: the inputs of a surrogate.
     pub(crate) fn standardised(&self, points: &Points, places: &[usize]) -> Vec<Vec<f64>> {
         let column = |&d: &usize| {
             let (mean, sigma) = (self.dimensions[d].mean(), self.dimensions[d].sigma());
@@ -342,28 +343,28 @@ impl Problem {
         places.iter().map(column).collect()
     }
 
-    /// The dimensions, in order.
+    /// Dimensions in order.
     pub fn dimensions(&self) -> &[Dimension] {
         &self.dimensions
     }
 
-    /// How the dimensions vary together; None when all are independent.
+    /// Correlation of the dimensions. Returns None if all are independent.
     pub fn correlation(&self) -> Option<&Correlation> {
         self.correlation.as_ref()
     }
 
-    /// The characteristics asked for, in order.
+    /// Characteristics asked for, in order.
     pub fn characteristics(&self) -> &[Characteristic] {
         &self.characteristics
     }
 
-    /// The limits of a characteristic as computed values keep them.
+    /// Limits of a characteristic for computed values, which allow for rounding.
     pub fn kept_limits(&self, characteristic: usize) -> KeptLimits {
         self.kept.get_or_init(|| self.all_kept_limits())[characteristic]
     }
 
-    /// The terms of a characteristic are those at the means, or one sigma off them, where a sum about 0 has some: on the side where they are
-    /// smaller, so that an exponential far out does not count.
+    /// Limits of all characteristics for computed values. The magnitude of the terms is the larger of that at the means and that one sigma
+    /// off them, where a sum about 0 has some. Off the means the smaller side counts, so that an exponential far out does not matter.
     fn all_kept_limits(&self) -> Vec<KeptLimits> {
         let at = |sigmas: f64| {
             let value = |dimension: &Dimension| {
@@ -384,29 +385,29 @@ impl Problem {
         self.characteristics.iter().enumerate().map(of).collect()
     }
 
-    /// The largest input in the unit of a characteristic whose terms are unknown: of a stack in millimetres the largest part. 0 without unit.
+    /// Largest input with the unit of the characteristic, for unknown terms: the largest part of a stack in millimetres. 0 without unit.
     fn inputs_in_unit_of(&self, characteristic: &Characteristic) -> f64 {
         let same = |dimension: &&Dimension| dimension.unit().is_some() && dimension.unit() == characteristic.unit();
         let size = |dimension: &Dimension| dimension.mean().abs() + dimension.sigma();
         self.dimensions.iter().filter(same).map(size).fold(0.0, f64::max)
     }
 
-    /// The assembly function.
+    /// Assembly function of the problem.
     pub fn function(&self) -> &dyn AssemblyFunction {
         &*self.function
     }
 
-    /// The account of the processes of an external model so far, in numbers; None where there is none.
+    /// Counts of the processes of an external model so far. Returns None if there is no external model.
     pub(crate) fn evaluator(&self) -> Option<EvaluatorSummary> {
         self.function.account().map(|account| account.counts)
     }
 
-    /// The outputs of the assembly function that the characteristics are.
+    /// Output of the assembly function for each characteristic.
     pub fn outputs(&self) -> &[usize] {
         &self.outputs
     }
 
-    /// For every characteristic, whether it can depend on each dimension; a black box may depend on all.
+    /// Row per characteristic, true for each dimension that it can depend on. A black box may depend on all.
     pub(crate) fn dependence(&self) -> Vec<Vec<bool>> {
         let outputs = &self.function.signature().outputs;
         let row = |&output: &usize| match &outputs[output].depends_on {

@@ -1,4 +1,4 @@
-//! The summary of a run, whatever it computed: points, time, seed, and why it ended early where it did.
+//! Summary of a run of any kind: points, time, seed, and the reason for an early end.
 
 use std::fmt;
 use std::time::Duration;
@@ -7,30 +7,30 @@ use serde::Serialize;
 
 use sensitol_numeric::shape::seconds;
 
-/// Why a run ended before everything that it planned was evaluated.
+/// Reason for the end of a run before all planned points were evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum StopReason {
-    /// The time that it was given is over.
+    /// The time limit has passed.
     TimeLimit,
-    /// The evaluations that it was given are spent. A result from fewer points is complete: nothing planned is open.
+    /// The budget of evaluations is used up. A result from fewer points is complete: no planned point is open.
     Budget,
-    /// A person interrupted it.
+    /// A person interrupted the run.
     Interrupted,
-    /// The program that called it asked for its end, and gave no other reason.
+    /// The calling program requested the end, without another reason.
     Requested,
 }
 
 impl StopReason {
-    /// Whether points that were planned are open: a budget is part of the plan, all else cuts it short.
+    /// True if planned points are open. A budget is part of the plan. All other reasons cut it short.
     pub(crate) fn leaves_points_open(self) -> bool {
         self != Self::Budget
     }
 }
 
-/// As part of a sentence: `stopped by` this.
+/// Text that completes the words `stopped by`.
 impl fmt::Display for StopReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
@@ -42,7 +42,7 @@ impl fmt::Display for StopReason {
     }
 }
 
-/// The cost of a run and the reason for its end. Every result has one.
+/// Cost of a run and the reason for its end. Every result has one.
 ///
 /// ```
 /// use sensitol::{Closure, Dimension, Method, Problem, analyze};
@@ -55,13 +55,13 @@ impl fmt::Display for StopReason {
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RunSummary {
-    /// Points sent to the model, those sent again included.
+    /// Points sent to the model, including those sent again.
     pub evaluations: u64,
     /// Points whose answers were known from an earlier run.
     pub cached: u64,
-    /// Points sent again: because an answer was a failure, or was not trusted.
+    /// Points sent again, because an answer was a failure or was not trusted.
     pub retried: u64,
-    /// Points that lost at least one characteristic.
+    /// Points without a value of at least one characteristic.
     pub failed: u64,
     /// Batches in which points were sent.
     pub stages: u64,
@@ -73,11 +73,11 @@ pub struct RunSummary {
     #[serde(rename = "in_model_s", serialize_with = "seconds")]
     #[cfg_attr(feature = "schema", schemars(with = "f64"))]
     pub in_model: Duration,
-    /// The seed, where random numbers were drawn.
+    /// The seed, if random numbers were drawn.
     pub seed: Option<u64>,
-    /// Why it ended early; None where it did not.
+    /// Reason for an early end. None if the run was completed.
     pub stopped: Option<StopReason>,
-    /// Starts, crashes and retries of the processes of an external model; None where no such model ran.
+    /// Starts, crashes and retries of the processes of an external model. None if there is no external model.
     pub evaluator: Option<EvaluatorSummary>,
 }
 
@@ -86,25 +86,25 @@ pub struct RunSummary {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct EvaluatorSummary {
-    /// Processes that were started, the first one of every worker included.
+    /// Processes that were started, including the first one of every worker.
     pub starts: u64,
     /// Processes that ended while points were under way, or before they were ready.
     pub crashes: u64,
-    /// Deadlines that passed.
+    /// Deadlines that were missed.
     pub timeouts: u64,
-    /// Lines that were no answers.
+    /// Lines that were no valid answers.
     pub garbage: u64,
     /// Points that were sent again.
     pub retried: u64,
-    /// Seconds from the last answer of a process that failed until another one was ready in its place.
+    /// Seconds from the last answer of each failed process until its replacement was ready.
     pub lost_s: f64,
-    /// Answers that depend on the points before them, and that no fresh process confirmed: they have no value, or results were made of
-    /// them before that was known.
+    /// Answers that depend on the points before them, and that no fresh process confirmed. They have no value, or entered results before
+    /// that was known.
     pub unconfirmed: u64,
 }
 
 impl EvaluatorSummary {
-    /// With those of another model.
+    /// Sum with the counts of another model.
     pub(crate) fn and(self, other: Self) -> Self {
         Self {
             starts: self.starts + other.starts,
@@ -117,14 +117,14 @@ impl EvaluatorSummary {
         }
     }
 
-    /// Failures of processes, of every kind.
+    /// Failures of processes of every kind.
     pub(crate) fn failures(&self) -> u64 {
         self.crashes + self.timeouts + self.garbage
     }
 }
 
 impl RunSummary {
-    /// With another part of the same work: counts and times add up, and the first reason to stop that leaves points open stays.
+    /// Sum with another part of the same work. Counts and times add up. The first stop reason that leaves points open is kept.
     pub(crate) fn and(self, other: &Self) -> Self {
         let open = |stopped: &Option<StopReason>| stopped.is_some_and(StopReason::leaves_points_open);
         Self {
@@ -141,7 +141,7 @@ impl RunSummary {
             } else {
                 self.stopped.or(other.stopped)
             },
-            // It counts from the start of the model, so the later of two parts has both.
+            // Use the later of two parts: it counts from the start of the model, and includes the earlier part.
             evaluator: match (self.evaluator, other.evaluator) {
                 (Some(a), Some(b)) => Some(if b.starts >= a.starts && b.retried >= a.retried { b } else { a }),
                 (a, b) => a.or(b),
@@ -149,12 +149,12 @@ impl RunSummary {
         }
     }
 
-    /// Whether results rest on answers that depend on the points before them, and that no fresh process confirmed.
+    /// True if results may rest on answers that depend on the points before them, and that no fresh process confirmed.
     pub fn unconfirmed(&self) -> bool {
         self.evaluator.is_some_and(|evaluator| evaluator.unconfirmed > 0)
     }
 
-    /// Whether planned points were not evaluated, so that what follows from the others is not a verdict.
+    /// True if the run was stopped before all planned points were evaluated. There is no verdict then.
     pub fn unfinished(&self) -> bool {
         self.stopped.is_some_and(StopReason::leaves_points_open)
     }
@@ -164,7 +164,7 @@ impl RunSummary {
 mod tests {
     use super::*;
 
-    /// A budget that ended one part hides no interruption of another.
+    /// A budget that ended one part must not hide an interruption of another.
     #[test]
     fn the_reason_that_leaves_points_open_is_kept() {
         let of = |stopped| RunSummary { evaluations: 2, stopped, ..RunSummary::default() };

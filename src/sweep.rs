@@ -1,8 +1,8 @@
-//! Along a parameter: a characteristic's moments and quantiles at many values of one dimension.
+//! Sweep along a parameter: moments and quantiles of characteristics at many values of one dimension.
 //!
-//! Every value is an analysis of its own. Their requests to the model are gathered: all of them are run until they lack points,
-//! the points that any of them lacks are evaluated as one batch, and those that are not done are run again with the answers,
-//! which costs no evaluation. A method of one stage takes one batch, however many values there are.
+//! Every value has its own analysis, and the requests of all analyses to the model are gathered. Each round runs all of them until they
+//! need points, and evaluates the missing points as one batch. Analyses that are not done run again with the answers, which costs no
+//! evaluation. A method of one stage thus needs one batch for any number of values.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -25,54 +25,54 @@ use sensitol_numeric::dimension::DimensionError;
 use sensitol_numeric::names::nearest;
 use sensitol_numeric::time::Instant;
 
-/// A problem along one of its dimensions.
+/// Results of a problem along one of its dimensions.
 #[derive(Debug, Clone, Serialize)]
 pub struct Sweep {
-    /// The place of the dimension among the problem's.
+    /// Index of the dimension in the problem.
     pub dimension: usize,
-    /// Its nominal values, in the order given.
+    /// Nominal values of the dimension, in the order given.
     pub values: Vec<f64>,
-    /// The analysis at every value; None where the sweep was stopped before it was done.
+    /// Analysis at every value. None if the sweep was stopped before it was done.
     pub analyses: Vec<Option<Analysis>>,
-    /// Its points, each once for all values, and time; why it ended before all was done.
+    /// Points, each once for all values, time, and the reason for an early end.
     #[serde(flatten)]
     pub run: RunSummary,
 }
 
-/// Why a problem cannot be swept so.
+/// Error of a sweep.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SweepError {
-    /// There is no such dimension.
+    /// The dimension does not exist.
     #[error("there is no dimension `{name}` to sweep; known: {}{}", known.join(", "), nearest.as_ref().map(|name| format!("; did you mean `{name}`?")).unwrap_or_default())]
     UnknownDimension {
-        /// The name asked for.
+        /// Name of the dimension that was asked for.
         name: String,
-        /// The most similar one.
+        /// Most similar name, if any.
         nearest: Option<String>,
-        /// The names that exist.
+        /// Names that exist.
         known: Vec<String>,
     },
-    /// No value.
+    /// There is no value.
     #[error("a sweep needs at least one value")]
     NoValue,
-    /// A value that is not a number.
+    /// A value is infinite or NaN.
     #[error("a sweep goes over finite numbers, not {value}")]
     NotFinite {
-        /// The value given.
+        /// Value as given.
         value: f64,
     },
-    /// A distribution that stays where it is.
+    /// The distribution does not move with the nominal value.
     #[error(
         "`{name}` cannot be swept: its distribution ({distribution}) does not move with its nominal value; give it a tolerance instead"
     )]
     Unmoved {
-        /// The dimension.
+        /// Name of the dimension.
         name: String,
-        /// Its distribution.
+        /// Name of its distribution.
         distribution: &'static str,
     },
-    /// The dimension cannot be at a value.
+    /// The dimension is impossible at a value.
     #[error(transparent)]
     Dimension(#[from] DimensionError),
     /// The method does not fit the problem.
@@ -80,16 +80,15 @@ pub enum SweepError {
     Method(#[from] MethodError),
 }
 
-/// Analyses a problem with one dimension's nominal at each of `values`, its tolerance kept.
+/// Analyses a problem with the nominal of one dimension at each of `values`, and an unchanged tolerance.
 ///
-/// Evaluations: those of the method at every value, each point once, in as many batches as the method has stages. A method that
-/// goes on and on, or asks for thousands of points at once, is given its answers as it asks from then on. A budget is that of
-/// all values together, an equal part for each. Results are verified only where [`Options::verify`] says so: a check at every value
-/// would cost more than what it checks.
+/// Evaluations: those of the method at every value, each point once, in as many batches as the method has stages. If a method needs many
+/// rounds, or requests thousands of points at once, its points are evaluated directly from then on. A budget is divided equally among all
+/// values. Results are verified only if [`Options::verify`] is set, since a check at every value would cost more than the analysis.
 ///
 /// # Errors
-/// When the dimension or the values cannot be, or the options do not fit the problem; nothing is evaluated then. A model that
-/// fails at some value is not an error: what is unknown there is None.
+/// If the dimension or a value is impossible, or the options do not fit the problem. No point is evaluated then. A model that fails at some
+/// value is no error: unknown figures are None there.
 ///
 /// ```
 /// use sensitol::sweep::sweep;
@@ -106,7 +105,7 @@ pub fn sweep(problem: &Problem, dimension: &str, values: &[f64], options: &Optio
     sweep_with(problem, dimension, values, options, &Run::to_the_end())
 }
 
-/// [`sweep`], stopping when told to; what is not done then is None.
+/// Runs [`sweep`], and stops early if `run` is stopped. Analyses that are not done are None then.
 pub fn sweep_with(
     problem: &Problem,
     dimension: &str,
@@ -144,6 +143,7 @@ fn swept(
     if values.is_empty() {
         return Err(SweepError::NoValue);
     }
+    // Make a problem for every value. All share one gatherer in place of the model.
     let gatherer = Arc::new(Gatherer::over(problem));
     let problems: Vec<Problem> = values
         .iter()
@@ -158,14 +158,16 @@ fn swept(
             Ok(problem.replacing(place, moved, Arc::clone(&gatherer) as _))
         })
         .collect::<Result<_, _>>()?;
-    // The budget is shared alike.
+    // Divide the budget equally.
     let budget = options.budget.map(|budget| budget / values.len());
     let options = &Options { budget, verify: options.verify.or(Some(0)), ..options.clone() };
+    // Check every problem before anything is evaluated.
     for problem in &problems {
         options.method.procedure().fits(problem, options)?;
     }
     let mut analyses: Vec<Option<Analysis>> = vec![None; values.len()];
     let mut stopped = false;
+    // Run the open analyses, then evaluate the points that they lack, until all are done.
     for round in 1.. {
         for (problem, analysis) in problems.iter().zip(&mut analyses).filter(|(_, analysis)| analysis.is_none()) {
             if run.stopped() {
@@ -206,15 +208,16 @@ fn place(problem: &Problem, name: &str) -> Result<usize, SweepError> {
     })
 }
 
-/// Batches that are gathered; an analysis that is not done then goes on by itself, for it is run anew in every round.
+/// Greatest number of gathered batches. Analyses that are not done after them evaluate directly, since every round runs them again from the
+/// start.
 const ROUNDS: usize = 24;
-/// As many points in one request keep every worker busy without others', and are no method's stage.
+/// Number of points in one request that are evaluated directly: they keep every worker busy, and no method has such a stage.
 const MANY: usize = 4096;
 
-/// Every answer that one point got, in the order of the problem's outputs.
+/// Answers to one point, in the order of the problem's outputs.
 type Answers = Vec<Result<f64, EvaluationError>>;
 
-/// A function that answers from what it knows, and keeps in mind what it was asked and did not know.
+/// Function that answers from known answers, and records requested points without one.
 struct Gatherer {
     problem: Problem,
     memory: Mutex<Memory>,
@@ -224,9 +227,9 @@ struct Gatherer {
 struct Memory {
     known: HashMap<Vec<u64>, Answers>,
     wanted: Vec<Vec<f64>>,
-    /// Whether the last analysis was not told all that it asked.
+    /// True if the last analysis requested a point without an answer.
     lacks: bool,
-    /// Whether everything is evaluated when it is asked.
+    /// True if points are evaluated directly on request.
     at_once: bool,
     run: RunSummary,
     stopped: bool,
@@ -255,7 +258,7 @@ impl Gatherer {
         self.problem.function()
     }
 
-    /// Evaluates what is lacking; false when nothing is, or the run was stopped.
+    /// Evaluates the recorded points. Returns false if there are none, or the run was stopped.
     fn evaluate_lacking(&self, run: &Run<'_>) -> bool {
         let mut wanted = std::mem::take(&mut self.memory().wanted);
         let mut seen = std::collections::HashSet::new();
@@ -307,7 +310,7 @@ impl AssemblyFunction for Gatherer {
 
     fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
         let rows = request.points.rows();
-        // Others than all outputs are not what is kept in mind.
+        // Answers are stored for all outputs only, so other requests are evaluated directly.
         let foreign = request.outputs != self.problem.outputs();
         let at_once = {
             let memory = self.memory();

@@ -1,4 +1,4 @@
-//! Runs over outputs of any size: those of extreme size are divided by powers of two, and the results multiplied again.
+//! Runs over outputs of any size. Outputs of extreme size are divided by powers of two, and the results multiplied again.
 
 use std::time::Duration;
 
@@ -7,38 +7,38 @@ use crate::problem::Problem;
 use crate::summary::{RunSummary, StopReason};
 use sensitol_numeric::power::Power;
 
-/// Axes along which the size of an output is looked for.
+/// Greatest number of axes on which the size of an output is searched.
 const AXES: usize = 64;
 
-/// The end of a run: results, or the reason why there are none.
+/// Outcome of a run: results, or an error.
 pub(crate) trait Restore {
-    /// Returns to the units of the problem as it was given.
+    /// Converts figures to the units of the problem as it was given.
     fn restore(&mut self, back: &Restoration<'_>);
 }
 
-/// The way back to the units of a problem.
+/// Conversion of results back to the units of a problem.
 pub(crate) struct Restoration<'a> {
-    /// The problem as it was given.
+    /// Problem as it was given.
     pub(crate) problem: &'a Problem,
-    /// The power of two by which each characteristic was divided.
+    /// Power of two by which each characteristic was divided.
     powers: Vec<Power>,
     /// Time within the model for answers that were held back.
     held_back: Duration,
 }
 
 impl Restoration<'_> {
-    /// The power of two by which a characteristic was divided.
+    /// Power of two by which a characteristic was divided.
     pub(crate) fn power(&self, characteristic: usize) -> Power {
         self.powers[characteristic]
     }
 
-    /// The power of two of the characteristic of this name; 1 where there is none.
+    /// Power of two of the characteristic with this name, 1 if there is none.
     pub(crate) fn power_of(&self, name: &str) -> Power {
         let place = self.problem.characteristics().iter().position(|one| one.name() == name);
         place.map_or(Power::ONE, |place| self.power(place))
     }
 
-    /// Whether nothing was divided.
+    /// True if nothing was divided.
     pub(crate) fn is_nothing(&self) -> bool {
         self.powers.iter().all(|power| power.is_one())
     }
@@ -50,13 +50,13 @@ impl Restoration<'_> {
     }
 }
 
-/// Runs a job over a problem whose outputs have any size.
+/// Runs a job over a problem with outputs of any size.
 ///
-/// The job begins with the problem as it is. Where the first values show an output of extreme size (beyond `2^64`, or below `2^-64`), it is broken off,
-/// and begins anew with every such output divided by a power of two. Evaluations: those of the job; answers of a costly model that were held
-/// back are not asked for again. Of a function that costs nothing up to 129 points tell how large its outputs are.
+/// The job starts with the problem as it is. If the first values show an output of extreme size (beyond `2^64`, or below `2^-64`), the job
+/// is stopped. It then starts again with every such output divided by a power of two. Evaluations: those of the job. Answers of a costly
+/// model that were held back are not evaluated again. For a function without cost, up to 129 further points give the size of its outputs.
 ///
-/// A job within another one is a part of it.
+/// A job within another job is treated as a part of it.
 pub(crate) fn at_any_size<R: Restore, E: Restore>(
     problem: &Problem,
     run: &Run<'_>,
@@ -71,7 +71,7 @@ pub(crate) fn at_any_size<R: Restore, E: Restore>(
     };
     let stop = || watch.is_extreme().then_some(StopReason::Requested).or_else(|| run.stop_reason());
     let first = job(&watched, &run.stopping_when(&stop));
-    // A run may end before it has seen enough to be sure.
+    // Settle here, since a run may end before the watch has enough values.
     let extreme = watch.settle();
     let powers = if extreme { sizes(problem, watch.powers()) } else { watch.powers() };
     let restoration = Restoration {
@@ -92,8 +92,8 @@ pub(crate) fn at_any_size<R: Restore, E: Restore>(
     }
 }
 
-/// The powers of two of the outputs. Of a function that costs nothing they are those of some points of its own, so that they do not
-/// depend on which points were answered first; of any other those that were `seen`.
+/// Powers of two of the outputs. For a function without cost they come from fixed points, so that they do not depend on the order of the
+/// answers. For any other function they are those `seen`.
 fn sizes(problem: &Problem, seen: Vec<Power>) -> Vec<Power> {
     let (function, dimensions) = (problem.function(), problem.dimensions());
     if function.signature().costly {

@@ -1,16 +1,16 @@
-//! External models that do not answer as they did, or not at first.
+//! Warnings about external models that are not repeatable, or whose processes failed.
 
 use crate::assembly::NonRepeatable;
 use crate::assembly::OutdatedJournal;
 use crate::problem::Problem;
 use crate::warning::Warning;
 
-/// A change of the nominal value by more than this part of what a characteristic varies by is another solution of the model.
+/// Change of the nominal value, relative to the spread of the characteristic, beyond which it is another solution of the model.
 const FLIP: f64 = 0.01;
-/// Points in doubt that are named.
+/// Greatest number of suspect points that a warning names.
 const SUSPECTS: usize = 3;
 
-/// One warning for each output, and what the model's processes went through.
+/// Warnings about changed answers, one for each output, and about the model's processes.
 pub fn history(problem: &Problem, non_repeatable: &[NonRepeatable]) -> Vec<Warning> {
     let first =
         |index: &usize| !non_repeatable[..*index].iter().any(|earlier| earlier.output == non_repeatable[*index].output);
@@ -30,13 +30,13 @@ pub fn history(problem: &Problem, non_repeatable: &[NonRepeatable]) -> Vec<Warni
     (0..non_repeatable.len()).filter(first).map(warning).chain(processes(problem)).collect()
 }
 
-/// A point by the dimensions that are not at their nominal value.
+/// Text of a point: the dimensions that are not at their nominal value.
 fn words(problem: &Problem, point: &[f64]) -> String {
     let moved = problem.dimensions().iter().zip(point).filter(|(dimension, x)| dimension.nominal() != **x);
     moved.map(|(dimension, x)| format!("{} = {x}", dimension.name())).collect::<Vec<_>>().join(", ")
 }
 
-/// The events of a model's processes: what was lost and sent again, answers that nothing confirmed, a journal of another model.
+/// Warnings about processes: lost and repeated evaluations, unconfirmed answers, and a journal of another model.
 fn processes(problem: &Problem) -> Vec<Warning> {
     let Some(account) = problem.function().account() else { return Vec::new() };
     let mut warnings = Vec::new();

@@ -1,12 +1,12 @@
-//! Outputs of extreme size: each is divided by a power of two, so that everything computed from it is of ordinary size.
+//! Outputs of extreme size: each is divided by a power of two, so that all computed figures are of ordinary size.
 //!
-//! A sigma of 1e-200 has a variance of 0 among doubles, and one of 1e160 an infinite variance. The mend stands between the assembly function and all
-//! that asks it. The first values of a function say how large its outputs are ([`Watch`]). Where one is of extreme size, its answers are held
-//! back, and the run begins anew with a function whose outputs are divided by powers of two ([`ScaledFunction`]) and with limits divided
-//! alike. Its results are multiplied again at the end. Division by a power of two is exact, so that every figure has the digits that it has in another
-//! unit. A function of ordinary size is left as it is.
+//! A sigma of 1e-200 has a variance of 0 in double precision, and one of 1e160 an infinite variance. The remedy is a layer between the
+//! assembly function and its callers. The first values of a function give the size of its outputs ([`Watch`]). If one is of extreme size,
+//! its answers are held back. The run starts again with a function whose outputs are divided by powers of two ([`ScaledFunction`]), and
+//! with limits divided by the same powers. Its results are multiplied again at the end. Division by a power of two is exact, so that every
+//! figure has the same digits as in another unit. A function of ordinary size is not changed.
 
-/// Methods of an assembly function that the size of outputs leaves as they are, forwarded to `self.function`.
+/// Methods of an assembly function that do not depend on the size of outputs, forwarded to `self.function`.
 macro_rules! forward_unscaled {
     () => {
         fn signature(&self) -> &Signature {
@@ -60,19 +60,19 @@ use crate::assembly::AssemblyFunction;
 use sensitol_numeric::power::Power;
 use store::Store;
 
-/// The sizes of the outputs of a function during a run.
+/// Sizes of the outputs of a function during a run.
 #[derive(Debug, Clone)]
 pub(crate) struct Magnitudes {
-    /// By output of the function.
+    /// Power of two of each output of the function.
     powers: Arc<[Power]>,
-    /// While nothing is divided: the watch for outputs of extreme size.
+    /// Watch for outputs of extreme size. None if outputs are divided.
     watch: Option<Arc<Watch>>,
     /// Answers of a costly function that were held back, and those of the model within it.
     stores: [Arc<Store>; 2],
 }
 
 impl Magnitudes {
-    /// Those of a run that finds out how large the outputs are.
+    /// Magnitudes of a run that determines the size of the outputs.
     pub(crate) fn watching(outputs: usize) -> Self {
         Self {
             powers: vec![Power::ONE; outputs].into(),
@@ -81,22 +81,22 @@ impl Magnitudes {
         }
     }
 
-    /// Those of a run with outputs of these powers, which begins with the answers that this one has held back.
+    /// Magnitudes of a run with outputs of these powers, which starts with the answers that this one has held back.
     pub(crate) fn known(&self, powers: Vec<Power>) -> Self {
         Self { powers: powers.into(), watch: None, stores: self.stores.clone() }
     }
 
-    /// The power of two by which an output of the function is divided.
+    /// Power of two by which an output of the function is divided.
     pub(crate) fn power(&self, output: usize) -> Power {
         self.powers[output]
     }
 
-    /// The watch of a run that finds out how large the outputs are.
+    /// Watch of a run that determines the size of the outputs. Returns None if the powers are known.
     pub(crate) fn watch(&self) -> Option<&Arc<Watch>> {
         self.watch.as_ref()
     }
 
-    /// A function with the outputs of the one that this is about, as the run sees it: watched or divided.
+    /// Wraps a function with these outputs for the run: watched or divided.
     pub(crate) fn wrapped(&self, function: Arc<dyn AssemblyFunction>) -> Arc<dyn AssemblyFunction> {
         let store = Arc::clone(&self.stores[0]);
         match &self.watch {
@@ -105,7 +105,7 @@ impl Magnitudes {
         }
     }
 
-    /// A model within the function, whose answers are not asked for twice: those of a run that was broken off stand for the next one.
+    /// Wraps a model within the function such that nothing is evaluated twice: the next run reuses the answers of a run that was stopped.
     pub(crate) fn remembering(&self, model: Arc<dyn AssemblyFunction>) -> Arc<dyn AssemblyFunction> {
         let ones = vec![Power::ONE; model.signature().outputs.len()];
         let store = Arc::clone(&self.stores[1]);
@@ -115,7 +115,7 @@ impl Magnitudes {
         }
     }
 
-    /// The time that the model took for answers that were held back.
+    /// Time that the model needed for answers that were held back.
     pub(crate) fn held_back(&self) -> std::time::Duration {
         self.stores.iter().map(|store| store.took()).sum()
     }

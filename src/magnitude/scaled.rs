@@ -1,4 +1,4 @@
-//! A function whose outputs are divided by powers of two.
+//! Function whose outputs are divided by powers of two.
 
 use std::sync::Arc;
 
@@ -11,12 +11,12 @@ use crate::assembly::{
 use crate::warning::Warning;
 use sensitol_numeric::power::Power;
 
-/// A function with every output divided by its power of two.
+/// Function with every output divided by its power of two.
 pub(crate) struct ScaledFunction {
     function: Arc<dyn AssemblyFunction>,
-    /// By output.
+    /// Power of two of each output.
     powers: Arc<[Power]>,
-    /// Answers that were held back when the function was first asked.
+    /// Answers of the first run that were held back.
     store: Arc<Store>,
 }
 

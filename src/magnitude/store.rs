@@ -1,4 +1,4 @@
-//! Answers of a costly function that were held back, until the run that begins anew asks for them.
+//! Store for answers of a costly function that were held back, until the restarted run requests them.
 
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
@@ -6,7 +6,7 @@ use std::time::Duration;
 use crate::assembly::Points;
 use crate::assembly::{Request, Responses};
 
-/// Requests with their answers, each to be taken once.
+/// Requests with their answers, each for one use.
 #[derive(Debug, Default)]
 pub(crate) struct Store {
     kept: Mutex<Vec<Kept>>,
@@ -21,14 +21,14 @@ struct Kept {
 }
 
 impl Store {
-    /// Keeps the answers of a request, and the time that they took.
+    /// Stores the answers of a request, and the time that they needed.
     pub(super) fn keep(&self, request: &Request<'_>, answers: &Responses, took: Duration) {
         let kept = Kept { points: request.points.clone(), outputs: request.outputs.to_vec(), answers: answers.clone() };
         self.kept.lock().unwrap_or_else(PoisonError::into_inner).push(kept);
         *self.took.lock().unwrap_or_else(PoisonError::into_inner) += took;
     }
 
-    /// The answers of this very request; None where it was not asked before, or they were taken.
+    /// Removes and returns the answers of this very request. Returns None if they were never stored, or are already taken.
     pub(super) fn take(&self, request: &Request<'_>) -> Option<Responses> {
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         let same = |one: &Kept| one.outputs == request.outputs && one.points == *request.points;
@@ -36,7 +36,7 @@ impl Store {
         Some(kept.remove(place).answers)
     }
 
-    /// The time that all answers took.
+    /// Time that all answers needed.
     pub(super) fn took(&self) -> Duration {
         *self.took.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -1,4 +1,4 @@
-//! The watch for outputs of extreme size among the first answers of a function.
+//! Watch for outputs of extreme size among the first answers of a function.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -13,48 +13,48 @@ use crate::warning::Warning;
 use sensitol_numeric::power::Power;
 use sensitol_numeric::time::Instant;
 
-/// Points whose values say how large an output is. One alone may lie where a characteristic happens to vanish, as a deviation does at the
-/// nominal dimensions.
+/// Points with values that are needed to judge the size of an output. A single point may be one where a characteristic vanishes, as a
+/// deviation does at the nominal dimensions.
 const ENOUGH: usize = 2;
 
-/// The sizes of the first values of every output.
+/// Sizes of the first values of every output.
 #[derive(Debug)]
 pub(crate) struct Watch {
-    /// Whether enough was seen.
+    /// True if enough values were seen.
     settled: AtomicBool,
-    /// Whether some output is of extreme size.
+    /// True if some output is of extreme size.
     extreme: AtomicBool,
     seen: Mutex<Seen>,
 }
 
 #[derive(Debug)]
 struct Seen {
-    /// Points with a value.
+    /// Number of points with a value.
     points: usize,
-    /// The greatest size of each output.
+    /// Greatest absolute value of each output.
     sizes: Vec<f64>,
 }
 
 impl Watch {
-    /// Of a function with so many outputs, of which nothing is known.
+    /// Watch for a function with this number of outputs, without any value yet.
     pub(super) fn new(outputs: usize) -> Self {
         let seen = Mutex::new(Seen { points: 0, sizes: vec![0.0; outputs] });
         Self { settled: AtomicBool::new(false), extreme: AtomicBool::new(false), seen }
     }
 
-    /// Whether some output is of extreme size, so that the run is to begin anew.
+    /// True if some output is of extreme size, so that the run must start again.
     pub(crate) fn is_extreme(&self) -> bool {
         self.extreme.load(Ordering::Relaxed)
     }
 
-    /// Takes the answers seen so far for all that will be seen: whether some output is of extreme size.
+    /// Ends the watch with the answers seen so far. Returns true if some output is of extreme size.
     pub(crate) fn settle(&self) -> bool {
         self.settled.store(true, Ordering::Relaxed);
         let extreme = self.powers().iter().any(|power| !power.is_one());
         self.extreme.fetch_or(extreme, Ordering::Relaxed) || extreme
     }
 
-    /// The power of two of every output, by its greatest value so far.
+    /// Power of two of every output, by its greatest value so far.
     pub(crate) fn powers(&self) -> Vec<Power> {
         let seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
         seen.sizes.iter().map(|&size| Power::of(size)).collect()
@@ -64,7 +64,7 @@ impl Watch {
         self.settled.load(Ordering::Relaxed)
     }
 
-    /// Looks at the values of these outputs.
+    /// Updates the sizes with the values of these outputs.
     fn look(&self, outputs: &[usize], answers: &Responses) {
         let enough = {
             let mut seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
@@ -81,12 +81,11 @@ impl Watch {
     }
 }
 
-/// A function whose first answers are looked at. Once an output is of extreme size, nothing more is answered: every point stays open, as in a run that
-/// is stopped.
+/// Function whose first answers are watched. Once an output is of extreme size, every point stays unanswered, as in a run that is stopped.
 pub(crate) struct WatchedFunction {
     function: Arc<dyn AssemblyFunction>,
     watch: Arc<Watch>,
-    /// Whether its outputs are those that are watched, rather than those of a model within.
+    /// True if the outputs are watched, false for a model within the watched function.
     looks: bool,
     store: Arc<Store>,
 }
@@ -96,7 +95,7 @@ impl WatchedFunction {
         Self { function, watch, looks: true, store }
     }
 
-    /// A model within the watched function, of which only the answers are kept.
+    /// Model within the watched function, whose answers are only stored.
     pub(super) fn within(function: Arc<dyn AssemblyFunction>, watch: Arc<Watch>, store: Arc<Store>) -> Self {
         Self { function, watch, looks: false, store }
     }
@@ -137,7 +136,7 @@ impl AssemblyFunction for WatchedFunction {
         run: &Run<'_>,
         out: &mut Responses,
     ) -> bool {
-        // Answers that are to be looked at come by `evaluate`.
+        // While answers are watched, they must come through `evaluate`.
         let settled = self.watch.is_settled() && !self.watch.is_extreme();
         settled && self.function.evaluate_columns(rows, columns, outputs, run, out)
     }

@@ -1,53 +1,53 @@
-//! One dimension's nodes as numbers that a model can be given.
+//! Axis of one dimension: its nodes as values for the model.
 
 use super::nodes::{MovedNode, Nodes, Reaches, Spread, Tail, nearest, values};
 use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::power::Power;
 
-/// A place on an axis: the value, and how many sigmas it really lies off the mean.
+/// Place on an axis: the value, and its actual distance from the mean in sigmas.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Node {
-    /// The value that the assembly function is given.
+    /// Value passed to the assembly function.
     pub x: f64,
-    /// `(x - mean)/sigma`, of the rounded `x`: differences are divided by the realised step.
+    /// Place `(x - mean)/sigma` of the rounded `x`: differences are divided by the realised step.
     pub u: f64,
 }
 
-/// The nodes of one dimension, those that may be needed in place of others included.
+/// Nodes of one dimension, including replacements for nodes at which the model fails.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
-    /// The mean.
+    /// Mean of the dimension.
     pub mean: f64,
-    /// Sigma; for a dimension that does not vary, the step of its sensitivity.
+    /// Sigma of the dimension. Without variation, the step of its sensitivity.
     pub scale: f64,
-    /// All nodes, each value once.
+    /// Nodes of the axis, each value once.
     pub nodes: Vec<Node>,
-    /// For every node of the plan, ascending: itself, then its replacements in the order in which they are tried.
+    /// Slots: for every node of the plan, ascending, the node itself and its replacements in the order in which they are tried.
     pub slots: Vec<Vec<u32>>,
-    /// The slots on the left and on the right at which pairs stand: those next to the mean when the plan was made.
+    /// Slots on the left and on the right at which pairs are evaluated: those next to the mean when the plan was made.
     pub inner: [Option<Vec<u32>>; 2],
-    /// Nodes that would have lain outside the support.
+    /// Nodes that would have been outside the support.
     pub moved: Vec<MovedNode>,
-    /// A tail that is too long for the nodes.
+    /// Tail that is too long for the nodes. None if it is not.
     pub tail: Option<Tail>,
-    /// The values that occur, where each has a probability of its own.
+    /// Values of a discrete distribution. Empty if the distribution has a density.
     pub(super) values: Vec<f64>,
 }
 
-/// The replacements of a node at which the model failed: half its distance, then a quarter.
+/// Distances of the replacements of a failed node, as parts of its own distance.
 const REPLACEMENTS: [f64; 2] = [0.5, 0.25];
-/// A node so near to a value that occurs, in sigmas, is that value but for rounding.
+/// Greatest distance, in sigmas, of a node from a value of a discrete distribution that is taken as rounding.
 const SAME: f64 = 1e-9;
-/// The step of a sensitivity without tolerance, relative to the larger of the nominal and 1; of a nominal of extreme size relative to itself.
+/// Step of a sensitivity without tolerance, relative to the larger of the nominal and 1, or to the nominal itself if its size is extreme.
 const SENSITIVITY_STEP: f64 = 1e-4;
 
 impl Axis {
-    /// The axis of a dimension that varies.
+    /// Axis of a dimension that varies.
     pub(crate) fn varying(dimension: &Dimension, spread: Spread, step: Option<f64>) -> Self {
         Self::varying_with(dimension, spread, step, &mut Reaches::default())
     }
 
-    /// The same, with what is known of dimensions before.
+    /// Axis of a dimension that varies, with the reaches computed for earlier dimensions.
     pub(super) fn varying_with(
         dimension: &Dimension,
         spread: Spread,
@@ -75,11 +75,11 @@ impl Axis {
         axis.with_inner()
     }
 
-    /// Two nodes more, so that the axis has five with the mean; whether there are such. Evaluated points stay, and pairs stand
-    /// where they stood.
+    /// Adds two nodes, so that the axis has five with the mean. Returns false if there are no suitable nodes. Evaluated points remain in
+    /// use, and pairs keep their nodes.
     ///
-    /// On either side the one of the matched five-point nodes that lies farther from the node that there is. Where the
-    /// tail is too long for a quartic, or the five do not lie two on either side, all four are new.
+    /// On either side, the added node is the one of the matched five-point nodes that lies farther from the present node. If the tail is
+    /// too long for a quartic, or the matched nodes are not two on either side, all four are new.
     pub(super) fn refine(&mut self, dimension: &Dimension, step: Option<f64>) -> bool {
         let Some(distribution) = dimension.distribution().filter(|_| self.slots.len() == 2) else { return false };
         let five = match dimension.step().or(step) {
@@ -114,10 +114,10 @@ impl Axis {
         self
     }
 
-    /// The axis of a dimension that does not vary, for its sensitivity alone.
+    /// Axis of a dimension that does not vary, used for its sensitivity only.
     pub(super) fn fixed(dimension: &Dimension, spread: Spread) -> Self {
         let nominal = dimension.nominal();
-        // A nominal value of extreme size has a unit of its own.
+        // Use a nominal value of extreme size as its own scale.
         let scale = SENSITIVITY_STEP * nominal.abs().max(Power::of(nominal).times(1.0));
         let mut axis = Self { mean: nominal, scale, ..Self::still(dimension) };
         match spread {
@@ -128,7 +128,7 @@ impl Axis {
         axis
     }
 
-    /// A dimension that stays where it is.
+    /// Axis of a dimension that is not moved.
     pub(super) fn still(dimension: &Dimension) -> Self {
         let mean = dimension.mean();
         let (nodes, slots, moved) = (Vec::new(), Vec::new(), Vec::new());
@@ -136,8 +136,8 @@ impl Axis {
         Self { mean, scale: 0.0, nodes, slots, inner: [None, None], moved, tail: None, values }
     }
 
-    /// The value that occurs next to a place, on its side of the mean; the place itself at the mean, and of a dimension that may have any
-    /// value.
+    /// Value of a discrete distribution that is nearest to `x`, on the same side of the mean. Returns `x` itself if it is the mean, or if
+    /// the distribution has a density.
     pub(crate) fn nearest_value(&self, x: f64) -> f64 {
         if x == self.mean {
             return x;
@@ -148,14 +148,14 @@ impl Axis {
         place.map_or(x, |place| self.values[place])
     }
 
-    /// A value that occurs for one that only rounding separates from it.
+    /// Replaces `x` by the value of a discrete distribution that it differs from by rounding only.
     pub(super) fn occurring(&self, x: f64) -> f64 {
         let after = self.values.partition_point(|&value| value < x);
         let beside = self.values[after.saturating_sub(1)..].iter().take(2);
         beside.copied().find(|value| (value - x).abs() <= SAME * self.scale).unwrap_or(x)
     }
 
-    /// The distance of the nearest node from the mean, in the dimension's unit.
+    /// Distance of the nearest node from the mean, in the dimension's unit.
     pub(crate) fn nearest_step(&self) -> f64 {
         let nodes = self.slots.iter().map(|slot| self.nodes[slot[0] as usize].u.abs());
         self.scale * nodes.fold(f64::INFINITY, f64::min)
@@ -167,7 +167,7 @@ impl Axis {
         self.slots.push(slot);
     }
 
-    /// The node of this value, a new one if need be; None at the mean itself.
+    /// Index of the node of this value, which is added if it is new. Returns None for the mean.
     pub(super) fn at_value(&mut self, x: f64) -> Option<u32> {
         (x != self.mean).then(|| self.node(x))
     }
@@ -180,7 +180,7 @@ impl Axis {
         }
     }
 
-    /// A node of a value that is not a node yet.
+    /// Adds a node of a value that has none yet, and returns its index.
     pub(super) fn open_node(&mut self, x: f64) -> u32 {
         let index = u32::try_from(self.nodes.len()).expect("fewer than four billion nodes on an axis");
         self.nodes.push(Node { x, u: (x - self.mean) / self.scale });
@@ -188,7 +188,7 @@ impl Axis {
     }
 }
 
-/// The one of two places that lies farther from a third on the same side, by their ratio.
+/// Place of two that lies farther from a third on the same side, by their ratio.
 fn farther(from: f64, of: [f64; 2]) -> f64 {
     let ratio = |u: f64| (u / from).max(from / u);
     if ratio(of[1]) > ratio(of[0]) { of[1] } else { of[0] }

@@ -1,4 +1,4 @@
-//! Points of the dimensions' own distribution, at which a surrogate is put to the test.
+//! Check points: points of the dimensions' own distribution, at which a surrogate is compared with the model.
 
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
@@ -9,21 +9,23 @@ use sensitol_numeric::correlation::Correlation;
 use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::distribution::{Probability, standard_normal};
 
-/// The points are the same for every study of as many dimensions, and no seed of anybody's.
+/// Seed of the check points. They are the same for every study with the same number of dimensions, and independent of the user's seed.
 const KEY: u64 = 0x5e_75_17_01;
 
-/// Orders of a dimension's levels of which the best is taken, beside so many dimensions before it.
+/// Random orders of the levels of a dimension, of which the best is chosen.
 const CANDIDATES: usize = 24;
+/// Preceding dimensions that the order of a dimension's levels is compared with.
 const NEIGHBOURS: usize = 32;
-/// Where in the outermost interval, counted from the end, a normal variable has the square that it has there on average.
+/// Place in the outermost interval, as a part of it from the outer end, at which the square of a normal variable equals its mean over the
+/// interval.
 const OUTERMOST: f64 = 0.36;
 
-/// Pairs of points of the joint distribution, the second of each at the mirrored probabilities of the first.
+/// Pairs of points of the joint distribution. The second point of each pair lies at the mirrored probabilities of the first.
 ///
-/// A Latin hypercube: along every dimension the `2 pairs` points fall into `2 pairs` different intervals of equal
-/// probability, so that few of them reach far out along every dimension. For symmetric distributions the second point is the first
-/// mirrored at the means, and half the sum and half the difference of what is seen there are its even and its odd part.
-/// Dimensions known by moments alone stand at the nodes of their rule. `set` tells one such set from another.
+/// A Latin hypercube: along every dimension the `2 pairs` points fall into `2 pairs` different intervals of equal probability, so that few
+/// of them reach far out along every dimension. For symmetric distributions the second point is the first mirrored at the means. Half the
+/// sum and half the difference of the values there are then the even and the odd part. Dimensions known by moments alone are placed at the
+/// nodes of their rule. Each number `set` gives another set of points.
 pub(crate) fn scattered(
     plan: &mut DifferencePlan,
     dimensions: &[Dimension],
@@ -42,19 +44,19 @@ pub(crate) fn scattered(
     (0..pairs).map(|pair| [place(plan, pair, false), place(plan, pair, true)]).collect()
 }
 
-/// For every position the levels of the first point of each pair.
+/// Levels of the first point of each pair, for every position.
 fn spread(positions: usize, set: u64, pairs: usize) -> Vec<Vec<f64>> {
     let mut levels: Vec<Vec<f64>> = Vec::with_capacity(positions);
     let mut places: Vec<Vec<f64>> = Vec::with_capacity(positions);
     for position in 0..positions {
-        // A dimension's levels do not depend on how many follow it.
+        // Seed by position, so that the levels of a dimension do not depend on the number of dimensions after it.
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(KEY ^ (set << 48) ^ ((position as u64) << 16));
         let mut best: Option<(f64, Vec<f64>, Vec<f64>)> = None;
         for _ in 0..CANDIDATES {
             let mut strata: Vec<usize> = (0..pairs).collect();
             strata.shuffle(&mut rng);
             let level = |stratum: usize| {
-                // In the first set at the root mean square of a normal's interval, so that squares have the right mean.
+                // Place the first set at the root mean square of a normal's interval, so that squares have the right mean.
                 let within = match (set, stratum) {
                     (0, 0) => OUTERMOST,
                     (0, _) => 0.5,
@@ -78,7 +80,7 @@ fn spread(positions: usize, set: u64, pairs: usize) -> Vec<Vec<f64>> {
     levels
 }
 
-/// How far the products with other dimensions are from what they are on average: mean 0, mean square 1.
+/// Deviation of the products with other dimensions from their expected mean 0 and mean square 1.
 fn crowding(place: &[f64], others: &[Vec<f64>]) -> f64 {
     let n = place.len() as f64;
     let of = |other: &Vec<f64>| {
@@ -88,7 +90,7 @@ fn crowding(place: &[f64], others: &[Vec<f64>]) -> f64 {
     others.iter().map(of).sum()
 }
 
-/// The dimensions' values at these levels of their own distribution, those that vary together made to do so.
+/// Values of the dimensions at these levels of their own distributions, made dependent if they are correlated.
 fn values(
     plan: &DifferencePlan,
     dimensions: &[Dimension],

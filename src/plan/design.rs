@@ -1,4 +1,4 @@
-//! A design: points that are all known beforehand and are evaluated in one stage.
+//! Design: points that are all known in advance and are evaluated in one stage.
 
 use std::ops::Deref;
 
@@ -14,23 +14,23 @@ use sensitol_numeric::correlation::Correlation;
 use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::surrogate::{Inputs, shapes};
 
-/// The points of a method that asks for all of them at once.
+/// Plan of a method that needs all of its points at once.
 ///
-/// It begins with the nominal point and, where they are asked for, the steps of dimensions without tolerance; a method
-/// adds its own. A point that is wanted twice is one point, and a coordinate at its mean is none.
+/// It starts with the nominal point and, if requested, the steps of dimensions without tolerance. A method adds its own points. Equal
+/// points are stored once, and coordinates at the mean are left out.
 #[derive(Debug, Clone)]
 pub struct Design {
     geometry: Geometry,
-    /// Nodes of dimensions, by the hashes of their values.
+    /// Nodes of dimensions, keyed by the hashes of their values.
     nodes: HashTable<AtNode>,
     points: Vec<(Point, Purpose)>,
-    /// Places among the points, by their hashes.
+    /// Indices of points, keyed by the hashes of the points.
     wanted: HashTable<u32>,
 }
 
 impl Design {
-    /// For these dimensions, of which every characteristic can depend on those flagged in its row of `depends`. Dimensions
-    /// without tolerance are moved only if `fixed_too`.
+    /// Design for these dimensions. A row of `depends` flags the dimensions that a characteristic can depend on. Dimensions without
+    /// tolerance are moved only if `fixed_too`.
     pub(crate) fn new(
         dimensions: &[Dimension],
         correlation: Option<&Correlation>,
@@ -66,7 +66,7 @@ impl Design {
         design
     }
 
-    /// The point at which these dimensions have these values and all others their means; it is not wanted yet.
+    /// Point at which these dimensions have these values and all others their means. It is not added to the design.
     pub(crate) fn point(&mut self, at: &[(usize, f64)]) -> Point {
         let mut elsewhere = Vec::with_capacity(at.len());
         for &(dimension, x) in at {
@@ -77,13 +77,13 @@ impl Design {
         Point::of(&elsewhere)
     }
 
-    /// Makes room for so many points more.
+    /// Reserves memory for this number of further points.
     pub(crate) fn reserve(&mut self, points: usize) {
         self.wanted.reserve(points, |&place| self.points[place as usize].0.mixed());
         self.points.reserve(points);
     }
 
-    /// Wants a point.
+    /// Adds a point to the design, unless it has the point already.
     pub(crate) fn want(&mut self, point: Point, purpose: Purpose) {
         let Self { points, wanted, .. } = self;
         let hash = point.mixed();
@@ -94,8 +94,8 @@ impl Design {
         }
     }
 
-    /// Makes these values steps of a dimension: those from which its derivatives are taken, and that a plan shows. A value
-    /// that is the mean is not a step.
+    /// Makes these values steps of a dimension, from which its derivatives are computed and which a plan shows. A value equal to the mean
+    /// is not a step.
     pub(crate) fn steps(&mut self, dimension: usize, values: impl IntoIterator<Item = f64>) {
         for x in values {
             if let Some(node) = self.node(dimension, x) {
@@ -104,19 +104,19 @@ impl Design {
         }
     }
 
-    /// The pairs of positions on which some characteristic can depend.
+    /// Pairs of positions that some characteristic can depend on.
     pub(crate) fn pairs(&self) -> Vec<(usize, usize)> {
         let n = self.varying.len();
         (0..n).flat_map(|j| (j + 1..n).map(move |k| (j, k))).filter(|&(j, k)| self.matters(j, k)).collect()
     }
 
-    /// Takes over what an axis of a difference plan knows beside its nodes: what was moved into the support, and a tail.
+    /// Copies the notes of an axis of a difference plan: nodes moved into the support, and a tail.
     pub(crate) fn take_notes(&mut self, dimension: usize, axis: Axis) {
         let own = &mut self.geometry.axes[dimension];
         (own.moved, own.tail) = (axis.moved, axis.tail);
     }
 
-    /// The node of this value, a new one if need be; None at the mean.
+    /// Index of the node of this value, which is added if it is new. Returns None for the mean.
     fn node(&mut self, dimension: usize, x: f64) -> Option<u32> {
         let axis = &mut self.geometry.axes[dimension];
         let x = axis.occurring(x);

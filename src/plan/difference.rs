@@ -1,4 +1,4 @@
-//! The central-difference plan: the centre, nodes on the axes, and corners for mixed derivatives.
+//! Central-difference plan: the centre, nodes on the axes, and corners for mixed derivatives.
 
 use std::collections::{BTreeMap, HashSet};
 use std::ops::Deref;
@@ -17,29 +17,29 @@ use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::surrogate::{DerivativeOrigin, InputShape, Inputs, Univariate, shapes};
 
-/// The points that a difference plan evaluates.
+/// Layout of a difference plan: its nodes, pairs and stencil.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layout {
-    /// How many nodes an axis has.
+    /// Number of nodes on each axis.
     pub spread: Spread,
-    /// Which mixed derivatives are evaluated.
+    /// Choice of the mixed derivatives that are evaluated.
     pub pairs: PairChoice,
-    /// And how.
+    /// Stencil of the mixed derivatives.
     pub stencil: Stencil,
-    /// A step in sigmas that replaces the matched nodes, unless a dimension has its own.
+    /// Step in sigmas that replaces the matched nodes, unless a dimension has a step of its own.
     pub step: Option<f64>,
-    /// Whether dimensions without tolerance are moved too, to know their sensitivity.
+    /// True if dimensions without tolerance are moved too, for their sensitivity.
     pub fixed_too: bool,
 }
 
-/// A difference plan of one problem. Positions count the dimensions that vary and matter.
+/// Difference plan of one problem. Positions count the dimensions that vary and matter.
 #[derive(Debug, Clone)]
 pub struct DifferencePlan {
     layout: Layout,
     geometry: Geometry,
 }
 
-/// The nodes of one dimension at which its pairs stand.
+/// Nodes of one dimension at which its pairs are evaluated.
 #[derive(Debug, Clone, Copy)]
 struct PairNodes {
     left: Option<u32>,
@@ -47,7 +47,7 @@ struct PairNodes {
 }
 
 impl DifferencePlan {
-    /// For these dimensions, of which every characteristic can depend on those flagged in its row of `depends`.
+    /// Plan for these dimensions. A row of `depends` flags the dimensions that a characteristic can depend on.
     pub(crate) fn new(
         dimensions: &[Dimension],
         correlation: Option<&Correlation>,
@@ -74,7 +74,7 @@ impl DifferencePlan {
         let distributions = varying.iter().filter_map(|&d| dimensions[d].distribution());
         let mut shapes = shapes(distributions);
         for (shape, &d) in shapes.iter_mut().zip(&varying) {
-            // Values where they were evaluated, not where a polynomial through them leads.
+            // Integrate by the values at evaluated nodes, not by a polynomial through them that extrapolates.
             if let Some(rule) = axes[d].tail.as_ref().and_then(|tail| tail.rule.as_ref()) {
                 shape.rule = Arc::new(rule.clone());
             }
@@ -84,8 +84,8 @@ impl DifferencePlan {
         Self { layout, geometry: Geometry { axes, nominal, varying, fixed, inputs, depends } }
     }
 
-    /// Two nodes more on the axis of a dimension that has a pair; whether there are such nodes. `dimension` is the one
-    /// with this index in the problem.
+    /// Adds two nodes to the axis of a dimension that has a pair. Returns false if there are no suitable nodes. `dimension` is the one with
+    /// this index in the problem.
     pub(crate) fn refine(&mut self, dimension: &Dimension, index: usize) -> bool {
         let Geometry { axes, inputs, varying, .. } = &mut self.geometry;
         let refined = axes[index].refine(dimension, self.layout.step);
@@ -96,7 +96,7 @@ impl DifferencePlan {
         refined
     }
 
-    /// Examines these pairs of positions too.
+    /// Adds these pairs of positions to those examined.
     pub(crate) fn examine(&mut self, pairs: impl IntoIterator<Item = (usize, usize)>) {
         let varying = &self.geometry.varying;
         let pairs = pairs.into_iter().map(|(j, k)| (varying[j], varying[k]));
@@ -106,12 +106,12 @@ impl DifferencePlan {
         }
     }
 
-    /// Evaluates every pair at all four corners from now on.
+    /// Switches to the stencil with all four corners for every pair.
     pub(crate) fn use_four_corners(&mut self) {
         self.layout.stencil = Stencil::FourPoint;
     }
 
-    /// The point with these values of dimensions, every other one at its mean.
+    /// Point with these values of dimensions. Every other dimension is at its mean.
     pub(crate) fn point_at(&mut self, values: impl IntoIterator<Item = (usize, f64)>) -> Point {
         let at = values.into_iter().filter_map(|(d, x)| {
             let node = self.geometry.axes[d].at_value(x)?;
@@ -120,7 +120,7 @@ impl DifferencePlan {
         Point::of(&at.collect::<Vec<AtNode>>())
     }
 
-    /// For every position its nodes on the left and on the right at which pairs stand, with their places in sigmas.
+    /// Nodes of every position on the left and on the right at which its pairs are evaluated, with their places in sigmas.
     pub(crate) fn corners(&self, known: &KnownAnswers) -> Vec<[Option<(AtNode, f64)>; 2]> {
         let place =
             |(d, node): (usize, u32)| (AtNode { dimension: d as u32, node }, self.axes[d].nodes[node as usize].u);
@@ -128,7 +128,7 @@ impl DifferencePlan {
         self.varying.iter().zip(&self.pair_nodes(known)).map(both).collect()
     }
 
-    /// Where a point lies, in sigmas: a value for every position.
+    /// Place of a point in sigmas, one value for every position.
     pub(crate) fn standardised(&self, point: &Point) -> Vec<f64> {
         let mut u = vec![0.0; self.varying.len()];
         for at in point.at() {
@@ -139,7 +139,7 @@ impl DifferencePlan {
         u
     }
 
-    /// Every node, and for one at which some characteristic failed the next of its replacements.
+    /// Adds every node, and the next replacement of each node at which some characteristic failed.
     fn add_axes(&self, stage: &mut Builder<'_, impl FnMut(Point, Purpose)>, dimensions: &[usize], purpose: Purpose) {
         for &d in dimensions {
             for slot in &self.axes[d].slots {
@@ -160,7 +160,7 @@ impl DifferencePlan {
         }
     }
 
-    /// Hands out every point of the next stage.
+    /// Passes every point of the next stage to `take`.
     fn each_wanted(&self, known: &KnownAnswers, take: impl FnMut(Point, Purpose)) {
         let mut stage = Builder { known, seen: HashSet::new(), taken: 0, take };
         stage.add(Point::Centre, Purpose::Centre);
@@ -177,7 +177,7 @@ impl DifferencePlan {
         let nodes = self.pair_nodes(stage.known);
         for (j, k) in self.pairs(Some(stage.known)) {
             for &corner in self.layout.stencil.corners(self.opposite(j, k)) {
-                // No two pairs have a point in common; half a million of them need no set.
+                // No two pairs share a point, so half a million of them need no set.
                 if let Some(point) = self.corner(&nodes, j, k, corner).filter(|point| *point != self.nominal) {
                     stage.add_distinct(point, Purpose::Pair);
                 }
@@ -185,7 +185,7 @@ impl DifferencePlan {
         }
     }
 
-    /// Whether one of the two is large where the other is small.
+    /// True if two dimensions are negatively correlated.
     fn opposite(&self, j: usize, k: usize) -> bool {
         self.inputs.correlation().is_some_and(|correlation| correlation.of(j, k) < 0.0)
     }
@@ -197,7 +197,7 @@ impl DifferencePlan {
         Some(Point::of(&[at(j, of_j)?, at(k, of_k)?]))
     }
 
-    /// The pairs examined, as positions `j < k`. The strongest can be told only from what is known of the axes.
+    /// Pairs examined, as positions `j < k`. The strongest pairs require known values on the axes.
     pub(crate) fn pairs(&self, known: Option<&KnownAnswers>) -> Vec<(usize, usize)> {
         match known {
             None => self.pairs_by(None),
@@ -205,7 +205,7 @@ impl DifferencePlan {
         }
     }
 
-    /// The same, from the parts of characteristics by dimension wherever they come from.
+    /// Pairs examined, with the univariate parts by characteristic and dimension from any source.
     pub(crate) fn pairs_by(&self, part: Option<&dyn Fn(usize, usize) -> Option<Univariate>>) -> Vec<(usize, usize)> {
         let n = self.varying.len();
         let all = (0..n).flat_map(|j| (j + 1..n).map(move |k| (j, k)));
@@ -249,7 +249,7 @@ impl DifferencePlan {
         variances.into_iter().map(|variance| variance / total).collect()
     }
 
-    /// One dimension's own part of a characteristic, through all its nodes that have a value; None when none has.
+    /// Univariate part of a characteristic in one dimension, through all its nodes with a value. Returns None if no node has one.
     pub(crate) fn part(&self, known: &KnownAnswers, characteristic: usize, dimension: usize) -> Option<Univariate> {
         if !self.depends[characteristic][dimension] {
             return Some(Univariate::of_coefficients(&[0.0, 0.0]));
@@ -257,7 +257,7 @@ impl DifferencePlan {
         Univariate::through(&self.samples(known, characteristic, dimension)?)
     }
 
-    /// Where pairs stand: the nodes next to the mean, or the replacement at which most characteristics have a value.
+    /// Nodes at which pairs are evaluated: those next to the mean, or the replacement at which most characteristics have a value.
     fn pair_nodes(&self, known: &KnownAnswers) -> Vec<PairNodes> {
         let of_slot = |d: usize, slot: &[u32]| {
             let answered = |node: u32| {
@@ -280,12 +280,11 @@ impl DifferencePlan {
         self.varying.iter().map(nodes).collect()
     }
 
-    /// Mixed derivatives of a characteristic in sigma units, for these pairs; None where no corner has a value, and a
-    /// flag where some corner has none.
+    /// Mixed derivatives of a characteristic in sigma units, for these pairs. A derivative is None if no corner has a value, and flagged if
+    /// some corner has none.
     ///
-    /// With `d = f(j, k) - f(j) - f(k) + f(centre)` at each corner,
-    /// `A_jk = sum of sign(u_j u_k) d / sum of |u_j u_k|` over the corners that have a value: for all of them this is the
-    /// usual formula with unequal steps, for fewer a one-sided one.
+    /// With `d = f(j, k) - f(j) - f(k) + f(centre)` at each corner, `A_jk = sum of sign(u_j u_k) d / sum of |u_j u_k|` over the corners
+    /// with a value. For all corners this is the usual formula with unequal steps, for fewer a one-sided one.
     pub(crate) fn mixed(
         &self,
         known: &KnownAnswers,
@@ -294,7 +293,7 @@ impl DifferencePlan {
     ) -> Vec<Option<Mixed>> {
         let nodes = self.pair_nodes(known);
         let Some(centre) = known.value(&Point::Centre, characteristic) else { return vec![None; pairs.len()] };
-        // Each axis value is needed by N - 1 pairs: looked up once.
+        // Look each axis value up once, since N - 1 pairs need it.
         let on_axis: Vec<[Option<(f64, f64)>; 2]> = (0..self.varying.len())
             .map(|j| {
                 [Side::Left, Side::Right].map(|side| self.axis_value(known, characteristic, j, nodes[j].on(side)?))
@@ -319,12 +318,12 @@ impl DifferencePlan {
             }
             (found > 0).then(|| Mixed { complete: found == corners.len(), ..Mixed::evaluated(sum / weight) })
         };
-        // Looking two points up in a million takes most of the time.
+        // Work in parallel, since looking two points up in a million takes most of the time.
         pairs.par_iter().map(mixed).collect()
     }
 
-    /// For every pair its corners, where they have values, the two of the stencil of two points first: the two
-    /// places in sigmas, and the difference of which [`mixed`](Self::mixed) is made.
+    /// Corners of every pair, if they have values, with those of the two-point stencil first. A corner holds its two places in sigmas, and
+    /// the difference that [`mixed`](Self::mixed) averages.
     pub(crate) fn twists(
         &self,
         known: &KnownAnswers,
@@ -346,7 +345,7 @@ impl DifferencePlan {
         pairs.iter().map(twist).collect()
     }
 
-    /// The node in sigmas and the value there.
+    /// Place of a node in sigmas, and the value there.
     fn axis_value(
         &self,
         known: &KnownAnswers,
@@ -395,7 +394,7 @@ impl Plan for DifferencePlan {
     fn next(&self, known: &KnownAnswers) -> Option<Stage> {
         let mut stage = Stage::default();
         let whole = self.cost();
-        // Every point of a plan of all pairs is known: they need not be looked up one by one.
+        // Return early for a plan of all pairs whose points are all known: looking them up one by one takes long.
         if self.layout.pairs == PairChoice::All && whole == (known.points().len(), 1) && !known.has_failures() {
             return None;
         }
@@ -409,7 +408,7 @@ impl Plan for DifferencePlan {
     fn first(&self) -> BTreeMap<Purpose, usize> {
         let mut counts = BTreeMap::new();
         let (mut purpose, mut points) = (Purpose::Centre, 0);
-        // Most points come after one of the same purpose.
+        // Count runs of equal purposes, since most points follow one of the same purpose.
         self.each_wanted(&KnownAnswers::nothing(self.depends.len()), |_, of| {
             if of != purpose {
                 *counts.entry(purpose).or_default() += points;
@@ -422,32 +421,32 @@ impl Plan for DifferencePlan {
     }
 }
 
-/// A corner of a pair: both places in sigmas, and `f(j, k) - f(j) - f(k) + f(centre)`.
+/// Corner of a pair: both places in sigmas, and `f(j, k) - f(j) - f(k) + f(centre)`.
 pub type Corner = (f64, f64, f64);
 
-/// A mixed derivative in sigma units.
+/// Mixed derivative in sigma units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mixed {
-    /// `A_jk = sd_j sd_k d2F/dx_j dx_k`.
+    /// Value `A_jk = sd_j sd_k d2F/dx_j dx_k`.
     pub value: f64,
-    /// Whether every corner had a part in it.
+    /// True if every corner of the stencil had a value.
     pub complete: bool,
-    /// Its source.
+    /// Origin of the derivative.
     pub origin: DerivativeOrigin,
 }
 
 impl Mixed {
-    /// A derivative of a formula.
+    /// Derivative of a formula.
     pub(crate) fn exact(value: f64) -> Self {
         Self { value, complete: true, origin: DerivativeOrigin::Exact }
     }
 
-    /// A derivative from values at points of its own.
+    /// Derivative from values at points of its own.
     pub(crate) fn evaluated(value: f64) -> Self {
         Self { value, complete: true, origin: DerivativeOrigin::Evaluated }
     }
 
-    /// An estimate from what many pairs have in common; 0 where nothing was found.
+    /// Estimate by a fit that many pairs share, or 0.
     pub(crate) fn screened(value: f64) -> Self {
         Self { value, complete: true, origin: DerivativeOrigin::Screened }
     }
@@ -462,7 +461,7 @@ impl PairNodes {
     }
 }
 
-/// Hands out points that are neither known nor handed out yet.
+/// Passes on points that are neither known nor passed on yet.
 struct Builder<'k, T> {
     known: &'k KnownAnswers,
     seen: HashSet<Point>,
@@ -471,7 +470,7 @@ struct Builder<'k, T> {
 }
 
 impl<T: FnMut(Point, Purpose)> Builder<'_, T> {
-    /// A point that cannot have been handed out yet.
+    /// Adds a point that cannot have been added before.
     #[inline(always)]
     fn add_distinct(&mut self, point: Point, purpose: Purpose) {
         if !self.known.tried(&point) {

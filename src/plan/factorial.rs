@@ -1,15 +1,15 @@
-//! Two-level factorial designs, full ones and regular fractions of resolution V.
+//! Two-level factorial designs: full ones and regular fractions of resolution V.
 
 use std::collections::HashSet;
 
-/// The corners of a regular two-level design in `n` dimensions, as few as resolution V takes in the order below: for every
-/// corner whether each dimension is up.
+/// Corners of a regular two-level design in `n` dimensions, the fewest that resolution V allows in the order below. A corner holds true for
+/// each dimension that is up.
 ///
-/// Every dimension is a product of some of `r` signs, named by a binary number of which they are the digits. A number is taken,
-/// from 1 upward, when it is none of those before it, nor the sum without carry of two or three of them; so slopes and
-/// interactions of two dimensions are all told apart. These are the Walsh indices of Sanchez and Sanchez (2005), "Very large
-/// fractional factorial and central composite designs", ACM Transactions on Modeling and Computer Simulation 15, table 2: 1, 2, 4, 8,
-/// 15, 16, 32, 51, 64, 85, 106, 128 and so on. Up to 17 dimensions no regular design of this resolution is smaller.
+/// Every dimension is a product of some of `r` signs, given by the binary digits of a number. A number is taken, from 1 upward, if it is
+/// none of those before it, nor the sum without carry of two or three of them. Thus all slopes and all interactions of two dimensions can
+/// be separated. These are the Walsh indices of Sanchez and Sanchez (2005), "Very large fractional factorial and central composite
+/// designs", ACM Transactions on Modeling and Computer Simulation 15, table 2: 1, 2, 4, 8, 15, 16, 32, 51, 64, 85, 106, 128 and so on. Up
+/// to 17 dimensions no regular design of this resolution is smaller.
 ///
 /// ```
 /// use sensitol::plan::corners;

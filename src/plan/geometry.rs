@@ -1,11 +1,11 @@
-//! Where a plan's points can stand: the dimensions that are moved, their nodes, and who depends on them.
+//! Geometry of a plan: the dimensions that are moved, their nodes, and the characteristics that depend on them.
 
 use super::axis::Axis;
 use super::known_answers::KnownAnswers;
 use super::point::{AtNode, Point};
 use sensitol_numeric::surrogate::Inputs;
 
-/// The common part of plans of every kind. Positions count the dimensions that vary and matter.
+/// Common part of plans of every kind. Positions count the dimensions that vary and matter.
 #[derive(Debug, Clone)]
 pub struct Geometry {
     pub(super) axes: Vec<Axis>,
@@ -13,65 +13,65 @@ pub struct Geometry {
     pub(super) varying: Vec<usize>,
     pub(super) fixed: Vec<usize>,
     pub(super) inputs: Inputs,
-    /// For every characteristic, whether it can depend on each dimension.
+    /// Row per characteristic: true for each dimension that it can depend on.
     pub(super) depends: Vec<Vec<bool>>,
 }
 
 impl Geometry {
-    /// The dimensions that vary and on which some characteristic can depend: N of them.
+    /// Dimensions that vary and that some characteristic can depend on: N of them.
     pub fn varying(&self) -> &[usize] {
         &self.varying
     }
 
-    /// The dimensions of which derivatives are wanted: those that vary, and those without tolerance if they were asked for.
+    /// Dimensions with derivatives: those that vary, and those without tolerance if they were requested.
     pub fn moved(&self) -> Vec<usize> {
         self.varying.iter().chain(&self.fixed).copied().collect()
     }
 
-    /// The distributions of those that vary, as far as moments need them, and how they vary together.
+    /// Shapes of the varying dimensions for the moments, and their correlation.
     pub fn inputs(&self) -> &Inputs {
         &self.inputs
     }
 
-    /// One dimension's nodes.
+    /// Axis of a dimension.
     pub fn axis(&self, dimension: usize) -> &Axis {
         &self.axes[dimension]
     }
 
-    /// The point at which every dimension has its nominal value.
+    /// Point at which every dimension has its nominal value.
     pub fn nominal(&self) -> &Point {
         &self.nominal
     }
 
-    /// The coordinates of the means.
+    /// Coordinates of the means.
     pub fn centre(&self) -> Vec<f64> {
         self.axes.iter().map(|axis| axis.mean).collect()
     }
 
-    /// Whether a characteristic can depend on a dimension.
+    /// True if a characteristic can depend on a dimension.
     pub fn depends(&self, characteristic: usize, dimension: usize) -> bool {
         self.depends[characteristic][dimension]
     }
 
-    /// Whether a characteristic can depend on the pair of dimensions at these positions.
+    /// True if a characteristic can depend on both dimensions at these positions.
     pub fn joint(&self, characteristic: usize, j: usize, k: usize) -> bool {
         let row = &self.depends[characteristic];
         row[self.varying[j]] && row[self.varying[k]]
     }
 
-    /// Whether some characteristic can depend on the pair of dimensions at these positions.
+    /// True if some characteristic can depend on both dimensions at these positions.
     pub(super) fn matters(&self, j: usize, k: usize) -> bool {
         (0..self.depends.len()).any(|c| self.joint(c, j, k))
     }
 
-    /// How many pairs of varying dimensions matter to a characteristic.
+    /// Number of pairs of varying dimensions that a characteristic can depend on.
     pub(crate) fn pairs_of(&self, characteristic: usize) -> usize {
         let row = &self.depends[characteristic];
         let own = self.varying.iter().filter(|&&d| row[d]).count();
         own * own.saturating_sub(1) / 2
     }
 
-    /// How many pairs of varying dimensions matter to some characteristic.
+    /// Number of pairs of varying dimensions that some characteristic can depend on.
     pub fn possible_pairs(&self) -> usize {
         let n = self.varying.len();
         if self.depends.iter().any(|row| self.varying.iter().all(|&d| row[d])) {
@@ -80,13 +80,13 @@ impl Geometry {
         (0..n).map(|j| (j + 1..n).filter(|&k| self.matters(j, k)).count()).sum()
     }
 
-    /// The point at which one dimension stands at a node, every other one at its mean.
+    /// Point at which one dimension is at a node, and every other one at its mean.
     pub(super) fn on_axis(&self, dimension: usize, node: u32) -> Point {
         Point::One([AtNode { dimension: dimension as u32, node }])
     }
 
-    /// How far a characteristic lies above its centre at the nodes of one dimension, by their places in sigmas, ascending;
-    /// None without a value at the means.
+    /// Values of a characteristic at the nodes of one dimension minus its centre, with their places in sigmas, ascending. Returns None if there
+    /// is no value at the means.
     pub fn samples(&self, known: &KnownAnswers, characteristic: usize, dimension: usize) -> Option<Vec<(f64, f64)>> {
         let centre = known.value(&Point::Centre, characteristic)?;
         let axis = self.axis(dimension);

@@ -1,8 +1,7 @@
-//! The next points to evaluate, and why: pure functions from what is known to the next stage of points.
+//! Evaluation plans: pure functions from known answers to the next stage of points.
 //!
-//! A plan evaluates nothing. It names points by dimension and node, so that a point that serves two purposes is one
-//! point, and says at every step which points it still lacks; a point that failed is simply not known, and the plan
-//! asks for what can replace it.
+//! A plan evaluates nothing. It names points by dimension and node, so that a point with two purposes is one point. At every step it
+//! returns the points that are still missing. A failed point has no known value, and the plan adds points that can replace it.
 
 mod axis;
 mod checks;
@@ -32,21 +31,21 @@ use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::ops::Deref;
 
-/// The evaluations that a method asks for: points named by dimension and node, stage after stage.
+/// Evaluations that a method needs: points named by dimension and node, stage after stage.
 ///
-/// A `DifferencePlan` is one, and so is a `Design`, whose points are all known beforehand. Everything that is known without a point
-/// is its `Geometry`.
+/// Implementations are `DifferencePlan` and `Design`, whose points are all known in advance. The `Geometry` of a plan holds everything that
+/// needs no evaluated point.
 pub trait Plan: Debug + Send + Sync {
-    /// Where its points can stand.
+    /// Places that the points of the plan can have.
     fn geometry(&self) -> &Geometry;
 
-    /// How many points there are in all, and in how many stages, if none fails.
+    /// Number of all points and of stages, if no point fails.
     fn cost(&self) -> (usize, usize);
 
-    /// The next points, or None when nothing is left that could help.
+    /// Next points. Returns None if no further point could help.
     fn next(&self, known: &KnownAnswers) -> Option<Stage>;
 
-    /// How many points the first stage has for each purpose.
+    /// Number of points of the first stage for each purpose.
     fn first(&self) -> BTreeMap<Purpose, usize> {
         let mut counts = BTreeMap::new();
         let stage = self.next(&KnownAnswers::nothing(self.geometry().depends.len())).unwrap_or_default();
@@ -55,7 +54,7 @@ pub trait Plan: Debug + Send + Sync {
     }
 }
 
-/// A plan is read as its geometry, whatever its kind.
+/// Dereferences a plan of any kind to its geometry.
 impl Deref for dyn Plan + '_ {
     type Target = Geometry;
 

@@ -1,86 +1,87 @@
-//! Where on its axis a dimension is evaluated, in units of its sigma about its mean.
+//! Nodes: places on the axis of a dimension at which it is evaluated, in its sigmas about its mean.
 //!
-//! A dimension whose values all have a probability of their own, as two values or measured ones have, is evaluated at such values and at its
-//! mean: a polynomial through both of two values is exact.
+//! A discrete dimension, with two values or measured ones, is evaluated at some of its values and at its mean. For a dimension of two
+//! values, a polynomial through both is exact.
 
 use sensitol_numeric::distribution::{Distribution, Jacobi, Rule};
 
-/// How many nodes an axis has beside the mean.
+/// Number of nodes of an axis beside the mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Spread {
-    /// None: derivatives come from elsewhere.
+    /// No node: derivatives come from elsewhere.
     Bare,
-    /// One, the upper one of a pair: slopes come with the values.
+    /// One node, the upper one of a pair: the model returns slopes with its values.
     Upper,
-    /// Two: slope and curvature.
+    /// Two nodes, for slope and curvature.
     Pair,
-    /// Four: up to the fourth derivative.
+    /// Four nodes, for derivatives up to the fourth.
     Five,
 }
 
-/// The nodes that suit a distribution, and what had to be moved.
+/// Nodes that suit a distribution, and the moves that its support required.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Nodes {
-    /// In sigmas, ascending, without the mean.
+    /// Places in sigmas, ascending, without the mean.
     pub u: Vec<f64>,
-    /// Nodes that would have lain outside the support.
+    /// Nodes that would have been outside the support.
     pub moved: Vec<MovedNode>,
-    /// How long the tail is, where it is too long for the nodes.
+    /// Tail that is too long for the nodes. None if it is not.
     pub tail: Option<Tail>,
 }
 
-/// A tail that reaches so far beyond the nodes that a polynomial through them says little about high moments.
+/// Tail that reaches so far beyond the nodes that a polynomial through them is inaccurate for high moments.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tail {
-    /// How far the moments of the distribution reach, in sigmas: the farthest node of its own nine-point Gauss rule.
+    /// Distance in sigmas up to which values matter for the moments: the farthest node of the distribution's nine-point Gauss rule.
     pub reach: f64,
-    /// The farthest node.
+    /// Distance of the farthest node from the mean, in sigmas.
     pub farthest: f64,
-    /// A rule with positive weights at five-point nodes, which integrates what was evaluated there instead of the quartic
-    /// through it.
+    /// Rule with positive weights at five-point nodes. It integrates the evaluated values directly, instead of the quartic through them.
     pub rule: Option<Rule>,
 }
 
-/// A node that was moved into the support.
+/// Node that was moved into the support.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MovedNode {
-    /// Where the moments want it, in sigmas.
+    /// Place that the moments require, in sigmas.
     pub from: f64,
-    /// Where it is, in sigmas.
+    /// Place inside the support, in sigmas.
     pub to: f64,
 }
 
-/// A node outside the support goes this far of the way from the mean to the edge.
+/// Place of a node that was moved into the support, as a part of the way from the mean to the edge.
 const INSIDE: f64 = 0.95;
-/// An atom so near to the mean, in sigmas, is there but for rounding.
+/// Greatest distance of an atom from the mean, in sigmas, that is taken as rounding.
 const AT_THE_MEAN: f64 = 1e-9;
-/// Moments alone may want a node farther out than any model should be asked.
+/// Greatest distance of a node from the mean, in sigmas. Moments alone may require a node at which no model should be evaluated.
 const FARTHEST: f64 = 20.0;
-/// Five points keep at least this distance from the mean, where the centre is: chords of a shorter step drown in noise.
+/// Least distance of a node of five from the mean, in sigmas: the noise of the model dominates the slope of a shorter chord.
 const NEAREST: f64 = 0.35;
-/// Nodes of the rule that tells how far a distribution's moments reach: it integrates the fourth power of a quartic.
+/// Nodes of the Gauss rule that gives the reach of a distribution's moments: it integrates the fourth power of a quartic.
 const REACH: usize = 9;
-/// A reach of so many times the farthest node is a long tail. For a normal distribution it is 1.6 with five points and 2.6
-/// with a pair, for an exponential one 2.5 and 8.6. Measured on eight functions (exponentials, sine, root, cube, reciprocal,
-/// arcs), errors of the kurtosis with five points, by the quartic and by the rule: 5e-3 and 5e-2 for the exponential, 0.1 and
-/// 0.07 for a gamma of shape 1/2 (3.1 times), 2 and 0.2 for a lognormal with tau = 1/2 (12 times); mean and sigma are the same.
-/// A parabola has 2 to 10 times the errors of sigma of either.
+/// Least ratio of the reach to the farthest of five nodes that makes a long tail.
+///
+/// The ratio of a normal distribution is 1.6 with five points and 2.6 with a pair, that of an exponential one 2.5 and 8.6. Errors of the
+/// kurtosis with five points were measured on eight functions (exponentials, sine, root, cube, reciprocal, arcs), by the quartic and by the
+/// rule: 5e-3 and 5e-2 for the exponential distribution, 0.1 and 0.07 for a gamma of shape 1/2 (ratio 3.1), 2 and 0.2 for a lognormal with
+/// tau = 1/2 (ratio 12). Mean and sigma are the same by both. A parabola has 2 to 10 times the errors of sigma of either.
 const LONG_FIVE: f64 = 3.0;
+/// Least ratio of the reach to the farther node of a pair that makes a long tail.
 const LONG_PAIR: f64 = 8.0;
 
 impl Nodes {
-    /// The moment-optimal nodes.
+    /// Nodes that are matched to the moments of the distribution.
     ///
-    /// A pair is matched to the moments up to the fourth: `u± = s/2 ± sqrt(f - 3 s^2/4)` with skewness `s` and kurtosis
-    /// `f`, normal ±sqrt 3. Five points are matched to the moments up to the eighth, with the mean among them: for a
-    /// normal the Gauss-Hermite nodes. Where one of these would lie outside the support, or very far out, the other four are
-    /// the nodes of the distribution's four-point Gauss rule, which never do. With fewer than five atoms, or where even that
-    /// is too far out, five points fall back to the pair. Of a distribution of atoms only, nodes are the atoms next to these.
+    /// A pair is matched to the moments up to the fourth: `u± = s/2 ± sqrt(f - 3 s^2/4)` with skewness `s` and kurtosis `f`, normal ±sqrt
+    /// 3. Five points are matched to the moments up to the eighth, with the mean among them: for a normal the Gauss-Hermite nodes. If one
+    /// of these is outside the support, or very far out, the other four are the nodes of the distribution's four-point Gauss rule, which
+    /// lie inside. With fewer than five atoms, or if even that is too far out, five points fall back to the pair. Nodes of a discrete
+    /// distribution are the atoms next to these places.
     pub fn matched(distribution: &dyn Distribution, spread: Spread) -> Self {
         Self::matched_with(distribution, spread, &mut Reaches::default())
     }
 
-    /// The same, with what is known of dimensions before.
+    /// Matched nodes, with the reaches computed for earlier dimensions.
     pub(super) fn matched_with(distribution: &dyn Distribution, spread: Spread, reaches: &mut Reaches) -> Self {
         let (mean, sigma) = (distribution.mean(), distribution.sigma());
         let support = distribution.support().map(|edge| (edge - mean) / sigma);
@@ -115,7 +116,7 @@ impl Nodes {
         Self { u, moved, tail: (reach > long * farthest).then_some(Tail { reach, farthest, rule }) }
     }
 
-    /// At one and, for five points, two times the step on either side.
+    /// Nodes at the step on either side and, for five points, also at two times the step.
     pub(crate) fn stepped(step: f64, spread: Spread) -> Self {
         let u = match spread {
             Spread::Bare => Vec::new(),
@@ -127,22 +128,23 @@ impl Nodes {
     }
 }
 
-/// The values that occur, ascending, where each has a probability of its own; none of a distribution that has a density.
+/// Values of a discrete distribution, ascending. Empty if the distribution has a density.
 pub(super) fn values(distribution: &dyn Distribution) -> Vec<f64> {
-    /// Shares are rounded.
+    /// Least sum of the shares of all atoms, allowing for rounding.
     const WHOLE: f64 = 1.0 - 1e-12;
     let atoms = distribution.probability().map_or_else(Vec::new, |law| law.atoms());
     let all: f64 = atoms.iter().map(|(_, share)| share).sum();
     if all >= WHOLE { atoms.into_iter().map(|(x, _)| x).collect() } else { Vec::new() }
 }
 
-/// The atom nearest to a place, on its side of the mean; None where there is none.
+/// Atom nearest to a place, on its side of the mean. Returns None if there is none.
 pub(super) fn nearest(atoms: &[f64], place: f64) -> Option<f64> {
     let beside = atoms.iter().copied().filter(|u| u.signum() == place.signum() && u.abs() > AT_THE_MEAN);
     beside.min_by(|a, b| (a - place).abs().total_cmp(&(b - place).abs()))
 }
 
-/// Two atoms on either side, those next to these places; None where a side has no two of them that lie apart from each other and the mean.
+/// Two atoms on either side, next to these places. Returns None if a side has no two atoms with enough distance from each other and from
+/// the mean.
 fn four_of(atoms: &[f64], places: &[f64]) -> Option<Vec<f64>> {
     let &[left, inner_left, inner_right, right] = places else { return None };
     let side = |outer: f64, inner: f64| {
@@ -155,13 +157,13 @@ fn four_of(atoms: &[f64], places: &[f64]) -> Option<Vec<f64>> {
     Some([side(left, inner_left)?, side(right, inner_right)?].concat())
 }
 
-/// The rule with these nodes and the mean that matches moments up to the fourth; None where one of its weights is negative.
+/// Rule with these nodes and the mean that matches the moments up to the fourth. Returns None if one of its weights is negative.
 fn rule_at(distribution: &dyn Distribution, u: &[f64]) -> Option<Rule> {
     let moments = distribution.standard_moments();
     let mut nodes: Vec<f64> = u.iter().copied().chain([0.0]).collect();
     nodes.sort_unstable_by(f64::total_cmp);
     let moments = [1.0, 0.0, 1.0, moments.skewness, moments.kurtosis()];
-    // The mean of every polynomial of Lagrange, by its coefficients.
+    // The weight of a node is the mean of its Lagrange polynomial, by its coefficients.
     let weight = |i: usize| {
         let mut coefficients = vec![1.0];
         for j in (0..nodes.len()).filter(|&j| j != i) {
@@ -178,7 +180,7 @@ fn rule_at(distribution: &dyn Distribution, u: &[f64]) -> Option<Rule> {
     weights.iter().all(|&weight| weight >= 0.0).then_some(Rule { nodes, weights })
 }
 
-/// How far the moments of distributions reach: dimensions of one distribution share what takes eigenvalues.
+/// Reaches of the moments of distributions. Equal distributions share the computation of eigenvalues.
 #[derive(Debug, Default)]
 pub(super) struct Reaches(Vec<(Jacobi, f64)>);
 
@@ -196,12 +198,12 @@ impl Reaches {
 
 fn pair(distribution: &dyn Distribution, [lower, upper]: [f64; 2]) -> (Vec<f64>, Vec<MovedNode>) {
     let moments = distribution.standard_moments();
-    // Where there is no such moment, a normal distribution's: a model can be evaluated there.
+    // Replace an infinite moment by that of a normal distribution, so that the model can be evaluated.
     let known = |moment: f64, normal: f64| if moment.is_finite() { moment } else { normal };
     let (s, kurtosis) = (known(moments.skewness, 0.0), known(moments.kurtosis(), 3.0));
     let half = (kurtosis - 0.75 * s * s).sqrt();
     let wanted = [0.5 * s - half, 0.5 * s + half];
-    // The other node goes to s - u, which keeps the third moment, if the support allows.
+    // If the support allows, the other node goes to s - u, which keeps the third moment.
     let within = |u: f64| u.clamp(INSIDE * lower, INSIDE * upper);
     let u = match wanted {
         [left, _] if left <= lower => [within(left), within(s - within(left))],
@@ -211,7 +213,7 @@ fn pair(distribution: &dyn Distribution, [lower, upper]: [f64; 2]) -> (Vec<f64>,
     (u.map(|u| u.clamp(-FARTHEST, FARTHEST)).to_vec(), moved(&wanted, &u, [lower, upper]))
 }
 
-/// Four nodes beside the mean, and the rule with positive weights that they belong to.
+/// Four nodes beside the mean, and the rule with positive weights that they belong to. Returns None if they do not suit the support.
 fn five(distribution: &dyn Distribution, [lower, upper]: [f64; 2]) -> Option<(Vec<f64>, Rule)> {
     let jacobi = distribution.jacobi(4);
     let usable = |u: &[f64]| {
@@ -234,7 +236,7 @@ fn five(distribution: &dyn Distribution, [lower, upper]: [f64; 2]) -> Option<(Ve
     (usable(&u) && u.windows(2).all(|pair| pair[1] - pair[0] >= 0.5 * NEAREST)).then_some((u, rule))
 }
 
-/// The nodes that were wanted outside the support; a partner that goes with one of them is not a fault of its own.
+/// Nodes that are outside the support before the move. A partner that moves with one of them does not count.
 fn moved(wanted: &[f64], u: &[f64], [lower, upper]: [f64; 2]) -> Vec<MovedNode> {
     let outside = |from: f64| from <= lower || from >= upper;
     let both = wanted.iter().zip(u).filter(|(from, _)| outside(**from));

@@ -1,4 +1,4 @@
-//! Which pairs of dimensions are examined, and with which stencil.
+//! Pairs of dimensions that a plan examines, and the stencils for them.
 
 use std::fmt;
 
@@ -6,15 +6,15 @@ use std::str::FromStr;
 
 use sensitol_numeric::names::UnknownName;
 
-/// Which mixed derivatives are evaluated.
+/// Choice of the mixed derivatives that are evaluated.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PairChoice {
-    /// None.
+    /// No mixed derivative.
     None,
     /// Every pair on which some characteristic can depend jointly.
     All,
-    /// As many pairs as there are dimensions: those with the largest product of univariate variance shares, in whichever
-    /// characteristic it is largest. Ranked once the axes are known.
+    /// Pairs with the largest product of univariate variance shares, in the characteristic with the largest one: as many as there are
+    /// dimensions. They are ranked after the axes are evaluated.
     Strongest,
     /// Neighbours in the order of the dimensions, the last with the first: as many pairs as dimensions.
     Adjacent,
@@ -22,22 +22,22 @@ pub enum PairChoice {
     Listed(Vec<(usize, usize)>),
 }
 
-/// How a mixed derivative is evaluated beside the axes.
+/// Stencil of a mixed derivative, in addition to the values on the axes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Stencil {
-    /// Two evaluations, with both dimensions up and both down. Exact up to the third order; a fourth-order term in
-    /// `u_j^2 u_k^2` disturbs it.
+    /// Two evaluations, with both dimensions up and both down. Exact up to the third order. A fourth-order term in `u_j^2 u_k^2` disturbs
+    /// it.
     TwoPoint,
-    /// Four evaluations, at all four corners, as in the published 6N+1 scheme: free of even terms too.
+    /// Four evaluations, at all four corners, as in the published 6N+1 scheme: also free of even terms.
     FourPoint,
 }
 
 impl Stencil {
-    /// The names of the stencils.
+    /// Names of the stencils.
     pub const NAMES: [&str; 2] = ["two-point", "four-point"];
 
-    /// Its name in study files and on the command line.
+    /// Name in study files and on the command line.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::TwoPoint => "two-point",
@@ -45,7 +45,7 @@ impl Stencil {
         }
     }
 
-    /// Evaluations per pair.
+    /// Number of evaluations per pair.
     pub(crate) fn evaluations(self) -> usize {
         match self {
             Self::TwoPoint => 2,
@@ -53,7 +53,8 @@ impl Stencil {
         }
     }
 
-    /// The corners, as the side of the first and of the second dimension: two lie where dimensions with a correlation of this sign are.
+    /// Corners, as the sides of the first and of the second dimension. The first two lie where parts with a correlation of this sign are
+    /// likely.
     pub(super) fn corners(self, opposite: bool) -> &'static [(Side, Side)] {
         const ALIKE: [(Side, Side); 4] = [
             (Side::Right, Side::Right),
@@ -67,15 +68,15 @@ impl Stencil {
     }
 }
 
-/// A side of the mean.
+/// Side of the mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Side {
     Left,
     Right,
 }
 
-/// The strongest pairs by the product of two shares, `count` of them, as positions `j < k`; earlier pairs first among
-/// equals. `shares` has a row per characteristic; `joint` says whether a pair matters to a characteristic at all.
+/// Strongest pairs by the product of two shares, `count` of them, as positions `j < k`. Equal ones are taken in ascending order. `shares`
+/// has a row per characteristic. `joint` returns true if a pair can matter to a characteristic.
 pub(super) fn strongest(
     count: usize,
     shares: &[Vec<f64>],

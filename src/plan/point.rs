@@ -1,8 +1,8 @@
-//! A point by name: the means, but for a few dimensions that stand at one of their nodes.
+//! Point by name: all dimensions at their means, except a few at one of their nodes.
 
 use std::sync::Arc;
 
-/// One dimension at one of its nodes.
+/// Dimension at one of its nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct AtNode {
     /// Index of the dimension in the problem.
@@ -11,23 +11,23 @@ pub struct AtNode {
     pub node: u32,
 }
 
-/// A point of the plan: every dimension at its mean but those named, each named once, ascending.
+/// Point of a plan: every dimension is at its mean, except those named, each once and ascending.
 ///
-/// The usual kinds take no memory of their own: a full stencil of a thousand dimensions has a million points.
+/// The usual kinds allocate no memory: a full stencil of a thousand dimensions has a million points.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Point {
-    /// All at their means.
+    /// Every dimension at its mean.
     Centre,
-    /// One dimension elsewhere.
+    /// One dimension at a node.
     One([AtNode; 1]),
-    /// Two dimensions elsewhere.
+    /// Two dimensions at nodes.
     Two([AtNode; 2]),
-    /// Three or more dimensions elsewhere. Copies share them: a point stands in a plan, a stage and among the answers.
+    /// Three or more dimensions at nodes. Copies in the plan, the stage and the answers share them.
     Many(Arc<[AtNode]>),
 }
 
 impl Point {
-    /// With these dimensions elsewhere, in any order, each once.
+    /// Point with these dimensions at nodes, in any order, each once.
     pub(crate) fn of(at: &[AtNode]) -> Self {
         match *at {
             [] => Self::Centre,
@@ -38,7 +38,7 @@ impl Point {
         }
     }
 
-    // Apart, so that the usual kinds are made where they are wanted.
+    // Separate and cold, so that the usual kinds are inlined.
     #[cold]
     fn many(at: &[AtNode]) -> Self {
         if at.is_sorted() {
@@ -49,7 +49,7 @@ impl Point {
         Self::Many(at.into())
     }
 
-    /// The dimensions that are elsewhere.
+    /// Dimensions that are at nodes.
     pub fn at(&self) -> &[AtNode] {
         match self {
             Self::Centre => &[],
@@ -59,20 +59,20 @@ impl Point {
         }
     }
 
-    /// A hash: no pattern of places is left in any bit.
+    /// Hash of the point. Its bits show no pattern of the nodes.
     pub(crate) fn mixed(&self) -> u64 {
         self.at().iter().fold(1 << 63, |hash, at| folded(hash ^ u64::from(at.dimension) << 32 ^ u64::from(at.node)))
     }
 }
 
-/// Both halves of a product of 128 bits.
+/// Exclusive or of both halves of a 128-bit product, as a hash.
 pub(super) fn folded(word: u64) -> u64 {
     let product = u128::from(word) * 0x9e37_79b9_7f4a_7c15;
     product as u64 ^ (product >> 64) as u64
 }
 
 impl std::hash::Hash for Point {
-    /// One word for the hasher: sets of a million points are made of it.
+    /// Writes one word only, since sets hold a million points.
     fn hash<H: std::hash::Hasher>(&self, state: &mut H) {
         state.write_u64(self.mixed());
     }

@@ -1,15 +1,15 @@
-//! A batch of points, and what each is for.
+//! Stage: points that are evaluated together, with their purposes.
 
 use super::Point;
 
-/// Points that can all be evaluated now, side by side.
+/// Points that can all be evaluated now, in parallel.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Stage {
-    /// The points, each once, with their purpose.
+    /// Points, each once, with their purposes.
     pub points: Vec<(Point, Purpose)>,
 }
 
-/// The purpose of a point. One that serves several purposes bears the first of them.
+/// Purpose of a point. A point with several purposes has the first of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 pub enum Purpose {
@@ -17,19 +17,19 @@ pub enum Purpose {
     Centre,
     /// All dimensions at their nominal values.
     Nominal,
-    /// One dimension at a node: slopes and curvatures.
+    /// One dimension at a node, for slopes and curvatures.
     Axis,
-    /// Two dimensions at nodes: their mixed derivative.
+    /// Two dimensions at nodes, for their mixed derivative.
     Pair,
-    /// Every dimension at a node, up or down: all interactions at once.
+    /// Every dimension at a node, up or down, for all interactions at once.
     Probe,
-    /// A point of the dimensions' distribution: the surrogate is compared with the model there.
+    /// Point of the dimensions' distribution, at which the surrogate is compared with the model.
     Check,
-    /// Next to the means: what the model's answers scatter by.
+    /// Point close to the means, for the scatter of the model's answers.
     Noise,
-    /// A dimension without tolerance, moved a little to know its sensitivity.
+    /// Dimension without tolerance, moved a little for its sensitivity.
     Sensitivity,
-    /// A shorter step in place of one at which the model failed.
+    /// Shorter step in place of one at which the model failed.
     Repair,
     /// One input at a node of its quadrature rule, along its own axis or along an eigenvector.
     Cut,
@@ -42,7 +42,7 @@ pub enum Purpose {
 }
 
 impl Purpose {
-    /// In words.
+    /// Description for people.
     pub fn words(self) -> &'static str {
         match self {
             Self::Centre => "all dimensions at their means",

@@ -1,4 +1,4 @@
-//! The actions to take on a warning or an error.
+//! Actions advised by a warning or an error.
 
 use std::fmt;
 
@@ -6,10 +6,10 @@ use serde::Serialize;
 
 use crate::method_kind::Method;
 
-/// Something to do about a warning or an error.
+/// Action advised by a warning or an error.
 ///
-/// Every front end shows it in its own words: the command line as options, a page as sentences, JSON as `{ "action": ... }` with the fields.
-/// `Display` writes a plain sentence without the name of any option.
+/// Every front end shows it in its own words: the command line as options, a page as sentences, JSON as `{ "action": ... }` with the
+/// fields. `Display` writes a plain sentence without the name of any option.
 ///
 /// ```
 /// use sensitol::Method;
@@ -24,7 +24,7 @@ use crate::method_kind::Method;
 pub enum Advice {
     /// Analyse with one of these methods, the best first.
     UseMethod {
-        /// The methods.
+        /// The methods, the best first.
         #[cfg_attr(feature = "schema", schemars(with = "Vec<String>"))]
         methods: Vec<Method>,
     },
@@ -32,7 +32,7 @@ pub enum Advice {
     RaiseBudget,
     /// Check nominal values and limits.
     CheckLimits,
-    /// Allow as many evaluations as are needed.
+    /// Allow the number of evaluations that is needed.
     SetBudget,
     /// Allow more time.
     RaiseTimeLimit,
@@ -40,7 +40,7 @@ pub enum Advice {
     LimitTime,
     /// Sample the model itself (Monte Carlo).
     Sample {
-        /// With this many points; None where the usual number will do.
+        /// The number of points. None if the usual number suffices.
         points: Option<u64>,
     },
     /// Sample the model by importance sampling, for small probabilities.
@@ -49,11 +49,11 @@ pub enum Advice {
     SamplePlainly,
     /// Draw more points.
     MorePoints,
-    /// Analyse the study, whose sample lies along the tails.
+    /// Analyse the study: its sample covers the tails.
     Analyze,
     /// Take differences over a shorter step.
     SmallerStep {
-        /// Along this dimension; None for all.
+        /// The dimension with the shorter step. None for all.
         dimension: Option<String>,
     },
     /// Take derivatives from differences of evaluated points.
@@ -89,14 +89,14 @@ pub enum Advice {
     RemoveWrongValues,
     /// Measure more parts.
     MeasureMore {
-        /// So many in all.
+        /// The total number of parts.
         values: usize,
     },
     /// Measure with a finer resolution.
     MeasureFiner,
-    /// Give the model a value at the points where it has none, or count such assemblies as rejects.
+    /// Let the model return a value at the points without one, or count such assemblies as rejects.
     RepairModel,
-    /// Read what the model's processes write to stderr.
+    /// Read the stderr output of the model's processes.
     ReadModelLog,
     /// Name every file that the model's answers depend on.
     NameModelFiles,
@@ -114,7 +114,7 @@ pub enum Advice {
     OrdinaryUnit,
     /// Solve the model with a tighter tolerance.
     TightenSolver,
-    /// Give each branch of the model a characteristic of its own.
+    /// Define a characteristic for each branch of the model.
     SplitBranches,
 
     /// Choose the nearest class of ISO 286, and write classes as processes.

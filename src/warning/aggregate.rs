@@ -1,11 +1,11 @@
-//! One warning for many dimensions.
+//! Aggregation of warnings: one warning for many dimensions.
 
 use super::{Loss, Warning};
 
 /// Joins warnings of one code and one characteristic that differ in their dimension.
 ///
-/// The worst of them stays, with its numbers; its `others` names the dimensions of the rest. A study of a thousand dimensions has one such
-/// warning for a characteristic, not a thousand. The order is that of the first of each kind.
+/// The worst of them is kept, with its numbers. Its `others` names the dimensions of the rest. Thus a study of a thousand dimensions has
+/// one such warning for a characteristic, not a thousand. The order is that of the first of each kind.
 ///
 /// ```
 /// use sensitol::Warning;
@@ -39,7 +39,7 @@ pub fn aggregated(warnings: Vec<Warning>) -> Vec<Warning> {
 }
 
 impl Warning {
-    /// Where the names of further dimensions are kept.
+    /// Field with the names of further dimensions. Returns None for a warning without one.
     fn others(&mut self) -> Option<&mut Vec<String>> {
         match self {
             Self::SmallSample { others, .. }
@@ -55,7 +55,7 @@ impl Warning {
         }
     }
 
-    /// Whether one sentence can tell of both.
+    /// True if one sentence can report both warnings.
     fn alike(&self, other: &Self) -> bool {
         let (a, b) = (self.loss(), other.loss());
         let held = |one: &Self| matches!(one, Self::HigherOrder { held: true, .. });
@@ -69,7 +69,7 @@ impl Warning {
         if let Self::LostDerivative { loss, .. } = self { Some(*loss) } else { None }
     }
 
-    /// The dimension, or the pair.
+    /// Name of the dimension, or of the pair as `a:b`.
     fn place(&self) -> String {
         match self {
             Self::LostDerivative { dimensions, .. } => dimensions.join(":"),
@@ -77,7 +77,7 @@ impl Warning {
         }
     }
 
-    /// How bad it is beside others of its kind.
+    /// Severity among warnings of the same kind.
     fn weight(&self) -> f64 {
         match self {
             Self::SmallSample { values, .. } => -(*values as f64),

@@ -1,12 +1,12 @@
-//! From the list of warnings to the enumeration, and to everything that follows from the list alone.
+//! Macro that turns the list of warnings into the enumeration, with all code that follows from the list alone.
 //!
 //! # A new warning
-//! One entry in the list of `warning` (variant, code, fields), one function of these fields in the file of its theme, and one entry on the page
-//! `docs/reference/warnings.md`. The compiler and the tests ask for whatever is forgotten. A field named `characteristic` or `output` is the
-//! characteristic that the warning concerns. A field named `dimension`, or `dimensions` with one name, is its dimension. A field named
+//! Add one entry to the list of `warning` (variant, code, fields), one function of these fields to the file of its theme, and one entry to
+//! the page `docs/reference/warnings.md`. The compiler and the tests report a missing one. A field named `characteristic` or `output` is
+//! the characteristic that the warning concerns. A field named `dimension`, or `dimensions` with one name, is its dimension. A field named
 //! `others` takes the further dimensions when `aggregated` joins warnings of one code.
 
-/// Defines the enumeration, and everything that follows from the list alone.
+/// Defines the enumeration, and all code that follows from the list alone.
 macro_rules! warnings {
     ($(
         $(#[$doc:meta])*
@@ -14,7 +14,7 @@ macro_rules! warnings {
             $( $(#[$field_doc:meta])* $field:ident : $type:ty, )*
         })?;
     )*) => {
-        /// Something that a reader of the results must know.
+        /// Message on an event that a reader of the results must consider.
         ///
         /// It serialises as `{ code, characteristic, dimension, message, data, advice }`, with its fields in `data`.
         ///
@@ -35,22 +35,22 @@ macro_rules! warnings {
         }
 
         impl Warning {
-            /// The codes of all warnings.
+            /// Codes of all warnings.
             pub const CODES: &[&str] = &[$($code),*];
 
-            /// The code of this kind of warning, which stays the same between versions.
+            /// Code of this kind of warning, which does not change between versions.
             pub fn code(&self) -> &'static str {
                 match self {
                     $( Self::$variant { .. } => $code, )*
                 }
             }
 
-            /// The fields by name; numbers that are not finite are null.
+            /// Fields by name. Numbers that are not finite become null.
             pub fn data(&self) -> impl serde::Serialize + '_ {
                 WarningData(self)
             }
 
-            /// The characteristic that it concerns; None where it concerns none or all.
+            /// Characteristic that the warning concerns. Returns None if it concerns none or all.
             #[allow(unused_variables, unused_mut, unused_assignments)]
             pub fn characteristic(&self) -> Option<&str> {
                 let mut found = None;
@@ -60,7 +60,7 @@ macro_rules! warnings {
                 found
             }
 
-            /// The dimension that it concerns, the worst where there are several; None where it concerns none or many alike.
+            /// Dimension that the warning concerns, the worst of several. Returns None if it concerns none or many alike.
             #[allow(unused_variables, unused_mut, unused_assignments)]
             pub fn dimension(&self) -> Option<&str> {
                 let mut found = None;
@@ -70,7 +70,7 @@ macro_rules! warnings {
                 found
             }
 
-            /// Every field with its name.
+            /// Serialises every field with its name.
             fn fields<M: SerializeMap>(&self, map: &mut M) -> Result<(), M::Error> {
                 let _ = &map;
                 match self {

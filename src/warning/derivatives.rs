@@ -1,4 +1,4 @@
-//! Warnings about derivatives, and about the points from which they are taken.
+//! Warnings about derivatives, and about the points that they are computed from.
 
 use super::text::{Text, likewise, names, say};
 use super::{Advice, Figure, Loss};

@@ -3,7 +3,7 @@
 use super::Advice;
 use super::text::{Text, likewise, lines, names, say, values_and_lines};
 
-/// Measured values that make a sample.
+/// Number of measured values that make a sufficient sample.
 const ENOUGH: usize = 30;
 
 pub(super) fn missing_values(dimension: &str, file: &str, missing: &usize, rows: &usize, first: &[u64]) -> Text {

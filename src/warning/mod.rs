@@ -1,7 +1,7 @@
-//! Warnings: an assumption of the method fails, or a result is not what was asked for.
+//! Warnings: an assumption of the method fails, or a result differs from the request.
 //!
-//! A warning is data: its [`code`](Warning::code) and its fields, which it serialises as `data`. The [`message`](Warning::message) says what happened
-//! and what it means for the result. The [`advice`](Warning::advice) says what to do; each front end shows it in its own words.
+//! A warning is data: its [`code`](Warning::code) and its fields, which serialise as `data`. The [`message`](Warning::message) describes
+//! the event and its meaning for the result. The [`advice`](Warning::advice) lists actions. Each front end shows them in its own words.
 
 #[macro_use]
 mod define;
@@ -57,7 +57,7 @@ warnings! {
         /// Further formulas whose units do not go together.
         others: Vec<String>,
     };
-    /// Units of which nothing is known: they are labels.
+    /// Units are unknown and serve as labels only.
     UnknownUnit = "unknown-unit" by study::unknown_unit {
         /// The units, each once.
         units: Vec<String>,
@@ -71,14 +71,14 @@ warnings! {
     Interference = "interference" by study::interference {
         /// The geometric element.
         element: String,
-        /// The share of pairs whose pin is larger than its hole; None where their distributions do not say.
+        /// The share of pairs whose pin is larger than its hole. None if their distributions do not give it.
         share: Option<f64>,
     };
     /// No characteristic of the study uses these constants, formulas or unknowns.
     UnusedName = "unused-name" by study::unused_name {
         /// The kind of the names.
         kind: NameKind,
-        /// Their names.
+        /// The unused names.
         names: Vec<String>,
     };
     /// Near the nominal dimensions the assembly can move or jam.
@@ -101,7 +101,7 @@ warnings! {
         /// The first lines without a value.
         lines: Vec<u64>,
     };
-    /// Rows of a measured file whose number stands in no other file.
+    /// Rows of a measured file have a number that no other file has.
     UnmatchedRows = "unmatched-rows" by measured::unmatched_rows {
         /// The dimension.
         dimension: String,
@@ -112,11 +112,11 @@ warnings! {
         /// The first lines without a partner.
         lines: Vec<u64>,
     };
-    /// Rows of a measured file vary together as no normal copula has it between their columns.
+    /// Rows of a measured file are correlated more than a normal copula between their columns allows.
     RowsByCopula = "rows-by-copula" by measured::rows_by_copula {
         /// The two dimensions that are farthest off.
         dimensions: [String; 2],
-        /// The correlation of their rows, and the one that is taken.
+        /// The correlation of the rows, and the one that the result uses.
         correlation: [f64; 2],
     };
     /// Measured values that lie too far from the others.
@@ -125,7 +125,7 @@ warnings! {
         dimension: String,
         /// The file.
         file: String,
-        /// How many outliers there are.
+        /// The number of outliers.
         count: usize,
         /// All values.
         values: usize,
@@ -136,9 +136,9 @@ warnings! {
     SmallSample = "small-sample" by measured::small_sample {
         /// The dimension with the fewest values.
         dimension: String,
-        /// Its values.
+        /// The number of measured values.
         values: usize,
-        /// The values that it should have.
+        /// The number of values that is sufficient.
         enough: usize,
         /// Further dimensions with fewer values than that.
         others: Vec<String>,
@@ -147,7 +147,7 @@ warnings! {
     NoSamplingInterval = "no-sampling-interval" by measured::no_sampling_interval {
         /// The measured dimensions.
         dimensions: Vec<String>,
-        /// True where dimensions are correlated; false where the method has no surrogate.
+        /// True if dimensions are correlated, false if the method has no surrogate.
         correlated: bool,
     };
     /// Measured values that are rounded too coarsely.
@@ -156,9 +156,9 @@ warnings! {
         dimension: String,
         /// The least difference of two values.
         resolution: f64,
-        /// Their standard deviation.
+        /// The standard deviation of the values.
         sigma: f64,
-        /// How many different values there are.
+        /// The number of different values.
         distinct: usize,
         /// Further dimensions with coarse rounding.
         others: Vec<String>,
@@ -167,13 +167,13 @@ warnings! {
     OutsideBand = "outside-band" by measured::outside_band {
         /// The dimension.
         dimension: String,
-        /// How many lie outside.
+        /// The number of values outside.
         count: usize,
         /// All values.
         values: usize,
         /// The first of them with their lines.
         first: Vec<(f64, u64)>,
-        /// Whether their mean lies outside too.
+        /// True if the mean lies outside too.
         mean_too: bool,
     };
     /// The model failed at some points of the evaluation plan.
@@ -214,22 +214,22 @@ warnings! {
         /// The characteristic.
         characteristic: String,
     };
-    /// Values of a built-in model for which its formulas describe nothing real.
+    /// Values of a built-in model lie where its formulas describe no real part.
     OutsideModel = "outside-model" by model::outside_model {
         /// The output of the model.
         output: String,
-        /// The bound that it passed, and what does not hold beyond.
+        /// The bound that was passed, and the consequence.
         reason: String,
     };
     /// An external model gave a slightly different answer to the nominal point later.
     NotRepeatable = "not-repeatable" by model::not_repeatable {
         /// The output: a characteristic, or a value that formulas use.
         output: String,
-        /// The first answer; None where it had no value.
+        /// The first answer. None if it had no value.
         expected: Option<f64>,
-        /// The first differing answer; None where it had no value.
+        /// The first differing answer. None if it had no value.
         found: Option<f64>,
-        /// How often the answer differed.
+        /// The number of differing answers.
         times: usize,
         /// Points that a fresh process evaluated again.
         points: usize,
@@ -240,11 +240,11 @@ warnings! {
     BranchFlip = "branch-flip" by model::branch_flip {
         /// The output: a characteristic, or a value that formulas use.
         output: String,
-        /// The first answer; None where it had no value.
+        /// The first answer. None if it had no value.
         expected: Option<f64>,
-        /// The first differing answer; None where it had no value.
+        /// The first differing answer. None if it had no value.
         found: Option<f64>,
-        /// How often the answer differed.
+        /// The number of differing answers.
         times: usize,
         /// Points that a fresh process evaluated again.
         points: usize,
@@ -263,7 +263,7 @@ warnings! {
         garbage: u64,
         /// Evaluations that were lost and done again.
         retried: u64,
-        /// Seconds without an answer of a process that failed.
+        /// Seconds spent on processes that failed without an answer.
         lost_s: f64,
         /// The cause of the last failure.
         cause: String,
@@ -272,18 +272,18 @@ warnings! {
     };
     /// Answers of an external model depend on the points before them, and no fresh process confirmed them.
     Unconfirmed = "unconfirmed" by model::unconfirmed {
-        /// How many answers.
+        /// The number of unconfirmed answers.
         answers: u64,
     };
     /// The journal holds the answers of another model than the one that runs now.
     OutdatedJournal = "outdated-journal" by model::outdated_journal {
         /// The output that differs at the nominal dimensions: a characteristic, or a value that formulas use.
         output: String,
-        /// Its value in the journal; None where it had none.
+        /// The value in the journal. None if there was none.
         expected: Option<f64>,
-        /// Its value now.
+        /// The value now. None if there is none.
         found: Option<f64>,
-        /// Answers that were forgotten.
+        /// Answers that were removed from the journal.
         answers: usize,
     };
     /// The characteristic is the same at every point.
@@ -298,14 +298,14 @@ warnings! {
         /// Points at which it is 0.
         points: usize,
     };
-    /// Rounding in the model is not small beside the differences.
+    /// Rounding errors of the model are not small compared with the differences.
     Noise = "noise" by model::noise {
         /// The characteristic.
         characteristic: String,
         /// The rounding error of one value, relative to sigma.
         rounding: f64,
     };
-    /// Answers next to the means scatter.
+    /// Answers at points close to the means scatter.
     Scatter = "scatter" by model::scatter {
         /// The characteristic.
         characteristic: String,
@@ -318,7 +318,7 @@ warnings! {
     LostDerivative = "lost-derivative" by derivatives::lost_derivative {
         /// The characteristic.
         characteristic: String,
-        /// The dimension, or the two of a mixed derivative; empty where every derivative is lost.
+        /// The dimension, or the two of a mixed derivative. Empty if every derivative is lost.
         dimensions: Vec<String>,
         /// The loss.
         loss: Loss,
@@ -384,9 +384,9 @@ warnings! {
     InfiniteMoment = "infinite-moment" by derivatives::infinite_moment {
         /// The characteristic.
         characteristic: String,
-        /// The first moment that it does not have; nor has it those beyond.
+        /// The lowest moment that is infinite. Higher moments are infinite too.
         figure: Figure,
-        /// The dimensions whose own moments end.
+        /// The dimensions with infinite moments.
         dimensions: Vec<String>,
     };
     /// Some interactions were not examined.
@@ -413,7 +413,7 @@ warnings! {
         dimension: String,
         /// Third and fourth coefficient, in sigmas of the characteristic.
         coefficients: [f64; 2],
-        /// Whether the surrogate has these powers.
+        /// True if the surrogate has these powers.
         held: bool,
         /// Further dimensions with such an effect.
         others: Vec<String>,
@@ -438,7 +438,7 @@ warnings! {
         characteristic: String,
         /// The dimension along which the slopes differ most.
         dimension: String,
-        /// On the left and on the right, in sigmas of the characteristic per sigma of the dimension.
+        /// The slopes on the left and on the right, in sigmas of the characteristic per sigma of the dimension.
         slopes: [f64; 2],
         /// The places between which the kink lies, in sigmas from the mean.
         between: [f64; 2],
@@ -455,7 +455,7 @@ warnings! {
         by: f64,
         /// The places between which the jump lies, in sigmas from the mean.
         between: [f64; 2],
-        /// The same places as values of the dimension.
+        /// The places as values of the dimension.
         at: Option<[f64; 2]>,
         /// Further dimensions with a jump.
         others: Vec<String>,
@@ -464,7 +464,7 @@ warnings! {
     InteractionsLeftOut = "interactions-left-out" by surface::interactions_left_out {
         /// The characteristic.
         characteristic: String,
-        /// Their share of the variance.
+        /// The share of the variance by these terms.
         share: f64,
     };
     /// Model and surrogate differ at the check points.
@@ -473,20 +473,20 @@ warnings! {
         characteristic: String,
         /// The share of the variance that the surrogate does not explain.
         share: f64,
-        /// Points of the model from which the moments come instead; None where the budget did not allow any.
+        /// Points of the model that the moments are computed from instead. None if the budget did not allow any.
         sampled: Option<u64>,
     };
-    /// A formula changes its form within the assemblies, by its own tree.
+    /// The formula itself shows a change of its form within the assemblies.
     Switch = "switch" by surface::switch {
         /// The characteristic.
         characteristic: String,
-        /// The part of the formula that does it.
+        /// The part of the formula that changes.
         switch: String,
         /// The change there.
         change: Change,
         /// The probability of the smaller side.
         probability: f64,
-        /// Points of a sample that lie beyond on average; None where the figures are not those of a sample.
+        /// Points of a sample that lie beyond on average. None if the figures do not come from a sample.
         points: Option<f64>,
     };
     /// A divisor passes through 0 within the assemblies.
@@ -498,20 +498,20 @@ warnings! {
         /// The probability of the smaller side.
         probability: f64,
     };
-    /// A figure lies beyond three errors of the model's own.
+    /// A figure of the method differs from that of the model by more than three errors.
     FigureOff = "figure-off" by surface::figure_off {
         /// The characteristic.
         characteristic: String,
         /// Mean, sigma, skewness or kurtosis.
         figure: &'static str,
-        /// As the method has it.
+        /// Value of the figure by the method.
         value: f64,
-        /// As the model has it.
+        /// Value of the figure by points of the model.
         model: f64,
-        /// The error of that.
+        /// Standard error of the value by points of the model.
         error: f64,
     };
-    /// The law of the surface fails a test, and points take its place.
+    /// The surface distribution fails a test, and points of the model replace it.
     SurfaceLawRefuted = "surface-law-refuted" by surface::surface_law_refuted {
         /// The characteristic.
         characteristic: String,
@@ -519,7 +519,7 @@ warnings! {
         test: &'static str,
         /// The limit at which it failed.
         limit: f64,
-        /// Share of assemblies below the limit by the law.
+        /// Share of assemblies below the limit by the surface distribution.
         law: f64,
         /// Share of points below the limit.
         counted: f64,
@@ -530,16 +530,16 @@ warnings! {
     UnderResolved = "under-resolved" by surface::under_resolved {
         /// The characteristic.
         characteristic: String,
-        /// Which of its results.
+        /// The figure with this error.
         figure: Figure,
-        /// The estimated error, that of sigma relative; None where it is unknown.
+        /// The estimated error, relative for sigma. None if it is unknown.
         error: Option<f64>,
         /// The wanted error.
         wanted: f64,
-        /// Whether the budget ended the analysis.
+        /// True if the budget ended the analysis.
         budget: bool,
     };
-    /// No distribution has the moments.
+    /// No distribution has these moments.
     InfeasibleMoments = "infeasible-moments" by distribution::infeasible_moments {
         /// The characteristic.
         characteristic: String,
@@ -555,18 +555,18 @@ warnings! {
         /// Fourth standardised moment.
         kurtosis: f64,
     };
-    /// The Pearson fit rejects another share than what is known to be rejected.
+    /// The Pearson fit gives another reject rate than the best estimate.
     PearsonDiffers = "pearson-differs" by distribution::pearson_differs {
         /// The characteristic.
         characteristic: String,
-        /// The share that the Pearson fit rejects.
+        /// The reject rate by the Pearson fit.
         pearson: f64,
-        /// The share that is rejected.
+        /// The best estimate of the reject rate.
         rejected: f64,
-        /// Its error.
+        /// The error of the best estimate.
         error: f64,
     };
-    /// The moments are those of a distribution with several peaks.
+    /// The moments indicate a distribution with several peaks.
     SeveralModes = "several-modes" by distribution::several_modes {
         /// The characteristic.
         characteristic: String,
@@ -604,7 +604,7 @@ warnings! {
         /// Evaluations spent.
         evaluations: u64,
     };
-    /// Importance sampling was worse than plain points, which make the estimate.
+    /// Importance sampling was worse than plain points, which give the estimate instead.
     PlainFallback = "plain-fallback" by sample::plain_fallback {
         /// The characteristic.
         characteristic: String,
@@ -613,7 +613,7 @@ warnings! {
         /// Plain points.
         points: u64,
     };
-    /// Moments of a sample that a few points decide, or that rest on assemblies which it hardly has.
+    /// A few points decide the moments of a sample, or rare assemblies do that the sample hardly contains.
     UnsettledMoments = "unsettled-moments" by sample::unsettled_moments {
         /// The characteristic.
         characteristic: String,
@@ -621,11 +621,11 @@ warnings! {
         figures: Vec<&'static str>,
         /// Points of the sample.
         points: u64,
-        /// The part of the largest point in the sum that the error of the first figure rests on.
+        /// The part of the largest point in the sum behind the error of the first figure.
         largest: f64,
-        /// That of the ten largest.
+        /// The part of the ten largest points in that sum.
         ten_largest: f64,
-        /// The switch beyond which assemblies decide that the sample hardly has; None where the sample's own points do.
+        /// The switch beyond which assemblies decide that are rare in the sample. None if points of the sample decide.
         switch: Option<String>,
     };
     /// The standard errors of a sample are larger than wanted.
@@ -639,13 +639,13 @@ warnings! {
         characteristic: String,
         /// Evaluations of the search.
         evaluations: usize,
-        /// How the search ended.
+        /// The end of the search.
         ended: Ended,
         /// Points of the search without a value.
         failed: usize,
         /// The error at the first of them.
         failure: Option<String>,
-        /// An interval that contains every assembly, and the boxes of interval arithmetic that it took; for formulas.
+        /// For formulas, an interval that contains every assembly, and the number of boxes of interval arithmetic used.
         bounds: Option<([f64; 2], usize)>,
     };
     /// Dimensions with a fit of ISO 286 were given a free tolerance.
@@ -655,27 +655,27 @@ warnings! {
     };
     /// The model was not evaluated at the tolerances that were found.
     NotConfirmed = "not-confirmed" by allocation::not_confirmed;
-    /// A cost that bends the wrong way, so that there may be several optima.
+    /// A cost curve is not convex, so that there may be several optima.
     CostNotConvex = "cost-not-convex" by allocation::cost_not_convex {
         /// The dimensions.
         dimensions: Vec<String>,
     };
-    /// Monte Carlo at the tolerances that were found misses what is required.
+    /// Monte Carlo at the tolerances that were found misses a requirement.
     ConfirmationMisses = "confirmation-misses" by allocation::confirmation_misses {
         /// The characteristic.
         characteristic: String,
         /// `yield`, `cpk`, `sigma` or `worst-case`.
         requirement: &'static str,
-        /// How much of it is required.
+        /// The required amount.
         required: f64,
-        /// Its interval by the sample, three errors on either side.
+        /// The interval by the sample, three errors on either side.
         interval: [f64; 2],
     };
-    /// The same of the joint yield.
+    /// Monte Carlo at the tolerances that were found misses the required joint yield.
     JointConfirmationMisses = "joint-confirmation-misses" by allocation::joint_confirmation_misses {
-        /// How much of it is required.
+        /// The required joint yield.
         required: f64,
-        /// Its interval by the sample, three errors on either side.
+        /// The interval by the sample, three errors on either side.
         interval: [f64; 2],
     };
     /// There are no tolerances to write into a study.
@@ -691,9 +691,9 @@ warnings! {
         cause: StopReason,
         /// The time limit in seconds, where that stopped it and is known.
         limit_s: Option<f64>,
-        /// How much was done until then.
+        /// The amount done until then.
         done: u64,
-        /// How much there was to do, where that is known.
+        /// The amount planned, if it is known.
         planned: Option<u64>,
         /// The things that are counted.
         counted: Counted,
@@ -705,16 +705,16 @@ warnings! {
     };
     /// Points of the plan have no answer in the table of answers.
     MissingPoints = "missing-points" by run::missing_points {
-        /// How many.
+        /// The number of points.
         count: usize,
-        /// The file to which they were written, where one was named.
+        /// The file to which the points were written, if one was named.
         written: Option<String>,
     };
     /// Answers in the table belong to no point of the plan.
     UnmatchedPoints = "unmatched-points" by run::unmatched_points {
-        /// How many.
+        /// The number of answers.
         count: usize,
-        /// The first of their lines.
+        /// The first lines with such answers.
         lines: Vec<usize>,
     };
     /// Only the points of the first stage are known.

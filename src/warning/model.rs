@@ -68,7 +68,7 @@ pub(super) fn branch_flip(
         .advise(Advice::SignedMeasure)
 }
 
-/// The warning of answers that depend on the points before.
+/// Warning about answers that depend on the points before.
 fn nominal(
     output: &str,
     [expected, found]: [&Option<f64>; 2],

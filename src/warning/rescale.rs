@@ -1,12 +1,12 @@
-//! Warnings of a run over divided outputs, in the units of the characteristics.
+//! Conversion of warnings from divided outputs to the units of the characteristics.
 
 use super::Warning;
 use sensitol_numeric::power::Power;
 
 impl Warning {
-    /// Multiplies figures in the unit of a characteristic by the power of two that belongs to its name.
+    /// Multiplies figures in the unit of a characteristic by the power of two for its name.
     pub(crate) fn rescale(&mut self, power_of: impl Fn(&str) -> Power) {
-        // The greatest double stands for what is greater.
+        // A value beyond the range of doubles becomes the greatest double.
         let times = |name: &str, figure: &mut f64| *figure = power_of(name).times(*figure).clamp(-f64::MAX, f64::MAX);
         match self {
             Self::Overflow { characteristic, value, limit } => {

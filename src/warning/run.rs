@@ -33,7 +33,7 @@ pub(super) fn long(expected_s: &f64) -> Text {
     say(format!("This run will take about {}.", span(*expected_s))).advise(Advice::LimitTime)
 }
 
-/// A time in the unit in which people speak of it.
+/// Duration in the largest unit of which it has at least two.
 fn span(seconds: f64) -> String {
     const UNITS: [(f64, &str); 4] =
         [(365.25 * 86400.0, "years"), (86400.0, "days"), (3600.0, "hours"), (60.0, "minutes")];

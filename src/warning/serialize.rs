@@ -1,6 +1,6 @@
-//! Results with their warnings as the last key.
+//! Serialisation of results with their warnings as the last key.
 
-/// Writes a result by the function that serde derives for its own fields, and its warnings last.
+/// Serialises a result by the function that serde derives for its own fields, and its warnings last.
 macro_rules! warnings_last {
     ($result:ty) => {
         impl serde::Serialize for $result {

@@ -4,7 +4,7 @@ use super::text::{Text, likewise, names, say};
 use super::{Advice, NameKind};
 use sensitol_numeric::names::shortened_to;
 
-/// Characters of a formula that a warning shows.
+/// Greatest number of characters of a formula in a warning.
 const PART: usize = 40;
 
 pub(super) fn unused_dimension(dimensions: &[String]) -> Text {

@@ -176,7 +176,7 @@ pub(super) fn pole(characteristic: &str, switch: &str, probability: &f64) -> Tex
 }
 
 pub(super) fn figure_off(characteristic: &str, figure: &&'static str, value: &f64, model: &f64, error: &f64) -> Text {
-    // Two digits of the difference, at least.
+    // Show at least two digits of the difference.
     let places = libm::log10(value.abs() / (value - model).abs()).ceil();
     let digits = if places.is_finite() { (places.max(3.0) as i32 + 2).min(15) } else { 5 };
     let [value, model, error] =
@@ -205,7 +205,7 @@ pub(super) fn surface_law_refuted(
     .advise(Advice::Sample { points: None })
 }
 
-/// A number with six digits.
+/// Number rounded to six digits.
 fn short(number: f64) -> f64 {
     format!("{number:.5e}").parse().unwrap_or(number)
 }
@@ -215,7 +215,7 @@ fn ppm(share: f64) -> String {
     format!("{:.0}", 1e6 * share)
 }
 
-/// A share as percent, or as parts per million where it is small.
+/// Share as percent, or as parts per million if it is below 0.1 %.
 fn part(share: f64) -> String {
     if share < 1e-3 {
         format!("{} ppm", significant(1e6 * share, 2))
@@ -224,7 +224,7 @@ fn part(share: f64) -> String {
     }
 }
 
-/// So many digits that count.
+/// Number with this many significant digits.
 fn significant(value: f64, digits: i32) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();

@@ -1,8 +1,8 @@
-//! The words that warnings use for more than one case.
+//! Terms that several warnings share.
 
 use serde::Serialize;
 
-/// How a search for extremes ended.
+/// End of a search for extremes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -15,20 +15,20 @@ pub enum Ended {
     Stopped,
 }
 
-/// The change of a characteristic at a switch of its formula.
+/// Change of a characteristic at a switch of its formula.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Change {
-    /// Its slope changes.
+    /// The slope changes.
     Kink,
-    /// Its value jumps.
+    /// The value jumps.
     Jump,
-    /// It has no value beyond.
+    /// There is no value beyond.
     Edge,
 }
 
-/// The part of a derivative that is lost.
+/// Part of a derivative that is lost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -37,36 +37,36 @@ pub enum Loss {
     Centre,
     /// Slope and curvature: without them the characteristic has no moments.
     Slope,
-    /// The curvature; the slope is one-sided.
+    /// Curvature only: the slope is one-sided.
     Curvature,
-    /// The mixed derivative.
+    /// Mixed derivative of two dimensions.
     Mixed,
-    /// One side of the mixed derivative.
+    /// One side of a mixed derivative.
     OneSidedMixed,
     /// Nothing failed: the run was stopped before the points of these derivatives were evaluated.
     NotEvaluated {
-        /// How many derivatives are missing.
+        /// Number of missing derivatives.
         derivatives: usize,
     },
 }
 
-/// The result of which an accuracy is wanted.
+/// Figure with a wanted accuracy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Figure {
-    /// Sigma, relative.
+    /// Standard deviation, with a relative error.
     Sigma,
-    /// The skewness.
+    /// Third standardised moment.
     Skewness,
-    /// The kurtosis.
+    /// Fourth standardised moment.
     Kurtosis,
-    /// The share within the limits.
+    /// Share within the limits.
     Yield,
 }
 
 impl Figure {
-    /// Its name.
+    /// Name of the figure in messages.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Sigma => "sigma",
@@ -77,21 +77,21 @@ impl Figure {
     }
 }
 
-/// The kind of thing that a name of a study stands for.
+/// Kind of thing that a name of a study denotes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum NameKind {
-    /// A constant.
+    /// Constant of the study.
     Constant,
-    /// A formula that other formulas may use.
+    /// Formula that other formulas may use.
     Formula,
-    /// An unknown of the closure conditions.
+    /// Unknown of the closure conditions.
     Unknown,
 }
 
 impl NameKind {
-    /// The word for it, without and with a plural.
+    /// Noun for the kind, in singular for a count of 1.
     pub(super) fn noun(self, count: usize) -> &'static str {
         match (self, count) {
             (Self::Constant, 1) => "constant",
@@ -104,7 +104,7 @@ impl NameKind {
     }
 }
 
-/// The things that the progress of a run counts.
+/// Unit of the progress of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]

@@ -1,11 +1,11 @@
-//! The parts of the sentences of warnings.
+//! Parts of the sentences of warnings.
 
 use super::Advice;
 
-/// Names that a sentence shows before it counts the rest.
+/// Names that a sentence lists before it counts the rest.
 const SHOWN: usize = 5;
 
-/// The words of a warning, and what to do.
+/// Message of a warning, and advice.
 pub(super) struct Text {
     pub(super) message: String,
     pub(super) advice: Vec<Advice>,
@@ -17,14 +17,14 @@ pub(super) fn say(message: impl Into<String>) -> Text {
 }
 
 impl Text {
-    /// With this to do, after what was advised before.
+    /// Appends advice.
     pub(super) fn advise(mut self, advice: Advice) -> Self {
         self.advice.push(advice);
         self
     }
 }
 
-/// Names in backquotes, the first few of many, and how many more there are.
+/// Names in backquotes: the first few of many, and the number of the others.
 pub(super) fn names(all: &[String]) -> String {
     let shown = if all.len() == SHOWN + 1 { SHOWN + 1 } else { SHOWN };
     let quoted: Vec<String> = all.iter().take(shown).map(|name| format!("`{name}`")).collect();
@@ -35,7 +35,7 @@ pub(super) fn names(all: &[String]) -> String {
     }
 }
 
-/// A sentence for further dimensions of which the same is true, with the blank before it.
+/// Sentence that names further dimensions with the same warning, with a leading blank. Empty without any.
 pub(super) fn likewise(others: &[String]) -> String {
     match others {
         [] => String::new(),
@@ -44,13 +44,13 @@ pub(super) fn likewise(others: &[String]) -> String {
     }
 }
 
-/// Values with their lines, and how many more there are.
+/// Values with their lines, and the number of further ones.
 pub(super) fn values_and_lines(first: &[(f64, u64)], count: usize) -> String {
     let named: Vec<String> = first.iter().map(|(value, line)| format!("{value} (line {line})")).collect();
     format!("{}{}", named.join(", "), more(first.len(), count))
 }
 
-/// Line numbers, and how many more there are.
+/// Line numbers, and the number of further ones.
 pub(super) fn lines<N: ToString>(first: &[N], count: usize) -> String {
     let named: Vec<String> = first.iter().map(N::to_string).collect();
     let word = if count == 1 { "line" } else { "lines" };

@@ -1,4 +1,4 @@
-//! How a warning is written: its code, what it concerns, its text and its fields.
+//! Serialisation of a warning: its code, characteristic, dimension, text and fields.
 
 use serde::ser::{SerializeMap, SerializeStruct};
 use serde::{Serialize, Serializer};
@@ -20,7 +20,7 @@ impl Serialize for Warning {
     }
 }
 
-/// The fields of a warning by name; it serialises as a map.
+/// Fields of a warning by name. Serialises as a map.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct WarningData<'a>(pub(super) &'a Warning);
 
@@ -33,12 +33,12 @@ impl Serialize for WarningData<'_> {
 }
 
 impl Warning {
-    /// The event, and its meaning for the result, in sentences. It names no option of any front end.
+    /// Event, and its meaning for the result, in sentences. The text names no option of any front end.
     pub fn message(&self) -> String {
         self.text().message
     }
 
-    /// The actions to take, the most promising first; empty where there are none.
+    /// Actions to take, the most promising first. Empty if there are none.
     pub fn advice(&self) -> Vec<Advice> {
         self.text().advice
     }

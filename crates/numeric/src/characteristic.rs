@@ -1,4 +1,4 @@
-//! A key characteristic (KC): one output of the assembly function that the study asks for.
+//! Key characteristic (KC): one output of the assembly function that a study asks for.
 
 use serde::Serialize;
 
@@ -7,7 +7,7 @@ use crate::labels::Labels;
 use crate::power::Power;
 use crate::requirement::{Requirement, RequirementError};
 
-/// A key characteristic: its name, its unit, and the limits it should keep.
+/// Key characteristic: its name, its unit, and the limits it should keep.
 ///
 /// ```
 /// use crate::characteristic::{Characteristic, SpecLimits};
@@ -18,18 +18,18 @@ use crate::requirement::{Requirement, RequirementError};
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Characteristic {
-    /// Its name.
+    /// Name of the characteristic.
     name: String,
-    /// Its unit.
+    /// Unit, which is shown and never converted.
     unit: Option<String>,
     #[serde(flatten)]
     limits: SpecLimits,
-    /// The share of assemblies that must keep the limits.
+    /// Share of assemblies that must keep the limits.
     target_yield: Option<f64>,
-    // The requirement stands in results together with its value.
+    // Skipped: results hold the requirement together with its value.
     #[serde(skip)]
     requirement: Option<Requirement>,
-    // Stands in results with what it does.
+    // Skipped: results hold the inspection together with its risks.
     #[serde(skip)]
     inspection: Option<Inspection>,
     #[serde(flatten)]
@@ -37,7 +37,7 @@ pub struct Characteristic {
 }
 
 impl Characteristic {
-    /// Without unit, limits or target.
+    /// Characteristic without unit, limits or target.
     pub fn new(name: impl Into<String>) -> Self {
         Self {
             name: name.into(),
@@ -50,34 +50,34 @@ impl Characteristic {
         }
     }
 
-    /// Under another name.
+    /// Replaces the name.
     pub fn renamed(self, name: String) -> Self {
         Self { name, ..self }
     }
 
-    /// With texts for reports.
+    /// Sets texts for reports.
     pub fn with_labels(self, labels: Labels) -> Self {
         Self { labels, ..self }
     }
 
-    /// Its texts for reports.
+    /// Texts for reports.
     pub fn labels(&self) -> &Labels {
         &self.labels
     }
 
-    /// With a unit, which is shown and never converted.
+    /// Sets the unit, which is shown and never converted.
     pub fn with_unit(mut self, unit: impl Into<String>) -> Self {
         self.unit = Some(unit.into());
         self
     }
 
-    /// With specification limits.
+    /// Sets the specification limits.
     pub fn with_limits(mut self, limits: SpecLimits) -> Self {
         self.limits = limits;
         self
     }
 
-    /// With the share of assemblies that must lie within the limits, above 0 and below 1.
+    /// Sets the share of assemblies that must lie within the limits, above 0 and below 1.
     pub fn with_target_yield(mut self, target: f64) -> Result<Self, LimitsError> {
         if !(target > 0.0 && target < 1.0) {
             return Err(LimitsError::ImpossibleYield { value: target });
@@ -86,10 +86,10 @@ impl Characteristic {
         Ok(self)
     }
 
-    /// With something that it must keep, beside a target yield.
+    /// Sets a requirement in addition to a target yield.
     ///
     /// # Errors
-    /// When the number is impossible, or limits are missing that it speaks of.
+    /// If the number is impossible, or the requirement needs limits that are missing.
     ///
     /// ```
     /// use crate::characteristic::{Characteristic, SpecLimits};
@@ -104,16 +104,16 @@ impl Characteristic {
         Ok(self)
     }
 
-    /// With a gauge by which its limits are inspected.
+    /// Sets a gauge by which the limits are inspected.
     ///
     /// # Errors
-    /// When it has no limits, or guard bands leave nothing between them.
+    /// If there are no limits, or guard bands leave nothing between them.
     pub fn with_inspection(mut self, inspection: Inspection) -> Result<Self, InspectionError> {
         self.inspection = Some(inspection.checked([self.limits.lower, self.limits.upper])?);
         Ok(self)
     }
 
-    /// The same with everything in its unit times a power of two.
+    /// Characteristic with all values in its unit multiplied by a power of two.
     pub fn times(self, power: Power) -> Self {
         Self {
             limits: self.limits.times(power),
@@ -123,33 +123,33 @@ impl Characteristic {
         }
     }
 
-    /// The gauge by which its limits are inspected, where there is one.
+    /// Gauge by which the limits are inspected, if any.
     pub fn inspection(&self) -> Option<Inspection> {
         self.inspection
     }
 
-    /// Its name.
+    /// Name of the characteristic.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Its unit, where one was given.
+    /// Unit, if one was given.
     pub fn unit(&self) -> Option<&str> {
         self.unit.as_deref()
     }
 
-    /// Its specification limits.
+    /// Specification limits.
     pub fn limits(&self) -> SpecLimits {
         self.limits
     }
 
-    /// Everything that it must keep: its target yield, and what else is required of it.
+    /// All requirements: the target yield first, then the other one.
     pub fn requirements(&self) -> Vec<Requirement> {
         let target = self.target_yield.map(Requirement::Yield);
         target.into_iter().chain(self.requirement.filter(|other| Some(*other) != target)).collect()
     }
 
-    /// The share of assemblies that must lie within the limits, where one was given.
+    /// Share of assemblies that must lie within the limits, if one was given.
     pub fn target_yield(&self) -> Option<f64> {
         self.target_yield
     }
@@ -165,34 +165,34 @@ pub struct SpecLimits {
     upper: Option<f64>,
 }
 
-/// Why limits or a target are impossible.
+/// Error of impossible limits or of an impossible target.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LimitsError {
     /// A limit is NaN or infinite.
     #[error("a limit must be a finite number, not {value}; leave out a limit that does not exist")]
     NotFinite {
-        /// The limit given.
+        /// Limit given, NaN or infinite.
         value: f64,
     },
-    /// The limits are the wrong way round, or the same.
+    /// The lower limit is not below the upper one.
     #[error("the lower limit {lower} must be below the upper limit {upper}")]
     Swapped {
-        /// The lower limit given.
+        /// Lower limit as given.
         lower: f64,
-        /// The upper limit given.
+        /// Upper limit as given.
         upper: f64,
     },
-    /// A target yield that is not a share.
+    /// The target yield is not a share.
     #[error("a target yield must lie between 0 and 1, both excluded, not {value}")]
     ImpossibleYield {
-        /// The target given.
+        /// Target yield as given.
         value: f64,
     },
 }
 
 impl SpecLimits {
-    /// Both finite where given, and `lower` below `upper`.
+    /// Limits from finite numbers, with `lower` below `upper` if both are given.
     pub fn new(lower: Option<f64>, upper: Option<f64>) -> Result<Self, LimitsError> {
         if let Some(value) = [lower, upper].into_iter().flatten().find(|limit| !limit.is_finite()) {
             return Err(LimitsError::NotFinite { value });
@@ -203,8 +203,8 @@ impl SpecLimits {
         }
     }
 
-    /// The same limits times a power of two. One that no double holds is the greatest double: values beyond do not occur either. Two that both are 0
-    /// then stay apart.
+    /// Limits multiplied by a power of two. A limit beyond the range of doubles becomes the greatest double, since values beyond do not
+    /// occur either. Two limits that become equal are kept apart.
     pub fn times(self, power: Power) -> Self {
         let times = |limit: f64| power.times(limit).clamp(-f64::MAX, f64::MAX);
         let (lower, upper) = (self.lower.map(times), self.upper.map(times));
@@ -212,90 +212,90 @@ impl SpecLimits {
         Self { lower, upper }
     }
 
-    /// The lower limit, where there is one.
+    /// Lower limit, if any.
     pub fn lower(&self) -> Option<f64> {
         self.lower
     }
 
-    /// The upper limit, where there is one.
+    /// Upper limit, if any.
     pub fn upper(&self) -> Option<f64> {
         self.upper
     }
 
-    /// Whether there is any limit.
+    /// True if there is any limit.
     pub fn exist(&self) -> bool {
         self.lower.is_some() || self.upper.is_some()
     }
 }
 
-/// The limits that computed values keep: those given, each moved outward by what rounding may have moved a value on it.
+/// Limits for computed values: those given, each moved outward by the possible rounding error of a value on it.
 ///
-/// This is the only place that decides whether a value keeps a limit. Points of the model, points of a surface and the steps of a discrete
-/// distribution are all compared here, so that a value on a limit is the same event everywhere: it keeps the limit.
+/// Only this type decides if a value keeps a limit. Points of the model, points of a surface and the steps of a discrete distribution are
+/// all compared here. Thus a value on a limit is the same event everywhere: it keeps the limit.
 ///
 /// ```text
 /// kept       lower - a <= value <= upper + a
 /// a          256 epsilon max(sum of the magnitudes of the terms of the value, |lower|, |upper|)
 /// ```
 ///
-/// Source: J. H. Wilkinson, Rounding Errors in Algebraic Processes (1963): a sum is off by at most its number of terms times epsilon by
-/// the sum of their magnitudes.
+/// Source: J. H. Wilkinson, Rounding Errors in Algebraic Processes (1963): the error of a sum is at most its number of terms times epsilon
+/// times the sum of their magnitudes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KeptLimits {
-    /// Infinite without that limit.
+    /// Lower and upper limit moved outward, infinite if there is none.
     ends: [f64; 2],
     rounding: f64,
 }
 
 impl KeptLimits {
-    /// Roundings that a value may have, of the size of all of its terms: as many as a sum of 256 terms has at most, and a surface through
-    /// the values of a sum of some dozens.
+    /// Greatest number of roundings of a value, each in the size of all of its terms: as many as a sum of 256 terms has at most, or a
+    /// surface through the values of a sum of some dozens.
     const ROUNDINGS: f64 = 256.0;
 
-    /// Of values whose terms have magnitudes that sum to `terms`.
+    /// Limits for values whose terms have magnitudes that sum to `terms`.
     pub fn new(limits: SpecLimits, terms: f64) -> Self {
         let largest = [limits.lower, limits.upper].into_iter().flatten().map(f64::abs).fold(terms, f64::max);
         Self::moved(limits, Self::rounding_of(largest))
     }
 
-    /// Of values that rounding moves by no more than this.
+    /// Limits for values with a rounding error of at most `rounding`.
     pub(crate) fn moved(limits: SpecLimits, rounding: f64) -> Self {
         let lower = limits.lower.map_or(f64::NEG_INFINITY, |limit| limit - rounding);
         let upper = limits.upper.map_or(f64::INFINITY, |limit| limit + rounding);
         Self { ends: [lower, upper], rounding }
     }
 
-    /// The distance that rounding may put between a value and a limit on which it lies.
+    /// Greatest distance by rounding between a limit and a value on it.
     pub fn rounding_of(terms: f64) -> f64 {
         Self::ROUNDINGS * f64::EPSILON * terms
     }
 
-    /// By how much the limits are moved.
+    /// Distance by which the limits are moved outward.
     pub fn rounding(&self) -> f64 {
         self.rounding
     }
 
-    /// The least and the greatest value that is kept; infinite without that limit.
+    /// Least and greatest value that keeps the limits, infinite if there is none.
     pub fn ends(&self) -> [f64; 2] {
         self.ends
     }
 
-    /// Whether there is any limit.
+    /// True if there is any limit.
     pub fn exist(&self) -> bool {
         self.ends.iter().any(|end| end.is_finite())
     }
 
-    /// Whether a value is below and above the limits.
+    /// True for a value below the lower limit, and for one above the upper limit.
     pub fn broken(&self, value: f64) -> [bool; 2] {
         [value < self.ends[0], value > self.ends[1]]
     }
 
-    /// Whether a value keeps both limits.
+    /// True if the value keeps both limits.
     pub fn contains(&self, value: f64) -> bool {
         self.ends[0] <= value && value <= self.ends[1]
     }
 
-    /// The same limits tightened by a guard on either side.
+    /// Limits tightened by a guard on either side.
     pub(crate) fn tightened(&self, guard: f64) -> Self {
         Self { ends: [self.ends[0] + guard, self.ends[1] - guard], ..*self }
     }
@@ -309,7 +309,7 @@ mod tests {
         SpecLimits::new(Some(lower), Some(upper)).unwrap()
     }
 
-    /// 0.1 + 0.2 is one unit in the last place above 0.3, and keeps it; so does 0.3 - 1e-10, and 0.3 + 1e-10 does not.
+    /// The sum 0.1 + 0.2 is one unit in the last place above 0.3, and keeps it. So does 0.3 - 1e-10, and 0.3 + 1e-10 does not.
     #[test]
     fn a_value_that_rounding_puts_beyond_a_limit_keeps_it() {
         let kept = KeptLimits::new(limits(0.1, 0.3), 0.3);
@@ -320,7 +320,8 @@ mod tests {
         assert!(!kept.contains(f64::NAN));
     }
 
-    /// 100.01 - 100.00 is off 0.01 by 5e-15: half a unit in the last place of 100, which the size of the limit does not tell.
+    /// The difference 100.01 - 100.00 is off 0.01 by 5e-15: half a unit in the last place of 100, which does not follow from the size of
+    /// the limit.
     #[test]
     fn the_terms_of_a_difference_say_how_it_is_rounded() {
         let value = 100.01 - 100.00;

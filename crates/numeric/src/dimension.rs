@@ -1,4 +1,4 @@
-//! A dimension: one input of the assembly function, with its tolerance and its distribution.
+//! Dimension: one input of the assembly function, with its tolerance and its distribution.
 
 use std::sync::Arc;
 
@@ -6,10 +6,10 @@ use crate::distribution::{Distribution, DistributionError, Normal, Uniform, fini
 use crate::fits::HeldEnd;
 use crate::labels::Labels;
 
-/// Without a tolerance band, three sigma on either side take its place in RSS and worst case.
+/// Half-width of a dimension without a tolerance band, in sigmas: it replaces the band in RSS and worst case.
 const SIGMAS_OF_AN_UNBOUNDED_DIMENSION: f64 = 3.0;
 
-/// One input: a name, a nominal value, and how it varies.
+/// One input of the assembly function: a name, a nominal value, and a distribution.
 ///
 /// ```
 /// use crate::dimension::Dimension;
@@ -34,86 +34,86 @@ pub struct Dimension {
     convention: Convention,
 }
 
-/// How the inflations of the RSS and a budget of uncertainty take a dimension beside its band.
+/// Conventions of a dimension for the inflations of the RSS and for a budget of uncertainty, beside its tolerance band.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Convention {
-    /// The factor of its part; None for the usual one.
+    /// Factor of the dimension's part in the inflated RSS. None for the usual one.
     pub rss_factor: Option<RssFactor>,
-    /// The part of its half band by which its mean may be off; None for the usual one.
+    /// Greatest offset of the mean, as a part of the half band. None for the usual one.
     pub mean_shift: Option<f64>,
-    /// Degrees of freedom of its standard uncertainty; None where nothing is said of them.
+    /// Degrees of freedom of the standard uncertainty. None if they are not given.
     pub degrees: Option<f64>,
-    /// The lots of its process; None where that follows from the distribution.
+    /// Lots of the process. None if they follow from the distribution.
     pub lot: Option<Lot>,
 }
 
-/// How the parts of one lot of a process lie.
+/// Distribution of the parts in one lot of a process.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lot {
-    /// Their sigma, in half bands.
+    /// Sigma of the parts in a lot, in half bands.
     pub sigma: f64,
-    /// How far the mean of all lots lies off the middle, in half bands.
+    /// Distance of the mean of all lots from the middle, in half bands.
     pub off: f64,
-    /// How much further the mean of one lot may lie off, in the dimension's unit: it stays where the tolerance changes.
+    /// Further distance by which the mean of one lot may be off, in the dimension's unit. It is constant if the tolerance changes.
     pub further: f64,
 }
 
-/// The factor of a dimension in the inflated RSS.
+/// Factor of a dimension in the inflated RSS.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum RssFactor {
-    /// This.
+    /// Given factor.
     Factor(f64),
-    /// As worst case and RSS suggest.
+    /// Factor that follows from the worst case and the RSS.
     Modified,
 }
 
-/// Why a dimension cannot be.
+/// Error of a dimension that cannot be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("dimension `{name}`: {fault}")]
 #[non_exhaustive]
 pub struct DimensionError {
-    /// The dimension's name.
+    /// Name of the dimension.
     pub name: String,
-    /// The fault in it.
+    /// Fault of the dimension.
     pub fault: DimensionFault,
 }
 
-/// The faults of a dimension.
+/// Fault of a dimension.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DimensionFault {
-    /// The distribution's parameters are impossible.
+    /// The parameters of the distribution are impossible.
     #[error(transparent)]
     Distribution(#[from] DistributionError),
     /// A tolerance is below 0.
     #[error("the tolerance must not be negative, but is {value}")]
     NegativeTolerance {
-        /// The tolerance given.
+        /// Tolerance given, below 0.
         value: f64,
     },
-    /// The variation vanishes beside the value when both are doubles.
+    /// The variation is lost to rounding beside the mean.
     #[error("sigma {sigma:e} is too small beside the mean {mean:e} to be told from 0 in double precision")]
     Unresolvable {
-        /// The mean.
+        /// Mean of the distribution, in the dimension's unit.
         mean: f64,
-        /// The sigma.
+        /// Standard deviation, in the dimension's unit.
         sigma: f64,
     },
-    /// An evaluation step that is not a positive number.
+    /// The evaluation step is not a positive number.
     #[error("the step must be a number of sigmas above 0, but is {value}")]
     BadStep {
-        /// The step given.
+        /// Step given, in sigmas.
         value: f64,
     },
 }
 
 impl Dimension {
-    /// A value that does not vary: it takes part in no statistics and costs no evaluation.
+    /// Fixed value: it takes part in no statistics and costs no evaluation.
     pub fn fixed(name: impl Into<String>, nominal: f64) -> Result<Self, DimensionError> {
         Self::build(name.into(), nominal, None, Ok(None))
     }
 
-    /// Normal, nominal ± `tolerance`, three sigma within the band; a tolerance of 0 makes it fixed.
+    /// Normal dimension, nominal ± `tolerance`, with three sigma within the band. A tolerance of 0 makes it fixed.
     pub fn normal(name: impl Into<String>, nominal: f64, tolerance: f64) -> Result<Self, DimensionError> {
         if tolerance == 0.0 {
             return Self::fixed(name, nominal);
@@ -122,7 +122,7 @@ impl Dimension {
         Self::build(name.into(), nominal, Some([-tolerance, tolerance]), distribution)
     }
 
-    /// Uniform over nominal ± `tolerance`; a tolerance of 0 makes it fixed.
+    /// Uniform dimension over nominal ± `tolerance`. A tolerance of 0 makes it fixed.
     pub fn uniform(name: impl Into<String>, nominal: f64, tolerance: f64) -> Result<Self, DimensionError> {
         if tolerance == 0.0 {
             return Self::fixed(name, nominal);
@@ -131,15 +131,15 @@ impl Dimension {
         Self::build(name.into(), nominal, Some([-tolerance, tolerance]), distribution)
     }
 
-    /// Normal with its mean in the middle of the band from `nominal + tolerance[0]` to `nominal + tolerance[1]`,
-    /// three sigma within it.
+    /// Normal dimension with its mean in the middle of the band from `nominal + tolerance[0]` to `nominal + tolerance[1]`, and three sigma
+    /// within it.
     pub fn normal_between(name: impl Into<String>, nominal: f64, tolerance: [f64; 2]) -> Result<Self, DimensionError> {
         let [lower, upper] = tolerance;
         let distribution = shared(Normal::new(nominal + 0.5 * (lower + upper), (upper - lower) / 6.0));
         Self::build(name.into(), nominal, Some(tolerance), distribution)
     }
 
-    /// Any distribution, with the tolerance band's deviations from the nominal where there is one.
+    /// Dimension of any distribution. `tolerance` holds the deviations of the band from the nominal, if there is a band.
     pub fn distributed(
         name: impl Into<String>,
         nominal: f64,
@@ -172,13 +172,13 @@ impl Dimension {
         }
     }
 
-    /// With a unit, which is shown and never converted.
+    /// Sets the unit, which is shown and never converted.
     pub fn with_unit(mut self, unit: impl Into<String>) -> Self {
         self.unit = Some(unit.into());
         self
     }
 
-    /// Evaluated at `step` sigma on either side of the mean instead of at the nodes that suit its distribution.
+    /// Sets the evaluation step: `step` sigma on either side of the mean, in place of the nodes that suit the distribution.
     pub fn with_step(mut self, step: f64) -> Result<Self, DimensionError> {
         if !(step.is_finite() && step > 0.0) {
             return Err(DimensionError { name: self.name, fault: DimensionFault::BadStep { value: step } });
@@ -187,15 +187,15 @@ impl Dimension {
         Ok(self)
     }
 
-    /// The same dimension with `factor` times the tolerance; None where it does not vary, or its distribution does not
-    /// scale with the tolerance ([`Distribution::scaled`] says which do and how).
+    /// Dimension with `factor` times the tolerance. Returns None if it does not vary, or if its distribution does not scale with the
+    /// tolerance (see [`Distribution::scaled`]).
     ///
-    /// The band opens and closes about its middle, which stays where it is: a one-sided 0 to 0.2 halved is 0.05 to 0.15, and no
-    /// mean moves because a tolerance does. Where one end of the band is held, as studies say of fits and by `fixed_side`, that end stays, and
-    /// the mean moves with the middle.
+    /// The band opens and closes about its middle, which stays in place: a one-sided 0 to 0.2 halved is 0.05 to 0.15, and no mean moves
+    /// because a tolerance does. If one end of the band is held, as for fits and by `fixed_side` in studies, that end stays, and the mean
+    /// moves with the middle.
     ///
     /// # Errors
-    /// When the factor is not a number above 0, or the distribution cannot have such a sigma.
+    /// If the factor is not a number above 0, or the distribution cannot have such a sigma.
     ///
     /// ```
     /// use crate::dimension::Dimension;
@@ -207,7 +207,7 @@ impl Dimension {
     /// ```
     pub fn scaled(&self, factor: f64) -> Option<Result<Self, DimensionError>> {
         let distribution = self.distribution()?;
-        // One that does not scale does not at any factor.
+        // A distribution that does not scale returns None at any factor, before the factor is checked.
         let way = self.lean() * self.half_band() * (factor - 1.0);
         let scaled = distribution.scaled(factor, way)?;
         let scaled = positive("factor", factor).and(scaled).map_err(DimensionFault::from);
@@ -218,7 +218,7 @@ impl Dimension {
         })
     }
 
-    /// A band of the dimension with `factor` times its width: about its middle, or from the end that is held.
+    /// Band with `factor` times the width of `band`: about its middle, or from the end that is held.
     pub fn opened(&self, band: [f64; 2], factor: f64) -> [f64; 2] {
         let [lower, upper] = band;
         match self.held {
@@ -228,27 +228,27 @@ impl Dimension {
         }
     }
 
-    /// The same with the band and the distribution of another.
+    /// Dimension with the band and the distribution of another, and all else unchanged.
     pub fn remade(&self, other: Self) -> Self {
         Self { tolerance: other.tolerance, distribution: other.distribution, ..self.clone() }
     }
 
-    /// With one end of its band held; without a band nothing is.
+    /// Holds one end of the tolerance band. Without a band nothing is held.
     pub fn holding(mut self, end: HeldEnd) -> Self {
         self.held = self.tolerance.map(|_| end);
         self
     }
 
-    /// Where the middle of the band goes when its half width grows, by as much: 1 up, -1 down, 0 nowhere.
+    /// Direction in which the middle of the band moves when its half-width grows, by the same amount: 1 up, -1 down, 0 for none.
     pub fn lean(&self) -> f64 {
         self.held.map_or(0.0, HeldEnd::lean)
     }
 
-    /// The same dimension about another nominal value, its tolerance kept; None where its distribution does not move with the
-    /// nominal, as measured values and those with an origin do not.
+    /// Dimension about another nominal value, with its tolerance unchanged. Returns None if its distribution does not move with the
+    /// nominal: measured values, and distributions with an origin.
     ///
     /// # Errors
-    /// When the nominal is not a finite number, or so large that the tolerance vanishes beside it.
+    /// If the nominal is not a finite number, or so large that the tolerance vanishes beside it.
     ///
     /// ```
     /// use crate::dimension::Dimension;
@@ -279,8 +279,8 @@ impl Dimension {
         })
     }
 
-    /// As one coordinate of a point that a zone of this name keeps: with all other coordinates of the zone, its deviations from
-    /// the bands' middles lie within one circle, or a sphere, rather than each within its own band.
+    /// Makes the dimension one coordinate of a point in a zone of this name. The deviations of all coordinates of the zone from the band
+    /// middles then lie within one circle or sphere, rather than each within its own band.
     ///
     /// ```
     /// use crate::dimension::Dimension;
@@ -293,17 +293,17 @@ impl Dimension {
         self
     }
 
-    /// Taken so by the inflations of the RSS.
+    /// Sets the conventions for the inflations of the RSS.
     pub fn with_convention(self, convention: Convention) -> Self {
         Self { convention, ..self }
     }
 
-    /// How they take it.
+    /// Conventions for the inflations of the RSS.
     pub fn convention(&self) -> &Convention {
         &self.convention
     }
 
-    /// Sigma of a lot, and how far its mean may lie off the middle of the band, in half bands.
+    /// Sigma of a lot, and the greatest distance of its mean from the band middle, in half bands.
     pub fn lot(&self) -> [f64; 2] {
         let ([lower, upper], half) = (self.reach(), self.half_band());
         if half == 0.0 {
@@ -315,74 +315,73 @@ impl Dimension {
         }
     }
 
-    /// Its name.
+    /// Name of the dimension.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Its unit, where one was given.
+    /// Unit, if one was given.
     pub fn unit(&self) -> Option<&str> {
         self.unit.as_deref()
     }
 
-    /// The value on the drawing.
+    /// Value on the drawing.
     pub fn nominal(&self) -> f64 {
         self.nominal
     }
 
-    /// Lower and upper deviation from the nominal, where there is a tolerance band.
+    /// Lower and upper deviation from the nominal. Returns None if there is no tolerance band.
     pub fn tolerance(&self) -> Option<[f64; 2]> {
         self.tolerance
     }
 
-    /// How it varies; None when it is fixed.
+    /// Distribution of the dimension. Returns None if it is fixed.
     pub fn distribution(&self) -> Option<&dyn Distribution> {
         self.distribution.as_deref()
     }
 
-    /// The same, to be shared.
+    /// Distribution of the dimension, to be shared. Returns None if it is fixed.
     pub fn law(&self) -> Option<&Arc<dyn Distribution>> {
         self.distribution.as_ref()
     }
 
-    /// Its step in sigmas, where one was given.
+    /// Evaluation step in sigmas, if one was given.
     pub fn step(&self) -> Option<f64> {
         self.step
     }
 
-    /// With texts for reports.
+    /// Sets texts for reports.
     pub fn with_labels(self, labels: Labels) -> Self {
         Self { labels, ..self }
     }
 
-    /// Its texts for reports.
+    /// Texts for reports.
     pub fn labels(&self) -> &Labels {
         &self.labels
     }
 
-    /// The circular zone that it shares with other coordinates, where there is one.
+    /// Circular zone that the dimension shares with other coordinates, if any.
     pub fn zone(&self) -> Option<&str> {
         self.zone.as_deref()
     }
 
-    /// Mean of its distribution: the nominal when it is fixed, the band's middle for an asymmetric tolerance.
+    /// Mean of the distribution: the nominal of a fixed dimension, the band middle for an asymmetric tolerance.
     pub fn mean(&self) -> f64 {
         self.distribution().map_or(self.nominal, Distribution::mean)
     }
 
-    /// Standard deviation: 0 when it is fixed.
+    /// Standard deviation, 0 if the dimension is fixed.
     pub fn sigma(&self) -> f64 {
         self.distribution().map_or(0.0, Distribution::sigma)
     }
 
-    /// Half the tolerance band, three sigma where there is no band, 0 when it is fixed.
+    /// Half the tolerance band: three sigma without a band, 0 if the dimension is fixed.
     pub fn half_band(&self) -> f64 {
         let [lower, upper] = self.reach();
         0.5 * (upper - lower)
     }
 
-    /// The least and greatest deviation from the nominal in a worst case: the tolerance band, or three sigma about
-    /// the mean where there is none.
+    /// Least and greatest deviation from the nominal in a worst case: the tolerance band, or without one three sigma about the mean.
     pub fn reach(&self) -> [f64; 2] {
         let (shift, reach) = (self.mean() - self.nominal, SIGMAS_OF_AN_UNBOUNDED_DIMENSION * self.sigma());
         self.tolerance.unwrap_or([shift - reach, shift + reach])
@@ -423,7 +422,7 @@ fn check(
     Ok(distribution)
 }
 
-/// A band `factor` times as wide about the same middle.
+/// Band `factor` times as wide, about the same middle.
 fn about_middle([lower, upper]: [f64; 2], factor: f64) -> [f64; 2] {
     if factor == 1.0 {
         return [lower, upper];

@@ -1,11 +1,11 @@
-//! How a characteristic is measured before it is accepted: with a gauge that errs, within limits that are tightened by a guard band.
+//! Inspection of a characteristic before acceptance: a gauge with a measurement error, and limits that a guard band tightens.
 
 use crate::power::Power;
 
 /// A gauge and its guard bands.
 ///
-/// A part is accepted where its measured value, which is normal about the true one with sigma `gauge`, lies within the limits, tightened by
-/// the guard on every side.
+/// A part is accepted if its measured value lies within the limits, tightened by the guard on both sides. The measured value is normal
+/// about the true one, with sigma `gauge`.
 ///
 /// ```
 /// use crate::inspection::{Guard, Inspection};
@@ -21,57 +21,57 @@ pub struct Inspection {
     guard: Guard,
 }
 
-/// How far the limits are tightened for acceptance.
+/// Amount by which the limits are tightened for acceptance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Guard {
-    /// By so much, in the unit of the characteristic.
+    /// Guard band of this width, in the unit of the characteristic.
     Width(f64),
-    /// By so much that bad parts are accepted at this rate only, as a share of all parts.
+    /// Guard band with which bad parts are accepted at this rate only, as a share of all parts.
     FalseAccept(f64),
 }
 
-/// Why a characteristic cannot be inspected so.
+/// Reason why an inspection is rejected as input.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum InspectionError {
     /// The standard deviation of the gauge is negative, infinite or NaN.
     #[error("the sigma of a gauge must be 0 or above, got {value}")]
     Gauge {
-        /// As given.
+        /// Standard deviation of the gauge as given.
         value: f64,
     },
     /// The guard is negative, infinite or NaN.
     #[error("a guard band must be 0 or above, got {value}: it tightens the limits on every side")]
     Guard {
-        /// As given.
+        /// Width of the guard band as given.
         value: f64,
     },
     /// The wanted rate is 0 or less, or 1 or more.
     #[error("the share of bad parts that are accepted must lie between 0 and 1, both excluded, got {value}")]
     FalseAccept {
-        /// As given.
+        /// Share of bad parts accepted, as given.
         value: f64,
     },
-    /// Nothing would be accepted.
+    /// The guard bands leave no interval of acceptance.
     #[error("guard {guard} leaves nothing between {lower} and {upper}")]
     NothingLeft {
-        /// The guard.
+        /// Guard on either side, in the unit of the characteristic.
         guard: f64,
-        /// The lower limit.
+        /// Lower limit, not yet tightened.
         lower: f64,
-        /// The upper limit.
+        /// Upper limit, not yet tightened.
         upper: f64,
     },
-    /// There is nothing to inspect for.
+    /// The characteristic has no limits to inspect.
     #[error("a gauge needs limits to inspect for: give the characteristic a lower or an upper one")]
     NoLimits,
 }
 
 impl Inspection {
-    /// By a gauge with this standard deviation, without guard bands.
+    /// Inspection by a gauge with this standard deviation, without guard bands.
     ///
     /// # Errors
-    /// When it is negative or not finite.
+    /// If the standard deviation is negative or not finite.
     pub fn new(gauge: f64) -> Result<Self, InspectionError> {
         match gauge.is_finite() && gauge >= 0.0 {
             true => Ok(Self { gauge, guard: Guard::Width(0.0) }),
@@ -79,10 +79,10 @@ impl Inspection {
         }
     }
 
-    /// With guard bands.
+    /// Sets the guard bands.
     ///
     /// # Errors
-    /// When a width is negative or not finite, or a rate does not lie between 0 and 1.
+    /// If a width is negative or not finite, or a rate does not lie between 0 and 1.
     pub fn with_guard(mut self, guard: Guard) -> Result<Self, InspectionError> {
         match guard {
             Guard::Width(value) if !(value.is_finite() && value >= 0.0) => {
@@ -97,17 +97,17 @@ impl Inspection {
         Ok(self)
     }
 
-    /// The standard deviation of the gauge.
+    /// Standard deviation of the gauge.
     pub fn gauge(&self) -> f64 {
         self.gauge
     }
 
-    /// Its guard bands.
+    /// Guard bands of the inspection.
     pub fn guard(&self) -> Guard {
         self.guard
     }
 
-    /// The same of a characteristic times a power of two.
+    /// Inspection of a characteristic whose values are multiplied by a power of two.
     pub(crate) fn times(self, power: Power) -> Self {
         let times = |width: f64| power.times(width).min(f64::MAX);
         let guard = match self.guard {
@@ -117,7 +117,7 @@ impl Inspection {
         Self { gauge: times(self.gauge), guard }
     }
 
-    /// For these limits, the lower and the upper one.
+    /// Checks the inspection against the limits, the lower and the upper one.
     pub(crate) fn checked(self, limits: [Option<f64>; 2]) -> Result<Self, InspectionError> {
         match (self.guard, limits) {
             (_, [None, None]) => Err(InspectionError::NoLimits),

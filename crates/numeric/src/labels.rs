@@ -1,27 +1,27 @@
-//! Texts beside the name of a dimension or characteristic, as drawings have them. No analysis reads them; reports show them.
+//! Texts beside the name of a dimension or characteristic, as on drawings. Reports show them, and analyses ignore them.
 
 use serde::Serialize;
 
-/// The keys of a study, in the order in which reports show them.
+/// Keys in a study, in the order in which reports show them.
 pub const LABELS: [&str; 5] = ["description", "part", "drawing", "revision", "feature"];
 
 /// Texts without a meaning to the analysis.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Labels {
-    /// A few words on its meaning.
+    /// Description in a few words.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
-    /// The part that it belongs to.
+    /// Part that it belongs to.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub part: Option<String>,
-    /// The number of its drawing.
+    /// Number of the drawing.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub drawing: Option<String>,
-    /// The revision of the drawing.
+    /// Revision of the drawing.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub revision: Option<String>,
-    /// The feature of the part, or its number on the drawing.
+    /// Feature of the part, or its number on the drawing.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub feature: Option<String>,
 }
@@ -32,12 +32,12 @@ impl Labels {
         [&self.description, &self.part, &self.drawing, &self.revision, &self.feature].map(|text| text.as_deref())
     }
 
-    /// Whether there is none.
+    /// True if there is no text.
     pub fn is_empty(&self) -> bool {
         self.texts().iter().all(Option::is_none)
     }
 
-    /// All of them as a line: the description, then the others with their names.
+    /// Texts in one line: the description first, then the others with their names. Returns None if there is no text.
     pub fn line(&self) -> Option<String> {
         let one = |(name, text): (&str, Option<&str>)| {
             let text = text?.split_whitespace().collect::<Vec<_>>().join(" ");

@@ -1,6 +1,6 @@
-//! The mathematics of tolerance analysis: distributions, moments, the Pearson system, correlation, samples and surface distributions.
+//! Mathematics of tolerance analysis: distributions, moments, the Pearson system, correlation, samples and surface distributions.
 //!
-//! Nothing here knows a model, evaluates one, or reads a file.
+//! This crate evaluates no model and reads no file.
 
 #![cfg_attr(not(test), deny(clippy::disallowed_methods))]
 

@@ -1,18 +1,18 @@
-//! Names and texts of others: which known name did they mean, what of them is shown, and how much?
+//! Names and texts from outside: the nearest known name, removal of hidden characters, and shortening.
 
-/// Whether a character is not seen and moves what is: control characters, and those that turn the direction of text (Unicode 16,
-/// `Bidi_Control`).
+/// True for characters that are invisible and move the visible ones: control characters, and those that turn the direction of text (Unicode
+/// 16, `Bidi_Control`).
 pub fn is_hidden(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
-/// Text on one line that cannot move the cursor, turn or break the line: hidden characters become U+FFFD.
+/// Replaces hidden characters by U+FFFD, so that the text stays on one line and cannot move the cursor or turn the direction.
 pub fn clean(text: &str) -> String {
     text.chars().map(|c| if is_hidden(c) { '\u{fffd}' } else { c }).collect()
 }
 
-/// Text without its middle, where it is longer than `most` characters.
+/// Removes the middle of a text that is longer than `most` characters.
 pub fn shortened_to(text: &str, most: usize) -> String {
     let count = text.chars().count();
     if count <= most {
@@ -23,11 +23,11 @@ pub fn shortened_to(text: &str, most: usize) -> String {
     format!("{head}…{tail}")
 }
 
-/// The endings of the name of a geometric element in those of the dimensions that it is made of.
+/// Suffixes that dimension names add to the name of the geometric element that they belong to.
 pub(crate) const ELEMENT_PARTS: [&str; 6] = [".unit", ".unit_x", ".unit_y", ".pin_x", ".pin_y", ".slot"];
 
-/// The geometric element that a dimension is a part of; its own name where it is none. Of one that is measured from another, the name
-/// that the study gives it.
+/// Name of the geometric element that a dimension belongs to, or else the dimension's own name. For an element that is measured from
+/// another it is the name in the study.
 pub fn element(dimension: &str) -> &str {
     match ELEMENT_PARTS.iter().find_map(|part| dimension.strip_suffix(part)) {
         Some(element) => element.strip_suffix(".own").unwrap_or(element),
@@ -35,9 +35,9 @@ pub fn element(dimension: &str) -> &str {
     }
 }
 
-/// The known name most similar to `typed`, if any is similar enough to be meant.
+/// Known name most similar to `typed`. Returns None if no name is similar enough.
 ///
-/// Differences in case, and between `-` and `_`, count little.
+/// Differences in case, and between `-` and `_`, do not count.
 pub fn nearest<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let folded = |name: &str| name.to_lowercase().replace('_', "-");
     let typed = folded(typed);
@@ -45,8 +45,7 @@ pub fn nearest<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> Opt
         let name = folded(name);
         let slips = slips(&typed, &name);
         let edit = 1.0 - slips as f64 / typed.chars().count().max(name.chars().count()).max(1) as f64;
-        // A beginning, such as `dist` for `distribution`, is meant even where much is missing, and so is a short name
-        // with one slip.
+        // A prefix, such as `dist` for `distribution`, is probably meant even if much is missing, and so is a short name with one slip.
         let begun = typed.len() >= 3 && name.starts_with(&typed);
         let slip = typed.len() >= 2 && slips == 1;
         if begun || slip { edit.max(0.75) } else { edit }
@@ -61,21 +60,21 @@ pub fn nearest<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> Opt
     best.map(|(_, name)| name)
 }
 
-/// The fewest slips from one word to another, each a letter too many, too few or wrong, or two neighbours exchanged (Damerau and
-/// Levenshtein).
+/// Least number of slips from one word to another (Damerau and Levenshtein). A slip is a letter too many, too few or wrong, or an exchange
+/// of two neighbours.
 fn slips(from: &str, to: &str) -> usize {
     let (from, to): (Vec<char>, Vec<char>) = (from.chars().collect(), to.chars().collect());
     let most = from.len() + to.len();
-    // `cost[i + 1][j + 1]`: from the first `i` letters to the first `j`; the outermost row and column are never the cheapest.
+    // `cost[i + 1][j + 1]` is the cost from the first `i` letters to the first `j`. The outermost row and column are never the cheapest.
     let mut cost = vec![vec![most; to.len() + 2]; from.len() + 2];
     (0..=from.len()).for_each(|i| cost[i + 1][1] = i);
     (0..=to.len()).for_each(|j| cost[1][j + 1] = j);
     for i in 1..=from.len() {
-        // Where the letter of `from` was last seen in `to`.
+        // Last place in `to` of the letter of `from`.
         let mut column = 0;
         for j in 1..=to.len() {
             let (a, b) = (from[i - 1], to[j - 1]);
-            // Where the letter of `to` was last seen in `from`.
+            // Last place in `from` of the letter of `to`.
             let row = from[..i - 1].iter().rposition(|&c| c == b).map_or(0, |at| at + 1);
             let exchanged = cost[row][column] + (i - row - 1) + 1 + (j - column - 1);
             let replaced = cost[i][j] + usize::from(a != b);
@@ -88,22 +87,22 @@ fn slips(from: &str, to: &str) -> usize {
     cost[from.len() + 1][to.len() + 1]
 }
 
-/// A name that stands for none of a list of things.
+/// Name that is unknown in a list of things.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("there is no {what} `{name}`; {}", self.help())]
 pub struct UnknownName {
-    /// The kind of thing that the name should stand for, such as `method`.
+    /// Kind of thing that the name should denote, such as `method`.
     pub what: &'static str,
-    /// The name as typed.
+    /// Name as typed.
     pub name: String,
-    /// The most similar known name.
+    /// Most similar known name, if any is similar enough.
     pub nearest: Option<String>,
-    /// The known names.
+    /// Known names of this kind.
     pub known: Vec<&'static str>,
 }
 
 impl UnknownName {
-    /// The thing of this name among `all`.
+    /// Finds the thing of this name among `all`.
     pub fn find<T: Copy>(
         what: &'static str,
         name: &str,
@@ -116,12 +115,13 @@ impl UnknownName {
         }
     }
 
+    /// Error for an unknown name, with the nearest known one.
     pub fn of(what: &'static str, name: &str, known: Vec<&'static str>) -> Self {
         let nearest = nearest(name, known.iter().copied()).map(str::to_owned);
         Self { what, name: name.to_owned(), nearest, known }
     }
 
-    /// The name that was probably meant, or all that there are.
+    /// Name that was probably meant, or else all known names.
     pub fn help(&self) -> String {
         match &self.nearest {
             Some(nearest) => format!("did you mean `{nearest}`?"),
@@ -140,7 +140,7 @@ mod tests {
         assert_eq!(nearest("zebra", ["nominal", "tolerance", "unit"]), None);
     }
 
-    /// Counted by hand.
+    /// Counts by hand.
     #[test]
     fn slips_are_counted() {
         for (from, to, count) in [
@@ -151,7 +151,7 @@ mod tests {
             ("sigma", "sgima", 1),
             ("tolerence", "tolerance", 1),
             ("kitten", "sitting", 3),
-            // An exchange of neighbours with a letter put between them.
+            // Exchange of neighbours with a letter put between them.
             ("ca", "abc", 2),
             ("ab", "bca", 2),
         ] {

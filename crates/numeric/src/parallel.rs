@@ -1,19 +1,19 @@
-//! Loops over all cores: by rayon where there are threads; one item after the other in a browser, whose WebAssembly has one thread.
+//! Loops over all cores, by rayon if there are threads. In a browser, where WebAssembly has one thread, they take one item after the other.
 //!
-//! Results are collected in the order of the items, so both give the same bits.
+//! Results are collected in the order of the items, so both variants give the same bits.
 
 use std::sync::{Mutex, PoisonError};
 
 #[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
 pub use rayon::join;
 
-/// Two pieces of work, one after the other here.
+/// Does two pieces of work, here one after the other.
 #[cfg(all(target_family = "wasm", target_os = "unknown"))]
 pub fn join<A, B>(first: impl FnOnce() -> A, second: impl FnOnce() -> B) -> (A, B) {
     (first(), second())
 }
 
-/// How many threads work side by side.
+/// Number of threads that work in parallel.
 pub fn threads() -> u32 {
     #[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
     return rayon::current_num_threads() as u32;
@@ -21,16 +21,16 @@ pub fn threads() -> u32 {
     1
 }
 
-/// Rooms to work in, as many as tasks run at once: a task takes one that another has left.
+/// Pool of work spaces, as many as tasks run at once. A task reuses the work space that another has released.
 pub struct Rooms<T>(Mutex<Vec<T>>);
 
 impl<T> Rooms<T> {
-    /// None yet.
+    /// Pool without work spaces.
     pub fn none() -> Self {
         Self(Mutex::new(Vec::new()))
     }
 
-    /// Works in a room that is free, or in a new one.
+    /// Does work in a free work space, or in a new one.
     pub fn within<R>(&self, new: impl FnOnce() -> T, work: impl FnOnce(&mut T) -> R) -> R {
         let free = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let left = free().pop();
@@ -47,9 +47,10 @@ pub mod prelude {
     pub use rayon::prelude::*;
 }
 
-/// The functions of rayon that this crate calls, on iterators of the standard library.
+/// Functions of rayon that this crate calls, on iterators of the standard library.
 #[cfg(all(target_family = "wasm", target_os = "unknown"))]
 pub mod prelude {
+    /// Conversion into an iterator, under the name of rayon.
     pub trait IntoParallelIterator: IntoIterator + Sized {
         fn into_par_iter(self) -> Self::IntoIter {
             self.into_iter()
@@ -58,6 +59,7 @@ pub mod prelude {
 
     impl<I: IntoIterator> IntoParallelIterator for I {}
 
+    /// Iterators over a slice, under the names of rayon.
     pub trait ParallelSlice<T> {
         fn par_iter(&self) -> std::slice::Iter<'_, T>;
         fn par_iter_mut(&mut self) -> std::slice::IterMut<'_, T>;
@@ -83,6 +85,7 @@ pub mod prelude {
         }
     }
 
+    /// Further adapters of iterators, under the names of rayon.
     pub trait ParallelIterator: Iterator + Sized {
         fn flat_map_iter<U: IntoIterator, F: FnMut(Self::Item) -> U>(self, each: F) -> std::iter::FlatMap<Self, U, F> {
             self.flat_map(each)

@@ -1,6 +1,6 @@
 //! Points in `N` dimensions.
 
-/// `R` points in `N` dimensions, stored a column per dimension.
+/// Set of `R` points in `N` dimensions, stored one column per dimension.
 ///
 /// ```
 /// use crate::points::Points;
@@ -16,7 +16,7 @@ pub struct Points {
 }
 
 impl Points {
-    /// `rows` copies of one point.
+    /// Points with `rows` copies of one point.
     pub fn repeated(point: &[f64], rows: usize) -> Self {
         let mut values = Vec::with_capacity(point.len() * rows);
         for &value in point {
@@ -25,26 +25,26 @@ impl Points {
         Self { rows, dimensions: point.len(), values }
     }
 
-    /// Columns that `column` writes, given their place.
+    /// Points with columns that `column` writes, given the index of the dimension.
     pub fn written(rows: usize, dimensions: usize, mut column: impl FnMut(usize, &mut [f64])) -> Self {
         let mut points = Self { rows, dimensions, values: vec![0.0; rows * dimensions] };
         (0..dimensions).for_each(|dimension| column(dimension, points.column_mut(dimension)));
         points
     }
 
-    /// Room for so many points, whatever stands in it.
+    /// Resizes to this number of points. The values are undefined afterwards.
     pub fn resize(&mut self, rows: usize, dimensions: usize) {
         (self.rows, self.dimensions) = (rows, dimensions);
         self.values.resize(rows * dimensions, 0.0);
     }
 
-    /// From all values, a column after the other.
+    /// Points from all values, one column after the other.
     pub fn of_values(rows: usize, dimensions: usize, values: Vec<f64>) -> Self {
         assert_eq!(values.len(), rows * dimensions, "columns of different length");
         Self { rows, dimensions, values }
     }
 
-    /// A point per row; every row must have the same length.
+    /// Points from one row per point. Every row must have the same length.
     pub fn from_rows<R: AsRef<[f64]>>(rows: &[R]) -> Self {
         let dimensions = rows.first().map_or(0, |row| row.as_ref().len());
         let mut points = Self { rows: rows.len(), dimensions, values: vec![0.0; rows.len() * dimensions] };
@@ -57,7 +57,7 @@ impl Points {
         points
     }
 
-    /// A column per dimension; every column must have `rows` values.
+    /// Points from one column per dimension. Every column must have `rows` values.
     pub fn from_columns<C: AsRef<[f64]>>(rows: usize, columns: &[C]) -> Self {
         let mut values = Vec::with_capacity(rows * columns.len());
         for column in columns {
@@ -82,19 +82,19 @@ impl Points {
         &self.values[dimension * self.rows..(dimension + 1) * self.rows]
     }
 
-    /// All values of one dimension, to be changed.
+    /// Mutable values of one dimension.
     pub fn column_mut(&mut self, dimension: usize) -> &mut [f64] {
         &mut self.values[dimension * self.rows..(dimension + 1) * self.rows]
     }
 
-    /// One point.
+    /// Coordinates of one point.
     pub fn row(&self, row: usize) -> Vec<f64> {
         (0..self.dimensions).map(|dimension| self.column(dimension)[row]).collect()
     }
 
-    /// Some points one after the other, in place of what `out` held.
+    /// Writes some points to `out`, one after the other, and replaces its content.
     pub fn rows_to(&self, rows: std::ops::Range<usize>, out: &mut Vec<f64>) {
-        /// Columns that are read side by side, so that a row is written a cache line at a time.
+        /// Columns read side by side, so that a row is written a cache line at a time.
         const SIDE: usize = 8;
         let n = self.dimensions;
         out.resize(rows.len() * n, 0.0);

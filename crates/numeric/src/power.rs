@@ -1,4 +1,4 @@
-//! Powers of two by which values of extreme size are multiplied, so that no power of them leaves the range of doubles.
+//! Powers of two as factors of values of extreme size, so that no power of such a value overflows or underflows.
 //!
 //! Multiplication by a power of two is exact: a figure computed from multiplied values is the figure itself, multiplied.
 
@@ -8,15 +8,15 @@ pub struct Power {
     exponent: i32,
 }
 
-/// Binary digits before or after the point up to which a value counts as ordinary. The eighth power of `2^64`, which the standard error of
-/// a kurtosis takes, is `2^512`: sums and long tails have as many binary digits again.
+/// Greatest binary exponent of a value of ordinary size, and the least one with its sign turned. The standard error of a kurtosis takes
+/// eighth powers: that of `2^64` is `2^512`, which leaves sums and long tails as many binary digits again.
 const ORDINARY: i32 = 64;
 
 impl Power {
     /// The power `2^0`, which changes nothing.
     pub const ONE: Self = Self { exponent: 0 };
 
-    /// The power of two next below the size of a value; `ONE` for a value of ordinary size, and for 0.
+    /// Power of two next below the size of a value: `ONE` for a value of ordinary size, and for 0.
     ///
     /// ```text
     /// 1e-200 -> 2^-665        3.0 -> 2^0        0.0 -> 2^0
@@ -29,42 +29,42 @@ impl Power {
         if exponent.abs() > ORDINARY { Self { exponent } } else { Self::ONE }
     }
 
-    /// With this exponent.
+    /// Power of two with this exponent.
     pub fn of_exponent(exponent: i32) -> Self {
         Self { exponent }
     }
 
-    /// Its exponent.
+    /// Exponent of the power.
     pub fn exponent(self) -> i32 {
         self.exponent
     }
 
-    /// Whether it changes nothing.
+    /// True if the power is `2^0`, which changes nothing.
     pub fn is_one(self) -> bool {
         self.exponent == 0
     }
 
-    /// The power that takes this one back.
+    /// Inverse of the power.
     pub fn inverse(self) -> Self {
         Self { exponent: -self.exponent }
     }
 
-    /// The product of two powers.
+    /// Product of two powers.
     pub fn and(self, other: Self) -> Self {
         Self { exponent: self.exponent + other.exponent }
     }
 
-    /// Its square.
+    /// Square of the power.
     pub fn squared(self) -> Self {
         self.and(self)
     }
 
-    /// A value times this power: exact, unless the product is infinite, or so small that it loses digits.
+    /// Value times this power. The product is exact unless it is infinite, or so small that it loses digits.
     pub fn times(self, value: f64) -> f64 {
         if self.is_one() { value } else { libm::ldexp(value, self.exponent) }
     }
 
-    /// A finite value times this power; None where the product is too large for a double, or rounds to 0.
+    /// Finite value times this power. Returns None if the product is too large for a double, or rounds to 0.
     pub fn checked(self, value: f64) -> Option<f64> {
         let product = self.times(value);
         let lost = value.is_finite() && (!product.is_finite() || product == 0.0 && value != 0.0);
@@ -72,16 +72,16 @@ impl Power {
     }
 }
 
-/// A number whose exponent has no bounds, for products and quotients of numbers of extreme size. It rounds as a double does.
+/// Number whose exponent has no bounds, for products and quotients of numbers of extreme size. It rounds as a double does.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wide {
-    /// Of a size from 1/2 to 1, or 0, infinite or NaN.
+    /// Mantissa with a size from 1/2 to 1, or 0, infinite or NaN.
     mantissa: f64,
     exponent: i32,
 }
 
 impl Wide {
-    /// A double.
+    /// Converts a double.
     pub fn of(value: f64) -> Self {
         let (mantissa, exponent) = libm::frexp(value);
         if value == 0.0 || !value.is_finite() {
@@ -90,34 +90,34 @@ impl Wide {
         Self { mantissa, exponent }
     }
 
-    /// Times another number.
+    /// Product with another number.
     pub fn times(self, other: f64) -> Self {
         let other = Self::of(other);
         Self::normal(self.mantissa * other.mantissa, self.exponent + other.exponent)
     }
 
-    /// Divided by another number.
+    /// Quotient by another number.
     pub fn over(self, other: f64) -> Self {
         let other = Self::of(other);
         Self::normal(self.mantissa / other.mantissa, self.exponent - other.exponent)
     }
 
-    /// Times a power of two.
+    /// Product with a power of two.
     pub fn times_power(self, power: Power) -> Self {
         Self::normal(self.mantissa, self.exponent + power.exponent)
     }
 
-    /// Without its sign.
+    /// Absolute value.
     pub fn abs(self) -> Self {
         Self { mantissa: self.mantissa.abs(), ..self }
     }
 
-    /// As a double: infinite or 0 where none holds it.
+    /// Nearest double: infinite or 0 if the number is outside the range of doubles.
     pub fn value(self) -> f64 {
         libm::ldexp(self.mantissa, self.exponent)
     }
 
-    /// As a double; None where none holds it.
+    /// Nearest double. Returns None if the number is outside the range of doubles.
     pub fn checked(self) -> Option<f64> {
         Power::of_exponent(self.exponent).checked(self.mantissa)
     }
@@ -128,31 +128,31 @@ impl Wide {
     }
 }
 
-/// The way of results back into the unit of a characteristic.
+/// Conversion of results back into the unit of a characteristic.
 #[derive(Debug)]
 pub struct Rescaling {
     power: Power,
-    /// Whether a figure had no place among doubles.
+    /// True if a figure was outside the range of doubles.
     lost: bool,
 }
 
 impl Rescaling {
-    /// By this power of two.
+    /// Conversion by this power of two.
     pub fn by(power: Power) -> Self {
         Self { power, lost: false }
     }
 
-    /// Whether figures were lost: unknown since then.
+    /// True if figures were lost: they are unknown since then.
     pub fn has_lost(&self) -> bool {
         self.lost
     }
 
-    /// Multiplies a figure; NaN where a double cannot hold it.
+    /// Multiplies a figure. Sets it to NaN if a double cannot hold it.
     pub fn multiply(&mut self, figure: &mut f64) {
         *figure = self.product(self.power, *figure);
     }
 
-    /// Divides a figure, which is per unit of the characteristic; NaN where a double cannot hold it.
+    /// Divides a figure that is per unit of the characteristic. Sets it to NaN if a double cannot hold it.
     pub fn divide(&mut self, figure: &mut f64) {
         *figure = self.product(self.power.inverse(), *figure);
     }
@@ -165,7 +165,7 @@ impl Rescaling {
     }
 }
 
-/// Results with figures in the unit of one characteristic.
+/// Result with figures in the unit of one characteristic.
 pub trait Rescale {
     /// Multiplies every such figure. A figure that a double cannot hold becomes unknown.
     fn rescale(&mut self, by: &mut Rescaling);
@@ -209,9 +209,9 @@ impl<T: Rescale, E> Rescale for Result<T, E> {
     }
 }
 
-/// A result that may be lost as a whole.
+/// Result that may be lost as a whole.
 pub trait Unknown {
-    /// Whether it is not a number; false for results of several figures, which lose them one by one.
+    /// True if the result is not a number. False for results of several figures, which lose them one by one.
     fn is_unknown(&self) -> bool {
         false
     }
@@ -233,8 +233,8 @@ impl<T> Unknown for Vec<T> {}
 
 impl<T, E> Unknown for Result<T, E> {}
 
-/// Implements [`Rescale`] for a structure: every field is named once, either as one with figures in the unit or as one without, so that a new
-/// field does not compile until it is named.
+/// Implements [`Rescale`] for a structure. Every field is named once, either as one with figures in the unit or as one without, so that a
+/// new field does not compile until it is named.
 #[macro_export]
 macro_rules! rescale {
     ($type:ty { $($figure:ident),* $(,)? } without { $($other:ident),* $(,)? }) => {
@@ -270,21 +270,21 @@ mod tests {
         }
     }
 
-    /// Of ordinary numbers the same bits as doubles, and of others what doubles lose on the way.
+    /// Ordinary numbers give the same bits as doubles. Others keep values that doubles lose on the way.
     #[test]
     fn a_wide_number_rounds_as_a_double() {
         for (a, b) in [(0.1, 3.0), (-7.3e-5, 1.9e4), (2.0f64.sqrt(), 1e-30), (0.0, 2.0)] {
             assert_eq!(Wide::of(a).times(b).value(), a * b);
             assert_eq!(Wide::of(a).over(b).over(b).value(), a / b / b);
         }
-        // Powers of two round nothing on the way there and back.
+        // Powers of two cause no rounding there and back.
         let tiny = 2.0f64.powi(-700);
         let far = Wide::of(3.0).over(tiny).over(tiny);
         assert_eq!((far.checked(), far.times(tiny).times(tiny).abs().checked()), (None, Some(3.0)));
         assert_eq!(Wide::of(f64::INFINITY).over(2.0).value(), f64::INFINITY);
     }
 
-    /// Neither infinite nor 0: a figure without a place is unknown, and that is known.
+    /// A figure outside the range of doubles becomes unknown, neither infinite nor 0, and the loss is recorded.
     #[test]
     fn a_figure_without_a_place_is_lost() {
         let mut back = Rescaling::by(Power::of(1e200));

@@ -1,57 +1,57 @@
-//! The requirement of a characteristic.
+//! Requirements of a characteristic.
 
 use serde::{Serialize, Serializer};
 
 use crate::power::Power;
 
-/// A requirement of a characteristic: when tolerances are chosen, and when a result is judged.
+/// Requirement of a characteristic, used to allocate tolerances and to judge results.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Requirement {
-    /// The share within the limits is at least this; where tolerances are chosen, by four moments and the Pearson fit.
+    /// Least share within the limits. Allocation computes it by four moments and the Pearson fit.
     Yield(f64),
-    /// `min(U - mean, mean - L) / 3 sigma` is at least this.
+    /// Least value of `min(U - mean, mean - L) / 3 sigma`.
     Cpk(f64),
-    /// Sigma is at most this.
+    /// Greatest sigma, in the unit of the characteristic.
     Sigma(f64),
-    /// The middle of the linear model plus and minus the root of the sum of squares lies within the limits.
+    /// RSS within the limits: the middle of the linear model plus and minus the root of the sum of squares.
     Rss,
-    /// The worst case lies within the limits: proven by interval arithmetic where the formula allows that, of the surface elsewhere.
+    /// Worst case within the limits: proven by interval arithmetic if the formula allows it, else computed from the surface.
     WorstCase,
 }
 
-/// Why a requirement cannot be.
+/// Error of an impossible requirement.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RequirementError {
-    /// A yield that is not a share, or one that only a worst case can promise.
+    /// The required yield is not a share, or is 1, which only a worst case can guarantee.
     #[error("a required yield must lie between 0 and 1, both excluded, not {value}")]
     ImpossibleYield {
-        /// As given.
+        /// Required yield as given.
         value: f64,
     },
-    /// A number that must be above 0.
+    /// The number must be above 0.
     #[error("the required {what} must be above 0, but is {value}")]
     NotPositive {
-        /// `Cpk` or `sigma`.
+        /// Figure that is required: `Cpk` or `sigma`.
         what: &'static str,
-        /// As given.
+        /// Number as given, 0 or less.
         value: f64,
     },
-    /// Limits are needed to say what is required.
+    /// The requirement needs limits, and there are none.
     #[error("to require {what} of a characteristic, it needs limits")]
     NoLimits {
-        /// The requirement.
+        /// Requirement, with an article.
         what: &'static str,
     },
 }
 
-/// A requirement as it is written.
+/// Requirement as serialised in results.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Required {
-    /// `yield`, `cpk`, `sigma`, `rss` or `worst-case`.
+    /// Name of the requirement: `yield`, `cpk`, `sigma`, `rss` or `worst-case`.
     requirement: &'static str,
-    /// How much of it; of `rss` and `worst-case` at most all of the room that the limits leave, 1.
+    /// Required amount. For `rss` and `worst-case`, the fraction of the limits used, at most 1.
     required: f64,
 }
 
@@ -62,7 +62,7 @@ impl From<&Requirement> for Required {
 }
 
 impl Required {
-    /// So much of it.
+    /// Requirement with another amount.
     pub fn of(requirement: &Requirement, amount: f64) -> Self {
         Self { requirement: requirement.key(), required: amount }
     }
@@ -75,7 +75,7 @@ impl Serialize for Requirement {
 }
 
 impl Requirement {
-    /// The requirement's name in JSON and CSV.
+    /// Name of the requirement in JSON and CSV.
     pub fn key(&self) -> &'static str {
         match self {
             Self::Cpk(_) => "cpk",
@@ -83,7 +83,7 @@ impl Requirement {
         }
     }
 
-    /// The same of a characteristic times a power of two.
+    /// Requirement of a characteristic that is multiplied by a power of two.
     pub fn times(self, power: Power) -> Self {
         match self {
             Self::Sigma(value) => Self::Sigma(power.times(value).clamp(f64::MIN_POSITIVE, f64::MAX)),
@@ -91,12 +91,12 @@ impl Requirement {
         }
     }
 
-    /// How much is required; of limits, all of the room that they leave.
+    /// Required amount. For rss and worst case, the fraction of the limits used, 1.
     pub fn amount(&self) -> f64 {
         self.value().unwrap_or(1.0)
     }
 
-    /// The requirement, in a word.
+    /// Name of the requirement in messages.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Yield(_) => "yield",
@@ -107,7 +107,7 @@ impl Requirement {
         }
     }
 
-    /// How much of it; None where the limits say that.
+    /// Required amount. Returns None for rss and worst case, which the limits define.
     pub fn value(&self) -> Option<f64> {
         match *self {
             Self::Yield(value) | Self::Cpk(value) | Self::Sigma(value) => Some(value),
@@ -115,10 +115,10 @@ impl Requirement {
         }
     }
 
-    /// Of a characteristic that has limits, or has none.
+    /// Checks the requirement for a characteristic with or without limits.
     ///
     /// # Errors
-    /// When the number is impossible, or limits are missing that it speaks of.
+    /// If the number is impossible, or the requirement needs limits that are missing.
     pub fn checked(self, limits_exist: bool) -> Result<Self, RequirementError> {
         match self {
             Self::Yield(value) if !(value > 0.0 && value < 1.0) => {

@@ -1,13 +1,13 @@
-//! The common part of how results are written: parts that take another form in JSON than in Rust.
+//! Helpers for serialisation: parts of results that have another form in JSON than in Rust.
 //!
-//! Unknown values are null, so that every key is always there.
+//! Unknown values are null, so that every key always exists.
 
 use std::fmt::Display;
 use std::time::Duration;
 
 use serde::{Serialize, Serializer};
 
-/// Writes a value as what it turns into.
+/// Serialises a value after conversion into `T`.
 pub fn through<'v, T, V, S>(value: &'v V, serializer: S) -> Result<S::Ok, S::Error>
 where
     T: From<&'v V> + Serialize,
@@ -16,17 +16,17 @@ where
     T::from(value).serialize(serializer)
 }
 
-/// One of each of the four moments.
+/// Values for each of the four moments.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Four<T> {
-    /// First moment.
+    /// Value for the expected value.
     pub(crate) mean: T,
-    /// Standard deviation.
+    /// Value for the standard deviation.
     pub(crate) sigma: T,
-    /// Third standardised moment.
+    /// Value for the third standardised moment.
     pub(crate) skewness: T,
-    /// Fourth standardised moment, 3 for a normal.
+    /// Value for the fourth standardised moment, which is 3 for a normal.
     pub(crate) kurtosis: T,
 }
 
@@ -36,13 +36,13 @@ impl<T: Copy> From<&[T; 4]> for Four<T> {
     }
 }
 
-/// One of each side of the limits.
+/// Values for both sides of the limits.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Sides<T> {
-    /// Below the lower limit.
+    /// Value below the lower limit.
     below: T,
-    /// Above the upper limit.
+    /// Value above the upper limit.
     above: T,
 }
 
@@ -52,14 +52,13 @@ impl<T: Copy> From<&[T; 2]> for Sides<T> {
     }
 }
 
-/// Within which the rejects of either side are known.
+/// Confidence intervals of the rejects of either side.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RejectIntervals {
-    /// The 95 % interval of the assemblies below the lower limit by themselves, per million; 0 to 0 where a proof excludes them, null where it
-    /// is not known.
+    /// 95 % interval of the assemblies below the lower limit alone, per million. 0 to 0 if a proof excludes them, null if it is unknown.
     ppm_below_interval: Option<[f64; 2]>,
-    /// The same above the upper limit.
+    /// 95 % interval of the assemblies above the upper limit alone, per million, in the same form.
     ppm_above_interval: Option<[f64; 2]>,
 }
 
@@ -70,32 +69,32 @@ impl From<&[Option<[f64; 2]>; 2]> for RejectIntervals {
     }
 }
 
-/// The ends of an interval that there are.
+/// Ends of an interval. An infinite end is None.
 pub fn ends([low, high]: [f64; 2]) -> [Option<f64>; 2] {
     [finite(low), finite(high)]
 }
 
-/// A number that can be written.
+/// Finite number. Returns None if it is infinite or NaN, which JSON cannot hold.
 pub fn finite(value: f64) -> Option<f64> {
     Some(value).filter(|value| value.is_finite())
 }
 
-/// A share in parts per million.
+/// Serialises a share in parts per million.
 pub fn millionths<S: Serializer>(share: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
     share.map(|share| 1e6 * share).serialize(serializer)
 }
 
-/// In words.
+/// Serialises a value as text.
 pub fn text<S: Serializer>(value: &Option<impl Display>, serializer: S) -> Result<S::Ok, S::Error> {
     value.as_ref().map(ToString::to_string).serialize(serializer)
 }
 
-/// Pairs as a map from names.
+/// Serialises pairs as a map with the names as keys.
 pub fn by_name<S: Serializer>(pairs: &[(String, usize)], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_map(pairs.iter().map(|(name, value)| (name, value)))
 }
 
-/// A time in seconds.
+/// Serialises a duration in seconds.
 pub fn seconds<S: Serializer>(duration: &Duration, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_f64(duration.as_secs_f64())
 }

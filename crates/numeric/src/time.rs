@@ -1,4 +1,4 @@
-//! The clock that measures how long something takes: in a browser the one of the page, because the standard library has none there.
+//! Clock for measuring durations. In a browser it is that of the page, since the standard library has none there.
 
 #[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
 pub use std::time::Instant;

@@ -1,35 +1,36 @@
-//! Units of measurement: a factor to SI, seven exponents, a count of radians, and how they are written.
+//! Units of measurement: a factor to SI, seven exponents, a count of radians, and symbols.
 //!
-//! `N.m/rad`, `kg.m^2`, `mm2`, `m/s²`, `1/K`, `W/m^2/K`: products by `.`, `*`, `·` or a space; `/` inverts the one factor after it. Names come
-//! before prefixes: `min` is a minute, `in` an inch, `mil` a thousandth of one. The factors are exact by definition (NIST SP 811, 2008,
-//! appendix B.8, and the international agreements named there).
+//! Syntax: `N.m/rad`, `kg.m^2`, `mm2`, `m/s²`, `1/K`, `W/m^2/K`. Products are written with `.`, `*`, `·` or a space, and `/` inverts the
+//! one factor after it. Names come before prefixes: `min` is a minute, `in` an inch, `mil` a thousandth of one. The factors are exact by
+//! definition (NIST SP 811, 2008, appendix B.8, and the international agreements named there).
 
 use std::f64::consts::PI;
 
 /// Exponents of metre, kilogram, second, ampere, kelvin, mole and candela.
 pub(crate) type Dimension = [f64; 7];
 
+/// Inch in metres, exact by definition.
 const INCH: f64 = 0.0254;
-/// The pound-force: 0.45359237 kg times 9.80665 m/s².
+/// Pound-force in newton: 0.45359237 kg times 9.80665 m/s².
 const POUND_FORCE: f64 = 4.4482216152605;
-/// Two scales that differ by no more are the same: a factor has rounding errors only.
+/// Tolerance between two equal scales or exponents. A factor has rounding errors only.
 pub const SAME: f64 = 1e-9;
 
-/// A unit, or what a part of a formula has in place of one.
+/// Unit of measurement, also of a part of a formula.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unit {
-    /// A value times this is the value in SI.
+    /// Factor to SI: a value times this is the value in SI.
     pub scale: f64,
     pub(crate) dimension: Dimension,
-    /// How many radians are in it: they may be dropped, never invented.
+    /// Exponent of the radian. Radians may be dropped, never added.
     pub radians: f64,
-    /// Whether it is a temperature on a scale with another zero: a point, not a difference.
+    /// True for a temperature on a scale with another zero: a point, not a difference.
     pub point: bool,
-    /// Its symbols with their exponents, in order.
+    /// Symbols with their exponents, in the order of writing.
     symbols: Vec<(String, f64)>,
 }
 
-/// A symbol, its factor to SI, its exponents, its radians, and whether it takes prefixes.
+/// Symbol of a unit, its factor to SI, its exponents, its radians, and true if it takes prefixes.
 struct Symbol(&'static str, f64, Dimension, f64, bool);
 
 const NONE: Dimension = [0.0; 7];
@@ -124,28 +125,28 @@ const PREFIXES: [(&str, f64); 14] = [
 ];
 
 impl Unit {
-    /// That of a plain number.
+    /// Unit of a plain number.
     pub fn one() -> Self {
         Self { scale: 1.0, dimension: NONE, radians: 0.0, point: false, symbols: Vec::new() }
     }
 
-    /// Radians.
+    /// Unit of an angle in radians.
     pub fn radian() -> Self {
         Self { radians: 1.0, symbols: vec![("rad".to_owned(), 1.0)], ..Self::one() }
     }
 
-    /// The unit of the number by which degrees become radians.
+    /// Unit of the factor that turns degrees into radians.
     pub fn radians_of_a_degree() -> Self {
         let degree = Self { scale: PI / 180.0, symbols: vec![("deg".to_owned(), 1.0)], ..Self::radian() };
         Self::radian().over(&degree)
     }
 
-    /// The same kind in SI, with its symbols.
+    /// Unit of the same kind in SI, with the symbols of this one.
     pub fn in_si(self) -> Self {
         Self { scale: 1.0, ..self }
     }
 
-    /// Reads a unit; None where it is unknown.
+    /// Reads a unit. Returns None if it is unknown.
     pub fn parse(text: &str) -> Option<Self> {
         let text = text.trim();
         if text.is_empty() {
@@ -159,7 +160,7 @@ impl Unit {
         while !rest.is_empty() {
             let character = rest.chars().next()?;
             if ['.', '*', '\u{b7}', ' ', '/'].contains(&character) {
-                // Two signs in a row, but for spaces, are a slip.
+                // A second `/` before the next symbol is a typing error.
                 if character == '/' && inverse && wants {
                     return None;
                 }
@@ -176,7 +177,7 @@ impl Unit {
         (!wants && unit.scale.is_finite() && unit.scale > 0.0).then_some(unit)
     }
 
-    /// A symbol with an exponent, such as `mm2`, `m^-1` or `s²`.
+    /// Symbol with an exponent, such as `mm2`, `m^-1` or `s²`.
     fn of_factor(text: &str) -> Option<Self> {
         let text = text
             .replace('\u{b2}', "^2")
@@ -220,10 +221,12 @@ impl Unit {
         })
     }
 
+    /// Product of two units.
     pub fn times(&self, other: &Self) -> Self {
         self.with(other, 1.0)
     }
 
+    /// Quotient of two units.
     pub fn over(&self, other: &Self) -> Self {
         self.with(other, -1.0)
     }
@@ -246,8 +249,9 @@ impl Unit {
         }
     }
 
+    /// Unit raised to a power.
     pub fn to_the(&self, exponent: f64) -> Self {
-        // Small whole powers by products, so that mm² is 1e-6 as nearly as a double is.
+        // Compute whole powers as products, so that mm² is 1e-6 as nearly as a double allows.
         let scale =
             if exponent.fract() == 0.0 { self.scale.powi(exponent as i32) } else { libm::pow(self.scale, exponent) };
         Self {
@@ -259,17 +263,17 @@ impl Unit {
         }
     }
 
-    /// Whether both measure the same kind of thing.
+    /// True if both units measure the same kind of quantity.
     pub fn same_kind(&self, other: &Self) -> bool {
         self.dimension.iter().zip(&other.dimension).all(|(a, b)| (a - b).abs() < SAME)
     }
 
-    /// Whether it has no kind: a plain number, an angle, a percentage.
+    /// True if the unit has no kind: a plain number, an angle, a percentage.
     pub fn is_plain(&self) -> bool {
         self.dimension.iter().all(|exponent| exponent.abs() < SAME)
     }
 
-    /// A difference of two temperatures on a scale with another zero.
+    /// Unit of the difference of two such values: K for a temperature in degC.
     pub fn difference(&self) -> Self {
         if !self.point {
             return self.clone();
@@ -297,7 +301,7 @@ impl std::fmt::Display for Unit {
 mod tests {
     use super::*;
 
-    /// The twelve factors of NIST SP 811, appendix B.8, in `tests/data/elements.json`; exact ones to rounding.
+    /// Reference: twelve factors of NIST SP 811, appendix B.8, in `tests/data/elements.json`. Exact factors are compared to rounding.
     #[test]
     fn factors_are_those_of_sp_811() {
         let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/elements.json")).unwrap();

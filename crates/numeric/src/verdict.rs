@@ -1,4 +1,4 @@
-//! Whether a target is met: the one place that decides it, from the interval of what is known.
+//! Verdicts on targets, decided in this module only, from the interval of a figure.
 //!
 //! ```text
 //! met             the whole interval keeps the target
@@ -6,8 +6,8 @@
 //! inconclusive    anything else: the interval holds values on both sides, or is unknown
 //! ```
 //!
-//! An interval is the estimate and two of its errors on either side, cut to what the figure can be. Other evidence against the
-//! estimate widens it: another share of the same surface, points without a value. A run that was stopped has no interval.
+//! An interval is the estimate and two of its errors on either side, cut to the possible values of the figure. Evidence against the
+//! estimate widens it: another estimate from the same surface, or points without a value. A run that was stopped has no interval.
 
 use serde::{Serialize, Serializer};
 
@@ -17,14 +17,13 @@ use crate::power::Power;
 use crate::requirement::{Required, Requirement};
 use crate::shape::{ends, finite};
 
-/// Errors on either side of an estimate that make its interval: 95 % where errors are standard errors.
+/// Errors on either side of an estimate that make its interval: 95 % if they are standard errors.
 pub const ERRORS: f64 = 2.0;
-/// The difference that the same sum in another order may make, relative to the room that a target leaves: tolerances that were
-/// chosen so that they just keep a target keep it. The search of tolerances keeps its constraints to a part of 10^9 of their
-/// room.
+/// Rounding allowed for a target, relative to its slack, since the same sum in another order may differ. Tolerances that were chosen to
+/// just keep a target do keep it: the search of tolerances keeps its constraints to a part of 10^9 of their slack.
 const ROUNDING: f64 = 1e-8;
 
-/// The verdict on a target.
+/// Verdict on a target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
@@ -33,12 +32,12 @@ pub enum Verdict {
     Met,
     /// The whole interval breaks it.
     Missed,
-    /// Neither: what is known does not tell.
+    /// The interval holds values on both sides of the target, or is unknown.
     Inconclusive,
 }
 
 impl Verdict {
-    /// In reports.
+    /// Name in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Met => "met",
@@ -47,7 +46,7 @@ impl Verdict {
         }
     }
 
-    /// Whether the target is met; None where that is not known.
+    /// True if the target is met. Returns None if the verdict is inconclusive.
     pub fn met(self) -> Option<bool> {
         match self {
             Self::Met => Some(true),
@@ -56,7 +55,7 @@ impl Verdict {
         }
     }
 
-    /// Of an interval, inconclusive where there is none.
+    /// Verdict from an interval, inconclusive without one.
     ///
     /// ```
     /// use crate::requirement::Requirement;
@@ -73,7 +72,7 @@ impl Verdict {
         let Some([low, high]) = interval.filter(|[low, high]| low <= high) else { return Self::Inconclusive };
         let slack = |room: f64| ROUNDING * room.abs();
         let [worst, best, target] = match requirement {
-            // Rounding is a part of what is rejected.
+            // Rounding is relative to the rejects, not to the yield.
             Requirement::Yield(target) => [low + slack(1.0 - target), high, target],
             Requirement::Cpk(target) => [low + slack(target), high, target],
             Requirement::Sigma(target) => [-high + slack(target), -low, -target],
@@ -87,34 +86,34 @@ impl Verdict {
     }
 }
 
-/// A requirement, what there is of it, and what that says.
+/// Requirement with the value found, its interval and the verdict.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Judged {
-    /// The requirement.
+    /// Requirement that is judged.
     pub requirement: Requirement,
-    /// The value in the requirement's own measure: yield, Cpk, sigma, or the greatest part of a limit's room that rss or worst
-    /// case takes. None where it is unknown.
+    /// Value in the requirement's own measure: yield, Cpk or sigma. For rss and worst case, the fraction of the limits used. None if it is
+    /// unknown.
     pub value: Option<f64>,
-    /// Within which that is known; None where that is unknown.
+    /// Interval of the value. None if it is unknown.
     pub interval: Option<[f64; 2]>,
-    /// The verdict by the interval.
+    /// Verdict from the interval.
     pub verdict: Verdict,
 }
 
-/// A judged requirement as it is written.
+/// Judged requirement as serialised in results.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct JudgedShape {
     #[serde(flatten)]
     required: Required,
-    /// The value found.
+    /// Value found, null if it is unknown.
     value: Option<f64>,
-    /// Within which that is known, an end null where there is none; null where it is not known at all.
+    /// Interval of the value, an end null if it is unbounded. Null as a whole if it is unknown.
     interval: Option<[Option<f64>; 2]>,
-    /// Whether it is kept; null where that is not known.
+    /// True if the requirement is met. Null if that is unknown.
     met: Option<bool>,
-    /// The same in a word.
+    /// Verdict in a word: met, missed or inconclusive.
     verdict: Verdict,
 }
 
@@ -127,12 +126,12 @@ impl Serialize for Judged {
 }
 
 impl Judged {
-    /// By a value and its interval.
+    /// Judges a requirement by a value and its interval.
     pub fn of(requirement: Requirement, value: Option<f64>, interval: Option<[f64; 2]>) -> Self {
         Self { requirement, value, interval, verdict: Verdict::of(requirement, interval) }
     }
 
-    /// The same of a characteristic times a power of two.
+    /// Judged requirement of a characteristic multiplied by a power of two.
     pub fn times(self, power: Power) -> Self {
         match self.requirement {
             Requirement::Sigma(_) => Self {
@@ -145,25 +144,25 @@ impl Judged {
         }
     }
 
-    /// The same by three errors on either side in place of two: many requirements are asked of a sample, each of them often just kept.
+    /// Judges by three errors on either side in place of two, for many requirements judged by one sample: each of them is often just kept.
     pub fn widely(self) -> Self {
         let Self { requirement, value, interval, .. } = self;
         let wider = value.zip(interval).map(|(value, ends)| ends.map(|end| value + 1.5 * (end - value)));
         Self::of(requirement, value, wider)
     }
 
-    /// The same of a run that was stopped while points were open: there is no interval, and nothing follows.
+    /// Removes the interval if the run was stopped with points not evaluated. The verdict is then inconclusive.
     pub fn unless(self, unfinished: bool) -> Self {
         if unfinished { Self::of(self.requirement, self.value, None) } else { self }
     }
 }
 
-/// Every requirement of a characteristic, its target yield first, as `judge` sees it.
+/// Judges every requirement of a characteristic by `judge`, its target yield first.
 pub fn judged(characteristic: &Characteristic, judge: impl Fn(Requirement) -> Judged) -> Vec<Judged> {
     characteristic.requirements().into_iter().map(judge).collect()
 }
 
-/// The worst of all verdicts: missed before inconclusive before met; None without any.
+/// Worst of all verdicts: missed before inconclusive before met. Returns None if there are no verdicts.
 pub fn worst(all: impl IntoIterator<Item = Verdict>) -> Option<Verdict> {
     let rank = |verdict: &Verdict| match verdict {
         Verdict::Met => 0,
@@ -173,24 +172,24 @@ pub fn worst(all: impl IntoIterator<Item = Verdict>) -> Option<Verdict> {
     all.into_iter().max_by_key(rank)
 }
 
-/// An estimate and two errors on either side; None without an error.
+/// Interval of an estimate and two errors on either side. Returns None if the error is unknown.
 pub fn about(value: f64, error: Option<f64>) -> Option<[f64; 2]> {
     let reach = ERRORS * error.filter(|error| error.is_finite())?;
     Some([value - reach, value + reach])
 }
 
-/// The interval of a share.
+/// Interval of a share: `[low, high]` clamped to 0 and 1.
 pub fn share([low, high]: [f64; 2]) -> [f64; 2] {
     [low.clamp(0.0, 1.0), high.clamp(0.0, 1.0)]
 }
 
-/// An interval that holds another value too: of what contradicts the estimate.
+/// Interval extended to hold another value, which contradicts the estimate.
 pub fn including([low, high]: [f64; 2], other: f64) -> [f64; 2] {
     [low.min(other), high.max(other)]
 }
 
-/// An interval of an estimate to which an independent error belongs that leaves `other` open: the distances of the ends add as
-/// squares (Zou and Donner 2008).
+/// Interval of an estimate with an independent second error, whose interval is `other`. The distances of the ends add as squares (Zou and
+/// Donner 2008).
 pub fn joined(value: f64, [low, high]: [f64; 2], other: [f64; 2]) -> [f64; 2] {
     let apart = |from: f64, to: f64| (to - from).max(0.0);
     let below = libm::hypot(apart(low, value), apart(other[0], value));
@@ -198,7 +197,8 @@ pub fn joined(value: f64, [low, high]: [f64; 2], other: [f64; 2]) -> [f64; 2] {
     [value - below, value + above]
 }
 
-/// The 95 % intervals of the rejects of either side, widened by the interval that measured samples leave to all rejects; None where that is unknown.
+/// 95 % intervals of the rejects of either side, widened by `rejected`, the interval of all rejects that measured samples leave. Returns
+/// None for a side whose interval is unknown.
 pub fn sides_with_samples(
     sides: [Option<f64>; 2],
     intervals: [Option<[f64; 2]>; 2],
@@ -207,21 +207,21 @@ pub fn sides_with_samples(
     let all: f64 = sides.iter().flatten().sum();
     [0, 1].map(|side| {
         let ([low, high], value) = (rejected?, sides[side]?);
-        // Each side may have all that is open.
+        // Either side may hold all of the uncertain share.
         let open = [value - (all - low).max(0.0), value + (high - all).max(0.0)];
         Some(share(joined(value, intervals[side]?, open)))
     })
 }
 
-/// The yield when this share of all assemblies has no value, and may be rejected: all of it, or none.
+/// Interval of the yield if the share `lost` of all assemblies has no value: all of it may be rejected, or none.
 ///
-/// `lost` is None where assemblies without a value were met and how many there are is unknown.
+/// `lost` is None if there are assemblies without a value in an unknown number.
 pub fn losing([low, high]: [f64; 2], lost: Option<f64>) -> [f64; 2] {
     [low * (1.0 - lost.unwrap_or(1.0)), high]
 }
 
-/// The interval of a Cpk from the errors of mean and sigma: the mean moves it by `2 e / 3 sigma`, and sigma between
-/// `cpk(sigma + 2 e)` and `cpk(sigma - 2 e)`; the two are independent. None where an error is unknown, or there is no Cpk.
+/// Interval of a Cpk from the errors of mean and sigma. The mean moves it by `2 e / 3 sigma`. Sigma moves it between `cpk(sigma + 2 e)` and
+/// `cpk(sigma - 2 e)`. The two are independent. Returns None if an error is unknown, or there is no Cpk.
 ///
 /// ```
 /// use crate::characteristic::SpecLimits;
@@ -260,27 +260,27 @@ mod tests {
         assert_eq!(Verdict::of(Requirement::Cpk(1.33), Some([f64::NAN, 2.0])), Verdict::Inconclusive);
     }
 
-    /// All may be rejected where it is unknown how many have no value.
+    /// All assemblies may be rejects if the number without a value is unknown.
     #[test]
     fn what_has_no_value_only_lowers_a_yield() {
         assert_eq!(losing([0.9, 0.95], None), [0.0, 0.95]);
         assert_eq!(losing([0.8, 0.9], Some(0.5)), [0.4, 0.9]);
     }
 
-    /// Three below by one error and four by another are five; the other side has only one of them.
+    /// Three below by one error and four by another are five. The other side has only one of them.
     #[test]
     fn independent_errors_add_as_squares() {
         assert_eq!(joined(10.0, [7.0, 10.0], [6.0, 12.0]), [5.0, 12.0]);
-        // An interval that does not hold the estimate reaches no farther than it.
+        // An interval that does not hold the estimate reaches no farther than the estimate.
         assert_eq!(joined(10.0, [9.0, 11.0], [10.5, 10.5]), [9.0, 10.0 + libm::hypot(1.0, 0.5)]);
     }
 
-    /// Two errors of sigma reach 0: no Cpk is too good to be.
+    /// If two errors of sigma reach 0, the Cpk has no upper bound.
     #[test]
     fn a_sigma_that_may_be_nothing_leaves_a_cpk_open() {
         let limits = SpecLimits::new(Some(-4.0), Some(4.0)).unwrap();
         let [low, high] = of_cpk((0.0, Some(0.0)), (1.0, Some(0.6)), limits).unwrap();
-        // 4/3 by 2.2.
+        // A Cpk of 4/3, divided by 2.2.
         assert!((low - 4.0 / 6.6).abs() < 1e-12 && high == f64::INFINITY, "{low} {high}");
     }
 }

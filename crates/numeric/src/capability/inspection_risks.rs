@@ -1,36 +1,36 @@
-//! The risks of an inspection, as results have them.
+//! Risks of an inspection, as serialised in results.
 
 use serde::Serialize;
 
 use crate::power::rescale;
 
-/// A share that is estimated: of the variance, or of all parts.
+/// Estimated share: of the variance, or of all parts.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct EstimatedShare {
-    /// Its value; an estimate from a sample may be below 0 by its error.
+    /// Estimated share. An estimate from a sample may be below 0 by its error.
     pub value: f64,
-    /// Three of these reach the truth; None where nothing is known of it.
+    /// Error of the share: the true value lies within three of these. None if it is unknown.
     pub error: Option<f64>,
 }
 
-/// The risks of an inspection with a gauge that errs. Shares are of all parts unless something else is said.
+/// Risks of an inspection with a gauge that has an error. Shares are of all parts unless stated otherwise.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct InspectionRisks {
-    /// The standard deviation of the gauge.
+    /// Standard deviation of the gauge.
     pub gauge: f64,
-    /// By how much the limits are tightened; None where no guard reaches the rate that is wanted.
+    /// Amount by which the limits are tightened. None if no guard reaches the wanted rate.
     pub guard: Option<f64>,
-    /// The tightened limits.
+    /// Tightened limits.
     pub acceptance: [Option<f64>; 2],
-    /// Bad and accepted: the consumer's risk.
+    /// Share of parts that are bad and accepted: the consumer's risk.
     pub false_accept: Option<EstimatedShare>,
-    /// Good and rejected: the producer's risk.
+    /// Share of parts that are good and rejected: the producer's risk.
     pub false_reject: Option<EstimatedShare>,
-    /// Accepted.
+    /// Share of parts that are accepted.
     pub accepted: Option<EstimatedShare>,
-    /// Of the accepted parts, those that are bad.
+    /// Share of bad parts among the accepted ones.
     pub bad_among_accepted: Option<EstimatedShare>,
 }
 

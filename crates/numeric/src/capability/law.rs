@@ -1,4 +1,4 @@
-//! The distribution of a characteristic, as far as four moments tell.
+//! Distribution of a characteristic by its four moments.
 
 use serde::Serialize;
 
@@ -8,17 +8,17 @@ use crate::pearson::{Pearson, PearsonError};
 use crate::power::{Rescale, Rescaling};
 use crate::shape::{ends, through};
 
-/// A distribution with the four moments of a characteristic.
+/// Distribution with the four moments of a characteristic.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "family", rename_all = "lowercase")]
 pub enum Law {
-    /// Every assembly has this value: sigma is 0.
+    /// Single value of every assembly: sigma is 0.
     Point {
-        /// The value.
+        /// Value of every assembly.
         at: f64,
     },
-    /// The member of the Pearson system.
+    /// Member of the Pearson system with the four moments.
     Pearson(
         #[serde(serialize_with = "through::<PearsonShape, _, _>")]
         #[cfg_attr(feature = "schema", schemars(with = "PearsonShape"))]
@@ -26,16 +26,16 @@ pub enum Law {
     ),
 }
 
-/// A member of the Pearson system as it is written.
+/// Member of the Pearson system as serialised in results.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(inline))]
 struct PearsonShape {
-    /// Its type.
+    /// Type in the Pearson system: `normal`, or `I` to `VII`.
     #[serde(rename = "type")]
     kind: &'static str,
-    /// Lower and upper end, where there are any.
+    /// Lower and upper end of the support, null if infinite.
     support: [Option<f64>; 2],
-    /// Quantiles.
+    /// Quantiles of the distribution.
     quantiles: Quantiles,
 }
 
@@ -55,10 +55,11 @@ impl Rescale for Law {
 }
 
 impl Law {
-    /// The law of these moments: the normal one where skewness and excess are roundings, which sums of normal dimensions leave.
+    /// Fits a distribution to moments. It is the normal one if skewness and excess are rounding errors, as sums of normal dimensions leave
+    /// them.
     ///
     /// # Errors
-    /// When no distribution has them.
+    /// If no distribution has these moments.
     pub fn fit(moments: &Moments) -> Result<Self, PearsonError> {
         let (Some(skewness), Some(excess)) = (moments.skewness(), moments.excess()) else {
             return match moments.mean() {
@@ -66,23 +67,23 @@ impl Law {
                 _ => Err(PearsonError::NotFinite),
             };
         };
-        // Differences of a linear stack leave this much of both; at 8 sigma a probability moves by 1e-10 of itself.
+        // Rounding errors of a linear stack in both. At 8 sigma such a value changes a probability by 1e-10 of itself.
         const ROUNDING: f64 = 1e-12;
         let nothing = skewness.abs() < ROUNDING && excess.abs() < ROUNDING;
         let [skewness, excess] = if nothing { [0.0; 2] } else { [skewness, excess] };
         Ok(Self::Pearson(Box::new(Pearson::with_excess(moments.mean(), moments.sigma(), skewness, excess)?)))
     }
 
-    /// The normal law with their mean and sigma, beside which the fit is shown.
+    /// Normal distribution with the mean and sigma of these moments, shown for comparison with the fit.
     ///
     /// # Errors
-    /// When mean or sigma is not finite.
+    /// If mean or sigma is not finite.
     pub fn normal(moments: &Moments) -> Result<Self, PearsonError> {
         let varies = moments.skewness().is_some() || moments.sigma() > 0.0;
         Self::fit(&if varies { Moments::new(moments.mean(), moments.sigma(), 0.0, 0.0) } else { *moments })
     }
 
-    /// Probability below `x`, which itself does not count.
+    /// Probability strictly below `x`.
     pub fn below(&self, x: f64) -> f64 {
         match self {
             Self::Point { at } => f64::from(*at < x),
@@ -90,7 +91,7 @@ impl Law {
         }
     }
 
-    /// Probability above `x`, which itself does not count.
+    /// Probability strictly above `x`.
     pub fn above(&self, x: f64) -> f64 {
         match self {
             Self::Point { at } => f64::from(*at > x),
@@ -98,7 +99,7 @@ impl Law {
         }
     }
 
-    /// Below which the probability is `p`.
+    /// Value below which the probability is `p`.
     pub fn quantile(&self, p: f64) -> f64 {
         match self {
             Self::Point { at } => *at,
@@ -106,7 +107,7 @@ impl Law {
         }
     }
 
-    /// Above which the probability is `p`.
+    /// Value above which the probability is `p`.
     pub fn upper_quantile(&self, p: f64) -> f64 {
         match self {
             Self::Point { at } => *at,

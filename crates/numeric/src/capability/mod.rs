@@ -1,4 +1,4 @@
-//! Yield and capability: how a characteristic's distribution lies between its limits.
+//! Yield and capability of a characteristic: its distribution relative to its limits.
 
 mod inspection_risks;
 mod law;
@@ -17,10 +17,10 @@ use serde::{Serialize, Serializer};
 use crate::characteristic::{KeptLimits, SpecLimits};
 use crate::pearson::Pearson;
 
-/// Half of the share that six sigma of a normal leave out: 1 - 0.9973 on both sides.
+/// Share outside six sigma of a normal distribution on one side: half of 1 - 0.9973.
 pub const TAIL: f64 = 0.001_349_898_031_630_094_6;
 
-/// How a distribution keeps limits. Figures that do not exist, for want of a limit or because nothing varies, are None.
+/// Capability of a distribution with limits. Figures are None if they do not exist, for want of a limit or because nothing varies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Capability {
     /// Share of assemblies below the lower limit.
@@ -29,34 +29,34 @@ pub struct Capability {
     pub above: Option<f64>,
     /// `(U - L) / 6 sigma`; needs both limits.
     pub cp: Option<f64>,
-    /// `min(U - mean, mean - L) / 3 sigma`, of the limits that there are.
+    /// `min(U - mean, mean - L) / 3 sigma`, over the limits that exist.
     pub cpk: Option<f64>,
-    /// `(U - L)` by the width between the quantiles 0.00135 and 0.99865: Cp for any distribution.
+    /// `(U - L)` divided by the width between the quantiles 0.00135 and 0.99865: Cp for any distribution.
     pub cp_percentile: Option<f64>,
     /// `min((U - median) / (q_0.99865 - median), (median - L) / (median - q_0.00135))`: Cpk for any distribution.
     pub cpk_percentile: Option<f64>,
 }
 
-/// How limits are kept, as it is written.
+/// Capability as serialised in results.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CapabilityShape {
-    /// The share of assemblies within the limits.
+    /// Share of assemblies within the limits.
     #[serde(rename = "yield")]
     yield_: Option<f64>,
     /// Assemblies below the lower limit, per million.
     ppm_below: Option<f64>,
     /// Assemblies above the upper limit, per million.
     ppm_above: Option<f64>,
-    /// Width of the limits by six sigma.
+    /// Width of the limits, divided by six sigma.
     cp: Option<f64>,
-    /// Distance of the nearer limit by three sigma.
+    /// Distance of the nearer limit, divided by three sigma.
     cpk: Option<f64>,
-    /// Width of the limits by that between the quantiles 0.00135 and 0.99865.
+    /// Width of the limits, divided by the width between the quantiles 0.00135 and 0.99865.
     cp_percentile: Option<f64>,
-    /// Distance of the nearer limit from the median by that of the quantile on its side.
+    /// Distance of the nearer limit from the median, divided by that of the quantile on its side.
     cpk_percentile: Option<f64>,
-    /// Sigmas of a normal beyond which, on one side, as many lie as are rejected.
+    /// Distance from the mean of a normal distribution, in sigmas, beyond which one side holds the share of all rejects.
     sigma_level: Option<f64>,
 }
 
@@ -82,12 +82,12 @@ impl Serialize for Capability {
     }
 }
 
-/// `min(U - mean, mean - L) / 3 sigma` of the limits that there are, which needs no law; None where sigma is 0.
+/// `min(U - mean, mean - L) / 3 sigma` over the limits that exist, without a distribution. Returns None if sigma is 0 or there is no limit.
 pub fn cpk(mean: f64, sigma: f64, limits: SpecLimits) -> Option<f64> {
     nearer(limits, mean, 3.0 * sigma, 3.0 * sigma)
 }
 
-/// Cp and Cpk by the quantiles 0.00135, 0.5 and 0.99865 of a law: [`Capability::cp_percentile`] and
+/// Cp and Cpk from the quantiles 0.00135, 0.5 and 0.99865 of a distribution: [`Capability::cp_percentile`] and
 /// [`Capability::cpk_percentile`].
 pub fn percentiles([low, middle, high]: [f64; 3], limits: SpecLimits) -> [Option<f64>; 2] {
     let both = limits.upper().zip(limits.lower()).and_then(|(upper, lower)| width(upper - lower, high - low));
@@ -98,7 +98,7 @@ fn width(narrow: f64, wide: f64) -> Option<f64> {
     (wide > 0.0).then_some(narrow / wide)
 }
 
-/// The distance of the nearer limit, each in units of its own side.
+/// Distance of the nearer limit from `middle`, each in units of its own side. Returns None if there is no limit.
 fn nearer(limits: SpecLimits, middle: f64, down: f64, up: f64) -> Option<f64> {
     let below = limits.lower().map(|lower| width(middle - lower, down));
     let above = limits.upper().map(|upper| width(upper - middle, up));
@@ -106,9 +106,9 @@ fn nearer(limits: SpecLimits, middle: f64, down: f64, up: f64) -> Option<f64> {
 }
 
 impl Capability {
-    /// Of a law with this mean and sigma.
+    /// Capability of a distribution with this mean and sigma.
     ///
-    /// Source: ISO 22514-2 (2017), which calls the percentile forms Pp and Ppk by its method M2.
+    /// Source: ISO 22514-2 (2017), where the percentile forms are Pp and Ppk by its method M2.
     ///
     /// ```
     /// use crate::capability::{Capability, Law};
@@ -119,7 +119,7 @@ impl Capability {
     /// let capability = Capability::of(&Law::fit(&moments)?, 6.0, 0.25, limits);
     /// assert!((capability.cp.unwrap() - 4.0 / 3.0).abs() < 1e-12);
     /// assert!((capability.cpk_percentile.unwrap() - 4.0 / 3.0).abs() < 1e-12);
-    /// // 4 sigma on both sides.
+    /// Both limits are 4 sigma off the mean.
     /// assert!((1e6 * (capability.below.unwrap() + capability.above.unwrap()) - 63.342).abs() < 1e-3);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -136,7 +136,7 @@ impl Capability {
         }
     }
 
-    /// The same, where a value that does not vary keeps a limit as computed values do.
+    /// Capability whose rejects allow for rounding: a value that does not vary keeps a limit if computed values do.
     pub fn of_kept(law: &Law, mean: f64, sigma: f64, limits: SpecLimits, kept: KeptLimits) -> Self {
         let capability = Self::of(law, mean, sigma, limits);
         let Law::Point { at } = law else { return capability };
@@ -144,14 +144,14 @@ impl Capability {
         Self { below: limits.lower().map(|_| below), above: limits.upper().map(|_| above), ..capability }
     }
 
-    /// The figures that follow from mean and sigma alone: Cp and Cpk.
+    /// Figures from mean and sigma alone: Cp and Cpk.
     pub fn of_moments(mean: f64, sigma: f64, limits: SpecLimits) -> Self {
         let cp = limits.upper().zip(limits.lower()).and_then(|(upper, lower)| width(upper - lower, 6.0 * sigma));
         let cpk = cpk(mean, sigma, limits);
         Self { below: None, above: None, cp, cpk, cp_percentile: None, cpk_percentile: None }
     }
 
-    /// Share of assemblies outside the limits; None without any limit.
+    /// Share of assemblies outside the limits. Returns None if there is no limit.
     pub fn rejected(&self) -> Option<f64> {
         match (self.below, self.above) {
             (None, None) => None,
@@ -159,23 +159,23 @@ impl Capability {
         }
     }
 
-    /// Share of assemblies within the limits; None without any limit.
+    /// Share of assemblies within the limits. Returns None if there is no limit.
     pub fn yield_(&self) -> Option<f64> {
         self.rejected().map(|rejected| 1.0 - rejected)
     }
 
-    /// Assemblies below the lower limit, per million.
+    /// Assemblies below the lower limit, per million. Returns None if that limit does not exist.
     pub fn ppm_below(&self) -> Option<f64> {
         self.below.map(|share| 1e6 * share)
     }
 
-    /// Assemblies above the upper limit, per million.
+    /// Assemblies above the upper limit, per million. Returns None if that limit does not exist.
     pub fn ppm_above(&self) -> Option<f64> {
         self.above.map(|share| 1e6 * share)
     }
 
-    /// Sigmas from the mean of a normal beyond which, on one side, as many lie as are rejected: `-Phi^-1(rejected)`.
-    /// Without the shift of 1.5 that some add. None where all or nothing is rejected.
+    /// Distance from the mean of a normal distribution, in sigmas, beyond which one side holds the share of all rejects:
+    /// `-Phi^-1(rejected)`. It has no shift of 1.5, which some add. Returns None if all or nothing is rejected.
     pub fn sigma_level(&self) -> Option<f64> {
         static NORMAL: LazyLock<Pearson> =
             LazyLock::new(|| Pearson::normal(0.0, 1.0).expect("the standard normal exists"));

@@ -1,19 +1,19 @@
-//! The quantiles that every result has, by the names of their probabilities.
+//! Quantiles of every result, keyed by the names of their probabilities.
 
 use serde::{Serialize, Serializer};
 
 use super::TAIL;
 use crate::pearson::Pearson;
 
-/// The names of the probabilities of [`Quantiles`], lowest first.
+/// Names of the probabilities of [`Quantiles`], lowest first.
 pub const PROBABILITIES: [&str; 7] = ["0.00135", "0.01", "0.05", "0.5", "0.95", "0.99", "0.99865"];
 
-/// Something for each probability of [`PROBABILITIES`]; it serialises as a map by their names.
+/// One value for each probability of [`PROBABILITIES`]. Serialises as a map with their names as keys.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quantiles<T = f64>(pub [T; 7]);
 
 impl Quantiles {
-    /// Of a Pearson law; the upper ones by what lies above, for `1 - p` would lose digits.
+    /// Quantiles of a Pearson distribution. Upper ones are computed from the share above, since `1 - p` would lose digits.
     pub fn of(law: &Pearson) -> Self {
         let [below, above] = [|law: &Pearson, p| law.quantile(p), |law: &Pearson, p| law.upper_quantile(p)];
         let all =
@@ -23,7 +23,7 @@ impl Quantiles {
 }
 
 impl<T> Quantiles<T> {
-    /// Each with the name of its probability.
+    /// Iterates over the values with the names of their probabilities.
     pub fn iter(&self) -> impl Iterator<Item = (&'static str, &T)> {
         PROBABILITIES.into_iter().zip(&self.0)
     }

@@ -1,53 +1,57 @@
-//! The risks of an inspection with a gauge that errs: bad parts that it accepts, good parts that it rejects.
+//! Risks of an inspection with a gauge that has an error: bad parts that it accepts, good parts that it rejects.
 //!
-//! With the true value `x` of distribution function `F`, the error `e = s t` of the gauge, `t` standard normal, and acceptance where
-//! `L + g <= x + e <= U - g`:
+//! The true value `x` has the distribution function `F`. The error of the gauge is `e = s t`, `t` standard normal. A part is accepted if `L
+//! + g <= x + e <= U - g`:
 //!
 //! ```text
 //! bad below and accepted    int_{g/s}^inf   phi(t) [F(min(L, U - g - s t)) - F(L + g - s t)] dt
 //! good, rejected below      int_{-inf}^{g/s} phi(t) [F(min(U, L + g - s t)) - F(L)] dt
 //! ```
 //!
-//! and the same mirrored above, with the upper tail of the distribution, so that small shares keep their digits. Nothing but `F` is asked, so
-//! that any law will do, one of measured values too. Source: Deaver (1995), NCSLI RP-19; by integrals over the part in place of the error.
+//! The upper side is the mirror image, computed with the upper tail of the distribution, so that small shares keep their digits. Only `F`
+//! is used, so that any distribution will do, also that of measured values. Source: Deaver (1995), NCSLI RP-19; by integrals over the part
+//! in place of the error.
 
 use crate::characteristic::{KeptLimits, SpecLimits};
 use crate::distribution::standard_normal;
 use crate::pearson::LEGENDRE;
 
-/// Errors of the gauge beyond so many of its sigmas do not occur: 1e-19 of all.
+/// Greatest error of the gauge in its sigmas. Larger ones are neglected: 1e-19 of all.
 const REACH: f64 = 9.0;
-/// Halvings of an interval at most: a step function has its error.
+/// Greatest number of halvings of an interval. A step function needs them all and keeps an error.
 const HALVINGS: u32 = 9;
-/// The error that an interval may have, as a share of all parts, and of its own value.
+/// Absolute error accepted for the integral over an interval, as a share of all parts.
 const ABSOLUTE: f64 = 1e-13;
+/// Relative error accepted for the integral over an interval.
 const RELATIVE: f64 = 1e-10;
-/// Steps of the search of a guard.
+/// Greatest number of steps of the search for a guard.
 const STEPS: usize = 60;
-/// A guard that takes more of the room between two limits leaves nothing to speak of.
+/// Greatest guard, as a part of half the width between two limits. More leaves next to no interval of acceptance.
 const ROOM: f64 = 0.99;
-/// A guard is known to this part of it.
+/// Relative accuracy of a guard.
 const CLOSE: f64 = 1e-9;
 
-/// The shares of a distribution strictly below and strictly above a value.
+/// Shares of a distribution strictly below and strictly above a value.
 pub struct Tails<'t> {
+    /// Share strictly below a value.
     pub below: &'t dyn Fn(f64) -> f64,
+    /// Share strictly above a value.
     pub above: &'t dyn Fn(f64) -> f64,
 }
 
-/// Shares of all parts.
+/// Risks of an inspection, as shares of all parts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Risks {
-    /// Bad and accepted: the consumer's risk.
+    /// Share of parts that are bad and accepted: the consumer's risk.
     pub false_accept: f64,
-    /// Good and rejected: the producer's risk.
+    /// Share of parts that are good and rejected: the producer's risk.
     pub false_reject: f64,
-    /// The error of the integration, of either.
+    /// Error of the integration, valid for either share.
     pub error: f64,
 }
 
 impl Risks {
-    /// By a gauge of this sigma, the limits tightened by `guard`.
+    /// Risks with a gauge of this sigma and the limits tightened by `guard`.
     pub fn of(tails: &Tails<'_>, limits: SpecLimits, gauge: f64, guard: f64) -> Self {
         let sides = sides(tails, limits, gauge, guard);
         let [[a, b], [c, d]] = sides.map(|side| [side.false_accept(), side.false_reject()]);
@@ -55,19 +59,19 @@ impl Risks {
     }
 }
 
-/// The least guard with which no more than `rate` of all parts are bad and accepted; None where no guard reaches that.
+/// Least guard with which at most `rate` of all parts are bad and accepted. Returns None if no guard reaches that.
 pub fn guard_for(tails: &Tails<'_>, limits: SpecLimits, gauge: f64, rate: f64) -> Option<f64> {
     let accepted =
         |guard: f64| sides(tails, limits, gauge, guard).iter().map(|side| side.false_accept().0).sum::<f64>();
     guard_reaching(&accepted, limits, gauge, rate)
 }
 
-/// The same of any share of bad parts that are accepted, which falls with the guard.
+/// Least guard for any function `accepted` that falls with the guard: the share of bad parts that are accepted.
 pub fn guard_reaching(accepted: &dyn Fn(f64) -> f64, limits: SpecLimits, gauge: f64, rate: f64) -> Option<f64> {
     if accepted(0.0) <= rate {
         return Some(0.0);
     }
-    // Nine sigmas of the gauge from a limit nothing bad is accepted.
+    // Nine sigmas of the gauge inside a limit no bad part is accepted.
     let widest = limits.lower().zip(limits.upper()).map(|(lower, upper)| 0.5 * (upper - lower));
     let (mut low, mut high) = (0.0, widest.map_or(REACH * gauge, |half| (ROOM * half).min(REACH * gauge)));
     if accepted(high) > rate {
@@ -86,7 +90,7 @@ pub fn guard_reaching(accepted: &dyn Fn(f64) -> f64, limits: SpecLimits, gauge: 
     Some(high)
 }
 
-/// The probability that a part with this true value is accepted.
+/// Probability that a part with this true value is accepted.
 pub fn acceptance(x: f64, limits: KeptLimits, gauge: f64, guard: f64) -> f64 {
     let accepted = limits.tightened(guard);
     if gauge == 0.0 {
@@ -96,13 +100,13 @@ pub fn acceptance(x: f64, limits: KeptLimits, gauge: f64, guard: f64) -> f64 {
     (high - low).max(0.0)
 }
 
-/// One limit: the lower one, or the upper one as the lower one of the mirrored axis.
+/// One side of the limits: the lower one, or the upper one as the lower one of the mirrored axis.
 struct Side<'t> {
-    /// The share strictly beyond a value of the mirrored axis.
+    /// Share strictly beyond a value of the mirrored axis.
     tail: &'t dyn Fn(f64) -> f64,
     sign: f64,
     limit: Option<f64>,
-    /// The other limit.
+    /// Other limit, infinite if there is none.
     far: f64,
     gauge: f64,
     guard: f64,
@@ -127,11 +131,11 @@ impl Side<'_> {
         (self.tail)(self.sign * x)
     }
 
-    /// The share that is beyond the limit and accepted, and what the integration may be off.
+    /// Share that is beyond the limit and accepted, and the error of the integration.
     fn false_accept(&self) -> (f64, f64) {
         let Some(limit) = self.limit.filter(|_| self.gauge > 0.0) else { return (0.0, 0.0) };
         let from = self.guard / self.gauge;
-        // Where even the far limit lets parts pass that are beyond this one.
+        // Beyond `turn` the far limit, too, decides which of these parts are accepted.
         let turn = (self.far - self.guard - limit) / self.gauge;
         let share = |t: f64| {
             let nearest = limit.min(self.far - self.guard - self.gauge * t);
@@ -140,12 +144,12 @@ impl Side<'_> {
         integral(&share, [from, from.max(0.0) + REACH], turn)
     }
 
-    /// The share that is good and seems to be beyond the tightened limit.
+    /// Share that is within the limits and measured beyond the tightened limit, and the error of the integration.
     fn false_reject(&self) -> (f64, f64) {
         let Some(limit) = self.limit else { return (0.0, 0.0) };
         let own = self.beyond(limit);
         if self.gauge == 0.0 {
-            // Exactly what lies between the limit and its guard.
+            // Without an error of the gauge, exactly the share between the limit and its guard.
             return ((self.beyond(self.far.min(limit + self.guard)) - own).max(0.0), 0.0);
         }
         let turn = (limit + self.guard - self.far) / self.gauge;
@@ -154,7 +158,7 @@ impl Side<'_> {
     }
 }
 
-/// Of a share times the standard normal density, with a bend in one place.
+/// Integral of a share times the standard normal density, with a bend at `turn`: value and error.
 fn integral(share: &dyn Fn(f64) -> f64, [from, to]: [f64; 2], turn: f64) -> (f64, f64) {
     let f = |t: f64| share(t) * standard_normal::density(t);
     let inside = from < turn && turn < to;
@@ -167,7 +171,7 @@ fn integral(share: &dyn Fn(f64) -> f64, [from, to]: [f64; 2], turn: f64) -> (f64
     sum
 }
 
-/// An interval by its halves, as long as these differ from the whole.
+/// Integral over an interval by its halves, halved further while they differ from the whole. `left` is the number of halvings left.
 fn halved(f: &dyn Fn(f64) -> f64, [from, to]: [f64; 2], whole: f64, left: u32) -> (f64, f64) {
     let middle = 0.5 * (from + to);
     let halves = [[from, middle], [middle, to]];
@@ -190,7 +194,7 @@ mod tests {
     use super::*;
     use crate::pearson::Pearson;
 
-    /// Of a uniform part on 0 to 1 and a limit at 1/2: E[e+] = s/sqrt(2 pi) on either side, as long as no error reaches beyond the part.
+    /// Uniform part on 0 to 1 with a limit at 1/2: E[e+] = s/sqrt(2 pi) on either side, as long as no error reaches beyond the part.
     #[test]
     fn a_uniform_part_at_one_limit_has_a_closed_form() {
         let (below, above) = (|x: f64| x.clamp(0.0, 1.0), |x: f64| (1.0 - x).clamp(0.0, 1.0));
@@ -198,9 +202,9 @@ mod tests {
         let limits = SpecLimits::new(Some(0.5), None).unwrap();
         let truth = 0.01 / (2.0 * std::f64::consts::PI).sqrt();
         let found = Risks::of(&tails, limits, 0.01, 0.0);
-        // Errors beyond nine sigmas: 1e-19.
+        // Neglected errors beyond nine sigmas: 1e-19.
         assert!((found.false_accept - truth).abs() < 1e-13 && (found.false_reject - truth).abs() < 1e-13, "{found:?}");
-        // A gauge without error accepts nothing bad, and rejects what the guard takes.
+        // A gauge without error accepts no bad part, and rejects the share within the guard.
         let exact = Risks::of(&tails, limits, 0.0, 0.1);
         assert!(exact.false_accept == 0.0 && (exact.false_reject - 0.1).abs() < 1e-15, "{exact:?}");
     }
@@ -213,7 +217,7 @@ mod tests {
         let limits = SpecLimits::new(Some(-8.0), Some(8.0)).unwrap();
         let guard = guard_for(&tails, limits, 1.0, 0.001).unwrap();
         let found = Risks::of(&tails, limits, 1.0, guard);
-        // The guard is known to a part of 1e-9.
+        // The guard has a relative accuracy of 1e-9.
         assert!((found.false_accept - 0.001).abs() < 1e-10, "{found:?} {guard}");
         assert_eq!(guard_for(&tails, limits, 1.0, 0.01), Some(0.0));
         let narrow = SpecLimits::new(Some(-0.001), Some(0.001)).unwrap();

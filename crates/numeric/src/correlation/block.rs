@@ -1,63 +1,65 @@
-//! Blocks: inputs that vary together as a whole, by rows of measured parts or by a zone.
+//! Blocks: inputs with one joint distribution, of rows of measured parts or of a zone.
 //!
-//! A block is a copula beside the distributions of its members, which stay what they are. For points it is a map from independent normal
-//! variables to those behind its members, so that everything that knows correlated inputs by their normal variables knows blocks too. For
-//! the moments of a surface it is a finite set of weighted places, which integrates every polynomial that is asked of it exactly.
+//! A block is a copula beside the distributions of its members, which do not change. For points it is a map from independent normal
+//! variables to those behind its members. Thus all code that handles correlated inputs by their normal variables handles blocks too. For
+//! the moments of a surface it is a finite set of weighted places, which integrates every polynomial of the needed degree exactly.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
 
 use crate::distribution::{Distribution, Rule, Uniform, standard_normal};
 
-/// Inputs that vary together as a whole.
+/// Inputs with one joint distribution.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Block {
-    /// Their positions, in the order of the law's coordinates.
+    /// Positions of the members, in the order of the law's coordinates.
     pub members: Vec<usize>,
+    /// Joint distribution of the members.
     pub law: JointLaw,
 }
 
-/// How the members of a block vary together.
+/// Joint distribution of the members of a block.
 #[derive(Debug, Clone, PartialEq)]
 pub enum JointLaw {
     /// Rows of measured parts, each with the same probability.
     Rows(Arc<Rows>),
-    /// Uniform within a circle.
+    /// Uniform distribution within a circle.
     Disc,
-    /// Uniform on a circle.
+    /// Uniform distribution on a circle.
     Rim,
-    /// Uniform over `|x| + |y| <= 1`.
+    /// Uniform distribution over `|x| + |y| <= 1`.
     Diamond,
 }
 
-/// Rows of measured parts: a column for every member.
+/// Rows of measured parts, one column for each member.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rows {
-    /// In sigmas off the mean.
+    /// Values of each member, in sigmas off its mean.
     standardised: Vec<Vec<f64>>,
-    /// Of the normal variable behind the member.
+    /// Values of the normal variable behind each member.
     scores: Vec<Vec<f64>>,
 }
 
-/// A place of a block and its probability.
+/// Place of a block with its probability.
 pub struct Atom {
     pub(crate) weight: f64,
-    /// Of every member in sigmas off its mean.
+    /// Coordinate of each member, in sigmas off its mean.
     pub(crate) u: Vec<f64>,
 }
 
-/// Sigmas of the unit zones, as parts of their half width.
+/// Sigma of a coordinate that is uniform in the unit circle.
 const SIGMA_OF_DISC: f64 = 0.5;
+/// Sigma of a coordinate that is uniform on the unit circle: `sqrt(1/2)`.
 const SIGMA_OF_RIM: f64 = std::f64::consts::FRAC_1_SQRT_2;
-/// `sqrt(1/6)`.
+/// Sigma of a coordinate that is uniform in the unit diamond: `sqrt(1/6)`.
 const SIGMA_OF_DIAMOND: f64 = 0.408_248_290_463_863;
 
 impl Rows {
-    /// Of columns of measured values, which are as long as each other and vary.
+    /// Rows from columns of measured values, which must have equal lengths and vary.
     pub fn of(columns: &[Vec<f64>]) -> Self {
         let standardised = |column: &Vec<f64>| {
             let n = column.len() as f64;
-            // About the first value, so that a mean far from 0 costs no digits.
+            // Sum about the first value, so that a mean far from 0 costs no digits.
             let mean = column[0] + column.iter().map(|x| x - column[0]).sum::<f64>() / n;
             let sigma = (column.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / n).sqrt();
             column.iter().map(|x| (x - mean) / sigma).collect()
@@ -68,17 +70,17 @@ impl Rows {
         }
     }
 
-    /// How many rows there are.
+    /// Number of rows.
     pub fn len(&self) -> usize {
         self.standardised.first().map_or(0, Vec::len)
     }
 
-    /// The values of a member, in sigmas off its mean.
+    /// Values of a member, in sigmas off its mean.
     pub fn column(&self, coordinate: usize) -> &[f64] {
         &self.standardised[coordinate]
     }
 
-    /// For every member and row, the place of its value among the distinct values of the member, ascending.
+    /// Rank of each value among the distinct values of its member, ascending, for every member and row.
     pub fn ranks(&self) -> Vec<Vec<usize>> {
         let ranks = |scores: &Vec<f64>| {
             let mut distinct = scores.clone();
@@ -89,14 +91,14 @@ impl Rows {
         self.scores.iter().map(ranks).collect()
     }
 
-    /// The row of a normal variable, which picks it by its probability.
+    /// Row selected by a normal variable, all with the same probability.
     fn row(&self, z: f64) -> usize {
         let n = self.len();
         ((standard_normal::cdf(z) * n as f64) as usize).min(n - 1)
     }
 }
 
-/// The normal scores of values: those of the middle of each value's step in the staircase that the values are.
+/// Normal scores of values: quantiles at the middle of each value's step of the empirical distribution function.
 fn scores(column: &[f64]) -> Vec<f64> {
     let mut sorted = column.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
@@ -110,7 +112,7 @@ fn scores(column: &[f64]) -> Vec<f64> {
 }
 
 impl JointLaw {
-    /// The law of some of the members only, by their coordinates; None where a single one is left, which is independent then.
+    /// Joint distribution of the members at these coordinates. Returns None if a single one is left, which is independent then.
     fn kept(&self, coordinates: &[usize]) -> Option<Self> {
         match self {
             _ if coordinates.len() < 2 => None,
@@ -122,7 +124,7 @@ impl JointLaw {
         }
     }
 
-    /// The correlation of two members.
+    /// Correlation of two members.
     pub(super) fn correlation(&self, a: usize, b: usize) -> f64 {
         match self {
             Self::Rows(rows) => {
@@ -133,7 +135,7 @@ impl JointLaw {
         }
     }
 
-    /// From independent normal variables to those behind the members, in place.
+    /// Maps independent normal variables to those behind the members, in place.
     fn apply(&self, z: &mut [f64]) {
         match self {
             Self::Rows(rows) => {
@@ -150,7 +152,7 @@ impl JointLaw {
         }
     }
 
-    /// From independent normal variables to the members in sigmas off their means, in place.
+    /// Maps independent normal variables to the members in sigmas off their means, in place.
     fn apply_standardised(&self, z: &mut [f64]) {
         match self {
             Self::Rows(rows) => {
@@ -174,8 +176,8 @@ impl JointLaw {
         }
     }
 
-    /// The point of the unit zone for two normal variables. The maps keep measure and are continuous (but for the rim's at 0), so that even
-    /// points stay even.
+    /// Point of the unit zone for two normal variables. The maps preserve measure and are continuous (except at 0 for the rim), so that
+    /// evenly distributed points stay so.
     fn unit_place(&self, z: &[f64]) -> [f64; 2] {
         let [x, y] = [z[0], z[1]];
         let radius = libm::hypot(x, y);
@@ -194,7 +196,7 @@ impl JointLaw {
         }
     }
 
-    /// The probability that a coordinate lies farther from 0 on the same side.
+    /// Probability that a coordinate lies farther from 0 on the same side.
     fn tails(&self, at: [f64; 2]) -> [f64; 2] {
         match self {
             // (theta - sin theta cos theta)/pi with cos theta = |x|.
@@ -213,10 +215,10 @@ impl JointLaw {
         }
     }
 
-    /// Places that integrate polynomials up to this degree exactly; of rows all of them.
+    /// Places that integrate polynomials up to this degree exactly. For rows these are all rows.
     pub(crate) fn atoms(&self, degree: usize) -> Vec<Atom> {
         let around = |radius: f64, weight: f64, sigma: f64| {
-            // As many directions as one more than the degree integrate it; an even number keeps the zone's symmetries.
+            // One direction more than the degree suffices to integrate it. A multiple of four keeps the zone's symmetries.
             let count = (degree + 2).next_multiple_of(4);
             (0..count).map(move |i| {
                 let angle = 2.0 * PI * (i as f64 + 0.5) / count as f64;
@@ -247,7 +249,7 @@ impl JointLaw {
     }
 }
 
-/// Gauss and Legendre's rule of a uniform variable from -1 to 1: places, and weights that sum to 1.
+/// Gauss-Legendre rule for a uniform variable from -1 to 1: places, and weights that sum to 1.
 fn uniform_rule(nodes: usize) -> Vec<(f64, f64)> {
     let uniform = Uniform::new(-1.0, 1.0).expect("an interval");
     let Rule { nodes, weights } = Rule::of(&uniform, nodes);
@@ -255,7 +257,7 @@ fn uniform_rule(nodes: usize) -> Vec<(f64, f64)> {
 }
 
 impl Block {
-    /// The same among these inputs, whose places are those in the list; None where a single one is left.
+    /// Block among a subset of the inputs, with `place` as their new positions. Returns None if a single member is left.
     pub(crate) fn among(&self, place: &dyn Fn(usize) -> Option<usize>) -> Option<Self> {
         let kept: Vec<(usize, usize)> = (self.members.iter().enumerate())
             .filter_map(|(coordinate, &member)| Some((coordinate, place(member)?)))
@@ -265,12 +267,12 @@ impl Block {
         Some(Self { members: kept.into_iter().map(|(_, place)| place).collect(), law })
     }
 
-    /// From independent normal variables to those behind the members: the members' places of a row, in place.
+    /// Maps the members' entries of a row from independent normal variables to those behind the members, in place.
     pub fn apply(&self, row: &mut [f64], scratch: &mut Vec<f64>) {
         self.with(row, scratch, JointLaw::apply);
     }
 
-    /// The same to the members in sigmas off their means.
+    /// Maps the members' entries of a row from independent normal variables to sigmas off their means, in place.
     pub(crate) fn apply_standardised(&self, row: &mut [f64], scratch: &mut Vec<f64>) {
         self.with(row, scratch, JointLaw::apply_standardised);
     }

@@ -1,94 +1,94 @@
-//! Correlations that no inputs have.
+//! Errors of correlations that no inputs can have.
 
 use faer::Mat;
 
 use crate::dimension::Dimension;
 use crate::names::nearest;
 
-/// Why a correlation is refused.
+/// Error of a refused correlation.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{refusal}")]
 #[non_exhaustive]
 pub struct CorrelationError {
-    /// Which of the pairs, where it is one of them.
+    /// Index of the pair at fault. None if the fault is in all pairs together.
     pub pair: Option<usize>,
-    /// Why.
+    /// Reason of the refusal.
     pub refusal: Refusal,
 }
 
-/// The faults of a correlation.
+/// Fault of a correlation.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Refusal {
-    /// A pair names something that is not a dimension.
+    /// A pair names an unknown dimension.
     #[error("there is no dimension `{name}`{}", nearest.as_ref().map(|name| format!("; did you mean `{name}`?")).unwrap_or_default())]
     UnknownDimension {
-        /// The name.
+        /// Unknown name as given.
         name: String,
-        /// The most similar dimension.
+        /// Most similar name of a dimension, if any.
         nearest: Option<String>,
     },
-    /// An end that has no tolerance.
+    /// A dimension of the pair does not vary.
     #[error("`{name}` does not vary, so nothing is correlated with it: give it a tolerance, or remove the pair")]
     DoesNotVary {
-        /// The dimension.
+        /// Name of the fixed dimension.
         name: String,
     },
-    /// An end of which only moments are known.
+    /// A dimension of the pair is known by its moments only.
     #[error("`{name}` is known by its moments only; a correlation needs its distribution")]
     MomentsOnly {
-        /// The dimension.
+        /// Name of the dimension without a distribution.
         name: String,
     },
-    /// Both ends are one dimension.
+    /// The pair names one dimension twice.
     #[error("`{name}` stands at both ends; a correlation is between two dimensions")]
     WithItself {
-        /// The dimension.
+        /// Name of the dimension at both ends.
         name: String,
     },
-    /// A pair that stands twice.
+    /// The pair appears twice.
     #[error("the correlation between `{}` and `{}` is given twice", between[0], between[1])]
     Twice {
-        /// The dimensions.
+        /// Names of the two dimensions.
         between: [String; 2],
     },
-    /// A value that is not a coefficient.
+    /// The value is not a coefficient of correlation.
     #[error("a correlation lies between -1 and 1, but is {value}")]
     NoCoefficient {
-        /// The value.
+        /// Value given, outside -1 to 1.
         value: f64,
     },
-    /// More than the two distributions can have.
+    /// The value is outside the range that the two distributions allow.
     #[error(
         "`{}` and `{}` cannot be correlated by {value}: their distributions allow {:.4} to {:.4}",
         between[0], between[1], range[0], range[1]
     )]
     Unreachable {
-        /// The dimensions.
+        /// Names of the two dimensions.
         between: [String; 2],
-        /// The value.
+        /// Coefficient of correlation as given.
         value: f64,
-        /// The least and the greatest that they can have.
+        /// Least and greatest coefficient that the two distributions allow.
         range: [f64; 2],
     },
-    /// Pairs that contradict each other.
+    /// The pairs contradict each other.
     #[error("no distribution has these correlations together; the nearest that one has: {}", words(nearest))]
     NoSuchMatrix {
-        /// The nearest correlation matrix, by pairs.
+        /// Nearest correlation matrix, by pairs.
         nearest: Vec<([String; 2], f64)>,
     },
-    /// Pairs that together are too much for these distributions.
+    /// The pairs together exceed the range that the distributions allow.
     #[error(
         "these correlations together are more than the distributions of the dimensions allow; near what they do: {}",
         words(nearest)
     )]
     NotForTheseDistributions {
-        /// Near what they allow, by pairs.
+        /// Correlations near the nearest possible ones, by pairs.
         nearest: Vec<([String; 2], f64)>,
     },
 }
 
-/// Pairs that are shown of a large matrix.
+/// Greatest number of pairs of a large matrix in a message.
 const SHOWN: usize = 12;
 
 fn words(pairs: &[([String; 2], f64)]) -> String {

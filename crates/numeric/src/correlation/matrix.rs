@@ -1,15 +1,15 @@
-//! Correlation matrices: whether there is such a one, the nearest that is, and a factor of it.
+//! Correlation matrices: a test for definiteness, the nearest correlation matrix, and a factor.
 
 use faer::{Mat, Side};
 
-/// An eigenvalue above minus this is rounding of 0: coefficients are typed with few digits.
+/// Eigenvalues above minus this are taken as rounded zeros: coefficients are typed with few digits.
 const ZERO: f64 = 1e-12;
-/// Rounds of the alternating projections; they converge linearly, a few dozen do for a few digits.
+/// Greatest number of rounds of the alternating projections. They converge linearly: a few dozen give a few digits.
 const ROUNDS: usize = 2000;
-/// They end when nothing moves by more.
+/// Greatest change of an element in a round at which the projections end.
 const STILL: f64 = 1e-9;
 
-/// The nearest correlation matrix where this one has a negative eigenvalue; None where it has none.
+/// Nearest correlation matrix if this one has a negative eigenvalue. Returns None if it has none.
 ///
 /// Alternating projections with Dykstra's correction (Higham 2002, algorithm 3.3): nearest in the Frobenius norm.
 pub(super) fn nearest_if_indefinite(matrix: &Mat<f64>) -> Option<Mat<f64>> {
@@ -33,7 +33,7 @@ pub(super) fn nearest_if_indefinite(matrix: &Mat<f64>) -> Option<Mat<f64>> {
     Some(y)
 }
 
-/// `L` with `L L'` this matrix.
+/// Factor `L` with `L L'` equal to this matrix.
 pub(super) fn factor(matrix: &Mat<f64>) -> Mat<f64> {
     if let Ok(cholesky) = matrix.llt(Side::Lower) {
         let lower = cholesky.L();
@@ -43,13 +43,13 @@ pub(super) fn factor(matrix: &Mat<f64>) -> Mat<f64> {
     Mat::from_fn(matrix.nrows(), matrix.nrows(), |j, k| vectors[(j, k)] * values[k].max(0.0).sqrt())
 }
 
-/// The nearest matrix without negative eigenvalues.
+/// Nearest matrix without negative eigenvalues.
 fn clipped(matrix: &Mat<f64>) -> Mat<f64> {
     let (values, vectors) = eigen(matrix);
     let m = matrix.nrows();
     let scaled = Mat::from_fn(m, m, |j, k| vectors[(j, k)] * values[k].max(0.0));
     let product = &scaled * vectors.transpose();
-    // Symmetric to the last bit.
+    // Make the product symmetric to the last bit.
     Mat::from_fn(m, m, |j, k| 0.5 * (product[(j, k)] + product[(k, j)]))
 }
 

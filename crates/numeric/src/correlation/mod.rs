@@ -1,17 +1,17 @@
-//! Inputs that vary together.
+//! Correlation of inputs.
 //!
-//! Correlated normal inputs are what they seem: jointly normal with the given matrix. For others the joint law is
-//! Nataf's (Liu and Der Kiureghian 1986): each input is its own quantile function of a normal variable,
-//! `u_j = T_j(z_j) = (F_j^-1(Phi(z_j)) - mean_j)/sd_j`, and the normal variables are correlated so that the inputs are as
-//! asked. With the Hermite coefficients `c_jn = E[T_j(z) He_n(z)]/sqrt(n!)` that is Mehler's series (1866)
+//! Correlated normal inputs are jointly normal with the given matrix. Inputs of other distributions have Nataf's joint distribution (Liu
+//! and Der Kiureghian 1986). Each input is its own quantile function of a normal variable, `u_j = T_j(z_j) = (F_j^-1(Phi(z_j)) -
+//! mean_j)/sd_j`. The normal variables are correlated such that the inputs have the given correlations. With the Hermite coefficients `c_jn
+//! = E[T_j(z) He_n(z)]/sqrt(n!)` that is Mehler's series (1866)
 //!
 //! ```text
 //! rho_jk = sum_{n>=1} c_jn c_kn r_jk^n        rho: of the inputs,  r: of the normal variables
 //! ```
 //!
-//! which is solved for `r_jk` pair by pair. The correlations that the marginals allow lie between its values at -1 and 1.
+//! which is solved for `r_jk` pair by pair. The attainable correlations lie between the values of the series at -1 and 1.
 //!
-//! Rows of measured parts and zones are blocks beside them: each vector is independent of everything else.
+//! Rows of measured parts and zones are blocks beside them: each block is independent of everything else.
 
 mod block;
 mod error;
@@ -32,7 +32,7 @@ use serde::Serialize;
 
 use crate::dimension::Dimension;
 
-/// Dimensions that are independent of all others by themselves, those that vary together in one list: places in `dimensions`, ascending.
+/// Groups of dependent dimensions, as places in `dimensions`, ascending. An independent dimension is a group of its own.
 pub fn factors(correlation: Option<&Correlation>, dimensions: &[usize]) -> Vec<Vec<usize>> {
     let mut factors: Vec<Vec<usize>> = Vec::new();
     for (place, &d) in dimensions.iter().enumerate() {
@@ -41,7 +41,7 @@ pub fn factors(correlation: Option<&Correlation>, dimensions: &[usize]) -> Vec<V
             continue;
         };
         let linked = |factor: &Vec<usize>| factor.iter().any(|&other| of.linked(d, dimensions[other]));
-        // A dimension may link factors that were apart so far.
+        // A dimension may link groups that were separate so far.
         let (together, apart): (Vec<_>, Vec<_>) = std::mem::take(&mut factors).into_iter().partition(linked);
         let mut own: Vec<usize> = together.into_iter().flatten().collect();
         own.push(place);
@@ -53,17 +53,17 @@ pub fn factors(correlation: Option<&Correlation>, dimensions: &[usize]) -> Vec<V
     factors
 }
 
-/// Two dimensions and their coefficient of correlation.
+/// Pair of dimensions with its coefficient of correlation.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Pair {
-    /// The dimensions.
+    /// Names of the two dimensions.
     pub between: [String; 2],
     /// Pearson's coefficient, from -1 to 1.
     pub value: f64,
 }
 
-/// How some of the dimensions vary together; the others are independent of them and of each other.
+/// Correlation of some of the dimensions. The others are independent of them and of each other.
 ///
 /// ```
 /// use crate::correlation::{Correlation, Pair};
@@ -76,19 +76,19 @@ pub struct Pair {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Correlation {
-    /// The correlated inputs, ascending: M of them.
+    /// Correlated inputs, ascending: M of them.
     members: Vec<usize>,
-    /// Of the inputs, M by M.
+    /// Correlation matrix of the inputs, M by M.
     target: Mat<f64>,
-    /// Of the normal variables behind them.
+    /// Correlation matrix of the normal variables behind the inputs, M by M.
     normal: Mat<f64>,
     transforms: Vec<Arc<Transform>>,
-    /// Members that vary together by rows or a zone, whose normal variables are uncorrelated in `normal`.
+    /// Members with a joint distribution of rows or a zone. Their normal variables are uncorrelated in `normal`.
     blocks: Vec<Block>,
 }
 
 impl Correlation {
-    /// Of these dimensions by these pairs; a pair that is not named is uncorrelated.
+    /// Correlation of these dimensions by these pairs. All other pairs are uncorrelated.
     ///
     /// # Errors
     /// See [`with_blocks`](Self::with_blocks).
@@ -96,11 +96,11 @@ impl Correlation {
         Self::with_blocks(dimensions, pairs, Vec::new())
     }
 
-    /// The same beside blocks of dimensions by their positions: each of them in one block at most, and in none of the pairs.
+    /// Correlation by pairs and by blocks. Block members are positions of dimensions, each in at most one block and in no pair.
     ///
     /// # Errors
-    /// When a pair names something that is not a dimension or does not vary, stands twice, or asks for what its distributions do
-    /// not allow; and when no distribution has all of it together: the matrix must not have a negative eigenvalue.
+    /// If a pair names an unknown or fixed dimension, appears twice, or has a value that its distributions do not allow. Also if no joint
+    /// distribution has all pairs together: the matrix must not have a negative eigenvalue.
     pub fn with_blocks(dimensions: &[Dimension], pairs: &[Pair], blocks: Vec<Block>) -> Result<Self, CorrelationError> {
         let pairs = resolved(dimensions, pairs)?;
         let of_blocks = blocks.iter().flat_map(|block| block.members.iter().copied());
@@ -108,6 +108,7 @@ impl Correlation {
         members.sort_unstable();
         members.dedup();
         let place = |d: usize| members.binary_search(&d).expect("an end of a pair is a member");
+        // Check the pairs together first, so that the error names the nearest possible correlations.
         let mut target = Mat::identity(members.len(), members.len());
         for &([a, b], value) in &pairs {
             target[(place(a), place(b))] = value;
@@ -117,6 +118,8 @@ impl Correlation {
         if let Some(nearest) = matrix::nearest_if_indefinite(&target) {
             return Err(CorrelationError::indefinite(|nearest| Refusal::NoSuchMatrix { nearest }, &names(), &nearest));
         }
+        // Solve for the correlation of the normal variables pair by pair. A correlation beyond the range of its two distributions is an
+        // error.
         let transforms = transforms(dimensions, &members);
         let mut normal = Mat::identity(members.len(), members.len());
         for (index, &([a, b], value)) in pairs.iter().enumerate() {
@@ -133,7 +136,7 @@ impl Correlation {
             normal[(k, j)] = behind;
         }
         if let Some(nearest) = matrix::nearest_if_indefinite(&normal) {
-            // The nearest of the normal variables, as the inputs see it.
+            // Correlations of the inputs for the nearest matrix of the normal variables.
             let m = members.len();
             let seen = Mat::from_fn(m, m, |j, k| match j == k {
                 true => 1.0,
@@ -145,6 +148,8 @@ impl Correlation {
                 &seen,
             ));
         }
+        // Correlations within blocks follow from their joint distributions. The matrix of normal variables leaves them out, since blocks
+        // have their own map.
         for Block { members, law } in &blocks {
             for (a, &d) in members.iter().enumerate() {
                 for (b, &e) in members.iter().enumerate().filter(|&(b, _)| b != a) {
@@ -155,18 +160,18 @@ impl Correlation {
         Ok(Self { members, target, normal, transforms, blocks })
     }
 
-    /// The blocks, by positions as those of the members.
+    /// Blocks, with members as positions of dimensions.
     pub fn blocks(&self) -> &[Block] {
         &self.blocks
     }
 
-    /// The block that a dimension belongs to, and its coordinate there.
+    /// Block that a dimension belongs to, and its coordinate there. Returns None if it is in no block.
     pub fn block_of(&self, dimension: usize) -> Option<(usize, usize)> {
         let coordinate = |block: &Block| block.members.iter().position(|&member| member == dimension);
         self.blocks.iter().enumerate().find_map(|(index, block)| Some((index, coordinate(block)?)))
     }
 
-    /// Whether two dimensions vary together, be it without being correlated.
+    /// True if two dimensions are dependent, even if they are uncorrelated.
     pub(crate) fn linked(&self, a: usize, b: usize) -> bool {
         let by_block = || self.block_of(a).zip(self.block_of(b)).is_some_and(|((one, _), (other, _))| one == other);
         match (self.members.binary_search(&a), self.members.binary_search(&b)) {
@@ -175,12 +180,12 @@ impl Correlation {
         }
     }
 
-    /// The same without its blocks; None where nothing is left.
+    /// Correlation without its blocks. Returns None if nothing is left.
     pub fn without_blocks(&self) -> Option<Self> {
         self.without(&|_| true)
     }
 
-    /// The same without these blocks, by their numbers.
+    /// Correlation without some of its blocks, given by their numbers. Returns None if nothing is left.
     pub(crate) fn without(&self, left_out: &dyn Fn(usize) -> bool) -> Option<Self> {
         let kept = |&d: &usize| self.block_of(d).is_none_or(|(block, _)| !left_out(block));
         let others: Vec<usize> = self.members.iter().copied().filter(kept).collect();
@@ -195,27 +200,27 @@ impl Correlation {
         })
     }
 
-    /// The dimensions that are correlated with some other, ascending.
+    /// Dimensions that are correlated or in a block, ascending.
     pub fn members(&self) -> &[usize] {
         &self.members
     }
 
-    /// The correlation of the members, M by M.
+    /// Correlation matrix of the members, M by M.
     pub(crate) fn matrix(&self) -> &Mat<f64> {
         &self.target
     }
 
-    /// The correlation of the normal variables behind the members, M by M.
+    /// Correlation matrix of the normal variables behind the members, M by M.
     pub fn normal(&self) -> &Mat<f64> {
         &self.normal
     }
 
-    /// The members as functions of the normal variables behind them.
+    /// Transforms from the normal variables to the members.
     pub fn transforms(&self) -> &[Arc<Transform>] {
         &self.transforms
     }
 
-    /// The correlation of two dimensions.
+    /// Correlation of two dimensions.
     pub fn of(&self, a: usize, b: usize) -> f64 {
         match (self.members.binary_search(&a), self.members.binary_search(&b)) {
             _ if a == b => 1.0,
@@ -224,17 +229,17 @@ impl Correlation {
         }
     }
 
-    /// Whether the members are jointly normal.
+    /// True if the members are jointly normal.
     pub(crate) fn is_normal(&self) -> bool {
         self.transforms.iter().all(|transform| transform.is_normal())
     }
 
-    /// `L` with `L L' = normal()`, M by M: Cholesky's factor, or one from the eigenvalues where the matrix is singular.
+    /// Factor `L` with `L L' = normal()`, M by M: by Cholesky, or from the eigenvalues if the matrix is singular.
     pub fn factor(&self) -> Mat<f64> {
         matrix::factor(&self.normal)
     }
 
-    /// The same among these dimensions only, counted by their positions here; None where no two of them are correlated.
+    /// Correlation among these dimensions only, with their positions in `dimensions`. Returns None if no two of them are dependent.
     pub fn among(&self, dimensions: &[usize]) -> Option<Self> {
         let kept: Vec<(usize, usize)> = (dimensions.iter().enumerate())
             .filter_map(|(position, d)| Some((position, self.members.binary_search(d).ok()?)))
@@ -259,7 +264,7 @@ impl Correlation {
     }
 }
 
-/// Names become indices; each pair once, each end something that varies.
+/// Resolves names to indices, and checks that each pair appears once and each dimension varies.
 fn resolved(dimensions: &[Dimension], pairs: &[Pair]) -> Result<Vec<([usize; 2], f64)>, CorrelationError> {
     let named: HashMap<&str, usize> =
         dimensions.iter().enumerate().map(|(d, dimension)| (dimension.name(), d)).collect();

@@ -1,19 +1,20 @@
-//! Independent standard normal variables made to vary together.
+//! Dependence imposed on independent standard normal variables.
 
 use faer::Mat;
 
 use super::{Block, Correlation};
 
-/// The normal variables behind correlated inputs, as a factor of their matrix makes them of independent ones (Nataf's law).
+/// Map from independent normal variables to those behind correlated inputs, by a factor of their matrix and by blocks (Nataf's
+/// distribution).
 pub struct Together {
-    /// Their positions among all variables.
+    /// Positions of the members among all variables.
     members: Vec<usize>,
     factor: Mat<f64>,
     blocks: Vec<Block>,
 }
 
 impl Together {
-    /// Of a correlation among these variables.
+    /// Map for a correlation among these variables.
     pub fn of(correlation: &Correlation) -> Self {
         Self {
             members: correlation.members().to_vec(),
@@ -22,7 +23,7 @@ impl Together {
         }
     }
 
-    /// Independent variables, a column each, with the members varying together.
+    /// Maps independent variables, one column each, to columns in which the members are dependent.
     pub fn apply(&self, normals: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let mut columns = normals.to_vec();
         for (j, &member) in self.members.iter().enumerate() {

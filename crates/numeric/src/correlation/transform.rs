@@ -1,11 +1,11 @@
-//! An input as a function of a normal variable: `T(z) = (F^-1(Phi(z)) - mean)/sd`.
+//! Input as a function of a normal variable: `T(z) = (F^-1(Phi(z)) - mean)/sd`.
 
 use std::f64::consts::PI;
 use std::sync::LazyLock;
 
 use crate::distribution::{Distribution, Normal, behind_normal};
 
-/// The function, and its Hermite series.
+/// Transform from a normal variable to an input, with its Hermite series.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Transform {
     kind: Kind,
@@ -13,29 +13,30 @@ pub struct Transform {
 
 #[derive(Debug, Clone, PartialEq)]
 enum Kind {
-    /// `T(z) = z`
+    /// Identity, `T(z) = z`, for a normal input.
     Normal,
     Tabulated {
-        /// `T` at the places of the grid.
+        /// Values of `T` at the places of the grid.
         values: Vec<f64>,
         /// `c_n = E[T(z) He_n(z)]/sqrt(n!)` from n = 1 on.
         series: Vec<f64>,
-        /// Whether there is a density, so that a cubic between the places of the grid is right.
+        /// True if there is a density, so that a cubic between the places of the grid is accurate.
         smooth: bool,
     },
 }
 
-/// The grid reaches this far to either side: beyond, even the square of a lognormal with log-sd 3 counts for nothing.
+/// Greatest place of the grid on either side. Beyond, even the square of a lognormal with log-sd 3 is negligible.
 const REACH: i32 = 16;
-/// Places per unit: ten for a wave of the highest Hermite function.
+/// Places of the grid per unit: ten for a wave of the highest Hermite function.
 const PER_UNIT: i32 = 64;
-/// Terms of the series. Smooth laws take a dozen; a triangle, whose mode is a jump of a second derivative, leaves 1e-8 beyond these.
+/// Terms of the Hermite series. Smooth distributions need a dozen. A triangle, whose mode is a jump of a second derivative, leaves 1e-8
+/// beyond these.
 const TERMS: usize = 256;
-/// A required correlation may exceed the possible range by rounding.
+/// Excess of a required correlation over the possible range that is taken as rounding.
 const SLACK: f64 = 1e-9;
 
-/// The places, and `sqrt(density)` there, whose squares times the spacing are the weights of the trapezoidal rule; that
-/// converges faster than any power for what decays like a normal density.
+/// Places of the grid, and `sqrt(density)` there. The squares of the roots times the spacing are the weights of the trapezoidal rule, which
+/// converges faster than any power for integrands that decay like a normal density.
 static GRID: LazyLock<[Vec<f64>; 2]> = LazyLock::new(|| {
     let places = (-REACH * PER_UNIT..=REACH * PER_UNIT).map(|i| f64::from(i) / f64::from(PER_UNIT));
     let places: Vec<f64> = places.collect();
@@ -56,7 +57,7 @@ fn spacing() -> f64 {
 }
 
 impl Transform {
-    /// Of this distribution; None where only moments are known.
+    /// Transform for this distribution. Returns None if only its moments are known.
     pub fn of(distribution: &dyn Distribution) -> Option<Self> {
         let law = distribution.probability()?;
         if distribution.name() == Normal::NAME {
@@ -68,12 +69,12 @@ impl Transform {
         Some(Self { kind: Kind::Tabulated { values, series, smooth: law.density(mean).is_some() } })
     }
 
-    /// Whether the input is normal itself.
+    /// True if the input is normal.
     pub fn is_normal(&self) -> bool {
         self.kind == Kind::Normal
     }
 
-    /// `T(z)`, between the places of the grid by a cubic: 1e-8 where quantiles are smooth, 1e-6 beside the mode of a triangle.
+    /// Value `T(z)`, by a cubic between the places of the grid. Error: 1e-8 if quantiles are smooth, 1e-6 beside the mode of a triangle.
     pub fn value(&self, z: f64) -> f64 {
         let Kind::Tabulated { values, smooth, .. } = &self.kind else { return z };
         let place = ((z + f64::from(REACH)) * f64::from(PER_UNIT)).clamp(1.0, (values.len() - 3) as f64);
@@ -88,7 +89,7 @@ impl Transform {
         -a * t * q * r / 6.0 + 0.5 * b * p * q * r - 0.5 * c * p * t * r + d * p * t * q / 6.0
     }
 
-    /// `E[g(T(z)) z]` and `E[g(T(z)) (z^2 - 1)]/2`: the best line and parabola in `z`.
+    /// Coefficients of the best line and parabola in `z`: `E[g(T(z)) z]` and `E[g(T(z)) (z^2 - 1)]/2`.
     pub(crate) fn projected(&self, g: impl Fn(f64) -> f64) -> [f64; 2] {
         let mut sums = [0.0; 2];
         for (index, (&z, root)) in places().iter().zip(roots()).enumerate() {
@@ -99,7 +100,7 @@ impl Transform {
         sums
     }
 
-    /// The correlation of two inputs whose normal variables are correlated by `r`.
+    /// Correlation of two inputs whose normal variables have the correlation `r`.
     pub fn seen(&self, other: &Self, r: f64) -> f64 {
         match (&self.kind, &other.kind) {
             (Kind::Normal, Kind::Normal) => r,
@@ -110,7 +111,8 @@ impl Transform {
         }
     }
 
-    /// The correlation of the normal variables behind two inputs with this one; the attainable range where there is none.
+    /// Correlation of the normal variables behind two inputs with this correlation. Returns the attainable range as the error if there is
+    /// none.
     pub fn behind(&self, other: &Self, correlation: f64) -> Result<f64, [f64; 2]> {
         let range = self.range(other);
         if correlation < range[0] - SLACK || correlation > range[1] + SLACK {
@@ -126,7 +128,7 @@ impl Transform {
         if correlation == 0.0 {
             return Ok(0.0);
         }
-        // Newton's method between bounds: the series rises all the way.
+        // Newton's method between bounds, which is safe since the series is increasing.
         let (mut low, mut high, mut r) = (-1.0, 1.0, correlation);
         for _ in 0..200 {
             let (value, slope) = mehler(a, b, r);
@@ -145,7 +147,7 @@ impl Transform {
         Ok(r)
     }
 
-    /// The least and the greatest correlation: both fall or rise with one normal variable.
+    /// Least and greatest correlation of two inputs, attained if both are functions of one normal variable, falling or rising.
     fn range(&self, other: &Self) -> [f64; 2] {
         let (a, b) = match (&self.kind, &other.kind) {
             (Kind::Normal, Kind::Normal) => return [-1.0, 1.0],
@@ -159,7 +161,7 @@ impl Transform {
 }
 
 impl Kind {
-    /// `T` at the places of the grid.
+    /// Values of `T` at the places of the grid.
     fn values(&self) -> &[f64] {
         match self {
             Self::Normal => places(),
@@ -168,7 +170,7 @@ impl Kind {
     }
 }
 
-/// `c_n` by the trapezoidal rule with normalised Hermite functions, whose recurrence neither grows nor cancels.
+/// Coefficients `c_n` by the trapezoidal rule with normalised Hermite functions, whose recurrence neither grows nor cancels.
 fn series(values: &[f64]) -> Vec<f64> {
     let (z, roots) = (places(), roots());
     let (mut before, mut now) = (vec![0.0; z.len()], roots.to_vec());
@@ -184,7 +186,7 @@ fn series(values: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// The series at `r`, and its slope.
+/// Mehler's series at `r`, and its slope.
 fn mehler(a: &[f64], b: &[f64], r: f64) -> (f64, f64) {
     let terms = a.iter().zip(b).enumerate().rev();
     let (value, slope) =

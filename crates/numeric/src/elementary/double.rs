@@ -1,11 +1,11 @@
-//! Sums and products with the digits of two doubles, of which the second one holds what the first one rounds away.
+//! Sums and products in double-word arithmetic: the second double holds the rounding error of the first.
 //!
 //! The algorithms of M. Joldes, J.-M. Muller and V. Popescu, "Tight and rigorous error bounds for basic building blocks of double-word
-//! arithmetic", ACM TOMS 44 (2017), 15: sums and products are right to a few `2^-106`.
+//! arithmetic", ACM TOMS 44 (2017), 15. The relative error of sums and products is a few `2^-106`.
 
 use std::ops::{Add, Mul, Sub};
 
-/// The exact sum of two doubles that do not overlap.
+/// Exact sum of two doubles that do not overlap.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Double {
     high: f64,
@@ -13,7 +13,7 @@ pub(crate) struct Double {
 }
 
 impl Double {
-    /// `a + b`, exactly.
+    /// `a + b` without rounding error.
     pub(crate) fn sum(a: f64, b: f64) -> Self {
         let high = a + b;
         let from_a = high - b;
@@ -21,13 +21,13 @@ impl Double {
         Self { high, low: (a - from_a) + (b - from_b) }
     }
 
-    /// `a b`, exactly.
+    /// `a b` without rounding error.
     pub(crate) fn product(a: f64, b: f64) -> Self {
         let high = a * b;
         Self { high, low: a.mul_add(b, -high) }
     }
 
-    /// `a + b`, exactly, where `|a| >= |b|`.
+    /// `a + b` without rounding error, provided `|a| >= |b|`.
     fn ordered(a: f64, b: f64) -> Self {
         let high = a + b;
         Self { high, low: b - (high - a) }
@@ -46,7 +46,7 @@ impl From<Double> for f64 {
     }
 }
 
-/// Algorithm 4.
+/// Algorithm 4 of Joldes et al.
 impl Add<f64> for Double {
     type Output = Self;
 
@@ -56,7 +56,7 @@ impl Add<f64> for Double {
     }
 }
 
-/// Algorithm 6.
+/// Algorithm 6 of Joldes et al.
 impl Add for Double {
     type Output = Self;
 
@@ -83,7 +83,7 @@ impl Sub for Double {
     }
 }
 
-/// Algorithm 9.
+/// Algorithm 9 of Joldes et al.
 impl Mul<f64> for Double {
     type Output = Self;
 
@@ -101,7 +101,7 @@ impl Mul<Double> for f64 {
     }
 }
 
-/// Algorithm 12.
+/// Algorithm 12 of Joldes et al.
 impl Mul for Double {
     type Output = Self;
 
@@ -116,7 +116,7 @@ impl Mul for Double {
 mod tests {
     use super::*;
 
-    /// Integers of 62 bits and less: 128-bit arithmetic gives the exact sums and products, and two doubles hold all their digits.
+    /// Integers of at most 62 bits: 128-bit arithmetic gives the exact sums and products, and two doubles hold all their digits.
     #[test]
     fn what_two_doubles_hold_is_exact() {
         let whole = |value: Double| value.high as i128 + value.low as i128;

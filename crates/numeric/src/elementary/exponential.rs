@@ -1,14 +1,14 @@
-//! `exp`, `ln` and what is made of them.
+//! Exponential function `exp` and natural logarithm `ln`.
 
 use super::Elementary;
 
-/// `ln 2`, its first 32 bits and the rest.
+/// First 32 bits of `ln 2`, and the rest.
 const LN_2: [f64; 2] = [0.693_147_180_369_123_8, 1.908_214_929_270_587_7e-10];
 
-/// `exp(x)`.
+/// Exponential function `exp(x)`.
 pub struct Exp;
 
-/// `ln(x)`.
+/// Natural logarithm `ln(x)`.
 pub struct Ln;
 
 const P: [f64; 5] = [
@@ -22,7 +22,7 @@ const P: [f64; 5] = [
 impl Elementary for Exp {
     #[inline(always)]
     fn lane(x: f64) -> (f64, bool) {
-        /// As for angles.
+        /// Rounds to a whole number, as in the reduction of angles.
         const ROUNDING: f64 = 6_755_399_441_055_744.0;
         let rounding = x * std::f64::consts::LOG2_E + ROUNDING;
         let n = rounding - ROUNDING;
@@ -31,7 +31,7 @@ impl Elementary for Exp {
         let z = r * r;
         let c = r - z * (P[0] + z * (P[1] + z * (P[2] + z * (P[3] + z * P[4]))));
         let value = 1.0 + (r * c / (2.0 - c) - low + high);
-        // The whole number, twice negative or not, moves into the exponent.
+        // Move the whole number into the exponent by a shift of its last bits, which are in two's complement.
         let power = rounding.to_bits().wrapping_add(1023) << 52;
         (value * f64::from_bits(power), (x.abs() > 708.0) | x.is_nan())
     }
@@ -51,13 +51,13 @@ const L: [f64; 7] = [
     0.147_981_986_051_165_86,
 ];
 
-/// `ln` of a normal number above 0.
+/// Natural logarithm of a normal number above 0.
 #[inline(always)]
 fn logarithm(x: f64) -> f64 {
-    /// The root of 1/2, from which mantissas go to its double.
+    /// Bits of sqrt(1/2), the least mantissa. The greatest one is twice that.
     const LEAST: u64 = 0x3fe6_a09e_0000_0000;
     let bits = x.to_bits().wrapping_add(0x3ff0_0000_0000_0000 - LEAST);
-    // The exponent as a number: it stands in the last bits of 2^52.
+    // Read the exponent as a number: it stands in the last bits of 2^52.
     let n = f64::from_bits(0x4330_0000_0000_0000 | bits >> 52) - (4_503_599_627_370_496.0 + 1023.0);
     let f = f64::from_bits((bits & 0x000f_ffff_ffff_ffff) + LEAST) - 1.0;
     let s = f / (2.0 + f);

@@ -1,13 +1,13 @@
-//! `acos`.
+//! Arc cosine, `acos`.
 
 use std::f64::consts::FRAC_PI_2;
 
 use super::{Elementary, choose, mask};
 
-/// The difference between pi/2 and its double.
+/// Difference between pi/2 and its double.
 const LACKS: f64 = 6.123_233_995_736_766e-17;
 
-/// `acos(x)`, in radians.
+/// Arc cosine `acos(x)`, in radians.
 pub struct Acos;
 
 const P: [f64; 6] = [
@@ -22,7 +22,7 @@ const Q: [f64; 4] =
     [-2.403_394_911_734_414, 2.020_945_760_233_505_7, -0.688_283_971_605_453_3, 0.077_038_150_555_901_94];
 
 impl Elementary for Acos {
-    /// In the middle by the arc sine, towards the ends by that of half the angle.
+    /// Arc cosine by the arc sine in the middle, and by that of half the angle towards the ends.
     #[inline(always)]
     fn lane(x: f64) -> (f64, bool) {
         let size = x.abs();
@@ -34,7 +34,7 @@ impl Elementary for Acos {
         let inner = FRAC_PI_2 - (x - (LACKS - x * r));
         let s = z.sqrt();
         let left = 2.0 * (FRAC_PI_2 - (s + (r * s - LACKS)));
-        // The root in two parts, since half the angle is little more than it.
+        // Split the root in two parts, since half the angle is little more than the root.
         let high = f64::from_bits(s.to_bits() & 0xffff_ffff_0000_0000);
         let low = (z - high * high) / (s + high);
         let right = 2.0 * (high + (r * s + low));

@@ -1,21 +1,21 @@
 //! Elementary functions on blocks of numbers.
 //!
-//! A library's `sin` takes one number after the other. Here every number of a block goes through the same operations without
-//! a branch, so that the compiler puts two, four or eight of them into one instruction (SSE2, AVX2, AVX-512); which, is decided by
-//! the processor that the program runs on. Numbers that want another way (too large to be reduced, next to a multiple of pi/2, not finite)
-//! are noticed in passing and computed one by one by the crate `libm`.
+//! A library's `sin` takes one number after the other. Here every number of a block goes through the same operations without a branch, so
+//! that the compiler puts two, four or eight of them into one instruction (SSE2, AVX2, AVX-512). The instruction set is chosen at run time
+//! by the processor. Arguments outside the fast range (too large to be reduced, next to a multiple of pi/2, not finite) are detected in
+//! passing, and computed one by one by the crate `libm`.
 //!
-//! **The same everywhere.** A value belongs to its argument alone: not to its place in a block, the number of threads, the
-//! processor or the system's library. Therefore there is no fused multiply-add here, which some processors have and others
-//! imitate slowly, and the compiler makes none by itself.
+//! **Same bits everywhere.** A value depends on its argument alone: not on its place in a block, the number of threads, the processor or
+//! the system's library. Therefore no fused multiply-add is used, which some processors have and others imitate slowly, and the compiler
+//! makes none by itself.
 //!
-//! **Accuracy.** At 2200 arguments whose values are known to 60 digits `ln` is off by at most 0.50 units in the last place,
-//! `cos` 0.58, `sin` 0.65, `exp` 0.70, `acos` 0.83 and `tan` 1.40. Arguments of any size are good: the largest are left to
-//! `libm`. Polynomials and their order are those of fdlibm (Sun Microsystems 1993); angles are reduced by parts of pi/2 (Cody
-//! and Waite 1980) with the rounding of the difference carried along.
+//! **Accuracy.** At 2200 arguments whose values are known to 60 digits the greatest error of `ln` is 0.50 units in the last place, of `cos`
+//! 0.58, `sin` 0.65, `exp` 0.70, `acos` 0.83 and `tan` 1.40. Arguments of any size are accepted: the largest are left to `libm`.
+//! Polynomials and the order of their terms are those of fdlibm (Sun Microsystems 1993). Angles are reduced by parts of pi/2 (Cody and
+//! Waite 1980), and the rounding of the difference is carried along.
 //!
-//! **Why no library.** `sleef` wants an unstable compiler, and `wide` takes the instructions from the compiler's command line.
-//! The instructions for each processor are chosen by `pulp`, which the linear algebra brings along and which needs no unsafe code
+//! **No library fits.** `sleef` needs an unstable compiler, and `wide` takes the instruction set from the compiler's command line. The
+//! crate `pulp` chooses the instructions for each processor. It is a dependency of the linear algebra anyway, and needs no unsafe code
 //! here.
 
 mod double;
@@ -35,22 +35,22 @@ pub use exponential::{Exp, Ln};
 pub use inverse::Acos;
 pub use trigonometric::{Cos, Sin, Tan};
 
-/// A function of one number that maps blocks.
+/// Function of one number that maps blocks.
 pub trait Elementary {
-    /// The value, and whether [`apart`](Self::apart) has to compute it instead. Without a branch.
+    /// Value of the fast path, and true if [`apart`](Self::apart) has to compute it instead. Must not branch.
     fn lane(x: f64) -> (f64, bool);
 
-    /// The value of an argument that wants another way.
+    /// Value of an argument outside the fast range, by the scalar fallback.
     fn apart(x: f64) -> f64;
 
-    /// The value of one argument, the same as in any block.
+    /// Value of one argument, with the same bits as in any block.
     #[inline]
     fn of(x: f64) -> f64 {
         let (value, apart) = Self::lane(x);
         if apart { Self::apart(x) } else { value }
     }
 
-    /// [`map`](Self::map) within some [`Work`], for whose processor it is compiled.
+    /// [`map`](Self::map) within some [`Work`], compiled for the processor of that work.
     #[inline(always)]
     fn map_inline(x: &[f64], out: &mut [f64]) {
         let mut any = false;
@@ -64,14 +64,14 @@ pub trait Elementary {
         }
     }
 
-    /// The same one by one, where some want another way.
+    /// Maps one by one. Used if some arguments are outside the fast range.
     #[cold]
     #[inline(never)]
     fn map_apart(x: &[f64], out: &mut [f64]) {
         out.iter_mut().zip(x).for_each(|(out, &x)| *out = Self::of(x));
     }
 
-    /// The values of `x`, which is as long as `out`.
+    /// Writes the values of `x` into `out`, which is as long.
     fn map(x: &[f64], out: &mut [f64])
     where
         Self: Sized,
@@ -80,16 +80,16 @@ pub trait Elementary {
     }
 }
 
-/// Work on a block that is compiled for every kind of processor.
+/// Work on a block, compiled for every kind of processor.
 pub trait Work {
     /// Result of the work.
     type Output;
 
-    /// Does it; must be inlined, or it is compiled for the least processor only.
+    /// Does the work. The implementation must be inlined, or it is compiled for the least processor only.
     fn work(self) -> Self::Output;
 }
 
-/// Does the work with what this processor has: the same result, sooner.
+/// Does the work with the best instructions of this processor. The result has the same bits on every processor.
 pub fn on_this_processor<W: Work>(work: W) -> W::Output {
     Arch::new().dispatch(Compiled(work))
 }
@@ -120,13 +120,13 @@ impl<E: Elementary> Work for Map<'_, E> {
     }
 }
 
-/// `a` where the mask is all ones, `b` where it is 0.
+/// `a` if the mask is all ones, `b` if it is 0.
 #[inline(always)]
 fn choose(mask: u64, a: f64, b: f64) -> f64 {
     f64::from_bits(a.to_bits() & mask | b.to_bits() & !mask)
 }
 
-/// All ones where `condition` holds.
+/// All ones if `condition` holds, else 0.
 #[inline(always)]
 fn mask(condition: bool) -> u64 {
     0u64.wrapping_sub(u64::from(condition))

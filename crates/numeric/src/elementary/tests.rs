@@ -1,10 +1,11 @@
-//! Accuracy by values of many digits, and the same values wherever they are computed.
+//! Accuracy against values of many digits, and equality of the values wherever they are computed.
 
 use super::*;
 
 type Function = (&'static str, fn(f64) -> f64, fn(f64) -> f64, fn(&[f64], &mut [f64]), fn(&[f64], &mut [f64]), f64);
 
-/// Name, one value, the crate's, a block on this processor, the same for the least processor, and the ulp that it may be off.
+/// Name, scalar function, reference function of the crate `libm`, block on this processor, block on the least processor, and greatest error
+/// in ulp.
 fn functions() -> [Function; 6] {
     fn scalar<E: Elementary>(x: &[f64], out: &mut [f64]) {
         pulp::Scalar.vectorize(Compiled(Map::<E> { x, out, function: PhantomData }));
@@ -24,7 +25,7 @@ fn ulp(value: f64) -> f64 {
     size.next_up() - size
 }
 
-/// Many arguments of every size, some of which want another way.
+/// Many arguments of every size, some outside the range of the fast path.
 fn arguments() -> Vec<f64> {
     let special = [0.0, -0.0, 1.0, -1.0, 0.5, f64::INFINITY, f64::NEG_INFINITY, f64::NAN, f64::MAX, f64::MIN_POSITIVE];
     let tiny = [5e-324, -5e-324, 1e-310, 1e-20, 708.0, 708.5, -708.5, 709.9, -746.0, 1.6e6, 1_600_000.1, -1e22, 1e300];
@@ -53,7 +54,7 @@ fn values_of_sixty_digits_are_met() {
     }
 }
 
-/// Two functions within an ulp or two of the truth are within the sum of one another.
+/// Two functions within an ulp or two of the true value differ by at most the sum of both errors.
 #[test]
 fn another_library_says_the_same_everywhere() {
     for (name, of, other, _, _, most) in functions() {
@@ -66,7 +67,7 @@ fn another_library_says_the_same_everywhere() {
     }
 }
 
-/// A value belongs to its argument, whatever stands around it and whichever instructions compute it.
+/// A value depends on its argument only, not on its neighbours in the block or on the instructions.
 #[test]
 fn a_value_is_the_same_alone_and_in_any_block_on_any_processor() {
     let x = arguments();
@@ -79,7 +80,7 @@ fn a_value_is_the_same_alone_and_in_any_block_on_any_processor() {
                 map(x, &mut here);
                 scalar(x, &mut least);
                 for ((&x, here), least) in x.iter().zip(here).zip(least) {
-                    // NaN has many representations, and no rule which.
+                    // NaN has many representations, and no rule selects one.
                     let known = x.is_nan() || of(x).is_nan() && here.is_nan() && least.is_nan();
                     assert!(known || bits(x) == here.to_bits(), "{name}({x:e}) from {first}, {length} numbers");
                     assert!(known || bits(x) == least.to_bits(), "{name}({x:e}) on the least processor");

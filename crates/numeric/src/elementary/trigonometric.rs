@@ -1,39 +1,40 @@
-//! `sin`, `cos` and `tan`.
+//! Trigonometric functions `sin`, `cos` and `tan`.
 
 use std::f64::consts::FRAC_2_PI;
 
 use super::{Elementary, choose};
 
-/// `pi/2` in parts of 33 bits, so that a whole number below `2^20` times one of them is exact, and the rest.
+/// `pi/2` in two parts of 33 bits and the rest. A whole number below `2^20` times a part of 33 bits is exact.
 const PARTS: [f64; 3] = [
     f64::from_bits(0x3ff9_21fb_5440_0000),
     f64::from_bits(0x3dd0_b461_1a60_0000),
     f64::from_bits(0x3ba3_198a_2e03_7073),
 ];
-/// Arguments up to here hold less than `2^20` quarter turns.
+/// Greatest argument of the fast path: up to here arguments hold fewer than `2^20` quarter turns.
 const FARTHEST: f64 = 1.6e6;
-/// Next to a multiple of pi/2 the parts have too few digits: what is left of them is exact to `2^-99`.
+/// Least distance from a multiple of pi/2 for the fast path. Closer, the parts have too few digits: the remainder is exact to `2^-99` only.
 const NEAREST: f64 = 1.0 / (1u64 << 30) as f64;
-/// Added and taken away again, it leaves the nearest whole number, which stands in its last bits meanwhile.
+/// Rounds to a whole number: added and subtracted again, it leaves the nearest one. In between, that number stands in the last bits of the
+/// sum.
 const ROUNDING: f64 = 6_755_399_441_055_744.0;
 
-/// `sin(x)`, x in radians.
+/// Sine `sin(x)`, x in radians.
 pub struct Sin;
 
-/// `cos(x)`, x in radians.
+/// Cosine `cos(x)`, x in radians.
 pub struct Cos;
 
-/// `tan(x)`, x in radians.
+/// Tangent `tan(x)`, x in radians.
 pub struct Tan;
 
-/// An angle less the nearest multiple of `pi/2`.
+/// Angle minus the nearest multiple of `pi/2`.
 struct Reduced {
-    /// The multiple, in its last two bits.
+    /// Bits of the multiple, of which the last two count.
     quarters: u64,
     rest: f64,
-    /// The rounding error of `rest`.
+    /// Rounding error of `rest`.
     tail: f64,
-    /// Whether this is not good enough.
+    /// True if the reduction is not accurate enough.
     apart: bool,
 }
 
@@ -44,8 +45,8 @@ fn reduced(x: f64) -> Reduced {
     let first = x - n * PARTS[0];
     let part = n * PARTS[1];
     let second = first - part;
-    // The rounding error of the second difference, without a comparison since the first is a multiple of the last digit of the
-    // part (Boldo, Graillat and Muller 2017), against the third part.
+    // The rounding error of the second difference, corrected by the third part. It needs no comparison, since the first difference is a
+    // multiple of the last digit of the part (Boldo, Graillat and Muller 2017).
     let less = n * PARTS[2] - ((first - second) - part);
     let rest = second - less;
     let tail = (second - rest) - less;
@@ -70,7 +71,7 @@ const C: [f64; 6] = [
     -1.135_964_755_778_819_5e-11,
 ];
 
-/// `sin` between `-pi/4` and `pi/4`.
+/// Sine between `-pi/4` and `pi/4`, with `tail` the rounding error of `x`.
 #[inline(always)]
 fn sine(x: f64, tail: f64) -> f64 {
     let z = x * x;
@@ -79,7 +80,7 @@ fn sine(x: f64, tail: f64) -> f64 {
     x - ((z * (0.5 * tail - v * p) - tail) - v * S[0])
 }
 
-/// `cos` between `-pi/4` and `pi/4`.
+/// Cosine between `-pi/4` and `pi/4`, with `tail` the rounding error of `x`.
 #[inline(always)]
 fn cosine(x: f64, tail: f64) -> f64 {
     let z = x * x;
@@ -89,7 +90,7 @@ fn cosine(x: f64, tail: f64) -> f64 {
     w + (((1.0 - w) - half) + (z * p - x * tail))
 }
 
-/// The sine of an angle and so many quarter turns more.
+/// Sine of an angle after this many further quarter turns.
 #[inline(always)]
 fn sine_after(angle: &Reduced, quarters: u64) -> f64 {
     let (s, c) = (sine(angle.rest, angle.tail), cosine(angle.rest, angle.tail));
@@ -98,17 +99,17 @@ fn sine_after(angle: &Reduced, quarters: u64) -> f64 {
     turned(choose(odd, c, s), quarters)
 }
 
-/// A value after so many quarter turns, of which every second changes the sign.
+/// Value after this many quarter turns, of which every second one changes the sign.
 #[inline(always)]
 fn turned(value: f64, quarters: u64) -> f64 {
     f64::from_bits(value.to_bits() ^ (quarters & 2) << 62)
 }
 
-/// Numbers whose quarters are looked at together.
+/// Numbers whose quarter turns are inspected together.
 const LOOK: usize = 64;
 
-/// Maps numbers to the sines of them and so many quarter turns more. Inputs vary little: mostly all angles of a look want one polynomial of
-/// the two.
+/// Maps numbers to their sines after `more` further quarter turns. Inputs vary little, so mostly all angles of a chunk need the same one of
+/// the two polynomials.
 #[inline(always)]
 fn map_sines<E: Elementary>(x: &[f64], out: &mut [f64], more: u64) {
     let (looks, x_rest) = x.as_chunks::<LOOK>();

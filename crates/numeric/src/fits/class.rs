@@ -1,10 +1,10 @@
-//! A tolerance class: letter, hole or shaft, grade.
+//! Tolerance class: letter, hole or shaft, grade.
 
 use super::error::FitError;
 use super::grade::{Grade, Side};
 use super::tables::Letter;
 
-/// `H7`, `js6`, `zc11`.
+/// Tolerance class such as `H7`, `js6` or `zc11`.
 pub(super) struct Class {
     pub(super) letter: Letter,
     pub(super) side: Side,
@@ -18,7 +18,7 @@ impl Class {
         if number.is_empty() || letters.is_empty() || !number.chars().all(|c| c.is_ascii_digit()) {
             return Err(FitError::NoClass { found: text.to_owned() });
         }
-        // `Js7` is neither a hole nor a shaft.
+        // Mixed case is rejected: `Js7` is neither a hole nor a shaft.
         let all = [Side::Hole, Side::Shaft].into_iter().flat_map(|side| Letter::ALL.map(|letter| (letter, side)));
         let known = all.into_iter().find(|(letter, side)| letter.name(*side) == letters);
         let (letter, side) = known.ok_or_else(|| FitError::unknown_letter(letters))?;

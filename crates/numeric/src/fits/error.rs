@@ -1,67 +1,67 @@
-//! Why there is no such fit, and what there is.
+//! Errors of unknown fits, with the existing ones.
 
 use super::grade::Side;
 use super::tables::Letter;
 use crate::names::nearest;
 
-/// A tolerance class that is none, or that the standard does not have at a size.
+/// Error for text that is not a tolerance class, or for a class that the standard does not have at a size.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FitError {
-    /// Not letters followed by one number.
+    /// The text is not letters followed by one number.
     #[error("`{found}` is not a tolerance class")]
     NoClass {
-        /// As written.
+        /// Text as written.
         found: String,
     },
-    /// Letters that stand for no fundamental deviation.
+    /// The letters denote no fundamental deviation.
     #[error("there is no fundamental deviation `{found}`")]
     UnknownLetter {
-        /// As written.
+        /// Letters as written.
         found: String,
-        /// The most similar one.
+        /// Most similar letters, if any.
         nearest: Option<String>,
-        /// Those that there are, of holes or of shafts.
+        /// All letters, of holes or of shafts.
         known: Vec<&'static str>,
     },
-    /// A number that is not a grade.
+    /// The number is not a tolerance grade.
     #[error("there is no tolerance grade IT{found}")]
     UnknownGrade {
-        /// As written.
+        /// Number as written.
         found: String,
     },
-    /// A size outside the tables.
+    /// The size is outside the tables.
     #[error("ISO 286 fits are for sizes above 0 and up to 500 mm, not for {nominal} mm")]
     Size {
-        /// The nominal size in mm.
+        /// Nominal size in mm.
         nominal: f64,
     },
-    /// A size at which the standard does not have the letter.
+    /// The standard does not have the letter at this size.
     #[error("there is no {class} at {nominal} mm")]
     SizeOfLetter {
-        /// The tolerance class.
+        /// Tolerance class as written.
         class: String,
-        /// Its letters.
+        /// Letters of the class.
         letter: &'static str,
-        /// The nominal size in mm.
+        /// Nominal size in mm.
         nominal: f64,
-        /// The sizes at which there is one begin above this, in mm,
+        /// Lower bound of the sizes with this letter, in mm, excluded.
         above: f64,
-        /// and end here, included, in mm.
+        /// Upper bound of the sizes with this letter, in mm, included.
         to: f64,
     },
-    /// A grade in which the standard does not have the letter at this size.
+    /// The standard does not have the letter in this grade at this size.
     #[error("there is no {class} at {nominal} mm")]
     GradeOfLetter {
-        /// The tolerance class.
+        /// Tolerance class as written.
         class: String,
-        /// Its letters.
+        /// Letters of the class.
         letter: &'static str,
-        /// The nominal size in mm.
+        /// Nominal size in mm.
         nominal: f64,
-        /// The finest grade that the letter has there.
+        /// Finest grade of the letter at this size.
         first: String,
-        /// The coarsest.
+        /// Coarsest grade of the letter at this size.
         last: String,
     },
 }
@@ -71,13 +71,13 @@ impl FitError {
         let shaft = found.starts_with(|c: char| c.is_ascii_lowercase());
         let side = if shaft { Side::Shaft } else { Side::Hole };
         let known = Letter::ALL.map(|letter| letter.name(side)).to_vec();
-        // `Js` is `JS` or `js`, and no other that an edit may turn it into.
+        // Prefer `JS` or `js` for `Js` to any other name within one edit.
         let same = known.iter().copied().find(|name| name.eq_ignore_ascii_case(found));
         let nearest = same.or_else(|| nearest(found, known.iter().copied())).map(str::to_owned);
         Self::UnknownLetter { found: found.to_owned(), nearest, known }
     }
 
-    /// The text to write instead.
+    /// Advice on the text to write instead. Returns None if there is none.
     pub fn help(&self) -> Option<String> {
         match self {
             Self::NoClass { .. } => Some("write letters and one grade: H7 for a hole, g6 for a shaft".into()),

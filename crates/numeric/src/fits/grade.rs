@@ -1,40 +1,40 @@
-//! Hole or shaft, and the grades.
+//! Hole or shaft, and the tolerance grades.
 
 use std::fmt;
 
-/// Upper case letters are holes, lower case letters shafts.
+/// Hole (upper case letters) or shaft (lower case letters).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Side {
     Hole,
     Shaft,
 }
 
-/// A standard tolerance grade, IT01 to IT18, as its place in the table.
+/// Standard tolerance grade, IT01 to IT18, stored as a row of the table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Grade(usize);
 
 impl Grade {
-    /// IT01.
+    /// Finest grade, IT01, in row 0.
     pub(super) const FIRST: Self = Self(0);
-    /// IT18.
+    /// Coarsest grade, IT18, in row 19.
     pub(super) const LAST: Self = Self(19);
 
-    /// IT1 to IT18.
+    /// Grade IT1 to IT18 by its number. Row 1 is IT0.
     pub(super) const fn number(number: usize) -> Self {
         Self(number + 1)
     }
 
-    /// Of `01` to `18`.
+    /// Reads `01`, `0` and `1` to `18`. Returns None for other text.
     pub(super) fn parse(text: &str) -> Option<Self> {
         (0..=Self::LAST.0).map(Self).find(|grade| grade.to_string() == text)
     }
 
-    /// The row of the table of tolerances.
+    /// Row of the table of tolerances.
     pub(super) fn row(self) -> usize {
         self.0
     }
 
-    /// The next finer grade; IT01 has none and stays.
+    /// Next finer grade. IT01 has none and is returned itself.
     pub(super) fn finer(self) -> Self {
         Self(self.0.saturating_sub(1))
     }

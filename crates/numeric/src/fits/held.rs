@@ -1,16 +1,16 @@
-//! The end of a tolerance band that a letter gives.
+//! End of a tolerance band that the letter of a class defines.
 
-/// The end of a tolerance band that stays where it is when the band opens and closes.
+/// End of a tolerance band that stays in place when the band opens and closes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum HeldEnd {
-    /// The lower one, as of a hole H7.
+    /// Lower end, as for a hole H7.
     Lower,
-    /// The upper one, as of a shaft h7.
+    /// Upper end, as for a shaft h7.
     Upper,
 }
 
 impl HeldEnd {
-    /// Where the middle of the band goes when its half width grows: up or down.
+    /// Direction in which the middle of the band moves when its half-width grows: 1 up, -1 down.
     pub(crate) fn lean(self) -> f64 {
         match self {
             Self::Lower => 1.0,
@@ -19,8 +19,8 @@ impl HeldEnd {
     }
 }
 
-/// The end of the band that the letter of a class gives, the one nearer to the nominal size; None of J and JS, which lie about it, and of what
-/// is not a class. The grade gives the other end.
+/// End of the band that the letter of a class defines: the one nearer to the nominal size. The grade defines the other end. Returns None
+/// for J and JS, whose band lies about the nominal size, and for text that is not a class.
 pub fn held_end(class: &str) -> Option<HeldEnd> {
     let first = class.trim().chars().next()?;
     let lower = match first.to_ascii_lowercase() {
@@ -36,8 +36,8 @@ mod tests {
     use super::super::deviations;
     use super::{HeldEnd, held_end};
 
-    /// Another grade of the same letter has the same deviation at the end that is held, in the standard's own tables; K to ZC of holes change
-    /// it with the grade by their delta, and are left out but for the grades above 8, where it is 0.
+    /// Grades of the same letter share the deviation at the held end, in the tables of the standard. K to ZC of holes change it with the
+    /// grade by their delta. They are left out, except for grades above 8, where the delta is 0.
     #[test]
     fn the_held_end_is_that_of_every_grade() {
         for class in ["D", "E", "F", "G", "H", "d", "e", "f", "g", "h", "m", "n", "p", "r", "s"] {

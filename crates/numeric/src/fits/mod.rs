@@ -1,4 +1,4 @@
-//! ISO 286-1 fits: from a tolerance class such as `H7` to limit deviations.
+//! Fits of ISO 286-1: from a tolerance class such as `H7` to limit deviations.
 //!
 //! ```text
 //! holes  A..H:   EI = -es                  ES = EI + IT          es, ei: the shaft's upper and lower deviation
@@ -8,11 +8,11 @@
 //! JS, js:        both IT/2, not rounded; J, j: tables
 //! ```
 //!
-//! The values are the rounded ones that the standard prints, not formulas: those do not give them back. A class that the
-//! standard has no value for is an error that says what there is.
+//! The values are the rounded ones that the standard prints, since its formulas do not reproduce them. If the standard has no value for a
+//! class, the error lists the existing ones.
 //!
-//! Source: ISO 286-1:2010, tables 1 to 5; the values of sizes to 500 mm are those of ISO 286-1:1988, with CD, EF and FG to 50 mm.
-//! JS and js of the grades 7 to 11 may be rounded down to whole micrometres by a footnote of the standard; they are not here.
+//! Source: ISO 286-1:2010, tables 1 to 5. The values of sizes to 500 mm are those of ISO 286-1:1988, with CD, EF and FG to 50 mm. A
+//! footnote of the standard allows JS and js of grades 7 to 11 to be rounded down to whole micrometres. This is not done here.
 
 mod class;
 mod error;
@@ -30,16 +30,16 @@ use class::Class;
 use grade::{Grade, Side};
 use tables::Letter;
 
-/// The largest size that the tables have, in mm.
+/// Largest size in the tables, in mm.
 const LARGEST: f64 = 500.0;
 
-/// Lower and upper deviation of this tolerance class at this nominal size, both in mm.
+/// Lower and upper deviation of a tolerance class at a nominal size, both in mm.
 ///
-/// Letters D to ZC (holes) and d to zc (shafts) with A, B, C; grades IT01 to IT18; sizes above 0 and up to 500 mm, as far as the
-/// standard has them. A size range contains its upper end. Accuracy: the doubles nearest to the printed values.
+/// Letters: A to ZC (holes) and a to zc (shafts). Grades: IT01 to IT18. Sizes: above 0 and up to 500 mm, as far as the standard has them. A
+/// size range contains its upper end. Accuracy: the doubles nearest to the printed values.
 ///
 /// # Errors
-/// When `class` is not a tolerance class, or the standard has no value for it at this size: the error says what there is.
+/// If `class` is not a tolerance class, or the standard has no value for it at this size. The error lists the existing ones.
 ///
 /// ```
 /// use crate::fits::deviations;
@@ -77,22 +77,22 @@ pub fn deviations(nominal_mm: f64, class: &str) -> Result<[f64; 2], FitError> {
     Ok(limits(letter, side, grade, nominal_mm))
 }
 
-/// The width in mm of a standard grade, such as `7` of IT7, at this nominal size.
+/// Width in mm of a standard grade, such as `7` for IT7, at this nominal size.
 ///
 /// # Errors
-/// When the standard has no value for it.
+/// If the standard has no value for it.
 pub fn grade_width(nominal_mm: f64, grade: &str) -> Result<f64, FitError> {
     let [lower, upper] = deviations(nominal_mm, &format!("js{grade}"))?;
     Ok(upper - lower)
 }
 
-/// The first and the last grade that the standard has for this letter at this size, with all between them.
+/// First and last grade of this letter at this size in the standard. All grades between them exist too.
 fn grades(letter: Letter, side: Side, nominal: f64) -> [Grade; 2] {
     let last = if nominal <= 1.0 { Grade::number(13) } else { Grade::LAST };
     match (side, letter) {
         (Side::Hole, Letter::J) => [Grade::number(6), Grade::number(8)],
         (Side::Shaft, Letter::J) => [Grade::number(5), Grade::number(if nominal <= 3.0 { 8 } else { 7 })],
-        // Delta is printed from grade 3; above grade 8 there is K for the smallest sizes alone, and no N to 1 mm.
+        // Delta is printed from grade 3 on. Above grade 8, K exists for the smallest sizes only, and N does not exist up to 1 mm.
         (Side::Hole, Letter::K) if nominal > 3.0 => [Grade::number(3), Grade::number(8)],
         (Side::Hole, Letter::N) if nominal <= 1.0 => [Grade::number(3), Grade::number(8)],
         (Side::Hole, letter) if letter >= Letter::K => [Grade::number(3), last],
@@ -100,13 +100,13 @@ fn grades(letter: Letter, side: Side, nominal: f64) -> [Grade; 2] {
     }
 }
 
-/// Lower and upper deviation in mm, of a class that the standard has at this size.
+/// Lower and upper deviation in mm, for a class that the standard has at this size.
 fn limits(letter: Letter, side: Side, grade: Grade, nominal: f64) -> [f64; 2] {
     let it = tables::tolerance(grade, nominal);
     let from_lower = |lower: i32| [lower, lower + it];
     let from_upper = |upper: i32| [upper - it, upper];
     let tenths = match (letter, side) {
-        // Not in tenths: half of an odd number of them is none.
+        // Computed apart, since half of an odd number is no whole number of tenths.
         (Letter::Js, _) => return [-f64::from(it) / 20_000.0, f64::from(it) / 20_000.0],
         (Letter::J, Side::Hole) => from_upper(tables::hole_j(grade, nominal)),
         (Letter::J, Side::Shaft) => from_lower(-tables::shaft_j(grade, nominal)),
@@ -119,8 +119,8 @@ fn limits(letter: Letter, side: Side, grade: Grade, nominal: f64) -> [f64; 2] {
     tenths.map(|tenths| f64::from(tenths) / 10_000.0)
 }
 
-/// The upper deviation of holes K to ZC, in tenths of a micrometre: the shaft's mirrored, and as much nearer to the zero line as
-/// the grade is wider than the next finer one, so that H7/p6 and P7/h6 fit alike.
+/// Upper deviation of holes K to ZC, in tenths of a micrometre. It mirrors the shaft's, moved towards the zero line by the difference of
+/// the grade and the next finer one, so that H7/p6 and P7/h6 give the same fit.
 fn hole_k_to_zc(letter: Letter, grade: Grade, nominal: f64) -> i32 {
     let mirrored = -tables::magnitude(letter, nominal);
     let last_with_delta = Grade::number(if letter <= Letter::N { 8 } else { 7 });

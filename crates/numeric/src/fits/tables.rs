@@ -1,10 +1,10 @@
-//! The published tables: standard tolerances and fundamental deviations, in micrometres, of sizes to 500 mm.
+//! Published tables: standard tolerances and fundamental deviations of sizes to 500 mm.
 
 use Column::{Ranges, Steps};
 
 use super::grade::{Grade, Side};
 
-/// The fundamental deviations, from far within the material to far outside it (shafts), or the other way (holes).
+/// Fundamental deviations, from far within the material to far outside it (shafts), or the other way (holes).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Letter {
     A,
@@ -37,7 +37,7 @@ pub(super) enum Letter {
     Zc,
 }
 
-/// The names of holes and shafts, in the order of [`Letter`].
+/// Names of holes and shafts, in the order of [`Letter`].
 const NAMES: [(&str, &str); 28] = [
     ("A", "a"),
     ("B", "b"),
@@ -85,10 +85,10 @@ impl Letter {
         }
     }
 
-    /// The sizes that it has values for: above the first and up to the second, in mm.
+    /// Sizes with values for the letter: above the first and up to the second, in mm.
     pub(super) fn sizes(self) -> [f64; 2] {
         match (self, self.column()) {
-            // The smallest sizes have no room for them.
+            // A and B exist above 1 mm only: smaller sizes leave no room for such deviations.
             (Self::A | Self::B, _) => [1.0, 500.0],
             (_, Ranges(values)) => [0.0, RANGES[values.len() - 1]],
             (_, Steps(0, _)) => [0.0, 500.0],
@@ -100,7 +100,7 @@ impl Letter {
 /// Upper ends of the size ranges, in mm.
 const RANGES: [f64; 13] = [3.0, 6.0, 10.0, 18.0, 30.0, 50.0, 80.0, 120.0, 180.0, 250.0, 315.0, 400.0, 500.0];
 
-/// Upper ends of the ranges that are divided further, in mm.
+/// Upper ends of the size ranges of the finer division, in mm.
 const STEPS: [f64; 25] = [
     3.0, 6.0, 10.0, 14.0, 18.0, 24.0, 30.0, 40.0, 50.0, 65.0, 80.0, 100.0, 120.0, 140.0, 160.0, 180.0, 200.0, 225.0,
     250.0, 280.0, 315.0, 355.0, 400.0, 450.0, 500.0,
@@ -131,16 +131,16 @@ const TOLERANCES: [[i32; 13]; 20] = [
     [14000, 18000, 22000, 27000, 33000, 39000, 46000, 54000, 63000, 72000, 81000, 89000, 97000], // IT18
 ];
 
-/// A fundamental deviation over the sizes.
+/// Values of a fundamental deviation over the sizes.
 enum Column {
-    /// A value per range, from the first on.
+    /// Value per size range, from the first range on.
     Ranges(&'static [i32]),
-    /// A value per divided range, from this one on.
+    /// Value per range of the finer division, from the range with this index on.
     Steps(usize, &'static [i32]),
 }
 
 impl Letter {
-    /// How far the shaft's nearer limit is from the zero line, in micrometres: below it (a to g), above it (k to zc).
+    /// Distance of the shaft's nearer limit from the zero line, in micrometres: below it (a to g), above it (k to zc).
     #[rustfmt::skip]
     fn column(self) -> Column {
         match self {
@@ -174,31 +174,31 @@ impl Letter {
     }
 }
 
-/// Upper deviations of J6, J7 and J8.
+/// Upper deviations of J6, J7 and J8, in micrometres.
 const HOLE_J: [[i32; 13]; 3] = [
     [2, 5, 5, 6, 8, 10, 13, 16, 18, 22, 25, 29, 33],
     [4, 6, 8, 10, 12, 14, 18, 22, 26, 30, 36, 39, 43],
     [6, 10, 12, 15, 20, 24, 28, 34, 41, 47, 55, 60, 66],
 ];
 
-/// Lower deviations of j5 and j6, without their sign; then of j7.
+/// Lower deviations without their sign, in micrometres: of j5 and j6, then of j7.
 const SHAFT_J: [[i32; 13]; 2] =
     [[2, 2, 2, 3, 4, 5, 7, 9, 11, 13, 16, 18, 20], [4, 4, 5, 6, 8, 10, 12, 15, 18, 21, 26, 28, 32]];
 
-/// Lower deviation of j8, without its sign; it is there to 3 mm.
+/// Lower deviation of j8 without its sign, in micrometres. It exists up to 3 mm.
 const SHAFT_J8: i32 = 6;
 
-/// The place of a size among upper ends that include it; it is at most the last.
+/// Index of the range that contains a size, among upper ends that belong to their ranges. The size must not exceed the last.
 fn place(ends: &[f64], nominal: f64) -> usize {
     ends.partition_point(|&end| end < nominal)
 }
 
-/// IT, in tenths of a micrometre.
+/// Standard tolerance IT, in tenths of a micrometre.
 pub(super) fn tolerance(grade: Grade, nominal: f64) -> i32 {
     TOLERANCES[grade.row()][place(&RANGES, nominal)]
 }
 
-/// How far the shaft's nearer limit is from the zero line, in tenths of a micrometre; the letter has this size.
+/// Distance of the shaft's nearer limit from the zero line, in tenths of a micrometre. The letter must exist at this size.
 pub(super) fn magnitude(letter: Letter, nominal: f64) -> i32 {
     10 * match letter.column() {
         Ranges(values) => values[place(&RANGES, nominal)],

@@ -1,7 +1,7 @@
 //! Third and fourth cumulant of the whole from the cumulants of its parts.
 //!
-//! With `B = A∘A`, `C = A∘A∘A`, `W = A A`, `rho = B 1`, and the parts' cumulants as vectors, all in units in which the
-//! variance of the whole is 1:
+//! With `B = A∘A`, `C = A∘A∘A`, `W = A A`, `rho = B 1`, and the cumulants of the parts as vectors, all in units in which the variance of
+//! the whole is 1:
 //!
 //! ```text
 //! kappa3 = sum k3 + 3 p'A p + 3 q'rho + (1/2) s'C s + sum_jk A_jk W_jk
@@ -18,20 +18,20 @@ use super::interactions::{Interactions, Kind};
 use super::part::JointCumulants;
 use super::sum::exact;
 
-/// Cumulants of the whole.
+/// Skewness and excess of the whole.
 pub(super) struct Assembly {
     pub(super) skewness: f64,
     pub(super) excess: f64,
 }
 
-/// The sums over one row of the matrices that the formulas need.
+/// Sums over one row of the matrices in the formulas.
 #[derive(Clone, Copy, Default)]
 struct Row {
     rho: f64,
     ap: f64,
     aw: f64,
     ww: f64,
-    /// `(C s)_j`, `(B q)_j`, `((B∘W) s)_j`, `((B∘B) k)_j`
+    /// Element j of the vectors `C s`, `B q`, `(B∘W) s` and `(B∘B) k`.
     cs: f64,
     bq: f64,
     bws: f64,
@@ -39,7 +39,7 @@ struct Row {
 }
 
 impl Row {
-    /// Adds column `k`, where the matrices hold `a` and `w` and the input is `part`.
+    /// Adds column `k`, with the elements `a` and `w` of the matrices and the cumulants `part` of the input.
     #[inline]
     fn add(&mut self, a: f64, w: f64, part: &JointCumulants) {
         let b = a * a;
@@ -54,7 +54,7 @@ impl Row {
 }
 
 impl Assembly {
-    /// `factor` scales the interactions as the parts are scaled already.
+    /// Assembles the cumulants. `factor` scales the interactions in the same way as the parts are scaled.
     pub(super) fn of(parts: &[JointCumulants], interactions: &Interactions, factor: f64) -> Self {
         let rows = match interactions.kind() {
             Kind::Sparse(rows) => sparse(parts, rows, factor),
@@ -88,7 +88,7 @@ impl Assembly {
     }
 }
 
-/// Row by row, so that only one row of `W` exists at a time.
+/// Sums of all rows, computed row by row so that only one row of `W` exists at a time.
 fn sparse(parts: &[JointCumulants], rows: &[Vec<(usize, f64)>], factor: f64) -> Vec<Row> {
     let mut w = vec![0.0; rows.len()];
     let mut touched = Vec::new();
@@ -113,7 +113,7 @@ fn sparse(parts: &[JointCumulants], rows: &[Vec<(usize, f64)>], factor: f64) -> 
     sums.collect()
 }
 
-/// Columns of `W` that are made at a time: each as in one product of the whole matrices, however many threads there are.
+/// Columns of `W` in one block. Each column has the same bits as in one product of the whole matrices, for any number of threads.
 const COLUMNS: usize = 256;
 
 fn dense(parts: &[JointCumulants], matrix: &Mat<f64>, factor: f64) -> Vec<Row> {

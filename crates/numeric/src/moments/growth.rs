@@ -1,7 +1,8 @@
-//! How the moments grow with the scales of the inputs: all of them from the matrices that the moments themselves take.
+//! Derivatives of the moments by the scales of the inputs, all from the matrices that the moments themselves need.
 //!
-//! With the logarithm of the scale of input `m` its part grows, and so do row and column `m` of `A`. In the notation of
-//! [`assemble`](super::assemble), with a dot for the growth of the part's cumulants and all in units in which the variance of the whole is 1:
+//! The part of input `m` grows with the logarithm of the input's scale, and so do row and column `m` of `A`. The notation is that of
+//! [`assemble`](super::assemble), with a dot for the growth of the cumulants of the part. All is in units in which the variance of the
+//! whole is 1:
 //!
 //! ```text
 //! variance   2 p. p + curved. + 2 rho
@@ -12,8 +13,8 @@
 //!            + 36 s (B∘W) s + 12 (A S B S A)_mm + 12 [k rho^2 + B(k rho)] + 4 k (B∘B) k
 //! ```
 //!
-//! Of normal inputs with parabolas these are the derivatives of the cumulants of a quadratic form: A. M. Mathai, S. B. Provost, "Quadratic forms
-//! in random variables", Dekker (1992), section 3.2b.
+//! For normal inputs with parabolas these are the derivatives of the cumulants of a quadratic form: A. M. Mathai, S. B. Provost, "Quadratic
+//! forms in random variables", Dekker (1992), section 3.2b.
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
@@ -23,11 +24,11 @@ use super::interactions::{Interactions, Kind};
 use super::part::{JointCumulants, Term};
 use super::unit_of;
 
-/// Derivatives of mean, `ln sigma`, skewness and excess by the logarithm of every input's scale, at fixed means of the inputs; None where nothing
-/// varies, or a moment is infinite.
+/// Derivatives of mean, `ln sigma`, skewness and excess by the logarithm of every input's scale, at fixed means of the inputs. Returns None
+/// if nothing varies, or a moment is infinite.
 ///
-/// Shapes: `terms` has length N, and so has `growth`: of each table the values of `u g'(u)` at the nodes of its rule. Cost: as the moments, and
-/// another product of N by N matrices where inputs are skewed.
+/// Shapes: `terms` and `growth` have length N. `growth` holds for each tabulated term the values of `u g'(u)` at the nodes of its rule.
+/// Cost: that of the moments, and another product of N by N matrices if inputs are skewed.
 pub(crate) fn growths(terms: &[Term<'_>], growth: &[Vec<f64>], interactions: &Interactions) -> Option<Vec<[f64; 4]>> {
     let (_, per_sigma) = unit_of(terms, interactions)?;
     let parts: Vec<JointCumulants> = terms.iter().map(|term| term.part(per_sigma)).collect();
@@ -74,13 +75,15 @@ struct Row {
     bc22: f64,
     cc13: f64,
     bbk: f64,
-    /// `(A^3)_mm` and `(A^4)_mm`
+    /// Diagonal element `(A^3)_mm`.
     triangles: f64,
+    /// Diagonal element `(A^4)_mm`.
     squares: f64,
-    /// `((A∘W) q)_m` and `((B∘W) s)_m`
+    /// Element `((A∘W) q)_m`.
     awq: f64,
+    /// Element `((B∘W) s)_m`.
     bws: f64,
-    /// `(A A p)_m`, `(A (s rho))_m`, `(B (s Ap))_m`, `(B (k rho))_m`, `(A S B S A)_mm`
+    /// Elements `(A A p)_m`, `(A (s rho))_m`, `(B (s Ap))_m`, `(B (k rho))_m` and `(A S B S A)_mm`, in this order.
     aap: f64,
     asr: f64,
     bsap: f64,
@@ -88,7 +91,7 @@ struct Row {
     asbsa: f64,
 }
 
-/// The sums over all rows.
+/// Sums over all rows of the matrices.
 fn rows(parts: &[JointCumulants], interactions: &Interactions, factor: f64) -> Vec<Row> {
     let n = parts.len();
     let mut of = vec![Row::default(); n];
@@ -129,7 +132,7 @@ fn rows(parts: &[JointCumulants], interactions: &Interactions, factor: f64) -> V
     of
 }
 
-/// `W = A A`: all of it where `A` is dense, row by row where it is sparse.
+/// Product `W = A A`: all of it if `A` is dense, row by row if it is sparse.
 enum Product<'a> {
     Sparse { rows: &'a [Vec<(usize, f64)>], factor: f64 },
     Dense(Mat<f64>),
@@ -162,7 +165,7 @@ fn times(a: &Mat<f64>, b: &Mat<f64>, by: f64) -> Mat<f64> {
     product
 }
 
-/// `(A S B S A)_mm`, with `S` the skewnesses on a diagonal and `B = A∘A`.
+/// Diagonal `(A S B S A)_mm`, with `S` the diagonal matrix of skewnesses and `B = A∘A`.
 fn skewed(parts: &[JointCumulants], interactions: &Interactions, factor: f64) -> Vec<f64> {
     let n = parts.len();
     match interactions.kind() {

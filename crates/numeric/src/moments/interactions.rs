@@ -1,10 +1,10 @@
-//! Products of two inputs: the matrix `A`, symmetric with an empty diagonal.
+//! Products of two inputs: the matrix `A`, symmetric with a zero diagonal.
 
 use faer::Mat;
 
 use crate::power::{Rescale, Rescaling};
 
-/// Coefficients of `u_j u_k`, dense or sparse, whichever is cheaper.
+/// Coefficients of `u_j u_k`, stored dense or sparse, whichever is cheaper.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Interactions {
     dimensions: usize,
@@ -13,17 +13,17 @@ pub struct Interactions {
 
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Kind {
-    /// Neighbours of each row, ascending.
+    /// Neighbours of each row with their coefficients, ascending.
     Sparse(Vec<Vec<(usize, f64)>>),
     Dense(Mat<f64>),
 }
 
-/// The products in which one input has a part.
+/// Products of one input with others.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Row<'a> {
-    /// With these inputs, ascending.
+    /// Products with these inputs, ascending.
     Sparse(&'a [(usize, f64)]),
-    /// With every input, 0 where there is none.
+    /// Products with every input, 0 if there is none.
     Dense(&'a [f64]),
 }
 
@@ -39,15 +39,15 @@ impl Rescale for Interactions {
 }
 
 impl Interactions {
-    /// No products of `dimensions` inputs.
+    /// Interactions of `dimensions` inputs without any product.
     pub fn none(dimensions: usize) -> Self {
         Self { dimensions, kind: Kind::Sparse(vec![Vec::new(); dimensions]) }
     }
 
-    /// From pairs `(j, k, A_jk)`, each pair once, in any order.
+    /// Interactions from pairs `(j, k, A_jk)`, each pair once, in any order.
     ///
     /// # Panics
-    /// When an index is not below `dimensions`, or `j` is `k`.
+    /// If an index is not below `dimensions`, or `j` is `k`.
     pub fn of_pairs(dimensions: usize, pairs: impl IntoIterator<Item = (usize, usize, f64)>) -> Self {
         let mut rows = vec![Vec::new(); dimensions];
         for (j, k, value) in pairs {
@@ -55,8 +55,8 @@ impl Interactions {
             rows[j].push((k, value));
             rows[k].push((j, value));
         }
-        // The sparse product costs the sum of squared degrees, each about ten times what the dense one needs per
-        // multiplication, of which there are N^3.
+        // The sparse product costs the sum of squared degrees. Each such step takes about ten times as long as one of the N^3
+        // multiplications of the dense product.
         let sparse: usize = rows.iter().map(|row| row.len() * row.len()).sum();
         if 10 * sparse <= dimensions * dimensions * dimensions || dimensions < 8 {
             rows.iter_mut().for_each(|row| row.sort_unstable_by_key(|&(k, _)| k));
@@ -69,24 +69,24 @@ impl Interactions {
         Self { dimensions, kind: Kind::Dense(matrix) }
     }
 
-    /// How many inputs there are, N.
+    /// Number of inputs, N.
     pub fn dimensions(&self) -> usize {
         self.dimensions
     }
 
-    /// Every pair that is not 0, as `(j, k, A_jk)` with `j < k`.
+    /// All pairs with a coefficient that is not 0, as `(j, k, A_jk)` with `j < k`.
     pub fn pairs(&self) -> Vec<(usize, usize, f64)> {
         self.each_pair().collect()
     }
 
-    /// The same without a list.
+    /// Iterates over the pairs of [`pairs`](Self::pairs), without a list.
     pub fn each_pair(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
         let dense = matches!(self.kind, Kind::Dense(_));
         let of_row = move |j| self.neighbours(j).filter(move |&(k, _)| j < k).map(move |(k, value)| (j, k, value));
         (0..self.dimensions).flat_map(of_row).filter(move |&(_, _, value)| !dense || value != 0.0)
     }
 
-    /// The products in which one input has a part: `(k, A_jk)`.
+    /// Products of one input, as `(k, A_jk)`.
     pub(crate) fn neighbours(&self, j: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let (sparse, dense) = match self.row(j) {
             Row::Sparse(row) => (row, &[][..]),
@@ -95,7 +95,7 @@ impl Interactions {
         sparse.iter().copied().chain(dense.iter().copied().enumerate())
     }
 
-    /// The same as they are kept.
+    /// Products of one input in the form in which they are stored.
     pub(crate) fn row(&self, j: usize) -> Row<'_> {
         match &self.kind {
             Kind::Sparse(rows) => Row::Sparse(&rows[j]),
@@ -103,7 +103,7 @@ impl Interactions {
         }
     }
 
-    /// With `by_j by_k A_jk` in place of `A_jk`.
+    /// Interactions with `by_j by_k A_jk` in place of `A_jk`.
     ///
     /// Shapes: `by` has length N.
     pub fn scaled(&self, by: &[f64]) -> Self {
@@ -121,7 +121,7 @@ impl Interactions {
         Self { dimensions: self.dimensions, kind }
     }
 
-    /// Multiplications that the moments of these products take, roughly.
+    /// Rough number of multiplications that the moments of these products need.
     pub fn work(&self) -> usize {
         match &self.kind {
             Kind::Sparse(rows) => rows.iter().map(|row| row.len() * row.len()).sum(),
@@ -142,7 +142,7 @@ impl Interactions {
         0.5 * self.fold(0.0, |sum, value| sum + (factor * value) * (factor * value))
     }
 
-    /// Over both halves of the matrix.
+    /// Folds over the coefficients of both halves of the matrix.
     fn fold(&self, start: f64, mut step: impl FnMut(f64, f64) -> f64) -> f64 {
         let mut folded = start;
         match &self.kind {

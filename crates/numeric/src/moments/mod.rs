@@ -1,19 +1,18 @@
-//! The exact first four moments of a quadratic, or of univariate parts with products, in independent inputs.
+//! Exact first four moments of a quadratic, or of univariate parts with products, in independent inputs.
 //!
 //! ```text
 //! y = c + sum_j g_j(u_j) + sum_{j<k} A_jk u_j u_k        u_j independent, mean 0, variance 1
 //! ```
 //!
-//! with any univariate `g_j`; for the second-order model `g_j = b_j u_j + a_j (u_j^2 - 1)`. The third and fourth moment
-//! are sums of joint cumulants (connected diagrams), so that the Gaussian part of the fourth moment, `3 sigma^4`, is
-//! never formed and subtracted. All coefficients are divided by sigma first, so that no scale overflows.
+//! The univariate parts `g_j` are arbitrary. For the second-order model they are `g_j = b_j u_j + a_j (u_j^2 - 1)`. The third and fourth
+//! moment are sums of joint cumulants (connected diagrams). Thus the Gaussian part of the fourth moment, `3 sigma^4`, is never formed and
+//! subtracted. All coefficients are divided by sigma first, so that no scale overflows.
 //!
-//! Cost: one product `W = A A`, which is `O(N^3)` when dense and `O(sum of squared degrees)` when sparse, and `O(N^2)`
-//! besides.
+//! Cost: one product `W = A A`, which is `O(N^3)` if dense and `O(sum of squared degrees)` if sparse, and `O(N^2)` besides.
 //!
-//! Source: the improved second-order method of Sadikhani and Hashemian (2018) and Glancy and Chase (1999, method of
-//! system moments), by another derivation; the 2018 paper's equations 8 to 10 and 18 to 25 have misprints that are not
-//! reproduced (see `examples/stacked-blocks/README.md`).
+//! Source: the improved second-order method of Sadikhani and Hashemian (2018) and Glancy and Chase (1999, method of system moments), by
+//! another derivation. Equations 8 to 10 and 18 to 25 of the 2018 paper have misprints that are not reproduced (see
+//! `examples/stacked-blocks/README.md`).
 
 mod assemble;
 mod growth;
@@ -67,17 +66,17 @@ impl Serialize for Moments {
 }
 
 impl Moments {
-    /// A characteristic that varies.
+    /// Moments of a characteristic that varies.
     pub fn new(mean: f64, sigma: f64, skewness: f64, excess: f64) -> Self {
         Self { mean, sigma, shape: Some((skewness, excess)) }
     }
 
-    /// A characteristic that is the same in every assembly: it has no skewness and no kurtosis.
+    /// Moments of a characteristic with the same value in every assembly: it has no skewness and no kurtosis.
     pub fn constant(mean: f64) -> Self {
         Self { mean, sigma: 0.0, shape: None }
     }
 
-    /// First moment.
+    /// Expected value.
     pub fn mean(&self) -> f64 {
         self.mean
     }
@@ -92,49 +91,49 @@ impl Moments {
         self.sigma * self.sigma
     }
 
-    /// Third standardised moment; None where sigma is 0, and where an input's tail makes it infinite.
+    /// Third standardised moment. Returns None if sigma is 0, or if the tail of an input makes it infinite.
     pub fn skewness(&self) -> Option<f64> {
         self.shape.map(|(skewness, _)| skewness).filter(|skewness| skewness.is_finite())
     }
 
-    /// Fourth standardised moment, 3 for a normal; None where sigma is 0, and where an input's tail makes it infinite.
+    /// Fourth standardised moment, 3 for a normal. Returns None if sigma is 0, or if the tail of an input makes it infinite.
     pub fn kurtosis(&self) -> Option<f64> {
         self.excess().map(|excess| 3.0 + excess)
     }
 
-    /// Fourth standardised moment minus 3, with the digits that the kurtosis of a nearly normal distribution has lost;
-    /// None where there is no kurtosis.
+    /// Fourth standardised moment minus 3, with the digits that the kurtosis of a nearly normal distribution has lost. Returns None if
+    /// there is no kurtosis.
     pub fn excess(&self) -> Option<f64> {
         self.shape.map(|(_, excess)| excess).filter(|excess| excess.is_finite())
     }
 }
 
-/// The moments of a sum of terms and products, and what each has contributed.
+/// Moments of a sum of terms and products, and the contribution of each.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Contributions {
-    /// Moments of the whole.
+    /// Moments of the whole sum.
     pub moments: Moments,
-    /// For every term, the part of the variance that a straight line explains, as a share of the whole.
+    /// Share of the variance that a straight line explains, for every term.
     pub linear: Vec<f64>,
-    /// For every term, the rest of its own variance, as a share of the whole.
+    /// Share of the remaining variance of its own, for every term.
     pub curvature: Vec<f64>,
-    /// For every term, how far it moves the mean.
+    /// Shift of the mean by every term.
     pub mean_shift: Vec<f64>,
-    /// By what a coefficient is multiplied to make its square a share of the variance; 0 where sigma is 0.
+    /// Factor that turns a coefficient into a number whose square is a share of the variance. 0 if sigma is 0.
     pub per_sigma: f64,
-    /// For every product `j < k` its share, where inputs are correlated and it is not the square of its coefficient.
+    /// Share of every product `j < k`, if inputs are correlated and shares are not squares of coefficients. None otherwise.
     pub products: Option<BTreeMap<(usize, usize), f64>>,
-    /// The uncertainty that sampling leaves; None where everything is exact.
+    /// Standard errors of sampling. None if everything is exact.
     pub sampled: Option<Sampled>,
 }
 
-/// Standard errors of moments that were sampled, from a surrogate and not from the model.
+/// Standard errors of moments that were sampled from a surrogate, not from the model.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Sampled {
-    /// Points.
+    /// Number of points sampled.
     pub samples: usize,
     /// Standard error of sigma.
     pub sigma: f64,
@@ -145,7 +144,7 @@ pub struct Sampled {
 }
 
 impl Contributions {
-    /// The share of a product of two inputs with this coefficient.
+    /// Share of the product of two inputs with this coefficient.
     pub fn share(&self, j: usize, k: usize, coefficient: f64) -> f64 {
         match &self.products {
             None => (coefficient * self.per_sigma).powi(2),
@@ -153,7 +152,7 @@ impl Contributions {
         }
     }
 
-    /// The same beside an independent part with this standard deviation, of which nothing else is known: taken to be normal.
+    /// Contributions after an independent part with this standard deviation is added. The part is assumed normal.
     pub fn beside(self, sigma: f64) -> Self {
         let sigma = libm::hypot(self.moments.sigma(), sigma);
         if sigma == self.moments.sigma() {
@@ -176,7 +175,7 @@ impl Contributions {
         }
     }
 
-    /// The same about another mean.
+    /// Contributions with another mean, and all else unchanged.
     pub(crate) fn about(self, mean: f64) -> Self {
         Self { moments: Moments { mean, ..self.moments }, ..self }
     }
@@ -184,9 +183,9 @@ impl Contributions {
 
 /// Moments of `constant + sum_j term_j + sum_{j<k} A_jk u_j u_k`, with the contributions of the terms.
 ///
-/// Shapes: `terms` has length N, `interactions` is N by N. Accuracy: 1e-12 relative against exact rationals, at any
-/// scale of the coefficients. Where terms cancel, so that sigma is a part q of the largest of them, the input's moments do
-/// not say more of the kurtosis than `q^-4` roundings: line and parabola of an input that has only two values do that.
+/// Shapes: `terms` has length N, `interactions` is N by N. Accuracy: 1e-12 relative against exact rationals, at any scale of the
+/// coefficients. If terms cancel, so that sigma is a part q of the largest of them, the kurtosis is accurate to `q^-4` roundings only. Line
+/// and parabola of an input with only two values cancel in this way.
 ///
 /// ```
 /// use crate::distribution::StandardMoments;
@@ -228,20 +227,20 @@ pub fn contributions(constant: f64, terms: &[Term<'_>], interactions: &Interacti
     }
 }
 
-/// Sigma, and by what a coefficient is multiplied so that sigma is 1; None where nothing varies.
+/// Sigma, and the factor for the coefficients that makes sigma 1. Returns None if nothing varies.
 fn unit_of(terms: &[Term<'_>], interactions: &Interactions) -> Option<(f64, f64)> {
     let largest = terms.iter().map(Term::largest).fold(interactions.largest(), f64::max);
     if largest == 0.0 {
         return None;
     }
-    // Divided by the largest coefficient first and by sigma then: no square leaves the range of a double.
+    // Divide by the largest coefficient first and then by sigma, so that no square overflows or underflows.
     let variances = terms.iter().map(|term| term.variance(1.0 / largest));
     let relative = (sum::exact(variances) + interactions.variance(1.0 / largest)).sqrt();
     Some((largest * relative, 1.0 / largest / relative))
 }
 
-/// Moments of a second-order model, the case that the published methods treat:
-/// `y = c + sum_j [b_j u_j + a_j (u_j^2 - 1)] + sum_{j<k} A_jk u_j u_k`.
+/// Moments of a second-order model, the case of the published methods: `y = c + sum_j [b_j u_j + a_j (u_j^2 - 1)] + sum_{j<k} A_jk u_j
+/// u_k`.
 ///
 /// Shapes: `linear` (`b`), `curvature` (`a`) and `inputs` have length N. With derivatives of a function `F` at the means,
 /// `b_j = sd_j dF/dx_j`, `a_j = sd_j^2/2 d2F/dx_j^2`, `A_jk = sd_j sd_k d2F/dx_j dx_k`, and `c = F + sum_j a_j` is the mean.

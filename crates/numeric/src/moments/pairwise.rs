@@ -1,18 +1,18 @@
-//! The exact first four moments of a sum of functions of one and of two independent discrete variables.
+//! Exact first four moments of a sum of functions of one and of two independent discrete variables.
 //!
 //! ```text
 //! y = constant + sum_j g_j(i_j) + sum_{j<k} g_jk(i_j, i_k)        i_j: a node of variable j, with its probability
 //! ```
 //!
-//! Every `g_jk` is freed of its conditional means, which go to `g_j`, `g_k` and the constant, so that all parts are
-//! uncorrelated (the decomposition of Hoeffding 1948, known from analysis of variance):
+//! The conditional means of every `g_jk` are moved to `g_j`, `g_k` and the constant, so that all parts are uncorrelated (the decomposition
+//! of Hoeffding 1948, known from analysis of variance):
 //!
 //! ```text
 //! y - mean = sum_j a_j + sum_{j<k} B_jk                E a_j = 0,  E[B_jk | i_j] = E[B_jk | i_k] = 0
 //! var      = sum_j E a_j^2 + sum_{j<k} E B_jk^2
 //! ```
 //!
-//! The square of that is decomposed in the same way, into functions of none, one, two, three and four variables:
+//! The square of this deviation is decomposed in the same way, into functions of none, one, two, three and four variables:
 //!
 //! ```text
 //! (y - mean)^2 = var + sum S_j + sum S_jk + sum S_jkl + sum S_jklm
@@ -23,46 +23,46 @@
 //! S_jkl  = 2 (a_j B_kl + a_k B_jl + a_l B_jk) + 2 (B_jk B_kl + B_kl B_lj + B_lj B_jk, less their conditional means)
 //! ```
 //!
-//! The fourth moment is a sum of squares: nothing cancels in it. The squares of the functions of four variables are summed by
-//! pairs of opposite corners, `sum over 4-cycles = 1/4 sum_{j<m} (|sum_k P_k|^2 - sum_k |P_k|^2)` with
-//! `P_k = E[B_jk B_km | i_j, i_m]`, so that no loop runs over four variables.
+//! The fourth moment is a sum of squares, so nothing cancels in it. The squares of the functions of four variables are summed by pairs of
+//! opposite corners, `sum over 4-cycles = 1/4 sum_{j<m} (|sum_k P_k|^2 - sum_k |P_k|^2)` with `P_k = E[B_jk B_km | i_j, i_m]`. Thus no loop
+//! runs over four variables.
 //!
-//! Cost: `O(N^3 m^3)` multiplications for N variables of m nodes; no evaluation. Accuracy: rounding of `1e-15` times the number
-//! of parts, beside 1 for the skewness and beside 3 for the kurtosis.
+//! Cost: `O(N^3 m^3)` multiplications for N variables of m nodes, and no evaluation. Accuracy: rounding of `1e-15` times the number of
+//! parts, relative to 1 for the skewness and to 3 for the kurtosis.
 
 use super::Moments;
 use super::sum::exact;
 use crate::parallel::prelude::*;
 
-/// A function of independent discrete variables as tables of its parts.
+/// Function of independent discrete variables, as tables of its parts.
 #[derive(Debug, Clone)]
 pub struct Tables<'a> {
-    /// The part that does not vary.
+    /// Constant part of the function.
     pub constant: f64,
-    /// For every variable the probabilities of its nodes, which sum to 1.
+    /// Probabilities of the nodes for every variable, which sum to 1.
     pub weights: Vec<&'a [f64]>,
-    /// For every variable its own part at its nodes.
+    /// Univariate part at the nodes, for every variable.
     pub own: Vec<Vec<f64>>,
-    /// Parts of two variables `j < k`, each pair at most once: at node `a` of `j` and `b` of `k` the value at `a nodes(k) + b`.
+    /// Parts of two variables `j < k`, each pair at most once. The value at node `a` of `j` and `b` of `k` has the index `a nodes(k) + b`.
     pub pairs: Vec<(usize, usize, Vec<f64>)>,
 }
 
-/// The moments, and the uncorrelated parts.
+/// Moments of the function, and its uncorrelated parts.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Pairwise {
-    /// Moments of the whole.
+    /// Moments of the whole function.
     pub moments: Moments,
-    /// For every variable its part `a_j` at its nodes, in sigmas; 0 where sigma is 0.
+    /// Uncorrelated part `a_j` at the nodes for every variable, in sigmas. 0 if sigma is 0.
     pub own: Vec<Vec<f64>>,
-    /// For every pair, in the order given, the share of the variance.
+    /// Share of the variance for every pair, in the order given.
     pub shares: Vec<f64>,
-    /// For every pair how far it moves the mean.
+    /// Shift of the mean by every pair.
     pub mean_shifts: Vec<f64>,
 }
 
 impl Tables<'_> {
-    /// The moments of the sum.
+    /// Moments of the sum, by its uncorrelated parts.
     ///
     /// ```
     /// use crate::moments::Tables;
@@ -80,7 +80,7 @@ impl Tables<'_> {
     /// ```
     ///
     /// # Panics
-    /// When a table does not fit its variables, or a pair is not `j < k`.
+    /// If a table does not fit its variables, or a pair is not `j < k`.
     pub fn moments(&self) -> Pairwise {
         let n = self.weights.len();
         let largest = self.own.iter().chain(self.pairs.iter().map(|(_, _, table)| table)).flatten();
@@ -96,7 +96,7 @@ impl Tables<'_> {
         }
         let mut parts = self.uncorrelated(1.0 / scale);
         let variance = parts.variance();
-        // The rest that rounding leaves of parts that cancel each other is not a variation.
+        // Rounding errors of parts that cancel each other are not taken as a variation.
         if variance <= (4.0 * f64::EPSILON).powi(2) * (n + self.pairs.len()) as f64 {
             let mean = self.constant + scale * parts.mean;
             return Pairwise { moments: Moments::constant(mean), ..nothing() };
@@ -151,11 +151,11 @@ impl Tables<'_> {
     }
 }
 
-/// The uncorrelated parts of a sum.
+/// Uncorrelated parts of a sum.
 struct Parts<'a> {
     weights: &'a [&'a [f64]],
     own: Vec<Vec<f64>>,
-    /// At `j N + k` the table of the pair with the nodes of `j` as rows; empty where there is none.
+    /// Table of the pair at `j N + k`, with the nodes of `j` as rows. Empty without such a part.
     both: Vec<Vec<f64>>,
     mean: f64,
     shifts: Vec<f64>,
@@ -174,12 +174,12 @@ impl Parts<'_> {
         &self.both[j * self.len() + k]
     }
 
-    /// The others with which a variable has a part.
+    /// Variables that share a part with variable `j`.
     fn partners(&self, j: usize) -> Vec<usize> {
         (0..self.len()).filter(|&k| !self.table(j, k).is_empty()).collect()
     }
 
-    /// `E f^2` of a table of two variables.
+    /// Mean square `E f^2` of a table of two variables.
     fn norm(&self, j: usize, k: usize, table: &[f64]) -> f64 {
         let (of_j, of_k) = (self.weights[j], self.weights[k]);
         table.chunks(of_k.len()).zip(of_j).map(|(row, weight)| weight * mean(of_k, |b| row[b] * row[b])).sum()
@@ -201,7 +201,7 @@ impl Parts<'_> {
 
     /// Third and fourth central moment of parts whose variance is 1.
     fn third_and_fourth(&self) -> [f64; 2] {
-        // A variable a task; the sums are put together in order, whatever the number of threads.
+        // One task for each variable. The sums are added in order, whatever the number of threads.
         let of_one: Vec<[f64; 2]> = (0..self.len()).into_par_iter().map(|j| self.of_one(j)).collect();
         let of_two: Vec<[f64; 3]> = (0..self.len()).into_par_iter().map(|j| self.of_two(j)).collect();
         let of_three: Vec<f64> = (0..self.len()).into_par_iter().map(|j| self.of_three(j)).collect();
@@ -212,7 +212,7 @@ impl Parts<'_> {
         [third, fourth]
     }
 
-    /// `E[a_j S_j]` and `E S_j^2`.
+    /// Contributions `E[a_j S_j]` and `E S_j^2` of one variable.
     fn of_one(&self, j: usize) -> [f64; 2] {
         let partners = self.partners(j);
         let weights = self.weights[j];
@@ -228,7 +228,7 @@ impl Parts<'_> {
         [mean(weights, |a| self.own[j][a] * s[a]), mean(weights, |a| s[a] * s[a])]
     }
 
-    /// Of all pairs `j < k`: `E[B_jk S_jk]`, `E S_jk^2`, and `|sum_l P_l|^2 - sum_l |P_l|^2`.
+    /// Contributions of all pairs `j < k` for one `j`: `E[B_jk S_jk]`, `E S_jk^2`, and `|sum_l P_l|^2 - sum_l |P_l|^2`.
     fn of_two(&self, j: usize) -> [f64; 3] {
         let (n, of_j) = (self.len(), self.weights[j]);
         let partners = self.partners(j);
@@ -236,6 +236,7 @@ impl Parts<'_> {
         for k in j + 1..n {
             let of_k = self.weights[k];
             let (rows, columns) = (of_j.len(), of_k.len());
+            // Sum the conditional means of products through a third variable, and their squares one by one for the 4-cycles.
             let mut through = vec![0.0; rows * columns];
             let mut each = 0.0;
             for &l in partners.iter().filter(|&&l| !self.table(k, l).is_empty()) {
@@ -251,6 +252,7 @@ impl Parts<'_> {
                 through.iter_mut().zip(one).for_each(|(sum, one)| *sum += one);
             }
             sums[2] += self.norm(j, k, &through) - each;
+            // Assemble S_jk from these, the products of the univariate parts, and the direct part.
             let direct = self.table(j, k);
             let mut s: Vec<f64> = (0..rows * columns)
                 .map(|at| {
@@ -260,7 +262,7 @@ impl Parts<'_> {
                 })
                 .collect();
             if !direct.is_empty() {
-                // Only what is left of squares and of products with one variable has conditional means.
+                // Without a direct part nothing has to be centred: only squares and products with one variable have conditional means.
                 centre(&mut s, of_j, of_k);
             }
             sums[0] += if direct.is_empty() {
@@ -273,7 +275,7 @@ impl Parts<'_> {
         sums
     }
 
-    /// `E S_jkl^2` of all `j < k < l`.
+    /// Contribution `E S_jkl^2` of all `j < k < l` for one `j`.
     fn of_three(&self, j: usize) -> f64 {
         let n = self.len();
         let mut sum = 0.0;
@@ -292,7 +294,7 @@ impl Parts<'_> {
         let (of_j, of_k, of_l) = (self.weights[j], self.weights[k], self.weights[l]);
         let (q, r) = (of_k.len(), of_l.len());
         let at = |table: &[f64], place: usize| table.get(place).copied().unwrap_or(0.0);
-        // The common part of two of the tables through the third variable.
+        // Conditional mean of the product of two tables, over the variable that they share.
         let meet = |rows: &[f64], columns: &[f64], through: &dyn Fn(usize, usize) -> f64| -> Vec<f64> {
             (0..rows.len()).flat_map(|a| (0..columns.len()).map(move |b| (a, b))).map(|(a, b)| through(a, b)).collect()
         };
@@ -308,7 +310,7 @@ impl Parts<'_> {
         mean(of_j, |a| mean(of_k, |b| mean(of_l, |c| value(a, b, c).powi(2))))
     }
 
-    /// The sum of `E B_jk^2 E B_lm^2` over pairs that share no variable.
+    /// Sum of `E B_jk^2 E B_lm^2` over pairs that share no variable.
     fn apart(&self) -> f64 {
         let norms: Vec<(usize, usize, f64)> =
             self.edges().map(|(j, k)| (j, k, self.norm(j, k, self.table(j, k)))).collect();
@@ -322,7 +324,7 @@ impl Parts<'_> {
     }
 }
 
-/// Takes both conditional means from a table of two variables.
+/// Subtracts both conditional means from a table of two variables.
 fn centre(table: &mut [f64], of_j: &[f64], of_k: &[f64]) {
     let columns = of_k.len();
     for row in table.chunks_mut(columns) {

@@ -1,11 +1,11 @@
-//! One input's own part of the characteristic, and its joint cumulants with the input.
+//! Univariate part of one input, and its joint cumulants with the input.
 
 use crate::distribution::{Rule, StandardMoments};
 
-/// The univariate part `g(u)` of one input, any constant included or not: only its variation counts, and its mean.
+/// Univariate part `g(u)` of one input. Only its variation and its mean count, so it may include a constant.
 #[derive(Debug, Clone)]
 pub enum Term<'a> {
-    /// `g = linear u + curvature u^2`, exact for any input by its moments 3 to 8.
+    /// Quadratic `g = linear u + curvature u^2`, exact for any input by its moments 3 to 8.
     Quadratic {
         /// Coefficient of `u`.
         linear: f64,
@@ -14,39 +14,39 @@ pub enum Term<'a> {
         /// Moments of the input.
         moments: &'a StandardMoments,
     },
-    /// Any `g`, given at the nodes of a quadrature rule of the input.
+    /// Tabulated `g`: any function, given at the nodes of a quadrature rule of the input.
     Tabulated {
-        /// `g` at the rule's nodes.
+        /// Values of `g` at the nodes of the rule.
         values: Vec<f64>,
-        /// The rule, in standardised units.
+        /// Quadrature rule of the input, in standardised units.
         rule: &'a Rule,
         /// Moments of the input.
         moments: &'a StandardMoments,
     },
 }
 
-/// Joint cumulants of one part `g` with its input `u`, all that the moments of the whole need of it.
+/// Joint cumulants of a part `g` with its input `u`: the part enters the moments of the whole by these only.
 ///
-/// `g = p u + h` with `E[u h] = 0`. Every cumulant is computed from `p` and `h`, so that a small curvature beside a large
-/// slope keeps its digits.
+/// The part is split as `g = p u + h` with `E[u h] = 0`. Every cumulant is computed from `p` and `h`, so that a small curvature beside a
+/// large slope keeps its digits.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct JointCumulants {
-    /// `E[g u]`: the slope of the best straight line.
+    /// Slope of the best straight line, `E[g u]`.
     pub p: f64,
-    /// `E[h^2]`: the variance that no straight line explains.
+    /// Variance that no straight line explains, `E[h^2]`.
     pub curved: f64,
-    /// `cum(g, u, u)`
+    /// Joint cumulant `cum(g, u, u)`.
     pub q: f64,
-    /// `cum(g, g, u)`
+    /// Joint cumulant `cum(g, g, u)`.
     pub w: f64,
-    /// `cum(g, g, g)`
+    /// Third cumulant `cum(g, g, g)`.
     pub k3: f64,
-    /// `cum(g, u, u, u)`
+    /// Joint cumulant `cum(g, u, u, u)`.
     pub c13: f64,
-    /// `cum(g, g, u, u)`
+    /// Joint cumulant `cum(g, g, u, u)`.
     pub c22: f64,
-    /// `cum(g, g, g, g)`
+    /// Fourth cumulant `cum(g, g, g, g)`.
     pub k4: f64,
     /// Skewness of the input.
     pub s: f64,
@@ -55,7 +55,7 @@ pub struct JointCumulants {
 }
 
 impl Term<'_> {
-    /// `E[g]`, for a quadratic the curvature.
+    /// Mean `E[g]`, for a quadratic the curvature.
     pub fn mean(&self) -> f64 {
         match self {
             Self::Quadratic { curvature, .. } => *curvature,
@@ -63,7 +63,7 @@ impl Term<'_> {
         }
     }
 
-    /// The largest coefficient or deviation, to scale by; 0 only where `g` is constant.
+    /// Largest coefficient or deviation, used as a scale. It is 0 only if `g` is constant.
     pub(super) fn largest(&self) -> f64 {
         match self {
             Self::Quadratic { linear, curvature, .. } => linear.abs().max(curvature.abs()),
@@ -80,12 +80,12 @@ impl Term<'_> {
         p * p + h.hh
     }
 
-    /// The joint cumulants of `factor g`.
+    /// Joint cumulants of `factor g`.
     pub fn part(&self, factor: f64) -> JointCumulants {
         let (p, h) = self.split(factor);
         let moments = self.moments();
         let (s, k) = (moments.skewness, moments.excess);
-        // With E h = E[u h] = 0 these are cumulants of u and h alone; the names give the powers.
+        // Since E h = E[u h] = 0, these are cumulants of u and h alone. The names give the powers.
         let RestCumulants { uuh, uhh, hhh, uuuh, uuhh, uhhh, hhhh, hh } = h;
         JointCumulants {
             p,
@@ -101,8 +101,8 @@ impl Term<'_> {
         }
     }
 
-    /// How the joint cumulants of `factor g` grow with the logarithm of the input's scale, about its mean; `growth` are the values of `u g'(u)` at
-    /// the nodes of a table.
+    /// Derivatives of the joint cumulants of `factor g` by the logarithm of the input's scale, about its mean. `growth` holds the values of
+    /// `u g'(u)` at the nodes of a table.
     pub(super) fn part_growth(&self, factor: f64, growth: &[f64]) -> JointCumulants {
         let ((p, h), moments) = (self.split(factor), self.moments());
         let (dp, dh) = self.split_growth(factor, growth);
@@ -125,7 +125,7 @@ impl Term<'_> {
         }
     }
 
-    /// How the mean grows with it.
+    /// Derivative of the mean of `g` by the logarithm of the input's scale.
     pub(super) fn mean_growth(&self, growth: &[f64]) -> f64 {
         match self {
             Self::Quadratic { curvature, .. } => 2.0 * curvature,
@@ -139,10 +139,10 @@ impl Term<'_> {
         }
     }
 
-    /// `factor g - E = p u + h`: the slope, and the cumulants of the rest.
+    /// Splits `factor g - E = p u + h` into the slope and the cumulants of the rest.
     fn split(&self, factor: f64) -> (f64, RestCumulants) {
         match self {
-            // Rounding makes a small curvature of a straight line, and an infinite moment would make a figure of it.
+            // Differences of a straight line leave a small curvature by rounding. An infinite moment would turn it into a figure.
             Self::Quadratic { linear, curvature, moments }
                 if !moments.are_finite() && curvature.abs() <= STRAIGHT * linear.abs() =>
             {
@@ -155,7 +155,7 @@ impl Term<'_> {
             Self::Tabulated { values, rule, moments } => {
                 let (p, rest) = split_table(values, rule, factor);
                 let mut rest = RestCumulants::of_table(&rest, rule);
-                // Without a fourth moment no curvature has a variance, whatever the rule says.
+                // Without a fourth moment no curvature has a finite variance, although the rule gives one.
                 if moments.excess.is_nan() {
                     let straight = rest.hh.sqrt() <= STRAIGHT * p.abs();
                     rest = RestCumulants { hh: if straight { 0.0 } else { f64::NAN }, ..RestCumulants::default() };
@@ -168,7 +168,7 @@ impl Term<'_> {
     /// Derivatives of the results of [`split`](Self::split) by the logarithm of the input's scale.
     fn split_growth(&self, factor: f64, growth: &[f64]) -> (f64, RestCumulants) {
         match self {
-            // The slope grows as the scale, the curvature as its square.
+            // The slope is proportional to the scale, the curvature to its square.
             Self::Quadratic { linear, .. } => {
                 let (p, h) = self.split(factor);
                 (2.0 * p - factor * linear, h.growing_as_squares())
@@ -181,7 +181,7 @@ impl Term<'_> {
     }
 }
 
-/// A curvature of this part of the slope, both per sigma, is a rounding error of differences.
+/// Greatest ratio of curvature to slope, both per sigma, that is taken as a rounding error of differences.
 const STRAIGHT: f64 = 1e-6;
 
 /// Cumulants of `u` and `h`, where `E h = E[u h] = 0`.
@@ -198,8 +198,8 @@ struct RestCumulants {
 }
 
 impl RestCumulants {
-    /// `h = a (u^2 - 1 - s u)`. With `v = u^2 - 1`, every cumulant expands into those of `v` and `u`, which are the
-    /// combinations that `StandardMoments` holds.
+    /// Cumulants for `h = a (u^2 - 1 - s u)`. With `v = u^2 - 1`, every cumulant expands into those of `v` and `u`, which are the
+    /// combinations in `StandardMoments`.
     fn of_curvature(a: f64, m: &StandardMoments) -> Self {
         let (s, k) = (m.skewness, m.excess);
         let (vv, uuv, uvv, vvv) = (k + 2.0, k + 2.0, m.m5 - 2.0 * s, m.m6 - 3.0 * m.kurtosis() + 2.0);
@@ -217,7 +217,7 @@ impl RestCumulants {
         }
     }
 
-    /// Derivatives by the logarithm of the input's scale, where `h` grows as the square of the scale.
+    /// Derivatives by the logarithm of the input's scale, if `h` is proportional to the square of the scale.
     fn growing_as_squares(self) -> Self {
         Self {
             hh: 4.0 * self.hh,
@@ -231,7 +231,7 @@ impl RestCumulants {
         }
     }
 
-    /// Derivatives by the logarithm of the input's scale, where that of `h` is `d`.
+    /// Derivatives by the logarithm of the input's scale, if that of `h` is `d`.
     fn growth_of_table(h: &[f64], d: &[f64], rule: &Rule) -> Self {
         let mean = |f: &dyn Fn(f64, f64, f64) -> f64| expectation(rule, |i| f(rule.nodes[i], h[i], d[i]));
         let (hh, growth) = (mean(&|_, h, _| h * h), mean(&|_, h, d| 2.0 * h * d));
@@ -263,7 +263,7 @@ impl RestCumulants {
     }
 }
 
-/// The slope of the best straight line through `factor g`, and the rest at the nodes.
+/// Slope of the best straight line through `factor g`, and the rest at the nodes.
 fn split_table(values: &[f64], rule: &Rule, factor: f64) -> (f64, Vec<f64>) {
     let mean = expectation(rule, |i| values[i]);
     let centred: Vec<f64> = values.iter().map(|value| factor * (value - mean)).collect();

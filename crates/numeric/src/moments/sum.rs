@@ -1,6 +1,6 @@
-//! Sums that lose nothing to the order of their terms.
+//! Sums with an error that does not depend on the order of the terms.
 
-/// Compensated sum (Neumaier 1974): as exact as if computed in twice the precision and rounded once.
+/// Compensated sum (Neumaier 1974), as accurate as a sum in twice the precision that is rounded once.
 pub fn exact(terms: impl IntoIterator<Item = f64>) -> f64 {
     let (mut sum, mut lost) = (0.0f64, 0.0f64);
     for term in terms {

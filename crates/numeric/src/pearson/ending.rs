@@ -1,22 +1,22 @@
-//! The outermost piece of the axis: a series at an end of the support, or one at infinity.
+//! Outermost piece of the axis: a series at an end of the support, or one at infinity.
 
 use super::shape::{End, Infinity};
 
-/// Terms that a series may take.
+/// Greatest number of terms of a series.
 const TERMS: usize = 120;
-/// The bound that a term must fall below, twice in a row, for the series to end.
+/// Bound for the size of a term: the series ends after two terms in a row below it.
 const SMALL: f64 = 1e-18;
 
-/// A closed form of the density beyond some place, up to a factor, as a function of `v`, the distance relative to where the
-/// series begins to hold.
+/// Closed form of the density beyond some place, up to a factor. Its variable `v` is the distance relative to the place where the series
+/// begins to converge.
 #[derive(Debug, Clone)]
 pub(super) struct Ending {
     kind: Kind,
-    /// The end of the support, or the place from which distances towards infinity count.
+    /// End of the support, or the place from which distances towards infinity count.
     origin: f64,
-    /// +1 where the distance grows with z, -1 where it shrinks.
+    /// +1 if the distance grows with z, -1 if it shrinks.
     sign: f64,
-    /// Distance where v is 1.
+    /// Distance from the origin at which `v` is 1.
     reach: f64,
     series: Vec<f64>,
 }
@@ -30,10 +30,10 @@ enum Kind {
 }
 
 impl Ending {
-    /// At the end `at` of the support, which lies to the right (`side` = 1) or to the left (-1).
+    /// Series at the end `at` of the support, which lies to the right (`side` = 1) or to the left (-1).
     pub(super) fn finite(at: f64, side: f64, end: &End) -> Option<Self> {
         let End { alpha, k, bk } = *end;
-        // So flat an end is never reached before the density has vanished.
+        // The density vanishes long before it reaches so flat an end.
         if !at.is_finite() || !alpha.is_finite() || alpha > 1e6 {
             return None;
         }
@@ -42,7 +42,7 @@ impl Ending {
         Some(Self { kind: Kind::Finite { alpha }, origin: at, sign: -side, reach, series })
     }
 
-    /// Towards infinity on the right (`side` = 1) or on the left (-1).
+    /// Series towards infinity on the right (`side` = 1) or on the left (-1).
     pub(super) fn infinite(infinity: &Infinity, side: f64, c1_by_c2: f64) -> Option<Self> {
         let Infinity { centre, kappa2, r } = *infinity;
         let odd = 0.5 * r * c1_by_c2;
@@ -56,7 +56,7 @@ impl Ending {
         Some(Self { kind: Kind::Infinite { r }, origin: centre, sign: side, reach, series })
     }
 
-    /// Distance from the origin, positive within the support.
+    /// Distance of `z` from the origin, positive within the support.
     fn distance(&self, z: f64) -> f64 {
         self.sign * (z - self.origin)
     }
@@ -69,12 +69,12 @@ impl Ending {
         self.origin + self.sign * self.reach * v
     }
 
-    /// Where the series begins to hold.
+    /// Place at which the series begins to converge.
     pub(super) fn border(&self) -> f64 {
         self.position(1.0)
     }
 
-    /// Whether the series holds at z.
+    /// True if the series converges at `z`.
     pub(super) fn covers(&self, z: f64) -> bool {
         let v = self.relative(z);
         match self.kind {
@@ -100,12 +100,12 @@ impl Ending {
             Kind::Finite { alpha } => alpha - 1.0,
             Kind::Infinite { r } => -(r + 2.0),
         };
-        // 0 * -infinity at an end with a finite density.
+        // Avoids 0 * -infinity at an end with a finite density.
         let power = if factor == 0.0 { 0.0 } else { factor * libm::log(v) };
         power + libm::log(self.sum(self.powers(v)))
     }
 
-    /// The mass that lies beyond, by the density: Mills' ratio in z.
+    /// Mass beyond, divided by the density: Mills' ratio in z.
     pub(super) fn mills(&self, v: f64) -> f64 {
         let x = self.powers(v);
         let first = match self.kind {
@@ -116,7 +116,7 @@ impl Ending {
         self.reach * v * beyond / self.sum(x)
     }
 
-    /// `log` of the mass beyond, up to the constant of [`log_density`](Self::log_density), and its derivative by `log v`.
+    /// Logarithm of the mass beyond, up to the constant of [`log_density`](Self::log_density), and its derivative by `log v`.
     pub(super) fn log_mass(&self, log_v: f64) -> (f64, f64) {
         let v = libm::exp(log_v);
         let mills = self.mills(v);
@@ -124,8 +124,8 @@ impl Ending {
         (self.log_density(v) + libm::log(mills), if matches!(self.kind, Kind::Finite { .. }) { slope } else { -slope })
     }
 
-    /// The mass between `v` and `to`, both at a finite end and the latter farther inside: each term without cancellation,
-    /// so that next to nothing of the mass beyond is as exact. With the constant of [`log_density`](Self::log_density).
+    /// Mass between `v` and `to`, both at a finite end, with `to` farther inside. Each term is computed without cancellation, so that a
+    /// small difference keeps its digits. Includes the constant of [`log_density`](Self::log_density).
     pub(super) fn inner(&self, v: f64, to: f64) -> f64 {
         let Kind::Finite { alpha } = self.kind else { return f64::NAN };
         let log = libm::log(v / to);
@@ -136,7 +136,7 @@ impl Ending {
         self.reach * self.series.iter().enumerate().map(term).sum::<f64>()
     }
 
-    /// Distance from the origin at `v`.
+    /// Distance from the origin at the relative distance `v`.
     pub(super) fn length(&self, v: f64) -> f64 {
         self.reach * v
     }
@@ -146,7 +146,8 @@ impl Ending {
     }
 }
 
-/// `d_0 = 1`, and `d_n` from the two before it, until it adds nothing.
+/// Coefficients of a series: `d_0 = 1`, and `d_n` from the two before it, until the terms are negligible. Returns None if they do not
+/// become negligible.
 fn series(next: impl Fn(f64, f64, f64) -> f64) -> Option<Vec<f64>> {
     let mut series = vec![1.0];
     let (mut before, mut last) = (0.0, 1.0f64);

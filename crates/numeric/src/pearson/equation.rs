@@ -2,15 +2,15 @@
 
 use super::shape::{Roots, Shape};
 
-/// Terms of a series before its panel is halved instead.
+/// Greatest number of terms of a series. A panel that needs more is shortened instead.
 const TERMS: usize = 48;
-/// The bound that a term must fall below, twice in a row, for the series to end.
+/// Bound for the size of a term: the series ends after two terms in a row below it.
 const SMALL: f64 = 1e-18;
-/// Half a panel by the distance of its middle to the next root: terms fall at least as this does.
+/// Half the length of a panel, relative to the distance of its middle to the next root. Successive terms shrink at least by this ratio.
 const REACH: f64 = 0.28;
-/// By how much log p may change over half a panel.
+/// Greatest change of log p over half a panel.
 const DROP: f64 = 2.0;
-/// And by how much its slope may, in the same unit.
+/// Greatest change of the slope of log p over half a panel, as the square root of `half^2 d / C`.
 const BEND: f64 = 0.8;
 
 /// `C(z) p' = -(c1 + d z) p` with `C(z) = 1 + c1 z + c2 z^2`.
@@ -22,8 +22,8 @@ pub(super) struct Equation {
     roots: Roots,
 }
 
-/// A piece of the axis with the solution on it: `p(z) / p(middle) = sum_k a_k u^k`, `z = middle + half u`. `half` is negative
-/// where the piece leads to the left: u grows outwards.
+/// Piece of the axis with the solution on it: `p(z) / p(middle) = sum_k a_k u^k`, `z = middle + half u`. `half` is negative if the piece
+/// leads to the left, so that u grows outwards.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Panel {
     pub(super) middle: f64,
@@ -37,7 +37,7 @@ impl Equation {
         Self { c1: shape.c1, c2: shape.c2, d: shape.d, roots: shape.roots }
     }
 
-    /// C, by the distances to its roots: no cancellation near an end of the support.
+    /// C as a product over its roots: no cancellation near an end of the support.
     pub(super) fn c(&self, z: f64) -> f64 {
         let factor = |root: f64| if root.is_finite() { (root - z) / root } else { 1.0 };
         match self.roots {
@@ -51,17 +51,16 @@ impl Equation {
         }
     }
 
-    /// Its derivative.
+    /// Derivative of `C` with respect to `z`.
     pub(super) fn c_by(&self, z: f64) -> f64 {
         self.c1 + 2.0 * self.c2 * z
     }
 
-    /// The coefficient of the square.
     pub(super) fn c2(&self) -> f64 {
         self.c2
     }
 
-    /// Distance to the next root.
+    /// Distance from `z` to the nearest root of `C`.
     fn distance(&self, z: f64) -> f64 {
         match self.roots {
             Roots::None => f64::INFINITY,
@@ -71,25 +70,24 @@ impl Equation {
         }
     }
 
-    /// `p'/p`, as a size.
+    /// Absolute value of `p'/p`.
     fn slope(&self, z: f64) -> f64 {
         ((self.c1 + self.d * z) / self.c(z)).abs()
     }
 
-    /// How far a panel that begins at `z` can lead, by the next root.
+    /// Length of a panel that begins at `z`, as far as the next root limits it.
     pub(super) fn reach(&self, z: f64) -> f64 {
         2.0 * REACH * self.distance(z) / (1.0 + REACH)
     }
 
-    /// The derivatives of `p'/p` by two parameters by which `c1` and `c2` have these.
+    /// Derivatives of `p'/p` by two parameters, given the derivatives of `c1` and `c2` by these.
     pub(super) fn slopes_by(&self, z: f64, by: [[f64; 2]; 2]) -> [f64; 2] {
         let inverse = 1.0 / self.c(z);
         let own = (self.c1 + self.d * z) * z * inverse;
         by.map(|[c1, c2]| (own * (c1 + c2 * z) - (c1 + 3.0 * c2 * z)) * inverse)
     }
 
-    /// The panel that begins at `z` and leads outwards in the direction of `sign`. None where doubles are too coarse for
-    /// one.
+    /// Panel that begins at `z` and leads outwards in the direction of `sign`. Returns None if doubles are too coarse for one.
     pub(super) fn panel(&self, z: f64, sign: f64) -> Option<Panel> {
         let mut half = REACH * self.distance(z) / (1.0 + REACH);
         half = half.min(DROP / self.slope(z)).min(BEND * (self.c(z) / self.d.abs()).sqrt());
@@ -128,10 +126,10 @@ impl Equation {
         None
     }
 
-    /// `log p(to) - log p(from)` where p falls all the way; as many digits as the sum has.
+    /// `log p(to) - log p(from)` where p falls monotonically, as accurate as the sum.
     ///
-    /// `p'/p = -C'/C - (1 + c2) z/C`: the first part in closed form, the second by Gauss-Legendre on intervals no longer
-    /// than the way to the next root.
+    /// `p'/p = -C'/C - (1 + c2) z/C`: the first part in closed form, the second by Gauss-Legendre on intervals of at most 0.6 of the
+    /// distance to the next root.
     pub(super) fn fall(&self, from: f64, to: f64) -> f64 {
         let mut at = from;
         let mut integral = 0.0;
@@ -152,7 +150,7 @@ impl Equation {
 }
 
 impl Panel {
-    /// `p(z) / p(middle)`.
+    /// Density relative to that in the middle, `p(z) / p(middle)`.
     pub(super) fn density(&self, u: f64) -> f64 {
         self.series[..self.terms].iter().rev().fold(0.0, |sum, a| sum * u + a)
     }
@@ -167,18 +165,17 @@ impl Panel {
         self.middle + self.half * u
     }
 
-    /// The inverse of [`position`](Self::position).
+    /// Inverse of [`position`](Self::position).
     pub(super) fn coordinate(&self, z: f64) -> f64 {
         (z - self.middle) / self.half
     }
 
-    /// The outer end.
     pub(super) fn end(&self) -> f64 {
         self.position(1.0)
     }
 }
 
-/// 1, 1/2, 1/3 and so on.
+/// Reciprocals 1, 1/2, 1/3 and so on, which spare divisions.
 const RECIPROCALS: [f64; TERMS] = {
     let mut reciprocals = [0.0; TERMS];
     let mut k = 0;

@@ -1,17 +1,17 @@
-//! Moments that no distribution of the system has.
+//! Errors for moments that no distribution of the Pearson system has.
 
-/// The law with two values that has the least kurtosis of all laws with its skewness: mean 0, variance 1.
+/// Distribution with two values: the least kurtosis of all distributions with its skewness. Mean 0, variance 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct TwoPoint {
-    /// The two values, in sigmas from the mean.
+    /// Two values, in sigmas from the mean.
     pub values: [f64; 2],
-    /// Their probabilities.
+    /// Probabilities of the two values.
     pub probabilities: [f64; 2],
 }
 
 impl TwoPoint {
-    /// Values `(s ± sqrt(s^2 + 4)) / 2`: their product is -1, and the mean fixes the probabilities.
+    /// Distribution with the values `(s ± sqrt(s^2 + 4)) / 2`: their product is -1, and the mean fixes the probabilities.
     ///
     /// ```
     /// use crate::pearson::TwoPoint;
@@ -29,7 +29,7 @@ impl TwoPoint {
     }
 }
 
-/// Moments to which no member of the Pearson system belongs.
+/// Error for moments that no member of the Pearson system has.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PearsonError {
@@ -39,29 +39,29 @@ pub enum PearsonError {
     /// Sigma is 0 or negative.
     #[error("sigma must be above 0, not {sigma}")]
     Sigma {
-        /// As given.
+        /// Standard deviation as given.
         sigma: f64,
     },
-    /// No distribution at all has this pair: kurtosis is above 1 + skewness squared for all but the laws with two values.
+    /// No distribution at all has this pair: the kurtosis must exceed 1 + skewness squared, which two-point distributions attain.
     #[error(
         "{}: it must be above 1 + skewness^2 = {bound}, which is attained only by two values, {:.4} and {:.4} sigma off \
          the mean with probabilities {:.4} and {:.4}",
         below(*skewness, *kurtosis, *bound), law.values[0], law.values[1], law.probabilities[0], law.probabilities[1]
     )]
     Infeasible {
-        /// As given.
+        /// Third standardised moment as given.
         skewness: f64,
-        /// As given.
+        /// Fourth standardised moment as given.
         kurtosis: f64,
-        /// The bound that the kurtosis must exceed.
+        /// Bound that the kurtosis must exceed.
         bound: f64,
-        /// The law at the bound.
+        /// Two-point distribution that attains the bound.
         law: TwoPoint,
     },
-    /// Possible, but beyond what doubles can compute.
+    /// The moments are possible, but too large for double precision.
     #[error("kurtosis {kurtosis:e} is beyond 1e100")]
     TooLarge {
-        /// As given.
+        /// Fourth standardised moment as given.
         kurtosis: f64,
     },
 }
@@ -73,7 +73,7 @@ impl PearsonError {
     }
 }
 
-/// How far a kurtosis is below the bound.
+/// Text on the distance of a kurtosis below the bound.
 fn below(skewness: f64, kurtosis: f64, bound: f64) -> String {
     match bound - kurtosis {
         0.0 => format!("with skewness {skewness} the kurtosis {kurtosis} is the least that there is"),

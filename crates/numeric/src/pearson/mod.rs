@@ -1,22 +1,28 @@
-//! The Pearson system: one distribution for every skewness and kurtosis that a distribution can have.
+//! Pearson system: one distribution for every feasible pair of skewness and kurtosis.
 //!
-//! With mean 0, variance 1, skewness `s` and kurtosis `b2` the density `p` solves
+//! A density `p` with mean 0, variance 1, skewness `s` and kurtosis `b2` solves
 //!
 //! ```text
 //! (C0 + C1 z + C2 z^2) p' = -(C1 + D z) p
 //! C0 = 4 b2 - 3 s^2,  C1 = s (b2 + 3),  C2 = 2 (b2 - 3) - 3 s^2,  D = 10 b2 - 12 s^2 - 18
 //! ```
 //!
-//! (Pearson 1895; homogeneous as in Stuart and Ord, Kendall's Advanced Theory of Statistics I, 6.2, so that no coefficient
-//! is infinite anywhere in the plane). The classical types I to VII are what the signs make of it, with special functions that lose
-//! every digit where two types meet; a characteristic of a real assembly, nearly normal, lies just there. So this is
-//! **one** engine for all types: Taylor's series of p from panel to panel outwards, a series at a finite end of the support, one
-//! at infinity, and Laplace's continued fraction beyond the last panel. Densities are kept as logarithms and masses by Mills' ratio
-//! (what lies beyond, by the density), so that nothing underflows, both tails have all their digits, and no normalising constant is needed. The type is a label.
+//! (Pearson 1895). The equation is homogeneous as in Stuart and Ord, Kendall's Advanced Theory of Statistics I, 6.2, so that no coefficient
+//! is infinite anywhere in the plane. The signs of the coefficients give the classical types I to VII. Their special functions lose every
+//! digit where two types meet, and a characteristic of a real assembly, nearly normal, lies just there. Therefore **one** engine computes
+//! all types:
 //!
-//! Accuracy, measured against 25 digits: 1e-13 relative for density and both probabilities down to 1e-300, quantiles 1e-13 of
-//! max(1, |q|) sigmas. Next to a finite end of the support, less than 1e-3 sigma away, the digits of the distance to the
-//! end are those that are left in it. No model is evaluated; the cost is in `benches/README.md`.
+//! - Taylor's series of p from panel to panel outwards,
+//! - a series at a finite end of the support,
+//! - a series at infinity,
+//! - Laplace's continued fraction beyond the last panel.
+//!
+//! Densities are stored as logarithms, and masses as Mills' ratio (the mass beyond a place, divided by the density there). Thus nothing
+//! underflows, both tails have all their digits, and no normalising constant is needed. The type is a label only.
+//!
+//! Accuracy, measured against 25 digits: 1e-13 relative for the density and for both probabilities down to 1e-300. Quantiles: 1e-13 of
+//! max(1, |q|) sigmas. Closer than 1e-3 sigma to a finite end of the support, results are as accurate as the distance to the end, which has
+//! lost digits. No model is evaluated. The cost is in `benches/README.md`.
 
 mod ending;
 mod equation;
@@ -35,7 +41,7 @@ use rand::RngExt;
 use crate::power::rescale;
 use standard::Standard;
 
-/// A member of the Pearson system.
+/// Member of the Pearson system.
 ///
 /// ```
 /// use crate::pearson::{Pearson, PearsonType};
@@ -58,7 +64,7 @@ pub struct Pearson {
 
 rescale!(Pearson { mean, sigma } without { skewness, kurtosis, standard });
 
-/// Laws with the same moments are the same.
+/// Two distributions are equal if their moments are.
 impl PartialEq for Pearson {
     fn eq(&self, other: &Self) -> bool {
         let moments = |law: &Self| (law.mean, law.sigma, law.skewness, law.kurtosis);
@@ -67,26 +73,26 @@ impl PartialEq for Pearson {
 }
 
 impl Pearson {
-    /// With this mean, sigma above 0, skewness, and kurtosis (3 for a normal).
+    /// Distribution with this mean, sigma above 0, skewness, and kurtosis (3 for a normal).
     ///
     /// # Errors
-    /// When a moment is not finite, sigma not positive, or the kurtosis not above `1 + skewness^2`.
+    /// If a moment is not finite, sigma is not positive, or the kurtosis is not above `1 + skewness^2`.
     pub fn new(mean: f64, sigma: f64, skewness: f64, kurtosis: f64) -> Result<Self, PearsonError> {
         Self::build(mean, sigma, skewness, [kurtosis, 0.0])
     }
 
-    /// With these moments, of which the kurtosis is given by its excess over 3: that keeps all its digits.
+    /// Distribution with these moments. The excess over 3 replaces the kurtosis, which keeps all digits of the excess.
     ///
     /// # Errors
-    /// As [`new`](Self::new).
+    /// Same conditions as in [`new`](Self::new).
     pub fn with_excess(mean: f64, sigma: f64, skewness: f64, excess: f64) -> Result<Self, PearsonError> {
         Self::build(mean, sigma, skewness, [3.0, excess])
     }
 
-    /// The normal distribution.
+    /// Normal distribution.
     ///
     /// # Errors
-    /// When mean or sigma are not finite, or sigma is not positive.
+    /// If mean or sigma are not finite, or sigma is not positive.
     pub fn normal(mean: f64, sigma: f64) -> Result<Self, PearsonError> {
         Self::new(mean, sigma, 0.0, 3.0)
     }
@@ -105,12 +111,12 @@ impl Pearson {
         Ok(Self { mean, sigma, skewness, kurtosis, standard })
     }
 
-    /// Its type.
+    /// Type of the distribution in the Pearson system.
     pub fn kind(&self) -> PearsonType {
         self.standard.kind
     }
 
-    /// First moment.
+    /// Expected value.
     pub fn mean(&self) -> f64 {
         self.mean
     }
@@ -130,7 +136,7 @@ impl Pearson {
         self.kurtosis[0] + self.kurtosis[1]
     }
 
-    /// How far the kurtosis is above the least that any law with this skewness has, relative to that.
+    /// Excess of the kurtosis over the least possible one with this skewness, `1 + skewness^2`, relative to the latter.
     pub fn margin(&self) -> f64 {
         self.kurtosis() / (1.0 + self.skewness * self.skewness) - 1.0
     }
@@ -139,14 +145,14 @@ impl Pearson {
         self.skewness < 0.0
     }
 
-    /// Lower and upper end, infinite where there is none.
+    /// Lower and upper end of the support, infinite if there is none.
     pub fn support(&self) -> [f64; 2] {
         let [lower, upper] = self.standard.support;
         let ends = if self.mirrored() { [-upper, -lower] } else { [lower, upper] };
         ends.map(|end| self.mean + self.sigma * end)
     }
 
-    /// In sigmas from the mean, on the side where the skewness is positive.
+    /// Distance from the mean in sigmas, mirrored if the skewness is negative.
     fn z(&self, x: f64) -> f64 {
         let z = (x - self.mean) / self.sigma;
         if self.mirrored() { -z } else { z }
@@ -170,18 +176,18 @@ impl Pearson {
         if x.is_nan() { f64::NAN } else { self.standard.log_pdf(self.z(x)) - libm::log(self.sigma) }
     }
 
-    /// Probability below x: the cumulative distribution function.
+    /// Cumulative distribution function: probability below x.
     pub fn cdf(&self, x: f64) -> f64 {
         if x.is_nan() { f64::NAN } else { self.turned(self.standard.cdf_sf(self.z(x)))[0] }
     }
 
-    /// Probability above x: the survival function, with all its digits where the one below is 1.
+    /// Survival function: probability above x, accurate even where the probability below rounds to 1.
     pub fn sf(&self, x: f64) -> f64 {
         if x.is_nan() { f64::NAN } else { self.turned(self.standard.cdf_sf(self.z(x)))[1] }
     }
 
-    /// Derivatives of the probabilities below `lower` and above `upper`, together, by the skewness and by the kurtosis at this mean and sigma; None
-    /// where the density ends so abruptly that there are none.
+    /// Derivatives by skewness and kurtosis, at this mean and sigma, of the probability below `lower` plus that above `upper`. Returns None
+    /// if the density ends so abruptly that there are none.
     pub fn outside_by_shape(&self, lower: Option<f64>, upper: Option<f64>) -> Option<[f64; 2]> {
         let shape = [self.skewness.abs(), self.kurtosis[0] - 3.0 + self.kurtosis[1]];
         let [lower, upper] = [lower, upper].map(|x| x.map(|x| self.z(x)));
@@ -190,22 +196,22 @@ impl Pearson {
         Some([if self.mirrored() { -by_skewness } else { by_skewness }, by_kurtosis])
     }
 
-    /// Logarithm of the probability below x; it goes on where that vanishes.
+    /// Logarithm of the probability below x, finite also where the probability underflows to 0.
     pub fn log_cdf(&self, x: f64) -> f64 {
         if x.is_nan() { f64::NAN } else { self.turned(self.standard.log_cdf_sf(self.z(x)))[0] }
     }
 
-    /// Logarithm of the probability above x; it goes on where that vanishes.
+    /// Logarithm of the probability above x, finite also where the probability underflows to 0.
     pub fn log_sf(&self, x: f64) -> f64 {
         if x.is_nan() { f64::NAN } else { self.turned(self.standard.log_cdf_sf(self.z(x)))[1] }
     }
 
-    /// Below which the probability is p; NaN where p is not a probability.
+    /// Value below which the probability is p. Returns NaN if p is not a probability.
     pub fn quantile(&self, p: f64) -> f64 {
         self.inverse([p, 1.0 - p])
     }
 
-    /// Above which the probability is p: for a small p with all the digits that `quantile(1 - p)` has lost.
+    /// Value above which the probability is p. A small p keeps the digits that `quantile(1 - p)` loses.
     pub fn upper_quantile(&self, p: f64) -> f64 {
         self.inverse([1.0 - p, p])
     }
@@ -218,10 +224,10 @@ impl Pearson {
     }
 }
 
-/// Random variates by the quantile function: the law itself, tails included, not a table of it.
+/// Random variates by the quantile function: exact, tails included, without a table.
 impl rand_distr::Distribution<f64> for Pearson {
     fn sample<R: rand::Rng + ?Sized>(&self, rng: &mut R) -> f64 {
-        // Half of the probability from either end, so that both tails are as fine.
+        // Draw either half from its own end, so that both tails have the same resolution.
         let (p, upper): (f64, bool) = (rng.sample(rand_distr::Open01), rng.random());
         if upper { self.upper_quantile(0.5 * p) } else { self.quantile(0.5 * p) }
     }

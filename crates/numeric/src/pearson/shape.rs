@@ -1,33 +1,33 @@
-//! The coefficients of Pearson's equation from skewness and kurtosis, and what their signs say.
+//! Coefficients of Pearson's equation from skewness and kurtosis, and the type that follows from their signs.
 
 use std::fmt;
 
 use super::PearsonError;
 use crate::elementary::Double;
 
-/// The members of the Pearson system, as people know them. A label: nothing is computed by it.
+/// Classical types of the Pearson system. A label: no computation uses it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum PearsonType {
-    /// Skewness 0, kurtosis 3.
+    /// Normal distribution: skewness 0, kurtosis 3.
     Normal,
-    /// Beta, on a bounded interval.
+    /// Beta distribution, on a bounded interval.
     I,
-    /// Symmetric beta.
+    /// Symmetric beta distribution, on a bounded interval.
     II,
-    /// Gamma: on the line between types I and VI.
+    /// Gamma distribution: on the line between types I and VI.
     III,
-    /// On the whole line, skewed.
+    /// Skewed distribution on the whole line.
     IV,
-    /// Inverse gamma: on the line between types IV and VI.
+    /// Inverse gamma distribution: on the line between types IV and VI.
     V,
-    /// Beta prime, on a half line.
+    /// Beta prime distribution, on a half line.
     VI,
-    /// Student's t.
+    /// Student's t distribution, scaled to variance 1.
     VII,
 }
 
 impl PearsonType {
-    /// As in the literature: `normal`, `I` to `VII`.
+    /// Name in the literature: `normal`, `I` to `VII`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Normal => "normal",
@@ -48,68 +48,57 @@ impl fmt::Display for PearsonType {
     }
 }
 
-/// Below this a skewness, or the coefficient of the square, changes no digit of any result.
+/// Bound for the skewness and the quadratic coefficient. Smaller values are treated as 0, since they change no digit of any result.
 const NOTHING: f64 = 1e-100;
-/// Above this kurtosis the square of a coefficient leaves the range of a double.
+/// Greatest kurtosis. Above it the square of a coefficient overflows.
 const LARGEST: f64 = 1e100;
 
-/// Pearson's equation `(1 + c1 z + c2 z^2) p' = -(c1 + d z) p` of a law with mean 0, variance 1 and this skewness, which is
-/// not negative; `d = 1 + 3 c2`.
+/// Pearson's equation `(1 + c1 z + c2 z^2) p' = -(c1 + d z) p` for mean 0, variance 1 and a skewness that is not negative. `d = 1 + 3 c2`.
 ///
-/// Every coefficient is computed in twice the precision of a double and rounded once: what tells the types apart are
-/// small differences of large terms.
+/// Every coefficient is computed in twice the precision of a double and rounded once, since small differences of large terms separate the
+/// types.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Shape {
     pub(super) kind: PearsonType,
-    /// Coefficient of z.
     pub(super) c1: f64,
-    /// Coefficient of z squared.
     pub(super) c2: f64,
     /// Slope of the right-hand side.
     pub(super) d: f64,
     pub(super) roots: Roots,
 }
 
-/// Where `1 + c1 z + c2 z^2` is 0.
+/// Roots of `1 + c1 z + c2 z^2`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Roots {
-    /// Nowhere: the normal.
+    /// No root: the normal distribution.
     None,
-    /// At two places: the support begins at `near`, and ends at `far` where that is positive.
+    /// Two real roots. The support begins at `near`, and ends at `far` if that is positive.
     Real {
-        /// The negative root next to 0.
+        /// Negative root next to 0.
         near: f64,
-        /// The other one, an infinity where there is none.
+        /// Other root, infinite if there is none.
         far: f64,
-        /// How the density ends at the two.
+        /// Form of the density at `near` and `far`.
         ends: [End; 2],
     },
-    /// Twice at one place, where the support begins.
-    Double {
-        /// The place.
-        at: f64,
-    },
-    /// At `centre ± i width`.
-    Complex {
-        /// Real part.
-        centre: f64,
-        /// Imaginary part.
-        width: f64,
-    },
+    /// Double root, at which the support begins.
+    Double { at: f64 },
+    /// Complex roots `centre ± i width`.
+    Complex { centre: f64, width: f64 },
 }
 
-/// An end of the support as the density sees it: `p ~ x^(alpha - 1) (1 - k x)^(b - 1)` at distance `x`.
+/// Form of the density at an end of the support: `p ~ x^(alpha - 1) (1 - k x)^(b - 1)` at distance `x`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct End {
-    /// Exponent, above 0; large where the density is flat there.
+    /// Exponent, above 0. It is large if the density is flat there.
     pub(super) alpha: f64,
-    /// One over the distance to the other root, negative when that lies outside.
+    /// One over the distance to the other root, negative if that lies outside.
     pub(super) k: f64,
-    /// `b k`, which stays finite where the other root goes to infinity and `b` with it.
+    /// Product `b k`, which stays finite if the other root and with it `b` go to infinity.
     pub(super) bk: f64,
 }
 
-/// How a Pearson law falls off towards infinity: `p ~ w^-(r+2) sum_i d_i w^-i` with `w = z - centre`.
+/// Decay of a Pearson distribution towards infinity: `p ~ w^-(r+2) sum_i d_i w^-i` with `w = z - centre`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Infinity {
     pub(super) centre: f64,
@@ -119,14 +108,14 @@ pub(super) struct Infinity {
 }
 
 impl Shape {
-    /// `kurtosis` is the sum of its two numbers, so that an excess keeps its digits.
+    /// Shape from skewness and kurtosis. `kurtosis` is the sum of its two numbers, so that an excess keeps its digits.
     pub(super) fn new(skewness: f64, kurtosis: [f64; 2]) -> Result<Self, PearsonError> {
         if !skewness.is_finite() || !kurtosis.iter().all(|part| part.is_finite()) {
             return Err(PearsonError::NotFinite);
         }
         let s = if skewness < NOTHING { 0.0 } else { skewness };
         let rounded = kurtosis[0] + kurtosis[1];
-        // Far outside: the square of the skewness would overflow.
+        // Reject early: the square of the skewness would overflow.
         if s >= rounded.max(1.0) {
             return Err(PearsonError::infeasible(skewness, rounded));
         }
@@ -156,7 +145,7 @@ impl Shape {
         })
     }
 
-    /// The derivatives of `c1` and `c2` by the skewness, and by the excess.
+    /// Derivatives of `c1` and `c2`, by skewness and by excess.
     pub(super) fn growth(skewness: f64, excess: f64) -> [[f64; 2]; 2] {
         let square = skewness * skewness;
         let c0 = 12.0 + 4.0 * excess - 3.0 * square;
@@ -168,7 +157,7 @@ impl Shape {
         [quotient(by, 6.0 + excess, by), quotient(4.0, skewness, 2.0)]
     }
 
-    /// The tail towards infinity, where the law has one that falls off as a power.
+    /// Tail towards infinity. Returns None if the distribution has no tail that decays as a power.
     pub(super) fn infinity(&self) -> Option<Infinity> {
         if self.c2 <= 0.0 {
             return None;
@@ -201,7 +190,7 @@ fn kind(s: f64, second: f64, discriminant: f64) -> PearsonType {
     }
 }
 
-/// All forms stay finite and exact where the second coefficient goes through 0 and the far root through infinity.
+/// Roots in forms that stay finite and exact if the quadratic coefficient goes through 0 and the far root through infinity.
 fn roots(s: f64, gap: f64, c0: f64, first: f64, second: f64, discriminant: f64) -> Roots {
     if s == 0.0 && second == 0.0 {
         return Roots::None;
@@ -214,13 +203,13 @@ fn roots(s: f64, gap: f64, c0: f64, first: f64, second: f64, discriminant: f64) 
     }
     let root = discriminant.sqrt();
     if s == 0.0 {
-        // Both ends alike, to the last bit.
+        // Both ends are equal to the last bit.
         let (far, end) = (2.0 * c0 / root, End { alpha: -3.0 * gap / second, k: -second / root, bk: 3.0 * gap / root });
         return Roots::Real { near: -far, far, ends: [end, end] };
     }
     let q = -0.5 * (first + root);
     let near = c0 / q;
-    // Infinite where the second coefficient is 0, and then on the right.
+    // Infinite if the quadratic coefficient is 0, and then on the right.
     let far = if second == 0.0 { f64::INFINITY } else { q / second };
     let delta = s * (3.0 * gap - second) / root;
     let alpha = 12.0 * gap * (6.0 * gap - second) / (discriminant * (1.0 + delta));

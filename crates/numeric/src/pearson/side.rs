@@ -1,21 +1,22 @@
-//! One side of a Pearson law, from an anchor outwards: density and mass beyond, and the inverse of the latter.
+//! One side of a Pearson distribution, from an anchor outwards: density, mass beyond, and the inverse of the latter.
 
 use super::ending::Ending;
 use super::equation::{Equation, Panel};
 
-/// Tables end where log p has fallen by this: what lies beyond is computed when it is asked for.
+/// Fall of log p at which the tables end. Values beyond are computed on demand.
 const CORE: f64 = -45.0;
-/// A factor to p from which on the rest adds no digit.
+/// Relative density below which the rest adds no digit to the mass.
 const REST: f64 = 1e-19;
-/// Panels that a side may take; the longest seen has a sixth of them.
+/// Greatest number of panels of a side. The longest side seen has a sixth of it.
 const PANELS: usize = 600;
-/// The logarithms between which the distance from an end can lie, relative to where its series begins.
+/// Least logarithm of the distance from an end, relative to the reach of its series.
 const LEAST: f64 = -800.0;
+/// Greatest logarithm of the distance from an end, relative to the reach of its series.
 const LARGEST: f64 = 700.0;
-/// Steps of an iteration, which takes three to six when all is well.
+/// Greatest number of steps of an iteration. Three to six are usual.
 const STEPS: usize = 200;
 
-/// All densities are relative to that at the anchor.
+/// Side of a Pearson distribution. All densities are relative to that at the anchor.
 #[derive(Debug, Clone)]
 pub(super) struct Side {
     /// 1 to the right, -1 to the left.
@@ -24,14 +25,14 @@ pub(super) struct Side {
     pieces: Vec<Piece>,
     ending: Option<Ending>,
     anchor: f64,
-    /// Where the tables end, with log p there.
+    /// Place at which the tables end, and log p there.
     edge: f64,
     edge_log: f64,
-    /// `log p` minus that of the ending; None where the tables end before the ending begins.
+    /// `log p` minus that of the ending. None if the tables end before the ending begins.
     ending_log: Option<f64>,
-    /// Where the support ends.
+    /// End of the support, infinite if there is none.
     limit: f64,
-    /// log of the mass beyond the tables' end.
+    /// Logarithm of the mass beyond the end of the tables.
     edge_log_mass: f64,
     /// Mills' ratio at the anchor: the mass of the whole side.
     pub(super) mass: f64,
@@ -40,18 +41,18 @@ pub(super) struct Side {
 #[derive(Debug, Clone)]
 struct Piece {
     panel: Panel,
-    /// Distance of its inner end from the anchor.
+    /// Distance of the inner end of the panel from the anchor.
     from: f64,
-    /// log p at its middle.
+    /// Value of log p in the middle of the panel.
     log: f64,
-    /// `p / p(middle)` times Mills' ratio at its outer end, plus the mass from the middle to there: what lies beyond the
-    /// middle.
+    /// Mass beyond the middle, relative to the density there: the mass from the middle to the outer end, plus the density at that end times
+    /// Mills' ratio.
     beyond: f64,
-    /// log of the mass beyond its inner end.
+    /// Logarithm of the mass beyond the inner end of the panel.
     log_mass: f64,
 }
 
-/// A place on a side: density, and the mass beyond by the density.
+/// Place on a side: its density, and the mass beyond divided by that density.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
     pub(super) log_density: f64,
@@ -119,59 +120,60 @@ impl Side {
         Place { log_density, mills: mills(&self.equation, self.ending.as_ref(), self.sign, z) }
     }
 
-    /// How much faster p falls outwards with two parameters, by the distance from the anchor and the growth of Pearson's coefficients.
+    /// Derivative of `p'/p` outwards by skewness and excess, at a distance from the anchor. `growth` holds the derivatives of Pearson's
+    /// coefficients.
     pub(super) fn rate(&self, distance: f64, growth: [[f64; 2]; 2]) -> [f64; 2] {
         let z = self.anchor + self.sign * distance;
         self.equation.slopes_by(z, growth).map(|slope| self.sign * slope)
     }
 
-    /// The panels of the tables, by the distances of their ends from the anchor.
+    /// Panels of the tables, as distances of their ends from the anchor.
     pub(super) fn panels(&self) -> impl ExactSizeIterator<Item = [f64; 2]> {
         self.pieces.iter().map(|piece| [piece.from, self.sign * (piece.panel.end() - self.anchor)])
     }
 
-    /// Whether what lies beyond the tables is nothing.
+    /// True if the mass beyond the tables is negligible.
     pub(super) fn ends_with_tables(&self) -> bool {
         self.edge_log <= CORE
     }
 
-    /// Whether so little is left to the end of the support that its distance has lost digits.
+    /// True if the remaining distance to the end of the support is so small that it has lost digits.
     pub(super) fn is_at_its_end(&self, distance: f64) -> bool {
         let whole = (self.limit - self.anchor).abs();
         whole.is_finite() && whole - distance <= 1e-10 * whole
     }
 
-    /// How far a series reaches at a distance from the anchor.
+    /// Length over which a series converges, from a place at a distance from the anchor.
     pub(super) fn reach(&self, distance: f64) -> f64 {
         self.equation.reach(self.anchor + self.sign * distance)
     }
 
-    /// The mass beyond a distance from the anchor, which lies in that panel of the tables.
+    /// Mass beyond a distance from the anchor, within the panel `index` of the tables.
     pub(super) fn mass_in_panel(&self, index: usize, distance: f64) -> f64 {
         let piece = &self.pieces[index];
         let u = piece.panel.coordinate(self.anchor + self.sign * distance);
         libm::exp(piece.log) * (piece.beyond - piece.panel.mass(u))
     }
 
-    /// The mass beyond a distance from the anchor.
+    /// Mass beyond a distance from the anchor.
     pub(super) fn mass_beyond(&self, distance: f64) -> f64 {
         libm::exp(self.at(self.anchor + self.sign * distance).log_mass())
     }
 
-    /// The ending, where the tables reach it, with its constant.
+    /// Ending and its constant. Returns None if the tables do not reach the ending.
     fn tabled_ending(&self) -> Option<(&Ending, f64)> {
         self.ending.as_ref().zip(self.ending_log)
     }
 
-    /// The mass between the anchor and `z`, where it has digits that the difference of the masses beyond has not: next to
-    /// an end of the support with nearly all of the mass.
+    /// Mass between the anchor and `z`, next to an end of the support that holds nearly all of the mass. There, the difference of the
+    /// masses beyond has lost its digits. Returns None elsewhere.
     pub(super) fn inner(&self, z: f64) -> Option<f64> {
         let (ending, log) = self.tabled_ending().filter(|(ending, _)| ending.is_finite() && ending.covers(z))?;
         let own = libm::exp(log) * ending.inner(ending.relative(z).max(0.0), ending.relative(self.edge));
         Some(own + (self.mass - libm::exp(self.edge_log_mass)).max(0.0))
     }
 
-    /// Where the mass beyond has this logarithm.
+    /// Place with this logarithm of the mass beyond.
     pub(super) fn with_mass_beyond(&self, log_mass: f64) -> f64 {
         if log_mass == f64::NEG_INFINITY {
             return self.limit;
@@ -191,8 +193,8 @@ impl Side {
         }
     }
 
-    /// Where the mass between the anchor and there is `mass`, next to an end of the support with nearly all of it; None
-    /// where this is nowhere there.
+    /// Place with the mass `mass` between it and the anchor, next to an end of the support that holds nearly all of the mass. Returns None
+    /// if there is no such place.
     pub(super) fn with_inner_mass(&self, mass: f64) -> Option<f64> {
         let (ending, log) = self.tabled_ending().filter(|(ending, _)| ending.is_finite())?;
         let own = mass - (self.mass - libm::exp(self.edge_log_mass)).max(0.0);
@@ -205,15 +207,15 @@ impl Side {
             let slope = libm::exp(log + ending.log_density(v)) * ending.length(v);
             (own - libm::exp(log) * ending.inner(v, edge), slope)
         };
-        // The place by the mass beyond is a good start, if only that.
+        // The place from the mass beyond is a good start, though not accurate enough as a result.
         let start = libm::log(ending.relative(self.with_mass_beyond(libm::log((self.mass - mass).max(0.0)))));
         Some(self.in_ending(ending, start, off))
     }
 
-    /// Newton's method in log v, in which every mass of an ending is nearly a straight line, from `start` on; safeguarded.
+    /// Safeguarded Newton iteration in log v, from `start` on: the mass of an ending is nearly a straight line there.
     fn in_ending(&self, ending: &Ending, start: f64, off: impl Fn(f64) -> (f64, f64)) -> f64 {
         let edge = libm::log(ending.relative(self.edge));
-        // Below, there is no double left between the end and the place.
+        // Below `LEAST` no double lies between the end and the place.
         let [mut low, mut high] = if ending.is_finite() { [LEAST, edge] } else { [edge, LARGEST] };
         let mut log_v = start.clamp(low, high);
         for _ in 0..STEPS {
@@ -234,7 +236,7 @@ impl Side {
         if log_v <= LEAST + 1.0 { self.limit } else { ending.position(libm::exp(log_v)) }
     }
 
-    /// Newton's method on the logarithm of the mass, within the panel where it lies.
+    /// Newton's method on the logarithm of the mass, within the panel that holds the place.
     fn within_tables(&self, log_mass: f64) -> f64 {
         let index = self.pieces.partition_point(|piece| piece.log_mass >= log_mass).max(1) - 1;
         let piece = &self.pieces[index];
@@ -261,7 +263,7 @@ impl Side {
         piece.panel.position(u)
     }
 
-    /// Newton's method on the logarithm of the mass, safeguarded, where nothing is tabled.
+    /// Safeguarded Newton iteration on the logarithm of the mass, beyond the tables.
     fn beyond_tables(&self, log_mass: f64) -> f64 {
         let (mut low, mut high) = (self.edge, self.limit);
         let mut z = self.edge;
@@ -274,7 +276,7 @@ impl Side {
                 high = z;
             }
             let mut next = z + self.sign * error * place.mills;
-            // Next to an end of the support every double counts.
+            // Iterate to the last double next to an end of the support, since distances to it count.
             let last = if self.limit.is_finite() { 0.0 } else { 2.0 * f64::EPSILON * z.abs() };
             if (next - z).abs() <= last {
                 break;
@@ -289,26 +291,27 @@ impl Side {
     }
 }
 
-/// Terms of a fraction before panels take over.
+/// Terms of a continued fraction before panels take over.
 const FRACTION: usize = 60;
 
-/// Mills' ratio by a continued fraction; None where it does not end while its terms are positive.
+/// Mills' ratio by a continued fraction. Returns None if it does not converge while its terms are positive.
 ///
-/// The moments `m_k` of what lies beyond `z`, about `z` and by the density there, keep, outwards with `y = sign z`,
+/// The moments `m_k` of the mass beyond `z`, about `z` and divided by the density there, satisfy, outwards with `y = sign z`,
 ///
 /// ```text
 /// (1 + c2)(y m_0 + m_1) = C,    (1 + c2 - k c2) m_(k+1) = k C m_(k-1) + (k C' - (1 + c2) y) m_k
 /// m_0 = C/(1 + c2)/(y + m_1/m_0),    m_k/m_(k-1) = k C/((1 + c2) y - k C' + (1 + c2 - k c2) m_(k+1)/m_k)
 /// ```
 ///
-/// of a normal law Laplace's fraction. As long as all terms are positive the value lies between any two approximants that follow each other.
+/// For a normal distribution this is Laplace's fraction. As long as all terms are positive, the value lies between any two successive
+/// approximants.
 fn fraction(equation: &Equation, sign: f64, z: f64) -> Option<f64> {
     let [c, by, y] = [equation.c(z), sign * equation.c_by(z), sign * z];
     let (one, c2) = (1.0 + equation.c2(), equation.c2());
     if !(c > 0.0 && y > 0.0) {
         return None;
     }
-    // Wallis: numerators and denominators of approximants, scaled before they leave the range of a double.
+    // Wallis' recurrence: numerators and denominators of approximants, rescaled at each step to stay in the range of doubles.
     let (mut above, mut below) = ([1.0, y], [0.0, 1.0]);
     let mut last = f64::INFINITY;
     for k in 1..FRACTION {
@@ -323,7 +326,7 @@ fn fraction(equation: &Equation, sign: f64, z: f64) -> Option<f64> {
         (above, below) = ([above[1], next[0]], [below[1], next[1]]);
         let scale = 1.0 / below[1];
         above.iter_mut().chain(&mut below).for_each(|value| *value *= scale);
-        // y + m_1/m_0, from above and from below by turns.
+        // Approximants of y + m_1/m_0, alternately from above and from below.
         let value = above[1];
         if (value - last).abs() <= f64::EPSILON * value {
             return Some(c / (one * value));
@@ -333,7 +336,7 @@ fn fraction(equation: &Equation, sign: f64, z: f64) -> Option<f64> {
     None
 }
 
-/// Mills' ratio beyond the tables: from panel to panel until nothing is left or the ending takes over.
+/// Mills' ratio beyond the tables: the sum over panels until the rest is negligible or the ending takes over.
 fn mills(equation: &Equation, ending: Option<&Ending>, sign: f64, mut z: f64) -> f64 {
     let covered = ending.is_some_and(|ending| ending.covers(z));
     if !covered && let Some(mills) = fraction(equation, sign, z) {

@@ -1,47 +1,48 @@
-//! How probabilities change with skewness and excess.
+//! Derivatives of probabilities by skewness and excess.
 //!
-//! With a dot for a derivative by one of the two, `p. = p (u - E u)`, and Pearson's equation says how `u` grows:
+//! With a dot for a derivative by one of the two, `p. = p (u - E u)`, and Pearson's equation gives the derivative of `u`:
 //!
 //! ```text
 //! u' = -(c1. + 3 c2. z)/C + (c1 + d z)(c1. z + c2. z^2)/C^2
 //! d/d. P(> z) = (u(z) - E u) M(z) + integral beyond z of u' M,    M: the mass beyond
 //! ```
 //!
-//! and alike below. With `u = 0` at the anchor, `E u` is the sum of the integrals over both sides, by parts. `u'` is a formula and `M` is tabled, so
-//! that Gauss-Legendre on the panels of the tables leaves rounding only.
+//! The probability below is treated in the same way. With `u = 0` at the anchor, `E u` is the sum of the integrals over both sides, by
+//! parts. `u'` is a formula and `M` is
+//! tabulated, so that Gauss-Legendre on the panels of the tables has rounding errors only.
 
 use super::equation::LEGENDRE;
 use super::side::Side;
 
-/// Contributions that are this part of all are nothing.
+/// Relative size below which the contribution of a piece is neglected.
 const NOTHING: f64 = 1e-17;
-/// Pieces beyond the tables; where they are not enough, a density ends too abruptly for such slopes.
+/// Greatest number of pieces beyond the tables. A density that needs more ends too abruptly for these derivatives.
 const BEYOND: usize = 120;
 
 /// Derivatives by skewness and by excess.
 pub(super) type Slopes = [f64; 2];
 
-/// A piece of a side, with integrals over it outwards.
+/// Piece of a side, with integrals over it outwards.
 struct Span {
-    /// Distances of its ends from the anchor.
+    /// Distances of the ends of the piece from the anchor.
     from: f64,
     to: f64,
-    /// Of `u'`,
+    /// Integral of `u'` over the piece.
     own: Slopes,
-    /// and of `u' M`.
+    /// Integral of `u' M` over the piece.
     weighted: Slopes,
 }
 
-/// A side in pieces, from the anchor outwards.
+/// Side of a Pearson distribution in pieces, from the anchor outwards.
 pub(super) struct Walk<'s> {
     side: &'s Side,
-    /// `c1.` and `c2.` by skewness and by excess.
+    /// Derivatives `c1.` and `c2.`, by skewness and by excess.
     growth: [[f64; 2]; 2],
     spans: Vec<Span>,
 }
 
 impl<'s> Walk<'s> {
-    /// None where the integral beyond the tables does not end.
+    /// Returns None if the integral beyond the tables does not converge.
     pub(super) fn along(side: &'s Side, growth: [[f64; 2]; 2]) -> Option<Self> {
         let mut walk = Self { side, growth, spans: Vec::new() };
         for (index, [from, to]) in side.panels().enumerate() {
@@ -50,7 +51,7 @@ impl<'s> Walk<'s> {
         let mut from = walk.spans.last().map_or(0.0, |span| span.to);
         let mut open = !side.ends_with_tables();
         for _ in 0..BEYOND {
-            // Next to an end of the support distances to it have no digits.
+            // Close to an end of the support, distances to it have lost their digits.
             if !open || side.is_at_its_end(from) {
                 break;
             }
@@ -65,12 +66,12 @@ impl<'s> Walk<'s> {
         (!open).then_some(walk)
     }
 
-    /// The integral of `u' M` over the whole side.
+    /// Integral of `u' M` over the whole side.
     pub(super) fn all(&self) -> Slopes {
         sum(self.spans.iter().map(|span| span.weighted))
     }
 
-    /// The derivatives of the mass beyond a distance from the anchor.
+    /// Derivatives of the mass beyond a distance from the anchor.
     pub(super) fn beyond(&self, distance: f64, mean: Slopes) -> Slopes {
         let index = self.spans.partition_point(|span| span.to <= distance);
         let Some(at) = self.spans.get(index) else { return [0.0; 2] };
@@ -82,7 +83,7 @@ impl<'s> Walk<'s> {
         std::array::from_fn(|i| (before[i] + at.own[i] - rest.own[i] - mean[i]) * mass + rest.weighted[i] + after[i])
     }
 
-    /// The integrals from one distance to another, of which a panel of the tables may know the mass.
+    /// Integrals from one distance to another. `panel` is the panel of the tables that holds both, if any: its mass is tabulated.
     fn span(&self, from: f64, to: f64, panel: Option<usize>) -> Span {
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
         let (mut own, mut weighted) = ([0.0; 2], [0.0; 2]);
@@ -110,12 +111,12 @@ fn sum(all: impl Iterator<Item = Slopes>) -> Slopes {
 mod tests {
     use crate::pearson::Pearson;
 
-    /// Differences of the probabilities, which other tests hold against 25 digits: extrapolated from two steps, they have an error of
-    /// `h^4` times a fifth derivative near 1e3, and of `1e-13/h` by rounding.
+    /// Reference: differences of the probabilities, which other tests compare with 25 digits. Extrapolated from two steps, they have an
+    /// error of `h^4` times a fifth derivative near 1e3, and of `1e-13/h` by rounding.
     #[test]
     fn slopes_are_the_differences_of_probabilities() {
         let step = 1e-3;
-        // Types I to VII, both signs of the skewness, and places next to the lines between types.
+        // Types I to VII, both signs of the skewness, and places close to the lines between types.
         let places = [
             [0.0, 0.0],
             [0.0, -0.6],
@@ -150,7 +151,7 @@ mod tests {
         }
     }
 
-    /// Next to an end with an infinite density there is no such slope.
+    /// A density that is infinite at the end of its support has no such derivative there.
     #[test]
     fn a_law_of_two_horns_has_none() {
         let law = Pearson::with_excess(0.0, 1.0, 0.0, -1.8).unwrap();

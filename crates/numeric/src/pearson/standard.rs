@@ -15,7 +15,7 @@ pub(super) struct Standard {
     anchor: f64,
     left: Side,
     right: Side,
-    /// The mass of both sides, with the density at the anchor as unit.
+    /// Mass of both sides, with the density at the anchor as unit.
     total: f64,
 }
 
@@ -44,7 +44,7 @@ impl Standard {
                 left = Ending::infinite(&infinity, -1.0, ratio);
             }
         }
-        // Where nearly all of the mass lies at the lower end, the series there is a better start than the mean.
+        // If nearly all of the mass lies at the lower end, the series there is a better start than the mean.
         let anchor = match &left {
             Some(left) if left.is_finite() && left.covers(0.0) => left.border(),
             _ => 0.0,
@@ -63,7 +63,7 @@ impl Standard {
         self.place(z).log_density - libm::log(self.total)
     }
 
-    /// Probabilities below and above, each with all its digits.
+    /// Probabilities below and above `z`, each with full relative accuracy.
     pub(super) fn cdf_sf(&self, z: f64) -> [f64; 2] {
         let place = self.place(z);
         let beyond = libm::exp(place.log_mass());
@@ -73,13 +73,13 @@ impl Standard {
         if z < self.anchor { [outer, rest] } else { [rest, outer] }
     }
 
-    /// Derivatives of the probabilities below one place and above another, together, by the skewness and the excess; None where the density ends
-    /// too abruptly.
+    /// Derivatives by skewness and excess of the probability below one place plus that above another. Returns None if the density ends too
+    /// abruptly.
     pub(super) fn outside_by_shape(&self, shape: [f64; 2], below: Option<f64>, above: Option<f64>) -> Option<Slopes> {
         let growth = Shape::growth(shape[0], shape[1]);
         let (left, right) = (Walk::along(&self.left, growth)?, Walk::along(&self.right, growth)?);
         let mean: Slopes = std::array::from_fn(|i| (left.all()[i] + right.all()[i]) / self.total);
-        // The whole stays 1.
+        // Subtracting the mean slope keeps the total probability at 1.
         let of = |z: f64, above: bool| {
             let outside = if z < self.anchor { &left } else { &right };
             let sign = if (z < self.anchor) == above { -1.0 } else { 1.0 };
@@ -89,16 +89,16 @@ impl Standard {
         Some([below[0] + above[0], below[1] + above[1]]).filter(|all| all.iter().all(|slope| slope.is_finite()))
     }
 
-    /// Logarithms of the same; they go on where the probabilities vanish.
+    /// Logarithms of the probabilities below and above `z`, finite also where the probabilities underflow to 0.
     pub(super) fn log_cdf_sf(&self, z: f64) -> [f64; 2] {
         let [below, above] = self.cdf_sf(z);
         let outer = self.place(z).log_mass() - libm::log(self.total);
-        // Of a probability close to 1, by the other.
+        // A probability close to 1 is computed from its complement.
         let of = |probability: f64, other: f64| if other < 0.5 { libm::log1p(-other) } else { libm::log(probability) };
         if z < self.anchor { [outer.min(0.0), of(above, below)] } else { [of(below, above), outer.min(0.0)] }
     }
 
-    /// Where the probabilities below and above are these, whose sum is 1: one is exact, the other its complement.
+    /// Place with these probabilities below and above, whose sum is 1. The smaller one is exact, the other its complement.
     pub(super) fn quantile(&self, [below, above]: [f64; 2]) -> f64 {
         if below * self.total > self.left.mass {
             return self.right.with_mass_beyond(libm::log(above * self.total));

@@ -1,15 +1,15 @@
-//! A sparse polynomial chaos: a regression on products of orthonormal polynomials of the inputs, of which few are taken.
+//! Sparse polynomial chaos: a regression on few products of orthonormal polynomials of the inputs.
 //!
 //! ```text
 //! y ~ c_0 + sum_k c_k product_j p_{k_j}(u_j) + sum_i d_i t^i        E[p_a(u_j) p_b(u_j)] = 1 if a = b, else 0
 //! ```
 //!
-//! `p` are the polynomials of each input's own distribution, by the procedure of Stieltjes over its Gauss rule (Gautschi 2004), of
-//! no higher degree than its moments have; `t` is a surface that is known already, in its own sigmas. Columns are taken one by one,
-//! that with the largest part in what is left first (Pati, Rezaiifar and Krishnaprasad 1993), and as many as leave the least at a
-//! point that is left out, corrected for the number of columns (Chapelle, Vapnik and Bengio 2002; Blatman and Sudret 2011).
+//! `p` are the polynomials of each input's own distribution, by the procedure of Stieltjes over its Gauss rule (Gautschi 2004). Their
+//! degree is limited by the moments of the distribution. `t` is a known surface, in its own sigmas. Columns are added one by one, that with
+//! the largest part in the residual first (Pati, Rezaiifar and Krishnaprasad 1993). Their number minimises the leave-one-out error,
+//! corrected for the number of columns (Chapelle, Vapnik and Bengio 2002; Blatman and Sudret 2011).
 //!
-//! Nothing here says how good it is: whoever uses it compares it with the model at points that it has not seen.
+//! This module does not estimate the error of the regression: callers compare it with the model at held-out points.
 
 use std::collections::BTreeMap;
 
@@ -20,37 +20,42 @@ use faer::{Accum, Conj, Mat, Par};
 use super::{InputShape, Surrogate};
 use crate::distribution::{Jacobi, Rule};
 
-/// The highest degree of one input, and of a product: nine nodes integrate the squares of no higher one, and of many inputs there are
-/// too many products of it.
+/// Highest degree of one input, and of a product. Nine nodes integrate the squares of no higher degree, and many inputs would have too many
+/// products of it.
 const HIGHEST: usize = 8;
+/// Degree that is used for any number of inputs.
 const LOWEST: usize = 4;
-/// Products of all inputs at the most, for a degree above the lowest.
+/// Greatest number of products of all inputs for a degree above the lowest.
 const PRODUCTS: usize = 1000;
-/// Nodes of a rule that confirms another, and the difference of two logarithms up to which it does.
+/// Nodes of the coarse rule that confirms a finer one.
 const COARSE: usize = 7;
+/// Greatest difference of two logarithms, by the fine and the coarse rule, at which the fine one is confirmed.
 const CONFIRMED: f64 = 1e-6;
-/// The powers of the known surface.
+/// Highest power of the known surface.
 const POWERS: i32 = 4;
-/// Factors of a product at the most.
+/// Greatest number of factors of a product.
 const FACTORS: usize = 4;
-/// Candidates of each kind at the most: they are of the inputs that matter most.
+/// Greatest number of candidates of each kind, taken from the most important inputs.
 const CANDIDATES: usize = 1200;
-/// Of so many inputs at the most there are products with curved factors, and products of three and four.
+/// Number of the most important inputs that have products with curved factors.
 const CURVED: usize = 16;
+/// Number of the most important inputs that have products of three and four factors.
 const SEVERAL: usize = 10;
-/// Points for every column that is taken, at the least, and columns at the most.
+/// Least number of points for every column that is chosen.
 const POINTS: usize = 3;
+/// Greatest number of columns in a regression.
 const COLUMNS: usize = 80;
-/// After so many columns that did not help no further one is tried.
+/// Columns that may be added in a row without an improvement before the search ends.
 const PATIENCE: usize = 12;
-/// A column that the others explain up to this part is not a new one.
+/// Relative size of the new part of a column below which it counts as dependent on the others.
 pub const DEPENDENT: f64 = 1e-8;
 
-/// `sqrt(beta_(n+1)) p_(n+1) = (u - alpha_n) p_n - sqrt(beta_n) p_(n-1)`, as far as the distribution has them.
+/// Three-term recurrence `sqrt(beta_(n+1)) p_(n+1) = (u - alpha_n) p_n - sqrt(beta_n) p_(n-1)`, up to the degree that the distribution
+/// allows.
 struct Recurrence {
     alpha: Vec<f64>,
     root: Vec<f64>,
-    /// The Gauss rule of [`COARSE`] nodes; None where there are as few atoms.
+    /// Gauss rule of [`COARSE`] nodes. None if the distribution has too few atoms for it.
     coarse: Option<Rule>,
 }
 
@@ -64,7 +69,7 @@ impl Recurrence {
             let last = root.last().copied().unwrap_or(0.0);
             let next: Vec<f64> = (0..own.len()).map(|i| (rule.nodes[i] - middle) * own[i] - last * before[i]).collect();
             let norm = mean(&|i| next[i] * next[i]).sqrt();
-            // Of so many atoms there are no more polynomials.
+            // A distribution of n atoms has n orthogonal polynomials only.
             if norm.is_nan() || norm < 1e-6 {
                 break;
             }
@@ -79,7 +84,7 @@ impl Recurrence {
         Self { alpha, root, coarse }
     }
 
-    /// `p_degree` at every place.
+    /// Values of `p_degree` at every place.
     fn column(&self, u: &[f64], degree: usize) -> Vec<f64> {
         let value = |&u: &f64| {
             let (mut before, mut own) = (0.0, 1.0);
@@ -93,27 +98,29 @@ impl Recurrence {
     }
 }
 
-/// A product of polynomials, by position and degree, or a power of the known surface.
+/// Product of polynomials, by input and degree, or a power of the known surface.
 #[derive(Debug, Clone, PartialEq)]
 enum Term {
     Product(Vec<(usize, usize)>),
     Power(i32),
 }
 
-/// Points: a column for every input, and the known surface in its sigmas, which is empty where there is none.
+/// Points: a column for every input, and the known surface in its sigmas, which is empty if there is none.
 #[derive(Clone, Copy)]
 pub struct Places<'a> {
+    /// Standardised values, one column for every input.
     pub u: &'a [Vec<f64>],
+    /// Known surface at the points, in its own sigmas. Empty if there is none.
     pub surface: &'a [f64],
 }
 
-/// The terms that may be taken.
+/// Candidate terms of a regression.
 pub struct Chaos {
     recurrences: Vec<Recurrence>,
     terms: Vec<Term>,
 }
 
-/// A regression.
+/// Sparse regression: a constant, and the chosen terms with their coefficients.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sparse {
     constant: f64,
@@ -121,15 +128,15 @@ pub struct Sparse {
 }
 
 impl Sparse {
-    /// The known surface as it is, of this mean and sigma.
+    /// Regression that is the known surface itself, with this mean and sigma.
     pub fn surface(mean: f64, sigma: f64) -> Self {
         Self { constant: mean, terms: vec![(Term::Power(1), sigma)] }
     }
 }
 
 impl Chaos {
-    /// Of these inputs, `order` with those that matter most first; with the known surface where there is one, and its higher powers
-    /// where these are wanted.
+    /// Candidates for these inputs, `order` with the most important first. `surface` is None if no surface is known, and Some(true) if its
+    /// higher powers are candidates too.
     pub fn new(shapes: &[InputShape], order: &[usize], surface: Option<bool>) -> Self {
         let recurrences: Vec<Recurrence> = shapes.iter().map(|shape| Recurrence::of(&shape.rule)).collect();
         let powers = surface.map_or(0, |higher| if higher { POWERS } else { 1 });
@@ -143,7 +150,7 @@ impl Chaos {
         Self { recurrences, terms }
     }
 
-    /// Without what several inputs make together.
+    /// Removes all terms except those of a single input.
     pub fn apart(mut self) -> Self {
         self.terms.retain(|term| matches!(term, Term::Product(factors) if factors.len() == 1));
         self
@@ -164,7 +171,7 @@ impl Chaos {
         }
     }
 
-    /// The regression's values.
+    /// Values of a regression at these places.
     pub fn values(&self, sparse: &Sparse, places: Places<'_>, rows: usize) -> Vec<f64> {
         let mut values = vec![sparse.constant; rows];
         for (term, factor) in &sparse.terms {
@@ -174,8 +181,8 @@ impl Chaos {
         values
     }
 
-    /// Mean and mean square of a regression over independent inputs: the products are orthonormal, and the known surface is made of
-    /// such too. None with a higher power of it, whose means are not known.
+    /// Mean and mean square of a regression over independent inputs. The products are orthonormal, and the known surface consists of such
+    /// products too. Returns None if a higher power of the known surface is in it, whose moments are unknown.
     pub fn squares(
         &self,
         sparse: &Sparse,
@@ -187,7 +194,7 @@ impl Chaos {
             let of_surface = surrogate.interactions.pairs().into_iter();
             pairs.extend(of_surface.map(|(j, k, value)| ((j.min(k), j.max(k)), value)));
         }
-        // The coefficient of a product in the known surface.
+        // Coefficient of a product in the known surface.
         let part = |factors: &[(usize, usize)]| -> Option<f64> {
             let (surrogate, sigma) = surface?;
             let value = match *factors {
@@ -217,8 +224,9 @@ impl Chaos {
         Some([constant, constant * constant + square + factor * factor + 2.0 * factor * along])
     }
 
-    /// The logarithms of the means of `exp(p s)` with `s` the regression over independent inputs, for p = 1, 2, .. up to 4: for every
-    /// input a mean over its Gauss rule, and as many as a rule of fewer nodes confirms. None where several inputs act together.
+    /// Logarithms of the means of `exp(p s)` with `s` the regression over independent inputs, for p = 1, 2, .. up to 4. Each input gives a
+    /// mean over its Gauss rule. The list ends at the first power that a rule of fewer nodes does not confirm. Returns None if a term has
+    /// several inputs.
     pub fn exponentials(&self, sparse: &Sparse, shapes: &[InputShape]) -> Option<Vec<f64>> {
         let mut parts: BTreeMap<usize, Vec<(usize, f64)>> = BTreeMap::new();
         for (term, factor) in &sparse.terms {
@@ -226,7 +234,7 @@ impl Chaos {
             let [(j, degree)] = factors[..] else { return None };
             parts.entry(j).or_default().push((degree, *factor));
         }
-        // The part of an input at the nodes of a rule, with their weights.
+        // Univariate part of an input at the nodes of a rule, with their weights.
         let at = |j: usize, terms: &[(usize, f64)], rule: &Rule| -> Vec<(f64, f64)> {
             let mut values: Vec<(f64, f64)> = rule.weights.iter().map(|&weight| (0.0, weight)).collect();
             for &(degree, factor) in terms {
@@ -247,7 +255,7 @@ impl Chaos {
             for (fine, coarse) in &inputs {
                 let fine = own(fine);
                 whole += fine;
-                // Few atoms are all in the rule.
+                // A distribution of few atoms has no coarse rule: its own rule holds all of them and is exact.
                 apart += coarse.as_ref().map_or(0.0, |coarse| (fine - own(coarse)).abs());
             }
             (apart <= CONFIRMED).then_some(whole).filter(|whole| whole.is_finite())
@@ -255,7 +263,7 @@ impl Chaos {
         Some([1.0, 2.0, 3.0, 4.0].into_iter().map_while(logarithm).collect())
     }
 
-    /// The regression of values at these points, all of them finite.
+    /// Fits a regression to values at these points, all of them finite.
     pub fn fit(&self, places: Places<'_>, y: &[f64]) -> Sparse {
         let rows = y.len();
         let mean = y.iter().sum::<f64>() / rows.max(1) as f64;
@@ -263,6 +271,7 @@ impl Chaos {
         if rows < 2 * POINTS {
             return nothing;
         }
+        // Tabulate the polynomials of each input once, since products share them.
         let table: Vec<Vec<Vec<f64>>> = (self.recurrences.iter().zip(places.u))
             .map(|(recurrence, u)| (1..=recurrence.alpha.len()).map(|degree| recurrence.column(u, degree)).collect())
             .collect();
@@ -277,6 +286,7 @@ impl Chaos {
                 column
             }
         };
+        // Centre and normalise the columns, so that their products with the residual are comparable. A constant column stays 0.
         let mut columns = Mat::<f64>::zeros(rows, self.terms.len());
         for (index, term) in self.terms.iter().enumerate() {
             let column = column(term);
@@ -290,6 +300,7 @@ impl Chaos {
         if chosen.is_empty() {
             return nothing;
         }
+        // Fit the chosen terms once more by least squares in their own scale, which gives the coefficients.
         let raw: Vec<Vec<f64>> = chosen.iter().map(|&index| self.column(&self.terms[index], places)).collect();
         let matrix = Mat::from_fn(rows, 1 + raw.len(), |i, j| if j == 0 { 1.0 } else { raw[j - 1][i] });
         let mut right = Mat::from_fn(rows, 1, |i, _| y[i]);
@@ -301,13 +312,13 @@ impl Chaos {
     }
 }
 
-/// The highest total degree in so many inputs: `(n + d)!/(n! d!)` products.
+/// Highest total degree for this number of inputs: there are `(n + d)!/(n! d!)` products.
 fn degree(inputs: usize) -> usize {
     let count = |d: usize| (1..=d).fold(1.0, |count, i| count * (inputs + i) as f64 / i as f64);
     (LOWEST..=HIGHEST).rev().find(|&d| count(d) <= PRODUCTS as f64).unwrap_or(LOWEST)
 }
 
-/// All products from position `first` of the order on, of at most so much more degree, of each kind as many as may be.
+/// Appends all products from position `first` of the order on, with at most `left` more in degree, and no more of each kind than allowed.
 fn products(order: &[usize], first: usize, left: usize, part: &mut Vec<(usize, usize)>, terms: &mut Vec<Term>) {
     for place in first..order.len() {
         for degree in 1..=left {
@@ -333,7 +344,7 @@ fn products(order: &[usize], first: usize, left: usize, part: &mut Vec<(usize, u
     }
 }
 
-/// The columns to take, in the order of their choice.
+/// Indices of the columns to use, in the order of their choice.
 fn pursue(columns: &Mat<f64>, y: &[f64]) -> Vec<usize> {
     let (rows, count) = (columns.nrows(), columns.ncols());
     let most = (rows / POINTS).min(COLUMNS);
@@ -341,6 +352,7 @@ fn pursue(columns: &Mat<f64>, y: &[f64]) -> Vec<usize> {
     let mut leverage = vec![1.0 / rows as f64; rows];
     let mut basis: Vec<Vec<f64>> = Vec::new();
     let (mut chosen, mut barred): (Vec<usize>, Vec<bool>) = (Vec::new(), vec![false; count]);
+    // Corrected leave-one-out error: residuals are divided by one minus the leverage.
     let score = |left: &[f64], leverage: &[f64], taken: usize| {
         let out: f64 = left.iter().zip(leverage).map(|(r, h)| (r / (1.0 - h).max(1e-3)).powi(2)).sum();
         let p = 1.0 + taken as f64;
@@ -349,6 +361,7 @@ fn pursue(columns: &Mat<f64>, y: &[f64]) -> Vec<usize> {
     let (mut best, mut length) = (score(&left, &leverage, 0), 0);
     let whole: f64 = y.iter().map(|y| y * y).sum();
     while chosen.len() < most && chosen.len() < length + PATIENCE {
+        // Choose the column with the largest product with the residual. Equal ones are decided by their order.
         let residual = Mat::from_fn(rows, 1, |i, _| left[i]);
         let mut parts = Mat::<f64>::zeros(count, 1);
         matmul(&mut parts, Accum::Replace, columns.transpose(), &residual, 1.0, Par::Seq);
@@ -358,7 +371,7 @@ fn pursue(columns: &Mat<f64>, y: &[f64]) -> Vec<usize> {
         let Some(index) = largest.filter(|&index| parts[(index, 0)].abs() > 0.0) else { break };
         barred[index] = true;
         let mut own: Vec<f64> = (0..rows).map(|row| columns[(row, index)]).collect();
-        // Twice is enough (Parlett 1980).
+        // Orthogonalise twice, which is enough (Parlett 1980).
         for _ in 0..2 {
             for known in &basis {
                 let along: f64 = known.iter().zip(&own).map(|(a, b)| a * b).sum();
@@ -369,6 +382,7 @@ fn pursue(columns: &Mat<f64>, y: &[f64]) -> Vec<usize> {
         if size <= DEPENDENT {
             continue;
         }
+        // Subtract the part along the new column from the residual, and update the leverages.
         own.iter_mut().for_each(|value| *value /= size);
         let along: f64 = own.iter().zip(&left).map(|(a, b)| a * b).sum();
         for ((left, leverage), own) in left.iter_mut().zip(&mut leverage).zip(&own) {
@@ -381,6 +395,7 @@ fn pursue(columns: &Mat<f64>, y: &[f64]) -> Vec<usize> {
         if found < best {
             (best, length) = (found, chosen.len());
         }
+        // Stop at a residual of rounding errors.
         if left.iter().map(|r| r * r).sum::<f64>() < 1e-26 * whole {
             break;
         }
@@ -405,8 +420,8 @@ mod tests {
         (0..count).map(|_| next()).collect()
     }
 
-    /// Those of an exponential variable are Laguerre's (Abramowitz and Stegun 1964, 22.3.9): with x = 1 + u
-    /// `L_3 = (6 - 18 x + 9 x^2 - x^3)/6`, of the other sign where the leading coefficient is to be positive.
+    /// Reference: Laguerre's polynomials for an exponential variable (Abramowitz and Stegun 1964, 22.3.9). With x = 1 + u, `L_3 = (6 - 18 x
+    /// + 9 x^2 - x^3)/6`. Its sign is turned if the leading coefficient is to be positive.
     #[test]
     fn polynomials_are_those_of_the_distribution() {
         let shape = shapes([&Exponential::new(0.0, 2.0).unwrap() as _]);
@@ -415,13 +430,13 @@ mod tests {
         for (u, found) in places.iter().zip(found) {
             let x = 1.0 + u;
             let expected = -(6.0 - 18.0 * x + 9.0 * x * x - x.powi(3)) / 6.0;
-            // A rule of nine nodes knows its moments to some roundings.
+            // A rule of nine nodes has its moments to some roundings.
             assert!((found - expected).abs() < 1e-9 * expected.abs().max(1.0), "{found} for {expected} at {u}");
         }
     }
 
-    /// `x^2 + z` with an exponential x of mean 1 and a normal z: mean 2, mean square 4! + 1. With Laguerre's polynomials `p_1 = x - 1` and
-    /// `p_2 = (x^2 - 4 x + 2)/2` it is `2 p_2 + 4 p_1 + 2 + z`.
+    /// Function `x^2 + z` with an exponential x of mean 1 and a normal z: mean 2, mean square 4! + 1. With Laguerre's polynomials `p_1 = x
+    /// - 1` and `p_2 = (x^2 - 4 x + 2)/2` it is `2 p_2 + 4 p_1 + 2 + z`.
     #[test]
     fn squares_are_those_of_the_distributions() {
         let shapes = shapes([&Exponential::new(0.0, 1.0).unwrap() as _, &Normal::new(0.0, 1.0).unwrap() as _]);
@@ -439,7 +454,7 @@ mod tests {
         assert!((square - 25.0).abs() < 1e-12, "{square}");
     }
 
-    /// The known surface is made of the same products: its part in the mean square is the same whether it is taken by itself or as they.
+    /// The known surface consists of the same products: its part in the mean square is the same as a power and as products.
     #[test]
     fn a_known_surface_has_its_part_in_the_square() {
         use crate::moments::Interactions;
@@ -459,12 +474,12 @@ mod tests {
             chaos.squares(&Sparse { constant: 1.5, terms }, &shapes, Some((&surrogate, sigma))).unwrap();
         let part = |own: f64, more: f64| (3.0 * own / sigma + more).powi(2);
         let expected = 2.25 + part(2.0, 0.4) + part(0.5f64.sqrt(), 0.0) + part(1.0, 0.0) + part(0.7, -0.2);
-        // E (z^2 - 1)^2 = 2; roundings of nine nodes.
+        // Uses E (z^2 - 1)^2 = 2. The tolerance is for the rounding of nine nodes.
         assert!((mean - 1.5).abs() < 1e-15 && (square - expected).abs() < 1e-9, "{square} for {expected}");
     }
 
-    /// `exp(1 + 0.3 z + 0.2 t)` with normal z and t is lognormal. With `0.1 (z^2 - 1)/sqrt(2)` beside `0.3 z` the mean of the power p is
-    /// `exp(a^2/(2 (1 - 2 b)) - b)/sqrt(1 - 2 b)` times the rest, with `a = 0.3 p` and `b = 0.1 p/sqrt(2)`.
+    /// Function `exp(1 + 0.3 z + 0.2 t)` with normal z and t is lognormal. With `0.1 (z^2 - 1)/sqrt(2)` beside `0.3 z` the mean of the
+    /// power p is `exp(a^2/(2 (1 - 2 b)) - b)/sqrt(1 - 2 b)` times the rest, with `a = 0.3 p` and `b = 0.1 p/sqrt(2)`.
     #[test]
     fn means_of_exponentials_are_those_of_their_factors() {
         let shapes = shapes([&Normal::new(0.0, 1.0).unwrap() as _, &Normal::new(0.0, 1.0).unwrap() as _]);
@@ -476,7 +491,7 @@ mod tests {
         assert!(found.len() >= 3, "{found:?}");
         for (found, p) in found.iter().zip([1.0, 2.0, 3.0, 4.0]) {
             let expected = p + 0.5 * p * p * (0.09 + 0.04);
-            // Nine nodes leave far less of exp(1.2 z) than seven do.
+            // Nine nodes have a far smaller error for exp(1.2 z) than seven.
             assert!((found - expected).abs() < 1e-8, "{found} for {expected}");
         }
         terms.push((alone(0, 2), 0.1));
@@ -484,14 +499,14 @@ mod tests {
         let b = 0.1 / 2f64.sqrt();
         let expected = 1.0 + 0.045 / (1.0 - 2.0 * b) - b - 0.5 * (1.0 - 2.0 * b).ln() + 0.02;
         assert!((found[0] - expected).abs() < 1e-8, "{} for {expected}", found[0]);
-        // Of the fourth power nine nodes have 4 % too little (NumPy's rule: 6.0738 for 6.1119): it is not taken.
+        // The fourth power is rejected: nine nodes give 4 % too little for it (NumPy's rule: 6.0738 for 6.1119).
         assert!(found.len() < 4, "{found:?}");
         terms.push((Term::Product(vec![(0, 1), (1, 1)]), 0.1));
         assert_eq!(of(&terms), None);
         assert!(chaos.apart().terms.iter().all(|term| matches!(term, Term::Product(of) if of.len() == 1)));
     }
 
-    /// Noise that no polynomial explains is left alone: the constant is never beaten by a worse fit.
+    /// Noise that no polynomial explains stays unexplained: a worse fit never replaces the constant.
     #[test]
     fn noise_is_left() {
         let shapes = shapes([&Normal::new(0.0, 1.0).unwrap() as _]);

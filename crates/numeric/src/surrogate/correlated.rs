@@ -1,11 +1,11 @@
-//! Moments of a surrogate of correlated inputs: of its parabolas, and by sampling where it is more.
+//! Moments of a surrogate of correlated inputs: of its parabolas, plus a sampled correction if it is not a parabola.
 
 use super::parabolas::Parabolas;
 use super::{Inputs, Surrogate, Univariate, sampled};
 use crate::correlation::Correlation;
 use crate::moments::{Contributions, Moments};
 
-/// Moments and contributions; None when a part is unknown.
+/// Moments and contributions. Returns None if a part is unknown.
 pub(super) fn correlated(surrogate: &Surrogate, inputs: &Inputs, correlation: &Correlation) -> Option<Contributions> {
     let parts: Vec<Univariate> = surrogate.parts.iter().copied().collect::<Option<_>>()?;
     let parabolas = Parabolas::of(surrogate, parts, inputs, correlation);

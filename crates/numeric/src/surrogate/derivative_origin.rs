@@ -1,9 +1,9 @@
-//! The source of a derivative of a surface.
+//! Origin of a derivative of a surface.
 
 use serde::Serialize;
 
-/// The source of a derivative of a surface, the most reliable first. A proof accepts [`Exact`](Self::Exact) and
-/// [`Evaluated`](Self::Evaluated) only.
+/// Origin of a derivative of a surface, the most reliable first. A proof accepts [`Exact`](Self::Exact) and [`Evaluated`](Self::Evaluated)
+/// only.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
@@ -11,14 +11,14 @@ use serde::Serialize;
 pub enum DerivativeOrigin {
     /// Differentiated from a formula.
     Exact,
-    /// Computed from values of the model at points of its own.
+    /// Computed from values of the model at points for this derivative.
     Evaluated,
-    /// Estimated by a fit that many derivatives share, or assumed to be 0: it has no evaluation of its own.
+    /// Estimated by a fit that many derivatives share, or assumed to be 0: no evaluation belongs to it alone.
     Screened,
 }
 
 impl DerivativeOrigin {
-    /// Its name in reports.
+    /// Name in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Exact => "exact",
@@ -27,12 +27,12 @@ impl DerivativeOrigin {
         }
     }
 
-    /// Whether it was differentiated or evaluated, so that a proof may rest on it.
+    /// True if the derivative was differentiated or evaluated, so that a proof may rest on it.
     pub fn is_known(self) -> bool {
         self != Self::Screened
     }
 
-    /// The origin of a sum of two derivatives: the less reliable one.
+    /// Origin of a sum of two derivatives: the less reliable one.
     pub(crate) fn and(self, other: Self) -> Self {
         self.max(other)
     }

@@ -1,6 +1,6 @@
-//! Moments of a surface over blocks whose places are too many to be pooled: sampled from the surface, with standard errors.
+//! Moments of a surface over blocks with too many places for pooling: sampled from the surface, with standard errors.
 //!
-//! No model is evaluated, the sample does not depend on any seed of a study, and blocks are drawn by their places.
+//! No model is evaluated, the sample does not depend on the seed of a study, and blocks are drawn by their places.
 
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
@@ -12,16 +12,19 @@ use crate::moments::{Contributions, Moments, Sampled};
 use crate::parallel::prelude::*;
 use crate::sampling::Summary;
 
-/// Operations that the sample takes at most, about; it is never smaller than some thousand points.
+/// Rough bound for the operations of the sample.
 const EFFORT: usize = 1 << 27;
+/// Least number of points of the sample, also if the bound for the operations is exceeded.
 const FEWEST: usize = 1 << 14;
+/// Greatest number of points of the sample.
 const MOST: usize = 1 << 20;
 
-/// One group of the sample.
+/// Group of points of the sample, with its own seed.
 struct Group {
     summary: Summary,
-    /// Of every part its line times the whole, its rest times the whole.
+    /// Product of every part's line with the whole.
     lines: Vec<f64>,
+    /// Product of every part's rest with the whole.
     rests: Vec<f64>,
     products: Vec<f64>,
 }
@@ -36,6 +39,7 @@ pub(super) fn contributions(setting: &Setting<'_>) -> Contributions {
     let draws = (EFFORT / (n + setting.pairs.len())).clamp(FEWEST, MOST) / BLOCKS as usize;
     let groups: Vec<Group> =
         (0..BLOCKS).into_par_iter().map(|seed| group(setting, (&lines, &means, mean), seed, draws)).collect();
+    // Moments of all groups, and without each of them for the jackknife.
     let all = |except: Option<usize>| {
         let mut whole = Summary::default();
         groups.iter().enumerate().filter(|(g, _)| Some(*g) != except).for_each(|(_, of)| whole.merge(&of.summary));
@@ -49,6 +53,7 @@ pub(super) fn contributions(setting: &Setting<'_>) -> Contributions {
         let squares: f64 = without.iter().map(|of| (of[i] - mean).powi(2)).sum();
         (squares * (BLOCKS as f64 - 1.0) / BLOCKS as f64).sqrt()
     });
+    // Divide the sampled covariances by their sum, so that the shares sum to 1.
     let sum = |of: &dyn Fn(&Group) -> f64| groups.iter().map(of).sum::<f64>();
     let total = sum(&|group| group.lines.iter().chain(&group.rests).chain(&group.products).sum());
     let share = |of: &dyn Fn(&Group) -> f64| if total > 0.0 { sum(of) / total } else { 0.0 };
@@ -73,7 +78,7 @@ pub(super) fn contributions(setting: &Setting<'_>) -> Contributions {
     }
 }
 
-/// The mean of an input's own part.
+/// Mean of an input's univariate part.
 fn mean_of(setting: &Setting<'_>, j: usize) -> f64 {
     match setting.block_of[j] {
         None => setting.parts[j].term(&setting.shapes[j]).mean(),
@@ -88,6 +93,7 @@ fn group(setting: &Setting<'_>, (lines, means, mean): (&[f64], &[f64], f64), see
     let n = setting.parts.len();
     let others = setting.correlation.without_blocks();
     let others = others.as_ref().map(|of| (of.members(), of.factor(), of.transforms()));
+    // Running sums of the weights of each block, to draw its places by probability.
     let sums: Vec<Vec<f64>> = (setting.atoms.iter())
         .map(|atoms| {
             let mut below = 0.0;
@@ -112,12 +118,14 @@ fn group(setting: &Setting<'_>, (lines, means, mean): (&[f64], &[f64], f64), see
                 sums.partition_point(|&below| below <= level).min(sums.len() - 1)
             })
             .collect();
+        // Members take the coordinates of the place of their block, other inputs are drawn independently.
         for (j, u) in u.iter_mut().enumerate() {
             *u = match setting.block_of[j] {
                 Some((block, coordinate)) => setting.atoms[block][places[block]].u[coordinate],
                 None => setting.shapes[j].rule.at_level(rng.random()),
             };
         }
+        // Replace correlated inputs outside the blocks by functions of correlated normal variables.
         if let Some((members, factor, transforms)) = &others {
             let independent: Vec<f64> = members.iter().map(|_| rng.sample(StandardNormal)).collect();
             for (a, &position) in members.iter().enumerate() {
@@ -128,6 +136,7 @@ fn group(setting: &Setting<'_>, (lines, means, mean): (&[f64], &[f64], f64), see
         own.iter_mut().zip(&setting.parts).zip(&u).for_each(|((own, part), u)| *own = part.value(*u));
         let products = setting.pairs.iter().map(|&(j, k, value)| value * u[j] * u[k]);
         let y = own.iter().sum::<f64>() + products.clone().sum::<f64>();
+        // Add the covariances of lines, rests and products with the whole.
         let off = y - mean;
         for j in 0..n {
             let line = lines[j] * u[j];

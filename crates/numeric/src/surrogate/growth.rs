@@ -1,13 +1,13 @@
-//! How the moments of a surface grow with the tolerances.
+//! Derivatives of the moments of a surface by the tolerances.
 
 use super::{Inputs, Surrogate};
 use crate::moments::growths;
 
 impl Surrogate {
-    /// Derivatives of mean, `ln sigma`, skewness and excess by the logarithm of every input's scale, at fixed means. None where inputs are
-    /// correlated, a part is unknown, nothing varies, or a moment is infinite.
+    /// Derivatives of mean, `ln sigma`, skewness and excess by the logarithm of every input's scale, at fixed means. Returns None if inputs
+    /// are correlated, a part is unknown, nothing varies, or a moment is infinite.
     ///
-    /// Cost: as the moments, about twice.
+    /// Cost: about twice that of the moments.
     pub fn growths(&self, inputs: &Inputs) -> Option<Vec<[f64; 4]>> {
         if inputs.correlation().is_some() {
             return None;
@@ -29,10 +29,10 @@ mod tests {
     use crate::moments::Interactions;
     use crate::surrogate::{Relocation, Univariate, shapes};
 
-    /// Half a difference in the logarithm of a scale: truncation `h^2/6` of third derivatives near 100, and rounding `1e-14/h`, both below 1e-8.
+    /// Half-step in the logarithm of a scale: truncation `h^2/6` of third derivatives near 100, and rounding `1e-14/h`, both below 1e-8.
     const STEP: f64 = 1e-5;
 
-    /// Parabolas and quartics of normal, skewed and bounded inputs in turn, with so many of their pairs.
+    /// Parabolas and quartics of normal, skewed and bounded inputs in turn, with this density of pairs.
     fn surface(n: usize, density: f64, rng: &mut Xoshiro256PlusPlus) -> Surrogate {
         let part = |j: usize, rng: &mut Xoshiro256PlusPlus| {
             let degree = if j.is_multiple_of(2) { 2 } else { 4 };
@@ -49,7 +49,7 @@ mod tests {
         Surrogate { centre: 0.3, parts, interactions: Interactions::of_pairs(n, pairs) }
     }
 
-    /// Differences of the moments themselves, over sparse and dense products.
+    /// Reference: differences of the moments themselves, over sparse and dense products.
     #[test]
     fn they_are_the_differences_of_the_moments() {
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(5);

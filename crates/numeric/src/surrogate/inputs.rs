@@ -1,4 +1,4 @@
-//! The facts about all inputs together that moments need.
+//! Properties of all inputs together that the moments need.
 
 use std::sync::Arc;
 
@@ -6,7 +6,7 @@ use super::shape::InputShape;
 use crate::correlation::Correlation;
 use crate::distribution::Rule;
 
-/// The shapes of the inputs, and how they vary together.
+/// Shapes of the inputs, and their correlation.
 #[derive(Debug, Clone)]
 pub struct Inputs {
     shapes: Vec<InputShape>,
@@ -14,28 +14,28 @@ pub struct Inputs {
 }
 
 impl Inputs {
-    /// Of these shapes; `correlation` tells of them by their positions here.
+    /// Inputs of these shapes. `correlation` refers to them by their positions here.
     pub fn new(shapes: Vec<InputShape>, correlation: Option<Correlation>) -> Self {
         Self { shapes, correlation }
     }
 
-    /// Of independent inputs.
+    /// Independent inputs of these shapes.
     pub fn independent(shapes: Vec<InputShape>) -> Self {
         Self { shapes, correlation: None }
     }
 
-    /// With another rule for the input at this position.
+    /// Replaces the rule of the input at this position.
     pub fn with_rule(mut self, position: usize, rule: Arc<Rule>) -> Self {
         self.shapes[position].rule = rule;
         self
     }
 
-    /// Their shapes, in order.
+    /// Shapes of the inputs, in order.
     pub fn shapes(&self) -> &[InputShape] {
         &self.shapes
     }
 
-    /// How some of them vary together.
+    /// Correlation of the inputs. Returns None if they are independent.
     pub fn correlation(&self) -> Option<&Correlation> {
         self.correlation.as_ref()
     }

@@ -1,10 +1,10 @@
-//! The surrogate: what is known of one characteristic near the means, as univariate parts and products.
+//! Surrogate of one characteristic near the means: univariate parts and products.
 //!
 //! ```text
 //! y ~ centre + sum_j g_j(u_j) + sum_{j<k} A_jk u_j u_k          u_j = (x_j - mean_j)/sigma_j,  g_j(0) = 0
 //! ```
 //!
-//! It is filled by difference plans; its moments are exact for any independent inputs, and for correlated normal ones.
+//! Difference plans fill it. Its moments are exact for any independent inputs, and for correlated normal ones with parabolas.
 
 mod chaos;
 mod correlated;
@@ -32,24 +32,24 @@ pub use univariate::Univariate;
 use crate::moments::{Contributions, Interactions, Term, contributions, exact};
 use crate::power::rescale;
 
-/// One characteristic's surrogate over N dimensions.
+/// Surrogate of one characteristic over N dimensions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surrogate {
-    /// The characteristic at the means.
+    /// Value of the characteristic at the means.
     pub centre: f64,
-    /// For every dimension its own part; None where no derivative could be had.
+    /// Univariate part of every dimension. None if its derivatives could not be evaluated.
     pub parts: Vec<Option<Univariate>>,
-    /// The products.
+    /// Products of two inputs.
     pub interactions: Interactions,
 }
 
 rescale!(Surrogate { centre, parts, interactions } without {});
 
 impl Surrogate {
-    /// Moments and contributions; None when a part is unknown, or an input's tail makes its variance infinite.
+    /// Moments and contributions. Returns None if a part is unknown, or an input's tail makes its variance infinite.
     ///
-    /// Exact where the inputs are independent, where those that are not are normal and their parts parabolas, and over blocks;
-    /// sampled from the surrogate otherwise, with standard errors ([`Contributions::sampled`]).
+    /// Exact if the inputs are independent, over blocks, and if the correlated inputs are normal and their parts parabolas. Otherwise
+    /// sampled from the surrogate, with standard errors ([`Contributions::sampled`]).
     ///
     /// Shapes: `inputs` has length N, in the order of the parts.
     pub fn contributions(&self, inputs: &Inputs) -> Option<Contributions> {
@@ -67,9 +67,9 @@ impl Surrogate {
         self.parts.iter().zip(inputs.shapes()).map(|(part, shape)| Some(part.as_ref()?.term(shape))).collect()
     }
 
-    /// The variance and its standard error, 0 where it is exact; None when a part is unknown or it is infinite.
+    /// Variance and its standard error, which is 0 if the variance is exact. Returns None if a part is unknown or the variance infinite.
     ///
-    /// Of independent inputs it takes a pass over the parts and products, where all four moments take the cube of N.
+    /// Cost for independent inputs: one pass over the parts and products. All four moments take N^3 instead.
     pub fn variance(&self, inputs: &Inputs) -> Option<(f64, f64)> {
         if inputs.correlation().is_some() {
             let of = self.contributions(inputs)?;

@@ -1,18 +1,18 @@
-//! Moments of a surrogate whose inputs vary together.
+//! Moments of a surrogate with correlated inputs.
 //!
-//! With `R` the correlation of the inputs the mean is exact for any of them,
+//! The mean is exact for inputs of any distribution. With `R` the correlation of the inputs,
 //!
 //! ```text
 //! mean = centre + sum_j E g_j + sum_{j<k} A_jk R_jk
 //! ```
 //!
-//! Where the correlated inputs are normal and their parts parabolas, so is everything else: with `R = L L'` the inputs are
-//! `u = L w` of independent normal `w`, in which the surrogate is of the same form: `b_w = L'b`, `H_w = L'H L`, where `H` has
-//! the curvatures on its diagonal and half the mixed coefficients beside it.
+//! If the correlated inputs are normal and their parts parabolas, the other moments are exact too. With `R = L L'` the inputs are `u = L w`
+//! of independent normal `w`, in which the surrogate has the same form: `b_w = L'b`, `H_w = L'H L`, where `H` has the curvatures on its
+//! diagonal and half the mixed coefficients beside it.
 //!
-//! Otherwise (correlated inputs of other distributions, or parts of third and fourth degree) the best parabolas of the
-//! normal variables behind the inputs stand in for them, whose moments are exact, and what is missing is sampled from
-//! the surrogate: no model is evaluated, the sample does not depend on any seed, and its standard errors are reported.
+//! Otherwise (correlated inputs of other distributions, or parts of third and fourth degree) the inputs are replaced by the best parabolas
+//! of the normal variables behind them, whose moments are exact. The difference is sampled from the surrogate. No model is evaluated, the
+//! sample does not depend on any seed, and its standard errors are reported.
 
 use faer::Mat;
 
@@ -21,20 +21,21 @@ use crate::correlation::Correlation;
 use crate::distribution::StandardMoments;
 use crate::moments::{Contributions, Interactions, Term, contributions};
 
-/// The surrogate in independent variables: correlated inputs as normal variables, each with its best parabola.
+/// Surrogate in independent variables: correlated inputs are replaced by normal variables, each with its best parabola.
 pub(super) struct Parabolas<'a> {
     pub(super) surrogate: &'a Surrogate,
     pub(super) parts: Vec<Univariate>,
     pub(super) inputs: &'a Inputs,
     pub(super) correlation: &'a Correlation,
-    /// For every input its place among the members.
+    /// Place of every input among the members. None if it is not a member.
     pub(super) member: Vec<Option<usize>>,
-    /// Of the members, in the normal variables: slopes, curvatures and products.
+    /// Slopes of the members in the normal variables.
     pub(super) slopes: Vec<f64>,
+    /// Quadratic form of the members in the normal variables: curvatures, and half the products beside them.
     pub(super) form: Mat<f64>,
     /// Products of a member and another input.
     pub(super) across: Vec<(usize, usize, f64)>,
-    /// Products of two others.
+    /// Products of two inputs that are not members.
     pub(super) apart: Vec<(usize, usize, f64)>,
 }
 
@@ -50,7 +51,7 @@ impl<'a> Parabolas<'a> {
         let mut member = vec![None; parts.len()];
         members.iter().enumerate().for_each(|(place, &position)| member[position] = Some(place));
         let (mut slopes, mut form) = (vec![0.0; m], Mat::zeros(m, m));
-        // How much of a member's own value is the normal variable behind it: 1 for a normal one.
+        // Slope of a member's own value in the normal variable behind it: 1 for a normal member.
         let mut straight = vec![1.0; m];
         for (place, (&position, transform)) in members.iter().zip(correlation.transforms()).enumerate() {
             let part = &parts[position];
@@ -79,7 +80,7 @@ impl<'a> Parabolas<'a> {
         Self { surrogate, parts, inputs, correlation, member, slopes, form, across, apart }
     }
 
-    /// Whether the parabolas are the surrogate itself.
+    /// True if the parabolas are the surrogate itself.
     pub(super) fn exact(&self) -> bool {
         let parabola = |position: &usize| self.parts[*position].parabola().is_some();
         self.correlation.is_normal() && self.correlation.members().iter().all(parabola)
@@ -93,7 +94,7 @@ impl<'a> Parabolas<'a> {
         &self.inputs.shapes()[position]
     }
 
-    /// `E[u_j u_k]` of two inputs.
+    /// Mean product `E[u_j u_k]` of two inputs.
     pub(super) fn together(&self, j: usize, k: usize) -> f64 {
         match (self.member[j], self.member[k]) {
             (Some(a), Some(b)) => self.correlation.matrix()[(a, b)],
@@ -101,14 +102,14 @@ impl<'a> Parabolas<'a> {
         }
     }
 
-    /// The mean of the surrogate, exact.
+    /// Exact mean of the surrogate.
     pub(super) fn mean(&self) -> f64 {
         let own: f64 = (0..self.parts.len()).map(|j| self.parts[j].term(self.shape(j)).mean()).sum();
         let pairs = self.surrogate.interactions.pairs();
         self.surrogate.centre + own + pairs.iter().map(|&(j, k, value)| value * self.together(j, k)).sum::<f64>()
     }
 
-    /// Moments and contributions of the parabolas, exact.
+    /// Exact moments and contributions of the parabolas.
     pub(super) fn contributions(&self) -> Contributions {
         let n = self.parts.len();
         let others: Vec<usize> = (0..n).filter(|&j| self.member[j].is_none()).collect();
@@ -142,7 +143,7 @@ impl<'a> Parabolas<'a> {
         self.shared(&whole, &|j| terms[place(j)].clone())
     }
 
-    /// The contributions of the inputs themselves: the covariance of each with the whole, so that they sum to 1.
+    /// Contributions of the inputs themselves: the covariance of each with the whole, so that they sum to 1.
     fn shared(&self, whole: &Contributions, other: &dyn Fn(usize) -> Term<'a>) -> Contributions {
         let (n, m) = (self.parts.len(), self.slopes.len());
         let (per_sigma, normal) = (whole.per_sigma, self.correlation.normal());

@@ -1,15 +1,15 @@
-//! Moments of a surface of which some inputs vary together as blocks: by the law of total moments.
+//! Moments of a surface with blocks of dependent inputs, by the law of total moments.
 //!
-//! At a place of every block what is left is a surface of independent inputs with shifted slopes `b + A u`, whose cumulants are exact
-//! ([`crate::moments`]). Pooled over the places, with `d` the conditional mean about the mean of all and `v`, `k3`, `k4` the conditional
-//! cumulants:
+//! Given a place for every block, the surface is one of independent inputs with shifted slopes `b + A u`, whose cumulants are exact
+//! ([`crate::moments`]). They are pooled over the places. `d` is the conditional mean minus the mean of all, and `v`, `k3`, `k4` are the
+//! conditional cumulants:
 //!
 //! ```text
 //! mean = E m     mu2 = E[v + d^2]     mu3 = E[k3 + 3 v d + d^3]     mu4 = E[k4 + 3 v^2 + 4 k3 d + 6 v d^2 + d^4]
 //! ```
 //!
-//! Only what interacts is pooled together: parts that share no product are independent, and their cumulants are added. Where the places
-//! of several blocks that interact are too many, or dimensions are correlated beside them, the surface is sampled.
+//! Only interacting parts are pooled together: parts that share no product are independent, and their cumulants are added. The surface is
+//! sampled if interacting blocks have too many combinations of places, or if dimensions are correlated beside the blocks.
 
 use std::collections::BTreeMap;
 
@@ -19,9 +19,9 @@ use crate::correlation::{Atom, Correlation};
 use crate::moments::{Contributions, Interactions, Moments, Term, contributions};
 use crate::parallel::prelude::*;
 
-/// Combinations of places that are pooled at most.
+/// Greatest number of combinations of places that are pooled.
 const MOST: usize = 200_000;
-/// Multiplications that pooling takes at most.
+/// Greatest number of multiplications of the pooling.
 const WORK: usize = 4_000_000_000;
 
 /// Blocks, and the other inputs that they interact with.
@@ -57,33 +57,33 @@ impl Cumulants {
     }
 }
 
-/// The surface at all places of its blocks, ready to be pooled with other weights too.
+/// Surface at all places of its blocks, stored so that it can be pooled with other weights too.
 pub struct Pooled {
-    /// Of what no block has a part in.
+    /// Cumulants of the part that is independent of all blocks.
     rest: Cumulants,
     components: Vec<Component>,
     scale: f64,
     centre: f64,
 }
 
-/// Blocks that interact, with the inputs that they interact with.
+/// Interacting blocks, with the free inputs that they interact with.
 struct Component {
     blocks: Vec<usize>,
-    /// How many places each of them has.
+    /// Number of places of each block.
     counts: Vec<usize>,
-    /// By combination, the first block's place fastest.
+    /// Weight and cumulants of each combination of places, that of the first block fastest.
     rows: Vec<(f64, Cumulants)>,
 }
 
 impl Surrogate {
-    /// The surface at the places of its blocks; None where it has none, a part is unknown, or it must be sampled.
+    /// Surface at the places of its blocks. Returns None if there are no blocks, a part is unknown, or the surface must be sampled.
     pub fn pooled(&self, inputs: &Inputs) -> Option<Pooled> {
         let correlation = inputs.correlation().filter(|correlation| !correlation.blocks().is_empty())?;
         Setting::of(self, inputs, correlation)?.pooled()
     }
 }
 
-/// Moments and contributions of a surface over blocks; None when a part is unknown.
+/// Moments and contributions of a surface with blocks. Returns None if a part is unknown.
 pub(super) fn pooled(surrogate: &Surrogate, inputs: &Inputs, correlation: &Correlation) -> Option<Contributions> {
     let setting = Setting::of(surrogate, inputs, correlation)?;
     if setting.scale == 0.0 {
@@ -105,7 +105,7 @@ pub(super) fn pooled(surrogate: &Surrogate, inputs: &Inputs, correlation: &Corre
 }
 
 impl<'a> Setting<'a> {
-    /// None where the surface must be sampled.
+    /// Pools the surface over the places of its blocks. Returns None if it must be sampled.
     fn pooled(&self) -> Option<Pooled> {
         let (rest, components) = self.components();
         let correlated = |j: &usize| self.block_of[*j].is_none() && self.correlation.members().contains(j);
@@ -124,10 +124,10 @@ impl<'a> Setting<'a> {
         Some(Pooled { rest: of_rest, components, scale: self.scale, centre: self.centre })
     }
 
-    /// The inputs that no block has a part in, and the blocks that interact with the other inputs of each.
+    /// Inputs that are independent of all blocks, and the groups of interacting blocks with their free inputs.
     fn components(&self) -> (Vec<usize>, Vec<Interacting>) {
         let n = self.parts.len();
-        // Inputs, then blocks, then all correlated inputs together.
+        // Nodes of the graph: inputs, then blocks, then one node for all correlated inputs.
         let node = |j: usize| match self.block_of[j] {
             Some((block, _)) => n + block,
             None if self.correlation.members().contains(&j) => n + self.atoms.len(),
@@ -161,14 +161,14 @@ impl<'a> Setting<'a> {
         (rest, of_root.into_values().collect())
     }
 
-    /// The products among these inputs, by their places in the list.
+    /// Products among these inputs, by their places in the list.
     fn among(&self, of: &[usize]) -> Interactions {
         let place = |j: usize| of.binary_search(&j).ok();
         let pairs = self.pairs.iter().filter_map(|&(j, k, value)| Some((place(j)?, place(k)?, value)));
         Interactions::of_pairs(of.len(), pairs)
     }
 
-    /// Moments and contributions of what no block has a part in.
+    /// Moments and contributions of the part that is independent of all blocks.
     fn rest(&self, rest: &[usize]) -> Contributions {
         let surrogate = Surrogate {
             centre: 0.0,
@@ -188,7 +188,7 @@ impl<'a> Setting<'a> {
         if total > MOST || total.saturating_mul(terms) > WORK {
             return None;
         }
-        // Products with a block: within blocks, and from a coordinate to a free input.
+        // Collect the products with these blocks: within blocks, and between a coordinate and a free input.
         let own = |j: usize| self.block_of[j].is_some_and(|(block, _)| blocks.contains(&block));
         let place = |j: usize| free.binary_search(&j).ok();
         let mut inner = Vec::new();
@@ -221,7 +221,7 @@ impl<'a> Setting<'a> {
         Some(Component { blocks, counts, rows })
     }
 
-    /// The weight of a combination of places, and where every member of its blocks is.
+    /// Weight of a combination of places, and a function that returns the coordinate of every member of the blocks.
     fn place<'s>(
         &'s self,
         blocks: &'s [usize],
@@ -239,7 +239,7 @@ impl<'a> Setting<'a> {
         (weight, u)
     }
 
-    /// With the covariance of every part with the whole as its share; they sum to 1.
+    /// Contributions with the covariance of every part with the whole as its share. The shares sum to 1.
     fn contributions(&self, pooled: &Pooled) -> Contributions {
         let n = self.parts.len();
         let all = pooled.cumulants(&|_, _| None);
@@ -247,12 +247,14 @@ impl<'a> Setting<'a> {
         let (mut linear, mut curvature, mut mean_shift) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
         let mut products = BTreeMap::new();
         let share = |covariance: f64| if variance > 0.0 { covariance / variance } else { 0.0 };
+        // Inputs outside the blocks: the covariance of an independent part with the whole is its variance. Correlated inputs follow below.
         for j in (0..n).filter(|&j| self.block_of[j].is_none()) {
             let term = self.parts[j].term(&self.shapes[j]);
             let part = term.part(1.0);
             (linear[j], curvature[j]) = (share(part.p * part.p), share(part.curved));
             mean_shift[j] = term.mean();
         }
+        // Correlated inputs outside the blocks: take the shares of their own surface, relative to the whole.
         let (rest, _) = self.components();
         if self.correlation.without_blocks().is_some() && !rest.is_empty() {
             let found = self.rest(&rest);
@@ -268,6 +270,7 @@ impl<'a> Setting<'a> {
                 }
             }
         }
+        // Members of blocks: covariance of line, rest and products with the conditional mean, over all combinations of places.
         for component in &pooled.components {
             let own = |j: usize| self.block_of[j].is_some_and(|(block, _)| component.blocks.contains(&block));
             let members: Vec<usize> = (0..n).filter(|&j| own(j)).collect();
@@ -293,6 +296,7 @@ impl<'a> Setting<'a> {
             }
             products.extend(inner.iter().zip(&of_pairs).map(|(&(j, k, _), &sum)| ((j, k), share(sum))));
         }
+        // Products of two inputs of which at most one is in a block.
         for &(j, k, value) in &self.pairs {
             let covariance = match (self.block_of[j], self.block_of[k]) {
                 (Some(_), Some(_)) => continue,
@@ -313,7 +317,7 @@ impl<'a> Setting<'a> {
         }
     }
 
-    /// `sum_l A_lk R_jl` over the members of the block of `j`.
+    /// Covariance factor `sum_l A_lk R_jl` over the members of the block of `j`.
     fn beside(&self, j: usize, k: usize) -> f64 {
         let other = |&(a, b, value): &(usize, usize, f64)| match (a == k, b == k) {
             (true, _) => Some((b, value)),
@@ -324,7 +328,7 @@ impl<'a> Setting<'a> {
     }
 }
 
-/// The place of every block in a combination.
+/// Place of every block in a combination.
 fn combination(counts: &[usize], mut index: usize) -> Vec<usize> {
     let place = |&count: &usize| {
         let place = index % count;
@@ -335,7 +339,7 @@ fn combination(counts: &[usize], mut index: usize) -> Vec<usize> {
 }
 
 impl Component {
-    /// `weights` gives other weights than its own for the places of a block, by block and place.
+    /// Pools the combinations. `weights` returns other weights for the places of a block, by block and place, or None to keep its own.
     fn pooled(&self, weights: &dyn Fn(usize, usize) -> Option<f64>) -> Cumulants {
         let rows: Vec<(f64, &Cumulants)> = (self.rows.iter().enumerate())
             .map(|(index, (own, row))| {
@@ -343,7 +347,7 @@ impl Component {
                 let mut weight = *own;
                 for ((&block, &place), &count) in self.blocks.iter().zip(&places).zip(&self.counts) {
                     if let Some(given) = weights(block, place) {
-                        // Rows have one weight each.
+                        // All places of a block of rows have the same weight, so the product with their count is the ratio of the weights.
                         weight *= given * count as f64;
                     }
                 }
@@ -365,12 +369,12 @@ impl Component {
 }
 
 impl Pooled {
-    /// The moments with other weights for the places of some blocks, which sum to 1 over each of them.
+    /// Moments with other weights for the places of some blocks. The weights sum to 1 over each block.
     pub fn moments(&self, weights: &dyn Fn(usize, usize) -> Option<f64>) -> Moments {
         self.scaled(self.cumulants(weights))
     }
 
-    /// Multiplications that moments with other weights take, roughly.
+    /// Rough number of multiplications for moments with other weights.
     pub fn work(&self) -> usize {
         self.components.iter().map(|component| 30 * component.rows.len()).sum()
     }

@@ -1,30 +1,28 @@
-//! The same surrogate in terms of inputs whose mean and sigma have moved.
+//! Change of a surrogate to inputs with another mean and sigma.
 
 use super::{Surrogate, Univariate};
 
-/// Where an input's law has moved: `u = shift + stretch v`, in the old sigmas about the old mean, with `v` standardised
-/// anew.
+/// Move of an input's distribution: `u = shift + stretch v`, in the old sigmas about the old mean, with `v` standardised anew.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Relocation {
-    /// How far the mean has moved, in old sigmas.
+    /// Move of the mean, in old sigmas.
     pub shift: f64,
-    /// The new sigma, in old sigmas.
+    /// New sigma, in old sigmas.
     pub stretch: f64,
 }
 
 impl Relocation {
-    /// An input that stays as it is.
+    /// Relocation of an input that does not move.
     pub const NONE: Self = Self { shift: 0.0, stretch: 1.0 };
 }
 
 impl Surrogate {
-    /// The same function of the dimensions, in terms of the moved inputs `v`.
+    /// Surrogate as the same function of the dimensions, in terms of the moved inputs `v`.
     ///
-    /// A part is expanded about its new mean; a product `A_jk u_j u_k` becomes
-    /// `A_jk (d_j d_k + d_j r_k v_k + d_k r_j v_j + r_j r_k v_j v_k)` with shifts `d` and stretches `r`, so that an
-    /// interaction turns into a slope of `k` where the mean of `j` moves.
+    /// A part is expanded about its new mean. A product `A_jk u_j u_k` becomes `A_jk (d_j d_k + d_j r_k v_k + d_k r_j v_j + r_j r_k v_j
+    /// v_k)` with shifts `d` and stretches `r`. Thus an interaction turns into a slope of `k` if the mean of `j` moves.
     ///
-    /// Shapes: `moved` has length N. No evaluation.
+    /// Shapes: `moved` has length N. No evaluation is needed.
     ///
     /// ```
     /// use crate::moments::Interactions;
@@ -43,7 +41,7 @@ impl Surrogate {
         let mut parts = Vec::with_capacity(self.parts.len());
         for (j, (part, to)) in self.parts.iter().zip(moved).enumerate() {
             let slope: f64 = interactions.neighbours(j).map(|(k, a)| a * moved[k].shift).sum();
-            // Every product is met from both of its sides.
+            // Halve the term, since the loop meets every product from both of its sides.
             centre += 0.5 * slope * to.shift;
             parts.push(part.map(|part| {
                 let (constant, part) = part.relocated(*to);
@@ -57,7 +55,7 @@ impl Surrogate {
 }
 
 impl Univariate {
-    /// `g(shift + stretch v) = constant + part(v)`.
+    /// Expansion `g(shift + stretch v) = constant + part(v)`.
     fn relocated(&self, to: Relocation) -> (f64, Self) {
         if to == Relocation::NONE {
             return (0.0, *self);
@@ -65,7 +63,7 @@ impl Univariate {
         let constant = self.value(to.shift);
         let [c1, c2, c3, c4] = self.coefficients;
         let (d, r) = (to.shift, to.stretch);
-        // Derivatives at the new mean by their factorials: Taylor's series, which ends.
+        // Taylor's series, which is finite: derivatives at the new mean, divided by factorials.
         let first = c1 + d * (2.0 * c2 + d * (3.0 * c3 + d * 4.0 * c4));
         let second = c2 + d * (3.0 * c3 + d * 6.0 * c4);
         let third = c3 + d * 4.0 * c4;
@@ -73,19 +71,19 @@ impl Univariate {
         (constant, Self { coefficients, ..*self })
     }
 
-    /// With this much added to the factor of the square.
+    /// Adds to the coefficient of the square.
     pub fn with_curvature(mut self, more: f64) -> Self {
         self.coefficients[1] += more;
         self
     }
 
-    /// Without factors of higher powers that are no larger than this.
+    /// Sets coefficients of higher powers to 0 if they are at most `least` in size.
     pub(crate) fn without_bends(mut self, least: f64) -> Self {
         self.coefficients[1..].iter_mut().filter(|c| c.abs() <= least).for_each(|c| *c = 0.0);
         self
     }
 
-    /// With this much added to the slope.
+    /// Adds to the slope.
     pub fn with_slope(mut self, more: f64) -> Self {
         self.coefficients[0] += more;
         self

@@ -1,4 +1,4 @@
-//! The part of a surrogate that parabolas leave, by sampling it.
+//! Sampled correction to the moments of a surrogate, beyond those of its parabolas.
 
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
@@ -8,27 +8,30 @@ use super::parabolas::Parabolas;
 use crate::moments::{Contributions, Moments, Sampled};
 use crate::parallel::prelude::*;
 
-/// Blocks of the sample: what they differ by is the standard error (delete-one jackknife), and each has its own seed.
+/// Blocks of the sample, each with its own seed. Their differences give the standard error (delete-one jackknife).
 pub(super) const BLOCKS: u64 = 64;
-/// Operations that a sample takes at most, about; it is never smaller than some thousand points.
+/// Rough bound for the operations of a sample.
 const EFFORT: usize = 1 << 26;
+/// Least number of points of a sample, also if the bound for the operations is exceeded.
 const FEWEST: usize = 1 << 13;
+/// Greatest number of points of a sample.
 const MOST: usize = 1 << 19;
 
-/// A sum over the sample for every quantity that is estimated.
+/// Sums over the sample, one for every quantity that is estimated.
 #[derive(Clone)]
 struct Sums {
-    /// `y^2 - l^2` and `y^2 - q^2`, their squares, `y^3 - q^3` and `y^4 - q^4`.
+    /// Sums of `y^2 - l^2` and `y^2 - q^2`, their squares, `y^3 - q^3` and `y^4 - q^4`.
     differences: [f64; 6],
-    /// Of every part: its line times what is not linear, its rest times the whole.
+    /// Product of every part's line with the nonlinear rest of the whole.
     lines: Vec<f64>,
+    /// Product of every part's rest with the whole.
     rests: Vec<f64>,
     products: Vec<f64>,
 }
 
-/// One part of the surrogate as the sample needs it.
+/// Part of the surrogate as the sample needs it.
 struct OwnPart {
-    /// Slope of its best straight line.
+    /// Slope of the best straight line of the part.
     p: f64,
     mean: f64,
 }
@@ -43,7 +46,7 @@ struct Sampler<'a> {
     scale: f64,
 }
 
-/// Moments and contributions, sampled about those of the parabolas.
+/// Moments and contributions, sampled as differences from those of the parabolas.
 pub(super) fn contributions(parabolas: &Parabolas<'_>, exact: &Contributions, mean: f64) -> Contributions {
     let sampler = Sampler::new(parabolas, exact, mean);
     let draws = (EFFORT / (sampler.own.len() + sampler.pairs.len())).clamp(FEWEST, MOST) / BLOCKS as usize;
@@ -52,7 +55,7 @@ pub(super) fn contributions(parabolas: &Parabolas<'_>, exact: &Contributions, me
     let all = blocks.iter().fold(sampler.nothing(), |sum, block| sum.with(block, 1.0));
     let of_parabolas = central(exact, sampler.scale);
     let linear = sampler.linear_variance();
-    // Whichever stands in better for the variance: the lines, or the parabolas.
+    // Choose the control variate for the variance with less spread: the lines, or the parabolas.
     let spread = |mean: usize, square: usize| {
         let n = samples as f64;
         all.differences[square] / n - (all.differences[mean] / n).powi(2)
@@ -122,7 +125,7 @@ impl<'a> Sampler<'a> {
         sampler
     }
 
-    /// Of the scaled best straight lines: `p'R p`, exact for any inputs.
+    /// Variance of the scaled best straight lines: `p'R p`, exact for any inputs.
     fn linear_variance(&self) -> f64 {
         let n = self.own.len();
         let p = |j: usize| self.own[j].p * self.scale;
@@ -138,7 +141,8 @@ impl<'a> Sampler<'a> {
         Sums { differences: [0.0; 6], lines: vec![0.0; n], rests: vec![0.0; n], products: vec![0.0; self.pairs.len()] }
     }
 
-    /// So many draws of its own. (Mirror images of them would help odd moments and double the error of even ones.)
+    /// Sums over `draws` points of one block, with its own seed. (Antithetic points would help odd moments and double the error of even
+    /// ones.)
     fn block(&self, block: u64, draws: usize) -> Sums {
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(block);
         let mut sums = self.nothing();
@@ -185,7 +189,7 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    /// The stand-in for the surrogate, about its mean.
+    /// Value of the parabolas in place of the surrogate, about its mean.
     fn parabola(&self, z: &[f64], u: &[f64]) -> f64 {
         let parabolas = self.parabolas;
         let m = z.len();
@@ -203,7 +207,7 @@ impl<'a> Sampler<'a> {
         value + parabolas.apart.iter().map(|&(j, k, value)| value * u[j] * u[k]).sum::<f64>()
     }
 
-    /// Covariances with the whole as shares that sum to 1: the linear ones exact, the rest sampled.
+    /// Covariances with the whole as shares that sum to 1. The linear ones are exact, the others sampled.
     fn shares(&self, sums: &Sums, samples: f64) -> Sums {
         let parabolas = self.parabolas;
         let p = |j: usize| self.own[j].p * self.scale;

@@ -1,20 +1,20 @@
-//! A surface over blocks and other inputs, ready to be pooled or sampled.
+//! Surface over blocks and other inputs, prepared for pooling or sampling.
 
 use super::{InputShape, Inputs, Surrogate, Univariate};
 use crate::correlation::{Atom, Correlation};
 
-/// The fourth power of a parabola, and of a quartic.
+/// Degrees that the places of blocks must integrate: the fourth power of a parabola, and of a quartic.
 const DEGREES: [usize; 2] = [8, 16];
 
-/// A surface over blocks and other inputs, divided by its largest coefficient.
+/// Surface over blocks and other inputs, divided by its largest coefficient.
 pub(super) struct Setting<'a> {
     pub(super) parts: Vec<Univariate>,
     pub(super) pairs: Vec<(usize, usize, f64)>,
     pub(super) shapes: &'a [InputShape],
     pub(super) correlation: &'a Correlation,
-    /// For every input its block and its coordinate there.
+    /// Block and coordinate of every input. None if it is in no block.
     pub(super) block_of: Vec<Option<(usize, usize)>>,
-    /// The places of every block.
+    /// Places of every block.
     pub(super) atoms: Vec<Vec<Atom>>,
     pub(super) scale: f64,
     pub(super) centre: f64,
@@ -41,7 +41,7 @@ impl<'a> Setting<'a> {
         })
     }
 
-    /// The slope of the best straight line of a member's part.
+    /// Slope of the best straight line of an input's part.
     pub(super) fn line(&self, j: usize) -> f64 {
         match self.block_of[j] {
             None => self.parts[j].term(&self.shapes[j]).part(1.0).p,

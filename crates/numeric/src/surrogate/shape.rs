@@ -1,35 +1,35 @@
-//! The facts about an input that moments need, computed once per study.
+//! Properties of an input that the moments need, computed once per study.
 
 use std::sync::Arc;
 
 use crate::distribution::{Distribution, Jacobi, Rule, StandardMoments};
 
-/// The standardised moments of an input, and a rule to integrate parts that are not quadratic.
+/// Standardised moments of an input, and a rule to integrate parts that are not quadratic.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InputShape {
-    /// Moments 3 to 8.
+    /// Standardised moments 3 to 8.
     pub moments: StandardMoments,
-    /// Exact for the fourth power of a quartic where the distribution is known; the five-point rule matched to the
-    /// eight moments where nothing else is.
+    /// Rule that is exact for the fourth power of a quartic if the distribution is known. If only the eight moments are known, it is the
+    /// five-point rule matched to them.
     pub rule: Arc<Rule>,
 }
 
 impl InputShape {
-    /// Whether the rule integrates powers up to this one of a distribution with this shape exactly.
+    /// True if the rule integrates powers up to this one exactly, for a distribution with this shape.
     pub fn integrates(&self, distribution: &dyn Distribution, power: usize) -> bool {
         let jacobi = distribution.jacobi(NODES);
         let enough = jacobi.is_whole() || power < 2 * jacobi.order();
-        // Nodes of a long tail may stand in its place.
+        // The rule may have been replaced by the nodes of a long tail.
         enough && *self.rule == jacobi.gauss()
     }
 }
 
-/// Nodes that integrate the fourth power of a quartic, of degree 16, exactly.
+/// Number of nodes that integrate the fourth power of a quartic, of degree 16, exactly.
 const NODES: usize = 9;
-/// The order that eight moments determine; fewer are known of Student's distribution with few degrees.
+/// Order of the rule that eight moments determine. Student's distribution with few degrees of freedom has fewer moments.
 const MOMENTS_ORDER: usize = 4;
 
-/// The shapes of these distributions; equal ones share a rule.
+/// Shapes of these distributions. Equal distributions share a rule.
 pub fn shapes<'a>(distributions: impl IntoIterator<Item = &'a dyn Distribution>) -> Vec<InputShape> {
     let mut rules: Vec<(Jacobi, Arc<Rule>)> = Vec::new();
     let shape = |distribution: &dyn Distribution| {

@@ -1,10 +1,10 @@
-//! One dimension's own part of a characteristic: a polynomial through the values at its nodes.
+//! Univariate part of a characteristic in one dimension: a polynomial through the values at its nodes.
 
 use super::{DerivativeOrigin, InputShape};
 use crate::moments::Term;
 use crate::power::rescale;
 
-/// `g(u) = c1 u + c2 u^2 + c3 u^3 + c4 u^4`, of the degree that the nodes allow.
+/// Polynomial `g(u) = c1 u + c2 u^2 + c3 u^3 + c4 u^4`, of the degree that the nodes allow.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Univariate {
     pub(super) coefficients: [f64; 4],
@@ -15,21 +15,20 @@ pub struct Univariate {
 rescale!(Univariate { coefficients } without { degree, origin });
 
 impl Univariate {
-    /// The highest degree.
+    /// Highest degree of the polynomial.
     pub const DEGREE: usize = 4;
 
-    /// A part of which the first coefficients are known, up to four, differentiated from a formula unless
-    /// [`with_origin`](Self::with_origin) says otherwise.
+    /// Part with the given first coefficients, up to four. Their origin is a formula unless [`with_origin`](Self::with_origin) changes it.
     pub fn of_coefficients(known: &[f64]) -> Self {
         let mut coefficients = [0.0; Self::DEGREE];
         coefficients[..known.len()].copy_from_slice(known);
         Self { coefficients, degree: known.len(), origin: DerivativeOrigin::Exact }
     }
 
-    /// Through `(u, y(u) - y(0))` at one to four different nodes, none of them 0; None without any node.
+    /// Polynomial through `(u, y(u) - y(0))` at one to four different nodes, none of them 0. Returns None for another number of nodes.
     ///
-    /// Exact for polynomials of a degree up to the number of nodes. Odd and even part are separated where the nodes lie
-    /// in symmetric pairs, so that an even function has slope 0 to the last bit.
+    /// Exact for polynomials of a degree up to the number of nodes. If the nodes lie in symmetric pairs, odd and even part are separated,
+    /// so that an even function has slope 0 to the last bit.
     ///
     /// ```
     /// use crate::surrogate::Univariate;
@@ -43,7 +42,7 @@ impl Univariate {
         if n == 0 || n > Self::DEGREE {
             return None;
         }
-        // g/u is a polynomial of one degree less through the slopes of the chords to the centre.
+        // The quotient g/u is a polynomial of one degree less through the slopes of the chords to the centre.
         let chords: Vec<(f64, f64)> = samples.iter().map(|&(u, rise)| (u, rise / u)).collect();
         if n % 2 == 0 && (0..n / 2).all(|i| chords[i].0 == -chords[n - 1 - i].0) {
             let pairs = (0..n / 2).map(|i| (chords[i], chords[n - 1 - i]));
@@ -64,33 +63,33 @@ impl Univariate {
         Some(Self { coefficients, degree: n, origin: DerivativeOrigin::Evaluated })
     }
 
-    /// Returns the part with its coefficients from this source.
+    /// Sets the origin of the coefficients.
     pub fn with_origin(self, origin: DerivativeOrigin) -> Self {
         Self { origin, ..self }
     }
 
-    /// Source of its coefficients.
+    /// Origin of the coefficients.
     pub fn origin(&self) -> DerivativeOrigin {
         self.origin
     }
 
-    /// How far the part is known.
+    /// Degree up to which the coefficients are known.
     pub fn degree(&self) -> usize {
         self.degree
     }
 
-    /// Its coefficients `c1` to `c4`, 0 beyond what is known.
+    /// Coefficients `c1` to `c4`, 0 beyond the known degree.
     pub fn coefficients(&self) -> [f64; 4] {
         self.coefficients
     }
 
-    /// `g(u)`.
+    /// Value `g(u)` of the polynomial.
     #[inline(always)]
     pub fn value(&self, u: f64) -> f64 {
         self.coefficients.iter().rev().fold(0.0, |value, coefficient| (value + coefficient) * u)
     }
 
-    /// `a g(u) + b h(u)`.
+    /// Linear combination `a g(u) + b h(u)` of two parts.
     pub(super) fn sum(&self, a: f64, other: &Self, b: f64) -> Self {
         let coefficient = |i: usize| a * self.coefficients[i] + b * other.coefficients[i];
         Self {
@@ -105,40 +104,40 @@ impl Univariate {
         self.coefficients[0]
     }
 
-    /// Second derivative at the mean, per squared sigma; None where it is unknown.
+    /// Second derivative at the mean, per squared sigma. Returns None if it is unknown.
     pub fn second(&self) -> Option<f64> {
         (self.degree >= 2).then_some(2.0 * self.coefficients[1])
     }
 
-    /// Coefficients of `u` and `u^2` where there are no others.
+    /// Coefficients of `u` and `u^2`. Returns None if the third or fourth coefficient is not 0.
     pub(super) fn parabola(&self) -> Option<[f64; 2]> {
         let [linear, curvature, third, fourth] = self.coefficients;
         (third == 0.0 && fourth == 0.0).then_some([linear, curvature])
     }
 
-    /// The highest power with a coefficient that is not 0.
+    /// Highest power with a coefficient that is not 0.
     pub fn highest_power(&self) -> usize {
         self.coefficients.iter().rposition(|of| *of != 0.0).map_or(0, |place| place + 1)
     }
 
-    /// The largest coefficient, to scale by.
+    /// Largest coefficient, used as a scale.
     pub fn largest(&self) -> f64 {
         self.coefficients.iter().fold(0.0, |largest, coefficient| largest.max(coefficient.abs()))
     }
 
-    /// Whether nothing but the slope is above this part of it.
+    /// True if all coefficients except the slope are at most this part of the slope.
     pub fn is_straight(&self, part: f64) -> bool {
         let [slope, higher @ ..] = self.coefficients;
         higher.iter().all(|coefficient| coefficient.abs() <= part * slope.abs())
     }
 
-    /// `u g'(u)` at these places: how the part grows with the logarithm of the input's scale.
+    /// Derivative `u g'(u)` of the part by the logarithm of the input's scale, at these places.
     pub(crate) fn growth_at(&self, places: &[f64]) -> Vec<f64> {
         let [a, b, c, d] = self.coefficients;
         places.iter().map(|u| (((4.0 * d * u + 3.0 * c) * u + 2.0 * b) * u + a) * u).collect()
     }
 
-    /// The part as a term of the moments: a parabola by the input's moments, anything higher by its rule.
+    /// Term of the moments for this part: a parabola uses the moments of the input, a higher degree its rule.
     pub fn term<'a>(&self, shape: &'a InputShape) -> Term<'a> {
         let moments = &shape.moments;
         if let Some([linear, curvature]) = self.parabola() {
@@ -153,7 +152,7 @@ impl Univariate {
 fn newton(points: &[(f64, f64)]) -> Vec<f64> {
     let n = points.len();
     if let [(u, a), (v, b)] = *points {
-        // Symmetric in the two points, so that opposite values cancel exactly.
+        // Formula symmetric in the two points, so that opposite values cancel exactly.
         return vec![(v * a - u * b) / (v - u), (b - a) / (v - u)];
     }
     let mut differences: Vec<f64> = points.iter().map(|&(_, value)| value).collect();
@@ -164,7 +163,7 @@ fn newton(points: &[(f64, f64)]) -> Vec<f64> {
     }
     let mut coefficients = vec![0.0; n];
     for i in (0..n).rev() {
-        // Horner: multiply by (u - u_i), add the next difference.
+        // Horner's scheme: multiply by (u - u_i), and add the next difference.
         for k in (0..n).rev() {
             coefficients[k] = if k > 0 { coefficients[k - 1] } else { 0.0 } - points[i].0 * coefficients[k];
         }

@@ -1,4 +1,4 @@
-//! The surrogate's own values, over columns of points.
+//! Values of the surrogate over columns of points.
 
 use std::collections::BTreeMap;
 
@@ -7,18 +7,18 @@ use crate::elementary::{Work, on_this_processor};
 use crate::moments::{Interactions, Row};
 use crate::parallel::prelude::*;
 
-/// Rows whose sums stay in registers while all products are added.
+/// Rows of a tile: their sums stay in registers while all products are added.
 const TILE: usize = 32;
-/// Rows whose sums stay in the nearest cache while all parts are added.
+/// Rows of a block: their sums stay in the nearest cache while all parts are added.
 const BLOCK: usize = 1024;
-/// Inputs from which the products of a tile are worth a task.
+/// Least number of inputs for which the products of a tile are worth a task.
 const MANY: usize = 64;
 
 impl Surrogate {
-    /// How far the surrogate lies above its centre at every point; None when a part is unknown.
+    /// Values of the surrogate minus its centre, at every point. Returns None if a part is unknown.
     ///
-    /// Shapes: `inputs` has a column for every part, of standardised values, all of the same length. Cost: a product for
-    /// every interaction and point. No evaluation.
+    /// Shapes: `inputs` has a column of standardised values for every part, all of the same length. Cost: one product for every interaction
+    /// and point, and no evaluation.
     ///
     /// ```
     /// use crate::moments::Interactions;
@@ -42,7 +42,7 @@ impl Surrogate {
             let inputs: Vec<&[f64]> = inputs.iter().map(|column| &column[tile * TILE..][..rises.len()]).collect();
             on_this_processor(Products { interactions: &self.interactions, inputs: &inputs, rises });
         };
-        // A row's products are added in one order, whoever adds them.
+        // The products of a row are added in the same order by any number of threads.
         if rises.len() > TILE && self.parts.len() >= MANY {
             rises.par_chunks_mut(TILE).enumerate().for_each(products);
         } else {
@@ -51,9 +51,9 @@ impl Surrogate {
         Some(rises)
     }
 
-    /// Without curvatures and products that are no more than rounding of the differences they come from: eight units in the last place of
-    /// the value at the means, over a step of a sigma, or 1e-13 of the surface's own sigma. They make a cycle of products out of a tree
-    /// and a curve out of a line, which costs a law its closed form.
+    /// Removes curvatures and products within the rounding errors of the differences that they come from. The bound is eight units in the
+    /// last place of the value at the means, over a step of one sigma, or 1e-13 of the surface's own sigma. Such terms would turn a tree of
+    /// products into a graph with cycles and a line into a curve, and cost the distribution its closed form.
     pub fn without_rounding(&self) -> Self {
         let sigma = self.parts.iter().flatten().map(|part| part.largest().powi(2)).sum::<f64>().sqrt();
         let least = (8.0 * f64::EPSILON * self.centre.abs()).max(1e-13 * sigma);
@@ -66,7 +66,8 @@ impl Surrogate {
         Self { centre: self.centre, parts, interactions }
     }
 
-    /// `a` times this surface and `b` times another over the same inputs; None when a part of either is unknown.
+    /// Linear combination of `a` times this surface and `b` times another over the same inputs. Returns None if a part of either is
+    /// unknown.
     pub fn sum(&self, a: f64, other: &Self, b: f64) -> Option<Self> {
         let part = |(one, other): (&Option<Univariate>, &Option<Univariate>)| -> Option<Option<Univariate>> {
             Some(Some(one.as_ref()?.sum(a, other.as_ref()?, b)))
@@ -86,7 +87,7 @@ impl Surrogate {
     }
 }
 
-/// Adds every part to the rows from `first` on.
+/// Work that adds every part to the rows from `first` on.
 struct Parts<'a> {
     parts: &'a [Univariate],
     inputs: &'a [&'a [f64]],
@@ -106,10 +107,10 @@ impl Work for Parts<'_> {
     }
 }
 
-/// Adds every product to some rows, in the order of the pairs.
+/// Work that adds every product to some rows, in the order of the pairs.
 struct Products<'a> {
     interactions: &'a Interactions,
-    /// A column of as many rows for every input.
+    /// Column of each input, with as many values as there are rows.
     inputs: &'a [&'a [f64]],
     rises: &'a mut [f64],
 }
@@ -158,10 +159,10 @@ fn add<'a>(others: impl Iterator<Item = (f64, &'a [f64])>, u: &[f64], rises: &mu
 mod tests {
     use super::*;
 
-    /// By the formula itself, row after row and pair after pair: the same order of the same operations, hence the same bits.
+    /// Reference: the formula itself, row after row and pair after pair. The same order of the same operations gives the same bits.
     #[test]
     fn products_are_added_in_the_order_of_the_pairs() {
-        // Rows that fill tiles and a rest, inputs above and below those that are worth tasks, dense and sparse.
+        // Rows that fill tiles and a rest, input counts below and above the one worth tasks, dense and sparse products.
         for (inputs, rows, every) in [(3, 70, 1), (70, 100, 1), (70, 100, 40), (9, 1, 1)] {
             let value = |place: usize| ((place * 7919 % 1009) as f64 - 500.0) / 97.0;
             let columns: Vec<Vec<f64>> =
