@@ -32,7 +32,6 @@ const SAME: f64 = 1e-9;
 /// Parts of the way back from tolerances that keep everything, but not with their written digits.
 const BACK: [f64; 4] = [1e-4, 1e-3, 1e-2, 1e-1];
 
-/// End of a search.
 pub(super) struct SearchEnd {
     pub(super) station: Rc<Station>,
     /// Tolerances found. None if only nominal values were to be chosen.

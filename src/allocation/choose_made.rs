@@ -137,8 +137,8 @@ impl<'s, 'a> Judge<'s, 'a> {
 
     /// Lists with the use of every requirement by each option. Returns None if a requirement is not such a sum.
     fn lists(&self) -> Option<Vec<Vec<ListOption>>> {
-        // Losses depend on the whole choice, not on a sum over its options.
         let Setting { responses, priced, constraints, losses, .. } = *self.setting;
+        // Losses depend on the whole choice, not on a sum over its options.
         if !losses.is_empty() {
             return None;
         }

@@ -37,7 +37,6 @@ pub(super) fn kept(value: f64) -> bool {
 /// One side of one requirement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Constraint {
-    /// Index of the characteristic.
     pub(super) characteristic: usize,
     pub(super) requirement: Requirement,
     limits: SpecLimits,
@@ -99,7 +98,6 @@ impl Constraint {
         self.side == Side::Joint
     }
 
-    /// Characteristics of the constraint.
     pub(super) fn characteristics(&self, responses: &Responses) -> Vec<usize> {
         if self.is_joint() { responses.limited() } else { vec![self.characteristic] }
     }

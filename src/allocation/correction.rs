@@ -49,7 +49,6 @@ pub(super) enum Follows {
 pub(super) struct About<'r> {
     pub(super) law: &'r SurfaceLaw,
     pub(super) limits: SpecLimits,
-    /// Number of dimensions.
     pub(super) dimensions: usize,
     /// Varying dimensions, in the order of the surface's parts.
     pub(super) varying: Vec<(usize, Follows)>,

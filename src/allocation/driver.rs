@@ -99,7 +99,6 @@ impl Near {
     }
 }
 
-/// End of the rounds.
 pub(super) struct Ended {
     pub(super) agreed: bool,
     pub(super) within_budget: bool,
@@ -219,7 +218,6 @@ impl Driver<'_> {
     }
 }
 
-/// Unit of a characteristic.
 pub(super) fn unit(problem: &Problem, characteristic: usize) -> Option<String> {
     problem.characteristics()[characteristic].unit().map(str::to_owned)
 }

@@ -241,8 +241,8 @@ impl Driver<'_> {
                 agreed = still;
                 break;
             }
-            // Derivatives are followed only as far as they are trusted.
             let stopped = || self.run.stopped();
+            // Derivatives are followed only as far as they are trusted.
             let sampled = constraints.iter().any(|one| station.responses.is_sampled(one.characteristic));
             let followed = if sampled { reach.min(SampledCorrection::REACH) } else { reach };
             let priced = within_reach(&self.task.priced, &at, followed);

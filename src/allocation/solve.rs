@@ -29,7 +29,6 @@ pub(super) struct Setting<'a> {
     pub(super) constraints: &'a [Constraint],
     /// Costs of deviations and rejects, in addition to those of the tolerances.
     pub(super) losses: &'a [QualityLoss],
-    /// Costs of setting up machines.
     pub(super) setups: &'a [SetUp],
     pub(super) stopped: &'a (dyn Fn() -> bool + Sync),
     /// True if several starts are used in case there are several optima, false if only the given start is.
