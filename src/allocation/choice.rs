@@ -1,3 +1,4 @@
+//! Outcome of one search of tolerances.
 
 use super::result::{Attainable, Proof};
 use super::solved::Solved;

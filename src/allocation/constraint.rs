@@ -2,10 +2,10 @@
 //!
 //! ```text
 //! worst case       (reach beyond the nominal)/(U - nominal), linear in T where the surface is
-//! rss              (R/s)^2 with R the rss and s the room that the middle of the linear model leaves
-//! Cpk, sigma       (R/s)^2 with R sigma and s the room that the mean leaves
-//! yield            (sigma/s)^2 with s the sigma at which mean and shape give just that yield, corrected by the surface law
-//! joint yield      (b*/b)^2 with b the normal score of what all limits reject, b* that of what may be rejected
+//! rss              (R/s)^2 with R the rss and s the slack from the middle of the linear model to the limit
+//! Cpk, sigma       (R/s)^2 with R sigma and s the sigma that just keeps the requirement at this mean
+//! yield            (sigma/s)^2 with s the sigma at which mean and shape give just that yield, corrected by the surface distribution
+//! joint yield      (b*/b)^2 with b the normal score of the reject rate, b* that of the allowed reject rate
 //! ```
 //!
 //! The squares are exact sums of squares of tolerances for a linear characteristic. For any other the slopes are those

@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! R(r)     = P(y < m + r (L - m)) + P(y > m + r (U - m))          limits moved to r times their distance from the mean m
-//! s_law    = sigma/r with R(r) = q                                 q: what may be rejected, less what is not known
+//! s_law    = sigma/r with R(r) = q                                 q: allowed reject rate, minus the uncertainty
 //! ln kappa = ln(s_law/s_Pearson) + sum_j g_j ln(T_j/T_j0)          g_j: how both change with a tolerance
 //! ```
 //!

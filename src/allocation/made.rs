@@ -1,3 +1,4 @@
+//! Dimensions with the distribution of the chosen process.
 
 use std::sync::Arc;
 

@@ -98,6 +98,7 @@ pub(super) fn minimised(function: &Function<'_>, start: &[f64], tolerance: f64, 
     watched.best.into_inner().1
 }
 
+/// Number of particles of the swarm.
 const PARTICLES: usize = 40;
 /// Number of moves of each particle.
 const MOVES: u64 = 60;

@@ -41,7 +41,7 @@ const EXACT: f64 = 1e-12;
 const FEW: f64 = 1e-6;
 /// Most dimensions for these differences, which would otherwise take too long.
 const MANY: usize = 60;
-/// Least share that is told from 0.
+/// Least share that is distinguished from 0.
 const LEAST: f64 = 1e-300;
 
 impl RejectFit {
@@ -232,6 +232,7 @@ pub(super) fn of_scores(share: f64, allowed: f64) -> f64 {
 
 /// Ratio of the normal scores with its derivative by the share.
 pub(super) fn of_scores_with_slope(share: f64, allowed: f64) -> [f64; 2] {
+    /// Score below which the tangent continues the ratio: a score of 0 would be a pole.
     const LOW: f64 = 0.5;
     let wanted = standard_normal::upper_quantile(allowed);
     if wanted <= LOW {

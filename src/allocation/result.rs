@@ -126,7 +126,7 @@ pub struct Kept {
     #[cfg_attr(feature = "schema", schemars(with = "After"))]
     pub after: Option<Judged>,
     /// Verdict from a sample of the model at the tolerances found; for a worst case from points in the box of the
-    /// bands. None without a sample, and for rss, which samples cannot judge.
+    /// bands. None if there is no sample, and for rss, which samples cannot judge.
     #[serde(serialize_with = "sampled")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<Sampled>"))]
     pub sampled: Option<Judged>,
@@ -149,7 +149,7 @@ pub struct JointKept {
     #[serde(flatten, serialize_with = "through::<After, _, _>")]
     #[cfg_attr(feature = "schema", schemars(with = "After"))]
     pub after: Option<Judged>,
-    /// Verdict from a sample of the model at the tolerances found. None without a sample.
+    /// Verdict from a sample of the model at the tolerances found. None if there is no sample.
     #[serde(serialize_with = "sampled")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<Sampled>"))]
     pub sampled: Option<Judged>,
@@ -242,7 +242,7 @@ pub struct Proof {
     /// Largest violation of the conditions of Karush, Kuhn and Tucker. None if everything is chosen from lists.
     #[serde(rename = "kkt_residual")]
     pub residual: Option<f64>,
-    /// Lower bound of the cost of every choice of processes. None without lists, and if no bound is known.
+    /// Lower bound of the cost of every choice of processes. None if there are no lists, and if no bound is known.
     pub bound: Option<f64>,
     /// True if the bound is exact, false if it rests on a sample of choices.
     #[serde(skip)]
@@ -257,7 +257,7 @@ pub struct Proof {
     pub reached: Option<usize>,
     /// Cost of the next cheapest optimum among them. None if there was no other.
     pub other_optimum: Option<f64>,
-    /// Greatest possible excess of the cost over the bound, as a part of the cost. None without a bound.
+    /// Greatest possible excess of the cost over the bound, as a part of the cost. None if there is no bound.
     #[serde(skip)]
     pub gap: Option<f64>,
 }
@@ -280,7 +280,7 @@ pub struct Allocation {
     pub cost_before: Option<f64>,
     /// Total cost after.
     pub cost_after: Option<f64>,
-    /// Quality loss and scrap within these costs, before and after. None without losses, and if it is unknown.
+    /// Quality loss and scrap within these costs, before and after. None if there are no losses, and if it is unknown.
     #[serde(rename = "loss")]
     pub loss: [Option<f64>; 2],
     /// Cost of the cheapest tolerances without rounding to steps or standard grades, by the derivatives at those found.

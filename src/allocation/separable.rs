@@ -376,6 +376,7 @@ fn least_near(
     [(min, low), (max, high)]: [(f64, f64); 2],
     near: f64,
 ) -> Option<(f64, f64, f64)> {
+    /// Most steps of Newton's method from a near place.
     const STEPS: usize = 8;
     let mut x = libm::log(near);
     for _ in 0..STEPS {

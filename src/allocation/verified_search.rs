@@ -11,8 +11,9 @@
 //! is opened alone. Lists are searched by exchanges of one or two processes. Each trial is a whole analysis, so that
 //! the result has the verdict of `analyze --check`.
 //!
-//! Sources: for steps on verified values within a reach, A. R. Conn, N. I. M. Gould, P. L. Toint, Trust-Region Methods (2000); for the polls,
-//! R. Hooke, T. A. Jeeves, "Direct search solution of numerical and statistical problems", J. ACM 8 (1961).
+//! Sources: A. R. Conn, N. I. M. Gould, P. L. Toint, Trust-Region Methods (2000), for steps on verified values within a
+//! reach; R. Hooke, T. A. Jeeves, "Direct search solution of numerical and statistical problems", J. ACM 8 (1961), for
+//! opening one tolerance after the other.
 //!
 //! Cost: at most [`MOST`] analyses of a cheap model.
 

@@ -1,3 +1,4 @@
+//! Estimates of a small probability by weighted points.
 
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 

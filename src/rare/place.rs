@@ -125,6 +125,7 @@ impl Place {
     ///
     /// Shapes: `values` has the model's value at every station with one.
     pub(super) fn correct(&mut self, target: &Target<'_>, values: &[(f64, f64)]) -> bool {
+        /// Step along the way, in sigmas.
         const STEP: f64 = 0.02;
         let margins = |at: &[f64]| {
             target.margins(&self.direction.iter().map(|part| at.iter().map(|t| t * part).collect()).collect())
@@ -230,6 +231,7 @@ fn nearest(target: &Target<'_>, start: Vec<f64>) -> Option<Vec<f64>> {
 
 /// Direction of the surrogate's nearest approach to a limit that it does not reach, at five sigmas.
 fn steepest(target: &Target<'_>, gradient: Vec<f64>) -> Option<Vec<f64>> {
+    /// Distance from the means at which the gradient is followed, in sigmas.
     const RADIUS: f64 = 5.0;
     let mut direction = gradient;
     for _ in 0..50 {
