@@ -163,7 +163,7 @@ pub fn search(problem: &Problem, outcome: &Outcome, budget: Option<usize>, run: 
     let begin = |t: usize, answers: &Answers<'_>| {
         [1.0, -1.0].map(|sign| tasks[t].climbs(answers, sign).into_iter().map(move |climb| Ongoing { t, sign, climb }))
     };
-    // A foretold characteristic needs no search; branch and bound may start one later.
+    // A characteristic that the surrogate has predicted needs no search. Branch and bound may start one later.
     let unsure = (0..tasks.len()).filter(|&t| !tasks[t].foretold(&answers));
     let mut climbs: Vec<Ongoing<'_>> = unsure.flat_map(|t| begin(t, &answers)).flatten().collect();
     let mut proofs = vec![None; tasks.len()];

@@ -123,7 +123,7 @@ impl Place {
     ///
     /// Between the stations the model is taken as the surrogate plus its error, which is interpolated linearly.
     ///
-    /// Shapes: `values` has the model's value at every station with one.
+    /// Shapes: `values` has the model's value at every distance with one.
     pub(super) fn correct(&mut self, target: &Target<'_>, values: &[(f64, f64)]) -> bool {
         /// Step along the way, in sigmas.
         const STEP: f64 = 0.02;
