@@ -1,55 +1,57 @@
-//! The augmented Lagrangian: a smooth objective under smooth rows and bounds, by descents of L-BFGS.
+//! Augmented Lagrangian: minimises a smooth objective under smooth rows and bounds by descents of L-BFGS.
 //!
 //! ```text
 //! min over x of  f(x) + sum_i (max(0, lambda_i + rho c_i(x))^2 - lambda_i^2)/(2 rho),   lambda_i <- max(0, lambda_i + rho c_i)
 //! ```
 //!
-//! over the rows `c_i <= 0` and the bounds alike. Source: M. R. Hestenes, "Multiplier and gradient methods", J. Optimization Theory and
-//! Applications 4 (1969); R. T. Rockafellar, same journal 12 (1973), for inequalities.
+//! The terms are those of the rows `c_i <= 0` and of the bounds alike. Source: M. R. Hestenes, "Multiplier and gradient
+//! methods", J. Optimization Theory and Applications 4 (1969); R. T. Rockafellar, same journal 12 (1973), for
+//! inequalities.
 
 use super::cost::Priced;
 use super::minimise::minimised;
 use super::separable::Separable;
 
-/// Descents of one update.
+/// Iterations of the descent between two updates of the multipliers.
 const DESCENT: u64 = 60;
-/// A violation that does not fall to this part of the last one needs a greater weight.
+/// Greatest ratio of a violation to the last one with which the weight stays.
 const FALLS: f64 = 0.25;
+/// First weight of the violations, and its factor at each increase.
 const WEIGHT: f64 = 10.0;
 
-/// A value and its derivatives.
+/// Value with its derivatives.
 pub(super) type Slope = (f64, Vec<f64>);
 
-/// The objective and its constraints.
 pub(super) struct Smooth<'a> {
-    /// The objective, near 1.
+    /// Objective, scaled to a size near 1.
     pub(super) objective: &'a dyn Fn(&[f64]) -> Slope,
-    /// The rows, each kept where it is at most 0; None where one is not defined.
+    /// Rows, each kept if it is at most 0. Returns None if one is not defined.
     pub(super) rows: &'a dyn Fn(&[f64]) -> Option<Vec<Slope>>,
     pub(super) bounds: &'a [[f64; 2]],
 }
 
-/// When a search ends.
+/// End conditions of a search.
 #[derive(Clone, Copy)]
 pub(super) struct Near {
-    /// The tolerance of rows and bounds.
+    /// Greatest violation of rows and bounds.
     pub(super) by: f64,
-    /// Updates of the multipliers.
+    /// Most updates of the multipliers.
     pub(super) updates: usize,
 }
 
-/// Where a search ended.
+/// Result of a search.
 pub(super) struct Ended {
-    /// Within the bounds.
+    /// Unknowns, within their bounds.
     pub(super) x: Vec<f64>,
-    /// Of the rows.
+    /// Multipliers of the rows.
     pub(super) multipliers: Vec<f64>,
-    /// The largest violation of the conditions of Karush, Kuhn and Tucker; stationarity relative to the largest slope of the objective.
+    /// Largest violation of the conditions of Karush, Kuhn and Tucker. Stationarity is relative to the largest slope of
+    /// the objective.
     pub(super) residual: f64,
 }
 
 impl Smooth<'_> {
-    /// The end of a search from a start; None where the rows are not defined there.
+    /// Searches from a start. Returns None if the rows are not defined there.
     pub(super) fn minimised(&self, start: &[f64], near: Near) -> Option<Ended> {
         let mut x = start.to_vec();
         let rows = (self.rows)(&x)?.len();
@@ -78,7 +80,7 @@ impl Smooth<'_> {
         Some(Ended { x, multipliers, residual })
     }
 
-    /// By how much every row, and the lower and the upper bound of every unknown, is exceeded.
+    /// Excess of every row, and of every unknown below its lower and above its upper bound.
     fn over(&self, rows: &[Slope], x: &[f64]) -> Vec<f64> {
         let bounds = self.bounds.iter().zip(x).flat_map(|(&[low, high], &x)| [low - x, x - high]);
         rows.iter().map(|row| row.0).chain(bounds).collect()
@@ -109,7 +111,8 @@ impl Smooth<'_> {
         Some(self.residual_of(&(self.objective)(x).1, &(self.rows)(x)?, x, multipliers))
     }
 
-    /// The largest violation of the conditions of Karush, Kuhn and Tucker, by the slopes of the objective and the rows at `x`.
+    /// Largest violation of the conditions of Karush, Kuhn and Tucker, by the slopes of the objective and the rows at
+    /// `x`.
     pub(super) fn residual_of(&self, own: &[f64], rows: &[Slope], x: &[f64], multipliers: &[f64]) -> f64 {
         let scale = own.iter().fold(f64::MIN_POSITIVE, |scale, slope| scale.max(slope.abs()));
         let (of_rows, of_bounds) = multipliers.split_at(rows.len());
@@ -128,8 +131,8 @@ impl Smooth<'_> {
     }
 }
 
-/// A separable problem from any start near to its multipliers, what is left after that Newton steps on the dual do: tolerances and
-/// multipliers of the rows. Every group must have one offer.
+/// Solves a separable problem from any start to near its optimum. Returns tolerances and multipliers, which Newton
+/// steps on the dual then refine. Every group must have one offer.
 pub(super) fn augmented(problem: &Separable<'_>, start: &[f64]) -> (Vec<f64>, Vec<f64>) {
     const NEAR: Near = Near { by: 1e-3, updates: 12 };
     let bounds: Vec<[f64; 2]> =
@@ -169,7 +172,7 @@ fn with_losses(problem: &Separable<'_>, at: &[f64], x: &[f64]) -> Slope {
     (value, slopes)
 }
 
-/// Cost of all groups at tolerances and their logarithms, by the first offer of each, and its derivatives by `ln T`.
+/// Cost of all groups at tolerances and their logarithms, by the first offer of each, with the derivatives by `ln T`.
 pub(super) fn cost(priced: &[Priced], at: &[f64], x: &[f64]) -> Slope {
     let of = priced.iter().zip(at.iter().zip(x)).map(|(group, (&t, &ln))| {
         let [cost, slope] = group.offers[0].curve.with_slope(t, ln);

@@ -1,22 +1,24 @@
-//! How a dimension and its band follow the tolerance.
+//! Change of a dimension and its band with the tolerance.
 
 use sensitol_numeric::dimension::Dimension;
 
-/// Differences smaller than this part are rounding.
+/// Relative difference that counts as rounding.
 const SAME: f64 = 1e-12;
 
-/// How a varying dimension follows its tolerance.
+/// Change of a varying dimension with its tolerance.
 #[derive(Clone, Copy)]
 pub(super) enum Scaling {
-    /// The same shape, sigma in proportion, the mean moved by `alpha` sigma for every further old half band.
+    /// Same shape, with sigma in proportion. The mean moves by `alpha` old sigmas for every old half band that is
+    /// added.
     Similar { alpha: f64 },
-    /// Another shape at every tolerance.
+    /// Distribution with another shape at every tolerance.
     Reshaped,
-    /// It does not.
+    /// Distribution that does not depend on the tolerance.
     Still,
 }
 
-/// The band about the nominal at a factor of 1: its middle and half width, and by how many half widths the middle moves where they grow.
+/// Band about the nominal at a factor of 1: its middle, its half-width, and the move of the middle per half-width that
+/// is added.
 #[derive(Clone, Copy)]
 pub(super) struct Reach {
     pub(super) middle: f64,
@@ -33,7 +35,7 @@ impl Scaling {
             return if dimension.scaled(1.0).is_some() { Self::Reshaped } else { Self::Still };
         };
         let alpha = (double.mean() - mean) / sigma;
-        // Rounding of the mean, seen in sigmas.
+        // Rounding of the mean, in sigmas.
         let blur = 8.0 * f64::EPSILON * (mean.abs() + double.mean().abs()) / sigma;
         let affine = ((half.mean() - mean) / sigma + 0.5 * alpha).abs() <= blur + SAME * alpha.abs();
         let wide = (double.sigma() / sigma - 2.0).abs() < SAME && (half.sigma() / sigma - 0.5).abs() < SAME;

@@ -1,12 +1,13 @@
-//! Costs where none are given: what is harder to hold costs more.
+//! Default costs if none are given: a tolerance that is harder to hold costs more.
 //!
 //! ```text
 //! C_j = i_j/T_j           i_j: the tolerance unit of ISO 286-1 for the size, in the unit of the dimension
 //! C_j = T_j0/T_j          where there is no size that has one: angles, forces, a nominal value of 0; T_j0: the half band as written
 //! ```
 //!
-//! A third way fixes the proportions, and one factor remains: the same grade everywhere, `T_j = k i_j` (constant precision: K. W. Chase, W. H.
-//! Greenwood, Manufacturing Review 1 (1988)), or the same effect everywhere, `|s_j| T_j = k`.
+//! A third way fixes the proportions and leaves one factor. Either the grade is the same everywhere, `T_j = k i_j`
+//! (constant precision: K. W. Chase, W. H. Greenwood, Manufacturing Review 1 (1988)), or the effect is, `|s_j| T_j =
+//! k`.
 
 use serde::Serialize;
 
@@ -16,33 +17,33 @@ use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::fits::tolerance_unit;
 use sensitol_numeric::unit::Unit;
 
-/// Where costs come from.
+/// Origin of the costs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum CostBasis {
-    /// They are given.
+    /// Given costs.
     #[default]
     Given,
-    /// The tolerance unit of the size by the half band.
+    /// Tolerance unit of the size, divided by the half band.
     ToleranceUnit,
-    /// The same, with the same grade everywhere.
+    /// Tolerance unit divided by the half band, with the same grade everywhere.
     ConstantPrecision,
-    /// The same, with the same effect on the characteristic everywhere.
+    /// Tolerance unit divided by the half band, with the same effect on the characteristic everywhere.
     EqualShares,
 }
 
 impl CostBasis {
-    /// Whether the proportions of the tolerances are fixed, so that one factor is sought.
+    /// True if the proportions of the tolerances are fixed, so that only one factor is sought.
     pub(super) fn is_proportion(self) -> bool {
         matches!(self, Self::ConstantPrecision | Self::EqualShares)
     }
 }
 
-/// Half bands by the present ones between which a tolerance without a cost is sought.
+/// Greatest ratio of a tolerance without a cost to the present one, either way.
 const RANGE: f64 = 10.0;
 
-/// The unit of cost of a dimension in its own unit: that of its size, or the half band as written.
+/// Tolerance unit of a dimension's size in its own unit. It is the present half band if the size has none.
 pub(super) fn unit(dimension: &Dimension) -> f64 {
     let metre = Unit::parse("m");
     let length = match dimension.unit() {
@@ -59,7 +60,7 @@ pub(super) fn unit(dimension: &Dimension) -> f64 {
     }
 }
 
-/// A relative cost for every dimension, and every position, whose tolerance can change.
+/// Relative costs of every dimension, and every position, whose tolerance can change.
 pub(super) fn relative(problem: &Problem) -> Vec<Priced> {
     let dimensions = problem.dimensions();
     let mut groups: Vec<Priced> = Vec::new();
@@ -85,7 +86,7 @@ pub(super) fn relative(problem: &Problem) -> Vec<Priced> {
     groups
 }
 
-/// Why a dimension does not follow its tolerance.
+/// Reason why a dimension does not follow its tolerance. Returns None if it does.
 pub(super) fn unscalable(dimension: &Dimension) -> Option<&'static str> {
     let law = dimension.distribution()?;
     if law.measured().is_some() {

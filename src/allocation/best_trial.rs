@@ -1,8 +1,10 @@
-//! End of an allocation: the cheapest tolerances that keep everything by the analysis itself, those of the study among them.
+//! End of an allocation: the cheapest tolerances that keep everything by the analysis itself. The tolerances of the
+//! study are among the candidates.
 //!
-//! A search ends where derivatives say. Its end is tried ([`Trial`]); what it misses by little is required more strictly, and searched again;
-//! and where derivatives lead astray a [search by trials](super::verified_search) goes on. The tolerances before are a trial too, so that an
-//! allocation is never dearer than what it began with, nor without a result where that keeps everything.
+//! Derivatives lead a search to its end, which is then tried ([`Trial`]). Requirements that it misses by little are
+//! made stricter, and the search is repeated. If derivatives are wrong, a [search by trials](super::verified_search)
+//! follows. The tolerances before are tried too. An allocation is therefore never dearer than its start, and has a
+//! result if the start keeps everything.
 
 use std::rc::Rc;
 
@@ -21,39 +23,38 @@ use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::verdict::Verdict;
 
-/// Searches again with stricter requirements, at most.
+/// Most repeated searches with stricter requirements.
 const STRICTER: usize = 3;
-/// Factor by which a requirement is made stricter than a trial misses it; a thousandth of the miss is left.
+/// Factor of a miss by which a requirement is made stricter. The excess over 1 makes sure that the miss is made up for.
 const MARGIN: f64 = 1.01;
-/// Costs that differ by a smaller part are the same.
+/// Relative difference of costs within which they are the same.
 const SAME: f64 = 1e-9;
-/// Parts of the way back from tolerances that keep everything, and not as they are written.
+/// Parts of the way back from tolerances that keep everything, but not with their written digits.
 const BACK: [f64; 4] = [1e-4, 1e-3, 1e-2, 1e-1];
 
-/// The end of a search.
 pub(super) struct SearchEnd {
     pub(super) station: Rc<Station>,
-    /// Tolerances found; None where only nominal values were to be chosen.
+    /// Tolerances found. None if only nominal values were to be chosen.
     pub(super) last: Option<Chosen>,
-    /// The requirements, the levels that are sought for a cost included.
+    /// Requirements, including the level that is sought for a given cost.
     pub(super) constraints: Vec<Constraint>,
     pub(super) ended: Ended,
-    /// Trial of the tolerances found, where one was made.
+    /// Trial of the tolerances found, if one was made.
     pub(super) trial: Option<Trial>,
-    /// True of the study's own tolerances and nominal values.
+    /// True for the study's own tolerances and nominal values.
     pub(super) is_start: bool,
 }
 
-/// The study's own tolerances.
+/// Tolerances of the study at the start.
 pub(super) struct AllocationStart {
     pub(super) station: Rc<Station>,
     pub(super) trial: Option<Trial>,
-    /// True where the costs offer these tolerances.
+    /// True if the costs offer these tolerances.
     pub(super) offered: bool,
 }
 
 impl SearchEnd {
-    /// Its half bands and offers.
+    /// Half bands and offers of the end.
     fn tolerances(&self) -> Option<Tolerances> {
         self.last.as_ref().map(|(solved, offers, _)| (solved.at.clone(), offers.clone()))
     }
@@ -64,7 +65,7 @@ impl SearchEnd {
 }
 
 impl Driver<'_> {
-    /// The study's own tolerances, tried where that costs nothing.
+    /// Judges the study's own tolerances. They are tried if the model is cheap.
     pub(super) fn start(&mut self, problem: &Problem, station: &Rc<Station>) -> AllocationStart {
         let at: Vec<f64> = self.task.priced.iter().map(|group| group.tightest_member(problem)).collect();
         let held = self.holding(problem);
@@ -79,7 +80,7 @@ impl Driver<'_> {
                 .checked(problem)
                 .map(|(analysis, findings)| self.trial_of(problem.clone(), tolerances, analysis, Some(findings))),
         };
-        // A process that holds less than what is written costs what it costs.
+        // A process that holds a tighter tolerance than the written one keeps its own cost.
         let trial = trial.map(|trial| {
             let (at, offers) = self.offered(&trial);
             Trial { cost: self.held_cost(&at, &offers) + trial.loss, ..trial }
@@ -87,7 +88,8 @@ impl Driver<'_> {
         AllocationStart { station: Rc::clone(station), trial, offered }
     }
 
-    /// Returns the better of the end of a search and the start. None where nothing was found; the status says why.
+    /// Returns the better of the end of a search and the start. Returns None if nothing was found. The status gives the
+    /// reason.
     pub(super) fn best_end(
         &mut self,
         allocation: &mut Allocation,
@@ -96,7 +98,7 @@ impl Driver<'_> {
     ) -> Result<Option<SearchEnd>, AllocateError> {
         let end = match end {
             Some(end) if end.ended.within_budget && !self.spent.stopped => self.tried(allocation, end)?,
-            // A budget that ended leaves nothing to judge.
+            // A search that ended on its budget leaves nothing to judge.
             Some(end) => return Ok(Some(end)),
             None => None,
         };
@@ -122,7 +124,7 @@ impl Driver<'_> {
         if kept_end && agreed && !dearer {
             return Ok(end);
         }
-        // That nothing can be kept is proven.
+        // That no tolerances keep everything is proven.
         if end.is_none() && allocation.status == Status::Infeasible && !kept_start {
             return Ok(None);
         }
@@ -152,7 +154,7 @@ impl Driver<'_> {
         }
     }
 
-    /// An end with its trial, searched again as long as requirements that are made stricter by what it misses are all that it lacks.
+    /// Tries an end, and repeats the search while its trial misses only requirements that can be made stricter.
     fn tried(&mut self, allocation: &mut Allocation, end: SearchEnd) -> Result<Option<SearchEnd>, AllocateError> {
         let mut end = self.with_trial(end);
         for _ in 0..STRICTER {
@@ -169,7 +171,7 @@ impl Driver<'_> {
             let Some(station) = self.station(end.station.problem.clone())? else { break };
             match self.search(allocation, Rc::new(station), &constraints, &at)? {
                 Some(next) if next.ended.within_budget && !self.spent.stopped => end = self.with_trial(next),
-                // The end found without is all that there is.
+                // The search found nothing more, so the last end stays.
                 _ => {
                     allocation.attainable = None;
                     break;
@@ -179,7 +181,7 @@ impl Driver<'_> {
         Ok(Some(end))
     }
 
-    /// The end with its trial: that of its station where the station was analysed so.
+    /// Adds the trial to an end. It is the analysis of the linearization point, if this was made as a trial is.
     fn with_trial(&mut self, end: SearchEnd) -> SearchEnd {
         let problem = end.station.problem.clone();
         let tolerances = end.tolerances().unwrap_or_default();
@@ -189,13 +191,14 @@ impl Driver<'_> {
             true => Some(of_station()),
             false => self.checked(&problem).map(|(analysis, findings)| (analysis, Some(findings))),
         };
-        // Where the budget does not reach for more, the station is what is known.
+        // If the budget does not allow a trial, the linearization point is judged.
         let (analysis, findings) = found.unwrap_or_else(of_station);
         let trial = self.trial_of(problem, tolerances, analysis, findings);
         SearchEnd { trial: Some(trial), ..end }
     }
 
-    /// Makes stricter what a trial misses although its station keeps it; false where nothing is.
+    /// Makes those requirements stricter that a trial misses although its linearization point keeps them. Returns false
+    /// if there is none, or another one is missed.
     fn require_more(&mut self, end: &SearchEnd) -> bool {
         let Some(trial) = &end.trial else { return false };
         let kept_by_station = self.judged_by(&end.station.analysis);
@@ -218,7 +221,8 @@ impl Driver<'_> {
         true
     }
 
-    /// Returns whether the start keeps everything by `analyze --check`. A costly model is analysed only where the search found nothing better.
+    /// True if the start keeps everything by `analyze --check`. A costly model is analysed only if the search found
+    /// nothing better.
     fn start_is_kept(&mut self, start: &AllocationStart, end: Option<&SearchEnd>) -> bool {
         let problem = &start.station.problem;
         if self.is_cheap(problem) || self.stations_are_trials() {
@@ -235,7 +239,8 @@ impl Driver<'_> {
         costs.is_some_and(|(end, start)| end.cost > start.cost * (1.0 + SAME))
     }
 
-    /// Returns the cheapest station of a costly model that kept everything, unless it is the end or its trial misses a requirement.
+    /// Returns the cheapest linearization point of a costly model that kept everything. Returns None if it is the end
+    /// itself, and if its trial misses a requirement.
     fn tried_again(&mut self, seen: Option<Seen>, end: Option<&SearchEnd>) -> Option<Trial> {
         let Seen { station, chosen: (solved, offers, _), .. } = seen?;
         if end.is_some_and(|end| Rc::ptr_eq(&end.station, &station)) {
@@ -248,7 +253,7 @@ impl Driver<'_> {
         Some(self.trial_of(station.problem.clone(), (solved.at, offers), analysis, findings)).filter(Trial::is_kept)
     }
 
-    /// The best of a search by trials, which keeps everything as it is written too.
+    /// Best result of a search by trials that also keeps everything with its written digits.
     fn search_by_trials(
         &mut self,
         start: &AllocationStart,
@@ -267,7 +272,7 @@ impl Driver<'_> {
         if self.is_kept_as_written(&found.problem) {
             return Some(found);
         }
-        // A last digit that is cut off lets a sample's point pass a limit: a little of the way back.
+        // Cutting off the last digits may move a sample's point past a limit, so the tolerances go back a little.
         let back = start.trial.as_ref().filter(|trial| kept_start && trial.offers == found.offers);
         let tight: Vec<f64> = found.at.iter().map(|t| 0.5 * t).collect();
         let back = back.map_or(tight, |trial| trial.at.clone());
@@ -282,7 +287,7 @@ impl Driver<'_> {
         None
     }
 
-    /// Tolerances of the study as their offers have them: of a list that of the process that holds it.
+    /// Tolerances of the study clamped to their offers. For a list it is the tolerance of the process that holds it.
     fn offered(&self, trial: &Trial) -> Tolerances {
         let of = |((group, &t), &offer): ((&super::cost::Priced, &f64), &usize)| {
             t.clamp(group.offers[offer].min, group.offers[offer].max)
@@ -290,7 +295,7 @@ impl Driver<'_> {
         (self.task.priced.iter().zip(&trial.at).zip(&trial.offers).map(of).collect(), trial.offers.clone())
     }
 
-    /// The same of tolerances in fixed proportions.
+    /// Better of the end and a search by trials for tolerances in fixed proportions.
     fn best_in_proportion(&mut self, end: Option<SearchEnd>) -> Result<Option<SearchEnd>, AllocateError> {
         let Some(end) = end else { return Ok(None) };
         let base = end.station.problem.clone();
@@ -306,7 +311,7 @@ impl Driver<'_> {
     }
 }
 
-/// The end of a search at a trial, of which nothing is proven.
+/// End of a search at a trial, without a proof.
 fn ended_at(
     station: Rc<Station>,
     constraints: Vec<Constraint>,
@@ -330,7 +335,8 @@ fn ended_at(
     SearchEnd { station, last, constraints, ended, trial: Some(trial), is_start }
 }
 
-/// Returns whether the processes make the dimensions of the problem. Two processes of one tolerance may differ in mean and sigma.
+/// True if the dimensions of the problem are those of its processes. Two processes of one tolerance may differ in mean
+/// and sigma.
 fn is_made(problem: &Problem, made: &[(usize, Dimension)]) -> bool {
     made.iter().all(|(d, made)| {
         let own = &problem.dimensions()[*d];
@@ -339,7 +345,7 @@ fn is_made(problem: &Problem, made: &[(usize, Dimension)]) -> bool {
     })
 }
 
-/// The status of an end that is not kept.
+/// Status of an end that misses a requirement.
 pub(super) fn status_of_missed(verdict: Verdict) -> Status {
     match verdict {
         Verdict::Missed => Status::NoFeasiblePointFound,

@@ -1,6 +1,6 @@
-//! A worst case held against points of the model itself: corners of the box of the tolerance bands, and points within it.
+//! Worst case checked at points of the model: corners of the box of the tolerance bands, and points within it.
 //!
-//! A point beyond a limit refutes a worst case; points that keep it prove nothing.
+//! A point beyond a limit refutes a worst case. Points within the limits prove nothing.
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -11,13 +11,14 @@ use crate::problem::Problem;
 use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::verdict::Judged;
 
-/// Half of the points are corners.
+/// Number of points. Half of them are corners.
 const POINTS: usize = 1 << 13;
-/// The rounding of a value as a part of the greatest of its terms, a dimension times its slope: some additions.
+/// Rounding of a value relative to the greatest of its terms, a dimension times its slope: some additions.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// For every characteristic, analysed at these tolerances, what the points say of its worst case: the greatest part of a limit's room that one takes, from there on. None where
-/// none has a value, of dimensions that share a zone, which is not a box, and of a characteristic without room.
+/// Verdict of the points on the worst case of every characteristic that was analysed at these tolerances. Its interval
+/// begins at the greatest part of the distance from nominal to limit that a point uses. None if no point has a value,
+/// if dimensions share a zone, which is not a box, and if the nominal value lies beyond a limit.
 pub(super) fn worst_in_box(
     problem: &Problem,
     analysed: &[CharacteristicAnalysis],
@@ -50,7 +51,7 @@ pub(super) fn worst_in_box(
         let slopes: Vec<f64> = one.sensitivities.iter().map(|of| of.first.unwrap_or(0.0)).collect();
         let limits = problem.characteristics()[c].limits();
         let part = |(row, value): (usize, f64)| {
-            // A value that is a sum is rounded as the greatest of its terms is: a corner that lies on a limit is not beyond it.
+            // The value of a sum is rounded as its greatest term is. A corner on a limit must not count as beyond it.
             let term = |(d, slope): (usize, &f64)| (slope * points.column(d)[row]).abs();
             let size = slopes.iter().enumerate().map(term).fold(value.abs(), f64::max);
             let rise = (value - nominal).signum() * ((value - nominal).abs() - ROUNDING * size).max(0.0);

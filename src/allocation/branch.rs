@@ -1,16 +1,16 @@
-//! The cheapest choice of processes: branch and bound on the dual of the convex relaxation.
+//! Cheapest choice of processes: branch and bound on the dual of the convex relaxation.
 //!
-//! A node allows a range of processes for every group. Its bound is a dual value
-//! ([`separable`](super::separable)), which no choice from these ranges can undercut whatever the multipliers, so that rounding and
-//! unfinished searches of multipliers make it weaker, never wrong. The range of the group whose two best processes are nearest in
-//! priced value is split between them. Source of the relaxation: A. M. Geoffrion, "Lagrangean relaxation for integer programming",
-//! Mathematical Programming Study 2 (1974).
+//! A node allows a range of processes for every group. Its bound is a dual value ([`separable`](super::separable)). No
+//! choice from these ranges can cost less, for any multipliers. Rounding and unfinished searches of multipliers make
+//! the bound weaker, never wrong. Each split takes the group whose two best processes are nearest in priced value, and
+//! divides its range between them. Source of the relaxation: A. M. Geoffrion, "Lagrangean relaxation for integer
+//! programming", Mathematical Programming Study 2 (1974).
 //!
-//! Lists of single half bands under such sums are a problem of their own ([`knapsack`](super::knapsack)).
+//! Lists of single half bands with such sums are solved separately ([`knapsack`](super::knapsack)).
 //!
-//! Bounds are exact for worst cases and sums of squares. Where second-order moments are more than that, the sums stand for
-//! them with a reserve: by how much they were too strict on random choices, twice; then optimality rests on that sample, and is
-//! not called proven.
+//! Bounds are exact for worst cases and sums of squares. Other second-order moments are replaced by such sums with a
+//! reserve: twice the greatest excess on random choices. Optimality then rests on that sample, and is not reported as
+//! proven.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -28,17 +28,17 @@ use super::separable::{Best, Row, Separable};
 use super::solve::Setting;
 use super::solved::{Solved, Starts};
 
-/// The cheapest choice found.
+/// Cheapest choice found.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Chosen {
     pub(super) solved: Solved,
-    /// For every group the offer.
+    /// Offer of every group.
     pub(super) offers: Vec<usize>,
-    /// No choice costs less.
+    /// Lower bound of the cost of every choice.
     pub(super) bound: f64,
-    /// Nodes looked at.
+    /// Number of nodes examined.
     pub(super) nodes: usize,
-    /// Whether the bound is exact, rather than resting on a sample of choices.
+    /// True if the bound is exact, false if it rests on a sample of choices.
     pub(super) rigorous: bool,
 }
 
@@ -63,21 +63,21 @@ impl PartialOrd for Node {
 }
 
 impl Ord for Node {
-    /// The lowest bound is the greatest: first out of the heap.
+    /// Orders nodes so that the one with the lowest bound is the greatest, and leaves the heap first.
     fn cmp(&self, other: &Self) -> Ordering {
         other.bound.total_cmp(&self.bound)
     }
 }
 
-/// Nodes at most, a few seconds of them.
+/// Most nodes, which take a few seconds.
 const NODES: usize = 400_000;
-/// Choices few enough to look at all, where bounds would rest on a sample.
+/// Most choices that are all examined if bounds would rest on a sample.
 const ALL: usize = 20_000;
-/// Random choices that say how good sums of squares are.
+/// Number of random choices that measure the error of sums of squares.
 const SAMPLE: usize = 400;
-/// Steps of the multipliers at the root and at every other node.
+/// Steps of the multipliers at the root, and at every other node.
 const STEPS: [usize; 2] = [400, 40];
-/// Costs that differ by less are the same.
+/// Relative difference of costs within which they are the same.
 const SAME: f64 = 1e-12;
 
 struct Search<'a> {
@@ -88,7 +88,7 @@ struct Search<'a> {
     nodes: usize,
 }
 
-/// The cheapest choice of an offer for every group; None where none was found that keeps the constraints.
+/// Cheapest choice of an offer for every group. Returns None if no choice was found that keeps the constraints.
 pub(super) fn branch(setting: Setting<'_>, start: &[f64]) -> Option<Chosen> {
     let exact = setting.is_exact();
     let reference = reference(&setting, start)?;
@@ -110,7 +110,7 @@ pub(super) fn branch(setting: Setting<'_>, start: &[f64]) -> Option<Chosen> {
     search.run(exact)
 }
 
-/// Tolerances at which the constraints are finite, near the start.
+/// Tolerances near the start at which the constraints are finite.
 fn reference(setting: &Setting<'_>, start: &[f64]) -> Option<Vec<f64>> {
     let bounds = setting.bounds();
     let parts = [0.0, 0.25, 0.5, 0.75, 1.0];
@@ -125,7 +125,8 @@ fn reference(setting: &Setting<'_>, start: &[f64]) -> Option<Vec<f64>> {
 }
 
 impl Search<'_> {
-    /// Lists of single half bands with what each uses of every row; None where a row gives room or has none.
+    /// Lists of single half bands with the use of every row by each. Returns None if a row has no slack or a negative
+    /// use.
     fn lists(&self) -> Option<Vec<Vec<ListOption>>> {
         let room: Vec<f64> = self.rows.iter().map(|row| 1.0 - row.constant).collect();
         if room.iter().any(|&room| room <= 0.0) {
@@ -144,7 +145,7 @@ impl Search<'_> {
         lists.iter().flatten().all(|one| one.uses.iter().all(|&use_| use_ >= 0.0)).then_some(lists)
     }
 
-    /// The cheapest choice from lists.
+    /// Cheapest choice from lists.
     fn chosen_of(&self, lists: &[Vec<ListOption>]) -> Option<Chosen> {
         let found = cheapest(lists, self.setting.stopped)?;
         let (solved, value) = self.judged(&found.places)?;
@@ -185,7 +186,7 @@ impl Search<'_> {
                 continue;
             }
             let Some((g, at)) = split else {
-                // One choice is left, and its own optimum was tried: nothing below it can be better.
+                // Only one choice is left, and its own optimum was tried.
                 continue;
             };
             let Range { start, end } = node.ranges[g];
@@ -204,7 +205,7 @@ impl Search<'_> {
         self.incumbent.as_ref().map_or(f64::INFINITY, |(solved, _)| solved.cost)
     }
 
-    /// Whether the constraints could be kept if every group could be as good for each as its best offer.
+    /// True if every constraint alone could be kept with the best offer of every group for it.
     fn possible(&self, ranges: &[Range<usize>]) -> bool {
         self.rows.iter().all(|row| {
             let least = row.terms.iter().zip(ranges).zip(self.setting.priced).map(|((term, range), group)| {
@@ -215,8 +216,8 @@ impl Search<'_> {
         })
     }
 
-    /// Takes the choice if it is better than the best so far, after mending it: tightened until it keeps the constraints, then loosened
-    /// as far as it does.
+    /// Repairs a choice, and keeps it if it is better than the best so far. It is tightened until it keeps the
+    /// constraints, then loosened as far as it does.
     fn try_from(&mut self, best: &[Best]) {
         let mut offers: Vec<usize> = best.iter().map(|best| best.offer).collect();
         let mut value = self.judged(&offers).map_or_else(|| self.quick(&offers).max(1.0 + 1e-9), |(_, value)| value);
@@ -266,7 +267,7 @@ impl Search<'_> {
         self.consider(offers);
     }
 
-    /// Takes the optimum with these offers if it is the best so far.
+    /// Keeps the optimum with these offers if it is the best so far.
     fn consider(&mut self, offers: Vec<usize>) {
         let better = |(solved, value): &(Solved, f64)| kept(*value) && solved.cost < self.known() * (1.0 - SAME);
         if let Some((solved, _)) = self.judged(&offers).filter(better) {
@@ -274,20 +275,20 @@ impl Search<'_> {
         }
     }
 
-    /// About what an offer of a group costs: at its loosest.
+    /// Approximate cost of an offer of a group: that of its loosest half band.
     fn price(&self, g: usize, offer: usize) -> f64 {
         let offer = &self.setting.priced[g].offers[offer];
         offer.curve.cost(offer.max)
     }
 
-    /// The largest constraint with every offer at its tightest.
+    /// Largest constraint with every offer at its tightest.
     fn quick(&self, offers: &[usize]) -> f64 {
         let at: Vec<f64> =
             offers.iter().zip(self.setting.priced).map(|(&offer, group)| group.offers[offer].min).collect();
         self.setting.value(&at)
     }
 
-    /// The optimum with these offers, and its largest constraint.
+    /// Optimum with these offers, and its largest constraint.
     fn judged(&self, offers: &[usize]) -> Option<(Solved, f64)> {
         let priced: Vec<Priced> = (self.setting.priced.iter().zip(offers))
             .map(|(group, &offer)| Priced { offers: vec![group.offers[offer].clone()], ..group.clone() })
@@ -321,7 +322,7 @@ impl Search<'_> {
         }
     }
 
-    /// Every choice, where there are few.
+    /// Examines every choice, if there are few.
     fn everything(mut self) -> Option<Chosen> {
         let counts: Vec<usize> = self.setting.priced.iter().map(|group| group.offers.len()).collect();
         let mut offers = vec![0; counts.len()];
@@ -351,7 +352,7 @@ impl Search<'_> {
         Some(Chosen { bound: solved.cost, solved, offers, nodes, rigorous: true })
     }
 
-    /// Gives every row a reserve: twice what it was too strict by on random choices.
+    /// Gives every row a reserve: twice its greatest excess over the true value on random choices.
     fn relax(&mut self) {
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(1);
         let mut reserve = vec![0.0f64; self.rows.len()];
@@ -365,7 +366,7 @@ impl Search<'_> {
                 .collect();
             for (k, constraint) in self.setting.constraints.iter().enumerate() {
                 let value = constraint.value(self.setting.responses, self.setting.priced, &at);
-                // A constraint far beyond its limit need not be known well.
+                // A constraint far beyond its limit needs no accurate row.
                 if value.is_finite() && value < 4.0 {
                     reserve[k] = reserve[k].max(self.rows[k].value(&at) - value);
                 }
@@ -375,7 +376,8 @@ impl Search<'_> {
     }
 }
 
-/// The group whose two best processes are nearest in priced value, and where its range is split; None where every group has one.
+/// Group whose two best processes are nearest in priced value, and the place of the split in its range. Returns None if
+/// every group has a single one.
 fn split(problem: &Separable<'_>, node: &Node, best: &[Best]) -> Option<(usize, usize)> {
     let mut nearest: Option<(f64, usize, usize)> = None;
     for (g, range) in node.ranges.iter().enumerate().filter(|(_, range)| range.len() > 1) {

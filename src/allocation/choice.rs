@@ -1,14 +1,14 @@
-//! The outcome of one search of tolerances.
+//! Outcome of one search of tolerances.
 
 use super::result::{Attainable, Proof};
 use super::solved::Solved;
 
-/// Outcome of one search at fixed derivatives.
+/// Outcome of one search of tolerances at fixed derivatives.
 pub(super) enum Choice {
-    /// Tolerances that keep every requirement.
+    /// Tolerances that keep every requirement, with the offers and the proof.
     Found { solved: Solved, offers: Vec<usize>, proof: Proof },
-    /// There are none; with the half bands at which the best of it is to be had.
+    /// No tolerances keep every requirement. The half bands are those of the best attainable value.
     Infeasible(Attainable, Vec<f64>),
-    /// Stopped before any were found.
+    /// Stopped before tolerances were found.
     Stopped,
 }

@@ -1,4 +1,4 @@
-//! The cheapest tolerances at fixed derivatives: free ones, processes, or both.
+//! Cheapest tolerances at fixed derivatives: free ones, processes, or both.
 
 use super::branch::{Chosen, branch};
 pub(super) use super::choice::Choice;
@@ -9,17 +9,17 @@ use super::result::{AllocationSolver, Attainable, Proof};
 use super::solve::Setting;
 use super::solved::{Solved, Starts};
 
-/// The cheapest tolerances at fixed derivatives, without set-ups.
+/// Cheapest tolerances at fixed derivatives, without set-up costs.
 pub(super) fn choose_alone(setting: &Setting<'_>, start: &[f64]) -> Choice {
     if any(setting.priced) {
         return choose_made(setting);
     }
     let tight: Vec<f64> = setting.priced.iter().map(Priced::tightest).collect();
     let free = setting.priced.iter().all(|group| group.offers.len() == 1);
-    // A limit that the start keeps can be kept: means that move with tolerances may make the tightest ones the worst.
+    // A limit that the start keeps can be kept. If means move with tolerances, the tightest ones may be the worst.
     let here = free && within_bounds(setting.priced, start) && kept(setting.value(start));
     for constraint in setting.constraints.iter().filter(|_| !here) {
-        // Nearly always the tightest tolerances keep what any do.
+        // The tightest tolerances nearly always keep every constraint that any tolerances keep.
         if kept(constraint.value(setting.responses, setting.priced, &tight)) {
             continue;
         }
@@ -64,7 +64,7 @@ pub(super) fn choose_alone(setting: &Setting<'_>, start: &[f64]) -> Choice {
     match found {
         Some((solved, offers, proof)) => Choice::Found { solved, offers, proof },
         None if (setting.stopped)() => Choice::Stopped,
-        // Nothing cheaper is found: the start itself, of which nothing is proven.
+        // Nothing cheaper was found, so the start is the result, without a proof.
         None if here => Choice::Found {
             solved: Solved {
                 at: start.to_vec(),
@@ -80,7 +80,8 @@ pub(super) fn choose_alone(setting: &Setting<'_>, start: &[f64]) -> Choice {
             offers: vec![0; setting.priced.len()],
             proof: Proof { residual: Some(f64::INFINITY), ..Proof::default() },
         },
-        // Each can be kept by itself: the one that is farthest off where all are tightest.
+        // Each constraint can be kept alone. The result names the one with the largest value at the tightest
+        // tolerances.
         None => {
             let value = |one: &&Constraint| one.value(setting.responses, setting.priced, &tight);
             let worst = setting.constraints.iter().max_by(|a, b| value(a).total_cmp(&value(b)));
@@ -92,12 +93,12 @@ pub(super) fn choose_alone(setting: &Setting<'_>, start: &[f64]) -> Choice {
     }
 }
 
-/// Whether some process of each group may hold these half bands.
+/// True if some process of each group may hold these half bands.
 pub(super) fn within_bounds(priced: &[Priced], at: &[f64]) -> bool {
     priced.iter().zip(at).all(|(group, t)| (group.tightest()..=group.loosest()).contains(t))
 }
 
-/// The attainable value of a constraint; its unit is known to who has the problem.
+/// Best attainable value of a constraint. The caller adds the unit.
 fn unattainable(setting: &Setting<'_>, constraint: &Constraint, at: &[f64]) -> Attainable {
     let responses = setting.responses;
     let factors = responses.factors(setting.priced, at);

@@ -1,8 +1,9 @@
-//! Processes that say how their parts lie within the band: each choice has its own sigmas, means and distributions.
+//! Choice of processes with distributions of their own: each choice has its own sigmas, means and distributions.
 //!
-//! Where every requirement adds up in the options, sums of `s^2 T^2`, `|s| T` or `s^2 sigma^2` about a mean that no option moves, the lists are a
-//! knapsack ([`knapsack`](super::knapsack)). Otherwise every choice is judged by the surface with just its distributions: all of them from the
-//! cheapest on, up to the first that keeps everything, or, where there are too many, by exchanges from the choice of the least sigmas.
+//! If every requirement is a sum over the options, the lists are a knapsack ([`knapsack`](super::knapsack)). Such sums
+//! are `s^2 T^2`, `|s| T`, or `s^2 sigma^2` about a fixed mean. Otherwise every choice is judged by the surface with
+//! its distributions. All choices are examined from the cheapest on, up to the first that keeps everything. If there
+//! are too many, exchanges improve the choice of the least sigmas.
 
 use super::choice::Choice;
 use super::constraint::{Constraint, kept};
@@ -19,17 +20,17 @@ use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::law::rejected;
 use sensitol_numeric::requirement::Requirement;
 
-/// Choices few enough to look at all.
+/// Most choices that are all examined.
 const ALL: usize = 20_000;
-/// Means that differ by a smaller part of a sigma are the same.
+/// Difference of means, in sigmas, within which they are the same.
 const SAME: f64 = 1e-12;
 
-/// Whether some process says how its parts lie.
+/// True if some process has a distribution of its own.
 pub(super) fn any(priced: &[Priced]) -> bool {
     priced.iter().flat_map(|group| &group.offers).any(|offer| offer.made.is_some())
 }
 
-/// The dimensions of a problem as the chosen processes make them, about their nominal values as they are.
+/// Dimensions with the distributions of the chosen processes, moved to their present nominal values.
 pub(super) fn remade(problem: &Problem, priced: &[Priced], offers: &[usize]) -> Vec<(usize, Dimension)> {
     let mut all = Vec::new();
     for (group, &offer) in priced.iter().zip(offers) {
@@ -42,15 +43,15 @@ pub(super) fn remade(problem: &Problem, priced: &[Priced], offers: &[usize]) -> 
     all
 }
 
-/// A choice with what it needs of the requirements.
+/// Evaluation of choices against the requirements.
 struct Judge<'s, 'a> {
     setting: &'s Setting<'a>,
-    /// For every group and offer the dimensions of its members.
+    /// Dimensions of the members for every group and offer.
     options: Vec<Vec<Vec<Dimension>>>,
 }
 
 impl<'s, 'a> Judge<'s, 'a> {
-    /// None where an option cannot be made of the dimensions as they are.
+    /// Returns None if an option cannot be applied to the present dimensions.
     fn of(setting: &'s Setting<'a>) -> Option<Self> {
         let dimensions = &setting.responses.dimensions;
         let option = |group: &Priced, offer: &Offer| -> Option<Vec<Dimension>> {
@@ -80,7 +81,7 @@ impl<'s, 'a> Judge<'s, 'a> {
         self.setting.priced.iter().zip(offers).map(of).sum()
     }
 
-    /// The surfaces with the dimensions of a choice.
+    /// Responses with the dimensions of a choice.
     fn responses(&self, offers: &[usize]) -> Option<Responses> {
         let mut dimensions = self.setting.responses.dimensions.clone();
         for ((group, options), &offer) in self.setting.priced.iter().zip(&self.options).zip(offers) {
@@ -92,7 +93,8 @@ impl<'s, 'a> Judge<'s, 'a> {
         self.setting.responses.remade(&dimensions, self.setting.constraints.iter().any(by_law))
     }
 
-    /// The largest constraint at a choice, and what it loses; a value above 1 may be that of the first that is broken.
+    /// Largest constraint at a choice, and its losses. Unless `whole`, the evaluation stops at the first constraint
+    /// that is broken.
     fn value(&self, offers: &[usize], whole: bool) -> (f64, Option<f64>) {
         let base = self.setting.responses;
         let at = self.at(offers);
@@ -116,7 +118,7 @@ impl<'s, 'a> Judge<'s, 'a> {
         (value, lost)
     }
 
-    /// A requirement of sigma, Cpk or yield with the distributions of a choice.
+    /// Value of a requirement of sigma, Cpk or yield with the distributions of a choice.
     fn of_own(&self, one: &Constraint, own: &Responses, ones: &[f64]) -> f64 {
         let Requirement::Yield(_) = one.requirement else { return one.value_at(own, ones) };
         let of = one.characteristics(own);
@@ -133,9 +135,10 @@ impl<'s, 'a> Judge<'s, 'a> {
         }
     }
 
-    /// The lists with what each option uses of every requirement; None where one does not add up.
+    /// Lists with the use of every requirement by each option. Returns None if a requirement is not such a sum.
     fn lists(&self) -> Option<Vec<Vec<ListOption>>> {
         let Setting { responses, priced, constraints, losses, .. } = *self.setting;
+        // Losses depend on the whole choice, not on a sum over its options.
         if !losses.is_empty() {
             return None;
         }
@@ -194,7 +197,7 @@ impl<'s, 'a> Judge<'s, 'a> {
         lists.iter().flatten().all(|one| one.uses.iter().all(|&use_| use_ >= 0.0)).then_some(lists)
     }
 
-    /// Whether every option of every group is normal, and every other dimension.
+    /// True if every option of every group and every other dimension is normal.
     fn all_normal(&self) -> bool {
         let normal = |dimension: &Dimension| {
             let law = dimension.distribution();
@@ -203,7 +206,7 @@ impl<'s, 'a> Judge<'s, 'a> {
         self.options.iter().flatten().flatten().all(normal) && self.setting.responses.dimensions.iter().all(normal)
     }
 
-    /// Whether no option moves the mean of a characteristic.
+    /// True if no option moves the mean of a characteristic.
     fn means_stay(&self, c: usize) -> bool {
         let responses = self.setting.responses;
         self.setting.priced.iter().zip(&self.options).all(|(group, options)| {
@@ -218,7 +221,7 @@ impl<'s, 'a> Judge<'s, 'a> {
         })
     }
 
-    /// Whether the surfaces are exactly what is required: straight, and of a worst case its slopes.
+    /// True if the surfaces represent the requirements exactly: they are straight, or slopes determine the worst case.
     fn is_exact(&self) -> bool {
         let exact = |one: &Constraint| {
             let responses = self.setting.responses;
@@ -235,7 +238,7 @@ impl<'s, 'a> Judge<'s, 'a> {
         let at = self.at(&offers);
         let cost = self.held(&offers) + lost;
         let rigorous = bound.is_some() && self.is_exact();
-        // Nothing is cheaper than the cheapest of every list.
+        // No choice costs less than the cheapest option of every list.
         let least = |group: &Priced| {
             let of = group.offers.iter().map(|offer| group.parts * offer.curve.cost(offer.min));
             of.fold(f64::INFINITY, f64::min)
@@ -265,7 +268,7 @@ impl<'s, 'a> Judge<'s, 'a> {
         }
     }
 
-    /// Every choice from the cheapest on; None where none keeps everything, or it was stopped.
+    /// Examines every choice from the cheapest on. Returns None if none keeps everything, or the run was stopped.
     fn everything(&self) -> Option<Choice> {
         let counts: Vec<usize> = self.options.iter().map(Vec::len).collect();
         let picks = |mut code: usize| -> Vec<usize> {
@@ -298,7 +301,7 @@ impl<'s, 'a> Judge<'s, 'a> {
         best.map(|(cost, offers, lost)| self.found(offers, lost, bound(cost), nodes))
     }
 
-    /// The choice of the least sigmas made better by exchanges.
+    /// Choice of the least sigmas, improved by exchanges.
     fn exchanged(&self) -> Option<Choice> {
         let mut offers = self.tightest();
         let mut nodes = 1;
@@ -329,7 +332,7 @@ impl<'s, 'a> Judge<'s, 'a> {
         Some(self.found(offers, lost, None, nodes))
     }
 
-    /// Of every group the option of the least sigma, and of these the tightest.
+    /// Option of the least sigma of every group, and of these the tightest.
     fn tightest(&self) -> Vec<usize> {
         let size = |g: usize, i: usize| {
             let sigma = self.options[g][i].iter().map(Dimension::sigma).fold(0.0, f64::max);
@@ -342,7 +345,7 @@ impl<'s, 'a> Judge<'s, 'a> {
         (0..self.options.len()).map(|g| least(g).unwrap_or(0)).collect()
     }
 
-    /// The requirement that is farthest off at the choice of the least sigmas.
+    /// Outcome without a choice: the requirement with the largest value at the choice of the least sigmas.
     fn none(&self) -> Choice {
         let offers = self.tightest();
         let at = self.at(&offers);
@@ -371,12 +374,12 @@ impl<'s, 'a> Judge<'s, 'a> {
     }
 }
 
-/// The cheapest choice; processes of one tolerance each.
+/// Cheapest choice of processes with one tolerance each.
 pub(super) fn choose_made(setting: &Setting<'_>) -> Choice {
     let Some(judge) = Judge::of(setting) else { return Choice::Stopped };
     if let Some(lists) = judge.lists() {
         let found = cheapest(&lists, setting.stopped);
-        // Sums in another order may differ by a last digit: such a choice is judged again.
+        // Sums in another order may differ by a last digit, so such a choice is judged again.
         if let Some(found) = found.filter(|found| kept(judge.value(&found.places, true).0)) {
             return judge.found(found.places, 0.0, Some(found.bound), found.nodes);
         }
@@ -390,7 +393,7 @@ pub(super) fn choose_made(setting: &Setting<'_>) -> Choice {
     }
 }
 
-/// Whether all choices were looked at, by surfaces that are exactly what is required.
+/// True if all choices are examined, and the surfaces represent the requirements exactly.
 pub(super) fn is_proof(setting: &Setting<'_>) -> bool {
     let count = setting.priced.iter().fold(1usize, |count, group| count.saturating_mul(group.offers.len()));
     count <= ALL && Judge::of(setting).is_some_and(|judge| judge.is_exact())

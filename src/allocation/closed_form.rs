@@ -1,6 +1,7 @@
-//! The optimum in closed form, where Lagrange's condition has one.
+//! Optimum in closed form, if Lagrange's condition has one.
 //!
-//! Costs `a + b/T^k` with one exponent `k` for all and one constraint `constant + sum_g p_g (T_g/at_g)^q = 1` give
+//! For costs `a + b/T^k` with one exponent `k` for all, and one constraint `constant + sum_g p_g (T_g/at_g)^q = 1`, the
+//! condition gives
 //!
 //! ```text
 //! T_g = mu (parts_g b_g at_g^q / p_g)^(1/(k+q)),     mu from the constraint
@@ -12,7 +13,8 @@
 use super::constraint;
 use super::separable::Separable;
 
-/// Tolerances and multipliers; None where costs differ in kind, there are losses, several constraints bind, or a bound is met.
+/// Tolerances and multipliers of the optimum. Returns None if costs differ in kind, there are losses, several
+/// constraints are active, or a tolerance meets a bound.
 pub(super) fn closed_form(problem: &Separable<'_>) -> Option<(Vec<f64>, Vec<f64>)> {
     if !problem.losses.is_empty() {
         return None;
@@ -23,7 +25,7 @@ pub(super) fn closed_form(problem: &Separable<'_>) -> Option<(Vec<f64>, Vec<f64>
         let inside =
             problem.priced.iter().zip(&at).all(|(group, t)| (group.offers[0].min..=group.offers[0].max).contains(t));
         let mut multipliers = vec![0.0; problem.rows.len()];
-        // The same for every group: what a wider tolerance saves by what it uses.
+        // The ratio of saving to use by a wider tolerance is the same for every group.
         let (group, term) = (&problem.priced[0], &problem.rows[k].terms[0]);
         let saved = -group.parts * group.offers[0].curve.log_derivatives(at[0], libm::log(at[0]))[0];
         multipliers[k] = saved / (term.power * term.value(at[0]));
@@ -31,7 +33,7 @@ pub(super) fn closed_form(problem: &Separable<'_>) -> Option<(Vec<f64>, Vec<f64>
     })
 }
 
-/// As if this constraint were the only one.
+/// Optimum with only this constraint.
 fn bound_by(problem: &Separable<'_>, k: usize) -> Option<Vec<f64>> {
     let row = &problem.rows[k];
     let (_, exponent) = problem.priced.first()?.offers[0].curve.power()?;
@@ -39,7 +41,7 @@ fn bound_by(problem: &Separable<'_>, k: usize) -> Option<Vec<f64>> {
     let ratio = problem.priced.iter().zip(&row.terms).map(|(group, term)| {
         let (b, k) = group.offers[0].curve.power()?;
         let same = group.offers.len() == 1 && k == exponent && term.power == power && term.coefficient > 0.0;
-        // In units of the tolerance at which the term was taken.
+        // Ratio in units of the tolerance at which the term was taken.
         same.then(|| libm::pow(group.parts * b * libm::pow(term.at, -k) / term.coefficient, 1.0 / (k + power)))
     });
     let ratio: Vec<f64> = ratio.collect::<Option<_>>()?;

@@ -1,4 +1,4 @@
-//! The conclusions from the tolerances that a search ended at: status, prices, the front, and what a sample of the model says.
+//! Conclusions from the tolerances at the end of a search: status, prices, front, and confirmation by a sample.
 
 use super::best_trial::{SearchEnd, status_of_missed};
 use super::box_sample::worst_in_box;
@@ -26,15 +26,15 @@ use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::verdict::worst;
 use sensitol_numeric::verdict::{Judged, Verdict};
 
-/// A residual up to which tolerances are called optimal.
+/// Greatest residual of tolerances that are reported as optimal.
 const OPTIMAL: f64 = 1e-6;
-/// Fewer points confirm nothing.
+/// Fewest points of a confirmation.
 const FEWEST_CONFIRM: u64 = 2;
-/// A gap up to which a choice of processes is called optimal.
+/// Greatest gap of a choice of processes that is reported as optimal.
 const NO_GAP: f64 = 1e-9;
 
 impl Driver<'_> {
-    /// Everything that follows from the last tolerances.
+    /// Fills in the allocation from the last tolerances.
     pub(super) fn conclude(
         &mut self,
         allocation: &mut Allocation,
@@ -68,13 +68,13 @@ impl Driver<'_> {
             allocation.loss[1] = loss.filter(|_| !self.task.losses.is_empty());
             allocation.tolerances = self.allocated(original, &solved.at, offers);
             if is_start {
-                // Nothing has changed, whatever process holds it.
+                // Nothing has changed, so the costs are those before, for any process.
                 (allocation.cost_after, allocation.loss[1]) = (allocation.cost_before, allocation.loss[0]);
                 allocation.tolerances = self.unchanged(original);
                 allocation.tolerances.iter_mut().for_each(|one| one.cost_after = one.cost_before);
             }
             let free = self.task.priced.iter().all(|group| group.offers.len() == 1);
-            // Of a level that is sought, and of proportions that are fixed, multipliers are not what a limit costs.
+            // Multipliers are no shadow prices for a level that is sought, or for fixed proportions.
             if free && self.task.goal == Goal::LeastCost && !self.task.basis.is_proportion() {
                 let (responses, priced) = (&station.responses, &self.task.priced);
                 let (losses, setups) = (&self.task.losses, &self.task.setups);
@@ -89,20 +89,20 @@ impl Driver<'_> {
         let judged: Vec<Judged> = allocation.requirements.iter().map(judged).collect();
         let joint_now = allocation.joint_requirement.as_ref().and(analysis.joint_requirement);
         let verdict = worst(judged.iter().chain(&joint_now).map(|judged| judged.verdict)).unwrap_or(Verdict::Met);
-        // Where no error is known nothing could be met, and nothing is said against it.
+        // If an error is unknown nothing can be met, and nothing speaks against the result.
         let open = trial.as_ref().is_some_and(|trial| !trial.is_kept() && !trial.is_unknown());
         let open = open && self.task.goal == Goal::LeastCost || verdict == Verdict::Missed;
         let reached = ended.within_budget && !self.spent.stopped;
         allocation.confirmed = reached;
         allocation.status = match &last {
             _ if self.spent.stopped => Status::OutOfTime,
-            // Nothing but nominal values was to be chosen: what they cannot do, tolerances must.
+            // Only nominal values were to be chosen. What they cannot reach needs tighter tolerances.
             None if !met => Status::Infeasible,
             Some(_) | None if open && ended.within_budget => status_of_missed(verdict),
             None if ended.agreed => Status::Optimal,
             None => Status::AlmostOptimal,
             Some((solved, _, proof)) => {
-                // Slopes of a surface that the model refutes, and those of samples, prove nothing.
+                // Slopes from samples, or from a surface that the model refutes, prove nothing.
                 let followed = |c: usize| {
                     let left = station.analysis.characteristics[c].verification.as_ref().and_then(|of| of.left);
                     !station.responses.is_sampled(c) && left.is_none_or(|left| left <= TRUSTED)
@@ -144,7 +144,7 @@ impl Driver<'_> {
                 }
             });
         }
-        // A budget that ended before the model was asked at these tolerances leaves nothing to say of them.
+        // If the budget ended before the model was evaluated at these tolerances, nothing is known about them.
         if let (false, Some((solved, offers, _))) = (ended.within_budget, &last) {
             allocation.problem = with_choice(station.problem.clone(), &self.task.priced, &solved.at, offers)?;
             return Ok(());
@@ -158,7 +158,7 @@ impl Driver<'_> {
                 Setting { responses, priced, constraints, losses, setups, stopped: &stopped, anywhere: false };
             allocation.cost_unrounded = unrounded(&setting, solved);
         }
-        // Derivatives that lead elsewhere do not tell how much is left.
+        // Derivatives that the search did not follow do not give the remaining slack.
         let followed = allocation.proof.solver != Some(AllocationSolver::VerifiedSearch);
         allocation.loosest_after = loosest(&station.responses, constraints).filter(|_| followed);
         allocation.joint[1] = joint(&station.problem, &station.responses, self.options.seed);
@@ -188,7 +188,7 @@ impl Driver<'_> {
         Ok(())
     }
 
-    /// The analysis of a trial, with the results that are reported and no search reads.
+    /// Analysis of a trial, with the results that are only reported.
     pub(super) fn completed_trial(&self, trial: &Trial, of_station: &Findings) -> Analysis {
         let Some(findings) = &trial.findings else {
             return self.completed(trial.analysis.clone(), of_station, &trial.problem);
@@ -198,9 +198,11 @@ impl Driver<'_> {
         analysis
     }
 
-    /// Whether what keeps the conditions of an optimum is one: nothing can cost less than every tolerance at its loosest, or no choice does;
-    /// or the problem is convex. Linear worst cases, and roots of sums of squares about means that stay, are convex in the tolerances, and so
-    /// are costs but for some formulas and tables; with the room that a moving mean leaves they are convex in both, but for a yield.
+    /// True if the conditions of an optimum are sufficient.
+    ///
+    /// That is so if every tolerance is at its loosest, if no choice of processes can cost less, or if the problem is
+    /// convex. Linear worst cases and roots of sums of squares about fixed means are convex in the tolerances, as are
+    /// all costs except some formulas and tables. With a moving mean they are convex in both, except for a yield.
     fn is_certified(
         &self,
         station: &Station,
@@ -221,7 +223,7 @@ impl Driver<'_> {
             || !free && proof.rigorous && !recentred && setting.costs_are_convex()
     }
 
-    /// Asks the model itself at the tolerances found: as many points as the budget leaves.
+    /// Evaluates the model by Monte Carlo at the tolerances found, with as many points as the budget leaves.
     fn confirm(
         &mut self,
         allocation: &mut Allocation,
@@ -260,13 +262,13 @@ impl Driver<'_> {
         Ok(())
     }
 
-    /// Quality loss and scrap at a station, 0 without any; None where they are unknown.
+    /// Quality loss and scrap at a linearization point, 0 if the task has none. Returns None if they are unknown.
     pub(super) fn loss_at(&self, station: &Station) -> Option<f64> {
         let ones = vec![1.0; station.problem.dimensions().len()];
         self.task.losses.iter().map(|loss| loss.at(&station.responses, &ones, None)).sum()
     }
 
-    /// The machines that a choice needs, and what it costs to set them up.
+    /// Lists the machines that a choice needs, and returns their set-up costs.
     fn set_up(&self, allocation: &mut Allocation, offers: &[usize]) -> f64 {
         let chosen: Vec<&Offer> =
             self.task.priced.iter().zip(offers).map(|(group, &offer)| &group.offers[offer]).collect();
@@ -274,9 +276,9 @@ impl Driver<'_> {
         allocation.setups.iter().map(|setup| setup.cost).sum()
     }
 
-    /// The prices of the bounds that tolerances have met.
+    /// Adds the prices of the bounds that tolerances have met.
     fn price_bounds(&self, allocation: &mut Allocation, setting: &Setting<'_>, solved: &Solved) {
-        // Of limits that hold the cost up alike no one multiplier tells anything.
+        // If limits of several requirements are active alike, no single multiplier is a price.
         if allocation.prices.iter().any(|price| price.widen != price.narrow) {
             return;
         }
@@ -345,7 +347,8 @@ impl Driver<'_> {
     }
 }
 
-/// The cost of the cheapest tolerances that need not be steps or grades; None where none need be, or they are not found.
+/// Cost of the cheapest tolerances that need not be steps or grades. Returns None if there is no such rounding, and if
+/// they are not found.
 fn unrounded(setting: &Setting<'_>, solved: &Solved) -> Option<f64> {
     if setting.priced.iter().all(|group| group.rounded.is_none()) {
         return None;
@@ -361,7 +364,7 @@ fn unrounded(setting: &Setting<'_>, solved: &Solved) -> Option<f64> {
     }
 }
 
-/// Where what was found is in doubt.
+/// Warnings about doubts in the result.
 pub(super) fn doubts(problem: &Problem, priced: &[Priced], allocation: &Allocation) -> Vec<Warning> {
     let is_bent = |group: &&Priced| {
         let mut offers = group.offers.iter().chain(&group.rounded);
@@ -375,7 +378,7 @@ pub(super) fn doubts(problem: &Problem, priced: &[Priced], allocation: &Allocati
         let Judged { interval: Some(interval), verdict: Verdict::Missed, .. } = kept.sampled? else { return None };
         let characteristic = problem.characteristics()[kept.characteristic].name().to_owned();
         let (requirement, required) = (kept.requirement.key(), kept.requirement.amount());
-        // Of a worst case the points say how much it takes at the least.
+        // For a worst case the points give only the least part of the slack that it uses.
         let interval = if interval[1].is_finite() { interval } else { [interval[0]; 2] };
         Some(Warning::ConfirmationMisses { characteristic, requirement, required, interval })
     };
@@ -388,7 +391,6 @@ pub(super) fn doubts(problem: &Problem, priced: &[Priced], allocation: &Allocati
     not_confirmed.into_iter().chain(bent).chain(refuted).collect()
 }
 
-/// Nominal values that differ.
 fn moved(before: &Problem, after: &Problem) -> Vec<Moved> {
     let pairs = before.dimensions().iter().zip(after.dimensions()).enumerate();
     pairs

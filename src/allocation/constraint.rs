@@ -1,16 +1,16 @@
-//! Requirements as numbers that must not exceed 1, with their slopes.
+//! Requirements as values that must not exceed 1, with their slopes.
 //!
 //! ```text
 //! worst case       (reach beyond the nominal)/(U - nominal), linear in T where the surface is
-//! rss              (R/s)^2 with R the rss and s the room that the middle of the linear model leaves
-//! Cpk, sigma       (R/s)^2 with R sigma and s the room that the mean leaves
-//! yield            (sigma/s)^2 with s the sigma at which mean and shape give just that yield, corrected by the surface law
-//! joint yield      (b*/b)^2 with b the normal score of what all limits reject, b* that of what may be rejected
+//! rss              (R/s)^2 with R the rss and s the slack from the middle of the linear model to the limit
+//! Cpk, sigma       (R/s)^2 with R sigma and s the sigma that just keeps the requirement at this mean
+//! yield            (sigma/s)^2 with s the sigma at which mean and shape give just that yield, corrected by the surface distribution
+//! joint yield      (b*/b)^2 with b the normal score of the reject rate, b* that of the allowed reject rate
 //! ```
 //!
-//! The squares are exact sums of squares of tolerances for a linear characteristic; for any other the slopes are those of the
-//! second-order moments at the trial tolerances. Yield, Cpk and sigma are required of the pessimistic end of their intervals at the
-//! station: what is not known there is added to what is required.
+//! The squares are exact sums of squares of tolerances for a linear characteristic. For any other the slopes are those
+//! of the second-order moments at the trial tolerances. Yield, Cpk and sigma are required of the pessimistic end of
+//! their intervals at the linearization point: the uncertainty there is added to the requirement.
 
 use std::sync::Arc;
 
@@ -26,10 +26,10 @@ use sensitol_numeric::characteristic::SpecLimits;
 use sensitol_numeric::moments::Moments;
 use sensitol_numeric::requirement::Requirement;
 
-/// The difference that sums in another order may make: limits that are met to the last digit are kept.
+/// Relative difference between sums in another order. Limits that are met to the last digit are kept.
 pub(super) const KEPT: f64 = 1e-12;
 
-/// Whether a constraint of this value is kept.
+/// True if a constraint with this value is kept.
 pub(super) fn kept(value: f64) -> bool {
     value <= 1.0 + KEPT
 }
@@ -37,12 +37,11 @@ pub(super) fn kept(value: f64) -> bool {
 /// One side of one requirement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Constraint {
-    /// The characteristic.
     pub(super) characteristic: usize,
     pub(super) requirement: Requirement,
     limits: SpecLimits,
     side: Side,
-    /// The part of the room that rss and worst case may take.
+    /// Part of the slack that rss and worst case may use.
     pub(super) part: f64,
 }
 
@@ -51,22 +50,22 @@ enum Side {
     Below,
     Above,
     Both,
-    /// Of all characteristics with limits together.
+    /// Joint yield of all characteristics with limits.
     Joint,
 }
 
-/// A requirement at some tolerances: kept where `value` is at most 1.
+/// Value and slopes of a requirement at some tolerances. It is kept if `value` is at most 1.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Linearised {
     pub(super) value: f64,
-    /// Derivatives by `ln T` of every group.
+    /// Derivatives of the value by `ln T` of every group.
     pub(super) slopes: Vec<f64>,
-    /// Whether it is linear in the tolerances rather than quadratic.
+    /// True if the value is linear in the tolerances, false if it is quadratic.
     linear: bool,
 }
 
 impl Constraint {
-    /// The sides of a requirement.
+    /// Constraints of a requirement, one for each side.
     pub(super) fn of(characteristic: usize, requirement: Requirement, limits: SpecLimits) -> Vec<Self> {
         let one = |side| Self { characteristic, requirement, limits, side, part: 1.0 };
         match requirement {
@@ -78,33 +77,32 @@ impl Constraint {
         }
     }
 
-    /// A yield of all characteristics with limits together, of which the first is named.
+    /// Constraint of the joint yield of all characteristics with limits; `first` is named in messages.
     pub(super) fn joint(first: usize, least: f64, limits: SpecLimits) -> Self {
         let requirement = Requirement::Yield(least);
         Self { characteristic: first, requirement, limits, side: Side::Joint, part: 1.0 }
     }
 
-    /// With this part of the room for rss and worst case.
+    /// Constraint with another part of the slack for rss and worst case.
     pub(super) fn taking(self, part: f64) -> Self {
         Self { part, ..self }
     }
 
-    /// Whether it is of the upper limit.
+    /// True for the side of the upper limit.
     pub(super) fn is_above(&self) -> bool {
         self.side == Side::Above
     }
 
-    /// Whether it is of all characteristics with limits together.
+    /// True for the joint yield.
     pub(super) fn is_joint(&self) -> bool {
         self.side == Side::Joint
     }
 
-    /// The characteristics that it speaks of.
     pub(super) fn characteristics(&self, responses: &Responses) -> Vec<usize> {
         if self.is_joint() { responses.limited() } else { vec![self.characteristic] }
     }
 
-    /// Its value alone; infinite where it cannot be kept so, or is unknown.
+    /// Value alone. Infinite if the requirement cannot be kept, or is unknown.
     pub(super) fn value(&self, responses: &Responses, priced: &[Priced], at: &[f64]) -> f64 {
         let value = match self.requirement {
             Requirement::WorstCase => self.worst_case(responses, priced, at).map(|found| found.value),
@@ -113,7 +111,7 @@ impl Constraint {
         value.filter(|value| !value.is_nan()).unwrap_or(f64::INFINITY)
     }
 
-    /// Its value and slopes; None where they are unknown.
+    /// Value and slopes. Returns None if they are unknown.
     pub(super) fn linearised(&self, responses: &Responses, priced: &[Priced], at: &[f64]) -> Option<Linearised> {
         if self.requirement == Requirement::WorstCase {
             return self.worst_case(responses, priced, at);
@@ -160,7 +158,7 @@ impl Constraint {
         slopes.iter().all(|slope| slope.is_finite()).then_some(Linearised { value, slopes, linear: false })
     }
 
-    /// Slopes of `ln(sigma/s)`.
+    /// Slopes of `ln(sigma/s)` by `ln T` of every group.
     fn with_room(&self, responses: &Responses, priced: &[Priced], room: &Room, factors: &[f64]) -> Option<Vec<f64>> {
         let by = responses.moment_slopes(self.characteristic, priced, factors)?;
         let partial = room.slopes()?;
@@ -173,7 +171,7 @@ impl Constraint {
         Some(by.iter().zip(priced).map(|(by, group)| of(by) - corrected(group)).collect())
     }
 
-    /// The same of a joint yield.
+    /// Value and slopes of the joint yield.
     fn joint_linearised(&self, responses: &Responses, priced: &[Priced], at: &[f64]) -> Option<Linearised> {
         let rejects = responses.rejects(&responses.limited());
         let Some((share, by)) = rejects.with_slopes(responses, priced, &responses.factors(priced, at)) else {
@@ -185,9 +183,9 @@ impl Constraint {
         known.then(|| Linearised::of_squares(ratio * ratio, slopes))
     }
 
-    /// The same where the density of a fit ends too abruptly for formulas.
+    /// Value and slopes of the joint yield by differences, if the density of a fit ends too abruptly for formulas.
     fn joint_by_differences(&self, responses: &Responses, priced: &[Priced], at: &[f64]) -> Option<Linearised> {
-        /// Half a difference in `ln T`: truncation and rounding both near 1e-9.
+        /// Half of the difference in `ln T`. Truncation and rounding are both near 1e-9.
         const STEP: f64 = 3e-5;
         let value = self.ratio(responses, priced, at).filter(|ratio| ratio.is_finite())?.powi(2);
         let mut slopes = Vec::with_capacity(priced.len());
@@ -204,7 +202,7 @@ impl Constraint {
         slopes.iter().all(|slope| slope.is_finite()).then(|| Linearised::of_squares(value, slopes))
     }
 
-    /// The reach beyond the nominal by the room that the limit leaves.
+    /// Value of a worst case: the reach beyond the nominal divided by the slack of the limit.
     fn worst_case(&self, responses: &Responses, priced: &[Priced], at: &[f64]) -> Option<Linearised> {
         let above = self.side == Side::Above;
         let nominal = responses.of[self.characteristic].nominal?;
@@ -226,19 +224,19 @@ impl Constraint {
                 (constant + slopes.iter().sum::<f64>(), slopes, true)
             }
         };
-        // A nominal value beyond the limit leaves no room to divide by.
+        // A nominal value beyond the limit leaves no slack to divide by.
         let scale = if room > 0.0 { room } else { room.abs().max(reach.abs()).max(f64::MIN_POSITIVE) };
         let value = 1.0 + (reach - room * self.part) / scale;
         Some(Linearised { value, slopes: slopes.into_iter().map(|slope| slope / scale).collect(), linear })
     }
 
-    /// The ratio of the variation to the room for it.
+    /// Ratio of the variation to its slack.
     fn ratio(&self, responses: &Responses, priced: &[Priced], at: &[f64]) -> Option<f64> {
         let factors = responses.factors(priced, at);
         self.ratio_at(responses, priced, &factors, None)
     }
 
-    /// The same at any factors of all dimensions, with nominals moved by `shifts` sigmas.
+    /// Ratio of the variation to its slack at any factors of all dimensions, with nominals moved by `shifts` sigmas.
     pub(super) fn ratio_at(
         &self,
         responses: &Responses,
@@ -259,13 +257,13 @@ impl Constraint {
         self.ratio_in(responses, &moments, &self.room(&moments, self.target(responses))?, factors)
     }
 
-    /// The ratio of sigma to the room for it, corrected at these factors.
+    /// Ratio of sigma to its slack, corrected at these factors.
     fn ratio_in(&self, responses: &Responses, moments: &Moments, room: &Room, factors: &[f64]) -> Option<f64> {
         let factor = self.correction(responses).map_or(1.0, |of| of.factor(factors));
         Some(by_room(moments.sigma(), factor * room.sigma()))
     }
 
-    /// Whether it is kept when all tolerances are `factor` times as wide; infinite where that is unknown.
+    /// Value with all dimensions at these factors of their tolerances. Infinite if it is unknown.
     pub(super) fn value_at(&self, responses: &Responses, factors: &[f64]) -> f64 {
         let value = match self.requirement {
             Requirement::WorstCase => self.worst_case_at(responses, factors),
@@ -282,7 +280,7 @@ impl Constraint {
         self.worst_case(responses, &all, &at).map(|found| found.value)
     }
 
-    /// The same with both limits moved outwards, or a required sigma raised; None where nothing is left of them.
+    /// Constraint with both limits moved outwards, or a required sigma raised. Returns None if nothing is left of them.
     pub(super) fn widened(&self, by: f64) -> Option<Self> {
         if let Requirement::Sigma(most) = self.requirement {
             return (most + by > 0.0).then_some(Self { requirement: Requirement::Sigma(most + by), ..*self });
@@ -291,7 +289,7 @@ impl Constraint {
         Some(Self { limits: limits.ok()?, ..*self })
     }
 
-    /// A distance in the unit of the limits: half of what lies between them, or their own size.
+    /// Length in the unit of the limits: half of the distance between them, or the size of the only one.
     pub(super) fn extent(&self) -> Option<f64> {
         let extent = match (self.requirement, self.limits.lower(), self.limits.upper()) {
             (Requirement::Sigma(most), ..) => most,
@@ -301,7 +299,7 @@ impl Constraint {
         (extent > 0.0).then_some(extent)
     }
 
-    /// By what [`excess`](Self::excess) is measured: what varies at the station.
+    /// Scale of [`excess`](Self::excess): three sigma, or the half-width that varies at the linearization point.
     pub(super) fn width(&self, responses: &Responses, ones: &[f64]) -> Option<f64> {
         let zero = vec![0.0; ones.len()];
         let width = match self.requirement {
@@ -314,7 +312,8 @@ impl Constraint {
         (width > 0.0).then_some(width)
     }
 
-    /// How far it is exceeded, by its width: at most 0 where it is kept, and smooth in factors and shifts where the surface is.
+    /// Excess over the requirement in units of `width`. It is at most 0 if the requirement is kept, and smooth in
+    /// factors and shifts if the surface is.
     pub(super) fn excess(&self, responses: &Responses, factors: &[f64], shifts: &[f64], width: f64) -> Option<f64> {
         let value = match self.requirement {
             Requirement::Sigma(_) => self.ratio_at(responses, &[], factors, Some(shifts))? - 1.0,
@@ -330,7 +329,7 @@ impl Constraint {
         value.is_finite().then_some(value)
     }
 
-    /// Where a characteristic lies, and how far it reaches beyond on this side.
+    /// Centre of a characteristic, and its reach from there on this side.
     fn reached(&self, responses: &Responses, factors: &[f64], shifts: &[f64]) -> Option<(f64, f64)> {
         let c = self.characteristic;
         match self.requirement {
@@ -345,7 +344,7 @@ impl Constraint {
         }
     }
 
-    /// The room that is left beside a value on this side; None where there is none.
+    /// Slack between a value and the limit on this side. Returns None if there is none.
     pub(super) fn room_about(&self, value: f64) -> Option<f64> {
         let room = match self.side {
             Side::Below => value - self.limits.lower()?,
@@ -355,7 +354,7 @@ impl Constraint {
         (room > 0.0).then_some(room)
     }
 
-    /// The requirement, made stricter by the uncertainty at the station: a yield, a Cpk, a sigma.
+    /// Required yield, Cpk or sigma, made stricter by the uncertainty at the linearization point.
     pub(super) fn target(&self, responses: &Responses) -> f64 {
         let reach = |of: fn(&Unknown) -> f64| of(&responses.of[self.characteristic].unknown);
         match self.requirement {
@@ -367,14 +366,14 @@ impl Constraint {
         }
     }
 
-    /// Computes the correction by the law of the station, which is kept for whoever asks next.
+    /// Computes the correction by the surface distribution, so that it is stored for later use.
     pub(super) fn prepare(&self, responses: &Responses) {
         if !self.is_joint() {
             let _: Option<Arc<Correction>> = self.correction(responses);
         }
     }
 
-    /// The correction of the room for a yield by the law of the surface.
+    /// Correction of the slack for a yield by the surface distribution.
     fn correction(&self, responses: &Responses) -> Option<Arc<Correction>> {
         let Requirement::Yield(least) = self.requirement else { return None };
         let target = self.target(responses);
@@ -382,7 +381,8 @@ impl Constraint {
         responses.correction(self.characteristic, least, &room, &|moments| self.room(moments, target)?.slopes())
     }
 
-    /// The largest sigma that keeps it, with this mean and shape; None where none does, and where it does not depend on the mean.
+    /// Largest sigma that keeps the requirement with this mean and shape. Returns None if no sigma does, and if the
+    /// requirement does not depend on the mean.
     pub(super) fn room(&self, moments: &Moments, target: f64) -> Option<Room> {
         let (below, above) =
             (self.limits.lower().map(|l| moments.mean() - l), self.limits.upper().map(|u| u - moments.mean()));
@@ -404,7 +404,7 @@ impl Constraint {
         }
     }
 
-    /// How `ln` of the room grows with the lower limit lowered and the upper limit raised, per unit.
+    /// Derivatives of the logarithm of the slack by an outward move of the lower and the upper limit, per unit.
     fn room_by_limits(&self, moments: &Moments, target: f64) -> Option<[f64; 2]> {
         let step = 1e-5 * self.room(moments, target)?.sigma();
         let moved = |lower: f64, upper: f64| {
@@ -419,7 +419,7 @@ impl Constraint {
         Some([difference(&|step| moved(step, 0.0)), difference(&|step| moved(0.0, step))])
     }
 
-    /// The divisor of the worst case: the room that the nominal value leaves.
+    /// Divisor of the worst case: the distance from the nominal value to the limit.
     pub(super) fn nominal_room(&self, responses: &Responses) -> Option<f64> {
         let nominal = responses.of[self.characteristic].nominal?;
         match self.side {
@@ -430,9 +430,9 @@ impl Constraint {
     }
 }
 
-/// The largest sigma that keeps a requirement, at a mean and a shape.
+/// Largest sigma that keeps a requirement, at a mean and a shape.
 pub(super) enum Room {
-    /// Whatever the shape, with the derivative of its logarithm by the mean.
+    /// Sigma that does not depend on the shape, with the derivative of its logarithm by the mean.
     Given {
         sigma: f64,
         by_mean: f64,
@@ -457,7 +457,7 @@ impl Room {
     }
 }
 
-/// A variation by the room for it: nothing takes none of it.
+/// Variation divided by its slack. No variation uses no slack.
 fn by_room(own: f64, room: f64) -> f64 {
     match own == 0.0 {
         true if room > 0.0 => 0.0,
@@ -467,18 +467,18 @@ fn by_room(own: f64, room: f64) -> f64 {
 }
 
 impl Linearised {
-    /// Of a part of a requirement that is used, by its slopes.
+    /// Linearised requirement from its used part and the slopes of that.
     pub(super) fn of_uses(value: f64, slopes: Vec<f64>, linear: bool) -> Self {
         Self { value, slopes, linear }
     }
 
-    /// Of something that grows as the squares of the tolerances.
+    /// Linearised requirement that grows with the squares of the tolerances.
     pub(super) fn of_squares(value: f64, slopes: Vec<f64>) -> Self {
         Self { value, slopes, linear: false }
     }
 
-    /// As a sum of powers of the tolerances with the same value and slopes here: exact for worst cases and for sums of
-    /// squares. A term that grows as a tolerance shrinks goes with its inverse square, so that the sum is convex.
+    /// Sum of powers of the tolerances with the same value and slopes at `at`. It is exact for worst cases and for sums
+    /// of squares. A term that grows as a tolerance shrinks gets its inverse square, so that the sum is convex.
     pub(super) fn row(&self, at: &[f64]) -> Row {
         let mut constant = self.value;
         let terms = self.slopes.iter().zip(at).map(|(&slope, &t)| {
@@ -497,7 +497,7 @@ impl Linearised {
 }
 
 impl Constraint {
-    /// The value of the requirement at these tolerances, in its own measure; None where that is unknown.
+    /// Value of the requirement at these tolerances, in its own measure. Returns None if it is unknown.
     pub(super) fn measured(&self, responses: &Responses, priced: &[Priced], at: &[f64]) -> Option<f64> {
         let factors = responses.factors(priced, at);
         match self.requirement {
@@ -519,8 +519,8 @@ impl Constraint {
         }
     }
 
-    /// The dimensions without a cost that break it by themselves, most harmful first; empty where it could be kept if the others had
-    /// no tolerance at all.
+    /// Dimensions without a cost that alone break the requirement, most harmful first. The list is empty if the
+    /// requirement could be kept with all other tolerances at zero.
     pub(super) fn without_the_priced(&self, responses: &Responses, priced: &[Priced], factors: &[f64]) -> Vec<String> {
         let is_priced = |d: usize| priced.iter().any(|group| group.members.contains(&d));
         let alone = |only: Option<usize>| -> Vec<f64> {
@@ -543,7 +543,7 @@ impl Constraint {
         harm.into_iter().map(|(_, d)| responses.dimensions[d].name().to_owned()).collect()
     }
 
-    /// By how much the cost falls per unit by which the lower limit goes down, the upper one up, or a required sigma grows.
+    /// Saving per unit by which the lower limit goes down, the upper one up, or a required sigma grows.
     pub(super) fn prices(
         &self,
         responses: &Responses,
@@ -552,7 +552,7 @@ impl Constraint {
         multiplier: f64,
     ) -> Option<[Option<f64>; 3]> {
         if self.requirement == Requirement::WorstCase {
-            // The reach stays, and the room that it is divided by grows.
+            // The reach stays, and the slack that it is divided by grows.
             let price = multiplier * self.value(responses, priced, at) / self.nominal_room(responses)?;
             return Some(match self.side {
                 Side::Below => [Some(price), None, None],

@@ -1,16 +1,16 @@
-//! The worst case by the formula itself, at the places of the box where it is extreme.
+//! Worst case by the formula itself, at the places of the box with its extremes.
 //!
 //! ```text
 //! W(T) = max over k of y(m + h T v_k) - nominal         v_k: places in the box, each coordinate in [-1, 1]
 //! dW/d ln T_j = dy/dx_j h_j T_j v_kj                      at the place of the maximum, which keeps its v
 //! ```
 //!
-//! A second-order surface does not follow a kink, nor a corner far from the mean. The places are found at every station by a search of the
-//! box; those of earlier stations stay, so that a place which was left is not left again and again. Sources: J. W. Blankenship, J. E. Falk,
-//! "Infinitely constrained optimization problems", J. Optimization Theory and Applications 19 (1976); J. M. Danskin, "The theory of max-min"
-//! (1967), for the slope.
+//! A second-order surface follows neither a kink nor a corner far from the mean. The places are found at every
+//! linearization point by a search of the box. Those of earlier points stay, so that the search does not return to
+//! tolerances that it has left. Sources: J. W. Blankenship, J. E. Falk, "Infinitely constrained optimization problems",
+//! J. Optimization Theory and Applications 19 (1976); J. M. Danskin, "The theory of max-min" (1967), for the slope.
 //!
-//! Cost: some hundred values of the formula for every side, counted beside the evaluations.
+//! Cost: some hundred values of the formula for every side, counted separately from the evaluations.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -18,45 +18,47 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use crate::assembly::{Directions, Points, Request, Responses, Run};
 use crate::problem::Problem;
 
-/// Dimensions beyond which a search of the box takes too long.
+/// Most dimensions for a search of the box, which would otherwise take too long.
 const MOST: usize = 40;
-/// Dimensions up to which the search begins at the best of all combinations of both ends and the middle.
+/// Most dimensions for a search that begins at the best of all combinations of both ends and the middle.
 const ALL: usize = 6;
 /// Places that are kept for every side.
 const KEPT: usize = 24;
-/// The last step of the search, as a part of half a band: the value there is off by its square.
+/// Last step of the search, as a part of half a band. The error of the value there goes with its square.
 const LAST_STEP: f64 = 1e-6;
-/// Places nearer to each other are one.
+/// Distance within which two places are the same.
 const SAME: f64 = 1e-4;
 
 /// Places in the box, by their coordinates in `[-1, 1]`.
 pub(super) type Places = Vec<Vec<f64>>;
 
-/// The band of a dimension that varies, in its own unit: its middle, its half, and by how many halves the middle moves where it grows.
+/// Band of a dimension that varies, in its own unit: its middle, its half-width, and the move of the middle per
+/// half-width that is added.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Band {
     pub(super) dimension: usize,
     pub(super) middle: f64,
     pub(super) half: f64,
     pub(super) lean: f64,
-    /// A standard deviation.
+    /// Standard deviation of the dimension.
     pub(super) sigma: f64,
 }
 
-/// A characteristic of which the formula is known, about a station.
+/// Characteristic with a formula, about a linearization point.
 pub(super) struct Corners {
     problem: Problem,
     characteristic: usize,
     nominal: f64,
     bands: Vec<Band>,
-    /// Where it reaches farthest below and above.
+    /// Places of the farthest reach, below and above.
     places: [Places; 2],
-    /// The values so far, of all characteristics and stations.
+    /// Number of values so far, for all characteristics and linearization points.
     asked: Arc<AtomicU64>,
 }
 
 impl Corners {
-    /// With the places that were known before, and those of this station; None where the formula has no derivatives, or too many dimensions.
+    /// Creates the corners from the places known before, and searches those of this linearization point. Returns None
+    /// if the formula has no derivatives, or there are too many dimensions.
     pub(super) fn of(
         problem: &Problem,
         characteristic: usize,
@@ -85,13 +87,13 @@ impl Corners {
         Some(corners)
     }
 
-    /// The places, for the next station.
+    /// Places, for the next linearization point.
     pub(super) fn places(&self) -> [Places; 2] {
         self.places.clone()
     }
 
-    /// How far it reaches beyond the nominal value, above or below, and how that grows with the logarithm of every tolerance. None where the
-    /// formula has no value.
+    /// Reach beyond the nominal value, above or below, and its derivatives by the logarithm of every tolerance. Returns
+    /// None if the formula has no value.
     pub(super) fn reach(&self, factors: &[f64], shifts: &[f64], above: bool) -> Option<(f64, Vec<(usize, f64)>)> {
         let sign = if above { 1.0 } else { -1.0 };
         let places = &self.places[usize::from(above)];
@@ -110,7 +112,7 @@ impl Corners {
         Some((most, by?))
     }
 
-    /// Where the characteristic reaches farthest, as far as a search along the coordinates tells.
+    /// Place of the farthest reach found by a search along the coordinates.
     fn searched(&self, above: bool, start: Vec<f64>) -> Option<Vec<f64>> {
         let sign = if above { 1.0 } else { -1.0 };
         let n = self.bands.len();
@@ -148,7 +150,7 @@ impl Corners {
         Some(at)
     }
 
-    /// The values of all dimensions at a place of the box.
+    /// Values of all dimensions at a place of the box.
     fn point(&self, place: &[f64], factors: &[f64], shifts: &[f64]) -> Vec<f64> {
         let dimensions = self.problem.dimensions();
         let mut x: Vec<f64> = dimensions.iter().map(sensitol_numeric::dimension::Dimension::nominal).collect();
@@ -169,7 +171,7 @@ impl Corners {
         (0..points.len()).map(|row| answers.value(row, 0).filter(|value| value.is_finite())).collect()
     }
 
-    /// The derivatives by every dimension with a band.
+    /// Derivatives by every dimension with a band.
     fn slopes(&self, point: &[f64]) -> Option<Vec<Option<f64>>> {
         let outputs = [self.problem.outputs()[self.characteristic]];
         let inputs: Vec<usize> = self.bands.iter().map(|band| band.dimension).collect();
@@ -190,7 +192,8 @@ mod tests {
     use sensitol_numeric::characteristic::Characteristic;
     use sensitol_numeric::dimension::Dimension;
 
-    /// `hypot` about its kink and a parabola within its band: the places are the corners and the middle, the slopes those of the closed form.
+    /// `hypot` about its kink and a parabola within its band: the places are the corners and the middle, and the slopes
+    /// are those of the closed form.
     #[test]
     fn corners_of_a_kink_have_its_reach_and_slopes() {
         let formula = Formula::parse("hypot(x, y) - (t - 0.25)^2").unwrap();
@@ -212,14 +215,15 @@ mod tests {
         let corners = Corners::of(&problem, 0, -0.0625, bands, starts, nothing, &Arc::default()).unwrap();
         let (above, slopes) = corners.reach(&[1.0; 3], &[0.0; 3], true).unwrap();
         assert!((above - 0.5625).abs() < 1e-11, "{above}");
-        // d hypot/d ln T = T^2/hypot; the parabola is greatest within its band, where its slope is that of the last step.
+        // d hypot/d ln T = T^2/hypot. The parabola is greatest within its band, where its slope is that of the last
+        // step.
         for ((_, slope), expected) in slopes.iter().zip([0.18, 0.32, 0.0]) {
             assert!((slope - expected).abs() < 1e-5, "{slopes:?}");
         }
         let (below, slopes) = corners.reach(&[1.0; 3], &[0.0; 3], false).unwrap();
         assert!((below - 1.5).abs() < 1e-12, "{below}");
         assert!((slopes[2].1 - 2.5).abs() < 1e-12, "{slopes:?}");
-        // Twice as far out the offsets reach 1, and the parabola stands at 0.5, where its coordinate is kept.
+        // At twice the tolerance the offsets reach 1, and the parabola is 0.5, because its coordinate is kept.
         assert!((corners.reach(&[2.0; 3], &[0.0; 3], true).unwrap().0 - (1.0 - 0.0625 + 0.0625)).abs() < 1e-6);
     }
 }

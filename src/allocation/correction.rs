@@ -1,85 +1,90 @@
-//! The room for a required yield, corrected by the law of a surface and the interval of the yield.
+//! Correction of the slack for a required yield, by the surface distribution and the interval of the yield.
 //!
-//! Trial tolerances are judged by four moments: fast, and not what is required. At a station the true room is known: the largest
-//! sigma at which the surface law, about its mean and with its shape, leaves just the share beyond the limits that may be rejected.
+//! Trial tolerances are judged by four moments, which is fast but only an approximation. At a linearization point the
+//! exact slack is known. It is the largest sigma at which the surface distribution, with its mean and shape, leaves
+//! just the allowed share beyond the limits.
 //!
 //! ```text
 //! R(r)     = P(y < m + r (L - m)) + P(y > m + r (U - m))          limits moved to r times their distance from the mean m
-//! s_law    = sigma/r with R(r) = q                                 q: what may be rejected, less what is not known
+//! s_law    = sigma/r with R(r) = q                                 q: allowed reject rate, minus the uncertainty
 //! ln kappa = ln(s_law/s_Pearson) + sum_j g_j ln(T_j/T_j0)          g_j: how both change with a tolerance
 //! ```
 //!
-//! `kappa s_Pearson` has the value and the slopes of the law where the station is, so that what the rounds converge to is an optimum
-//! by the law. The slopes of tails come from the law itself ([`SurfaceLaw::tail_derivatives`]), and where a shape follows its
-//! tolerance in another way from differences along held contours. Source: N. M. Alexandrov, R. M. Lewis, "An overview of first-order
-//! model management for engineering optimization", Optimization and Engineering 2 (2001).
+//! `kappa s_Pearson` has the value and the slopes of the surface distribution at the linearization point. The rounds
+//! therefore converge to an optimum by that distribution. The slopes of its tails come from the distribution itself
+//! ([`SurfaceLaw::tail_derivatives`]). If a shape changes otherwise with its tolerance, they come from differences
+//! along held contours. Source: N. M. Alexandrov, R. M. Lewis, "An overview of first-order model management for
+//! engineering optimization", Optimization and Engineering 2 (2001).
 
 use super::root::root;
 use sensitol_numeric::characteristic::SpecLimits;
 use sensitol_numeric::law::{HeldTail, LawTail, SurfaceLaw};
 use sensitol_numeric::moments::Moments;
 
-/// The part of the allowed rejects that the uncertainty leaves at least: beyond it nothing more can be shown.
+/// Least part of the allowed rejects that remains after the uncertainty is subtracted. A greater uncertainty cannot be
+/// met.
 const LEFT: f64 = 0.1;
-/// Farther than this from the station, in `ln T`, a slope is not followed.
+/// Greatest distance from the linearization point, in `ln T`, at which a slope is followed.
 const FAR: f64 = 0.7;
-/// Steps in `ln T` of differences along held contours: their truncation is 1e-8, and so is the rounding of a law known to 1e-12.
+/// Step in `ln T` of differences along held contours. Its truncation is 1e-8, and so is the rounding of a distribution
+/// known to 1e-12.
 const STEP: f64 = 1e-4;
-/// A root of the share to this part of it.
+/// Relative accuracy of a root of the share.
 const NEAR: f64 = 1e-13;
+/// Most steps to bracket the root.
 const STEPS: usize = 60;
 
-/// How a varying dimension follows its tolerance.
+/// Change of a varying dimension with its tolerance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Follows {
-    /// About its mean, with its shape.
+    /// Same shape about the same mean.
     Similar,
-    /// In another way.
+    /// Change of mean or shape.
     Otherwise,
-    /// Not at all, or without a part in the characteristic.
+    /// No change, or no effect on the characteristic.
     Still,
 }
 
-/// A characteristic about a station, at factors of the tolerances of all dimensions.
+/// Characteristic about a linearization point, as a function of the factors of all tolerances.
 pub(super) struct About<'r> {
     pub(super) law: &'r SurfaceLaw,
     pub(super) limits: SpecLimits,
-    /// How many dimensions there are.
     pub(super) dimensions: usize,
-    /// The varying ones, in the order of the surface's parts.
+    /// Varying dimensions, in the order of the surface's parts.
     pub(super) varying: Vec<(usize, Follows)>,
     pub(super) moments: &'r dyn Fn(&[f64]) -> Option<Moments>,
     pub(super) law_at: &'r dyn Fn(&[f64]) -> Option<SurfaceLaw>,
-    /// The room by four moments.
+    /// Slack by four moments.
     pub(super) room: &'r dyn Fn(&Moments) -> Option<f64>,
-    /// How its logarithm grows with mean, skewness and excess.
+    /// Derivatives of the logarithm of the slack by mean, skewness and excess.
     pub(super) room_slopes: &'r dyn Fn(&Moments) -> Option<[f64; 3]>,
-    /// How mean, `ln sigma`, skewness and excess grow with `ln T` of every dimension, where that is exact: then every shape stays.
+    /// Exact derivatives of mean, `ln sigma`, skewness and excess by `ln T` of every dimension. They exist only if
+    /// every shape stays.
     pub(super) slopes: Option<Vec<[f64; 4]>>,
 }
 
-/// The room by the law in place of the room by four moments.
+/// Ratio of the slack by the surface distribution to the slack by four moments.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Correction {
-    /// `ln kappa` at the station.
+    /// Value of `ln kappa` at the linearization point.
     ln: f64,
-    /// Its slopes by `ln T` of every dimension.
+    /// Slopes of `ln kappa` by `ln T` of every dimension.
     slopes: Vec<f64>,
 }
 
 impl Correction {
-    /// The room by four moments as it is.
+    /// Correction without effect.
     pub(super) fn none(dimensions: usize) -> Self {
         Self { ln: 0.0, slopes: vec![0.0; dimensions] }
     }
 
-    /// The allowed rejects where so much of the yield is uncertain.
+    /// Allowed reject rate after the uncertainty `reach` of the yield is subtracted.
     pub(super) fn allowed(required: f64, reach: f64) -> f64 {
         let rejected = 1.0 - required;
         (rejected - reach).max(LEFT * rejected)
     }
 
-    /// By what the room by four moments is multiplied at these factors of the tolerances.
+    /// Factor of the slack by four moments at these factors of the tolerances.
     pub(super) fn factor(&self, factors: &[f64]) -> f64 {
         let along = |(slope, factor): (&f64, &f64)| match *slope {
             0.0 => 0.0,
@@ -88,12 +93,13 @@ impl Correction {
         libm::exp(self.ln + self.slopes.iter().zip(factors).map(along).sum::<f64>())
     }
 
-    /// The slope of its logarithm by `ln T` of a dimension.
+    /// Slope of the logarithm of the factor by `ln T` of a dimension.
     pub(super) fn slope(&self, dimension: usize, factors: &[f64]) -> f64 {
         if libm::log(factors[dimension]).abs() < FAR { self.slopes[dimension] } else { 0.0 }
     }
 
-    /// At a station; None where the mean lies beyond a limit, or the law answers nothing.
+    /// Computes the correction at a linearization point. Returns None if the mean lies beyond a limit, or the
+    /// distribution has no value.
     pub(super) fn of(about: &About<'_>, rejected: f64) -> Option<Self> {
         let About { law, limits, room, .. } = *about;
         let n = about.dimensions;
@@ -119,7 +125,7 @@ impl Correction {
         };
         let fitted = room(&moments)?;
         let r = level(&|r| beyond(law, mean, r), rejected, sigma / fitted)?;
-        // d R/d ln r: the density at both moved limits by how they move.
+        // d R/d ln r: the density at both moved limits times their move.
         let density: f64 =
             sides.iter().map(|(_, distance, _)| -law.density(mean + r * distance).value * r * distance.abs()).sum();
         let mut slopes: Vec<f64> = vec![0.0; n];
@@ -132,7 +138,8 @@ impl Correction {
         let partial = about.slopes.as_ref().and_then(|_| (about.room_slopes)(&moments));
         let moving = about.varying.iter().enumerate().filter(|(_, (_, follows))| *follows != Follows::Still);
         for (position, &(d, follows)) in moving {
-            // The derivatives by the law itself, less those by the moments, without a difference where their slopes are exact.
+            // With exact slopes of the moments no difference is needed: the derivatives of the distribution minus those
+            // of the moments.
             if let (Some(all), Some(partial)) = (&about.slopes, partial) {
                 let [by_mean, by_sigma, by_skewness, by_excess] = all[d];
                 let by_law = sides.iter().zip(&own).map(|((tail, distance, _), own)| {
@@ -181,7 +188,7 @@ impl Correction {
             });
             let Some(by_law) = by_law.filter(|_| density < 0.0) else { continue };
             let by_sigma = slope(libm::log(up.sigma()), libm::log(down.sigma()));
-            // ln s = ln sigma - ln r, and r answers a change of the share at fixed r.
+            // ln s = ln sigma - ln r, and r responds to a change of the share at fixed r.
             slopes[d] = by_sigma + by_law / density - slope(libm::log(room_up), libm::log(room_down));
         }
         let ln = libm::log(sigma / r / fitted);
@@ -189,7 +196,7 @@ impl Correction {
     }
 }
 
-/// Where a decreasing share is `rejected`, near `start`.
+/// Argument near `start` at which a decreasing share equals `rejected`.
 fn level(share: &dyn Fn(f64) -> f64, rejected: f64, start: f64) -> Option<f64> {
     let gap = |ln: f64| libm::log(share(libm::exp(ln)).max(f64::MIN_POSITIVE) / rejected);
     let (mut low, mut high) = (libm::log(start), libm::log(start));

@@ -1,4 +1,4 @@
-//! The cost of holding a tolerance.
+//! Cost of holding a tolerance.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use super::written_cost::WrittenCost;
 use crate::assembly::formula::{Formula, FormulaError};
 use crate::problem::Problem;
 
-/// Cost of one part over its half band `T`, falling as the tolerance opens.
+/// Cost curve of one part over its half band `T`, falling as the tolerance opens.
 ///
 /// ```text
 /// fixed              a
@@ -19,7 +19,8 @@ use crate::problem::Problem;
 /// table              points (T, cost), straight lines in 1/T between them
 /// ```
 ///
-/// The first four are convex in `T`; a formula or a table is where it bends so. Units: `a` and the cost in money, `T` and `c` in the unit of the dimension.
+/// The first four are convex in `T`. A formula or a table may bend either way. Units: `a` and the cost in money, `T`
+/// and `c` in the unit of the dimension.
 ///
 /// Sources: K. W. Chase, W. H. Greenwood, B. G. Loosli, L. F. Hauglund, "Least cost tolerance allocation for mechanical assemblies with
 /// automated process selection", Manufacturing Review 3 (1990), for reciprocal powers fitted to process data; F. H. Speckhart,
@@ -30,27 +31,27 @@ pub struct Curve {
     a: f64,
     b: f64,
     shape: f64,
-    /// Of a formula or a table.
+    /// Formula or table, for a written cost.
     written: Option<Arc<WrittenCost>>,
 }
 
-/// The kinds of [`Curve`].
+/// Kinds of [`Curve`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CurveKind {
-    /// The same at any tolerance.
+    /// Constant at any tolerance: `a`.
     Fixed,
-    /// `a + b/T`.
+    /// Reciprocal: `a + b/T`.
     Reciprocal,
-    /// `a + b/T^k`.
+    /// Reciprocal power: `a + b/T^k`.
     ReciprocalPower,
-    /// `a + b exp(-T/c)`.
+    /// Exponential: `a + b exp(-T/c)`.
     Exponential,
-    /// A formula or a table.
+    /// Formula or table.
     Written,
 }
 
 impl CurveKind {
-    /// The kinds that have a name in study files.
+    /// Kinds that have a name in study files.
     pub const NAMED: [(&'static str, Self); 3] = [
         ("reciprocal", Self::Reciprocal),
         ("reciprocal-power", Self::ReciprocalPower),
@@ -59,17 +60,17 @@ impl CurveKind {
 }
 
 impl Curve {
-    /// The same at any tolerance.
+    /// Constant cost `a` at any tolerance.
     pub fn fixed(a: f64) -> Result<Self, CostError> {
         Self::new(CurveKind::Fixed, a, 0.0, 1.0)
     }
 
-    /// `a + b/T`.
+    /// Cost `a + b/T`.
     pub fn reciprocal(a: f64, b: f64) -> Result<Self, CostError> {
         Self::new(CurveKind::Reciprocal, a, b, 1.0)
     }
 
-    /// `a + b/T^k`.
+    /// Cost `a + b/T^k`.
     ///
     /// ```
     /// use sensitol::allocation::Curve;
@@ -81,7 +82,7 @@ impl Curve {
         Self::new(CurveKind::ReciprocalPower, a, b, k)
     }
 
-    /// `a + b exp(-T/c)`.
+    /// Cost `a + b exp(-T/c)`.
     pub fn exponential(a: f64, b: f64, c: f64) -> Result<Self, CostError> {
         Self::new(CurveKind::Exponential, a, b, c)
     }
@@ -100,12 +101,13 @@ impl Curve {
         Ok(Self { kind, a, b, shape, written: None })
     }
 
-    /// A formula of `T`, the half band in the unit of the dimension.
+    /// Cost by a formula of `T`, the half band in the unit of the dimension.
     ///
-    /// That it is positive and falls is checked where its bounds are known, by [`Offer::between`].
+    /// [`Offer::between`] checks that it is positive and falls, because its bounds are known there.
     ///
     /// # Errors
-    /// When the formula has another name than `T`.
+    ///
+    /// If the formula has another name than `T`.
     ///
     /// ```
     /// use sensitol::allocation::Curve;
@@ -118,12 +120,15 @@ impl Curve {
         Ok(Self::written(WrittenCost::formula(formula)?))
     }
 
-    /// Points of half band and cost, in any order; between two of them the cost is a straight line in `1/T`, so that
-    /// `a + b/T` is reproduced. Corners are rounded over a thousandth of the shorter neighbouring piece.
+    /// Cost by points of half band and cost, in any order.
+    ///
+    /// Between two points the cost is a straight line in `1/T`, so that `a + b/T` is reproduced. Corners are rounded
+    /// over a thousandth of the shorter neighbouring piece.
     ///
     /// # Errors
-    /// With fewer than two points, a half band that is not positive or is there twice, a negative cost, or a cost that rises with
-    /// the tolerance.
+    ///
+    /// For fewer than two points, a half band that is not positive or occurs twice, a negative cost, or a cost that
+    /// rises with the tolerance.
     ///
     /// ```
     /// use sensitol::allocation::Curve;
@@ -141,32 +146,33 @@ impl Curve {
         Self { kind: CurveKind::Written, a: 0.0, b: 0.0, shape: 1.0, written }
     }
 
-    /// The half bands between which it has a value: those of a table.
+    /// Least and greatest half band with a value, for a table. Returns None if every half band has one.
     pub fn range(&self) -> Option<[f64; 2]> {
         self.written.as_ref()?.range()
     }
 
-    /// Whether it is convex in the half band between two of them.
+    /// True if the cost is convex in the half band between `min` and `max`.
     pub(crate) fn is_convex(&self, min: f64, max: f64) -> bool {
         self.written.as_ref().is_none_or(|written| written.is_convex(min, max))
     }
 
-    /// Points between which straight lines in `1/T` are the cost, or nearly so: of a formula or a table.
+    /// Points with straight lines in `1/T` between them, for a formula or a table. A formula follows them nearly.
     pub fn points(&self, min: f64, max: f64) -> Option<Vec<[f64; 2]>> {
         self.written.as_ref().map(|written| written.points(min, max))
     }
 
-    /// Its kind.
+    /// Kind of the curve.
     pub fn kind(&self) -> CurveKind {
         self.kind
     }
 
-    /// `a`, `b`, and the third of its kind: `k` of a power, 1 of a reciprocal, `c` of an exponential. `b` is 0 where the cost is fixed.
+    /// Constants `a`, `b`, and the third of the kind: `k` of a power, 1 of a reciprocal, `c` of an exponential. `b` is
+    /// 0 for a fixed cost.
     pub fn constants(&self) -> [f64; 3] {
         [self.a, self.b, self.shape]
     }
 
-    /// `b` and, of a power, `k`: None where the cost is not a reciprocal power.
+    /// Constants `b` and `k` of a reciprocal or a reciprocal power. Returns None for other kinds.
     pub(super) fn power(&self) -> Option<(f64, f64)> {
         matches!(self.kind, CurveKind::Reciprocal | CurveKind::ReciprocalPower).then_some((self.b, self.shape))
     }
@@ -176,17 +182,17 @@ impl Curve {
         self.a + self.varying(t, || libm::pow(t, -self.shape))
     }
 
-    /// The same where `ln t` is known, for searches by it: off by a few roundings more, of `k ln t`.
+    /// Cost of one part from `t` and `ln t`, for searches in `ln t`. It differs by a few roundings of `k ln t`.
     pub(super) fn cost_by(&self, t: f64, ln: f64) -> f64 {
         self.a + self.varying_by(t, ln)
     }
 
     fn varying_by(&self, t: f64, ln: f64) -> f64 {
-        // A fifth of the time of a power.
+        // This takes a fifth of the time of a power.
         self.varying(t, || libm::exp(-self.shape * ln))
     }
 
-    /// The part of the cost that varies; `power` is `t^-k`.
+    /// Varying part of the cost; `power` is `t^-k`.
     fn varying(&self, t: f64, power: impl Fn() -> f64) -> f64 {
         match self.kind {
             CurveKind::Fixed => 0.0,
@@ -199,7 +205,7 @@ impl Curve {
 
     /// First and second derivative of the cost by `ln t`, at the half band `t` and its logarithm.
     pub(crate) fn log_derivatives(&self, t: f64, ln: f64) -> [f64; 2] {
-        // A written cost does without.
+        // A written cost computes its derivatives without the varying part.
         let varying = if self.written.is_some() { f64::NAN } else { self.varying_by(t, ln) };
         self.derivatives_of(varying, t)
     }
@@ -210,7 +216,7 @@ impl Curve {
         [self.a + varying, self.derivatives_of(varying, t)[0]]
     }
 
-    /// First and second derivative by `ln t`, from the part of the cost that varies.
+    /// First and second derivative by `ln t`, from the varying part of the cost.
     fn derivatives_of(&self, cost: f64, t: f64) -> [f64; 2] {
         if let Some(written) = &self.written {
             return written.log_derivatives(t);
@@ -226,26 +232,26 @@ impl Curve {
     }
 }
 
-/// One way of making a part: over which half bands, and what it costs there.
+/// Process option: one way of making a part, with its range of half bands and its cost.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Offer {
-    /// Its name, where several compete.
+    /// Name of the process, if several compete.
     pub process: Option<String>,
-    /// Its cost.
+    /// Cost curve.
     pub curve: Curve,
     /// Least half band.
     pub min: f64,
     /// Greatest half band.
     pub max: f64,
-    /// The machine that it needs, which has a set-up cost of its own.
+    /// Machine that the process needs, with a set-up cost of its own.
     pub machine: Option<String>,
-    /// The dimensions as it makes them, where it says how its parts lie.
+    /// Dimensions with the distribution of the process, if the process gives one.
     pub made: Option<Made>,
 }
 
 impl Offer {
-    /// A curve between two half bands.
+    /// Creates an offer from a curve between two half bands.
     pub fn between(curve: Curve, min: f64, max: f64) -> Result<Self, CostError> {
         for (name, value) in [("min", min), ("max", max)] {
             if !(value.is_finite() && value > 0.0) {
@@ -261,7 +267,7 @@ impl Offer {
         Ok(Self { process: None, curve, min, max, machine: None, made: None })
     }
 
-    /// A process that holds one half band at one cost.
+    /// Creates a process that holds one half band at one cost.
     pub fn process(name: impl Into<String>, tolerance: f64, cost: f64) -> Result<Self, CostError> {
         if !(tolerance.is_finite() && tolerance > 0.0) {
             return Err(CostError::Tolerance { name: "tolerance", value: tolerance });
@@ -270,13 +276,13 @@ impl Offer {
         Ok(Self { process: Some(name.into()), ..Self::between(curve, tolerance, tolerance)? })
     }
 
-    /// On a machine, whose set-up cost all dimensions share that need it.
+    /// Sets the machine of the process. Its set-up cost is shared by all dimensions that need it.
     #[must_use]
     pub fn on(self, machine: impl Into<String>) -> Self {
         Self { machine: Some(machine.into()), ..self }
     }
 
-    /// With a name, where several compete.
+    /// Sets the name of the process, if several compete.
     pub fn named(self, name: impl Into<String>) -> Self {
         Self { process: Some(name.into()), ..self }
     }
@@ -287,24 +293,25 @@ impl Offer {
 pub struct Priced {
     /// Indices of the dimensions in the problem.
     pub members: Vec<usize>,
-    /// How many parts cost: one for every member, but for the coordinates of one position.
+    /// Number of parts that are paid for: one for every member, but only one for the coordinates of one position.
     pub parts: f64,
-    /// The ways of making each part; with one of them the tolerance is free within it.
+    /// Ways of making each part. If there is only one, the tolerance is free within its range.
     pub offers: Vec<Offer>,
-    /// The free tolerance of which the offers are steps or standard grades.
+    /// Free tolerance whose steps or standard grades are the offers.
     pub rounded: Option<Offer>,
 }
 
 impl Priced {
-    /// A dimension by itself, that costs nothing.
+    /// Group of one dimension without a cost.
     pub(crate) fn without_cost(dimension: usize) -> Self {
         Self { members: vec![dimension], parts: 1.0, offers: Vec::new(), rounded: None }
     }
 
-    /// One cost for these dimensions; each part costs.
+    /// Creates a group of dimensions with one cost curve. Each part is paid for.
     ///
     /// # Errors
-    /// Without a dimension or an offer, and when a looser process costs more than a tighter one.
+    ///
+    /// If there is no dimension or no offer, and if a looser process costs more than a tighter one.
     pub fn new(members: Vec<usize>, offers: Vec<Offer>) -> Result<Self, CostError> {
         if members.is_empty() {
             return Err(CostError::NoMember);
@@ -312,7 +319,7 @@ impl Priced {
         if offers.is_empty() {
             return Err(CostError::NoProcess);
         }
-        // A looser process may hold its mean better, and cost more for that.
+        // A looser process with its own distribution may have a better mean, and cost more for it.
         let single = |offer: &Offer| {
             (offer.min == offer.max && offer.made.is_none()).then_some((offer.min, offer.curve.cost(offer.min)))
         };
@@ -324,18 +331,18 @@ impl Priced {
         Ok(Self { parts: members.len() as f64, members, offers, rounded: None })
     }
 
-    /// With the free tolerance of which the offers are steps or standard grades.
+    /// Sets the free tolerance whose steps or standard grades are the offers.
     pub fn rounding(self, rounded: Option<Offer>) -> Self {
         Self { rounded, ..self }
     }
 
-    /// The cost to hold this half band, which no offer need name: a process costs what it costs at any tolerance that it
-    /// holds, and a curve goes on beyond its bounds.
+    /// Cost to hold this half band, which need not be one of the offers. A process has the same cost at any tolerance
+    /// that it holds, and a curve continues beyond its bounds. Returns None if nothing holds it.
     pub fn cost_to_hold(&self, t: f64) -> Option<f64> {
         self.holding(t).map(|(cost, _)| cost)
     }
 
-    /// The same with the offer that holds it at the least cost.
+    /// Cost to hold this half band, with the cheapest offer that holds it.
     pub(super) fn holding(&self, t: f64) -> Option<(f64, &Offer)> {
         let known = |curve: &Curve| curve.range().is_none_or(|[least, most]| (least..=most).contains(&t));
         let alone = self.offers.len() == 1;
@@ -348,17 +355,17 @@ impl Priced {
         costs.reduce(|best, other| if other.0 < best.0 { other } else { best })
     }
 
-    /// The tightest half band among its members as they stand in a problem, which the process that they share has to hold.
+    /// Tightest half band of the members in a problem, which their common process has to hold.
     pub fn tightest_member(&self, problem: &Problem) -> f64 {
         self.members.iter().map(|&d| problem.dimensions()[d].half_band()).fold(f64::INFINITY, f64::min)
     }
 
-    /// The least half band that any offer holds.
+    /// Least half band of all offers.
     pub(crate) fn tightest(&self) -> f64 {
         self.offers.iter().map(|offer| offer.min).fold(f64::INFINITY, f64::min)
     }
 
-    /// The greatest half band that any offer holds.
+    /// Greatest half band of all offers.
     pub(crate) fn loosest(&self) -> f64 {
         self.offers.iter().map(|offer| offer.max).fold(0.0, f64::max)
     }

@@ -1,4 +1,4 @@
-//! The common part of all searches of tolerances: the model asked at some tolerances, within budget and time.
+//! Common part of all searches of tolerances: analyses of the model at given tolerances, within budget and time.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -23,35 +23,37 @@ use sensitol_numeric::moments::Moments;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::requirement::Requirement;
 
-/// Rounds of derivatives, at most.
+/// Most rounds, each with an analysis for new derivatives.
 pub(super) const ROUNDS: usize = 20;
 
-/// The evaluations so far.
+/// Evaluations so far, and values that later rounds need.
 #[derive(Default)]
 pub(super) struct Spent {
     pub(super) run: RunSummary,
     pub(super) rounds: usize,
     pub(super) stopped: bool,
-    /// The greatest uncertainties since rounds have [settled](SETTLED), of every characteristic and of the joint yield.
+    /// Greatest uncertainty of every characteristic since the rounds have [settled](SETTLED).
     unknown: Vec<Unknown>,
+    /// Greatest uncertainty of the joint yield since then.
     joint_unknown: f64,
-    /// By how much more is required because trials missed it, of every characteristic and of the joint yield.
+    /// Additional requirement of every characteristic, because trials missed it.
     stricter: Vec<Unknown>,
+    /// Additional requirement of the joint yield, because trials missed it.
     joint_stricter: f64,
-    /// The cheapest station that kept everything.
+    /// Cheapest linearization point that kept everything.
     pub(super) seen: Option<Seen>,
-    /// Where formulas were found to reach farthest, by characteristic.
+    /// Places of the farthest reach of formulas, by characteristic.
     places: BTreeMap<usize, [Places; 2]>,
-    /// Points of a cheap model beside the evaluations.
+    /// Points of a cheap model in addition to the evaluations.
     pub(super) points: Arc<AtomicU64>,
 }
 
-/// Rounds after which uncertainties only grow. Those of a sample jump as an assembly passes a limit, and stations next to each other would
-/// be left for each other again and again.
+/// Rounds after which uncertainties only grow. The uncertainty of a sample jumps when an assembly passes a limit. The
+/// search could otherwise alternate between two neighbouring linearization points.
 const SETTLED: usize = 4;
 
 impl Spent {
-    /// Requires so much more from the next station on.
+    /// Adds to the requirements from the next linearization point on.
     pub(super) fn require_more(&mut self, more: &[Unknown], joint: f64) {
         self.stricter.resize(more.len(), Unknown::default());
         self.stricter.iter_mut().zip(more).for_each(|(all, more)| *all = all.and(*more));
@@ -59,34 +61,35 @@ impl Spent {
     }
 }
 
-/// The dimensions of a problem as they stand in the file of its study.
+/// Function that returns the dimensions of a problem as they stand in the file of its study.
 pub(crate) type AsWritten<'a> = &'a dyn Fn(&Problem) -> Option<Vec<Dimension>>;
 
+/// Task, options and state of an allocation.
 pub(super) struct Driver<'a> {
     pub(super) task: &'a AllocationTask,
     pub(super) options: &'a AllocationOptions,
     pub(super) run: &'a Run<'a>,
-    /// Everything that is required of characteristics.
+    /// Requirements of all characteristics.
     pub(super) required: Vec<(usize, Requirement)>,
     pub(super) written: Option<AsWritten<'a>>,
     pub(super) spent: Spent,
 }
 
-/// How near is near enough: every round asks the model.
+/// Distances at which a search has converged. They are larger for a costly model, because every round evaluates it.
 #[derive(Clone, Copy)]
 pub(super) struct Near {
-    /// Tolerances that change by less than this part agree.
+    /// Relative change within which tolerances agree.
     pub(super) agree: f64,
-    /// By what part tolerances are tightened for what the model may say differently where it is asked next.
+    /// Part by which tolerances are tightened, in case the next analysis differs.
     pub(super) margin: f64,
-    /// Nominal values that move by fewer sigmas are at rest.
+    /// Move within which nominal values are at rest, in sigmas.
     pub(super) rest: f64,
 }
 
-/// The part of the square of a change of tolerances by which a requirement that is followed along its slopes may be off: the second derivatives of
-/// the [corrections](super::correction) of a room are some tenths.
+/// Error of a requirement that is followed along its slopes, relative to the square of a change of tolerances. The
+/// second derivatives of the [corrections](super::correction) of a slack are some tenths.
 const BENT: f64 = 0.1;
-/// Ten times the error of moments by differences, whose steps in `ln T` know them to 1e-10.
+/// Ten times the error of moments by differences, whose steps in `ln T` give them to 1e-10.
 const NOISE: f64 = 1e-9;
 
 impl Near {
@@ -96,17 +99,17 @@ impl Near {
     }
 }
 
-/// How the rounds ended.
 pub(super) struct Ended {
     pub(super) agreed: bool,
     pub(super) within_budget: bool,
-    /// The residual of nominal values and tolerances together, where both may change.
+    /// Residual of nominal values and tolerances together, if both may change.
     pub(super) at_rest: Option<f64>,
 }
 
-/// Whether a constraint of this value is kept; a level that is sought, and promised to no one, within what another round would change it by.
+/// True if a constraint with this value is kept. A level that is sought for a cost is not promised, so it may differ by
+/// as much as another round would change it.
 pub(super) fn kept_within(value: f64, goal: Goal) -> bool {
-    /// Of a sigma squared.
+    /// Tolerance of a sought level, relative to sigma squared.
     const SOUGHT: f64 = 1e-6;
     kept(value) || goal != Goal::LeastCost && value <= 1.0 + SOUGHT
 }
@@ -120,14 +123,15 @@ impl Driver<'_> {
         all.into_iter().chain(self.joint_constraint(problem)).collect()
     }
 
-    /// The joint yield that is required, of the first characteristic with limits by name.
+    /// Constraint of the joint yield, if one is required. It has the name of the first characteristic with limits.
     fn joint_constraint(&self, problem: &Problem) -> Option<Constraint> {
         let least = self.task.joint_target(problem, self.options)?;
         let mut limited = problem.characteristics().iter().enumerate().filter(|(_, one)| one.limits().exist());
         limited.next().map(|(c, one)| Constraint::joint(c, least, one.limits()))
     }
 
-    /// The model asked at a problem; an error only the first time.
+    /// Analyses the model for a problem, which gives a linearization point. An error is an error of the task only in
+    /// the first round.
     pub(super) fn analysed(&mut self, problem: Problem) -> Result<Station, AllocateError> {
         let budget = self
             .options
@@ -164,13 +168,14 @@ impl Driver<'_> {
         Ok(Station { problem, analysis, findings, responses })
     }
 
-    /// The analysis of a station, with the results that are reported and no search reads.
+    /// Analysis of a linearization point, with the results that are only reported.
     pub(super) fn completed(&self, mut analysis: Analysis, findings: &Findings, problem: &Problem) -> Analysis {
         analysis.complete(findings, problem, &self.options.derivatives(problem), self.run);
         analysis
     }
 
-    /// Corrects by samples of the model what its own figures refute, where something is required of that and the model is cheap.
+    /// Corrects moments by samples of the model, if its verification refutes the surface, the requirement uses moments,
+    /// and the model is cheap.
     fn correct(&self, problem: &Problem, analysis: &Analysis, responses: &mut Responses) {
         let of = |(c, one): (usize, &CharacteristicAnalysis)| {
             let refuted = one.verification.as_ref().is_some_and(|of| of.replaced);
@@ -200,7 +205,7 @@ impl Driver<'_> {
         }
     }
 
-    /// The same further on: None where the budget does not allow it.
+    /// Analyses the model in later rounds. Returns None if the budget does not allow it.
     pub(super) fn station(&mut self, problem: Problem) -> Result<Option<Station>, AllocateError> {
         match self.analysed(problem) {
             Ok(station) => Ok(Some(station)),
@@ -213,7 +218,6 @@ impl Driver<'_> {
     }
 }
 
-/// The unit of a characteristic.
 pub(super) fn unit(problem: &Problem, characteristic: usize) -> Option<String> {
     problem.characteristics()[characteristic].unit().map(str::to_owned)
 }
@@ -223,13 +227,13 @@ pub(super) fn cost(priced: &[Priced], at: &[f64], offers: &[usize]) -> f64 {
     priced.iter().zip(at).zip(offers).map(of).sum()
 }
 
-/// The problem with the groups at these half bands.
+/// Problem with the groups at these half bands.
 pub(super) fn with_tolerances(problem: Problem, priced: &[Priced], at: &[f64]) -> Result<Problem, AllocateError> {
     let dimensions: Vec<Dimension> = scaled(&problem, priced, at)?;
     Ok(problem.with_dimensions(dimensions)?)
 }
 
-/// The same with the distributions of the chosen processes, where these say how their parts lie.
+/// Problem with the groups at these half bands, and with the distributions of the chosen processes.
 pub(super) fn with_choice(
     problem: Problem,
     priced: &[Priced],
@@ -241,7 +245,7 @@ pub(super) fn with_choice(
     Ok(problem.with_dimensions(dimensions)?)
 }
 
-/// The dimensions with the groups at these half bands.
+/// Dimensions with the groups at these half bands.
 fn scaled(problem: &Problem, priced: &[Priced], at: &[f64]) -> Result<Vec<Dimension>, AllocateError> {
     let mut dimensions = problem.dimensions().to_vec();
     for (group, &t) in priced.iter().zip(at) {

@@ -1,7 +1,8 @@
-//! The search that begins where sums of powers lead nowhere: sequential quadratic programming on the requirements themselves.
+//! Search that follows if sums of powers do not converge: sequential quadratic programming on the requirements
+//! themselves.
 //!
-//! A Cpk is a row `(mean ± 3 C sigma - limit)/w`, which has slopes wherever the mean lies; the ratio that [`Constraint::value`] compares has a pole where
-//! it passes the limit. All other requirements are rows `value - 1`.
+//! A Cpk is a row `(mean ± 3 C sigma - limit)/w`, which has slopes at every mean. The ratio of [`Constraint::value`]
+//! has a pole where the mean passes the limit. All other requirements are rows `value - 1`.
 
 use super::augmented::{Ended, Near, Slope, Smooth, cost};
 use super::constraint::{Constraint, Linearised};
@@ -10,13 +11,14 @@ use super::solve::{SMALL, Setting};
 use super::solved::{Ends, Solved};
 use sensitol_numeric::requirement::Requirement;
 
-/// Unknowns and rows beyond which the dense matrices of a step take longer than a round of the model.
+/// Most unknowns and rows. Beyond it the dense matrices of a step take longer than a round of the model.
 const MOST: usize = 300;
+/// End conditions: the tolerance of rows and bounds, and the most steps.
 const NEAR: Near = Near { by: 1e-11, updates: 100 };
 
 impl Setting<'_> {
-    /// The end of a search from a start that need keep nothing, or that of an earlier one which it comes near; None where values are unknown there,
-    /// or there are too many unknowns.
+    /// Searches from any start. Returns the end, or that of an earlier search that it approaches. Returns None if
+    /// values are unknown at the start, or there are too many unknowns.
     pub(super) fn finished(&self, start: &[f64], ends: &Ends) -> Option<Solved> {
         if start.len() + self.constraints.len() > MOST {
             return None;
@@ -54,7 +56,7 @@ impl Setting<'_> {
             return Some(known.clone());
         }
         let linearised = self.linearised(&at)?;
-        // Both rows of a requirement are 0 together, so that one's slopes are a multiple of the other's.
+        // Both rows of a requirement are 0 at the same place, so that their slopes are proportional.
         let scaled = |((multiplier, own), value): ((&f64, &Slope), &Linearised)| match dot(&value.slopes, &value.slopes)
         {
             0.0 => 0.0,
@@ -68,7 +70,7 @@ impl Setting<'_> {
         Some(Solved { sequential: true, ..solved })
     }
 
-    /// By how much a requirement is exceeded, with slopes by `ln T`.
+    /// Excess of a requirement, with slopes by `ln T`.
     fn excess(&self, one: &Constraint, width: f64, at: &[f64]) -> Option<Slope> {
         let (responses, priced) = (self.responses, self.priced);
         if !matches!(one.requirement, Requirement::Cpk(_)) {

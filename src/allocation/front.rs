@@ -1,4 +1,4 @@
-//! Cost against what is required.
+//! Front of cost against requirement.
 
 use super::choose::Choice;
 use super::constraint::Constraint;
@@ -10,12 +10,13 @@ use crate::problem::Problem;
 use sensitol_numeric::distribution::standard_normal;
 use sensitol_numeric::requirement::Requirement;
 
-/// From one sigma less to one and a half more than what is required, and for Cpk a third of that.
+/// Range of the front: from one sigma less to one and a half sigmas more than required. For Cpk it is a third of that.
 const SPAN: [f64; 2] = [-1.0, 1.5];
-/// How a sigma, or the part of the room that may be taken, falls over the same span: from 1.5 times to 0.55 times what is required.
+/// Rate at which a required sigma, or the usable part of the slack, falls over the range: from 1.5 times to 0.55 times
+/// the required value.
 const FALLS: f64 = 0.4;
 
-/// This many points, the loosest requirement first, at fixed derivatives.
+/// Points of the front at fixed derivatives, the loosest requirement first.
 pub(super) fn front(
     setting: &Setting<'_>,
     problem: &Problem,
@@ -60,7 +61,7 @@ pub(super) fn front(
     found
 }
 
-/// The requirement with this many sigmas more, and the part of the room that rss and worst case may take.
+/// Requirement with more sigmas, and the usable part of the slack for rss and worst case.
 fn stricter(requirement: Requirement, more: f64) -> (Requirement, f64) {
     let part = libm::exp(-FALLS * more);
     match requirement {

@@ -1,11 +1,11 @@
-//! The best for a given cost: the level of a requirement that just costs it.
+//! Best result for a given cost: the level of a requirement whose least cost is just that.
 //!
 //! ```text
 //! max b   with   min cost(T) <= limit   under   Cpk >= b/3, or rejected share <= 2 sf(b)
 //! ```
 //!
-//! The least cost of a level grows with it, so that the level is a root, found between one that costs less and one that costs more or
-//! cannot be kept. The greatest of the least Cpk of several characteristics is that of one level for all of them.
+//! The least cost grows with the level. The level is therefore a root between one that costs less and one that costs
+//! more or cannot be kept. For the greatest least Cpk of several characteristics, one level is required of all.
 
 use super::choose::Choice;
 use super::constraint::Constraint;
@@ -18,13 +18,13 @@ use crate::problem::Problem;
 use sensitol_numeric::distribution::standard_normal;
 use sensitol_numeric::requirement::Requirement;
 
-/// Levels between which the best is sought, in sigmas: from where half of the assemblies are kept to where doubles end.
+/// Range of levels, in sigmas: from half of the assemblies within limits to the end of doubles.
 const LEVELS: [f64; 2] = [0.7, 37.0];
-/// Costs that differ by less are the same.
+/// Relative difference of costs within which they are the same.
 const SAME: f64 = 1e-10;
 
 impl Goal {
-    /// The requirement of this level.
+    /// Requirement of this level. Returns None for the least cost.
     pub(super) fn at(self, level: f64) -> Option<Requirement> {
         match self {
             Self::LeastCost => None,
@@ -33,7 +33,7 @@ impl Goal {
         }
     }
 
-    /// The most that may be spent.
+    /// Most that may be spent. Returns None for the least cost.
     pub(super) fn cost_limit(self) -> Option<f64> {
         match self {
             Self::LeastCost => None,
@@ -43,8 +43,8 @@ impl Goal {
 }
 
 impl Driver<'_> {
-    /// The requirements with those of the level that costs what may be spent, at the derivatives of a setting; None where even the lowest costs
-    /// more.
+    /// Requirements with those of the level that costs just the limit, at the derivatives of a setting. Returns None if
+    /// even the lowest level costs more.
     pub(super) fn levelled(&self, setting: &Setting<'_>, problem: &Problem, at: &[f64]) -> Option<Vec<Constraint>> {
         let goal = self.task.goal;
         let limit = goal.cost_limit()?;
@@ -65,7 +65,7 @@ impl Driver<'_> {
             }
         };
         let [low, high] = LEVELS;
-        // A level just below is one that was found to be kept.
+        // The level just below the root is one that was found to be kept.
         (dearer(low) <= SAME).then(|| of_level(root(dearer, [low, high], 0.1 * SAME) * (1.0 - SAME)))
     }
 }

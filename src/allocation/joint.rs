@@ -1,4 +1,4 @@
-//! The share of assemblies that keep the limits of all characteristics at once.
+//! Joint yield of the surrogates.
 
 use serde::Serialize;
 
@@ -7,27 +7,29 @@ use crate::problem::Problem;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::sampling::{Draws, Portion, Sampler, wilson};
 
-/// A share of a sample.
+/// Joint yield from a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct JointYield {
-    /// The share of assemblies within all limits.
+    /// Share of assemblies within all limits.
     #[serde(rename = "yield")]
     pub value: f64,
-    /// Its standard error; None where all or none are.
+    /// Standard error of the share. None if all or no points lie within the limits.
     pub standard_error: Option<f64>,
     /// 95 % interval.
     pub interval: [f64; 2],
-    /// Points of the surrogates; none of them is evaluated by the model.
+    /// Number of points of the surrogates. The model is not evaluated at them.
     pub samples: usize,
 }
 
+/// Points that are evaluated together.
 const ROWS: usize = 1024;
+/// Number of such portions.
 const PORTIONS: usize = 32;
 
-/// Of surrogates at the tolerances of the problem; None with fewer than two characteristics with limits, and where something cannot
-/// be sampled or is unknown.
+/// Joint yield of the surrogates at the tolerances of the problem. Returns None for fewer than two characteristics with
+/// limits, and if a dimension cannot be sampled or a surrogate is unknown.
 pub(super) fn joint(problem: &Problem, responses: &Responses, seed: u64) -> Option<JointYield> {
     let limits: Vec<usize> =
         (0..problem.characteristics().len()).filter(|&c| problem.characteristics()[c].limits().exist()).collect();

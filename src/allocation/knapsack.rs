@@ -1,19 +1,20 @@
-//! The cheapest option of every list under rows that add up: the multiple-choice knapsack.
+//! Multiple-choice knapsack: the cheapest option of every list under rows that are sums.
 //!
 //! ```text
 //! min  sum_j cost_j(i_j)    subject to    sum_j use_rj(i_j) <= 1 for every row r,   one option i_j of every list j
 //! ```
 //!
-//! Rows that another one implies are left out, and options that another one of the list beats in cost and in every row. One row is solved by
-//! a dynamic program about the linear relaxation ([`one_row`](super::one_row)), several by branch and bound about the Lagrangian one
-//! ([`several_rows`](super::several_rows)). Sources: P. Sinha, A. A. Zoltners, "The multiple-choice knapsack problem", Operations Research
-//! 27 (1979); D. Pisinger, "A minimal algorithm for the multiple-choice knapsack problem", European J. Operational Research 83 (1995).
+//! Redundant rows are left out, and options that another one of the list beats in cost and in every row. One row is
+//! solved by a dynamic program on the linear relaxation ([`one_row`](super::one_row)), several by branch and bound on
+//! the Lagrangian one ([`several_rows`](super::several_rows)). Sources: P. Sinha, A. A. Zoltners, "The multiple-choice
+//! knapsack problem", Operations Research 27 (1979); D. Pisinger, "A minimal algorithm for the multiple-choice knapsack
+//! problem", European J. Operational Research 83 (1995).
 
 use super::lists::{ListChoice, ListOption, Lists};
 use super::one_row::one_row;
 use super::several_rows::several_rows;
 
-/// The cheapest choice; None where no choice keeps the rows, or none was found before it was stopped.
+/// Cheapest choice. Returns None if no choice keeps the rows, or none was found before the stop.
 pub fn cheapest(lists: &[Vec<ListOption>], stopped: &dyn Fn() -> bool) -> Option<ListChoice> {
     let problem = Lists::of(lists)?;
     match problem.rows {

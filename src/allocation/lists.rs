@@ -1,50 +1,51 @@
-//! Lists of options under rows that add up, as the knapsacks have them ([`knapsack`](super::knapsack)).
+//! Lists of options under rows that are sums, the input of the knapsacks ([`knapsack`](super::knapsack)).
 
-/// The difference that sums in another order may make to a row.
+/// Relative difference of a row between sums in another order.
 pub(super) const ROUNDING: f64 = 1e-13;
-/// Costs that differ by less are the same.
+/// Relative difference of costs within which they are the same.
 pub(super) const SAME: f64 = 1e-12;
 
-/// The savings of two exchanges of a list's option, and the exchanges.
+/// Saving of one or two exchanges, and the exchanges as list and option.
 type Moves = (f64, [(usize, usize); 2]);
 
 /// One option of a list.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ListOption {
-    /// Its cost.
+    /// Cost of the option.
     pub cost: f64,
-    /// Its use of every row, 0 or more.
+    /// Use of every row, 0 or more.
     pub uses: Vec<f64>,
-    /// Its place in the list as given.
+    /// Position in the list as given.
     pub place: usize,
 }
 
-/// The cheapest choice found.
+/// Cheapest choice found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ListChoice {
-    /// For every list the place of the option, as given.
+    /// Position of the chosen option in every list, as given.
     pub places: Vec<usize>,
-    /// Their cost together.
+    /// Cost of all chosen options.
     pub cost: f64,
-    /// No choice costs less.
+    /// Lower bound of the cost of every choice.
     pub bound: f64,
-    /// States or nodes looked at.
+    /// Number of states or nodes examined.
     pub nodes: usize,
 }
 
-/// Lists with their rows, as far as they matter.
+/// Lists and rows without those that cannot matter.
 pub(super) struct Lists {
     pub(super) lists: Vec<Vec<ListOption>>,
     pub(super) rows: usize,
 }
 
 impl Lists {
-    /// Without what does not matter; None where a list is empty, or the tightest options break a row.
+    /// Removes redundant rows and dominated options. Returns None if a list is empty, or the tightest options break a
+    /// row.
     pub(super) fn of(given: &[Vec<ListOption>]) -> Option<Self> {
         let rows = given.first()?.first()?.uses.len();
         let options = || given.iter().flatten();
         let implied = |weak: usize, strong: usize| options().all(|one| one.uses[weak] <= one.uses[strong]);
-        // Of two rows that are the same the first stays.
+        // The first of two equal rows stays.
         let idle = |r: usize| {
             (0..rows).any(|s| s != r && implied(r, s) && (s < r || !implied(s, r)))
                 || given.iter().map(|list| list.iter().map(|one| one.uses[r]).fold(0.0, f64::max)).sum::<f64>() <= 1.0
@@ -63,12 +64,12 @@ impl Lists {
         possible.then_some(all)
     }
 
-    /// The cost of a choice of options, as they stand here.
+    /// Cost of a choice by positions in these lists.
     pub(super) fn cost(&self, picks: &[usize]) -> f64 {
         self.lists.iter().zip(picks).map(|(list, &pick)| list[pick].cost).sum()
     }
 
-    /// The use of every row by a choice.
+    /// Use of every row by a choice.
     pub(super) fn uses(&self, picks: &[usize]) -> Vec<f64> {
         let mut uses = vec![0.0; self.rows];
         for (list, &pick) in self.lists.iter().zip(picks) {
@@ -81,15 +82,15 @@ impl Lists {
         self.uses(picks).into_iter().all(fits)
     }
 
-    /// As it is told: places in the lists as they were given.
+    /// Choice by positions in the given lists.
     pub(super) fn told(&self, picks: &[usize], bound: f64, nodes: usize) -> ListChoice {
         let cost = self.cost(picks);
         let places = self.lists.iter().zip(picks).map(|(list, &pick)| list[pick].place).collect();
         ListChoice { places, cost, bound: bound.min(cost), nodes }
     }
 
-    /// A choice made better by exchanges of one option, and of two at once where that is asked for, as long as they save something and keep the
-    /// rows.
+    /// Improves a choice by exchanges of one option, and of two at once if `two`, as long as they save cost and keep
+    /// the rows.
     pub(super) fn exchanged(&self, picks: &mut [usize], two: bool) {
         let mut uses = self.uses(picks);
         loop {
@@ -116,12 +117,12 @@ impl Lists {
         }
     }
 
-    /// Exchanges of two options at once that save something and keep the rows.
+    /// Finds the best exchange of two options at once that saves cost and keeps the rows.
     fn pairs(&self, picks: &[usize], uses: &[f64], best: &mut Option<Moves>) {
         let mut after = vec![0.0; self.rows];
         for (j, list) in self.lists.iter().enumerate() {
             let own = &list[picks[j]];
-            // One that becomes cheaper pays for another that uses less.
+            // A cheaper option pays for another one that uses less.
             for (i, one) in list.iter().enumerate().filter(|(_, one)| one.cost < own.cost) {
                 let gained = own.cost - one.cost;
                 after.iter_mut().enumerate().for_each(|(r, after)| *after = uses[r] - own.uses[r] + one.uses[r]);
@@ -140,24 +141,24 @@ impl Lists {
     }
 }
 
-/// Takes moves that save more.
+/// Keeps the moves with the greater saving.
 fn better(best: &mut Option<Moves>, saved: f64, moves: [(usize, usize); 2]) {
     if best.is_none_or(|(most, _)| saved > most) {
         *best = Some((saved, moves));
     }
 }
 
-/// Whether a row is kept.
+/// True if a row with this use is kept.
 pub(super) fn fits(use_: f64) -> bool {
     use_ <= 1.0 + ROUNDING
 }
 
-/// The least use of a row in a list.
+/// Least use of a row in a list.
 pub(super) fn least_use(list: &[ListOption], r: usize) -> f64 {
     list.iter().map(|one| one.uses[r]).fold(f64::INFINITY, f64::min)
 }
 
-/// The options that no other one of the list beats, the cheapest first.
+/// Options that no other one of the list dominates, the cheapest first.
 fn undominated(mut list: Vec<ListOption>) -> Vec<ListOption> {
     list.sort_by(|a, b| {
         a.cost.total_cmp(&b.cost).then_with(|| a.uses.iter().sum::<f64>().total_cmp(&b.uses.iter().sum()))

@@ -1,19 +1,20 @@
-//! Costs of what is made: quality loss and scrap, as terms of the objective.
+//! Costs of the assemblies made: quality loss and scrap, as terms of the objective.
 //!
 //! ```text
 //! k (sigma^2 + (mean - target)^2) + price (share of assemblies that break a limit)
 //! ```
 //!
-//! The expected loss of G. Taguchi, "Introduction to quality engineering", Asian Productivity Organization (1986): a deviation from the target
-//! costs `k` times its square. Where the surface is a sum of dimensions whose means stay, the first term is a sum of squares of tolerances,
-//! exact in the search; anything else enters with its value and slopes at the trial tolerances.
+//! This is the expected loss of G. Taguchi, "Introduction to quality engineering", Asian Productivity Organization
+//! (1986): a deviation from the target costs `k` times its square. If the surface is a sum of dimensions with fixed
+//! means, the first term is a sum of squares of tolerances, exact in the search. Any other loss is represented by its
+//! value and slopes at the trial tolerances.
 
 use super::constraint::Linearised;
 use super::cost::Priced;
 use super::cost_error::CostError;
 use super::response::Responses;
 
-/// The cost of deviations and rejects of a characteristic, per assembly.
+/// Cost of deviations and rejects of a characteristic, per assembly.
 ///
 /// ```
 /// use sensitol::allocation::QualityLoss;
@@ -28,20 +29,21 @@ pub struct QualityLoss {
     pub characteristic: usize,
     /// Cost per square of the characteristic's unit.
     pub k: f64,
-    /// The value from which deviations count.
+    /// Value from which deviations count.
     pub target: f64,
     /// Cost of an assembly that breaks a limit.
     pub scrap: f64,
 }
 
-/// Half a difference in `ln T`: truncation and rounding both near 1e-9.
+/// Half of the difference in `ln T`. Truncation and rounding are both near 1e-9.
 const STEP: f64 = 3e-5;
 
 impl QualityLoss {
-    /// `k` per square of the deviation from the target.
+    /// Creates a loss of `k` per square of the deviation from the target.
     ///
     /// # Errors
-    /// When `k` is negative or not finite, or the target is not finite.
+    ///
+    /// If `k` is negative or not finite, or the target is not finite.
     pub fn new(characteristic: usize, k: f64, target: f64) -> Result<Self, CostError> {
         if !(k.is_finite() && k >= 0.0) {
             return Err(CostError::Negative { name: "k", value: k });
@@ -52,10 +54,11 @@ impl QualityLoss {
         Ok(Self { characteristic, k, target, scrap: 0.0 })
     }
 
-    /// With the cost of an assembly that breaks a limit.
+    /// Sets the cost of an assembly that breaks a limit.
     ///
     /// # Errors
-    /// When it is negative or not finite.
+    ///
+    /// If it is negative or not finite.
     pub fn with_scrap(self, scrap: f64) -> Result<Self, CostError> {
         match scrap.is_finite() && scrap >= 0.0 {
             true => Ok(Self { scrap, ..self }),
@@ -63,7 +66,7 @@ impl QualityLoss {
         }
     }
 
-    /// At factors of all tolerances, with nominals moved by `shifts`, in sigmas; None where it is unknown.
+    /// Loss at factors of all tolerances, with nominals moved by `shifts`, in sigmas. Returns None if it is unknown.
     pub(super) fn at(&self, responses: &Responses, factors: &[f64], shifts: Option<&[f64]>) -> Option<f64> {
         let moments = responses.moments_shifted(self.characteristic, factors, shifts)?;
         let squares = self.k * (moments.sigma().powi(2) + (moments.mean() - self.target).powi(2));
@@ -74,12 +77,12 @@ impl QualityLoss {
         Some(squares + scrapped)
     }
 
-    /// Whether it is a sum of squares of tolerances.
+    /// True if the loss is a sum of squares of tolerances.
     pub(super) fn is_exact(&self, responses: &Responses) -> bool {
         self.scrap == 0.0 && responses.is_still_sum(self.characteristic)
     }
 
-    /// Its value and slopes at half bands; None where they are unknown.
+    /// Loss and its slopes at half bands. Returns None if they are unknown.
     pub(super) fn linearised(&self, responses: &Responses, priced: &[Priced], at: &[f64]) -> Option<Linearised> {
         let c = self.characteristic;
         let factors = responses.factors(priced, at);
@@ -103,7 +106,7 @@ impl QualityLoss {
     }
 }
 
-/// All losses together at half bands of the groups; infinite where one is unknown.
+/// Sum of all losses at half bands of the groups. Infinite if one is unknown.
 pub(super) fn losses_at(losses: &[QualityLoss], responses: &Responses, priced: &[Priced], at: &[f64]) -> f64 {
     if losses.is_empty() {
         return 0.0;

@@ -1,11 +1,12 @@
-//! Set-up costs that the dimensions of one machine share.
+//! Set-up costs of machines that several dimensions share.
 //!
 //! ```text
 //! min over sets S of machines  [ sum_m in S setup_m + least cost with processes of machines in S, and of none ]
 //! ```
 //!
-//! A choice is looked at with just the machines that it uses, so that the least over all sets is the least cost. Sets come in the order of their
-//! set-up costs, up to where these and the least cost with all machines exceed the best choice.
+//! Each choice is charged only for the machines that it uses, so that the least over all sets is the least cost. Sets
+//! are examined in the order of their set-up costs. The search ends where these and the least cost with all machines
+//! exceed the best choice.
 
 use super::choose::{Choice, choose_alone};
 use super::cost::{Offer, Priced};
@@ -13,20 +14,20 @@ use super::result::Proof;
 use super::setup::{SetUp, needed};
 use super::solve::Setting;
 
-/// Costs that differ by less are the same.
+/// Relative difference of costs within which they are the same.
 const SAME: f64 = 1e-12;
 
-/// The cheapest tolerances at fixed derivatives, with what machines cost to set up.
+/// Cheapest tolerances at fixed derivatives, including set-up costs.
 pub(super) fn choose(setting: &Setting<'_>, start: &[f64]) -> Choice {
     if any(setting.priced) { choose_machines(setting, start) } else { choose_alone(setting, start) }
 }
 
-/// Whether some process needs a machine.
+/// True if some process needs a machine.
 fn any(priced: &[Priced]) -> bool {
     priced.iter().flat_map(|group| &group.offers).any(|offer| offer.machine.is_some())
 }
 
-/// The cheapest choice with what its machines cost to set up.
+/// Cheapest choice including the set-up costs of its machines.
 fn choose_machines(setting: &Setting<'_>, start: &[f64]) -> Choice {
     let every: Vec<&Offer> = setting.priced.iter().flat_map(|group| &group.offers).collect();
     let setups = needed(setting.setups, &every);
@@ -42,7 +43,7 @@ fn choose_machines(setting: &Setting<'_>, start: &[f64]) -> Choice {
     };
     let mut sets: Vec<usize> = (0..1usize << setups.len()).collect();
     sets.sort_by(|&a, &b| of(a).total_cmp(&of(b)));
-    // The choice without regard to set-ups is a good one to begin with.
+    // The choice without set-up costs is a good one to begin with.
     sets.insert(0, first);
     let (mut best, mut bound, mut nodes, mut rigorous) = (None, f64::INFINITY, 0, true);
     for (place, &set) in sets.iter().enumerate() {
@@ -57,7 +58,7 @@ fn choose_machines(setting: &Setting<'_>, start: &[f64]) -> Choice {
                 let below = proof.bound.unwrap_or(solved.cost).min(solved.cost);
                 bound = bound.min(below + of(set));
                 nodes += proof.nodes;
-                // One offer left of every list is a bound by itself.
+                // Lists with a single offer left are a bound by themselves.
                 rigorous &= proof.rigorous || proof.bound.is_none() && setting.is_convex();
                 solved.cost += of(used(setting, &setups, &offers));
                 if solved.cost < known {
@@ -77,14 +78,14 @@ fn choose_machines(setting: &Setting<'_>, start: &[f64]) -> Choice {
     }
 }
 
-/// The set of machines that a choice needs.
+/// Set of machines that a choice needs, as bits.
 fn used(setting: &Setting<'_>, setups: &[&SetUp], offers: &[usize]) -> usize {
     let chosen = setting.priced.iter().zip(offers).map(|(group, &offer)| &group.offers[offer]);
     let machines: Vec<&String> = chosen.filter_map(|offer| offer.machine.as_ref()).collect();
     (0..setups.len()).filter(|&m| machines.contains(&&setups[m].machine)).map(|m| 1 << m).sum()
 }
 
-/// The groups with the offers of a set of machines, and their places among all; None where a group has none.
+/// Groups with the offers of a set of machines, and the positions of these offers. Returns None if a group has none.
 fn restricted(setting: &Setting<'_>, setups: &[&SetUp], set: usize) -> Option<(Vec<Priced>, Vec<Vec<usize>>)> {
     let allowed = |offer: &Offer| match &offer.machine {
         Some(machine) => (0..setups.len()).any(|m| set >> m & 1 == 1 && setups[m].machine == *machine),

@@ -1,10 +1,10 @@
-//! The dimensions as a process makes them, which says how its parts lie within the band.
+//! Dimensions with the distribution of the chosen process.
 
 use std::sync::Arc;
 
 use sensitol_numeric::dimension::Dimension;
 
-/// The dimensions of a group as a process makes them, in the order of its members.
+/// Dimensions of a group with the distributions of a process, in the order of its members.
 #[derive(Debug, Clone)]
 pub struct Made(Arc<Vec<Dimension>>);
 
@@ -15,10 +15,12 @@ impl PartialEq for Made {
 }
 
 impl Made {
+    /// Stores the dimensions of a group.
     pub fn new(dimensions: Vec<Dimension>) -> Self {
         Self(Arc::new(dimensions))
     }
 
+    /// Dimensions in the order of the group's members.
     pub fn dimensions(&self) -> &[Dimension] {
         &self.0
     }

@@ -1,15 +1,17 @@
-//! Minimisation by the crate argmin: L-BFGS with the line search of Moré and Thuente for smooth functions, and a particle swarm over a box.
+//! Minimisation by the crate argmin: L-BFGS with the line search of Moré and Thuente for smooth functions, and a
+//! particle swarm over a box.
 //!
-//! The best point that a descent has seen is kept here: a line search that gives up loses nothing. A value that is not a number, or cannot be
-//! computed, is infinite before argmin sees it.
+//! The best point of a descent is kept here, so that a failed line search loses nothing. A value that is not a number,
+//! or cannot be computed, is passed to argmin as infinite.
 //!
 //! ```text
 //! v <- w v + c1 r1 (best of the particle - x) + c2 r2 (best of all - x),   x <- x + v      w = 1/(2 ln 2), c1 = c2 = 1/2 + ln 2
 //! ```
 //!
-//! with new random numbers `r1`, `r2` for every coordinate; a particle that leaves the box stops at its face. argmin's own swarm draws from the operating
-//! system's random numbers, by five further crates; this one has a seed. Sources of the swarm: M. Clerc, "Standard particle swarm optimisation" (2012), for the
-//! coefficients; J. Kennedy, R. C. Eberhart, "Particle swarm optimization", ICNN (1995).
+//! Each coordinate gets new random numbers `r1`, `r2`. A particle that leaves the box stops at its face. The swarm of
+//! argmin needs random numbers of the operating system and five further crates. This one has a seed. Sources of the
+//! swarm: M. Clerc, "Standard particle swarm optimisation" (2012), for the coefficients; J. Kennedy, R. C. Eberhart,
+//! "Particle swarm optimization", ICNN (1995).
 
 use std::cell::RefCell;
 
@@ -21,13 +23,13 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::vector::Vector;
 
-/// Vectors that L-BFGS remembers.
+/// Number of vectors that L-BFGS stores.
 const MEMORY: usize = 12;
 
-/// Value and gradient together; None where there is none.
+/// Function with value and gradient. It returns None if it is not defined.
 type Function<'a> = dyn Fn(&[f64]) -> Option<(f64, Vec<f64>)> + 'a;
 
-/// A point with value and gradient.
+/// Point with value and gradient.
 struct Answer {
     x: Vec<f64>,
     value: f64,
@@ -36,7 +38,7 @@ struct Answer {
 
 struct Watched<'a> {
     function: &'a Function<'a>,
-    /// The last point asked, which argmin asks twice: for its value and for its gradient.
+    /// Last point. argmin evaluates it twice: for its value and for its gradient.
     last: RefCell<Option<Answer>>,
     best: RefCell<(f64, Vec<f64>)>,
 }
@@ -57,7 +59,7 @@ impl Watched<'_> {
     }
 }
 
-/// The function as argmin asks for it.
+/// Wrapper with the traits of argmin.
 struct Asked<'a>(&'a Watched<'a>);
 
 impl CostFunction for Asked<'_> {
@@ -78,8 +80,8 @@ impl Gradient for Asked<'_> {
     }
 }
 
-/// The best point of a descent from `start`, where the gradient is shorter than `tolerance`, or `iterations` are over, or the
-/// line search finds nothing better. `start` itself where nothing is.
+/// Best point of a descent from `start`. The descent ends when the gradient is shorter than `tolerance`, after
+/// `iterations`, or when the line search finds nothing better. Returns `start` if nothing is better.
 pub(super) fn minimised(function: &Function<'_>, start: &[f64], tolerance: f64, iterations: u64) -> Vec<f64> {
     let watched = Watched { function, last: RefCell::new(None), best: RefCell::new((f64::INFINITY, start.to_vec())) };
     let solver = LBFGS::new(MoreThuenteLineSearch::new(), MEMORY)
@@ -87,7 +89,7 @@ pub(super) fn minimised(function: &Function<'_>, start: &[f64], tolerance: f64, 
         .and_then(|solver| solver.with_tolerance_cost(0.0));
     if let (Ok(solver), true) = (solver, watched.at(start).0.is_finite()) {
         let descent = Executor::new(Asked(&watched), solver).ctrlc(false);
-        // Its own end is of no interest: a point at which nothing is defined ends a line search with an error.
+        // The end of the descent is ignored: a point without a value ends a line search with an error.
         let _ = descent
             .configure(|state| state.param(Vector(start.to_vec())).max_iters(iterations))
             .run()
@@ -96,13 +98,14 @@ pub(super) fn minimised(function: &Function<'_>, start: &[f64], tolerance: f64, 
     watched.best.into_inner().1
 }
 
-/// Particles, and the moves of each.
+/// Number of particles of the swarm.
 const PARTICLES: usize = 40;
+/// Number of moves of each particle.
 const MOVES: u64 = 60;
-/// Its own seed: what is found depends on nothing else.
+/// Fixed seed, so that the result depends only on the function and the bounds.
 const SEED: u64 = 0x5eed_5a4a;
 
-/// The value of a place; less is better, and it is infinite where there is none.
+/// Function of a place to minimise. It is infinite if the place has no value.
 type PlaceValue<'a> = dyn Fn(&[f64]) -> f64 + 'a;
 
 #[derive(Clone)]
@@ -152,7 +155,7 @@ impl<'a> Solver<OfPlaces<'a>, PopulationState<Particle, f64>> for Swarm<'_> {
         let mut particles = Vec::with_capacity(PARTICLES);
         for _ in 0..PARTICLES {
             let (at, to) = (self.anywhere(), self.anywhere());
-            // Half the way to another place.
+            // Half of the way to another place.
             let velocity = at.iter().zip(&to).map(|(at, to)| 0.5 * (to - at)).collect();
             let least = problem.cost(&Vector(at.clone()))?;
             particles.push(Particle { best: at.clone(), at, velocity, least });
@@ -197,7 +200,7 @@ fn with_best(state: PopulationState<Particle, f64>, particles: Vec<Particle>) ->
     }
 }
 
-/// The best place of a swarm within these bounds; None where no particle came upon a value.
+/// Best place of a swarm within these bounds. Returns None if no particle found a value.
 pub(super) fn swarmed(function: &PlaceValue<'_>, bounds: &[[f64; 2]]) -> Option<Vec<f64>> {
     let swarm = Swarm { bounds, rng: Xoshiro256PlusPlus::seed_from_u64(SEED) };
     let flight = Executor::new(OfPlaces(function), swarm).ctrlc(false).configure(|state| state.max_iters(MOVES));
@@ -209,7 +212,8 @@ pub(super) fn swarmed(function: &PlaceValue<'_>, bounds: &[[f64; 2]]) -> Option<
 mod tests {
     use super::*;
 
-    /// Rastrigin's function has 11 minima along every coordinate: a descent ends at the nearest, the swarm in the valley of the least.
+    /// Rastrigin's function has 11 minima along every coordinate. A descent ends at the nearest, the swarm in the
+    /// valley of the least.
     #[test]
     fn a_swarm_leaves_valleys_that_a_descent_ends_in() {
         let turn = std::f64::consts::TAU;
@@ -218,7 +222,7 @@ mod tests {
         };
         let found = swarmed(&rastrigin, &[[-5.0, 5.0]; 2]).unwrap();
         assert!(found.iter().all(|x| (x - 1.0).abs() < 0.5), "{found:?}");
-        // It is reproducible, keeps its bounds, and does without values in most of the box.
+        // The result is reproducible, keeps its bounds, and needs no values in most of the box.
         assert_eq!(found, swarmed(&rastrigin, &[[-5.0, 5.0]; 2]).unwrap());
         let partly = |x: &[f64]| if x[0] > 3.0 { f64::NAN } else { -x[0] };
         let found = swarmed(&partly, &[[0.0, 8.0]]).unwrap();

@@ -1,4 +1,4 @@
-//! Tolerance allocation: the cheapest tolerances with which every characteristic keeps what is required of it.
+//! Tolerance allocation: the cheapest tolerances that keep every requirement.
 //!
 //! ```text
 //! min  sum_g parts_g C_g(T_g) + sum_c [k_c (sigma_c^2 + (mean_c - target_c)^2) + price_c (share beyond limits)]
@@ -13,13 +13,13 @@
 //! and  min_g <= T_g <= max_g,  or T_g one of a list of processes
 //! ```
 //!
-//! Derivatives are taken by an ordinary analysis at the present tolerances. From there moments follow any tolerance by themselves
-//! ([`Surrogate::relocated`](sensitol_numeric::surrogate::Surrogate::relocated)), so that the search costs no evaluation; its answer is analysed by
-//! the model again, and where that says otherwise, tolerances are chosen anew from the derivatives there, until both agree. Nominal values
-//! that may move are unknowns of the same problem.
+//! Derivatives come from an ordinary analysis at the present tolerances. They give the moments at any other tolerances
+//! ([`Surrogate::relocated`](sensitol_numeric::surrogate::Surrogate::relocated)), so that the search costs no
+//! evaluation. The model is then analysed at the result. If the analysis disagrees, tolerances are chosen anew from the
+//! derivatives there, until both agree. Nominal values that may move are unknowns of the same problem.
 //!
-//! Evidence supports every claim: the residual of the conditions of Karush, Kuhn and Tucker for free tolerances, a bound that no
-//! choice can undercut for processes, and what every limit costs.
+//! Every result has evidence: the residual of the conditions of Karush, Kuhn and Tucker for free tolerances, a lower
+//! bound of the cost for processes, and the shadow price of every limit.
 
 mod augmented;
 mod bands;

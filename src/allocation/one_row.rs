@@ -1,16 +1,16 @@
-//! The cheapest options of lists under one row.
+//! Cheapest options of lists under one row.
 //!
-//! The linear relaxation takes the steps of each list's lower convex hull, the most saved per use first, until the row is full. Its price of
-//! the row rules out options; the rest goes through a dynamic program over the lists, whose states are pairs of use and cost without those
-//! that another one beats. A state is left out where its cost and the relaxation of all later lists in the room that is left reach the best
-//! choice known; the steps that fit there complete it to a choice.
+//! The linear relaxation takes the steps of each list's lower convex hull, the greatest saving per use first, until the
+//! row is full. Its price of the row rules out options. The others enter a dynamic program over the lists. Its states
+//! are pairs of use and cost without the dominated ones. A state is dropped if its cost plus the relaxation of all
+//! later lists reaches the best known choice. The steps that fit into the remaining slack complete a state to a choice.
 
 use super::lists::{ListChoice, ListOption, Lists, ROUNDING, SAME, fits};
 
-/// States of one list at most: some hundred megabytes.
+/// Most states of one list. They take some hundred megabytes.
 const MOST: usize = 4_000_000;
 
-/// A step along the hull of a list: to the next option that uses more and costs less.
+/// Step along the hull of a list: to the next option that uses more and costs less.
 #[derive(Debug, Clone, Copy)]
 struct Step {
     list: usize,
@@ -19,13 +19,13 @@ struct Step {
     saved: f64,
 }
 
-/// The relaxation of some lists as a function of the room: from the tightest options on, step by step.
+/// Relaxation of some lists as a function of the slack, beginning with the tightest options.
 struct Relaxation {
     /// Use and cost of the tightest options.
     tight: [f64; 2],
-    /// Those options.
+    /// Tightest options, as list and position.
     picks: Vec<(usize, usize)>,
-    /// The steps, the most saved per use first.
+    /// Steps, the greatest saving per use first.
     steps: Vec<Step>,
     /// Use and saving of the steps up to each.
     sums: Vec<[f64; 2]>,
@@ -39,19 +39,20 @@ struct State {
     pick: u32,
 }
 
-/// The use of an option; of no row nothing.
+/// Use of the row by an option, 0 if there is no row.
 fn used(one: &ListOption) -> f64 {
     one.uses.first().copied().unwrap_or(0.0)
 }
 
 pub(super) fn one_row(problem: &Lists, stopped: &dyn Fn() -> bool) -> Option<ListChoice> {
     let whole: Vec<Vec<usize>> = problem.lists.iter().map(|list| (0..list.len()).collect()).collect();
+    // The relaxation gives a bound, and a choice whose cost rules out options.
     let all = Relaxation::of(problem, &whole, 0..problem.lists.len());
     let (bound, price, mut best) = all.root(problem);
     problem.exchanged(&mut best, true);
     let mut known = problem.cost(&best);
     let left = reduced(problem, bound, price, known)?;
-    // Few options first would make few states; the widest first make the bound of the rest sharp soonest.
+    // Short lists first would make few states. Long ones first make the bound of the others sharp soonest.
     let mut order: Vec<usize> = (0..left.len()).collect();
     order.sort_by_key(|&j| std::cmp::Reverse(left[j].len()));
     let ordered = Lists { lists: order.iter().map(|&j| problem.lists[j].clone()).collect(), rows: problem.rows };
@@ -72,6 +73,7 @@ pub(super) fn one_row(problem: &Lists, stopped: &dyn Fn() -> bool) -> Option<Lis
                 }
             }
         }
+        // States that another one beats in use and cost are dropped.
         states.sort_unstable_by(|a, b| a.used.total_cmp(&b.used).then(a.cost.total_cmp(&b.cost)));
         nodes += states.len();
         let mut least = f64::INFINITY;
@@ -80,7 +82,7 @@ pub(super) fn one_row(problem: &Lists, stopped: &dyn Fn() -> bool) -> Option<Lis
             least = least.min(state.cost);
             keeps
         });
-        // The best completion first: what it costs rules out others.
+        // The best completion comes first, because its cost rules out others.
         let mut completed: Option<(f64, usize)> = None;
         let mut bounds = Vec::with_capacity(states.len());
         let mut place = rest.sums.len();
@@ -114,12 +116,12 @@ pub(super) fn one_row(problem: &Lists, stopped: &dyn Fn() -> bool) -> Option<Lis
     Some(problem.told(&picks, proven, nodes))
 }
 
-/// The options that the price of the row does not rule out, beside a choice that costs `known`.
+/// Options that the price of the row does not rule out, given a choice that costs `known`.
 fn reduced(problem: &Lists, bound: f64, price: f64, known: f64) -> Option<Vec<Vec<usize>>> {
     let priced = |one: &ListOption| one.cost + price * used(one);
     let left = problem.lists.iter().map(|list| {
         let least = list.iter().map(priced).fold(f64::INFINITY, f64::min);
-        // A difference by the rounding of sums is not a reason.
+        // A difference by the rounding of sums does not rule out an option.
         let slack = 1e-9 * known.abs();
         let stays = |i: &usize| bound + (priced(&list[*i]) - least) <= known + slack;
         let left: Vec<usize> = (0..list.len()).filter(stays).collect();
@@ -128,7 +130,7 @@ fn reduced(problem: &Lists, bound: f64, price: f64, known: f64) -> Option<Vec<Ve
     left.collect()
 }
 
-/// The options that lead to a state of the last stage.
+/// Options that lead to a state of the last stage.
 fn traced(stages: &[Vec<State>], index: usize) -> Vec<usize> {
     let mut picks = Vec::with_capacity(stages.len() - 1);
     let mut at = index;
@@ -141,12 +143,12 @@ fn traced(stages: &[Vec<State>], index: usize) -> Vec<usize> {
 }
 
 impl Relaxation {
-    /// Of some lists, with the options that are left of them.
+    /// Relaxation of some lists with their remaining options.
     fn of(problem: &Lists, left: &[Vec<usize>], range: std::ops::Range<usize>) -> Self {
         let (mut tight, mut picks, mut steps) = ([0.0; 2], Vec::new(), Vec::new());
         for j in range {
             let list = &problem.lists[j];
-            // The cheapest option comes first and uses most.
+            // Options are sorted by use. The cheapest one uses most.
             let mut options: Vec<usize> = left[j].clone();
             options.sort_by(|&a, &b| used(&list[a]).total_cmp(&used(&list[b])));
             let mut hull: Vec<usize> = Vec::new();
@@ -183,8 +185,8 @@ impl Relaxation {
         Self { tight, picks, steps, sums }
     }
 
-    /// The relaxation's least cost in this room, and that of the whole steps which fit; `place` is how many fit, at most, and is lowered to
-    /// how many do.
+    /// Least cost of the relaxation in this slack, and cost of the whole steps that fit. `place` is an upper bound of
+    /// the number of steps that fit, and is lowered to that number.
     fn at(&self, room: f64, place: &mut usize) -> [f64; 2] {
         let left = room - self.tight[0];
         while *place > 0 && self.sums[*place - 1][0] > left {
@@ -197,7 +199,7 @@ impl Relaxation {
         [self.tight[1] - done[1] - part, self.tight[1] - done[1]]
     }
 
-    /// The options of the whole steps that fit into this room.
+    /// Options of the whole steps that fit into this slack.
     fn completed(&self, room: f64, first: usize, end: usize) -> Vec<usize> {
         let mut place = self.sums.len();
         self.at(room, &mut place);
@@ -207,7 +209,8 @@ impl Relaxation {
         picks
     }
 
-    /// The relaxation of all lists: its bound, the price of the row, and the choice of the steps that fit, later ones too.
+    /// Relaxation of all lists: its bound, the price of the row, and the choice of the steps that fit, including later
+    /// ones.
     fn root(&self, problem: &Lists) -> (f64, f64, Vec<usize>) {
         let room = 1.0 + ROUNDING;
         let mut place = self.sums.len();

@@ -1,4 +1,4 @@
-//! Tolerances in fixed proportions: one factor is chosen.
+//! Tolerances in fixed proportions: only a common factor is chosen.
 
 use std::rc::Rc;
 
@@ -13,7 +13,7 @@ use super::station::Station;
 use super::task::AllocateError;
 
 impl Driver<'_> {
-    /// The loosest tolerances in the proportions of the task's basis that keep every requirement.
+    /// Loosest tolerances in the proportions of the task's basis that keep every requirement.
     pub(super) fn in_proportion(
         &mut self,
         allocation: &mut Allocation,
@@ -35,14 +35,14 @@ impl Driver<'_> {
             }
             let Some(factor) = loosest_of(&station.responses, constraints, &members) else {
                 let ones = vec![1.0; station.problem.dimensions().len()];
-                // Kept however loose: these are kept, and how much looser they could be is not known.
+                // They are kept at any factor. The factor up to which they are is then not known.
                 if constraints.iter().all(|one| kept(one.value_at(&station.responses, &ones))) {
                     break;
                 }
                 allocation.status = Status::NoFeasiblePointFound;
                 return Ok(None);
             };
-            // The first factor is only as near as its search; later ones must agree.
+            // The first factor is only as accurate as its search, so later ones must agree.
             if (factor - 1.0).abs() <= near.agree && factor >= 1.0 {
                 ended.agreed = true;
                 break;
@@ -73,7 +73,7 @@ impl Driver<'_> {
         Ok(Some(SearchEnd { station: Rc::new(station), last, constraints, ended, trial: None, is_start: false }))
     }
 
-    /// Half bands in the proportions of the basis, of the same geometric mean as the present ones.
+    /// Half bands in the proportions of the basis, with the same geometric mean as the present ones.
     fn proportions(&self, first: &Station) -> Vec<f64> {
         let dimensions = first.problem.dimensions();
         let present = |g: usize| dimensions[self.task.priced[g].members[0]].half_band();
@@ -97,7 +97,7 @@ impl Driver<'_> {
         let known = || wanted.iter().enumerate().filter(|(_, wanted)| wanted.is_finite());
         let count = known().count().max(1) as f64;
         let scale = libm::exp(known().map(|(g, wanted)| libm::log(present(g) / wanted)).sum::<f64>() / count);
-        // A group without effect stays as it is.
+        // A group without effect keeps its half band.
         wanted
             .iter()
             .enumerate()

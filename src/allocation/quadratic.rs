@@ -1,68 +1,67 @@
-//! The quadratic problem of a step of sequential quadratic programming.
+//! Quadratic problem of a step of sequential quadratic programming.
 //!
 //! ```text
 //! min over d, t of  g'd + d'Bd/2 + w t + t^2/2     subject to  c_i + J_i d <= t for every row,  0 <= t,  low <= d <= high
 //! ```
 //!
-//! `t` is what the rows are exceeded by all the same: with `w` above the sum of the multipliers it is 0 wherever the rows can be kept.
-//! The dual method begins at the least without rows and adds the one that is exceeded most, again and again; it needs `H`, the inverse of `B`.
-//! Source: D. Goldfarb, A. Idnani, "A numerically stable dual method for solving strictly convex quadratic programs", Mathematical
-//! Programming 27 (1983).
+//! `t` is the excess that the rows may have. With `w` above the sum of the multipliers it is 0 if the rows can be kept.
+//! The dual method begins at the least without rows, and adds the row with the largest excess again and again. It needs
+//! `H`, the inverse of `B`. Source: D. Goldfarb, A. Idnani, "A numerically stable dual method for solving strictly
+//! convex quadratic programs", Mathematical Programming 27 (1983).
 
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 
 use super::augmented::Slope;
 
-/// A row that is exceeded by less is kept: rows and bounds are near 1 in size.
+/// Greatest excess of a row that is kept. Rows and bounds are near 1 in size.
 const KEPT: f64 = 1e-13;
-/// A direction is in the span of the active rows where this part of it, or less, is left.
+/// Part of a direction outside the span of the active rows, up to which it counts as within the span.
 const DEPENDENT: f64 = 1e-14;
 
 pub(super) struct Quadratic<'a> {
-    /// `H`, row by row.
+    /// Matrix `H`, row by row.
     pub(super) inverse: &'a [Vec<f64>],
     pub(super) gradient: &'a [f64],
     pub(super) rows: &'a [Slope],
-    /// Of every unknown.
+    /// Bounds of every unknown.
     pub(super) bounds: &'a [[f64; 2]],
     pub(super) weight: f64,
 }
 
-/// The solution.
 #[derive(Clone)]
 pub(super) struct Step {
     pub(super) d: Vec<f64>,
-    /// The excess of the rows.
+    /// Excess `t` of the rows.
     pub(super) slack: f64,
-    /// Of the rows, then of the lower and the upper bound of every unknown.
+    /// Multipliers of the rows, then of the lower and the upper bound of every unknown.
     pub(super) multipliers: Vec<f64>,
 }
 
-/// A condition `normal . (d, t) <= bound`.
+/// Condition `normal . (d, t) <= bound`.
 #[derive(Clone, Copy, PartialEq)]
 enum Condition {
     Row(usize),
     Low(usize),
     High(usize),
-    /// `t` is not negative.
+    /// Condition that `t` is not negative.
     Slack,
 }
 
-/// A condition that holds with equality.
+/// Condition that holds with equality.
 struct Active {
     condition: Condition,
     multiplier: f64,
-    /// `H` times its normal.
+    /// Product of `H` and the normal.
     along: Vec<f64>,
 }
 
 impl Quadratic<'_> {
-    /// The solution; None where rounding leaves no way on.
+    /// Solves the problem. Returns None if rounding prevents further steps.
     pub(super) fn solved(&self) -> Option<Step> {
         let n = self.gradient.len();
         let mut z: Vec<f64> = self.inverse.iter().map(|row| -dot(row, self.gradient)).chain([0.0]).collect();
-        // Without rows t is at 0, which `w` pays for.
+        // Without rows t is 0, which the weight `w` enforces.
         let mut active = vec![self.activated(Condition::Slack, self.weight)];
         for _ in 0..10 * (self.rows.len() + 2 * n + 1) {
             let (added, mut over) = match self.most_exceeded(&z, &active) {
@@ -74,7 +73,7 @@ impl Quadratic<'_> {
         None
     }
 
-    /// Takes one more condition in, and lets go of those whose multipliers would become negative.
+    /// Adds a condition, and removes those whose multipliers would become negative.
     fn add(&self, mut added: Active, over: &mut f64, z: &mut [f64], active: &mut Vec<Active>) -> Option<()> {
         loop {
             let share = self.shares(&added, active);
@@ -109,7 +108,7 @@ impl Quadratic<'_> {
         }
     }
 
-    /// By what multiples of the active normals the new one is made up, in the measure of `H`.
+    /// Multiples of the active normals that make up the new one, in the metric of `H`.
     fn shares(&self, added: &Active, active: &[Active]) -> Vec<f64> {
         let k = active.len();
         if k == 0 {
@@ -135,7 +134,7 @@ impl Quadratic<'_> {
         Active { condition, multiplier, along }
     }
 
-    /// A normal times a vector.
+    /// Product of a normal and a vector.
     fn times(&self, condition: Condition, vector: &[f64]) -> f64 {
         let n = self.gradient.len();
         match condition {
@@ -146,7 +145,7 @@ impl Quadratic<'_> {
         }
     }
 
-    /// By how much a condition is exceeded.
+    /// Excess of a condition.
     fn over(&self, condition: Condition, z: &[f64]) -> f64 {
         let bound = match condition {
             Condition::Row(row) => -self.rows[row].0,
@@ -182,7 +181,7 @@ impl Quadratic<'_> {
     }
 }
 
-/// Of the places that both have.
+/// Product over the positions that both vectors have.
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
@@ -191,8 +190,8 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    /// Distance from (2, 1) under x + y <= 1 and bounds: the foot of the perpendicular (1, 0), and with x <= 0.5 the corner (0.5, 0.5); multipliers
-    /// from `d - (2, 1) + lambda (1, 1) + mu (1, 0) = 0`.
+    /// Projection of (2, 1) on x + y <= 1 and bounds: the foot of the perpendicular (1, 0), and with x <= 0.5 the
+    /// corner (0.5, 0.5). The multipliers come from `d - (2, 1) + lambda (1, 1) + mu (1, 0) = 0`.
     #[test]
     fn a_projection_has_its_foot_and_multipliers() {
         let inverse = [vec![1.0, 0.0], vec![0.0, 1.0]];
@@ -215,7 +214,8 @@ mod tests {
         assert_eq!(corner.slack, 0.0);
     }
 
-    /// Rows that cannot be kept within the bounds are exceeded alike: x >= 3 and x <= 1 by 1, at 2 for any objective that `w` outweighs.
+    /// Rows that cannot be kept within the bounds are exceeded alike: x >= 3 and x <= 1 by 1, at 2 for any objective
+    /// that `w` outweighs.
     #[test]
     fn rows_that_exclude_each_other_are_exceeded_alike() {
         let rows = [(3.0, vec![-1.0]), (-1.0, vec![1.0])];

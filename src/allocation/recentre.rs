@@ -1,4 +1,4 @@
-//! Nominal values moved: together with the tolerances, or to where the fewest assemblies are rejected.
+//! Moves nominal values, together with the tolerances or to the fewest rejects.
 
 use super::constraint::Constraint;
 use super::driver::{Driver, Near};
@@ -14,30 +14,31 @@ use sensitol_numeric::characteristic::SpecLimits;
 use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::moments::Moments;
 
-/// Steps of the central differences, in sigmas.
+/// Step of the central differences, in sigmas.
 const STEP: f64 = 1e-4;
-/// The gradient of the logarithm per sigma at which it is at rest.
+/// Gradient of the logarithm per sigma at which the descent ends.
 const REST: f64 = 1e-9;
+/// Most iterations of the descent.
 const DESCENT: u64 = 200;
-/// Nominal values that are sought by themselves are at rest when they move by fewer sigmas.
+/// Greatest move at which nominal values chosen alone are at rest, in sigmas.
 const REST_ALONE: f64 = 1e-3;
-/// A step of a nominal value, in sigmas, that derivatives are trusted for.
+/// Greatest step of a nominal value for which derivatives are trusted, in sigmas.
 const FAR: f64 = 30.0;
 
-/// Nominal values moved.
+/// Problem with moved nominal values.
 pub(super) struct Recentred {
     pub(super) problem: Problem,
-    /// How far at most, in sigmas.
+    /// Greatest move, in sigmas.
     pub(super) far: f64,
-    /// How far is not at all.
+    /// Greatest move at which the nominal values are at rest, in sigmas.
     pub(super) rest: f64,
-    /// The half bands that go with them, where both were sought together.
+    /// Half bands that belong to the nominal values, if both were chosen together.
     pub(super) at: Option<Vec<f64>>,
     pub(super) residual: Option<f64>,
 }
 
 impl Driver<'_> {
-    /// Nominal values moved: together with the tolerances where those may change too, or to where the fewest are rejected.
+    /// Moves nominal values: together with the tolerances if these may change too, or to the fewest rejects.
     pub(super) fn recentred(
         &self,
         station: &Station,
@@ -53,7 +54,8 @@ impl Driver<'_> {
         let priced = &self.task.priced;
         let (responses, losses, setups) = (&station.responses, &self.task.losses, &self.task.setups);
         let setting = Setting { responses, priced, constraints, losses, setups, stopped: &stopped, anywhere: false };
-        // Without a requirement nothing holds the nominal values: what is sought for a cost is best where the fewest are rejected.
+        // Without a requirement nothing fixes the nominal values. An objective for a given cost is then best with the
+        // fewest rejects.
         let required = !priced.is_empty() && self.task.goal == Goal::LeastCost;
         let both = required.then(|| together(&setting, &of, &bounds, at)).flatten();
         let none = Recentred { problem: problem.clone(), far: 0.0, rest: REST_ALONE, at: None, residual: None };
@@ -80,18 +82,19 @@ impl Driver<'_> {
         Ok(Recentred { problem: problem.clone().with_dimensions(dimensions)?, far: way, ..found })
     }
 
-    /// How far the nominal value of a dimension may move, in sigmas.
+    /// Bounds of a dimension's nominal value, in sigmas from the present one.
     fn bounds_of(&self, dimension: &Dimension) -> [f64; 2] {
         let given = self.options.nominal_bounds.iter().find(|(name, _)| name == dimension.name());
         given.map_or([-FAR, FAR], |(_, bounds)| bounds.map(|bound| (bound - dimension.nominal()) / dimension.sigma()))
     }
 }
 
-/// By how many sigmas each of these dimensions should move so that the fewest assemblies are rejected, all characteristics with limits
-/// together; at fixed derivatives. None where that is unknown.
+/// Moves of these dimensions in sigmas to the fewest rejects of all characteristics with limits together, at fixed
+/// derivatives. Returns None if the rejects are unknown.
 ///
-/// Minimised is `ln (sum of rejected shares) - ln (least share kept)`, which has a slope however far off the limits are. Where several
-/// dimensions do the same, each moves in proportion to its effect, the least way in sigmas.
+/// It minimises `ln (sum of rejected shares) - ln (least share kept)`, which has a slope at any distance from the
+/// limits. If several dimensions have the same effect, each moves in proportion to it, which is the least way in
+/// sigmas.
 fn shifts(problem: &Problem, responses: &Responses, of: &[usize]) -> Option<Vec<f64>> {
     let limited: Vec<(usize, SpecLimits)> = (problem.characteristics().iter().enumerate())
         .map(|(c, one)| (c, one.limits()))
@@ -136,7 +139,7 @@ fn shares(moments: &Moments, limits: SpecLimits) -> Option<[f64; 2]> {
     let below = limits.lower().map_or(f64::NEG_INFINITY, |lower| law.log_cdf(lower));
     let above = limits.upper().map_or(f64::NEG_INFINITY, |upper| law.log_sf(upper));
     let most = below.max(above);
-    // Beyond all that doubles tell, and beyond the end of a law with ends: as far as its quantiles reach.
+    // Rejects below the range of doubles, or beyond the end of a bounded distribution, get the least logarithm.
     let out = if most == f64::NEG_INFINITY {
         -700.0
     } else {

@@ -1,16 +1,17 @@
-//! The data of what some characteristics reject together, about a station; [`rejects`](super::rejects) makes and uses it.
+//! Data of the rejects of some characteristics together, about a linearization point. The module
+//! [`rejects`](super::rejects) makes and uses it.
 
 use sensitol_numeric::characteristic::SpecLimits;
 
-/// The joint rejects of some characteristics.
+/// Joint rejects of some characteristics.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct RejectFit {
-    /// The characteristics with their limits.
+    /// Characteristics with their limits.
     pub(super) of: Vec<(usize, SpecLimits)>,
-    /// The correction of the fits by the laws: a factor, as its logarithm.
+    /// Correction of the fits by the surface distributions: the logarithm of a factor.
     pub(super) ln: f64,
-    /// Whether the laws reject nothing at the station.
+    /// True if the surface distributions reject nothing at the linearization point.
     pub(super) nothing: bool,
-    /// How that grows with `ln T` of every dimension.
+    /// Derivatives of the correction by `ln T` of every dimension.
     pub(super) slopes: Vec<f64>,
 }

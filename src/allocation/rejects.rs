@@ -1,14 +1,17 @@
-//! The share of assemblies that break a limit of some characteristics, as a function of the tolerances.
+//! Share of assemblies that break a limit of some characteristics, as a function of the tolerances.
 //!
 //! ```text
 //! R(T) = 1 - exp(-kappa(T) L(T)),   L = -sum_c ln(1 - R_c(T)),   ln kappa = ln kappa_0 + sum_j g_j ln(T_j/T_j0)
 //! ```
 //!
-//! `R_c` is what the Pearson fit of the four moments at `T` rejects, and a little of what a normal distribution would; few rejects add up, and
-//! many are never more than all. `kappa` makes value and slopes at the station those of the surface laws, less what breaks several limits at
-//! once, so that what the rounds come to rest at is by the laws. Source: N. M. Alexandrov, R. M. Lewis, Optimization and Engineering 2 (2001).
+//! `R_c` is the share that the Pearson fit of the four moments at `T` rejects, mixed with a little of the share of a
+//! normal distribution. Small shares add up, and large ones never exceed 1. `kappa` gives value and slopes of the
+//! surface distributions at the linearization point, minus the share that breaks several limits at once. The rounds
+//! therefore converge to an optimum by these distributions. Source: N. M. Alexandrov, R. M. Lewis, Optimization and
+//! Engineering 2 (2001).
 //!
-//! Slopes go by the moments. With `z` the limits in sigmas off the mean and `p` the density of the fit at them:
+//! Slopes come from those of the moments. With `z` the limits in sigmas off the mean and `p` the density of the fit at
+//! them:
 //!
 //! ```text
 //! dR/d mean = p_above - p_below     dR/d ln sigma = sigma (z_above p_above - z_below p_below)     by skewness and excess: Pearson's equation
@@ -26,22 +29,23 @@ use sensitol_numeric::law::{HeldTail, LawTail, SurfaceLaw, rejected};
 use sensitol_numeric::moments::Moments;
 use sensitol_numeric::parallel::prelude::*;
 
-/// Farther than this from the station, in `ln T`, a slope is not followed.
+/// Greatest distance from the linearization point, in `ln T`, at which a slope is followed.
 const FAR: f64 = 0.7;
-/// Half a difference of tails in `ln T`, along held contours: truncation and rounding 1e-8.
+/// Half of the difference of tails in `ln T`, along held contours. Truncation and rounding are 1e-8.
 const STEP: f64 = 1e-4;
-/// Half a difference of what breaks several limits, where that is exact to a part of all; where points count it, it is taken to grow as the rejects do.
+/// Half of the difference in `ln T` for the share that breaks several limits, if that share is exact.
 const NARROW: f64 = 1e-3;
+/// Error of that share up to which it is exact. A share counted by points is instead taken to grow as the rejects do.
 const EXACT: f64 = 1e-12;
-/// A part of the rejects that breaks several limits and whose slope is left out.
+/// Part of the rejects that breaks several limits, up to which its slope is left out.
 const FEW: f64 = 1e-6;
-/// Dimensions beyond which those differences take too long.
+/// Most dimensions for these differences, which would otherwise take too long.
 const MANY: usize = 60;
-/// Less is rejected by nothing that doubles tell.
+/// Least share that is distinguished from 0.
 const LEAST: f64 = 1e-300;
 
 impl RejectFit {
-    /// Of these characteristics at a station.
+    /// Joint rejects of these characteristics at a linearization point.
     fn at(responses: &Responses, of: Vec<(usize, SpecLimits)>) -> Self {
         let slopes = vec![0.0; responses.dimensions.len()];
         let fitted = Self { of, ln: 0.0, nothing: false, slopes };
@@ -66,7 +70,7 @@ impl RejectFit {
         }
         let varying = responses.varying();
         if of_twice.error > EXACT {
-            // Differences of what points count would be larger than the slopes themselves.
+            // Differences of a counted share would have a larger error than the slopes themselves.
             by.iter_mut().for_each(|by| *by *= truth / tails);
         } else if twice > FEW * truth && varying.len() <= MANY {
             let of_twice = varying.par_iter().map(|&d| self.slope_of_twice(responses, d).unwrap_or(0.0));
@@ -93,7 +97,7 @@ impl RejectFit {
         (ln.is_finite() && slopes.iter().all(|slope| slope.is_finite())).then(|| Self { ln, slopes, ..self.clone() })
     }
 
-    /// How what breaks several limits grows with `ln T` of a dimension.
+    /// Derivative of the share that breaks several limits by `ln T` of a dimension.
     fn slope_of_twice(&self, responses: &Responses, d: usize) -> Option<f64> {
         let twice = |step: f64| {
             let mut factors = vec![1.0; responses.dimensions.len()];
@@ -109,7 +113,8 @@ impl RejectFit {
         Some((twice(NARROW)? - twice(-NARROW)?) / (2.0 * NARROW))
     }
 
-    /// The share at factors of all tolerances, and how it grows with `ln T` of every group; None where that takes differences.
+    /// Share at factors of all tolerances, and its derivatives by `ln T` of every group. Returns None if differences
+    /// are needed.
     pub(super) fn with_slopes(
         &self,
         responses: &Responses,
@@ -137,12 +142,12 @@ impl RejectFit {
             let own = group.members.iter().filter(|&&d| libm::log(factors[d]).abs() < FAR).map(|&d| self.slopes[d]);
             *slope = kept * correction * (*slope + all * own.sum::<f64>());
         }
-        // Where nothing is kept no difference knows more.
+        // If nothing is kept, differences give no slope either.
         let known = kept == 0.0 || slopes.iter().all(|slope| slope.is_finite());
         known.then_some((-libm::expm1(-correction * all), slopes))
     }
 
-    /// `ln kappa`.
+    /// Logarithm of the correction `kappa` at these factors.
     fn ln_correction(&self, factors: &[f64]) -> f64 {
         let along = |(slope, factor): (&f64, &f64)| match *slope {
             0.0 => 0.0,
@@ -151,7 +156,7 @@ impl RejectFit {
         self.ln + self.slopes.iter().zip(factors).map(along).sum::<f64>()
     }
 
-    /// The share at factors of all tolerances, with nominals moved by `shifts`, in sigmas.
+    /// Share at factors of all tolerances, with nominals moved by `shifts`, in sigmas.
     pub(super) fn share(&self, responses: &Responses, factors: &[f64], shifts: Option<&[f64]>) -> Option<f64> {
         if self.nothing && shifts.is_none() && factors.iter().all(|&factor| factor == 1.0) {
             return Some(0.0);
@@ -162,9 +167,9 @@ impl RejectFit {
     }
 }
 
-/// `-ln(1 - R)`: what adds up of rejects that know nothing of each other.
+/// Hazard `-ln(1 - R)`, which adds up for independent rejects.
 fn hazard(share: f64) -> f64 {
-    // A sum of parts may round to more than all.
+    // Clamp shares that rounding lifts above 1.
     -libm::log1p(-share.min(1.0))
 }
 
@@ -172,15 +177,15 @@ fn ln_hazard(share: f64) -> f64 {
     libm::log(hazard(share).max(LEAST))
 }
 
-/// Its derivative by the share.
+/// Derivative of [`ln_hazard`] by the share.
 fn ln_hazard_slope(share: f64) -> f64 {
     1.0 / ((1.0 - share) * hazard(share).max(LEAST))
 }
 
-/// A normal distribution has a little part in the rejects: a fit with ends may reject nothing, and have no slope.
+/// Weight of a normal distribution in the rejects. A bounded fit alone may reject nothing and have no slope.
 const LITTLE: f64 = 1e-4;
 
-/// The rejects by the Pearson fit, and a little of those by a normal distribution.
+/// Share rejected by the Pearson fit, with a little of that by a normal distribution.
 fn fitted(moments: &Moments, limits: SpecLimits) -> Option<f64> {
     rejected_by(&Law::fit(moments).ok()?, moments, limits)
 }
@@ -198,7 +203,8 @@ fn rejected_by(law: &Law, moments: &Moments, limits: SpecLimits) -> Option<f64> 
     Some((1.0 - LITTLE) * fit + LITTLE * normal)
 }
 
-/// The same with its derivatives by mean, `ln sigma`, skewness and excess; None where the density ends too abruptly for formulas.
+/// Rejected share with its derivatives by mean, `ln sigma`, skewness and excess. Returns None if the density ends too
+/// abruptly for formulas.
 fn fitted_with_slopes(moments: &Moments, limits: SpecLimits) -> Option<(f64, [f64; 4])> {
     let Ok(Law::Pearson(law)) = Law::fit(moments) else { return None };
     let (mean, sigma) = (moments.mean(), moments.sigma());
@@ -217,25 +223,27 @@ fn fitted_with_slopes(moments: &Moments, limits: SpecLimits) -> Option<(f64, [f6
     slopes.iter().all(|slope| slope.is_finite()).then_some((share, slopes))
 }
 
-/// How far the share is from what may be rejected, as the ratio of the normal scores `b = -Phi^-1(R)`: kept where it is at most 1, and nearly
-/// in proportion to the tolerances. Below a score of a half its tangent goes on.
+/// Distance of the share from the allowed one as the ratio of the normal scores `b = -Phi^-1(R)`. It is at most 1 if
+/// the share is allowed, and nearly proportional to the tolerances. Below a score of a half it continues as its
+/// tangent.
 pub(super) fn of_scores(share: f64, allowed: f64) -> f64 {
     of_scores_with_slope(share, allowed)[0]
 }
 
-/// The same with its derivative by the share.
+/// Ratio of the normal scores with its derivative by the share.
 pub(super) fn of_scores_with_slope(share: f64, allowed: f64) -> [f64; 2] {
+    /// Score below which the tangent continues the ratio: a score of 0 would be a pole.
     const LOW: f64 = 0.5;
     let wanted = standard_normal::upper_quantile(allowed);
     if wanted <= LOW {
-        // More than a third may be rejected: the shares themselves.
+        // If more than a third may be rejected, the shares themselves are compared.
         return [share / allowed, 1.0 / allowed];
     }
     if share <= LEAST {
         return [0.0, 0.0];
     }
     let score = standard_normal::upper_quantile(share.min(1.0 - f64::EPSILON));
-    // By the share a score falls by one over the density.
+    // The derivative of a score by the share is minus one over the density.
     let density = standard_normal::density(score);
     match score >= LOW {
         true => [wanted / score, wanted / (score * score * density)],
@@ -244,7 +252,7 @@ pub(super) fn of_scores_with_slope(share: f64, allowed: f64) -> [f64; 2] {
 }
 
 impl Responses {
-    /// The joint rejects of these characteristics, as a function of the tolerances.
+    /// Joint rejects of these characteristics, as a function of the tolerances.
     pub(super) fn rejects(&self, of: &[usize]) -> Arc<RejectFit> {
         let known = || self.reject_fits.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(found) = known().get(of) {
@@ -255,7 +263,8 @@ impl Responses {
         found
     }
 
-    /// How what lies beyond the limits of a characteristic grows with `ln T` of every dimension, by its law at the station.
+    /// Derivatives of the share beyond the limits of a characteristic by `ln T` of every dimension, by its surface
+    /// distribution at the linearization point.
     fn tail_slopes(&self, c: usize, limits: SpecLimits) -> Option<Vec<f64>> {
         let law = self.law(c)?;
         let mut slopes = vec![0.0; self.dimensions.len()];
@@ -287,7 +296,8 @@ impl Responses {
 mod tests {
     use super::*;
 
-    /// Differences of the share itself. A tail of a law is known to 1e-12, by whose part of the share the differences, of 1e-4, are off by 1e-8; their truncation is as much.
+    /// Differences of the share itself. A tail of a distribution is known to 1e-12 of the share. The differences, with
+    /// steps of 1e-4, are therefore off by 1e-8, and their truncation is as large.
     #[test]
     fn slopes_are_the_differences_of_the_share() {
         let share = |[mean, ln, skewness, excess]: [f64; 4], limits: SpecLimits| {
@@ -314,8 +324,8 @@ mod tests {
         }
     }
 
-    /// Few rejects add up, and many are what independent characteristics reject together: of 0.6, 0.7 and 0.2 all but 0.4 x 0.3 x 0.8. The slope is a
-    /// difference's.
+    /// Small shares add up, and large ones combine as for independent characteristics: of 0.6, 0.7 and 0.2 all but 0.4
+    /// x 0.3 x 0.8. The slope is that of a difference.
     #[test]
     fn rejects_are_never_more_than_all() {
         let together = |shares: &[f64]| -libm::expm1(-shares.iter().copied().map(hazard).sum::<f64>());
@@ -330,7 +340,7 @@ mod tests {
         }
     }
 
-    /// Differences again, on either side of the score below which the tangent goes on, and where shares themselves are compared.
+    /// Differences on either side of the score at which the tangent begins, and for compared shares.
     #[test]
     fn scores_have_the_slopes_of_their_differences() {
         for (share, allowed) in [(1e-6, 0.0027), (0.0027, 0.0027), (0.1, 0.01), (0.45, 0.01), (0.2, 0.4)] {

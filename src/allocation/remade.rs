@@ -1,4 +1,5 @@
-//! The surfaces with other distributions of the dimensions, at fixed derivatives; and what adds up in lists of such.
+//! Responses with other distributions of the dimensions, at fixed derivatives, and the sums that lists of such options
+//! need.
 
 use std::sync::Mutex;
 
@@ -13,8 +14,9 @@ use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::surrogate::{Inputs, Relocation};
 
 impl Responses {
-    /// With these dimensions in place of those at which the derivatives were taken; with laws where a yield is asked for. Slopes and worst cases
-    /// are those of the station: of bands, not of distributions. None where a distribution has no moments.
+    /// Responses with these dimensions in place of those at which the derivatives were taken, with surface
+    /// distributions if `laws`. Slopes and worst cases are those of the linearization point, because they depend on
+    /// bands, not on distributions. Returns None if a distribution has no moments.
     pub(super) fn remade(&self, dimensions: &[Dimension], laws: bool) -> Option<Self> {
         let mut shapes = self.inputs.shapes().to_vec();
         let mut moved = Vec::with_capacity(self.varying.len());
@@ -51,7 +53,7 @@ impl Responses {
         Some(Self {
             dimensions: dimensions.to_vec(),
             varying: self.varying.clone(),
-            // Tolerances stay where they are.
+            // Tolerances are fixed here, so the scaling has no effect.
             scaling: vec![Scaling::Similar { alpha: 0.0 }; self.varying.len()],
             reach: dimensions.iter().map(Reach::of).collect(),
             correlated: self.correlated.clone(),
@@ -64,18 +66,19 @@ impl Responses {
         })
     }
 
-    /// Whether the surface of a characteristic is straight, and the model agrees.
+    /// True if the surface of a characteristic is straight, and no samples of the model correct it.
     pub(super) fn is_straight(&self, c: usize) -> bool {
         self.of[c].surrogate.as_ref().is_some_and(is_straight) && !self.is_sampled(c)
     }
 
-    /// The slopes of a sum of independent dimensions, whose variances add up; None of anything else.
+    /// Slopes of a sum of independent dimensions, whose variances add up. Returns None for other characteristics.
     pub(super) fn slopes_of_sum(&self, c: usize) -> Option<Vec<f64>> {
         let sum = self.is_straight(c) && self.correlated.is_empty();
         self.of[c].slopes.clone().filter(|_| sum)
     }
 
-    /// The squares of what the bands without a cost add to the rss, and of every group the factor of `T^2`; None where they do not add up.
+    /// Squared part of the rss by bands without a cost, and factor of `T^2` for every group. Returns None if squares do
+    /// not add up.
     pub(super) fn squares_of_bands(&self, c: usize, priced: &[Priced]) -> Option<(f64, Vec<f64>)> {
         let slopes = self.of[c].slopes.as_ref().filter(|_| self.correlated.is_empty())?;
         let is_priced = |d: &usize| priced.iter().any(|group| group.members.contains(d));
@@ -86,7 +89,8 @@ impl Responses {
 }
 
 impl Constraint {
-    /// Of a linear worst case the room, less what has no cost, and the factors of every group's `T`.
+    /// Slack of a linear worst case, minus the part of bands without a cost, and factors of every group's `T`. Returns
+    /// None for another worst case.
     pub(super) fn linear_room(&self, responses: &Responses, priced: &[Priced]) -> Option<(f64, Vec<f64>)> {
         if !responses.has_linear_worst_case(self.characteristic) {
             return None;
@@ -95,7 +99,7 @@ impl Constraint {
         Some((self.nominal_room(responses)? * self.part - constant, coefficients))
     }
 
-    /// The room of an rss about a middle that no tolerance moves.
+    /// Slack of an rss. Returns None if a tolerance moves the middle.
     pub(super) fn still_room(&self, responses: &Responses, priced: &[Priced]) -> Option<f64> {
         let members = || priced.iter().flat_map(|group| &group.members);
         if members().any(|&d| responses.reach[d].lean != 0.0) {
@@ -105,7 +109,7 @@ impl Constraint {
         Some(self.part * self.room_about(responses.middle(self.characteristic, &ones, None)?)?)
     }
 
-    /// The greatest sigma about the mean as it is; with `normal` of a normal distribution.
+    /// Greatest sigma at the present mean, for the present shape or, if `normal`, for a normal distribution.
     pub(super) fn most_sigma(&self, responses: &Responses, normal: bool) -> Option<f64> {
         let ones = vec![1.0; responses.dimensions.len()];
         let found = responses.moments(self.characteristic, &ones)?;

@@ -1,8 +1,8 @@
-//! Every characteristic as a function of the tolerances, at fixed derivatives: nothing is evaluated.
+//! Characteristics as functions of the tolerances, at fixed derivatives, without evaluations.
 //!
-//! With half bands `f_j` times those at which the derivatives were taken, the dimension `j` lies at
-//! `u_j = d_j(f_j) + r_j(f_j) v_j` in its old sigmas, `v_j` standardised anew: a slope grows as `f`, a curvature as `f^2`, a product
-//! as `f_j f_k`. The middle of a band stays where it is; only the mean of a skewed law over it moves.
+//! With half bands `f_j` times those at which the derivatives were taken, the dimension `j` lies at `u_j = d_j(f_j) +
+//! r_j(f_j) v_j` in its old sigmas, where `v_j` is standardised anew. A slope grows as `f`, a curvature as `f^2`, a
+//! product as `f_j f_k`. The middle of a band stays in place. Only the mean of a skewed distribution over it moves.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -26,57 +26,56 @@ use sensitol_numeric::moments::Moments;
 use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::surrogate::{InputShape, Inputs, Relocation, Surrogate, shapes};
 
-/// The characteristics near some tolerances, as far as they are known.
+/// Characteristics at tolerances near a linearization point.
 pub(super) struct Responses {
-    /// The dimensions as the derivatives were taken.
+    /// Dimensions with the tolerances at which the derivatives were taken.
     pub(super) dimensions: Vec<Dimension>,
-    /// Indices of those that vary and matter.
+    /// Indices of the dimensions that vary and have an effect.
     pub(super) varying: Vec<usize>,
     pub(super) inputs: Inputs,
     pub(super) scaling: Vec<Scaling>,
     pub(super) reach: Vec<Reach>,
     pub(super) correlated: Vec<(usize, usize, f64)>,
     pub(super) of: Vec<Response>,
-    /// The distributions of the varying dimensions; None where one has moments only.
+    /// Distributions of the varying dimensions. None if one of them has moments only.
     pub(super) laws: Option<Vec<Arc<dyn Distribution>>>,
-    /// The corrections found so far, by characteristic and the bits of the required yield.
+    /// Corrections computed so far, by characteristic and the bits of the required yield.
     pub(super) corrections: Mutex<BTreeMap<(usize, u64), Arc<Correction>>>,
-    /// The rejects of several characteristics together, by their indices.
+    /// Rejects of several characteristics together, by their indices.
     pub(super) reject_fits: Mutex<BTreeMap<Vec<usize>, Arc<RejectFit>>>,
-    /// By how much more may be rejected of all limits together than their laws say.
+    /// Additional rejects of the joint yield by its interval, beyond those of the surface distributions.
     pub(super) joint_unknown: f64,
 }
 
-/// One characteristic.
 pub(super) struct Response {
     pub(super) surrogate: Option<Surrogate>,
-    /// Its value at the nominal dimensions.
+    /// Value at the nominal dimensions.
     pub(super) nominal: Option<f64>,
-    /// Derivatives by every dimension at the means, in their own units; None where one is lost.
+    /// Derivatives by every dimension at the means, in their own units. None if one is missing.
     pub(super) slopes: Option<Vec<f64>>,
-    /// Whether it can depend on each dimension.
+    /// True for each dimension on which the characteristic can depend.
     pub(super) depends: Vec<bool>,
     pub(super) limits: SpecLimits,
-    /// By how much rounding may move a value of it.
+    /// Greatest error of a value by rounding.
     pub(super) rounding: f64,
-    /// The law of the surface, where a yield comes from one.
+    /// Surface distribution, if it gives the yield.
     pub(super) law: Option<SurfaceLaw>,
     pub(super) unknown: Unknown,
-    /// The correction of its moments by samples of the model, where they refute the surface.
+    /// Correction of the moments by samples of the model, if these refute the surface.
     pub(super) sampled: Option<SampledCorrection>,
-    /// The worst case, where it is required; None where the slopes tell all of it.
+    /// Worst case, if it is required. None if the slopes determine it.
     pub(super) worst: Option<WorstCase>,
-    /// The corrections of the linear worst case below and above, where dimensions share a zone.
+    /// Corrections of the linear worst case below and above, if dimensions share a zone.
     pub(super) over_zones: [WorstCaseCorrection; 2],
 }
 
-/// Differences smaller than this part are rounding.
+/// Relative difference that counts as rounding.
 const SAME: f64 = 1e-12;
-/// Steps in `ln T` of the central differences of moments: truncation and rounding both near 1e-10.
+/// Step in `ln T` of the central differences of moments. Truncation and rounding are both near 1e-10.
 const STEP: f64 = 3e-5;
 
 impl Responses {
-    /// Of what a method found out; `requirements` for every characteristic.
+    /// Responses from the outcome and analysis of a method, with the requirement of every characteristic.
     pub(super) fn of(
         problem: &Problem,
         outcome: &Outcome,
@@ -102,7 +101,7 @@ impl Responses {
                 };
                 let found = &analysis.characteristics[c];
                 let limits = found.characteristic.limits();
-                // A law that could only be counted has no slopes.
+                // A counted surface distribution has no slopes.
                 let by_law = limits.exist() && found.surface_law.is_some_and(|law| law.counted.is_none());
                 Response {
                     surrogate: fitted.surrogate.clone(),
@@ -150,23 +149,23 @@ impl Responses {
         all
     }
 
-    /// The characteristics with limits.
+    /// Indices of the characteristics with limits.
     pub(super) fn limited(&self) -> Vec<usize> {
         (0..self.of.len()).filter(|&c| self.of[c].limits.exist()).collect()
     }
 
-    /// The law of the surface of a characteristic, where a yield comes from one.
+    /// Surface distribution of a characteristic, if it gives the yield.
     pub(super) fn law(&self, c: usize) -> Option<&SurfaceLaw> {
         self.of[c].law.as_ref()
     }
 
-    /// Whether the varying dimension at this place keeps mean and shape when its tolerance changes.
+    /// True if the varying dimension at this position keeps mean and shape when its tolerance changes.
     pub(super) fn keeps_mean_and_shape(&self, position: usize) -> bool {
         matches!(self.scaling[position], Scaling::Similar { alpha } if alpha == 0.0)
     }
 
-    /// The correction by the law of the surface of the room for a yield that `room` finds by four moments; None where that is
-    /// unknown.
+    /// Correction of the slack (four-moment estimate in `room`) by the surface distribution. Returns None if there is
+    /// no surface distribution, and if none is needed.
     pub(super) fn correction(
         &self,
         c: usize,
@@ -205,7 +204,7 @@ impl Responses {
         Some(found)
     }
 
-    /// The law of a characteristic at other tolerances.
+    /// Surface distribution of a characteristic at other tolerances.
     pub(super) fn law_at(&self, c: usize, factors: &[f64]) -> Option<SurfaceLaw> {
         let (surrogate, inputs) = self.relocated(c, factors, None)?;
         let mut laws = self.laws.clone()?;
@@ -217,7 +216,7 @@ impl Responses {
         law_over(&surrogate, &laws, inputs.correlation(), self.of[c].rounding).ok()
     }
 
-    /// Factors of all dimensions when the groups have these half bands.
+    /// Factors of all dimensions for these half bands of the groups.
     pub(super) fn factors(&self, priced: &[Priced], at: &[f64]) -> Vec<f64> {
         let mut factors = vec![1.0; self.dimensions.len()];
         for (group, &t) in priced.iter().zip(at) {
@@ -226,12 +225,12 @@ impl Responses {
         factors
     }
 
-    /// Whether any member of the group has a part in the characteristic.
+    /// True if the characteristic depends on a member of the group.
     pub(super) fn depends(&self, characteristic: usize, group: &Priced) -> bool {
         group.members.iter().any(|&d| self.of[characteristic].depends[d] && self.varying.contains(&d))
     }
 
-    /// Where the inputs are when the dimensions have `factors` times their tolerances and nominals moved by `shifts`, in sigmas.
+    /// Relocation of the inputs for `factors` times their tolerances, and nominals moved by `shifts` sigmas.
     fn moved(&self, factors: &[f64], shifts: Option<&[f64]>) -> Option<(Vec<Relocation>, Cow<'_, Inputs>)> {
         let mut inputs = Cow::Borrowed(&self.inputs);
         let mut moved = Vec::with_capacity(self.varying.len());
@@ -257,7 +256,7 @@ impl Responses {
         Some((moved, inputs))
     }
 
-    /// The surrogate of a characteristic and its inputs at other tolerances.
+    /// Surrogate of a characteristic and its inputs at other tolerances.
     pub(super) fn relocated(
         &self,
         characteristic: usize,
@@ -268,12 +267,12 @@ impl Responses {
         Some((self.of[characteristic].surrogate.as_ref()?.relocated(&moved), inputs))
     }
 
-    /// Four moments of a characteristic at other tolerances; None where they are unknown.
+    /// Four moments of a characteristic at other tolerances. Returns None if they are unknown.
     pub(super) fn moments(&self, characteristic: usize, factors: &[f64]) -> Option<Moments> {
         self.moments_shifted(characteristic, factors, None)
     }
 
-    /// The same with nominals moved by `shifts`, in sigmas.
+    /// Four moments at other tolerances, with nominals moved by `shifts` sigmas.
     pub(super) fn moments_shifted(
         &self,
         characteristic: usize,
@@ -318,7 +317,7 @@ impl Responses {
         Some(slopes)
     }
 
-    /// The same of independent inputs whose means stay, without a difference.
+    /// Exact derivatives of the moments for independent inputs with fixed means. Returns None for other inputs.
     fn exact_moment_slopes(&self, characteristic: usize, priced: &[Priced], factors: &[f64]) -> Option<Vec<[f64; 4]>> {
         let by_dimension = self.exact_slopes(characteristic, factors)?;
         let of = |group: &Priced| {
@@ -331,7 +330,7 @@ impl Responses {
         Some(priced.iter().map(of).collect())
     }
 
-    /// The same by every dimension, 0 of one that does not follow its tolerance.
+    /// Exact derivatives of the moments by every dimension. They are 0 for one that does not follow its tolerance.
     fn exact_slopes(&self, characteristic: usize, factors: &[f64]) -> Option<Vec<[f64; 4]>> {
         if self.is_sampled(characteristic) || !self.means_stay() {
             return None;
@@ -347,8 +346,8 @@ impl Responses {
         Some(slopes)
     }
 
-    /// How far the linear worst case lies beyond the nominal value, as `constant + sum_g coefficient_g T_g`: above, or below
-    /// with its sign turned.
+    /// Distance of the linear worst case from the nominal value as `constant + sum_g coefficient_g T_g`: upwards, or
+    /// downwards with the sign turned.
     pub(super) fn worst_case(&self, characteristic: usize, priced: &[Priced], above: bool) -> Option<(f64, Vec<f64>)> {
         let slopes = self.of[characteristic].slopes.as_ref()?;
         let sign = if above { 1.0 } else { -1.0 };
@@ -359,7 +358,7 @@ impl Responses {
             let reach = self.reach[d];
             let group = priced.iter().position(|group| group.members.contains(&d));
             constant += sign * slope * (reach.middle - reach.lean * reach.half);
-            // Per half band of the derivatives; coefficients are per unit of T.
+            // Values are per half band of the derivatives; coefficients are per unit of T.
             let mut add = |value: f64| match group {
                 Some(g) => coefficients[g] += value / self.dimensions[d].half_band(),
                 None => constant += value,
@@ -385,13 +384,14 @@ impl Responses {
         Some((factor * constant + more, coefficients))
     }
 
-    /// Whether the slopes tell all of the worst case of a characteristic.
+    /// True if the slopes determine the worst case of a characteristic.
     pub(super) fn has_linear_worst_case(&self, characteristic: usize) -> bool {
         let of = &self.of[characteristic];
         of.worst.is_none() && !of.over_zones.iter().any(is_off)
     }
 
-    /// The corrections of the linear worst case below and above to the one that the analysis has over the zones; None where that is unknown.
+    /// Corrections of the linear worst case below and above, from the worst case of the analysis over the zones.
+    /// Returns None if that is unknown.
     fn zone_corrections(
         &self,
         characteristic: usize,
@@ -411,8 +411,8 @@ impl Responses {
         Some([of(false, nominal - low)?, of(true, high - nominal)?])
     }
 
-    /// The value of a linear model with every dimension in the middle of its band: about it lies the rss, as an analysis has it. With nominals
-    /// moved by `shifts`, in sigmas.
+    /// Value of the linear model with every dimension in the middle of its band. The rss is taken about it, as in an
+    /// analysis. `shifts` moves the nominals, in sigmas.
     pub(super) fn middle(&self, characteristic: usize, factors: &[f64], shifts: Option<&[f64]>) -> Option<f64> {
         let of = &self.of[characteristic];
         let middle = |d: usize| {
@@ -424,14 +424,14 @@ impl Responses {
         Some(of.nominal? + slopes.map(|(d, slope)| slope * moved(d)).sum::<f64>())
     }
 
-    /// How [`middle`](Self::middle) moves with `ln T` of every group, where one end of a band is held.
+    /// Derivatives of [`middle`](Self::middle) by `ln T` of every group. They are not 0 for bands with one end held.
     pub(super) fn middle_slopes(&self, characteristic: usize, priced: &[Priced], factors: &[f64]) -> Option<Vec<f64>> {
         let slopes = self.of[characteristic].slopes.as_ref()?;
         let of = |&d: &usize| slopes[d] * self.reach[d].lean * self.reach[d].half * factors[d];
         Some(priced.iter().map(|group| group.members.iter().map(of).sum()).collect())
     }
 
-    /// The squared root of the sum of squares, and its derivatives by `ln T` of every group.
+    /// Square of the rss, and its derivatives by `ln T` of every group.
     pub(super) fn rss_squared(
         &self,
         characteristic: usize,
@@ -457,7 +457,7 @@ impl Responses {
         Some((total, slope))
     }
 
-    /// The variance of a plain characteristic, and what every group adds to it.
+    /// Variance of a plain characteristic, and the part of every group.
     pub(super) fn plain_squares(
         &self,
         characteristic: usize,
@@ -477,7 +477,8 @@ impl Responses {
         Some((total, priced.iter().map(of).collect()))
     }
 
-    /// How much a dimension by itself lets a characteristic vary: its part's largest coefficient, or its reach.
+    /// Variation of a characteristic by a dimension alone: the largest coefficient of its univariate part, or its
+    /// reach.
     pub(super) fn spread(&self, characteristic: usize, d: usize) -> f64 {
         let one = &self.of[characteristic];
         let part = self
@@ -489,13 +490,13 @@ impl Responses {
         part.map_or(reach, |part| reach.max(part.largest()))
     }
 
-    /// Whether samples of the model correct its surface.
+    /// True if samples of the model correct the surface.
     pub(super) fn is_sampled(&self, characteristic: usize) -> bool {
         self.of[characteristic].sampled.is_some()
     }
 
-    /// Whether mean and shape of the characteristic cannot change with the tolerances, so that sigma says everything: a linear
-    /// surrogate of normal inputs whose bands do not move.
+    /// True if mean and shape of the characteristic cannot change with the tolerances, so that sigma alone determines
+    /// every figure. That is so for a linear surrogate of normal inputs with fixed means and no correlation.
     pub(super) fn is_plain(&self, characteristic: usize) -> bool {
         let Some(surrogate) = self.of[characteristic].surrogate.as_ref().filter(|_| !self.is_sampled(characteristic))
         else {
@@ -504,14 +505,15 @@ impl Responses {
         is_straight(surrogate) && self.are_normal() && self.means_stay() && self.correlated.is_empty()
     }
 
-    /// Whether sigma says everything and is a norm of the tolerances, convex in them: as [`is_plain`](Self::is_plain), with correlation.
+    /// True if sigma alone determines every figure and is a convex norm of the tolerances: as
+    /// [`is_plain`](Self::is_plain), with any correlation.
     pub(super) fn is_norm(&self, characteristic: usize) -> bool {
         let surrogate = self.of[characteristic].surrogate.as_ref().filter(|_| !self.is_sampled(characteristic));
         surrogate.is_some_and(is_straight) && self.are_normal() && self.means_stay()
     }
 
-    /// Whether the characteristic is a sum of independent dimensions of any distribution whose means stay: its mean stays, and its variance is
-    /// a sum of squares of the tolerances.
+    /// True if the characteristic is a sum of independent dimensions with fixed means, of any distribution. Its mean is
+    /// then fixed, and its variance is a sum of squares of the tolerances.
     pub(super) fn is_still_sum(&self, characteristic: usize) -> bool {
         let surrogate = self.of[characteristic].surrogate.as_ref().filter(|_| !self.is_sampled(characteristic));
         surrogate.is_some_and(is_straight) && self.means_stay() && self.correlated.is_empty()
@@ -531,14 +533,15 @@ impl Responses {
     }
 }
 
-/// Whether some of these dimensions share a zone, so that the box of their bands is not what they reach.
+/// True if some of these dimensions share a zone, so that they do not reach the whole box of their bands.
 fn shares_a_zone(problem: &Problem, varying: &[usize]) -> bool {
     let block = |d: usize| problem.correlation().is_some_and(|of| of.block_of(d).is_some());
     varying.iter().any(|&d| problem.dimensions()[d].zone().is_some() || block(d))
 }
 
-/// The worst case of a characteristic of which the slopes do not tell it: a curved surface, or a formula that interval arithmetic knows
-/// better. Where dimensions share a zone the slopes are corrected, as a search of the box would leave it.
+/// Worst case of a characteristic that the slopes do not determine: a curved surface, or a formula with better bounds
+/// by interval arithmetic. Returns None for a straight surface, and if dimensions share a zone, for which the linear
+/// worst case is corrected.
 fn worst_case(
     problem: &Problem,
     varying: &[usize],
@@ -553,7 +556,7 @@ fn worst_case(
         let [low, high] = proof.bounds;
         [nominal - low, high - nominal]
     });
-    // Without a proof there is nothing to learn of a straight surface but its slopes.
+    // Without a proof, the slopes of a straight surface are all that is known.
     if linear || reached.is_none() && is_straight(surrogate) {
         return None;
     }
@@ -565,7 +568,7 @@ fn worst_case(
     WorstCase::of(surrogate, varying, varying.iter().map(band).collect(), found.nominal?, reached)
 }
 
-/// Whether a surface has neither curvature nor products, but for rounding.
+/// True if a surface has neither curvature nor products, within rounding.
 pub(super) fn is_straight(surrogate: &Surrogate) -> bool {
     surrogate.parts.iter().all(|part| part.is_some_and(|part| part.is_straight(SAME)))
         && surrogate.interactions.pairs().iter().all(|&(j, k, product)| {
@@ -579,7 +582,7 @@ pub(super) fn shapes_of(dimension: &Dimension) -> Option<InputShape> {
 }
 
 impl Responses {
-    /// Every dimension that varies, or every zone, as a group of its own: as if all tolerances were free.
+    /// Groups of every varying dimension, or zone, alone, as if all tolerances were free.
     pub(super) fn every_dimension(&self) -> Vec<Priced> {
         let mut groups: Vec<Priced> = Vec::new();
         for (d, dimension) in self.dimensions.iter().enumerate().filter(|(_, dimension)| dimension.sigma() > 0.0) {
@@ -596,7 +599,7 @@ impl Responses {
 }
 
 impl Responses {
-    /// Indices of the dimensions that vary and matter.
+    /// Indices of the dimensions that vary and have an effect.
     pub(super) fn varying(&self) -> &[usize] {
         &self.varying
     }

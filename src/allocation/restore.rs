@@ -1,4 +1,4 @@
-//! The way of an allocation back to the units of its problem.
+//! Conversion of an allocation back to the units of its problem.
 
 use super::result::{Allocation, Attainable, FrontPoint, Kept, ShadowPrice};
 use super::task::AllocateError;
@@ -9,7 +9,7 @@ use sensitol_numeric::requirement::Requirement;
 impl Restore for Allocation {
     fn restore(&mut self, back: &Restoration<'_>) {
         back.add_time(&mut self.run);
-        // The problem found has the function that the run asked; it goes back in any case.
+        // The problem found has the function of the run, so it is restored in any case.
         self.problem = back.problem.restored(&self.problem);
         if back.is_nothing() {
             return;
@@ -45,7 +45,8 @@ impl Kept {
 }
 
 impl ShadowPrice {
-    /// Per unit of the characteristic times a power of two.
+    /// Converts the prices from the divided unit of the characteristic to its own, which is a power of two times as
+    /// large or as small.
     fn per(&mut self, power: Power) {
         let Self { characteristic: _, both, widen, narrow, lower, upper, sigma } = self;
         for price in [both, widen, narrow, lower, upper, sigma] {

@@ -1,4 +1,4 @@
-//! The results of an allocation.
+//! Results of an allocation.
 
 use serde::{Serialize, Serializer};
 
@@ -18,30 +18,30 @@ use sensitol_numeric::requirement::{Required, Requirement};
 use sensitol_numeric::shape::through;
 use sensitol_numeric::verdict::Judged;
 
-/// How it ended.
+/// Outcome of an allocation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Status {
-    /// Every requirement is kept, and nothing cheaper does: within rounding, and proven.
+    /// Every requirement is kept, and nothing is cheaper. This is proven within rounding.
     Optimal,
-    /// Every requirement is kept, and nothing cheaper nearby does, within rounding. That nothing cheaper does elsewhere is not proven: the best
-    /// of several starts.
+    /// Every requirement is kept, and nothing nearby is cheaper within rounding. The result is the best of several
+    /// starts. A cheaper one elsewhere is not excluded.
     LocalOptimum,
-    /// Every requirement is kept; how much cheaper it could be is bounded, or not known.
+    /// Every requirement is kept. The possible saving is bounded, or not known.
     AlmostOptimal,
     /// No tolerances within the bounds keep every requirement.
     Infeasible,
-    /// The search ended at tolerances that miss a requirement; that no others keep it is not proven.
+    /// The search ended at tolerances that miss a requirement. That no others keep it is not proven.
     NoFeasiblePointFound,
-    /// The search ended at tolerances of which it is not known whether they keep a requirement: its interval holds values on both sides.
+    /// The search ended at tolerances for which a requirement is inconclusive: its interval holds values on both sides.
     Inconclusive,
-    /// Stopped before it was known.
+    /// The search was stopped before it reached a result.
     OutOfTime,
 }
 
 impl Status {
-    /// Its name in reports.
+    /// Name of the status in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Optimal => "optimal",
@@ -55,19 +55,19 @@ impl Status {
     }
 }
 
-/// Which bound a tolerance has met.
+/// Bound that a tolerance has met.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Bound {
-    /// Its least.
+    /// Least half band.
     #[serde(rename = "min")]
     Least,
-    /// Its greatest.
+    /// Greatest half band.
     #[serde(rename = "max")]
     Greatest,
 }
 
-/// One dimension with a cost.
+/// Result for one dimension with a cost.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Allocated {
@@ -78,20 +78,21 @@ pub struct Allocated {
     pub before: f64,
     /// Half band after.
     pub after: f64,
-    /// Its cost before; None where no process holds that tolerance.
+    /// Cost before. None if no process holds the tolerance.
     pub cost_before: Option<f64>,
-    /// Its cost.
+    /// Cost after.
     pub cost_after: Option<f64>,
-    /// The process, where several compete.
+    /// Name of the process, if several compete.
     pub process: Option<String>,
-    /// The bound that it has met.
+    /// Bound that the tolerance has met.
     #[serde(rename = "at_bound")]
     pub bound: Option<Bound>,
-    /// The saving per unit by which that bound gives way, all else unchanged; None within the bounds, and where it is not known.
+    /// Saving per unit by which that bound is widened, with all else unchanged. None within the bounds, and if it is
+    /// not known.
     pub bound_price: Option<f64>,
 }
 
-/// A nominal value that has moved.
+/// Nominal value that has moved.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
@@ -99,65 +100,66 @@ pub struct Moved {
     /// Index of the dimension in the problem; reports name it.
     #[serde(skip)]
     pub dimension: usize,
-    /// The nominal value before.
+    /// Nominal value before.
     pub before: f64,
-    /// The nominal value after.
+    /// Nominal value after.
     pub after: f64,
 }
 
-/// The requirement of a characteristic, and its values.
+/// Requirement of a characteristic, and its values.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Kept {
     /// Index of the characteristic in the problem; reports name it.
     #[serde(skip)]
     pub characteristic: usize,
-    /// The requirement.
+    /// Requirement.
     #[serde(flatten, serialize_with = "through::<Required, _, _>")]
     #[cfg_attr(feature = "schema", schemars(with = "Required"))]
     pub requirement: Requirement,
-    /// The value by the analysis at the tolerances before.
+    /// Value by the analysis at the tolerances before.
     #[serde(flatten, serialize_with = "through::<Before, _, _>")]
     #[cfg_attr(feature = "schema", schemars(with = "Before"))]
     pub before: Judged,
-    /// The value by the analysis at those found; None where none were.
+    /// Value by the analysis at the tolerances found. None if none were found.
     #[serde(flatten, serialize_with = "through::<After, _, _>")]
     #[cfg_attr(feature = "schema", schemars(with = "After"))]
     pub after: Option<Judged>,
-    /// The verdict of a sample of the model there, of a worst case by points in the box of the bands; None without one, and of rss, of which
-    /// samples know nothing.
+    /// Verdict from a sample of the model at the tolerances found; for a worst case from points in the box of the
+    /// bands. None if there is no sample, and for rss, which samples cannot judge.
     #[serde(serialize_with = "sampled")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<Sampled>"))]
     pub sampled: Option<Judged>,
 }
 
-/// The joint yield that all characteristics with limits must keep, and what there is of it.
+/// Required joint yield, and its values.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct JointKept {
-    /// The requirement.
+    /// Requirement.
     #[serde(flatten, serialize_with = "through::<Required, _, _>")]
     #[cfg_attr(feature = "schema", schemars(with = "Required"))]
     pub requirement: Requirement,
-    /// The value by the analysis at the tolerances before.
+    /// Value by the analysis at the tolerances before.
     #[serde(flatten, serialize_with = "through::<Before, _, _>")]
     #[cfg_attr(feature = "schema", schemars(with = "Before"))]
     pub before: Judged,
-    /// The value by the analysis at those found; None where none were.
+    /// Value by the analysis at the tolerances found. None if none were found.
     #[serde(flatten, serialize_with = "through::<After, _, _>")]
     #[cfg_attr(feature = "schema", schemars(with = "After"))]
     pub after: Option<Judged>,
-    /// The verdict of a sample of the model there; None without one.
+    /// Verdict from a sample of the model at the tolerances found. None if there is no sample.
     #[serde(serialize_with = "sampled")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<Sampled>"))]
     pub sampled: Option<Judged>,
 }
 
-/// The price of a requirement: by how much the cost falls per unit by which something gives way.
+/// Shadow price of a requirement: the saving per unit by which a limit is widened.
 ///
-/// Where both sides of a requirement hold the cost up, widening one of them alone saves nothing, and only `both` is known. Where requirements
-/// of several characteristics hold it up in the same way, to widen one of them saves less than to narrow it costs, and there is no one price.
+/// If both sides of a requirement are active, widening one of them alone saves nothing, and only `both` is known. If
+/// requirements of several characteristics are active in the same way, widening one saves less than narrowing it costs.
+/// There is no single price then.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
@@ -165,21 +167,22 @@ pub struct ShadowPrice {
     /// Index of the characteristic in the problem; reports name it.
     #[serde(skip)]
     pub characteristic: usize,
-    /// Per unit by which both limits go outwards, or the only one; None where that is not what they cost inwards.
+    /// Saving per unit by which both limits, or the only one, are widened. None if it differs from the cost of
+    /// narrowing them.
     pub both: Option<f64>,
-    /// The saving per unit by which the limits go outwards, or a required sigma grows, all else unchanged.
+    /// Saving per unit by which the limits are widened or a required sigma grows, with all else unchanged.
     pub widen: Option<f64>,
-    /// The extra cost per unit by which they go inwards.
+    /// Extra cost per unit by which the limits are narrowed.
     pub narrow: Option<f64>,
-    /// Per unit by which its lower limit goes down.
+    /// Saving per unit by which the lower limit goes down.
     pub lower: Option<f64>,
-    /// Per unit by which its upper limit goes up.
+    /// Saving per unit by which the upper limit goes up.
     pub upper: Option<f64>,
-    /// Per unit of a required sigma.
+    /// Saving per unit by which a required sigma grows.
     pub sigma: Option<f64>,
 }
 
-/// A requirement that cannot be kept.
+/// Requirement that cannot be kept.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
@@ -187,104 +190,107 @@ pub struct Attainable {
     /// Index of the characteristic in the problem; reports name it.
     #[serde(skip)]
     pub characteristic: usize,
-    /// Its unit.
+    /// Unit of the characteristic.
     pub unit: Option<String>,
-    /// The requirement.
+    /// Requirement.
     #[serde(flatten, serialize_with = "through::<Required, _, _>")]
     #[cfg_attr(feature = "schema", schemars(with = "Required"))]
     pub requirement: Requirement,
-    /// The best that the bounds of the tolerances allow, in the requirement's own measure.
+    /// Best value within the bounds of the tolerances, in the measure of the requirement.
     pub best: Option<f64>,
-    /// Whether it is the joint yield of all characteristics with limits.
+    /// True if it is the joint yield of all characteristics with limits.
     pub joint: bool,
-    /// Whether it could be kept if it were the only one.
+    /// True if it could be kept as the only requirement.
     pub together: bool,
-    /// The dimensions without cost that alone break the requirement, most harmful first; empty where the others are to blame too.
+    /// Dimensions without cost that alone break the requirement, most harmful first. The list is empty if the others
+    /// contribute too.
     pub because: Vec<String>,
 }
 
-/// The solver that an answer comes from.
+/// Solver that found the result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum AllocationSolver {
-    /// Newton's method on the multipliers, where costs and requirements are sums over the tolerances.
+    /// Newton's method on the multipliers, for costs and requirements that are sums over the tolerances.
     DualNewton,
-    /// The same for sums that have the values and slopes of the requirements, again and again until they agree.
+    /// Newton's method on the multipliers for sums with the values and slopes of the requirements, repeated until they
+    /// agree.
     Separable,
-    /// Sequential quadratic programming, where such sums lead nowhere.
+    /// Sequential quadratic programming, if such sums do not converge.
     SequentialQuadratic,
-    /// L-BFGS in an augmented Lagrangian for nominal values and tolerances at once, and the tolerances polished by the others.
+    /// L-BFGS in an augmented Lagrangian for nominal values and tolerances at once. The other solvers refine the
+    /// tolerances.
     AugmentedLagrangian,
     /// Branch and bound over lists of processes.
     BranchAndBound,
-    /// The root of one unknown, by which tolerances in fixed proportions are multiplied.
+    /// Root of one unknown: the common factor of tolerances in fixed proportions.
     Root,
-    /// Trials by the analysis itself, where derivatives do not follow the model.
+    /// Trials by the analysis itself, if derivatives do not follow the model.
     VerifiedSearch,
 }
 
-/// The evidence that nothing is cheaper.
+/// Evidence that nothing is cheaper.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
 #[non_exhaustive]
 pub struct Proof {
-    /// The solver that found the tolerances; None where none were found.
+    /// Solver that found the tolerances. None if none were found.
     pub solver: Option<AllocationSolver>,
-    /// The largest violation of the conditions of Karush, Kuhn and Tucker; None where everything is chosen from lists.
+    /// Largest violation of the conditions of Karush, Kuhn and Tucker. None if everything is chosen from lists.
     #[serde(rename = "kkt_residual")]
     pub residual: Option<f64>,
-    /// No choice of processes costs less; None without lists, or where no bound is known.
+    /// Lower bound of the cost of every choice of processes. None if there are no lists, and if no bound is known.
     pub bound: Option<f64>,
-    /// Whether the bound is exact rather than resting on a sample of choices.
+    /// True if the bound is exact, false if it rests on a sample of choices.
     #[serde(skip)]
     pub rigorous: bool,
-    /// Nodes of the branch and bound.
+    /// Number of nodes of the branch and bound.
     pub nodes: usize,
-    /// Whether Lagrange's condition had the answer in closed form.
+    /// True if Lagrange's condition gave the result in closed form.
     pub closed_form: bool,
-    /// Searches from different tolerances, where there may be several optima; None where one search is enough.
+    /// Number of searches from different tolerances, if there may be several optima. None if one search is enough.
     pub starts: Option<usize>,
-    /// How many of them ended at the tolerances found.
+    /// Number of them that ended at the tolerances found.
     pub reached: Option<usize>,
-    /// The cost of the next cheapest optimum that one of them ended at; None where there was no other.
+    /// Cost of the next cheapest optimum among them. None if there was no other.
     pub other_optimum: Option<f64>,
-    /// By what part of the cost it may be above the bound; None without one.
+    /// Greatest possible excess of the cost over the bound, as a part of the cost. None if there is no bound.
     #[serde(skip)]
     pub gap: Option<f64>,
 }
 
-/// The results of an allocation. Unknown values are None.
+/// Results of an allocation. Unknown values are None.
 #[derive(Debug, Clone, Serialize)]
 pub struct Allocation {
-    /// How it ended.
+    /// Outcome.
     pub status: Status,
-    /// The problem with the tolerances and nominal values found; as it was where none were.
+    /// Problem with the tolerances and nominal values found. It is the given problem if none were found.
     #[serde(skip)]
     pub problem: Problem,
-    /// The analysis at the tolerances before.
+    /// Analysis at the tolerances before.
     pub before: Analysis,
-    /// The analysis by the model at the tolerances after; None where none were found.
+    /// Analysis of the model at the tolerances after. None if none were found.
     pub after: Option<Analysis>,
-    /// Whether the model was evaluated at the tolerances after.
+    /// True if the model was evaluated at the tolerances after.
     pub confirmed: bool,
-    /// All costs before; None where no process holds some tolerance.
+    /// Total cost before. None if no process holds some tolerance.
     pub cost_before: Option<f64>,
-    /// All costs after.
+    /// Total cost after.
     pub cost_after: Option<f64>,
-    /// The part of these costs that is quality loss and scrap, before and after; None without losses, and where it is unknown.
+    /// Quality loss and scrap within these costs, before and after. None if there are no losses, and if it is unknown.
     #[serde(rename = "loss")]
     pub loss: [Option<f64>; 2],
-    /// The cost of the cheapest tolerances that are not rounded to steps or standard grades, by the derivatives at those found;
-    /// None where there is no such rounding.
+    /// Cost of the cheapest tolerances without rounding to steps or standard grades, by the derivatives at those found.
+    /// None if there is no such rounding.
     pub cost_unrounded: Option<f64>,
-    /// The machines that the processes need, and what it costs to set them up.
+    /// Machines that the processes need, with their set-up costs.
     pub setups: Vec<SetUp>,
-    /// The goal.
+    /// Objective.
     pub goal: Goal,
-    /// Where the costs come from.
+    /// Origin of the costs.
     pub cost_basis: CostBasis,
     /// Every dimension with a cost.
     pub tolerances: Vec<Allocated>,
@@ -293,63 +299,66 @@ pub struct Allocation {
     pub moved: Vec<Moved>,
     /// Every requirement.
     pub requirements: Vec<Kept>,
-    /// The joint yield, where one is required.
+    /// Joint yield, if one is required.
     pub joint_requirement: Option<JointKept>,
-    /// The prices of the requirements that hold the cost up; empty where everything is chosen from lists.
+    /// Prices of the active requirements. The list is empty if everything is chosen from lists.
     #[serde(rename = "shadow_prices")]
     pub prices: Vec<ShadowPrice>,
-    /// The evidence that nothing is cheaper.
+    /// Evidence that nothing is cheaper.
     pub proof: Proof,
-    /// The requirement that cannot be kept.
+    /// Requirement that cannot be kept.
     pub attainable: Option<Attainable>,
-    /// By which one factor all tolerances may be multiplied, before, until some requirement is just kept; None where no factor does, or
-    /// any.
+    /// Largest common factor of all tolerances before that keeps every requirement. None if no factor does, or every
+    /// one.
     pub loosest_before: Option<f64>,
-    /// The same after.
+    /// Largest common factor of all tolerances after that keeps every requirement. None if no factor does, or every
+    /// one.
     pub loosest_after: Option<f64>,
-    /// The share of assemblies that keep all limits, where there are several characteristics with limits: before and after.
+    /// Share of assemblies that keep all limits, before and after. None if fewer than two characteristics have limits.
     #[serde(rename = "joint_yield")]
     pub joint: [Option<JointYield>; 2],
-    /// Cost against yield.
+    /// Front of cost against yield.
     pub front: Vec<FrontPoint>,
-    /// The model itself at the tolerances after, where it was asked for.
+    /// Sample of the model at the tolerances after, if a confirmation was asked for.
     pub confirmation: Option<Simulation>,
-    /// Its points and time, those of a confirmation by Monte Carlo included, and why it ended early.
+    /// Evaluations and time, including those of a confirmation by Monte Carlo, and the reason for an early end.
     #[serde(flatten)]
     pub run: RunSummary,
-    /// How often derivatives were taken.
+    /// Number of analyses that gave derivatives.
     pub rounds: usize,
-    /// Points of a cheap model by which moments were corrected, worst cases followed and tolerances tried, beside the evaluations.
+    /// Points of a cheap model in addition to the evaluations. They correct moments, follow worst cases and try
+    /// tolerances.
     pub model_points: u64,
-    /// Where what was found is in doubt: tolerances that the model was not asked at, requirements that a sample refutes.
+    /// Doubts about the result: tolerances at which the model was not evaluated, requirements that a sample refutes.
     pub warnings: Vec<Warning>,
 }
 
-/// One point of the front: the cheapest tolerances for a requirement.
+/// Point of the front: the cheapest tolerances for a requirement.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct FrontPoint {
-    /// The requirement of every characteristic that has one, in the order of the problem; of all together last.
+    /// Required amount of every characteristic with a requirement, in the order of the problem. The joint yield comes
+    /// last.
     #[serde(serialize_with = "required")]
     #[cfg_attr(feature = "schema", schemars(with = "Vec<RequiredOf>"))]
     pub required: Vec<FrontRequirement>,
-    /// The cost of that; None where it cannot be kept.
+    /// Cost of the tolerances. None if the requirement cannot be kept.
     pub cost: Option<f64>,
     /// Half bands, in the order of [`Allocation::tolerances`].
     pub tolerances: Option<Vec<f64>>,
 }
 
-/// A proof with the kind of its bound, as it is written.
+/// Proof with the kind of its bound, as it is written.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ProofShape<'r> {
     #[serde(flatten, serialize_with = "Proof::serialize")]
     #[cfg_attr(feature = "schema", schemars(with = "Proof"))]
     own: &'r Proof,
-    /// Whether the bound is exact, rather than resting on a sample of choices; null without one.
+    /// True if the bound is exact, false if it rests on a sample of choices; null without a bound.
     bound_is_exact: Option<bool>,
-    /// By what part of the cost it may be above the bound.
+    /// Greatest possible excess of the cost over the bound, as a part of the cost.
     gap: Option<f64>,
 }
 

@@ -1,15 +1,15 @@
-//! A root of one unknown by Brent's method, of the crate argmin.
+//! Root of a function of one variable by Brent's method, of the crate argmin.
 //!
-//! Source: R. P. Brent, "Algorithms for Minimization without Derivatives" (1973), chapter 4: inverse quadratic interpolation within a bracket, and
-//! bisection where that does not close in.
+//! Source: R. P. Brent, "Algorithms for Minimization without Derivatives" (1973), chapter 4: inverse quadratic
+//! interpolation within a bracket, and bisection if that does not converge.
 
 use argmin::core::{CostFunction, Error, IterState, Problem, Solver, State};
 use argmin::solver::brent::BrentRoot;
 
-/// Steps at most: interpolation takes some 10, and bisection from one power of two to the next 52.
+/// Most steps. Interpolation takes some 10, and bisection from one power of two to the next 52.
 const STEPS: usize = 200;
 
-/// An increasing function with its values at both ends of the bracket.
+/// Increasing function with its values at both ends of the bracket.
 struct Bracketed<F> {
     function: F,
     ends: [(f64, f64); 2],
@@ -25,7 +25,8 @@ impl<F: Fn(f64) -> f64> CostFunction for Bracketed<F> {
     }
 }
 
-/// With the same sign and order, and between -1 and 1: interpolation does nothing with what is infinite. No value is as much too much.
+/// Maps a value to -1 to 1 with the same sign and order, because interpolation cannot use infinite values. NaN is
+/// mapped to 1, as an excess.
 fn bounded(value: f64) -> f64 {
     match value {
         _ if value.is_nan() => 1.0,
@@ -34,8 +35,8 @@ fn bounded(value: f64) -> f64 {
     }
 }
 
-/// Where an increasing function is 0, to `near` and the rounding of its argument; the lower end where it is not negative there, the upper one where it is
-/// not positive there.
+/// Root of an increasing function, to `near` and the rounding of its argument. Returns the lower end if the function is
+/// not negative there, and the upper end if it is not positive there.
 pub(super) fn root(function: impl Fn(f64) -> f64, [low, high]: [f64; 2], near: f64) -> f64 {
     let at_low = function(low);
     if at_low >= 0.0 {
@@ -47,7 +48,7 @@ pub(super) fn root(function: impl Fn(f64) -> f64, [low, high]: [f64; 2], near: f
     }
     let mut problem = Problem::new(Bracketed { function, ends: [(low, at_low), (high, at_high)] });
     let mut solver = BrentRoot::new(low, high, near);
-    // Without argmin's executor: it takes longer than the functions here.
+    // The executor of argmin is left out, because it takes longer than the functions here.
     let Ok((mut state, _)) = solver.init(&mut problem, IterState::new()) else { return low };
     for _ in 0..STEPS {
         match solver.next_iter(&mut problem, state) {
@@ -67,7 +68,7 @@ mod tests {
 
     use super::*;
 
-    /// Roots in closed form: a cube, a logarithm over 20 decades, and one whose function is infinite beyond it.
+    /// Roots in closed form: a cube, a logarithm over 20 decades, and a function that is infinite beyond its root.
     #[test]
     fn roots_have_their_last_digits() {
         let asked = Cell::new(0);
@@ -83,7 +84,7 @@ mod tests {
         assert!((root(|x| (x / 3e-5f64).ln(), [1e-10, 1e10], 0.0) / 3e-5 - 1.0).abs() < 1e-14);
         let found = root(|x| if x > 2.0 { f64::INFINITY } else { x - 1.5 }, [0.0, 37.0], 1e-12);
         assert!((found - 1.5).abs() <= 1e-12, "{found}");
-        // A jump has no root; it is found all the same.
+        // A jump has no root, but its place is found.
         let found = root(|x| if x > 2.0 { f64::INFINITY } else { -1.0 }, [0.0, 37.0], 1e-9);
         assert!((found - 2.0).abs() <= 1e-9, "{found}");
     }

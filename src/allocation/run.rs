@@ -1,4 +1,4 @@
-//! From a problem with costs to tolerances that the model confirms.
+//! Entry points of an allocation, and the search along derivatives.
 
 use std::rc::Rc;
 use std::sync::atomic::Ordering;
@@ -29,20 +29,22 @@ use crate::summary::RunSummary;
 use sensitol_numeric::sampling::{Draws, Sampler};
 use sensitol_numeric::time::Instant;
 
-/// The factor up to which derivatives are trusted when they say that nothing is possible, and by which tolerances may move in a
-/// step after the model has failed farther out.
+/// Greatest factor of a tolerance within which derivatives are trusted when they say that nothing is possible. It is
+/// also the factor by which tolerances may move in a step after the model has failed farther out.
 const REACH: f64 = 1.5;
-/// A cost that is higher by a smaller part is rounding, or what the margin of tolerances makes of it.
+/// Greatest relative rise of the cost that counts as rounding, or as an effect of the margin of tolerances.
 const DEARER: f64 = 1e-8;
 
 /// Allocates tolerances.
 ///
-/// Evaluations: one analysis at the present tolerances, one at those found, and one for every time that the two disagree; one by
-/// [`Method::Auto`](crate::Method::Auto) at those found where that is the method, for its verdict; `confirm` more by Monte Carlo.
+/// Cost: one analysis at the present tolerances, one at those found, and one for every time that the two disagree. With
+/// [`Method::Auto`](crate::Method::Auto) one more analysis at those found gives the verdict. A confirmation takes
+/// `confirm` more points by Monte Carlo.
 ///
 /// # Errors
-/// When task, options and problem do not fit; nothing is evaluated then. Requirements that cannot be kept are no error but a
-/// [`Status`].
+///
+/// If task, options and problem do not fit. Nothing is evaluated then. Requirements that cannot be kept are no error
+/// but a [`Status`].
 ///
 /// ```
 /// use sensitol::{Characteristic, Closure, Dimension, Problem, Requirement, SpecLimits};
@@ -67,7 +69,7 @@ pub fn allocate(
     allocate_with(problem, task, options, &Run::to_the_end())
 }
 
-/// [`allocate`], telling of finished points and stopping when told to.
+/// Runs [`allocate`] with reports of finished points, and stops when `run` is stopped.
 pub fn allocate_with(
     problem: &Problem,
     task: &AllocationTask,
@@ -77,8 +79,8 @@ pub fn allocate_with(
     allocate_as(problem, task, options, run, None)
 }
 
-/// [`allocate_with`], with the dimensions of a problem as they would stand in the file of its study: what is found keeps everything as it is
-/// written, too.
+/// Runs [`allocate_with`] with the dimensions as they would stand in the file of the study. The result keeps every
+/// requirement with these written digits too.
 pub fn allocate_written(
     problem: &Problem,
     task: &AllocationTask,
@@ -105,7 +107,7 @@ fn allocate_as(
         let task = &task.divided(problem)?;
         let required = match task.goal {
             Goal::LeastCost => required_of(problem, &task.requirements),
-            // The level sought for a cost takes the place of the other requirements.
+            // The level sought for a given cost replaces the other requirements.
             _ => task.requirements.iter().enumerate().filter_map(|(c, one)| Some((c, (*one)?))).collect(),
         };
         Driver { task, options, run, required, written, spent: Spent::default() }.run(problem)
@@ -124,6 +126,7 @@ impl Driver<'_> {
                 return Err(AllocateError::NoMoments { characteristic });
             }
         }
+        // The present tolerances are judged first, for comparison and in case nothing better is found.
         let before: Vec<f64> =
             self.task.priced.iter().map(|group| problem.dimensions()[group.members[0]].half_band()).collect();
         let loosest_before = loosest(&first.responses, &constraints);
@@ -183,7 +186,8 @@ impl Driver<'_> {
         Ok(allocation)
     }
 
-    /// Follows derivatives from a station. None where nothing was found; the status says why.
+    /// Searches along the derivatives of successive linearization points. Returns None if nothing was found. The status
+    /// gives the reason.
     pub(super) fn search(
         &mut self,
         allocation: &mut Allocation,
@@ -207,6 +211,7 @@ impl Driver<'_> {
         let (mut at_rest, mut searched, mut other) = (None, [None; 2], None);
         let mut current = constraints.to_vec();
         for _ in 0..ROUNDS {
+            // Nominal values move before tolerances, because a better middle leaves more slack to them.
             let mut next = station.problem.clone();
             let mut still = true;
             if !self.options.recentre.is_empty() {
@@ -216,7 +221,7 @@ impl Driver<'_> {
                 if !still {
                     next = found.problem;
                 }
-                // Tolerances are chosen about the place where the nominal values come to rest.
+                // Tolerances are chosen only about the place where the nominal values come to rest.
                 if !still && (found.at.is_some() || found.far > 1.0 || self.task.priced.is_empty()) {
                     if let Some(found) = found.at {
                         (at, last) = (found, None);
@@ -237,6 +242,7 @@ impl Driver<'_> {
                 break;
             }
             let stopped = || self.run.stopped();
+            // Derivatives are followed only as far as they are trusted.
             let sampled = constraints.iter().any(|one| station.responses.is_sampled(one.characteristic));
             let followed = if sampled { reach.min(SampledCorrection::REACH) } else { reach };
             let priced = within_reach(&self.task.priced, &at, followed);
@@ -256,10 +262,11 @@ impl Driver<'_> {
             };
             current = levels.unwrap_or_else(|| constraints.to_vec());
             let setting = Setting { constraints: &current, ..setting };
-            // Kept, by the model and within the bounds: a place to come back to.
+            // Tolerances that the model keeps within the bounds are a place to return to.
             let here = kept_within(setting.value(&at), self.task.goal);
             let safe = here && within_bounds(&self.task.priced, &at);
-            // Losses may be greater than the derivatives foretold: shorter steps from where all together was cheaper.
+            // Losses may be greater than the derivatives predicted. The search then takes shorter steps from the
+            // cheaper tolerances before.
             let cost_here = if self.task.losses.is_empty() { 0.0 } else { setting.cost(&at) };
             if last.is_some() && haven.is_some() && cost_here > haven_cost * (1.0 + DEARER) {
                 (station, at, last) = haven.take().unwrap_or((station, at, last));
@@ -268,13 +275,14 @@ impl Driver<'_> {
             }
             let (mut solved, offers, mut proof) = match choose(&setting, &at) {
                 Choice::Found { solved, offers, proof } => (solved, offers, proof),
-                // Derivatives led astray: shorter steps from where everything was kept.
+                // Derivatives were wrong: shorter steps from the last tolerances that kept everything.
                 Choice::Infeasible(..) if haven.is_some() => {
                     (station, at, last) = haven.take().unwrap_or((station, at, last));
                     (reach, steps) = (shorter(reach), Steps::default());
                     continue;
                 }
-                // Derivatives at other tolerances may be wrong there: the model is asked first.
+                // Derivatives from other tolerances may be wrong at the tightest ones, so the model is evaluated there
+                // first.
                 Choice::Infeasible(_, tight) if !at_tightest && farthest(&at, &tight) > libm::log(REACH) => {
                     (at, at_tightest, last) = (tight, true, None);
                     match self.station(with_tolerances(next, &self.task.priced, &at)?)? {
@@ -287,7 +295,7 @@ impl Driver<'_> {
                     continue;
                 }
                 Choice::Infeasible(attainable, _) => {
-                    // Where every tolerance does harm only, the tightest are the proof.
+                    // If every tolerance only does harm, the tightest ones are the proof.
                     let exact = if choose_made::any(setting.priced) {
                         choose_made::is_proof(&setting)
                     } else {
@@ -310,9 +318,9 @@ impl Driver<'_> {
             }
             (proof.starts, proof.reached, proof.other_optimum) = (searched[0], searched[1], other);
             let change = farthest(&at, &solved.at);
-            // Processes of one tolerance may differ in how their parts lie.
+            // Processes of one tolerance may differ in their distributions.
             let alike = !choose_made::any(&priced) || last.as_ref().is_some_and(|(_, chosen, _)| *chosen == offers);
-            // The model has been asked at these tolerances, and would not choose others.
+            // The model has been analysed at these tolerances, and its derivatives give the same ones.
             if still && here && last.is_some() && alike && change <= near.agree {
                 last = last.map(|(old, offers, _)| {
                     let residual = setting.residual(&old.at, &solved.multipliers).unwrap_or(solved.residual);
@@ -338,7 +346,7 @@ impl Driver<'_> {
                     last = Some((solved, offers, proof));
                     self.see(&station, last.as_ref());
                 }
-                // The model fails so far out: shorter steps from where it did not.
+                // The model fails so far out: shorter steps from the last tolerances that it accepts.
                 Some(_) => (at, reach) = (from, shorter(reach)),
                 None => {
                     (within_budget, last) = (false, Some((solved, offers, proof)));
@@ -353,7 +361,7 @@ impl Driver<'_> {
         Ok(Some(SearchEnd { station, last, constraints: current, ended, trial: None, is_start: false }))
     }
 
-    /// Remembers the cheapest station that keeps everything.
+    /// Stores the cheapest linearization point that keeps everything.
     fn see(&mut self, station: &Rc<Station>, last: Option<&Chosen>) {
         let Some(chosen) = last.filter(|_| self.task.goal == Goal::LeastCost && !self.spent.stopped) else { return };
         let Some(loss) = self.loss_at(station) else { return };
@@ -365,18 +373,17 @@ impl Driver<'_> {
     }
 }
 
-/// The largest change of a half band, in logarithms.
+/// Largest change of a half band, in logarithms.
 fn farthest(from: &[f64], to: &[f64]) -> f64 {
     from.iter().zip(to).map(|(a, b)| libm::log(b / a).abs()).fold(0.0, f64::max)
 }
 
-/// A reach for shorter steps.
+/// Reach for shorter steps.
 fn shorter(reach: f64) -> f64 {
     if reach.is_finite() { reach.sqrt() } else { REACH }
 }
 
-/// Whether every group may have its half band.
-/// The groups with free tolerances no farther from these half bands than by a factor.
+/// Groups with their free tolerances limited to within a factor of these half bands.
 fn within_reach(priced: &[Priced], at: &[f64], reach: f64) -> Vec<Priced> {
     let mut priced = priced.to_vec();
     for (group, &t) in priced.iter_mut().zip(at).filter(|(group, _)| reach.is_finite() && group.offers.len() == 1) {

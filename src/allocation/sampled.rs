@@ -1,14 +1,16 @@
-//! Moments of a characteristic whose surface the model refutes, about a station: the surface's, corrected by samples of the model.
+//! Moments near a linearization point of a characteristic whose surface the model refutes: those of the surface,
+//! corrected by samples of the model.
 //!
 //! ```text
 //! mean = mean_q + s0 (a_0 + sum_g b_g0 ln T_g)    ln sigma = ln sigma_q + a_1 + sum_g b_g1 ln T_g    skewness, excess alike
 //! ```
 //!
-//! `a` is how far the verified moments lie from the surface's at the station, `b` how far the slopes do: differences of two samples of the
-//! model with the same random numbers, every tolerance of a group a little wider and a little tighter. Where the search comes to rest values
-//! and slopes are those of the model. Source: N. M. Alexandrov, R. M. Lewis, Optimization and Engineering 2 (2001).
+//! `a` is the difference of the verified moments from those of the surface at the linearization point. `b` is the
+//! difference of the slopes. It comes from two samples of the model with the same random numbers, with every tolerance
+//! of a group a little wider and a little tighter. At the end of the search values and slopes are those of the model.
+//! Source: N. M. Alexandrov, R. M. Lewis, Optimization and Engineering 2 (2001).
 //!
-//! Cost: two samples of 16 384 points for every group, of models that are cheap, and of 128 groups at most.
+//! Cost: two samples of 16 384 points for every group, for cheap models and at most 128 groups.
 
 use super::cost::Priced;
 use crate::assembly::Run;
@@ -19,21 +21,21 @@ use sensitol_numeric::sampling::Sampler;
 
 /// Points of a sample.
 const POINTS: u64 = 1 << 14;
-/// Half a difference in `ln T`: its truncation is of the order of `STEP^2/6`, 4e-4.
+/// Half of the difference in `ln T`. Its truncation is of the order of `STEP^2/6`, 4e-4.
 const STEP: f64 = 0.05;
-/// Farther from the station, in `ln T`, a slope is not followed.
+/// Greatest distance from the linearization point, in `ln T`, at which a slope is followed.
 const FAR: f64 = 0.7;
 
-/// The correction by the model of the moments of a surface near a station.
+/// Correction by the model of the moments of a surface near a linearization point.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct SampledCorrection {
     sigma: f64,
     offset: [f64; 4],
-    /// By the dimension that stands for its group.
+    /// Slopes by the first dimension of every group.
     slopes: Vec<(usize, [f64; 4])>,
 }
 
-/// Mean in sigmas of the station, `ln sigma`, skewness and excess.
+/// Mean in sigmas of the linearization point, `ln sigma`, skewness and excess.
 fn figures(moments: &Moments, sigma: f64) -> Option<[f64; 4]> {
     let all = [moments.mean() / sigma, libm::log(moments.sigma()), moments.skewness()?, moments.excess()?];
     all.iter().all(|figure| figure.is_finite()).then_some(all)
@@ -44,14 +46,17 @@ fn difference(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
 }
 
 impl SampledCorrection {
-    /// More groups would take more than four million points for every round: their surfaces stay as they are, and no optimum is claimed.
+    /// Most groups. More would take over four million points for every round. Their surfaces stay uncorrected, and no
+    /// optimum is claimed.
     pub(super) const MOST_GROUPS: usize = 128;
-    /// The factor up to which slopes are followed: a search that goes no farther meets no bend of its own making.
+    /// Greatest factor to which slopes are followed. A search within it stays clear of the kink where slopes end.
     pub(super) const REACH: f64 = 2.0;
 
-    /// For every listed characteristic, with its verified moments; None where a sample has no moments. The points of all samples are counted.
+    /// Corrections of the listed characteristics, with their verified moments, and the number of points of all samples.
+    /// A correction is None if a sample has no moments.
     ///
-    /// `at` is the problem with a group's tolerances at a factor, and `surface` the moments of a characteristic's surface there.
+    /// `at` returns the problem with a group's tolerances at a factor, and `surface` the moments of a characteristic's
+    /// surface there.
     pub(super) fn of(
         verified: &[(usize, Moments)],
         priced: &[Priced],
@@ -63,11 +68,11 @@ impl SampledCorrection {
         let options =
             SimulationOptions { samples: POINTS, sampler: Sampler::Sobol, seed, ..SimulationOptions::default() };
         let mut points = 0;
-        // Of every group the four moments of all characteristics on both sides.
+        // Four moments of all characteristics on both sides of every group.
         let sides: Vec<[Option<Vec<Option<Moments>>>; 2]> = (0..priced.len())
             .map(|g| {
                 [-STEP, STEP].map(|step| {
-                    // An error comes before the first point.
+                    // An error occurs before the first point.
                     let found = simulate_with(&at(g, libm::exp(step))?, &options, run, &|_| {}).ok()?;
                     points += found.run.evaluations;
                     let moments = |of: &crate::simulation::SimulatedCharacteristic| {
@@ -96,7 +101,7 @@ impl SampledCorrection {
         (verified.iter().map(|of| (of.0, one(of))).collect(), points)
     }
 
-    /// The moments of the surface at factors of all tolerances, corrected.
+    /// Moments of the surface at factors of all tolerances, corrected.
     pub(super) fn corrected(&self, moments: &Moments, factors: &[f64]) -> Option<Moments> {
         let mut by = self.offset;
         for (d, slopes) in &self.slopes {
@@ -105,7 +110,7 @@ impl SampledCorrection {
         }
         let (mean, sigma) = (moments.mean() + self.sigma * by[0], moments.sigma() * libm::exp(by[1]));
         let skewness = moments.skewness()? + by[2];
-        // No distribution has less.
+        // No distribution has a smaller excess.
         let excess = (moments.excess()? + by[3]).max(skewness * skewness - 2.0);
         Some(Moments::new(mean, sigma, skewness, excess))
     }

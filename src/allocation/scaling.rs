@@ -1,4 +1,4 @@
-//! One factor for all tolerances.
+//! Common factor of all tolerances.
 
 use std::cell::Cell;
 
@@ -6,23 +6,23 @@ use super::constraint::{Constraint, kept};
 use super::response::Responses;
 use super::root::root;
 
-/// How near the factor is found.
+/// Accuracy of the factor, in its logarithm.
 const NEAR: f64 = 1e-10;
-/// Steps of the search for the first factor at which a requirement is broken.
+/// Ratio of successive factors in the search for the first one at which a requirement is broken.
 const STEP: f64 = 1.02;
-/// From where to where.
+/// Least and greatest factor of the search.
 const RANGE: [f64; 2] = [1e-4, 100.0];
 
-/// The factor by which all tolerances that can be scaled may be multiplied until some requirement is just kept: the first on the way up
-/// from 1 at which one breaks, or down from 1 at which none does. None where none is kept however tight, or all however loose.
+/// Largest common factor of all tolerances that keeps every requirement: the first on the way up from 1 at which one
+/// breaks, or down from 1 at which none does. Returns None if no factor keeps them all, or every one does.
 ///
-/// At fixed derivatives, so that far from 1 it is an extrapolation.
+/// Derivatives are fixed, so that factors far from 1 are extrapolated.
 pub(super) fn loosest(responses: &Responses, constraints: &[Constraint]) -> Option<f64> {
     let all: Vec<usize> = (0..responses.dimensions.len()).collect();
     loosest_of(responses, constraints, &all)
 }
 
-/// The same of the tolerances of these dimensions alone.
+/// Largest common factor of these dimensions alone.
 pub(super) fn loosest_of(responses: &Responses, constraints: &[Constraint], of: &[usize]) -> Option<f64> {
     let greatest = |factor: f64| {
         let mut factors: Vec<f64> = vec![1.0; responses.dimensions.len()];
@@ -56,7 +56,7 @@ pub(super) fn loosest_of(responses: &Responses, constraints: &[Constraint], of: 
             outside = inside;
         }
     }
-    // The end of the bracket that keeps everything.
+    // End of the bracket that keeps everything.
     let loosest = Cell::new(inside);
     let excess = |ln: f64| {
         let (factor, value) = (libm::exp(ln), greatest(libm::exp(ln)));

@@ -1,14 +1,14 @@
-//! The separable problem that every step of the allocation solves, and its dual.
+//! Separable problem of every step of the allocation, and its dual.
 //!
 //! ```text
 //! min  sum_g parts_g C_g(T_g)     subject to   constant_k + sum_g p_kg (T_g/at_kg)^q_kg <= 1  for every k,   min_g <= T_g <= max_g
 //! D(lambda) = sum_k lambda_k (constant_k - 1) + sum_g min over offers and T of [ parts_g C_g(T) + sum_k lambda_k p_kg (T/at_kg)^q_kg ]
 //! ```
 //!
-//! Losses are more such sums, which the cost has as they are.
-//! With costs that are convex in `T` and `q` of 1, 2 or -2, the coefficient above 0 unless `q = 1`. For one offer a group the problem is
-//! convex: the greatest `D` over `lambda >= 0` is the least cost. For several, `D` of any `lambda` is a bound that no choice of
-//! processes can beat (weak duality), and the greatest one is the bound of the convex relaxation.
+//! Losses are further such sums, which are added to the cost. Costs are convex in `T`, and `q` is 1, 2 or -2, with a
+//! coefficient above 0 unless `q = 1`. With one offer a group the problem is convex: the greatest `D` over `lambda >=
+//! 0` is the least cost. With several, `D` of any `lambda` is a lower bound of the cost of every choice of processes
+//! (weak duality). The greatest one is the bound of the convex relaxation.
 
 use faer::Mat;
 use faer::linalg::solvers::Solve;
@@ -19,11 +19,11 @@ use super::cost::{Offer, Priced};
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Row {
     pub(super) constant: f64,
-    /// One for every group.
+    /// Terms of all groups.
     pub(super) terms: Vec<Term>,
 }
 
-/// `coefficient (T/at)^power`.
+/// Term `coefficient (T/at)^power`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Term {
     pub(super) coefficient: f64,
@@ -44,45 +44,47 @@ impl Term {
 }
 
 impl Row {
-    /// Its value; kept where it is at most 1.
+    /// Value of the constraint. It is kept if the value is at most 1.
     pub(super) fn value(&self, at: &[f64]) -> f64 {
         self.constant + self.terms.iter().zip(at).map(|(term, &t)| term.value(t)).sum::<f64>()
     }
 }
 
-/// A separable problem; every group has the offers that are still allowed.
+/// Separable problem, in which every group has the offers that are still allowed.
 pub(super) struct Separable<'a> {
     pub(super) priced: &'a [Priced],
     pub(super) rows: &'a [Row],
-    /// Sums that the cost has too.
+    /// Sums that are added to the cost.
     pub(super) losses: &'a [Row],
 }
 
-/// The best of a group for given multipliers.
+/// Best offer and tolerance of a group for given multipliers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Best {
     pub(super) offer: usize,
     pub(super) t: f64,
-    /// Cost and priced use of the constraints together.
+    /// Cost plus priced use of the constraints.
     pub(super) value: f64,
-    /// Second derivative of that by `ln T`, 0 at a bound.
+    /// Second derivative of the value by `ln T`, 0 at a bound.
     curvature: f64,
 }
 
-/// Constraints are kept to this part of their room.
+/// Greatest relative excess of a constraint that is kept.
 pub(super) const KEPT: f64 = 1e-13;
-/// A rise of the dual that may be rounding, as a part of it.
+/// Greatest relative rise of the dual that may be rounding.
 const FLAT: f64 = 1e-12;
+/// Most Newton steps on the dual between two sweeps.
 const NEWTON: usize = 60;
+/// Most sweeps over the multipliers.
 const SWEEPS: usize = 40;
 
 impl Separable<'_> {
-    /// The best of one group among the offers from `range`.
+    /// Best offer and tolerance of one group among the offers from `range`.
     pub(super) fn best(&self, g: usize, multipliers: &[f64], range: std::ops::Range<usize>) -> Best {
         self.best_near(g, multipliers, range, None)
     }
 
-    /// The same, found sooner where it lies near another one.
+    /// Best offer and tolerance, found sooner if it is near a known one.
     fn best_near(&self, g: usize, multipliers: &[f64], range: std::ops::Range<usize>, near: Option<&Best>) -> Best {
         let offers = self.priced[g].offers[range.clone()].iter().zip(range);
         let best = offers.map(|(offer, index)| {
@@ -118,7 +120,7 @@ impl Separable<'_> {
         Best { offer: index, t, value: parts * cost + used, curvature }
     }
 
-    /// The rows that count, each with its price: 1 of a loss.
+    /// Rows with a price: constraints by their multipliers, and losses at 1.
     fn weighted<'m>(&'m self, multipliers: &'m [f64]) -> impl Iterator<Item = (&'m Row, f64)> {
         let priced = self.rows.iter().zip(multipliers.iter().copied()).filter(|(_, multiplier)| *multiplier > 0.0);
         priced.chain(self.losses.iter().map(|row| (row, 1.0)))
@@ -128,7 +130,7 @@ impl Separable<'_> {
         (0..self.priced.len()).map(|g| self.best(g, multipliers, 0..self.priced[g].offers.len())).collect()
     }
 
-    /// The same near others.
+    /// Best offers and tolerances of all groups, searched near known ones.
     fn all_near(&self, multipliers: &[f64], near: &[Best]) -> Vec<Best> {
         let of = |(g, near): (usize, &Best)| self.best_near(g, multipliers, 0..self.priced[g].offers.len(), Some(near));
         near.iter().enumerate().map(of).collect()
@@ -140,11 +142,11 @@ impl Separable<'_> {
         lost + constants.sum::<f64>() + best.iter().map(|best| best.value).sum::<f64>()
     }
 
-    /// Multipliers with the greatest dual value, and the tolerances that belong to them: the optimum, where every group has one offer
-    /// and the problem can be solved at all.
+    /// Multipliers with the greatest dual value, and the tolerances that belong to them. This is the optimum if every
+    /// group has one offer and the problem has a solution.
     ///
-    /// Each multiplier alone first, which brings any start near; then Newton steps on those above 0, whose Hessian is
-    /// `-sum_g j_g j_g' / curvature_g` over the groups within their bounds.
+    /// Each multiplier alone comes first, which brings any start near the optimum. Newton steps follow on those above
+    /// 0, whose Hessian is `-sum_g j_g j_g' / curvature_g` over the groups within their bounds.
     pub(super) fn solve(&self, start: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let mut multipliers = start.to_vec();
         let mut best = self.all(&multipliers);
@@ -156,7 +158,7 @@ impl Separable<'_> {
                 self.alone(k, &mut multipliers);
             }
             best = self.all(&multipliers);
-            // With one constraint, alone is all there is.
+            // With one constraint, a second search of its multiplier alone changes nothing.
             if multipliers.len() == 1 && round > 0 {
                 break;
             }
@@ -169,14 +171,14 @@ impl Separable<'_> {
         self.rows.iter().map(|row| row.value(&at) - 1.0).collect()
     }
 
-    /// How far from what is necessary: constraints exceeded, or kept with room and a price.
+    /// Violation of the conditions of an optimum: constraints exceeded, or with slack and a price.
     fn error(multipliers: &[f64], misses: &[f64]) -> f64 {
         let one = |(&multiplier, &miss): (&f64, &f64)| if multiplier > 0.0 { miss.abs() } else { miss.max(0.0) };
         multipliers.iter().zip(misses).map(one).fold(0.0, f64::max)
     }
 
-    /// Newton steps as long as the dual rises: steps that only bring the misses down may undo what [`alone`](Self::alone) does, and
-    /// it theirs, for ever.
+    /// Newton steps as long as the dual rises. Steps that only lower the violations could alternate with
+    /// [`alone`](Self::alone) without end.
     fn newton(&self, multipliers: &mut Vec<f64>, best: &mut Vec<Best>) -> bool {
         for _ in 0..NEWTON {
             let misses = self.misses(best);
@@ -201,7 +203,8 @@ impl Separable<'_> {
             if largest == 0.0 {
                 return false;
             }
-            // Two sides of a characteristic may ask for the same: any split between them does.
+            // Two sides of a characteristic may use the tolerances in the same proportions. Any split of the price
+            // between them is then right.
             (0..n).for_each(|a| matrix[(a, a)] += 1e-13 * largest);
             let right = Mat::from_fn(n, 1, |a, _| misses[active[a]]);
             let step = matrix.partial_piv_lu().solve(&right);
@@ -221,7 +224,7 @@ impl Separable<'_> {
                 let rise = self.bound(&trial, &there) - value;
                 let foretold: f64 =
                     active.iter().map(|&k| misses[k] * (trial[k] - multipliers[k])).sum::<f64>().max(0.0);
-                // Near the top the dual is flat to its last digits, and misses tell more.
+                // Near the optimum the dual is flat to its last digits, and the violations are the better measure.
                 let flat =
                     rise.abs() <= FLAT * value.abs() && Self::error(&trial, &found) < error * (1.0 - 1e-4 * part);
                 if flat || rise > 1e-4 * foretold {
@@ -230,14 +233,14 @@ impl Separable<'_> {
                 }
             }
             if !accepted {
-                // As near as rounding allows.
+                // The step failed, but the error may be as small as rounding allows.
                 return error <= 1e3 * KEPT;
             }
         }
         false
     }
 
-    /// The multiplier of one constraint that keeps it just so, the others given.
+    /// Finds the multiplier of one constraint that makes it active, with the others fixed.
     fn alone(&self, k: usize, multipliers: &mut [f64]) {
         let mut miss = |value: f64| {
             multipliers[k] = value;
@@ -268,8 +271,8 @@ impl Separable<'_> {
         multipliers[k] = high;
     }
 
-    /// A bound on the cost of any choice from these ranges of offers, near the greatest: at most `steps` steps from
-    /// `multipliers`, which keep the best ones found. `known` is a cost that can be had.
+    /// Near the greatest lower bound of the cost of any choice from these ranges of offers. It takes at most `steps`
+    /// steps from `multipliers`, which are set to the best ones found. `known` is the cost of a known choice.
     pub(super) fn bounded(
         &self,
         ranges: &[std::ops::Range<usize>],
@@ -301,7 +304,7 @@ impl Separable<'_> {
             if square <= 1e-24 {
                 break;
             }
-            // Polyak's step towards the cost that is known.
+            // Polyak's step towards the known cost.
             let value = self.bound(&at, &best);
             let step = length * (target - value).max(1e-3 * target.abs()) / square;
             at.iter_mut().zip(&slopes).for_each(|(at, slope)| *at = (*at + step * slope).max(0.0));
@@ -327,8 +330,9 @@ impl Separable<'_> {
     }
 }
 
-/// Where a convex function of `T` is least between two bounds, each with its logarithm, from its first and second derivative by `ln T`:
-/// `T`, its logarithm, and the second derivative there, 0 at a bound. From a place near it, where there is one, by Newton's method alone.
+/// Minimum of a convex function of `T` between two bounds, each with its logarithm, from its first and second
+/// derivative by `ln T`. Returns `T`, its logarithm, and the second derivative there, 0 at a bound. From a place near
+/// it, if one is given, Newton's method alone is used.
 fn least(slope: &impl Fn(f64, f64) -> (f64, f64), bounds: [(f64, f64); 2], near: Option<f64>) -> (f64, f64, f64) {
     if let Some(found) = near.and_then(|near| least_near(slope, bounds, near)) {
         return found;
@@ -365,12 +369,14 @@ fn least(slope: &impl Fn(f64, f64) -> (f64, f64), bounds: [(f64, f64); 2], near:
     (t, x, slope(t, x).1.max(f64::MIN_POSITIVE))
 }
 
-/// The same where Newton's method stays between the bounds and ends soon: a convex function has no other such place.
+/// Minimum by Newton's method alone. Returns None if a step leaves the bounds or the steps do not end soon. A convex
+/// function has no other minimum.
 fn least_near(
     slope: &impl Fn(f64, f64) -> (f64, f64),
     [(min, low), (max, high)]: [(f64, f64); 2],
     near: f64,
 ) -> Option<(f64, f64, f64)> {
+    /// Most steps of Newton's method from a near place.
     const STEPS: usize = 8;
     let mut x = libm::log(near);
     for _ in 0..STEPS {

@@ -1,14 +1,14 @@
-//! The cost of setting up machines.
+//! Cost of setting up machines.
 
 use serde::Serialize;
 
 use super::cost::Offer;
 use super::cost_error::CostError;
 
-/// More machines make more sets than can be looked at.
+/// Greatest number of machines. More would have too many sets to examine.
 pub(super) const MOST: usize = 12;
 
-/// A machine and what it costs to set it up, once for all dimensions whose processes need it.
+/// Machine with its set-up cost, which is paid once for all dimensions whose processes need it.
 ///
 /// ```
 /// use sensitol::allocation::SetUp;
@@ -20,17 +20,18 @@ pub(super) const MOST: usize = 12;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct SetUp {
-    /// The machine.
+    /// Name of the machine.
     pub machine: String,
-    /// Its cost.
+    /// Cost of setting it up.
     pub cost: f64,
 }
 
 impl SetUp {
-    /// Of a machine.
+    /// Creates the set-up cost of a machine.
     ///
     /// # Errors
-    /// When the cost is negative or not finite.
+    ///
+    /// If the cost is negative or not finite.
     pub fn new(machine: impl Into<String>, cost: f64) -> Result<Self, CostError> {
         match cost.is_finite() && cost >= 0.0 {
             true => Ok(Self { machine: machine.into(), cost }),
@@ -39,7 +40,7 @@ impl SetUp {
     }
 }
 
-/// The set-ups that some offers need, each once.
+/// Set-ups that some offers need, each once.
 pub(super) fn needed<'s>(setups: &'s [SetUp], offers: &[&Offer]) -> Vec<&'s SetUp> {
     let needs = |setup: &&SetUp| offers.iter().any(|offer| offer.machine.as_ref() == Some(&setup.machine));
     setups.iter().filter(needs).collect()

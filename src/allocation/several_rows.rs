@@ -1,37 +1,38 @@
-//! The cheapest options of lists under several rows.
+//! Cheapest options of lists under several rows.
 //!
 //! ```text
 //! L(lambda) = sum_j min_i [ cost_j(i) + sum_r lambda_r use_rj(i) ] - sum_r lambda_r  <=  the least cost, for every lambda >= 0
 //! ```
 //!
-//! Depth first: a node allows some options of every list, and its bound is the greatest `L` that steps from its parent's multipliers find.
-//! Steps follow the averages of the choices that they meet, the volume algorithm: F. Barahona, R. Anbil, "The volume algorithm", Mathematical
-//! Programming 87 (2000). The averages come near the fractional solution: the list that they split most is split in two. The
-//! contribution of an option to the bound rules it out at every node, and so does what it leaves to the others of a row.
+//! The search is depth first. A node allows some options of every list. Its bound is the greatest `L` found by steps
+//! from its parent's multipliers. Steps follow the averages of the choices that they meet, the volume algorithm: F.
+//! Barahona, R. Anbil, "The volume algorithm", Mathematical Programming 87 (2000). The averages approach the fractional
+//! solution. The list that they split most is split in two. At every node an option is ruled out by its contribution to
+//! the bound, or by the use of a row that it leaves to the others.
 
 use super::lists::{ListChoice, Lists, SAME, fits, least_use};
 
-/// Steps of the multipliers at the root and at every other node.
+/// Steps of the multipliers at the root, and at every other node.
 const STEPS: [usize; 2] = [400, 24];
 /// Nodes between two repairs of a node's choice.
 const REPAIR: usize = 16;
-/// The part of the newest choice in the averages.
+/// Weight of the newest choice in the averages.
 const NEWEST: f64 = 0.15;
 /// Nodes between two repairs that exchange two options at once.
 const PAIRS: usize = 512;
-/// Nodes between two looks whether to stop.
+/// Nodes between two checks of `stopped`.
 const LOOK: usize = 64;
 
-/// All options, list after list: the cost of each, then its use of every row. Steps of the multipliers read them again and again, so that they
-/// stand in one piece.
+/// All options, list after list: the cost of each, then its use of every row. They are contiguous, because steps of the
+/// multipliers read them again and again.
 struct Table {
     rows: usize,
     numbers: Vec<f64>,
-    /// Where each list begins among the options, and where the last one ends.
+    /// Index of the first option of every list, and the number of all options.
     starts: Vec<usize>,
 }
 
-/// Some options of every list, by their places among all.
+/// Some options of every list, by their positions among all.
 #[derive(Clone)]
 struct Options {
     places: Vec<usize>,
@@ -44,13 +45,13 @@ struct Node {
     bound: f64,
 }
 
-/// The results of the steps of the multipliers.
+/// Result of the steps of the multipliers.
 struct Bounded {
     bound: f64,
     multipliers: Vec<f64>,
-    /// The choice of the best multipliers.
+    /// Choice of the best multipliers.
     picks: Vec<usize>,
-    /// How much of every option is in the averages.
+    /// Weight of every option in the averages.
     weights: Vec<f64>,
 }
 
@@ -97,11 +98,11 @@ pub(super) fn several_rows(problem: &Lists, stopped: &dyn Fn() -> bool) -> Optio
     Some(problem.told(&best, proven, nodes))
 }
 
-/// The two halves of a node: the list of which the averages hold the most different options, split at their mean. The half with the choice
-/// of the best multipliers comes last, to be looked at first. None where every list has one option.
+/// Splits a node at the list with the most fractional averages, at their mean. The half with the choice of the best
+/// multipliers comes last, so that it is examined first. Returns None if every list has one option.
 fn split(node: Node, bounded: &Bounded) -> Option<[Node; 2]> {
     let lists = node.left.starts.len() - 1;
-    // Options may have been ruled out since: the averages are of the node before.
+    // Options may have been ruled out since, because the averages belong to the node before.
     let fraction = |j: usize| 1.0 - node.left.list(j).iter().map(|&place| bounded.weights[place]).fold(0.0, f64::max);
     let wide = (0..lists).filter(|&j| node.left.list(j).len() > 1).map(|j| (j, fraction(j)));
     let longer = |a: usize, b: usize| node.left.list(a).len().cmp(&node.left.list(b).len());
@@ -133,7 +134,7 @@ impl Table {
         Self { rows: problem.rows, numbers, starts }
     }
 
-    /// Those that are left of it.
+    /// Table of the remaining options only.
     fn left(&self, left: &Options) -> Self {
         let mut numbers = Vec::with_capacity((1 + self.rows) * left.places.len());
         left.places.iter().for_each(|&place| numbers.extend_from_slice(self.option(place)));
@@ -144,15 +145,15 @@ impl Table {
         &self.numbers[place * (1 + self.rows)..(place + 1) * (1 + self.rows)]
     }
 
-    /// The cost of an option with what it uses at these prices of the rows.
+    /// Cost of an option plus its use at these prices of the rows.
     fn priced(&self, place: usize, multipliers: &[f64]) -> f64 {
         let option = self.option(place);
         option[0] + option[1..].iter().zip(multipliers).map(|(use_, price)| use_ * price).sum::<f64>()
     }
 
-    /// The cheapest option of every list at these prices of the rows, and the bound.
+    /// Chooses the cheapest option of every list at these prices of the rows, and returns the bound.
     fn choose(&self, multipliers: &[f64], picks: &mut [usize]) -> f64 {
-        // Two and three rows by numbers in registers.
+        // For two and three rows the numbers stay in registers.
         let (two, three) = (self.numbers.as_chunks::<3>().0, self.numbers.as_chunks::<4>().0);
         match *multipliers {
             [a, b] => self.choose_by(multipliers, picks, |place| {
@@ -183,7 +184,7 @@ impl Table {
         value
     }
 
-    /// How far a choice exceeds every row.
+    /// Computes the excess of every row by a choice.
     fn over(&self, picks: &[usize], over: &mut [f64]) {
         match over {
             [a, b] => {
@@ -211,7 +212,7 @@ impl Options {
         &self.places[self.starts[j]..self.starts[j + 1]]
     }
 
-    /// Keeps some options, by list and place; whether any was taken out.
+    /// Keeps some options, by list and position. Returns true if any was removed.
     fn retain(&mut self, keep: impl Fn(usize, usize) -> bool) -> bool {
         let (mut kept, mut from) = (0, 0);
         for j in 0..self.starts.len() - 1 {
@@ -230,7 +231,7 @@ impl Options {
 }
 
 impl Search<'_> {
-    /// Takes out options that leave the others of a row too little; false where nothing is left.
+    /// Removes options that leave too little of a row to the others. Returns false if no choice is left.
     fn tightened(&self, node: &mut Node) -> bool {
         let mut least = vec![0.0; self.problem.lists.len()];
         loop {
@@ -252,7 +253,7 @@ impl Search<'_> {
         }
     }
 
-    /// Takes out options that what they add to the bound rules out.
+    /// Removes options whose contribution to the bound rules them out.
     fn reduce(&self, node: &mut Node, bounded: &Bounded) {
         let slack = 1e-9 * self.known.abs();
         let price = |place: usize| self.table.priced(place, &bounded.multipliers);
@@ -260,7 +261,7 @@ impl Search<'_> {
         node.left.retain(|j, place| bounded.bound + price(place) - least[j] <= self.known + slack);
     }
 
-    /// Steps of the multipliers from those of the node.
+    /// Steps of the multipliers, beginning at those of the node.
     fn bounded(&self, node: &Node, steps: usize) -> Bounded {
         let rows = self.table.rows;
         let left = self.table.left(&node.left);
@@ -269,7 +270,7 @@ impl Search<'_> {
         let bound = left.choose(&at, &mut picks);
         let mut weights = vec![0.0; left.starts[left.starts.len() - 1]];
         picks.iter().for_each(|&pick| weights[pick] = 1.0);
-        // The averages' use of every row beyond it, and that of a choice.
+        // Excess of every row by the averages, and by a choice.
         let (mut over, mut own) = (vec![0.0; rows], vec![0.0; rows]);
         left.over(&picks, &mut over);
         let (mut best, mut best_at, mut best_picks) = (bound, at.clone(), picks.clone());
@@ -283,7 +284,7 @@ impl Search<'_> {
             if square <= 1e-24 {
                 break;
             }
-            // Polyak's step towards the cost that is known.
+            // Polyak's step towards the known cost.
             let target = if self.known.is_finite() { self.known } else { best + 0.05 * best.abs().max(1e-9) };
             let by = length * (target - best).max(1e-6 * target.abs()) / square;
             for r in 0..rows {
@@ -307,7 +308,7 @@ impl Search<'_> {
                 in_vain += 1;
                 if in_vain >= 4 {
                     (length, in_vain) = (0.6 * length, 0);
-                    // From the choice of the best multipliers anew.
+                    // The direction is half reset to the choice of the best multipliers.
                     left.over(&best_picks, &mut own);
                     over.iter_mut().zip(&own).for_each(|(over, own)| *over = 0.5 * *over + 0.5 * own);
                 }
@@ -322,8 +323,8 @@ impl Search<'_> {
         Bounded { bound: best, multipliers: best_at, picks: best_picks, weights: of_all }
     }
 
-    /// Takes the choice of the best multipliers where it is better than the one known: made to keep the rows by the exchanges that cost least
-    /// for what they free, then exchanged for the better.
+    /// Repairs the choice of the best multipliers, and keeps it if it is better than the known one. Exchanges with the
+    /// least cost for their effect make it keep the rows. Further exchanges then improve it.
     fn repair(&mut self, bounded: &Bounded, two: bool) {
         let problem = self.problem;
         let mut picks: Vec<usize> =
@@ -354,7 +355,7 @@ impl Search<'_> {
             uses = problem.uses(&picks);
         }
         if !problem.is_kept(&picks) {
-            // The tightest of the row that is fullest: a last resort.
+            // As a last resort, each list takes the option with the least use of the fullest row.
             let fullest = (0..problem.rows).max_by(|&a, &b| uses[a].total_cmp(&uses[b])).unwrap_or(0);
             for (list, pick) in problem.lists.iter().zip(&mut picks) {
                 let least = least_use(list, fullest);

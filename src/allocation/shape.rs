@@ -1,4 +1,4 @@
-//! How what is required, what there was and what there is of it are written.
+//! Serialised forms of requirements and their values before and after.
 
 use serde::{Serialize, Serializer};
 
@@ -6,15 +6,15 @@ use sensitol_numeric::requirement::{Required, Requirement};
 use sensitol_numeric::shape::{ends, finite};
 use sensitol_numeric::verdict::{Judged, Verdict};
 
-/// The value of a requirement before, as it is written.
+/// Value of a requirement before, as it is written.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(super) struct Before {
-    /// The value before.
+    /// Value before.
     before: Option<f64>,
-    /// Whether it was kept; null where that is not known.
+    /// True if the requirement was kept before; null if that is not known.
     met_before: Option<bool>,
-    /// The same in a word.
+    /// Verdict on the requirement before.
     verdict_before: Verdict,
 }
 
@@ -24,17 +24,17 @@ impl From<&Judged> for Before {
     }
 }
 
-/// The value of a requirement after, as it is written; all null where nothing was found.
+/// Value of a requirement after, as it is written; all null if no tolerances were found.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(super) struct After {
-    /// The value found.
+    /// Value at the tolerances found.
     after: Option<f64>,
-    /// Within which that is known, an end null where there is none; null where it is not known at all.
+    /// Interval of the value, with null for an unbounded end; null if the value is not known.
     interval: Option<[Option<f64>; 2]>,
-    /// Whether it is kept; null where that is not known, and where nothing was found.
+    /// True if the requirement is kept; null if that is not known, and if no tolerances were found.
     met: Option<bool>,
-    /// The same in a word; null where nothing was found.
+    /// Verdict on the requirement; null if no tolerances were found.
     verdict: Option<Verdict>,
 }
 
@@ -49,19 +49,19 @@ impl From<&Option<Judged>> for After {
     }
 }
 
-/// The verdict of a sample on a requirement, as it is written.
+/// Verdict of a sample on a requirement, as it is written.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(super) struct Sampled {
-    /// The figure of the sample.
+    /// Value from the sample.
     value: Option<f64>,
-    /// Within which that is known, three errors on either side; null where it is not known at all.
+    /// Interval of the value, three errors on either side; null if the value is not known.
     interval: Option<[Option<f64>; 2]>,
-    /// The verdict on the requirement from that.
+    /// Verdict on the requirement from the interval.
     verdict: Verdict,
 }
 
-/// Null without a sample.
+/// Writes the verdict of a sample, or null if there is none.
 pub(super) fn sampled<S: Serializer>(of: &Option<Judged>, serializer: S) -> Result<S::Ok, S::Error> {
     let written = |of: &Judged| Sampled {
         value: of.value.and_then(finite),
@@ -71,29 +71,29 @@ pub(super) fn sampled<S: Serializer>(of: &Option<Judged>, serializer: S) -> Resu
     of.as_ref().map(written).serialize(serializer)
 }
 
-/// A requirement of a characteristic, as it is written.
+/// Requirement of a characteristic, as it is written.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(super) struct RequiredOf<'r> {
-    /// The characteristic.
+    /// Name of the characteristic.
     characteristic: &'r str,
     #[serde(flatten)]
     required: Required,
 }
 
-/// The requirement of a characteristic at a point of the front.
+/// Requirement of a characteristic at a point of the front.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct FrontRequirement {
-    /// The characteristic; all with limits where a joint yield is required.
+    /// Name of the characteristic, or of all with limits for a joint yield.
     pub characteristic: String,
-    /// The requirement.
+    /// Requirement.
     pub requirement: Requirement,
-    /// How much of it; of rss and worst case the part of the room that they may take.
+    /// Required amount. For rss and worst case it is the part of the slack that may be used.
     pub amount: f64,
 }
 
-/// The requirement of every characteristic.
+/// Writes the requirement of every characteristic.
 pub(super) fn required<S: Serializer>(all: &[FrontRequirement], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_seq(all.iter().map(|wanted| RequiredOf {
         characteristic: &wanted.characteristic,

@@ -1,11 +1,12 @@
-//! The cheapest tolerances when every group has one offer.
+//! Cheapest tolerances when every group has one offer.
 //!
-//! Each constraint is replaced by the sum of powers that has its value and slopes at the present tolerances
-//! ([`Linearised::row`](super::constraint::Linearised::row)); the separable convex problem that results is solved exactly, and so on from its solution. Worst
-//! cases and sums of squares are such sums, so that one step does; for second-order moments the steps shrink as the curvature's
-//! part of the variance. Where it stands still the true slopes fulfil the conditions of Karush, Kuhn and Tucker. Source: the
-//! idea of convex approximations, C. Fleury, "Structural optimization: a new dual method using mixed variables", Int. J. Numerical
-//! Methods in Engineering 23 (1986).
+//! Each constraint is replaced by the sum of powers with its value and slopes at the present tolerances
+//! ([`Linearised::row`](super::constraint::Linearised::row)). The resulting separable convex problem is solved exactly,
+//! and the next one begins at its solution. Worst cases and sums of squares are such sums, so that one step is enough.
+//! For second-order moments the steps shrink in proportion to the curvature's part of the variance. At the end the true
+//! slopes fulfil the conditions of Karush, Kuhn and Tucker. Source: the idea of convex approximations, C. Fleury,
+//! "Structural optimization: a new dual method using mixed variables", Int. J. Numerical Methods in Engineering 23
+//! (1986).
 
 use super::augmented::augmented;
 use super::closed_form::closed_form;
@@ -20,60 +21,61 @@ use super::solved::{Ends, Solved, Starts};
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::requirement::Requirement;
 
-/// The constraints, and the tolerances that they are on.
+/// Problem of one search: constraints, costs, and the responses at the linearization point.
 #[derive(Clone, Copy)]
 pub(super) struct Setting<'a> {
     pub(super) responses: &'a Responses,
     pub(super) priced: &'a [Priced],
     pub(super) constraints: &'a [Constraint],
-    /// The costs of deviations and rejects beside the tolerances.
+    /// Costs of deviations and rejects, in addition to those of the tolerances.
     pub(super) losses: &'a [QualityLoss],
-    /// The costs of setting up machines.
     pub(super) setups: &'a [SetUp],
     pub(super) stopped: &'a (dyn Fn() -> bool + Sync),
-    /// Whether optima are sought from everywhere, where there may be several, rather than from the start alone.
+    /// True if several starts are used in case there are several optima, false if only the given start is.
     pub(super) anywhere: bool,
 }
 
-/// Steps at most.
+/// Most steps of a search.
 const STEPS: usize = 60;
-/// Starts between the tightest tolerances and the loosest,
+/// Number of starts between the tightest and the loosest tolerances.
 const BETWEEN: usize = 4;
-/// by multiples of the golden section, which have no pattern.
+/// Golden section. Its multiples, modulo 1, give starts without a pattern.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
-/// Groups times requirements times the square of the dimensions up to which more starts are tried: some tenths of a second.
+/// Greatest work for more starts: groups times requirements times the square of the dimensions. It takes some tenths of
+/// a second.
 const MOST_WORK: usize = 100_000;
-/// Different ends beyond which a swarm is asked where to begin.
+/// Number of different ends above which a swarm search chooses the start.
 const MOST_ENDS: usize = 2;
-/// The difference that other orders of the same sums may make.
+/// Relative difference between sums in another order.
 const RESERVE: f64 = 1e-13;
-/// A tolerance so near its bound is at it.
+/// Relative distance within which a tolerance is at its bound.
 const AT_BOUND: f64 = 1e-9;
-/// It stands still: where slopes are formulas, and where they are differences, which know them to 1e-10.
+/// Residuals at which a search has converged: for slopes from formulas, and for slopes from differences, which are
+/// right to 1e-10.
 const STILL: [f64; 2] = [1e-11, 1e-9];
-/// A residual that is optimal all the same, once steps do not lower it any more.
+/// Residual that still counts as optimal, once steps lower it no more.
 pub(super) const SMALL: f64 = 1e-8;
-/// Steps in which a residual that still falls is at least halved.
+/// Number of steps within which a residual that still falls is at least halved.
 const PATIENCE: usize = 3;
-/// Steps of which none halves the residual: shortened ones, of a tenth, would need seven.
+/// Number of steps without a halved residual after which a search ends. Shortened steps, of a tenth, need seven.
 const ASTRAY: usize = 12;
-/// Two ways to the same.
+/// Relative difference within which two solutions are the same.
 const SAME: f64 = 1e-9;
 
 impl Setting<'_> {
-    /// The largest value of a constraint; kept where that is at most 1.
+    /// Largest value of a constraint. All are kept if it is at most 1.
     pub(super) fn value(&self, at: &[f64]) -> f64 {
         let value = |constraint: &Constraint| constraint.value(self.responses, self.priced, at);
         self.constraints.iter().map(value).fold(0.0, f64::max)
     }
 
-    /// Cost of the groups at half bands that the first offer of each holds, and the losses there.
+    /// Cost of the groups at half bands of their first offers, plus the losses there.
     pub(super) fn cost(&self, at: &[f64]) -> f64 {
         let held: f64 = self.priced.iter().zip(at).map(|(group, &t)| group.parts * group.offers[0].curve.cost(t)).sum();
         held + losses_at(self.losses, self.responses, self.priced, at)
     }
 
-    /// The losses as sums of powers that have their values and slopes at these half bands; None where one is unknown.
+    /// Losses as sums of powers with their values and slopes at these half bands. Returns None if one is unknown.
     pub(super) fn loss_rows(&self, at: &[f64]) -> Option<Vec<Row>> {
         let row = |loss: &QualityLoss| Some(loss.linearised(self.responses, self.priced, at)?.row(at));
         self.losses.iter().map(row).collect()
@@ -84,7 +86,7 @@ impl Setting<'_> {
         self.constraints.par_iter().map(|constraint| constraint.linearised(responses, priced, at)).collect()
     }
 
-    /// Whether sums of powers are exactly what is required.
+    /// True if sums of powers represent every requirement and loss exactly.
     pub(super) fn is_exact(&self) -> bool {
         let exact = |one: &Constraint| match one.requirement {
             Requirement::WorstCase => self.responses.has_linear_worst_case(one.characteristic),
@@ -93,8 +95,10 @@ impl Setting<'_> {
         self.constraints.iter().all(exact) && self.losses.iter().all(|loss| loss.is_exact(self.responses))
     }
 
-    /// Whether cost and requirements are convex in the tolerances, so that what keeps the conditions of an optimum is one: worst cases of
-    /// straight surfaces, roots of sums of squares with any correlation, and squares of deviations about means that stay.
+    /// True if cost and requirements are convex in the tolerances, so that the conditions of an optimum are sufficient.
+    ///
+    /// Convex requirements are worst cases of straight surfaces, roots of sums of squares with any correlation, and
+    /// squares of deviations about fixed means.
     pub(super) fn is_convex(&self) -> bool {
         let rows = self.constraints.iter().all(|one| match one.requirement {
             Requirement::WorstCase => self.responses.has_linear_worst_case(one.characteristic),
@@ -103,19 +107,19 @@ impl Setting<'_> {
         rows && self.losses.iter().all(|loss| loss.is_exact(self.responses)) && self.costs_are_convex()
     }
 
-    /// Whether every cost is convex in its tolerance.
+    /// True if every cost is convex in its tolerance.
     pub(super) fn costs_are_convex(&self) -> bool {
         let mut offers = self.priced.iter().flat_map(|group| &group.offers);
         offers.all(|offer| offer.curve.is_convex(offer.min, offer.max))
     }
 
-    /// The tightest that there is, and the loosest.
+    /// Tightest and loosest half band of every group.
     pub(super) fn bounds(&self) -> Vec<[f64; 2]> {
         self.priced.iter().map(|group| [group.tightest(), group.loosest()]).collect()
     }
 
-    /// The cheapest tolerances that keep every constraint, from `start` and, where there may be several optima, from others. None
-    /// where none was found that keeps them all.
+    /// Cheapest tolerances that keep every constraint, from `start` and, if there may be several optima, from other
+    /// starts. Returns None if none were found.
     pub(super) fn solve(&self, start: &[f64]) -> Option<Solved> {
         let bounds = self.bounds();
         let tight: Vec<f64> = bounds.iter().map(|&[low, _]| low).collect();
@@ -123,7 +127,7 @@ impl Setting<'_> {
         let one_start = self.is_exact() && self.costs_are_convex();
         if !one_start {
             let loose: Vec<f64> = bounds.iter().map(|&[_, high]| high).collect();
-            // Where the loosest of all keep everything, nothing is cheaper: a place that no slope need lead to.
+            // If the loosest tolerances keep everything, nothing is cheaper. No slope need lead there.
             if self.losses.is_empty() && kept(self.value(&loose)) {
                 let nothing = vec![0.0; self.constraints.len()];
                 let solved = self.judged(&loose, &self.linearised(&loose)?, &nothing, false);
@@ -133,7 +137,7 @@ impl Setting<'_> {
             starts.push(self.reached(&tight, &loose, 0.5));
             starts.extend(self.elsewhere(&tight, &loose));
         }
-        // A search that ends dearer than where it began has left its valley.
+        // A search that ends at a greater cost than its start has left its valley.
         let left = |found: &Solved, start: &[f64]| {
             !one_start && found.cost > self.cost(start) * (1.0 + SAME) && kept(self.value(start))
         };
@@ -146,13 +150,13 @@ impl Setting<'_> {
                 Some(found) if kept(found.value) && !left(found, start) => Some(&found.at[..]),
                 _ => Some(start),
             };
-            // Sums of powers lead nowhere from here, or not to the end.
+            // Sums of powers lead nowhere from here, or did not converge.
             let finished = from.and_then(|from| self.finished(from, ends)).filter(ended);
             finished.or(found)
         };
         let mut ends = Ends::default();
         let mut starts = starts.into_iter();
-        // Costs are convex: another start may help where the constraints are not, and the search did not end by itself.
+        // Costs are convex. Another start may help if the constraints are not, and if the search did not converge.
         for start in starts.by_ref() {
             let end = descend(&start, &ends);
             ends.take(end);
@@ -160,13 +164,14 @@ impl Setting<'_> {
                 break;
             }
         }
-        // The others side by side, each of which knows the ends so far: what is found depends on no order.
+        // The other searches run in parallel. Each gets only the ends so far, so that the result does not depend on
+        // their order.
         if self.anywhere && !one_start && !(self.stopped)() {
             let rest: Vec<Vec<f64>> = starts.collect();
             let found: Vec<Option<Solved>> = rest.par_iter().map(|start| descend(start, &ends)).collect();
             found.into_iter().for_each(|end| ends.take(end));
         }
-        // Starts that disagree, or find nothing, leave it to a swarm to say where to begin.
+        // If the starts disagree or find nothing, a swarm search chooses a start.
         let confused = !one_start && (!ends.is_feasible() || ends.different() > MOST_ENDS);
         if let Some(start) = confused.then(|| self.swarmed(&bounds)).flatten() {
             let end = descend(&start, &ends);
@@ -175,8 +180,8 @@ impl Setting<'_> {
         ends.found().or_else(|| self.kept_at_least(start, &tight))
     }
 
-    /// Other starts, where there may be several optima and a search is short: the loosest and the tightest tolerances, and points between them
-    /// that have no pattern.
+    /// Other starts for several possible optima, if a search is short: the loosest and the tightest tolerances, and
+    /// points between them without a pattern.
     fn elsewhere(&self, tight: &[f64], loose: &[f64]) -> Vec<Vec<f64>> {
         let n = self.responses.varying().len();
         let work = self.priced.len() * n * n * self.constraints.len();
@@ -194,8 +199,8 @@ impl Setting<'_> {
         [loose.to_vec(), tight.to_vec()].into_iter().chain((0..BETWEEN).map(between)).collect()
     }
 
-    /// The best place of a swarm: what keeps all constraints by its cost, and before that what breaks the worst of them least. None where the
-    /// search is not one from everywhere, or would take long.
+    /// Best point of a swarm search. Points that keep all constraints are compared by cost, the others by their worst
+    /// constraint. Returns None for a search from one start only, and if the search would take long.
     fn swarmed(&self, bounds: &[[f64; 2]]) -> Option<Vec<f64>> {
         let n = self.responses.varying().len();
         let work = self.priced.len() * n * n * self.constraints.len();
@@ -213,8 +218,8 @@ impl Setting<'_> {
         swarmed(&function, &logarithms).map(|x| self.within(&tolerances(&x)))
     }
 
-    /// Where the search found nothing that keeps all constraints and the tightest tolerances do: as far from these towards the start as they
-    /// are kept, with nothing proven.
+    /// Tolerances between the tightest ones and the start, as far towards the start as all constraints are kept.
+    /// Nothing is proven. Returns None if the tightest tolerances break a constraint.
     fn kept_at_least(&self, start: &[f64], tight: &[f64]) -> Option<Solved> {
         if !kept(self.value(tight)) {
             return None;
@@ -243,24 +248,25 @@ impl Setting<'_> {
         kept(value).then_some(solved)
     }
 
-    /// The half bands within their bounds.
+    /// Half bands clamped to their bounds.
     pub(super) fn within(&self, at: &[f64]) -> Vec<f64> {
         at.iter().zip(self.bounds()).map(|(t, [low, high])| t.clamp(low, high)).collect()
     }
 
-    /// Part of the way, in logarithms.
+    /// Point on the way between two sets of half bands, in logarithms.
     fn reached(&self, from: &[f64], to: &[f64], part: f64) -> Vec<f64> {
         from.iter().zip(to).map(|(from, to)| libm::pow(*from, 1.0 - part) * libm::pow(*to, part)).collect()
     }
 
-    /// The start, or the first on the way to the tightest at which all constraints are finite, with their slopes there.
+    /// Start, or the first point towards the tightest tolerances at which all constraints are finite, with their slopes
+    /// there.
     fn usable(&self, start: &[f64], tight: &[f64]) -> Option<(Vec<f64>, Vec<Linearised>)> {
         let parts = [0.0, 0.25, 0.5, 0.75, 0.9, 1.0];
         let mut all = parts.iter().map(|&part| self.reached(start, tight, part));
         all.find_map(|at| self.linearised(&at).map(|linearised| (at, linearised)))
     }
 
-    /// The end of a search, or that of an earlier one which it comes near.
+    /// Runs one search. Returns its end, or the end of an earlier search that it approaches.
     fn descend(&self, mut at: Vec<f64>, first: Vec<Linearised>, ends: &Ends) -> Option<Solved> {
         let mut known = Some(first);
         let mut multipliers: Option<Vec<f64>> = None;
@@ -304,7 +310,7 @@ impl Setting<'_> {
             }
             let (found, next) = problem.solve(&multipliers.take().unwrap_or_default());
             let length = at.iter().zip(&next).map(|(a, b)| libm::log(b / a).abs()).fold(0.0, f64::max);
-            // A surrogate that is not a sum of squares may need shorter steps.
+            // A surface that is not a sum of squares may need shorter steps.
             if !exact && step > 3 && length > 0.7 * last_step {
                 part = (0.5 * part).max(0.1);
             }
@@ -315,7 +321,7 @@ impl Setting<'_> {
                 converged = true;
             }
         }
-        // Judged already where it stands still.
+        // A converged search was judged at its last step.
         let open = multipliers.as_ref().filter(|_| !still_at_last);
         if let Some((multipliers, linearised)) = open.and_then(|of| Some((of, self.linearised(&at)?))) {
             let now = self.judged(&at, &linearised, multipliers, closed);
@@ -334,12 +340,12 @@ impl Setting<'_> {
         Some(best)
     }
 
-    /// Rounding may leave a constraint exceeded by a last digit: what is promised is kept, however it is summed.
+    /// Tightens a solution that exceeds a constraint by rounding, so that it is kept for any order of summation.
     pub(super) fn tighten(&self, solved: &mut Solved) {
         if solved.value > 1.0 + 1e-6 {
             return;
         }
-        // Logarithms of bounds are not quite the bounds.
+        // Exponentials of the logarithms differ from the bounds by rounding.
         for (t, group) in solved.at.iter_mut().zip(self.priced) {
             let near =
                 [group.tightest(), group.loosest()].into_iter().find(|bound| (*t / bound - 1.0).abs() < AT_BOUND);
@@ -356,7 +362,7 @@ impl Setting<'_> {
         solved.cost = self.cost(&solved.at);
     }
 
-    /// How far these tolerances are from an optimum, with these multipliers.
+    /// Judges tolerances and multipliers by the conditions of an optimum.
     pub(super) fn judged(&self, at: &[f64], linearised: &[Linearised], multipliers: &[f64], closed: bool) -> Solved {
         let mut slopes: Vec<f64> = (self.priced.iter().zip(at))
             .map(|(group, &t)| group.parts * group.offers[0].curve.log_derivatives(t, libm::log(t))[0])
@@ -400,16 +406,16 @@ impl Setting<'_> {
         }
     }
 
-    /// How far these tolerances are from the conditions of an optimum with these multipliers; None where processes compete, or the
-    /// constraints are unknown there.
+    /// Residual of the conditions of an optimum at these tolerances, with these multipliers. Returns None if processes
+    /// compete, or a constraint is unknown.
     pub(super) fn residual(&self, at: &[f64], multipliers: &[f64]) -> Option<f64> {
         let free = self.priced.iter().all(|group| group.offers.len() == 1);
         let linearised = self.linearised(at).filter(|_| free)?;
         Some(self.judged(at, &linearised, multipliers, false).residual)
     }
 
-    /// The saving, per unit of half band, where the bound that a tolerance has met gives way; None within the bounds, and where
-    /// processes compete or slopes are unknown.
+    /// Saving per unit by which the bound of a tolerance is widened. None within the bounds, and if processes compete
+    /// or slopes are unknown.
     pub(super) fn bound_prices(&self, at: &[f64], multipliers: &[f64]) -> Vec<Option<f64>> {
         let nothing = vec![None; at.len()];
         let (Some(linearised), Some(losses)) = (self.linearised(at), self.loss_rows(at)) else { return nothing };
@@ -428,12 +434,12 @@ impl Setting<'_> {
         (0..at.len()).map(price).collect()
     }
 
-    /// The least value that a constraint can have by itself within the bounds, and where.
+    /// Least value of a constraint alone within the bounds, and its half bands.
     pub(super) fn attainable(&self, constraint: &Constraint) -> (f64, Vec<f64>) {
         let bounds = self.bounds();
         let mut at: Vec<f64> = bounds.iter().map(|&[low, _]| low).collect();
         let mut least = constraint.value(self.responses, self.priced, &at);
-        // Tighter is better, but where a wide tolerance moves the mean the right way.
+        // Tighter is better, except if a wide tolerance moves the mean in the right direction.
         for _ in 0..3 {
             let before = least;
             for g in 0..at.len() {
@@ -453,12 +459,12 @@ impl Setting<'_> {
     }
 }
 
-/// The use of the constraints, by their multipliers, by one more of a group's tolerance in `ln T`.
+/// Slope of the constraints by `ln T` of a group, weighted with their multipliers.
 fn uses_of(linearised: &[Linearised], multipliers: &[f64], g: usize) -> f64 {
     linearised.iter().zip(multipliers).map(|(one, multiplier)| multiplier * one.slopes[g]).sum()
 }
 
-/// The best: kept constraints first, then the smallest residual.
+/// Keeps the solution with the smallest residual.
 fn keep(best: &mut Option<Solved>, found: Solved) {
     let better = |old: &Solved| found.residual < old.residual;
     if best.as_ref().is_none_or(better) {
@@ -466,7 +472,7 @@ fn keep(best: &mut Option<Solved>, found: Solved) {
     }
 }
 
-/// All tolerances that are free a little tighter: what lies at its bound stays there, unless everything does.
+/// Tightens all free tolerances by a factor. Those at their upper bound stay there, unless all are.
 pub(super) fn tightened(at: &mut [f64], priced: &[Priced], factor: f64) {
     let free = |group: &Priced, t: f64| group.offers.len() == 1 && t < group.loosest() * (1.0 - AT_BOUND);
     let any = priced.iter().zip(at.iter()).any(|(group, &t)| free(group, t));

@@ -1,29 +1,33 @@
-//! Sequential quadratic programming: a smooth objective under smooth rows and bounds, to the last digits.
+//! Sequential quadratic programming: minimises a smooth objective under smooth rows and bounds to the last digits.
 //!
-//! Every step solves the [quadratic problem](super::quadratic) of the present slopes, with the matrix of the Lagrangian that earlier slopes tell
-//! (damped BFGS), and goes as far as the merit `f + w max(0, c)` falls. Where a whole step does not lower it because rows are bent, the step is solved
-//! again with the rows as they are at its end. Sources: M. J. D. Powell, "A fast algorithm for nonlinearly constrained optimization
-//! calculations" (1978), for the damped update; R. Fletcher, "Second order corrections for non-differentiable optimization" (1982).
+//! Every step solves the [quadratic problem](super::quadratic) of the present slopes, with the matrix of the Lagrangian
+//! from earlier slopes (damped BFGS). It goes as far as the merit `f + w max(0, c)` falls. If a whole step does not
+//! lower the merit because rows are curved, the step is solved again with the rows at its end. Sources: M. J. D.
+//! Powell, "A fast algorithm for nonlinearly constrained optimization calculations" (1978), for the damped update; R.
+//! Fletcher, "Second order corrections for non-differentiable optimization" (1982).
 
 use super::augmented::{Ended, Near, Slope, Smooth};
 use super::quadratic::{Quadratic, Step, dot};
 
-/// The longest step of an unknown: of a logarithm, a factor of 4.5, as far as slopes tell anything.
+/// Longest step of an unknown. For a logarithm it is a factor of 4.5, beyond which slopes are of little use.
 const LONGEST: f64 = 1.5;
-/// The part of the foretold fall of the merit that is asked for, and how often a step is halved for it.
+/// Least fall of the merit, as a part of the predicted one.
 const FALL: f64 = 1e-4;
+/// Most halvings of a step until the merit falls.
 const HALVINGS: i32 = 25;
-/// The weights of what rows are exceeded by: the least and the greatest that doubles bear beside an objective near 1.
+/// Least and greatest weight of the excess of rows. Greater ones lose digits beside an objective near 1.
 const WEIGHTS: [f64; 2] = [1e-6, 1e6];
-/// The excess of a row by rounding of the quadratic problem.
+/// Excess of a row that is rounding of the quadratic problem.
 const ROUNDING: f64 = 1e-12;
 /// Powell's bound of damping.
 const DAMPED: f64 = 0.2;
-/// Near the end, steps that do not halve the residual any more: it is as small as rounding lets it be.
+/// Number of steps near the end without a halved residual after which a search ends. Rounding prevents a smaller one
+/// then.
 const PATIENCE: usize = 8;
+/// Greatest residual near the end.
 const NEAR_THE_END: f64 = 1e-6;
 
-/// A point with its values and slopes.
+/// Point with its values and slopes.
 struct Place {
     x: Vec<f64>,
     value: f64,
@@ -32,7 +36,7 @@ struct Place {
 }
 
 impl Place {
-    /// The excess of the rows.
+    /// Greatest excess of a row.
     fn excess(&self) -> f64 {
         self.rows.iter().fold(0.0, |most, row| most.max(row.0))
     }
@@ -41,7 +45,7 @@ impl Place {
         self.value + weight * self.excess()
     }
 
-    /// The slopes of the Lagrangian, without bounds.
+    /// Slopes of the Lagrangian, without bounds.
     fn lagrangian(&self, multipliers: &[f64]) -> Vec<f64> {
         let mut slopes = self.gradient.clone();
         for ((_, by), multiplier) in self.rows.iter().zip(multipliers) {
@@ -52,8 +56,8 @@ impl Place {
 }
 
 impl Smooth<'_> {
-    /// The end of a search by quadratic problems from a start, or the first place with its residual that `enough` is content with; None where values
-    /// or slopes are not defined there.
+    /// Searches by quadratic problems from a start. Returns the end, or the first place at which `enough` returns true
+    /// for it and its residual. Returns None if values or slopes are not defined at the start.
     pub(super) fn sequential(&self, start: &[f64], near: Near, enough: &dyn Fn(&[f64], f64) -> bool) -> Option<Ended> {
         let within: Vec<f64> = start.iter().zip(self.bounds).map(|(x, &[low, high])| x.clamp(low, high)).collect();
         let mut here = self.place(within)?;
@@ -83,7 +87,7 @@ impl Smooth<'_> {
                     inverse.update(&here, &there, &step, part);
                     here = there;
                 }
-                // The matrix may be what leads astray.
+                // The matrix may be the reason for the failure.
                 None if !inverse.is_new => inverse = Inverse::new(start.len()),
                 None => break,
             }
@@ -100,7 +104,7 @@ impl Smooth<'_> {
         defined.then_some(Place { x, value, gradient, rows })
     }
 
-    /// The step from a place, with a weight at which rows that can be kept are.
+    /// Step from a place, with a weight at which rows are kept if they can be.
     fn step(&self, here: &Place, inverse: &Inverse, before: f64) -> Option<(Step, f64)> {
         let solved = |weight: f64| self.quadratic(here, &here.rows, inverse, weight).solved();
         let mut weight = before;
@@ -114,7 +118,7 @@ impl Smooth<'_> {
             (step, weight) = (next, 10.0 * weight);
         }
         let sum: f64 = step.multipliers[..here.rows.len()].iter().sum();
-        // Above the multipliers, and not for ever at what a place far away needed.
+        // The weight stays above the multipliers, and falls again after a distant place that needed more.
         Some((step, (2.0 * sum).max(0.5 * (weight + 2.0 * sum)).clamp(WEIGHTS[0], WEIGHTS[1])))
     }
 
@@ -123,7 +127,7 @@ impl Smooth<'_> {
         Problem { here, rows, inverse, weight, bounds: here.x.iter().zip(self.bounds).map(one).collect() }
     }
 
-    /// The place where a step leads, the step with a correction that it may need, and the part of it that is gone.
+    /// Place at the end of a step, the step with a correction that it may need, and the part of it that was taken.
     fn gone(&self, here: &Place, step: &Step, inverse: &Inverse, weight: f64) -> Option<(Place, Step, f64)> {
         let foretold = -dot(&here.gradient, &step.d) + weight * (here.excess() - step.slack);
         let merit = here.merit(weight);
@@ -156,7 +160,7 @@ impl Smooth<'_> {
     }
 }
 
-/// A quadratic problem with what it owns.
+/// Quadratic problem with the data that it owns.
 struct Problem<'q> {
     here: &'q Place,
     rows: &'q [Slope],
@@ -172,10 +176,10 @@ impl Problem<'_> {
     }
 }
 
-/// The inverse of the matrix of the Lagrangian.
+/// Inverse of the matrix of the Lagrangian.
 struct Inverse {
     rows: Vec<Vec<f64>>,
-    /// Nothing is known of it.
+    /// True if it has no curvature information yet.
     is_new: bool,
 }
 
@@ -184,14 +188,15 @@ impl Inverse {
         Self { rows: (0..n).map(|a| (0..n).map(|b| f64::from(u8::from(a == b))).collect()).collect(), is_new: true }
     }
 
-    /// Takes in what a part of a step has shown.
+    /// Updates the matrix with the slopes at the end of a part of a step.
     fn update(&mut self, here: &Place, there: &Place, step: &Step, part: f64) {
         let n = here.x.len();
         let rows = here.rows.len();
         let s: Vec<f64> = step.d.iter().map(|d| part * d).collect();
         let old = here.lagrangian(&step.multipliers);
         let y: Vec<f64> = there.lagrangian(&step.multipliers).iter().zip(&old).map(|(new, old)| new - old).collect();
-        // The matrix times the step, from the conditions that the step keeps: B d = -(slopes of the Lagrangian with bounds).
+        // Product of the matrix and the step, from the conditions that the step fulfils: B d = -(slopes of the
+        // Lagrangian with bounds).
         let bounds = step.multipliers[rows..].chunks(2).map(|sides| sides[1] - sides[0]);
         let bs: Vec<f64> = old.iter().zip(bounds).map(|(old, bound)| -part * (old + bound)).collect();
         let (sbs, sy) = (dot(&s, &bs), dot(&s, &y));
@@ -205,7 +210,7 @@ impl Inverse {
             return;
         }
         if self.is_new {
-            // The size of the first curvature that is seen.
+            // Scale the matrix to the first curvature.
             let size = sr / dot(&r, &r);
             self.rows.iter_mut().enumerate().for_each(|(a, row)| row[a] = size);
             self.is_new = false;
@@ -245,7 +250,7 @@ mod tests {
             ])
         };
         let smooth = Smooth { objective: &objective, rows: &rows, bounds: &[[-10.0, 10.0]; 4] };
-        // From a point that keeps every row, and from one that breaks all.
+        // Starts at a point that keeps every row, and at one that breaks all.
         for start in [[0.0; 4], [9.0; 4]] {
             let found = smooth.sequential(&start, Near { by: 1e-11, updates: 60 }, &|_, _| false).unwrap();
             assert!(found.residual <= 1e-11, "{}", found.residual);

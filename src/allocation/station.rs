@@ -1,4 +1,4 @@
-//! The model's answer at some tolerances, held against what is required.
+//! Linearization point: the analysis at some tolerances, with the derivatives for the next step.
 
 use std::rc::Rc;
 
@@ -11,33 +11,33 @@ use crate::analysis::{Analysis, Findings};
 use crate::problem::Problem;
 use sensitol_numeric::requirement::Requirement;
 
-/// A constraint that is so near its bound is at it.
+/// Relative distance from its bound within which a constraint is active.
 const BINDING: f64 = 1e-6;
 
 /// Tolerances with their derivatives.
 pub(super) struct Station {
     pub(super) problem: Problem,
-    /// As far as a search reads it.
+    /// Analysis with the results that a search reads.
     pub(super) analysis: Analysis,
     pub(super) findings: Findings,
     pub(super) responses: Responses,
 }
 
 impl Station {
-    /// Whether everything of which something is required has moments.
+    /// True if every characteristic with a requirement has moments.
     pub(super) fn answers(&self, constraints: &[Constraint]) -> bool {
         constraints.iter().all(|one| self.analysis.characteristics[one.characteristic].moments.is_some())
     }
 }
 
-/// A station that kept everything by its own analysis, with its cost.
+/// Linearization point that kept everything by its own analysis, with its cost.
 pub(super) struct Seen {
     pub(super) station: Rc<Station>,
     pub(super) chosen: Chosen,
     pub(super) cost: f64,
 }
 
-/// Every requirement, with nothing known of it after.
+/// Every requirement with its value before, and none after.
 pub(super) fn required(requirements: &[(usize, Requirement)], before: &Analysis) -> Vec<Kept> {
     let of = |&(characteristic, requirement): &(usize, Requirement)| {
         let before = before.characteristics[characteristic].judge(requirement);
@@ -46,12 +46,12 @@ pub(super) fn required(requirements: &[(usize, Requirement)], before: &Analysis)
     requirements.iter().map(of).collect()
 }
 
-/// A part of a limit's distance by which it is moved, to see what that costs.
+/// Relative move of a limit for its price.
 const MOVED: f64 = 1e-4;
-/// Slopes that are this part of others, or less, are theirs.
+/// Part of a slope outside the span of others up to which it depends on them.
 const DEPENDENT: f64 = 1e-6;
 
-/// The price of every limit, at tolerances that were found.
+/// Price of every limit, at tolerances that were found.
 pub(super) fn prices(setting: &Setting<'_>, solved: &Solved) -> Vec<ShadowPrice> {
     let (responses, priced) = (setting.responses, setting.priced);
     let mut prices: Vec<ShadowPrice> = Vec::new();
@@ -65,7 +65,7 @@ pub(super) fn prices(setting: &Setting<'_>, solved: &Solved) -> Vec<ShadowPrice>
         };
         let both = [lower, upper].into_iter().flatten().reduce(|a, b| a + b);
         let same = |other: &&Constraint| other.characteristic == c && *other != constraint;
-        // The other side holds the cost up too, whichever of them the multipliers name.
+        // The other side is active too, even if only one of them has a multiplier.
         let other = setting.constraints.iter().find(same);
         let [lower, upper] = if other.is_some_and(binds) { [None, None] } else { [lower, upper] };
         match prices.iter_mut().find(|price| price.characteristic == c) {
@@ -86,11 +86,12 @@ pub(super) fn prices(setting: &Setting<'_>, solved: &Solved) -> Vec<ShadowPrice>
     }
 }
 
-/// The characteristics that hold the cost up, where their slopes depend on each other: then multipliers are not unique.
+/// Active characteristics, if their slopes depend on each other. Multipliers are then not unique. Returns None
+/// otherwise.
 fn alike(setting: &Setting<'_>, solved: &Solved) -> Option<Vec<usize>> {
     let binds = |one: &&Constraint| one.value(setting.responses, setting.priced, &solved.at) >= 1.0 - BINDING;
     let binding: Vec<&Constraint> = setting.constraints.iter().filter(|one| !one.is_joint()).filter(binds).collect();
-    // One characteristic alone has one price; slopes take longer than values.
+    // A single characteristic has one price. The check saves the slopes, which take longer than values.
     if binding.windows(2).all(|pair| pair[0].characteristic == pair[1].characteristic) {
         return None;
     }
@@ -124,8 +125,8 @@ fn alike(setting: &Setting<'_>, solved: &Solved) -> Option<Vec<usize>> {
     dependent.then_some(characteristics)
 }
 
-/// The saving where the limits of one characteristic alone are widened, and the cost where they are narrowed: by solving again
-/// with limits moved, extrapolated from two steps.
+/// Saving if the limits of one characteristic are widened, and cost if they are narrowed. Each comes from solving again
+/// with moved limits, extrapolated from two steps.
 fn on_either_side(setting: &Setting<'_>, solved: &Solved, c: usize) -> ShadowPrice {
     let room = setting.constraints.iter().filter(|one| one.characteristic == c).find_map(Constraint::extent);
     let cost = |by: f64| {
@@ -140,7 +141,7 @@ fn on_either_side(setting: &Setting<'_>, solved: &Solved, c: usize) -> ShadowPri
         let here = cost(0.0)?;
         let per_unit = |step: f64| Some(sign * (here - cost(sign * step)?) / step);
         let price = 2.0 * per_unit(0.5 * step)? - per_unit(step)?;
-        // A difference by the rounding of the same cost is zero.
+        // A difference that is rounding of the same cost is zero.
         Some(if price.abs() * step < DEPENDENT * MOVED * here.abs() { 0.0 } else { price })
     };
     let (widen, narrow) = (slope(1.0), slope(-1.0));

@@ -1,20 +1,21 @@
-//! Steps from round to round: whole ones, and part of the way where the model answers otherwise than its derivatives foretold.
+//! Steps from round to round: whole ones, and shorter ones if the model differs from the prediction of its derivatives.
 //!
 //! ```text
 //! T_(k+1) = T_k exp(w_k r_k),   r_k = ln(T chosen / T_k),   w_k = -w_(k-1) r_(k-1).(r_k - r_(k-1))/|r_k - r_(k-1)|^2
 //! ```
 //!
-//! where `r` does not at least halve by itself, and `w = 1` where it does. Source: B. M. Irons, R. C. Tuck, "A version of the Aitken
-//! accelerator for computer iteration", Int. J. Numerical Methods in Engineering 1 (1969); here `w` lies between 0.1 and 1.
+//! if `r` does not at least halve by itself, and `w = 1` if it does. Source: B. M. Irons, R. C. Tuck, "A version of the
+//! Aitken accelerator for computer iteration", Int. J. Numerical Methods in Engineering 1 (1969). Here `w` lies between
+//! 0.1 and 1.
 
-/// The last step and how much of it was taken.
+/// Last step and the part of it that was taken.
 #[derive(Debug, Default)]
 pub(super) struct Steps {
     last: Option<(Vec<f64>, f64)>,
 }
 
 impl Steps {
-    /// The half bands to go to from `from` where `to` was chosen; None where that is `to` itself.
+    /// Half bands of a shortened step from `from` to `to`. Returns None for a whole step.
     pub(super) fn shortened(&mut self, from: &[f64], to: &[f64]) -> Option<Vec<f64>> {
         let way: Vec<f64> = from.iter().zip(to).map(|(from, to)| libm::log(to / from)).collect();
         let longest = |way: &[f64]| way.iter().fold(0.0f64, |longest, way| longest.max(way.abs()));

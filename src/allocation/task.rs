@@ -1,4 +1,4 @@
-//! The task of an allocation, and why it cannot be done.
+//! Task and options of an allocation, and its errors.
 
 use super::basis::{CostBasis, relative, unscalable};
 use super::cost::Priced;
@@ -15,49 +15,50 @@ use sensitol_numeric::names::nearest;
 use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::sampling::{Draws, Sampler};
 
-/// Points that confirm what was found for a cheap model, where nothing is said.
+/// Default number of points that confirm the result for a cheap model.
 const CONFIRM: u64 = 100_000;
 
-/// Costs and requirements beside a problem.
+/// Costs and requirements of an allocation.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct AllocationTask {
-    /// The tolerances that may change, by groups; what no group has keeps its tolerance.
+    /// Groups of tolerances that may change. Dimensions outside all groups keep their tolerances.
     pub priced: Vec<Priced>,
-    /// For every characteristic of the problem, what it must keep.
+    /// Requirement of every characteristic of the problem. None if there is none.
     pub requirements: Vec<Option<Requirement>>,
-    /// Where the costs come from.
+    /// Origin of the costs.
     pub basis: CostBasis,
-    /// The objective.
+    /// Objective of the allocation.
     pub goal: Goal,
-    /// The costs of deviations and rejects.
+    /// Costs of deviations and rejects.
     pub losses: Vec<QualityLoss>,
-    /// The costs of setting up the machines that processes need.
+    /// Set-up costs of the machines that processes need.
     pub setups: Vec<SetUp>,
 }
 
-/// The objective.
+/// Objective of an allocation.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Goal {
-    /// The least cost that keeps every requirement.
+    /// Least cost that keeps every requirement.
     #[default]
     LeastCost,
-    /// The greatest of the least Cpk of all characteristics with limits of which neither worst case nor sigma is required, for this cost.
+    /// Greatest least Cpk for a given cost, over all characteristics with limits and without a required worst case or
+    /// sigma.
     MostCpk {
-        /// The most that may be spent.
+        /// Most that may be spent.
         cost_limit: f64,
     },
-    /// The fewest rejects of the one characteristic with limits, for this cost.
+    /// Fewest rejects of the one characteristic with limits, for a given cost.
     FewestRejects {
-        /// The most that may be spent.
+        /// Most that may be spent.
         cost_limit: f64,
     },
 }
 
 impl AllocationTask {
-    /// These costs, and for every characteristic of the problem what it must keep.
+    /// Creates a task from costs and the requirement of every characteristic of the problem.
     pub fn new(priced: Vec<Priced>, requirements: Vec<Option<Requirement>>) -> Self {
         Self {
             priced,
@@ -69,7 +70,7 @@ impl AllocationTask {
         }
     }
 
-    /// With quality losses and scrap as parts of the cost.
+    /// Adds quality losses and scrap to the cost.
     ///
     /// ```
     /// use sensitol::allocation::{AllocationOptions, AllocationTask, Curve, Offer, Priced, QualityLoss, allocate};
@@ -89,15 +90,15 @@ impl AllocationTask {
         self
     }
 
-    /// With what machines cost to set up, each once for all dimensions whose processes need it.
+    /// Adds set-up costs of machines. Each is paid once for all dimensions whose processes need the machine.
     #[must_use]
     pub fn with_setups(mut self, setups: Vec<SetUp>) -> Self {
         self.setups = setups;
         self
     }
 
-    /// With costs as a front end has them: of this basis, or where nothing is said those that are given, and relative ones where there are none
-    /// and nominal values alone are not what is to move.
+    /// Sets the costs as a front end does: from the basis `asked` for, or from a default. The default is the given
+    /// costs. If there are none, and not only nominal values may move, the default is relative costs.
     #[must_use]
     pub fn relative_or_default(self, problem: &Problem, asked: Option<CostBasis>, recentring: bool) -> Self {
         let without = self.priced.is_empty() && !recentring;
@@ -105,7 +106,8 @@ impl AllocationTask {
         self.relative(problem, asked.unwrap_or(default))
     }
 
-    /// With something else sought than the least cost: yields, Cpk and rss that are required of characteristics give way to it.
+    /// Sets the objective. Unless it is the least cost, it replaces the yields, Cpk and rss required of
+    /// characteristics.
     ///
     /// ```
     /// use sensitol::allocation::{AllocationOptions, AllocationTask, Curve, Goal, Offer, Priced, allocate};
@@ -131,7 +133,7 @@ impl AllocationTask {
         self
     }
 
-    /// The same requirements with relative costs in place of those given: every tolerance that can change has one.
+    /// Replaces the given costs by relative ones: every tolerance that can change gets one.
     ///
     /// ```
     /// use sensitol::allocation::{AllocationOptions, AllocationTask, CostBasis, allocate};
@@ -155,21 +157,22 @@ impl AllocationTask {
     }
 }
 
-/// How tolerances are allocated.
+/// Options of an allocation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AllocationOptions {
-    /// How derivatives are taken; its budget is that of all evaluations together. [`Method::Auto`](crate::Method::Auto) stands for `full` where
-    /// dimensions are few and for `six-n` where they are many: every round must ask the same.
+    /// Options of the analyses. Their budget holds for all evaluations together. [`Method::Auto`](crate::Method::Auto)
+    /// means `full` for few dimensions and `six-n` for many, because every round must evaluate the same points.
     pub analysis: Options,
-    /// Dimensions whose nominal values may move, by name.
+    /// Names of the dimensions whose nominal values may move.
     pub recentre: Vec<String>,
-    /// Least and greatest nominal value of dimensions that may move, by name; without, 30 sigmas on either side in one step.
+    /// Least and greatest nominal value of dimensions that may move, by name. The default is 30 sigmas on either side
+    /// in one step.
     pub nominal_bounds: Vec<(String, [f64; 2])>,
-    /// Points of the front of cost against yield.
+    /// Number of points on the front of cost against yield. None if there is no front.
     pub front: Option<usize>,
-    /// Points of the model at the tolerances found, by Monte Carlo.
+    /// Number of model points for a confirmation by Monte Carlo. None if there is none.
     pub confirm: Option<u64>,
-    /// The seed of what is drawn.
+    /// Seed of random points.
     pub seed: u64,
 }
 
@@ -187,42 +190,42 @@ impl Default for AllocationOptions {
 }
 
 impl AllocationOptions {
-    /// How derivatives of this problem are taken.
+    /// Options of the analysis that gives the derivatives of this problem.
     pub fn derivatives(&self, problem: &Problem) -> Options {
         let model_figures = self.analysis.method == Method::Auto;
         Options { extremes: false, model_figures, ..chosen(problem, &self.analysis) }
     }
 
-    /// With derivatives taken so.
+    /// Sets the options of the analyses.
     #[must_use]
     pub fn with_analysis(mut self, analysis: Options) -> Self {
         self.analysis = analysis;
         self
     }
 
-    /// With nominal values of these dimensions that may move.
+    /// Sets the dimensions whose nominal values may move.
     #[must_use]
     pub fn with_recentre(mut self, names: Vec<String>) -> Self {
         self.recentre = names;
         self
     }
 
-    /// With bounds of nominal values that may move.
+    /// Sets the bounds of nominal values that may move.
     #[must_use]
     pub fn with_nominal_bounds(mut self, bounds: Vec<(String, [f64; 2])>) -> Self {
         self.nominal_bounds = bounds;
         self
     }
 
-    /// With a front of cost against yield of so many points.
+    /// Asks for a front of cost against yield with this number of points.
     #[must_use]
     pub fn with_front(mut self, points: usize) -> Self {
         self.front = Some(points);
         self
     }
 
-    /// Confirmed as a front end has it: at so many points, at none where that is 0, and at 100,000 of a cheap model that can be sampled and has
-    /// no budget where nothing is said.
+    /// Sets the number of confirming points as a front end does. A given number is used, with none for 0. The default
+    /// is 100,000 points for a cheap model that can be sampled, without a budget.
     #[must_use]
     pub fn with_confirm_or_default(mut self, problem: &Problem, asked: Option<u64>) -> Self {
         let drawn = || Draws::new(problem.dimensions(), problem.correlation(), Sampler::Random, self.seed).is_ok();
@@ -231,14 +234,14 @@ impl AllocationOptions {
         self
     }
 
-    /// Confirmed by Monte Carlo at so many points of the model.
+    /// Sets the number of model points for a confirmation by Monte Carlo.
     #[must_use]
     pub fn with_confirm(mut self, points: u64) -> Self {
         self.confirm = Some(points);
         self
     }
 
-    /// With this seed.
+    /// Sets the seed.
     #[must_use]
     pub fn with_seed(mut self, seed: u64) -> Self {
         self.seed = seed;
@@ -246,168 +249,168 @@ impl AllocationOptions {
     }
 }
 
-/// Why tolerances cannot be allocated.
+/// Reason why tolerances cannot be allocated.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AllocateError {
-    /// Nothing may change.
+    /// No tolerance has a cost, and no nominal value may move.
     #[error("there is nothing to choose: no tolerance has a cost, and no nominal value may move")]
     NothingToChoose,
-    /// Nothing must be kept.
+    /// No requirement is given.
     #[error(
         "nothing is required: give a characteristic lower or upper and target_yield, or a require such as \"worst-case\""
     )]
     NothingRequired,
-    /// A dimension with a cost has no tolerance to begin with.
+    /// Dimension with a cost but without a tolerance to begin with.
     #[error("dimension `{dimension}` has a cost and no tolerance: write the present one, from which to start")]
     NoTolerance {
-        /// The dimension.
+        /// Name of the dimension.
         dimension: String,
     },
-    /// A dimension with a cost does not follow its tolerance.
+    /// Dimension with a cost that does not follow its tolerance.
     #[error(
         "dimension `{dimension}` has a cost, but {why}: leave its cost out, or give it a distribution over its tolerance"
     )]
     DoesNotScale {
-        /// The dimension.
+        /// Name of the dimension.
         dimension: String,
-        /// Why it does not.
+        /// Reason why it does not.
         why: &'static str,
     },
-    /// A dimension with two costs.
+    /// Dimension with two costs.
     #[error("dimension `{dimension}` has two costs")]
     TwoCosts {
-        /// The dimension.
+        /// Name of the dimension.
         dimension: String,
     },
-    /// A dimension to be moved that is none.
+    /// Name to recentre that is no dimension.
     #[error("there is no dimension `{name}` to recentre{}", nearest.as_ref().map(|name| format!("; did you mean `{name}`?")).unwrap_or_default())]
     UnknownDimension {
-        /// As given.
+        /// Name as given.
         name: String,
-        /// The most similar one.
+        /// Most similar name of a dimension.
         nearest: Option<String>,
     },
-    /// A dimension that cannot be moved.
+    /// Dimension whose nominal value cannot move.
     #[error("`{name}` cannot be recentred: {why}")]
     CannotMove {
-        /// The dimension.
+        /// Name of the dimension.
         name: String,
-        /// Why not.
+        /// Reason why it cannot.
         why: &'static str,
     },
-    /// Losses beside costs that are no money.
+    /// Losses with relative costs, which have no unit of money.
     #[error("a loss is in the unit of the costs, and relative costs have none: give the tolerances costs")]
     LossWithoutCosts,
-    /// A process on a machine of which nothing is known.
+    /// Process that needs a machine without a set-up cost.
     #[error(
         "a process of `{dimension}` needs the machine `{machine}`, which has no set-up cost: write 0 where it has none"
     )]
     UnknownMachine {
-        /// The dimension.
+        /// Name of the dimension.
         dimension: String,
-        /// The machine.
+        /// Name of the machine.
         machine: String,
     },
-    /// Too many machines for every set of them to be looked at.
+    /// Too many machines to examine every set of them.
     #[error("there are {count} machines with set-up costs, and {most} are the most")]
     TooManyMachines {
-        /// How many.
+        /// Number of machines.
         count: usize,
-        /// The most.
+        /// Most machines.
         most: usize,
     },
-    /// Scrap of what cannot be rejected.
+    /// Scrap cost of a characteristic without limits.
     #[error("scrap of `{characteristic}` has a cost, but it has no limit: give it lower or upper")]
     ScrapWithoutLimits {
-        /// The characteristic.
+        /// Name of the characteristic.
         characteristic: String,
     },
-    /// A loss whose cost of a deviation is not a number.
+    /// Loss whose cost of a deviation leaves the range of doubles.
     #[error(
         "the loss of `{characteristic}` has k = {k}, and k times the square of its values lies outside the range of double-precision numbers: choose \
          a unit in which the values are of ordinary size"
     )]
     LossOutOfRange {
-        /// The characteristic.
+        /// Name of the characteristic.
         characteristic: String,
         /// Cost per square of the unit, as given.
         k: f64,
     },
-    /// Bounds of a nominal value that hold nothing.
+    /// Bounds of a nominal value that are not an interval, or belong to a dimension that may not move.
     #[error(
         "the bounds of the nominal value of `{name}` must be two numbers, the lower first, of a dimension that may move, not {low} and {high}"
     )]
     NominalBounds {
-        /// The dimension.
+        /// Name of the dimension.
         name: String,
-        /// The lower.
+        /// Lower bound.
         low: f64,
-        /// The upper.
+        /// Upper bound.
         high: f64,
     },
-    /// No limits to be in the middle of.
+    /// Recentring without a characteristic with limits.
     #[error("recentring needs a characteristic with limits")]
     NoLimits,
-    /// Nothing to be the best of.
+    /// Goal without a characteristic that it applies to, or with too many.
     #[error(
         "to seek {what} for a cost takes costs and {of} with limits of which neither worst case nor sigma is required; there are {count}"
     )]
     NoGoal {
-        /// The objective.
+        /// Objective, in words.
         what: &'static str,
-        /// Of how many.
+        /// Number of characteristics that the objective takes, in words.
         of: &'static str,
-        /// How many there are.
+        /// Number of characteristics that there are.
         count: usize,
     },
-    /// A cost that the loosest tolerances exceed.
+    /// Cost limit below the cost of the loosest tolerances.
     #[error("a cost limit of {limit} is too low: the loosest tolerances within their bounds cost {least}")]
     CostLimit {
-        /// As given.
+        /// Limit as given.
         limit: f64,
-        /// The least cost.
+        /// Least cost.
         least: f64,
     },
-    /// A front of what is not required.
+    /// Front without costs or without a requirement.
     #[error(
         "a front of cost against what is required needs costs, and a characteristic of which something is required"
     )]
     NoFront,
-    /// As many points make no front.
+    /// Number of points that is too small or too large for a front.
     #[error("a front takes 2 to 200 points, not {points}")]
     FrontPoints {
-        /// As given.
+        /// Number as given.
         points: usize,
     },
-    /// A characteristic of which something is required has no moments.
+    /// Characteristic with a requirement but without moments.
     #[error("`{characteristic}` has no moments at the present tolerances: analyze says why")]
     NoMoments {
-        /// The characteristic.
+        /// Name of the characteristic.
         characteristic: String,
     },
-    /// A method that has nothing to follow tolerances on.
+    /// Method without a surface for the search.
     #[error("{method} has no surface on which the search could follow the tolerances")]
     NoSurrogate {
-        /// The method.
+        /// Name of the method.
         method: &'static str,
     },
-    /// The method does not fit the problem.
+    /// Method that does not fit the problem.
     #[error(transparent)]
     Method(#[from] MethodError),
-    /// The problem cannot be simulated.
+    /// Problem that cannot be simulated.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
-    /// Other tolerances do not go with the correlation.
+    /// Tolerances that do not fit the correlation.
     #[error(transparent)]
     Correlation(#[from] sensitol_numeric::correlation::CorrelationError),
-    /// Other tolerances do not go with a distribution.
+    /// Tolerances that do not fit a distribution.
     #[error(transparent)]
     Dimension(#[from] sensitol_numeric::dimension::DimensionError),
 }
 
 impl AllocateError {
-    /// The actions to take.
+    /// Actions that may help.
     pub fn advice(&self) -> Vec<Advice> {
         match self {
             Self::NothingToChoose => vec![Advice::WriteCosts, Advice::NameMovableDimensions],
@@ -422,7 +425,7 @@ impl AllocateError {
 }
 
 impl AllocationTask {
-    /// Whether the task and the options fit the problem.
+    /// Checks that the task and the options fit the problem.
     pub(super) fn check(&self, problem: &Problem, options: &AllocationOptions) -> Result<(), AllocateError> {
         let dimensions = problem.dimensions();
         if !options.analysis.method.has_surrogate() {
@@ -467,10 +470,11 @@ impl AllocationTask {
         Ok(())
     }
 
-    /// The task for a problem whose characteristics are divided by powers of two.
+    /// Task for a problem whose characteristics are divided by powers of two.
     ///
     /// # Errors
-    /// When the cost of a deviation leaves the range of doubles.
+    ///
+    /// If the cost of a deviation leaves the range of doubles.
     pub(super) fn divided(&self, problem: &Problem) -> Result<Self, AllocateError> {
         let mut task = self.clone();
         for (c, required) in task.requirements.iter_mut().enumerate() {
@@ -488,7 +492,7 @@ impl AllocationTask {
         Ok(task)
     }
 
-    /// The share of assemblies that must keep the limits of all characteristics at once; what is sought for a cost takes its place.
+    /// Required joint yield. An objective for a given cost replaces it.
     pub(super) fn joint_target(&self, problem: &Problem, options: &AllocationOptions) -> Option<f64> {
         let several = problem.characteristics().iter().filter(|one| one.limits().exist()).count() > 1;
         options.analysis.target_joint_yield.filter(|_| several && self.goal == Goal::LeastCost)

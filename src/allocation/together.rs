@@ -1,4 +1,4 @@
-//! Nominal values and tolerances at once: one problem, at fixed derivatives.
+//! Choice of nominal values and tolerances at once, at fixed derivatives.
 //!
 //! ```text
 //! min over ln T and m of  cost(T)
@@ -9,34 +9,37 @@
 //!              bounds of T and of the nominal values m
 //! ```
 //!
-//! A Cpk is a ratio with a pole where the mean passes a limit; as written it is linear in the mean and convex. Derivatives are central
-//! differences; the augmented Lagrangian keeps rows to 1e-9, and the tolerances are then chosen about the nominal values by the exact search.
+//! A Cpk is a ratio with a pole where the mean passes a limit. As written here it is linear in the mean and convex.
+//! Derivatives are central differences. The augmented Lagrangian keeps rows to 1e-9. The exact search then chooses the
+//! tolerances about the nominal values found.
 
 use super::augmented::{Ended, Near, Slope, Smooth, cost};
 use super::constraint::Constraint;
 use super::cost::Priced;
 use super::solve::Setting;
 
-/// Steps of the differences, in `ln T` and in sigmas: their truncation is 1e-10, and so is their rounding.
+/// Step of the differences, in `ln T` and in sigmas. Truncation and rounding are both 1e-10.
 const STEP: f64 = 1e-5;
+/// End conditions: the tolerance of rows and bounds, and the most updates of the multipliers.
 const NEAR: Near = Near { by: 1e-9, updates: 40 };
-/// Unknowns times rows beyond which differences take too long: nominal values then move to where the fewest are rejected.
+/// Most unknowns times rows, because differences take long. Beyond it nominal values move to the fewest rejects
+/// instead.
 const MOST: usize = 2000;
-/// A violation with which an end is not an answer.
+/// Greatest violation at which an end is a result.
 const KEPT: f64 = 1e-6;
 
-/// Nominal values and tolerances that were found together.
+/// Nominal values and tolerances that were chosen together.
 pub(super) struct Together {
-    /// By how many sigmas every movable dimension moves.
+    /// Move of every movable dimension, in sigmas.
     pub(super) shifts: Vec<f64>,
     /// Half bands of the groups.
     pub(super) at: Vec<f64>,
-    /// The largest violation of the conditions of Karush, Kuhn and Tucker.
+    /// Largest violation of the conditions of Karush, Kuhn and Tucker.
     pub(super) residual: f64,
 }
 
-/// The cheapest tolerances with nominal values of dimensions `of` moved within `bounds`, in sigmas from where they are. None where none
-/// was found, or there are too many unknowns.
+/// Cheapest tolerances with nominal values of the dimensions `of` moved within `bounds`, in sigmas from their present
+/// place. Returns None if none were found, or there are too many unknowns.
 pub(super) fn together(setting: &Setting<'_>, of: &[usize], bounds: &[[f64; 2]], at: &[f64]) -> Option<Together> {
     let groups = setting.priced.len();
     let free = setting.priced.iter().all(|group| group.offers.len() == 1);
@@ -48,6 +51,7 @@ pub(super) fn together(setting: &Setting<'_>, of: &[usize], bounds: &[[f64; 2]],
     let ones = vec![1.0; dimensions];
     let widths: Vec<f64> =
         setting.constraints.iter().map(|one| one.width(responses, &ones)).collect::<Option<Vec<f64>>>()?;
+    // The unknowns are ln T of the groups, then the moves of the nominal values in sigmas.
     let places = |x: &[f64]| {
         let t: Vec<f64> = x[..groups].iter().map(|x| libm::exp(*x)).collect();
         let mut shifts = vec![0.0; dimensions];
@@ -107,6 +111,7 @@ pub(super) fn together(setting: &Setting<'_>, of: &[usize], bounds: &[[f64; 2]],
             .chain(bounds.iter().copied())
             .collect();
     let smooth = Smooth { objective: &objective, rows: &rows, bounds: &all };
+    // Several starts, because the surface may have several optima.
     let tight: Vec<f64> = setting.priced.iter().map(Priced::tightest).collect();
     let middle: Vec<f64> = at.iter().zip(&tight).map(|(at, tight)| (at * tight).sqrt()).collect();
     let mut best: Option<(f64, Ended)> = None;

@@ -1,7 +1,7 @@
-//! A trial: tolerances judged by the analysis that `analyze --check` makes of the same study.
+//! Trial: tolerances judged by the analysis that `analyze --check` makes of the same study.
 //!
-//! Derivatives say where to search. Whether a requirement is kept is said by the trial alone, so that an allocation and an analysis of what
-//! it wrote end with the same verdict.
+//! Derivatives only direct the search. The trial alone decides if a requirement is kept. An allocation and an analysis
+//! of its result therefore end with the same verdict.
 
 use super::cost::{Offer, Priced};
 use super::driver::{Driver, cost, with_choice};
@@ -15,54 +15,56 @@ use crate::problem::Problem;
 use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::verdict::{Judged, Verdict, worst};
 
-/// The excess over 1 of a use that is not kept for certain, where the use itself says otherwise.
+/// Excess over 1 that is given to a use of at most 1 if the verdict is not met.
 const OPEN: f64 = 1e-9;
 
-/// Tolerances, and how they keep what is required.
+/// Tolerances, and their verdicts on all requirements.
 pub(super) struct Trial {
     pub(super) problem: Problem,
-    /// Half bands of the groups, and the offer of each.
+    /// Half bands of the groups.
     pub(super) at: Vec<f64>,
+    /// Offer of every group.
     pub(super) offers: Vec<usize>,
-    /// All costs, losses by the analysis included.
+    /// Total cost, including losses by the analysis.
     pub(super) cost: f64,
     pub(super) loss: f64,
     pub(super) analysis: Analysis,
-    /// The findings of the analysis; None where it is that of the station.
+    /// Findings of the analysis. None if the analysis is that of the linearization point.
     pub(super) findings: Option<Findings>,
-    /// Every requirement, the joint yield last.
+    /// Verdicts on all requirements, the joint yield last.
     pub(super) judged: Vec<Judged>,
 }
 
 impl Trial {
-    /// The worst verdict; met where nothing is required.
+    /// Worst verdict. It is met if nothing is required.
     pub(super) fn verdict(&self) -> Verdict {
         worst(self.judged.iter().map(|one| one.verdict)).unwrap_or(Verdict::Met)
     }
 
-    /// Whether everything is kept.
+    /// True if every requirement is kept.
     pub(super) fn is_kept(&self) -> bool {
         self.verdict() == Verdict::Met
     }
 
-    /// Whether some requirement is inconclusive because nothing is known of an error, so that no other tolerances would say more.
+    /// True if some requirement is inconclusive because an error is unknown, so that no other tolerances would help.
     pub(super) fn is_unknown(&self) -> bool {
         self.verdict() == Verdict::Inconclusive
             && self.judged.iter().all(|one| one.verdict == Verdict::Met || one.interval.is_none())
     }
 
-    /// The part of every requirement that is used, by the pessimistic end of its interval: at most 1 where it is kept.
+    /// Used part of every requirement, from the pessimistic end of its interval: at most 1 if it is kept.
     pub(super) fn uses(&self) -> Vec<f64> {
         self.judged.iter().map(use_of).collect()
     }
 
-    /// The largest of these.
+    /// Largest used part.
     pub(super) fn use_(&self) -> f64 {
         self.uses().into_iter().fold(0.0, f64::max)
     }
 }
 
-/// The part of a requirement that is used: of sums of normal dimensions a sum of squares of the tolerances, of a worst case a sum.
+/// Used part of a requirement. For sums of normal dimensions it is a sum of squares of the tolerances, for a worst case
+/// a sum.
 fn use_of(judged: &Judged) -> f64 {
     let Some([low, high]) = judged.interval else { return f64::INFINITY };
     let used = match judged.requirement {
@@ -80,7 +82,8 @@ fn use_of(judged: &Judged) -> f64 {
     }
 }
 
-/// The requirements of a task: what it says of every characteristic, and what `--check` asks of the same ones besides.
+/// Requirements of a task: that of every characteristic, and the others that `--check` judges for the same
+/// characteristics.
 pub(super) fn required_of(problem: &Problem, requirements: &[Option<Requirement>]) -> Vec<(usize, Requirement)> {
     let mut all = Vec::new();
     for (c, primary) in requirements.iter().enumerate().filter_map(|(c, one)| Some((c, (*one)?))) {
@@ -92,29 +95,29 @@ pub(super) fn required_of(problem: &Problem, requirements: &[Option<Requirement>
 }
 
 impl Driver<'_> {
-    /// Whether a trial costs nothing but time.
+    /// True if a trial costs only time: the model is cheap and there is no budget.
     pub(super) fn is_cheap(&self, problem: &Problem) -> bool {
         !problem.function().signature().costly && self.options.analysis.budget.is_none()
     }
 
-    /// Whether stations are analysed as `analyze --check` does, so that a trial of one is known.
+    /// True if linearization points are analysed as `analyze --check` does, so that each is a trial too.
     pub(super) fn stations_are_trials(&self) -> bool {
         self.options.analysis.method != Method::Auto && !self.options.analysis.extremes
     }
 
-    /// The requirements as an analysis judges them, the joint yield last.
+    /// Verdicts of an analysis on the requirements, the joint yield last.
     pub(super) fn judged_by(&self, analysis: &Analysis) -> Vec<Judged> {
         let of = |&(c, requirement): &(usize, Requirement)| analysis.characteristics[c].judge(requirement);
         let joint = analysis.joint_requirement.filter(|_| self.task.goal == Goal::LeastCost);
         self.required.iter().map(of).chain(joint).collect()
     }
 
-    /// Whether an analysis keeps all that is required.
+    /// True if an analysis keeps every requirement.
     pub(super) fn keeps_everything(&self, analysis: &Analysis) -> bool {
         self.judged_by(analysis).iter().all(|one| one.verdict == Verdict::Met)
     }
 
-    /// A trial of tolerances that were analysed.
+    /// Trial from tolerances and their analysis.
     pub(super) fn trial_of(
         &self,
         problem: Problem,
@@ -129,7 +132,7 @@ impl Driver<'_> {
         Trial { problem, at, offers, cost, loss, analysis, findings, judged }
     }
 
-    /// Costs of tolerances with their processes and what machines cost to set up.
+    /// Costs of tolerances with their processes and the set-up of machines.
     pub(super) fn held_cost(&self, at: &[f64], offers: &[usize]) -> f64 {
         let chosen: Vec<&Offer> =
             self.task.priced.iter().zip(offers).map(|(group, &offer)| &group.offers[offer]).collect();
@@ -137,7 +140,7 @@ impl Driver<'_> {
         cost(&self.task.priced, at, offers) + setups
     }
 
-    /// The analysis that `analyze --check` makes; None where it cannot be made, or the budget does not reach.
+    /// Runs the analysis of `analyze --check`. Returns None if it fails, is stopped, or exceeds the budget.
     pub(super) fn checked(&mut self, problem: &Problem) -> Option<(Analysis, Findings)> {
         let costly = !self.is_cheap(problem);
         let spent = usize::try_from(self.spent.run.evaluations).unwrap_or(usize::MAX);
@@ -152,17 +155,17 @@ impl Driver<'_> {
         (!analysis.run.unfinished()).then_some((analysis, findings))
     }
 
-    /// A trial of a problem with these half bands and offers.
+    /// Runs a trial of a problem with these half bands and offers.
     pub(super) fn trial(&mut self, base: &Problem, at: &[f64], offers: &[usize]) -> Option<Trial> {
         let problem = with_choice(base.clone(), &self.task.priced, at, offers).ok()?;
         let (analysis, findings) = self.checked(&problem)?;
         Some(self.trial_of(problem, (at.to_vec(), offers.to_vec()), analysis, Some(findings)))
     }
 
-    /// Whether the study keeps everything as it is written, with the digits that stand in its file.
+    /// True if the study keeps every requirement with the digits that stand in its file.
     pub(super) fn is_kept_as_written(&mut self, problem: &Problem) -> bool {
         let Some(written) = self.written.filter(|_| self.is_cheap(problem)) else { return true };
-        // A study that cannot be written has nothing that could be checked.
+        // A study that cannot be written has nothing to check.
         let Some(dimensions) = written(problem) else { return true };
         let Ok(problem) = problem.clone().with_dimensions(dimensions) else { return true };
         match self.checked(&problem) {
@@ -171,7 +174,7 @@ impl Driver<'_> {
         }
     }
 
-    /// The offers that hold the tolerances of a problem at the least cost, with that cost; None where none does.
+    /// Cheapest offer of every group that holds the tolerances of a problem. Returns None if some group has none.
     pub(super) fn holding(&self, problem: &Problem) -> Option<Vec<usize>> {
         let of = |group: &Priced| {
             let (_, held) = group.holding(group.tightest_member(problem))?;
@@ -182,7 +185,7 @@ impl Driver<'_> {
 }
 
 impl QualityLoss {
-    /// Its value by the figures of an analysis; None where one is unknown.
+    /// Loss from the figures of an analysis. Returns None if one of them is unknown.
     pub(super) fn by_analysis(&self, analysis: &Analysis) -> Option<f64> {
         let one = &analysis.characteristics[self.characteristic];
         let moments = one.moments?;
@@ -195,9 +198,9 @@ impl QualityLoss {
     }
 }
 
-/// Whether every group may have its half band by the offers that there are.
+/// True if the offers allow every group its half band.
 pub(super) fn is_offered(priced: &[Priced], at: &[f64]) -> bool {
-    /// A part of a bound that rounding may make.
+    /// Greatest relative excess over a bound that counts as rounding.
     const ROUNDING: f64 = 1e-9;
     priced.iter().zip(at).all(|(group, &t)| match &group.offers[..] {
         [offer] => t >= offer.min * (1.0 - ROUNDING) && t <= offer.max * (1.0 + ROUNDING),

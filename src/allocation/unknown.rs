@@ -1,13 +1,13 @@
-//! The uncertainty of a characteristic at a station.
+//! Uncertainty of a characteristic at a linearization point.
 
 use crate::analysis::CharacteristicAnalysis;
 use sensitol_numeric::requirement::Requirement;
 
-/// How far the bad ends of the intervals lie from the figures by which trial tolerances are judged; 0 where nothing is known of an
-/// error.
+/// Distances of the pessimistic ends of the intervals from the figures that judge trial tolerances. They are 0 if an
+/// error is unknown.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Unknown {
-    /// From the share that the surface law keeps, or the Pearson fit.
+    /// Distance from the yield by the surface distribution, or by the Pearson fit.
     pub(super) yield_: f64,
     pub(super) cpk: f64,
     pub(super) sigma: f64,
@@ -18,7 +18,7 @@ impl Unknown {
         let law = found.surface_law.as_ref().filter(|_| by_law).and_then(|law| law.yield_());
         let judged = law.or_else(|| found.pearson?.yield_());
         let yield_ = judged.zip(found.yield_interval()).map(|(value, [low, _])| value - low);
-        // The target of a requirement does not change its interval.
+        // The interval does not depend on the target of the requirement.
         let cpk = found.judge(Requirement::Cpk(1.0));
         let sigma = found.judge(Requirement::Sigma(1.0));
         let of = |value: Option<f64>, end: Option<f64>| value.zip(end).map_or(0.0, |(value, end)| (value - end).abs());
@@ -29,12 +29,12 @@ impl Unknown {
         }
     }
 
-    /// Both together.
+    /// Sum of two uncertainties.
     pub(super) fn and(self, other: Self) -> Self {
         Self { yield_: self.yield_ + other.yield_, cpk: self.cpk + other.cpk, sigma: self.sigma + other.sigma }
     }
 
-    /// The greater of two, each by itself.
+    /// Greater of two uncertainties, for each figure.
     pub(super) fn most(self, other: Self) -> Self {
         Self { yield_: self.yield_.max(other.yield_), cpk: self.cpk.max(other.cpk), sigma: self.sigma.max(other.sigma) }
     }

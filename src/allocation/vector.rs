@@ -1,10 +1,10 @@
-//! A vector as argmin computes with it. Its own support for `Vec` brings a second generator of random numbers with it.
+//! Vector for argmin. Its own support for `Vec` would add a second generator of random numbers.
 
 use argmin_math::{
     ArgminAdd, ArgminDot, ArgminL1Norm, ArgminL2Norm, ArgminMinMax, ArgminMul, ArgminSignum, ArgminSub, ArgminZeroLike,
 };
 
-/// Numbers that add, scale and multiply place by place.
+/// Numbers that are added, scaled and multiplied by position.
 #[derive(Clone)]
 pub(super) struct Vector(pub(super) Vec<f64>);
 
@@ -54,7 +54,7 @@ impl ArgminMul<f64, Self> for Vector {
     }
 }
 
-/// A line search scales by this.
+/// A line search scales a vector by a number from the left.
 impl ArgminMul<Vector, Vector> for f64 {
     fn mul(&self, other: &Vector) -> Vector {
         other.each(|a| a * self)

@@ -1,16 +1,19 @@
-//! A search by trials alone, where derivatives do not follow the model: at kinks, jumps and laws that four moments do not tell.
+//! Search by trials alone, if derivatives do not follow the model: at kinks, jumps, and distributions that four moments
+//! do not represent.
 //!
 //! ```text
 //! u_k(ln T) <= 1          the part of requirement k that is used, by the analysis itself
 //! ```
 //!
-//! The search stays among tolerances that keep everything. A step goes to the solution of the separable problem that has the values and
-//! slopes of the uses, by differences of trials with the same random numbers, no farther than a reach; where that misses a requirement, as far
-//! towards it as everything is kept. Where no slope leads on, one tolerance after the other is opened. Lists are searched by exchanges of one
-//! process or two. Each trial is a whole analysis, so that what is found is what `analyze --check` says.
+//! The search stays among tolerances that keep everything. A step goes to the solution of the separable problem with
+//! the values and slopes of the uses. These come from differences of trials with the same random numbers, and the step
+//! stays within a reach. If the solution misses a requirement, the step ends between. If no slope helps, each tolerance
+//! is opened alone. Lists are searched by exchanges of one or two processes. Each trial is a whole analysis, so that
+//! the result has the verdict of `analyze --check`.
 //!
-//! Sources: for steps on verified values within a reach, A. R. Conn, N. I. M. Gould, P. L. Toint, Trust-Region Methods (2000); for the polls,
-//! R. Hooke, T. A. Jeeves, "Direct search solution of numerical and statistical problems", J. ACM 8 (1961).
+//! Sources: A. R. Conn, N. I. M. Gould, P. L. Toint, Trust-Region Methods (2000), for steps on verified values within a
+//! reach; R. Hooke, T. A. Jeeves, "Direct search solution of numerical and statistical problems", J. ACM 8 (1961), for
+//! opening one tolerance after the other.
 //!
 //! Cost: at most [`MOST`] analyses of a cheap model.
 
@@ -24,37 +27,39 @@ use super::trial::Trial;
 use crate::problem::Problem;
 use sensitol_numeric::requirement::Requirement;
 
-/// Trials of one search, and values of dimensions at all points of these: some seconds of a formula.
+/// Most trials of one search.
 const MOST: usize = 300;
+/// Most values of dimensions at all points of these trials: some seconds of a formula.
 const MOST_VALUES: u64 = 1 << 27;
-/// Rounds of steps, each with slopes of its own.
+/// Most rounds of steps, each with slopes of its own.
 const ROUNDS: usize = 16;
-/// Half a difference in `ln T`: wide enough that samples of the model show a slope, and narrow beside a reach.
+/// Half of the difference in `ln T`: wide enough for a slope from samples of the model, and narrow beside a reach.
 const STEP: f64 = 0.05;
-/// Free tolerances up to which slopes are taken: each takes two trials.
+/// Most free tolerances for slopes, each of which takes two trials.
 const SLOPES: usize = 16;
-/// The first reach of a step in `ln T`, and the last.
+/// First and last reach of a step in `ln T`.
 const REACH: [f64; 2] = [0.5, 0.005];
-/// A part of the cost that is worth another round.
+/// Least relative saving for another round.
 const GAIN: f64 = 2e-4;
-/// A step in `ln T` that is none.
+/// Step in `ln T` below which a search has converged.
 const STILL: f64 = 1e-3;
-/// Places that slopes are followed to, each of which corrects the values at the one before.
+/// Most places to which slopes are followed. Each corrects the values at the one before.
 const CORRECTIONS: usize = 4;
-/// Trials between a place that keeps everything and one that does not: after slopes, which end near it, and towards the end of a search.
+/// Trials between a place that keeps everything and one that does not, after a step by slopes, which ends near it.
 const BETWEEN: usize = 3;
+/// Trials between the best place and the result of the search by derivatives.
 const APPROACH: usize = 5;
-/// Exchanges that are tried before a list is left as it is.
+/// Most exchanges that are tried before a list is left unchanged.
 const EXCHANGES: usize = 24;
-/// Exchanges of one process up to which those of two are looked at.
+/// Most exchanges of one process for which those of two are tried.
 const PAIRED: usize = 60;
-/// The first step of the common factor, and its halvings: a ten-thousandth at last.
+/// First step of the common factor, and its halvings, down to a ten-thousandth.
 const FACTOR: (f64, usize) = (0.01, 7);
 
-/// A search among trials, with the cheapest that keeps everything.
+/// Search among trials, with the cheapest that keeps everything.
 pub(super) struct VerifiedSearch<'s, 'a> {
     driver: &'s mut Driver<'a>,
-    /// The nominal values, and what has no cost.
+    /// Problem with the nominal values and the dimensions without a cost.
     base: Problem,
     asked: usize,
     values: u64,
@@ -69,7 +74,8 @@ impl<'s, 'a> VerifiedSearch<'s, 'a> {
         Self { driver, base, asked: 0, values: 0, best: None }
     }
 
-    /// The cheapest trial found that keeps everything: from `starts`, which do or do not, and towards `aim`, where derivatives lead.
+    /// Cheapest trial found that keeps everything. The search begins at `starts`, which may or may not keep everything,
+    /// and goes towards `aim`, the result of the search by derivatives.
     pub(super) fn run(mut self, starts: &[Tolerances], aim: Option<Tolerances>) -> Option<Trial> {
         starts.iter().chain(&aim).for_each(|(at, offers)| _ = self.ask(at, offers));
         if self.best.is_none() {
@@ -90,7 +96,7 @@ impl<'s, 'a> VerifiedSearch<'s, 'a> {
         self.best
     }
 
-    /// The largest common factor of tolerances in fixed proportions with which everything is kept.
+    /// Largest common factor of tolerances in fixed proportions that keeps everything.
     pub(super) fn in_proportion(mut self, at: &[f64], offers: &[usize]) -> Option<Trial> {
         let scaled = |factor: f64| at.iter().map(|t| t * factor).collect::<Vec<f64>>();
         let mut factor = 1.0;
@@ -109,7 +115,8 @@ impl<'s, 'a> VerifiedSearch<'s, 'a> {
         &self.driver.task.priced
     }
 
-    /// Whether tolerances keep everything; None where there is no answer. The cheapest that do are remembered.
+    /// Tries tolerances, and returns true if they keep everything. The cheapest of these are stored. Returns None if
+    /// there is no answer.
     fn ask(&mut self, at: &[f64], offers: &[usize]) -> Option<bool> {
         let trial = self.trial(at, offers)?;
         let kept = trial.is_kept();
@@ -138,7 +145,7 @@ impl<'s, 'a> VerifiedSearch<'s, 'a> {
         }
     }
 
-    /// Looks for a place that keeps everything: the tightest tolerances, and places on the way to them.
+    /// Searches a place that keeps everything: the tightest tolerances, and places on the way to them.
     fn enter(&mut self, from: Option<&Tolerances>) {
         let tightest = |group: &Priced| {
             let all = group.offers.iter().enumerate();
@@ -156,7 +163,8 @@ impl<'s, 'a> VerifiedSearch<'s, 'a> {
         self.relax((tight, offers));
     }
 
-    /// Follows the largest use downward, one tolerance after the other: wide ones may move a mean the right way.
+    /// Lowers the largest use by moving one tolerance after the other, in both directions, because a wide tolerance may
+    /// move a mean in the right direction.
     fn relax(&mut self, (mut at, offers): Tolerances) {
         let Some(mut use_) = self.trial(&at, &offers).map(|trial| trial.use_()) else { return };
         for step in [1.0, 0.5, 0.25] {
@@ -182,7 +190,7 @@ impl<'s, 'a> VerifiedSearch<'s, 'a> {
         t.clamp(*min, *max)
     }
 
-    /// Goes towards tolerances to which derivatives lead, as far as everything is kept.
+    /// Goes towards the result of the search by derivatives, as far as everything is kept.
     fn approach(&mut self, aim: Option<&Tolerances>) {
         let Some((best, (at, offers))) = self.best.as_ref().zip(aim) else { return };
         if best.offers == *offers
@@ -193,14 +201,14 @@ impl<'s, 'a> VerifiedSearch<'s, 'a> {
         }
     }
 
-    /// Remembers a trial; what a model of the uses takes from it.
+    /// Stores a trial if it is the best. Returns its values for the model of the uses.
     fn remembered(&mut self, trial: Trial) -> Measured {
         let measured = Measured::of(&trial);
         self.remember(trial);
         measured
     }
 
-    /// Looks between the best and tolerances outside for where a requirement is just kept.
+    /// Searches a place where a requirement is just kept, between the best tolerances and others outside.
     fn interpolate(&mut self, mut outside: Measured, trials: usize) {
         for _ in 0..trials {
             let Some(inside) = self.best.as_ref().map(Measured::of) else { return };
@@ -218,7 +226,7 @@ impl<'s, 'a> VerifiedSearch<'s, 'a> {
         }
     }
 
-    /// Steps by slopes of the uses, and polls where there are none or they lead nowhere.
+    /// Takes steps by slopes of the uses. If there are none or they do not help, it opens each tolerance alone.
     fn descend(&mut self) {
         let mut reach = REACH[0];
         for _ in 0..ROUNDS {
@@ -244,7 +252,7 @@ impl<'s, 'a> VerifiedSearch<'s, 'a> {
         min < max
     }
 
-    /// The slopes of the uses at the best, by differences of trials.
+    /// Slopes of the uses at the best tolerances, by differences of trials.
     fn slopes(&mut self, free: &[usize]) -> Option<Slopes> {
         let best = self.best.as_ref()?;
         let (centre, offers) = (Measured::of(best), best.offers.clone());
@@ -258,7 +266,7 @@ impl<'s, 'a> VerifiedSearch<'s, 'a> {
                 at[g] = self.within(g, slopes.offers[g], at[g] * libm::exp(sign * STEP));
                 let trial = self.trial(&at, &slopes.offers)?;
                 let measured = self.remembered(trial);
-                // Without a value on one side the other one tells.
+                // Without a value on one side the other side alone gives the slope.
                 Some(if measured.is_known() { measured } else { slopes.centre.clone() })
             };
             let (up, down) = (side(1.0)?, side(-1.0)?);
@@ -273,7 +281,8 @@ impl<'s, 'a> VerifiedSearch<'s, 'a> {
         Some(slopes)
     }
 
-    /// Follows slopes within a reach: each next place corrects the values that they start from. Says whether that is cheaper.
+    /// Follows slopes within a reach. Each place corrects the values from which the next step starts. Returns true if
+    /// the result is cheaper.
     fn follow(&mut self, slopes: &Slopes, reach: f64) -> bool {
         let Some(before) = self.best.as_ref().map(|best| best.cost) else { return false };
         let (mut here, mut outside) = (slopes.centre.clone(), None);
@@ -300,7 +309,7 @@ impl<'s, 'a> VerifiedSearch<'s, 'a> {
         self.best.as_ref().is_some_and(|best| best.cost < before - 0.1 * GAIN * before.abs())
     }
 
-    /// Opens one free tolerance after the other.
+    /// Opens each free tolerance alone.
     fn poll(&mut self, free: &[usize], reach: f64) {
         for &g in free {
             let Some(best) = self.best.as_ref() else { return };
@@ -313,7 +322,7 @@ impl<'s, 'a> VerifiedSearch<'s, 'a> {
         }
     }
 
-    /// Exchanges of one process, then of two, as long as one of them is cheaper and keeps everything.
+    /// Exchanges one process, then two, as long as an exchange is cheaper and keeps everything.
     fn exchange(&mut self) {
         loop {
             let Some(best) = self.best.as_ref() else { return };
@@ -321,7 +330,7 @@ impl<'s, 'a> VerifiedSearch<'s, 'a> {
             let single = self.exchanges(&at, &offers);
             let mut all: Vec<(f64, Tolerances)> =
                 single.iter().map(|to| (self.held_and_lost(to), to.clone())).collect();
-            // Of long lists the exchanges of two are too many.
+            // Long lists have too many exchanges of two.
             let pairs = if single.len() <= PAIRED { &single[..] } else { &[] };
             for (place, (first, of_first)) in pairs.iter().enumerate() {
                 for (second, of_second) in &pairs[place + 1..] {
@@ -350,7 +359,7 @@ impl<'s, 'a> VerifiedSearch<'s, 'a> {
         }
     }
 
-    /// The cost that an exchange would have with the losses as they are.
+    /// Cost of an exchange with the present losses.
     fn held_and_lost(&self, (at, offers): &Tolerances) -> f64 {
         self.driver.held_cost(at, offers) + self.best.as_ref().map_or(0.0, |best| best.loss)
     }
@@ -368,7 +377,7 @@ impl<'s, 'a> VerifiedSearch<'s, 'a> {
         all
     }
 
-    /// Opens all free tolerances by one factor, as far as everything is kept.
+    /// Opens all free tolerances by a common factor, as far as everything is kept.
     fn open_all(&mut self) {
         let (mut step, halvings) = FACTOR;
         for _ in 0..=halvings {
@@ -388,7 +397,7 @@ impl<'s, 'a> VerifiedSearch<'s, 'a> {
     }
 }
 
-/// The findings of a trial about its tolerances.
+/// Values of a trial at its tolerances.
 #[derive(Clone)]
 struct Measured {
     at: Vec<f64>,
@@ -404,7 +413,7 @@ impl Measured {
         Self { at, uses, loss: trial.loss, cost: trial.cost, kept: trial.is_kept() }
     }
 
-    /// The largest part of a requirement that is used.
+    /// Largest used part of a requirement.
     fn use_(&self) -> f64 {
         self.uses.iter().copied().fold(0.0, f64::max)
     }
@@ -414,18 +423,18 @@ impl Measured {
     }
 }
 
-/// The slopes of uses and losses by `ln T` of every group.
+/// Slopes of uses and losses by `ln T` of every group.
 struct Slopes {
     centre: Measured,
     offers: Vec<usize>,
-    /// Whether each use is a sum of tolerances, rather than of squares.
+    /// True for each use that is a sum of tolerances, false for a sum of squares.
     linear: Vec<bool>,
     of_uses: Vec<Vec<f64>>,
     of_loss: Vec<f64>,
 }
 
 impl Slopes {
-    /// The solution of the separable problem with these slopes and the values of a place, within a reach of the centre.
+    /// Solution of the separable problem with these slopes and the values of a place, within a reach of the centre.
     fn solved(&self, priced: &[Priced], here: &Measured, reach: f64, with_loss: bool) -> Option<Vec<f64>> {
         let row = |(k, slopes): (usize, &Vec<f64>)| {
             Linearised::of_uses(here.uses[k], slopes.clone(), self.linear[k]).row(&here.at)
@@ -446,7 +455,7 @@ impl Slopes {
     }
 }
 
-/// Part of the way between half bands, in logarithms.
+/// Half bands at a part of the way between two others, in logarithms.
 fn between(from: &[f64], to: &[f64], part: f64) -> Vec<f64> {
     from.iter().zip(to).map(|(from, to)| libm::exp((1.0 - part) * libm::log(*from) + part * libm::log(*to))).collect()
 }

@@ -1,65 +1,67 @@
-//! The worst case of a surface that is not linear, as a function of the tolerances.
+//! Worst case of a surface that is not linear, as a function of the tolerances.
 //!
 //! ```text
 //! W(T) = max over the box of (q(u) - nominal)        q: the second-order surface at the station, u_j in [m_j - h_j T_j, m_j + h_j T_j]
 //! dW/d ln T_j = dq/du_j (u_j - m_j)                   at the place of the maximum, where that is an end of the band; 0 within it
 //! ```
 //!
-//! The place is that of the descents with which a search of the extremes begins; the slope is that of the envelope theorem. At the
-//! station itself the true worst case is known where interval arithmetic encloses the formula: `W` is multiplied by what the true one is
-//! of it there, so that a search that comes to rest keeps the true one. Where the two differ and the model is cheap, `W` is that of the
-//! formula itself at [its corners](super::corners). Source of the correction: N. M. Alexandrov, R. M. Lewis,
-//! Optimization and Engineering 2 (2001).
+//! The place is found by the descents that also begin a search of the extremes. The slope comes from the envelope
+//! theorem. At the linearization point itself interval arithmetic may give the true worst case. `W` is then multiplied
+//! by the ratio of the true one to it, so that a search ends at the true one. If the two differ and the model is cheap,
+//! `W` is that of the formula itself at [its corners](super::corners). Source of the correction: N. M. Alexandrov, R.
+//! M. Lewis, Optimization and Engineering 2 (2001).
 
 use super::corners::Corners;
 use crate::extremes::{Model, Region};
 use sensitol_numeric::surrogate::Surrogate;
 
-/// A true worst case farther off than by this factor is not a correction but another function: the difference is added.
+/// Greatest factor, either way, by which the true worst case is corrected. Beyond it the difference is added, because
+/// it is a different function.
 const NEAR: f64 = 2.0;
 
-/// A factor, and what is added.
+/// Correction by a factor and an addition.
 pub(super) type WorstCaseCorrection = (f64, f64);
 
-/// Nothing is corrected.
+/// Correction without effect.
 pub(super) const NO_CORRECTION: WorstCaseCorrection = (1.0, 0.0);
 
-/// The factor and the addition that make a reach that was found the true one.
+/// Correction of a reach that was found to the true one.
 pub(super) fn correction(found: f64, truth: f64) -> WorstCaseCorrection {
     let factor = truth / found;
     let near = found > 0.0 && (1.0 / NEAR..=NEAR).contains(&factor);
     if near { (factor, 0.0) } else { (1.0, truth - found) }
 }
 
-/// Whether a correction is more than what the bounds of a true worst case leave open.
+/// True if a correction exceeds the uncertainty of the bounds of a true worst case.
 pub(super) fn is_off(&(factor, more): &WorstCaseCorrection) -> bool {
     (factor - 1.0).abs() > SURE || more != 0.0
 }
 
-/// The worst case of one characteristic about a station.
+/// Worst case of one characteristic about a linearization point.
 pub(super) struct WorstCase {
-    /// The surface in sigmas, and the same upside down: each is least where the characteristic reaches farthest below and above.
+    /// Surface in sigmas, and its negative. Their least values are at the farthest reach below and above.
     sides: [Model; 2],
-    /// The middle of every band and its half, in sigmas from the mean, and by how many halves the middle moves where they grow.
+    /// Middle and half-width of every band, in sigmas from the mean, and the move of the middle per half-width that is
+    /// added.
     bands: Vec<[f64; 3]>,
     /// Indices of the dimensions of these bands.
     varying: Vec<usize>,
-    /// The surface at the means less the nominal value.
+    /// Value of the surface at the means, minus the nominal value.
     rise: f64,
-    /// The corrections from the surface's reach below and above to the true one: a factor, and what is added.
+    /// Corrections from the surface's reach below and above to the true one.
     corrections: [WorstCaseCorrection; 2],
-    /// The true worst case below and above the nominal value at the station.
+    /// True reach below and above the nominal value at the linearization point, if it is known.
     reached: Option<[f64; 2]>,
-    /// The formula itself, where the surface is not it.
+    /// Formula itself, if the surface deviates from it.
     corners: Option<Corners>,
 }
 
-/// A correction by less than this part is what the bounds of the true worst case leave open.
+/// Greatest relative correction that the uncertainty of the true worst case explains.
 const SURE: f64 = 1e-9;
 
 impl WorstCase {
-    /// Of a surface with the bands of its dimensions, where the true worst case reaches so far below and above the nominal value; None where a
-    /// part is unknown.
+    /// Worst case of a surface with the bands of its dimensions, and the true reach below and above the nominal value.
+    /// Returns None if a univariate part is unknown.
     pub(super) fn of(
         surrogate: &Surrogate,
         varying: &[usize],
@@ -82,7 +84,7 @@ impl WorstCase {
         Some(worst)
     }
 
-    /// Corrects what is found at the station to the true worst case there.
+    /// Corrects the reach at the linearization point to the true one.
     fn correct(&mut self) {
         let Some(reached) = self.reached else { return };
         self.corrections = [NO_CORRECTION; 2];
@@ -91,12 +93,12 @@ impl WorstCase {
         self.corrections = [of(false), of(true)];
     }
 
-    /// Whether the true worst case is known, and the surface is off.
+    /// True if the true worst case is known, and that of the surface deviates from it.
     pub(super) fn is_off(&self) -> bool {
         self.reached.is_some() && self.corrections.iter().any(is_off)
     }
 
-    /// The places of the surface's extremes below and above, by coordinates of the bands in `[-1, 1]`.
+    /// Places of the surface's extremes below and above, by coordinates of the bands in `[-1, 1]`.
     pub(super) fn places(&self) -> [Vec<f64>; 2] {
         let end = |sign: f64| self.bands.iter().map(|[middle, half, _]| middle + sign * half).collect();
         let region = Region { lower: end(-1.0), upper: end(1.0) };
@@ -107,19 +109,19 @@ impl WorstCase {
         self.sides.each_ref().map(place)
     }
 
-    /// Follows the formula itself from here.
+    /// Uses the formula itself from now on.
     pub(super) fn follow(&mut self, corners: Corners) {
         self.corners = Some(corners);
         self.correct();
     }
 
-    /// How far it reaches beyond the nominal value, above or below, at these factors of all tolerances; and how that grows with the
-    /// logarithm of every one, as `(dimension, slope)`.
+    /// Reach beyond the nominal value, above or below, at these factors of all tolerances. Also returns its derivatives
+    /// by the logarithm of every tolerance, as `(dimension, slope)`.
     pub(super) fn reach(&self, factors: &[f64], above: bool) -> (f64, Vec<(usize, f64)>) {
         self.reach_moved(factors, &vec![0.0; factors.len()], above)
     }
 
-    /// The same with all nominal values moved by `shifts` sigmas, beyond the nominal value as it was.
+    /// Reach beyond the original nominal value, with all nominal values moved by `shifts` sigmas.
     pub(super) fn reach_moved(&self, factors: &[f64], shifts: &[f64], above: bool) -> (f64, Vec<(usize, f64)>) {
         let (factor, more) = self.corrections[usize::from(above)];
         if let Some((reach, slopes)) = self.corners.as_ref().and_then(|of| of.reach(factors, shifts, above)) {
@@ -137,7 +139,8 @@ impl WorstCase {
         let slope = |j: usize| {
             let held = at[j] == region.lower[j] || at[j] == region.upper[j];
             let [middle, half, lean] = self.bands[j];
-            // An end of the band moves by what it has of the half width; the one that is held has nothing.
+            // An end of the band moves in proportion to its distance from the fixed point of the band. A held end does
+            // not move.
             let way = at[j] - (middle + shifts[self.varying[j]] - lean * half);
             if held { -factor * side.slope(&at, j) * way } else { 0.0 }
         };

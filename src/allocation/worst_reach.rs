@@ -1,4 +1,4 @@
-//! How far a worst case reaches: by its slopes, and by the corners of the bands where slopes do not tell all of it.
+//! Reach of a worst case: by its slopes, or by the corners of the bands if slopes do not determine it.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -11,8 +11,8 @@ use super::response::Responses;
 use crate::problem::Problem;
 
 impl Responses {
-    /// Follows the formula itself in the worst cases that its surface does not tell, from the places that earlier stations know, which it
-    /// adds to; `asked` counts its values.
+    /// Uses the formula itself for worst cases that the surface misses. The search begins at the `known` places of
+    /// earlier linearization points, and adds to them. `asked` counts the values of the formula.
     pub(super) fn follow_corners(
         &mut self,
         problem: &Problem,
@@ -36,7 +36,8 @@ impl Responses {
         }
     }
 
-    /// The nominal value and how far the worst case lies beyond it, above or below, with nominals moved by `shifts`, in sigmas.
+    /// Nominal value, and the reach of the worst case beyond it, above or below, with nominals moved by `shifts`, in
+    /// sigmas.
     pub(super) fn worst_reach(
         &self,
         characteristic: usize,

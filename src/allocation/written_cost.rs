@@ -1,4 +1,4 @@
-//! Costs as they are written: a formula of the half band, or a table.
+//! Costs from a formula of the half band, or from a table.
 //!
 //! ```text
 //! formula   C(T); derivatives by ln T are exact: T C', T C' + T^2 C''
@@ -9,20 +9,18 @@
 use super::cost_error::CostError;
 use crate::assembly::formula::{Formula, FormulaError, FormulaSet, Jet, Meaning};
 
-/// The name of the half band in a formula.
 const NAME: &str = "T";
-/// Places at which a formula is looked at, evenly in `ln T`.
+/// Number of half bands at which a formula is checked, evenly in `ln T`.
 const LOOKED: usize = 129;
-/// Half of a corner's rounding, by the shorter piece beside it.
+/// Half of a corner's rounding, relative to the shorter piece beside it.
 const CORNER: f64 = 1e-3;
-/// A cost that rises by less than this part is rounding.
+/// Greatest relative rise of a cost that counts as rounding.
 const ROUNDING: f64 = 1e-12;
-/// A curvature in `T` below 0 by less than this part of the slope is rounding.
+/// Greatest negative curvature in `T`, relative to the slope, that counts as rounding.
 const BENT: f64 = 1e-9;
-/// Half a relative step of differences where a formula has no derivative: their truncation is 1e-12, their rounding 1e-10.
+/// Half of the relative step of differences at a kink of a formula. Truncation is 1e-12, rounding 1e-10.
 const STEP: f64 = 1e-6;
 
-/// A formula or a table.
 #[derive(Debug)]
 pub(super) struct WrittenCost(Form);
 
@@ -79,13 +77,13 @@ impl WrittenCost {
         Ok(Self(Form::Table(points.into_iter().map(|[t, cost]| [t.recip(), cost]).collect())))
     }
 
-    /// The half bands of a table.
+    /// Least and greatest half band of a table. Returns None for a formula.
     pub(super) fn range(&self) -> Option<[f64; 2]> {
         let Form::Table(points) = &self.0 else { return None };
         Some([points[points.len() - 1][0].recip(), points[0][0].recip()])
     }
 
-    /// Whether it can be a cost between two half bands: it has values, none of them negative, and falls.
+    /// Checks that the cost is valid between two half bands: it has values, none of them negative, and falls.
     pub(super) fn check(&self, min: f64, max: f64) -> Result<(), CostError> {
         if let Some([least, greatest]) = self.range() {
             let outside = |t: f64| t < least * (1.0 - ROUNDING) || t > greatest * (1.0 + ROUNDING);
@@ -112,23 +110,24 @@ impl WrittenCost {
         Ok(())
     }
 
-    /// Whether it is convex in `T` there: everywhere of a table, at many places of a formula.
+    /// True if the cost is convex in `T` between `min` and `max`. A table is checked everywhere, a formula at many half
+    /// bands.
     pub(super) fn is_convex(&self, min: f64, max: f64) -> bool {
         match &self.0 {
-            // Between points a + b/T; at a point the slope in 1/T must not fall.
+            // Between points the cost is a + b/T, which is convex. At a point the slope in 1/T must not fall.
             Form::Table(points) => {
                 let slopes: Vec<f64> = points.windows(2).map(slope).collect();
                 slopes.windows(2).all(|pair| pair[1] >= pair[0] * (1.0 - ROUNDING))
             }
             Form::Formula { .. } => looked(min, max).all(|t| {
                 let [first, second] = self.log_derivatives(t);
-                // T^2 C''.
+                // The difference is T^2 C''.
                 second - first >= -BENT * first.abs()
             }),
         }
     }
 
-    /// Points between which straight lines in `1/T` are the cost, or nearly so.
+    /// Points with straight lines in `1/T` between them, which are the cost of a table, and nearly that of a formula.
     pub(super) fn points(&self, min: f64, max: f64) -> Vec<[f64; 2]> {
         match &self.0 {
             Form::Table(points) => points.iter().rev().map(|&[u, cost]| [u.recip(), cost]).collect(),
@@ -150,7 +149,7 @@ impl WrittenCost {
                 let jet = set.jets(&[0], |_| Jet::variable(t, [1.0; 2]))[0];
                 match (jet.first(0), jet.second()) {
                     (Some(first), Some(second)) => [t * first, t * first + t * t * second],
-                    // At a kink: the slope of a difference across it.
+                    // A kink has no derivative, so the slope of a difference across it is used.
                     _ => {
                         let [up, down] = [1.0 + STEP, 1.0 - STEP].map(|factor| self.cost(t * factor));
                         let slope = (up - down) / (2.0 * STEP);
@@ -167,12 +166,12 @@ impl WrittenCost {
     }
 }
 
-/// A place that was looked at, to the digits that tell it from its neighbours.
+/// Value rounded to the digits that distinguish it from its neighbours, for messages.
 fn told(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }
 
-/// Half bands between two, evenly in their logarithms, the tightest first.
+/// Half bands between two bounds, evenly in their logarithms, the tightest first.
 fn looked(min: f64, max: f64) -> impl Iterator<Item = f64> {
     let count = if min < max { LOOKED } else { 1 };
     (0..count).map(move |place| match place {
@@ -186,13 +185,13 @@ fn slope(pair: &[[f64; 2]]) -> f64 {
     (pair[1][1] - pair[0][1]) / (pair[1][0] - pair[0][0])
 }
 
-/// Value and two derivatives by `u`; straight on beyond the ends.
+/// Value and two derivatives by `u`, continued as a straight line beyond the ends.
 fn interpolated(points: &[[f64; 2]], u: f64) -> [f64; 3] {
     let last = points.len() - 2;
     let piece = points[1..=last].partition_point(|point| point[0] <= u);
     let line = slope(&points[piece..piece + 2]);
     let straight = points[piece][1] + line * (u - points[piece][0]);
-    // The corner at either end of the piece, within which the line of the other piece counts too.
+    // Corner at either end of the piece, within which the line of the other piece counts too.
     for corner in [piece, piece + 1] {
         if corner == 0 || corner > last {
             continue;

@@ -1,4 +1,4 @@
-//! The room that limits leave for sigma where a yield is required, by the Pearson law of four moments.
+//! Slack for sigma with a required yield, by the Pearson fit of four moments.
 //!
 //! ```text
 //! F(s) = P(z < -below/s) + P(z > above/s) = q       z standardised, with the skewness g and the excess e of the moments
@@ -11,10 +11,10 @@ use sensitol_numeric::capability::Law;
 use sensitol_numeric::moments::Moments;
 use sensitol_numeric::pearson::Pearson;
 
-/// Differences in skewness and excess: truncation and rounding both near 1e-8.
+/// Step of differences in skewness and excess. Truncation and rounding are both near 1e-8.
 const STEP: f64 = 1e-4;
 
-/// Where so much may be rejected beyond limits at these distances from the mean, a law of this shape has room for a sigma.
+/// Greatest sigma for an allowed reject rate, with limits at these distances from the mean and a fit of this shape.
 pub(super) struct YieldRoom {
     law: Box<Pearson>,
     shape: [f64; 2],
@@ -24,14 +24,14 @@ pub(super) struct YieldRoom {
 }
 
 impl YieldRoom {
-    /// None where no distribution has these moments, and where no sigma rejects so little.
+    /// Computes the slack. Returns None if no distribution has these moments, and if no sigma rejects so little.
     pub(super) fn of(moments: &Moments, [below, above]: [Option<f64>; 2], rejected: f64) -> Option<Self> {
         let shape = [moments.skewness().unwrap_or(0.0), moments.excess().unwrap_or(0.0)];
         let room = Self { law: law_of(shape)?, shape, below, above, sigma: f64::NAN };
         Some(Self { sigma: room.solved(rejected)?, ..room })
     }
 
-    /// The sigma at which just so much is rejected.
+    /// Sigma at which just the allowed share is rejected.
     pub(super) fn sigma(&self) -> f64 {
         self.sigma
     }
@@ -40,7 +40,7 @@ impl YieldRoom {
         let Self { law, below, above, .. } = self;
         let single = |distance: f64, quantile: f64| match (distance > 0.0, quantile > 0.0) {
             (true, true) => Some(distance / quantile),
-            // Fewer must keep the limit than the half that does at any sigma.
+            // At least half of the assemblies keep this limit at any sigma, which is enough.
             (true, false) => Some(f64::INFINITY),
             (false, _) => None,
         };
@@ -53,7 +53,7 @@ impl YieldRoom {
             [Some(only), None] | [None, Some(only)] => return only,
             [Some(low), Some(high)] => (low?, high?),
         };
-        // Each limit may take all of what may be rejected, or half of it: the answer lies between.
+        // Each limit may use the whole allowed share, or half of it. The root lies between these two sigmas.
         let most = low.min(high);
         if !most.is_finite() {
             return None;
@@ -64,7 +64,7 @@ impl YieldRoom {
         Some(libm::exp(root(miss, [libm::log(least), libm::log(most)], 0.0)))
     }
 
-    /// Derivatives of the logarithm of that sigma by mean, skewness and excess.
+    /// Derivatives of the logarithm of sigma by mean, skewness and excess.
     pub(super) fn slopes(&self) -> Option<[f64; 3]> {
         let sigma = self.sigma;
         if !sigma.is_finite() {
@@ -82,7 +82,7 @@ impl YieldRoom {
         slopes.iter().all(|slope| slope.is_finite()).then_some(slopes)
     }
 
-    /// The derivatives of the share by skewness and excess of a density that ends too abruptly for formulas.
+    /// Derivatives of the rejected share by skewness and excess, if the density ends too abruptly for formulas.
     fn by_differences(&self) -> Option<[f64; 2]> {
         let here = self.share(&self.law, self.sigma);
         let by_shape = |index: usize| {
@@ -93,7 +93,7 @@ impl YieldRoom {
             };
             Some(match (share(STEP), share(-STEP)) {
                 (Some(up), Some(down)) => (up - down) / (2.0 * STEP),
-                // Beside the least kurtosis one side is all there is.
+                // Beside the least kurtosis only one side exists.
                 (Some(up), None) => (up - here) / STEP,
                 (None, Some(down)) => (here - down) / STEP,
                 (None, None) => return None,
@@ -102,7 +102,7 @@ impl YieldRoom {
         Some([by_shape(0)?, by_shape(1)?])
     }
 
-    /// The rejects of a standardised law at a sigma.
+    /// Rejected share of a standardised fit at a sigma.
     fn share(&self, law: &Pearson, sigma: f64) -> f64 {
         let below = self.below.map_or(0.0, |distance| law.cdf(-distance / sigma));
         below + self.above.map_or(0.0, |distance| law.sf(distance / sigma))
@@ -120,7 +120,8 @@ fn law_of([skewness, excess]: [f64; 2]) -> Option<Box<Pearson>> {
 mod tests {
     use super::*;
 
-    /// Differences of the room itself, whose root is found to 1e-13: with the steps of 1e-4, 1e-8 of rounding and as much truncation.
+    /// Differences of the slack itself, whose root is found to 1e-13. With steps of 1e-4 the rounding is 1e-8, and
+    /// truncation is as large.
     #[test]
     fn slopes_are_the_differences_of_the_room() {
         let at = |[mean, skewness, excess]: [f64; 3], limits: [Option<f64>; 2]| {

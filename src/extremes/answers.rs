@@ -1,4 +1,4 @@
-//! The answers of the model: every point asked once, for all characteristics, within the budget.
+//! Known values of the model. Every point is evaluated once, for all characteristics, within the budget.
 
 use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
@@ -9,36 +9,36 @@ use crate::problem::Problem;
 use crate::summary::{RunSummary, StopReason};
 use sensitol_numeric::time::Instant;
 
-/// Every point known so far, with what asking came to.
+/// Values at all points known so far, and the cost of their evaluation.
 pub(super) struct Answers<'a> {
     problem: &'a Problem,
     run: &'a Run<'a>,
-    /// Evaluations that may still be spent; None without a limit.
+    /// Evaluations that are left of the budget. None if there is no limit.
     left: Option<usize>,
     rows: HashMap<Vec<u64>, usize>,
     points: Vec<Vec<f64>>,
-    /// For every row the value of each characteristic, NaN where there is none.
+    /// Value of each characteristic for every row. NaN if it has none.
     values: Vec<Vec<f64>>,
     pub(super) spent: Spent,
     pub(super) failures: Vec<Failures>,
 }
 
-/// Points at which a characteristic has no value: how many, and why at the first.
+/// Points at which a characteristic has no value: their number, and the error at the first.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Failures {
     pub(super) count: usize,
     pub(super) first: Option<EvaluationError>,
 }
 
-/// The cost of the evaluations.
+/// Cost of the evaluations.
 #[derive(Debug, Clone, Default)]
 #[non_exhaustive]
 pub struct Spent {
-    /// In numbers.
+    /// Numbers of evaluations and stages, and times.
     pub run: RunSummary,
-    /// Whether points were not evaluated because the budget was spent.
+    /// True if points were left out because the budget was spent.
     pub over_budget: bool,
-    /// Where the model answered the nominal point otherwise than before.
+    /// Evaluations in which the model returned another value than before at the nominal point.
     pub non_repeatable: Vec<NonRepeatable>,
 }
 
@@ -49,7 +49,7 @@ impl<'a> Answers<'a> {
         Self { problem, run, left, rows: HashMap::new(), points, values, spent: Spent::default(), failures }
     }
 
-    /// Takes over what is known of a point already.
+    /// Adds a point with known values, unless it is known already.
     pub(super) fn learn(&mut self, point: &[f64], values: Vec<f64>) {
         if let Entry::Vacant(entry) = self.rows.entry(bits(point)) {
             entry.insert(self.points.len());
@@ -58,23 +58,23 @@ impl<'a> Answers<'a> {
         }
     }
 
-    /// Whether nothing more can be asked.
+    /// True if no more points can be evaluated.
     pub(super) fn ended(&self) -> bool {
         self.spent.run.unfinished() || self.spent.over_budget
     }
 
-    /// The value of a characteristic at a point, where it is known.
+    /// Returns the value of a characteristic at a point. Returns None if it is not known.
     pub(super) fn value(&self, point: &[f64], characteristic: usize) -> Option<f64> {
         let value = self.values[*self.rows.get(&bits(point))?][characteristic];
         (!value.is_nan()).then_some(value)
     }
 
-    /// Every point known, with the values of all characteristics, NaN where there is none.
+    /// Every known point, with the values of all characteristics. NaN if there is none.
     pub(super) fn known(&self) -> impl Iterator<Item = (&[f64], &[f64])> {
         self.points.iter().zip(&self.values).map(|(point, values)| (&point[..], &values[..]))
     }
 
-    /// Those of these points that are not known yet, each once.
+    /// Returns the points that are not known yet, each once.
     pub(super) fn unknown(&self, points: impl Iterator<Item = Vec<f64>>) -> Vec<Vec<f64>> {
         let mut seen = HashSet::new();
         let new = |point: &Vec<f64>| {
@@ -84,7 +84,7 @@ impl<'a> Answers<'a> {
         points.filter(new).collect()
     }
 
-    /// Asks for these points, each once, in batches, as far as the budget goes.
+    /// Evaluates these points, each once, in batches, as far as the budget goes.
     pub(super) fn ask(&mut self, points: Vec<Vec<f64>>) {
         let mut new = self.unknown(points.into_iter());
         if let Some(left) = self.left.map(|left| left.saturating_sub(self.spent.run.evaluations as usize))
@@ -119,7 +119,8 @@ impl<'a> Answers<'a> {
         self.spent.non_repeatable.extend(out.non_repeatable().iter().cloned());
     }
 
-    /// A row that is still open was not finished: it was sent only if some of it was answered.
+    /// Keeps the answers to one point. A row with open outputs was not finished. It counts as sent only if some output
+    /// was answered.
     fn keep(&mut self, point: &[f64], row: usize, out: &Responses) {
         let columns = 0..out.outputs();
         if columns.clone().any(|c| out.is_open(row, c)) {
@@ -140,7 +141,7 @@ impl<'a> Answers<'a> {
     }
 }
 
-/// 0 has one sign only.
+/// Bits of a point as a key. Adding 0 turns -0 into 0, so that both have the same key.
 fn bits(point: &[f64]) -> Vec<u64> {
     point.iter().map(|x| (x + 0.0).to_bits()).collect()
 }

@@ -1,44 +1,46 @@
-//! From a point to a better one by true values: along every coordinate, then along several at once.
+//! Search that moves from a point to a better one by true values: along every coordinate, then along several at once.
 //!
-//! A climb evaluates nothing. It says which points it wants to know, is told their values, and moves. Values are signed so
-//! that less is better; a point without a value is no better than any other.
+//! A climb evaluates nothing. It returns the points that it needs, gets their values, and moves. Values are signed so
+//! that less is better. A point without a value is never better.
 
 use super::model::{Model, Region};
 use sensitol_numeric::surrogate::Univariate;
 
-/// A search that goes on from `x`, with value `y`.
+/// Search that continues from `x` with value `y`.
 #[derive(Debug, Clone)]
 pub(super) struct Climb<'r> {
     region: &'r Region,
     pub(super) x: Vec<f64>,
     pub(super) y: f64,
-    /// For every dimension the step to both sides of an interior coordinate, relative to the box.
+    /// Step to both sides of an interior coordinate for every dimension, as a part of the width of the box.
     step: Vec<f64>,
-    /// The products, as far as the surrogate knows them.
+    /// Surrogate, for its products.
     surrogate: &'r Model,
     phase: Phase,
     rounds: usize,
-    /// The gain of the rounds along interior coordinates since all coordinates were looked at.
+    /// Gain of the rounds along interior coordinates since the last round along all.
     gained: f64,
 }
 
-/// Which coordinates are looked at next.
+/// Coordinates that are moved next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Phase {
-    /// All, to the other end of the box.
+    /// All coordinates, to the other end of the box.
     All,
-    /// Those within the box, a step to either side.
+    /// Interior coordinates, a step to either side.
     Interior,
     Done,
 }
 
-/// The step about an interior coordinate at first, how much shorter it becomes where it gains nothing, and the least.
+/// First step about an interior coordinate, as a part of the width of the box.
 const STEP: f64 = 0.125;
+/// Factor by which the step is shortened after a round without gain.
 const SHORTER: f64 = 0.125;
+/// Least step, as a part of the width of the box.
 const SHORTEST: f64 = 1e-3;
-/// Interior coordinates whose pairs are looked at.
+/// Greatest number of interior coordinates whose pairs are evaluated.
 const TOGETHER: usize = 8;
-/// Rounds after which a climb ends wherever it is.
+/// Rounds after which a climb ends in any case.
 const ROUNDS: usize = 40;
 
 impl<'r> Climb<'r> {
@@ -55,7 +57,7 @@ impl<'r> Climb<'r> {
         self.region.lower[d] < self.x[d] && self.x[d] < self.region.upper[d]
     }
 
-    /// The coordinates to be known on the line through `x` along `d`.
+    /// Coordinates of the samples on the line through `x` along `d`.
     fn line(&self, d: usize) -> Vec<f64> {
         let (lower, upper) = (self.region.lower[d], self.region.upper[d]);
         let reach = self.step[d] * self.region.width(d);
@@ -78,7 +80,7 @@ impl<'r> Climb<'r> {
         point
     }
 
-    /// The pairs of interior coordinates that are moved together, to know what they do together: while there are few.
+    /// Pairs of interior coordinates that are moved together to find their mixed derivatives, if there are few.
     fn pairs(&self) -> Vec<(usize, usize)> {
         let interior: Vec<usize> = (0..self.x.len()).filter(|&d| self.interior(d)).collect();
         if self.phase != Phase::Interior || interior.len() > TOGETHER {
@@ -89,7 +91,7 @@ impl<'r> Climb<'r> {
         interior.iter().enumerate().flat_map(with).collect()
     }
 
-    /// Both at the upper ends of their lines.
+    /// Point with both coordinates at the upper ends of their lines, and the two coordinates.
     fn pair(&self, j: usize, k: usize) -> Option<(f64, f64, Vec<f64>)> {
         let (at_j, at_k) = (*self.line(j).last()?, *self.line(k).last()?);
         let mut point = self.with(j, at_j);
@@ -97,7 +99,7 @@ impl<'r> Climb<'r> {
         Some((at_j, at_k, point))
     }
 
-    /// The points on the lines through `x`: two for a coordinate at a bound, up to four for one within the box; and one for
+    /// Points on the lines through `x`: two for a coordinate at a bound, up to four for an interior one, and one for
     /// each pair of interior coordinates.
     pub(super) fn samples(&self) -> Vec<Vec<f64>> {
         let lines = (0..self.x.len()).flat_map(|d| self.line(d).into_iter().map(move |x| self.with(d, x)));
@@ -105,8 +107,8 @@ impl<'r> Climb<'r> {
         lines.chain(pairs).collect()
     }
 
-    /// A few points that the samples speak for: every coordinate at the lowest point of a curve through its line, all at
-    /// once, some at once, and one alone.
+    /// A few promising points from the samples: every coordinate at the lowest point of a curve through its line, all
+    /// at once, some at once, and one alone.
     pub(super) fn candidates(&self, value: &impl Fn(&[f64]) -> Option<f64>) -> Vec<Vec<f64>> {
         let known: Vec<Vec<(f64, f64)>> = (0..self.x.len())
             .map(|d| self.line(d).into_iter().filter_map(|x| Some((x, value(&self.with(d, x))?))).collect())
@@ -140,7 +142,7 @@ impl<'r> Climb<'r> {
         candidates
     }
 
-    /// Curves through the lines, and the surrogate's products, about `x`; no further than the values go.
+    /// Local model about `x` from curves through the lines and the surrogate's products, within the sampled range.
     fn local(&self, known: &[Vec<(f64, f64)>], value: &impl Fn(&[f64]) -> Option<f64>) -> (Region, Model) {
         let ends = |d: usize| known[d].iter().map(|&(x, _)| x).chain([self.x[d]]);
         let n = self.x.len();
@@ -170,15 +172,15 @@ impl<'r> Climb<'r> {
         (region, Model { base: self.x.clone(), scale, parts, products })
     }
 
-    /// The mixed derivative of two interior coordinates, where all its values are known.
+    /// Mixed derivative of two interior coordinates. Returns None if a value is missing.
     fn mixed(&self, j: usize, k: usize, value: &impl Fn(&[f64]) -> Option<f64>) -> Option<f64> {
         let (at_j, at_k, both) = self.pair(j, k)?;
         let rise = value(&both)? - value(&self.with(j, at_j))? - value(&self.with(k, at_k))? + self.y;
         Some(rise / (at_j - self.x[j]) / (at_k - self.x[k]))
     }
 
-    /// Where two straight lines, through the two known points on either side of an interior coordinate, meet between the
-    /// inner ones below everything known: the corner of a kink.
+    /// Corner of a kink: the meeting point of two straight lines through the two known points on either side of an
+    /// interior coordinate. It must lie between the inner points and below the current value.
     fn corner(&self, d: usize, known: &[(f64, f64)]) -> Option<f64> {
         let (left, right): (Vec<_>, Vec<_>) = known.iter().copied().partition(|&(x, _)| x < self.x[d]);
         let ([(a, ya), (b, yb)], [(c, yc), (e, ye)]) = (&left[..], &right[..]) else { return None };
@@ -188,7 +190,7 @@ impl<'r> Climb<'r> {
         (*b < x && x < *c && y < self.y).then_some(x)
     }
 
-    /// Moves to the best of these points; `least` is a gain that is none.
+    /// Moves to the best of these points. A gain of at most `least` does not count as one.
     pub(super) fn advance(&mut self, tried: &[Vec<f64>], value: &impl Fn(&[f64]) -> Option<f64>, least: f64) {
         let better = tried.iter().filter_map(|point| Some((point, value(point)?))).filter(|&(_, y)| y < self.y);
         let best = better.min_by(|a, b| a.1.total_cmp(&b.1));
@@ -216,7 +218,7 @@ impl<'r> Climb<'r> {
         }
         match self.phase {
             Phase::All if relocated && improved => return Phase::All,
-            // Where only interior coordinates move, looking at all the others again can wait.
+            // If only interior coordinates move, all the others are moved again later.
             Phase::All | Phase::Interior if improved => return Phase::Interior,
             _ => {}
         }

@@ -1,28 +1,30 @@
-//! The true worst case: the least and the greatest value of every characteristic in the box of the tolerance bands.
+//! True worst case: the least and the greatest value of every characteristic in the box of the tolerance bands.
 //!
-//! The box is that of [`Dimension::reach`](crate::Dimension::reach): the tolerance bands, three sigma where there is none, within
-//! the support of the distribution. The
-//! derivatives that the method has found say where the extremes should be; the assembly function itself says where they are.
+//! The box is that of [`Dimension::reach`](crate::Dimension::reach): the tolerance band of each dimension. A dimension
+//! without a tolerance has three sigma, cut at the support of its distribution. The derivatives from the method predict
+//! the places of the extremes. Evaluations of the assembly function confirm or correct them.
 //!
-//! Coordinates that share a zone stay within it: the disc of a position, a disc, rim or diamond of `[[joint]]`, and the rows of columns
-//! that were measured on the same parts, where no drawing gives them a tolerance. Correlation plays no part: the worst case is what can
-//! be, however rarely.
+//! Coordinates that share a zone stay within it. Zones are the disc of a position, and the disc, rim or diamond of
+//! `[[joint]]`. Columns measured on the same parts stay on the measured rows, if no drawing gives them a tolerance.
+//! Correlation plays no part: the worst case is every possible assembly, however rare.
 //!
-//! 1. The surrogate is minimised and maximised over the box by coordinate search from several starts, which costs nothing.
+//! 1. A coordinate search from several starts minimises and maximises the surrogate over the box, without evaluations.
 //!    The extremes that it finds, the vertices of the signs of the slopes, and two points elsewhere are evaluated.
-//! 2. Where the surrogate has foretold all of these values to a part in 10^9 of their range, this is the result.
-//! 3. Otherwise a search goes on from the best two points of either side: every coordinate is moved to the other end of the
-//!    box, to its middle and to the stationary point of a curve through the values on its line, one by one and several at
-//!    once, until no move along a coordinate improves. Interior points are refined with shorter and shorter steps.
+//! 2. If the surrogate has predicted all of these values to a part in 10^9 of their range, this is the result.
+//! 3. Otherwise a search goes on from the best two points of either side. Every coordinate is moved to the other end of
+//!    the box, to its middle, and to the stationary point of a curve through the values on its line. Coordinates are
+//!    moved one by one and several at once, until no move along a coordinate improves. Interior points are refined with
+//!    shorter and shorter steps.
 //!
-//! Evaluations: four for a linear characteristic. Otherwise up to ten, and `2N` and some for every round of either side and
-//! start, of which there are rarely more than three; coordinates that end within the box take up to four in a round, and two in
-//! each of the rounds of refinement, where each pair of them takes one more while there are no more than eight.
+//! Cost: four evaluations for a linear characteristic. Otherwise up to ten, and about `2N` for every round of either
+//! side and start. There are rarely more than three rounds. Coordinates that end within the box take up to four
+//! evaluations in a round, and two in each round of refinement. Each pair of them takes one more, while there are no
+//! more than eight.
 //!
-//! A search finds no certainty. An [`ExtremesProof`] is one: branch and bound with formulas in interval arithmetic, until no value can
-//! lie beyond the extremes by more than a part in 10^9 of their range, and one in 10^12 of their size for rounding. It costs no
-//! evaluation, and ends with the bounds that it has after 20000 boxes a side, fewer where there are more than ten dimensions.
-//! Should it come upon a value beyond the extremes, the search goes on from there.
+//! A search gives no certainty. An [`ExtremesProof`] does: branch and bound with formulas in interval arithmetic. It
+//! ends when no value can lie beyond the extremes by more than a part in 10^9 of their range, plus one in 10^12 of
+//! their size for rounding. It costs no evaluation. It stops after 20000 boxes a side, fewer for more than ten
+//! dimensions, with the bounds reached so far. If it finds a value beyond the extremes, the search goes on from there.
 
 mod answers;
 mod climb;
@@ -49,22 +51,23 @@ use crate::method::Outcome;
 use crate::problem::Problem;
 use sensitol_numeric::power::rescale;
 
-/// A gain of this part of the range is none.
+/// Smallest gain of a move that counts, as a part of the range of the known values.
 const GAIN: f64 = 1e-10;
-/// Searches after each other, of which each begins at a point that branch and bound has found beyond the last one's extremes.
+/// Greatest number of successive searches. Each after the first begins at a point beyond the last extremes that branch
+/// and bound has found.
 const REPEATED: usize = 4;
 
-/// The extremes that the search found for every characteristic, and their cost.
+/// Extremes of every characteristic, and the cost of the search.
 #[derive(Debug, Clone, Default)]
 #[non_exhaustive]
 pub struct SearchedExtremes {
-    /// In the problem's order; None where no point in the box has a value.
+    /// Extremes in the order of the problem's characteristics. None if no point in the box has a value.
     pub extremes: Vec<Option<Extremes>>,
-    /// The cost of the search.
+    /// Cost of the search.
     pub spent: Spent,
 }
 
-/// The least and the greatest value of one characteristic.
+/// Least and greatest value of one characteristic.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Extremes {
@@ -72,29 +75,30 @@ pub struct Extremes {
     pub least: Extreme,
     /// The greatest value.
     pub greatest: Extreme,
-    /// Points that were evaluated for it; one that serves several characteristics counts for each.
+    /// Number of points evaluated for this characteristic. A point that serves several characteristics counts for each.
     pub evaluations: usize,
-    /// Points of the search at which it has no value.
+    /// Number of points of the search without a value of this characteristic.
     pub failed: usize,
-    /// The first of them and why, in words.
+    /// First failed point and the reason, in words.
     pub failure: Option<String>,
-    /// How the search ended.
+    /// Reason why the search ended.
     pub ended: Ended,
-    /// The bounds by interval arithmetic, where the characteristic is a formula.
+    /// Bounds by interval arithmetic, if the characteristic is a formula.
     pub proof: Option<ExtremesProof>,
 }
 
-/// An interval that no assembly leaves.
+/// Interval that holds the values of all assemblies.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct ExtremesProof {
-    /// The interval.
+    /// Lower and upper bound.
     pub bounds: [f64; 2],
-    /// Whether both of its ends are as near to the extremes as makes no difference.
+    /// True if both bounds are within the allowed distance of the extremes.
     pub proven: bool,
-    /// How far either end may lie beyond a value that exists.
+    /// Greatest distance of each bound beyond a value that exists.
     pub slack: [f64; 2],
-    /// Boxes on which the formulas were evaluated in interval arithmetic; they are no evaluations.
+    /// Number of boxes on which the formulas were evaluated in interval arithmetic. These are no evaluations of the
+    /// model.
     pub boxes: usize,
 }
 
@@ -103,53 +107,53 @@ rescale!(Extreme { value } without { at });
 rescale!(ExtremesProof { bounds, slack } without { proven, boxes });
 
 impl Extremes {
-    /// Whether it is proven that no assembly lies beyond them.
+    /// True if interval arithmetic proves that no assembly lies beyond the two values.
     pub fn proven(&self) -> bool {
         self.proof.as_ref().is_some_and(|proof| proof.proven)
     }
 }
 
-/// A value, and where it is.
+/// Value of an extreme, and its place.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Extreme {
-    /// The value.
+    /// Value of the characteristic.
     pub value: f64,
-    /// The dimensions that vary and on which the characteristic can depend.
+    /// Coordinates: the dimensions that vary and on which the characteristic can depend.
     pub at: Vec<Coordinate>,
 }
 
-/// One dimension of an extreme.
+/// One dimension at an extreme.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Coordinate {
-    /// The dimension.
+    /// Name of the dimension.
     pub dimension: String,
-    /// Its value.
+    /// Value of the dimension.
     pub x: f64,
-    /// Its band.
+    /// Ends of the dimension's band.
     pub band: [f64; 2],
-    /// Where in the band it stands.
+    /// Place of the value in the band.
     pub place: Place,
 }
 
-/// Where in its band a dimension stands.
+/// Place of a dimension in its band.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum Place {
-    /// At the lower end.
+    /// Lower end of the band.
     Lower,
-    /// At the upper end.
+    /// Upper end of the band.
     Upper,
-    /// Between them.
+    /// Between the two ends.
     Interior,
 }
 
-/// Searches the extremes of every characteristic, beginning with what a method has found out.
+/// Searches the extremes of every characteristic, beginning with the values that a method has evaluated.
 ///
-/// Evaluations: as the module says, no more than `budget`; a point that serves several characteristics is evaluated once. A
-/// point at which the model fails is never used.
+/// Cost: as stated in the module, at most `budget` evaluations. A point that serves several characteristics is
+/// evaluated once. A point at which the model fails is never used.
 pub fn search(problem: &Problem, outcome: &Outcome, budget: Option<usize>, run: &Run<'_>) -> SearchedExtremes {
     let mut answers = Answers::new(problem, budget, run);
     let tasks: Vec<Task> = (0..problem.characteristics().len()).map(|c| Task::of(problem, outcome, c)).collect();
@@ -159,6 +163,7 @@ pub fn search(problem: &Problem, outcome: &Outcome, budget: Option<usize>, run: 
     let begin = |t: usize, answers: &Answers<'_>| {
         [1.0, -1.0].map(|sign| tasks[t].climbs(answers, sign).into_iter().map(move |climb| Ongoing { t, sign, climb }))
     };
+    // A characteristic that the surrogate has predicted needs no search. Branch and bound may start one later.
     let unsure = (0..tasks.len()).filter(|&t| !tasks[t].foretold(&answers));
     let mut climbs: Vec<Ongoing<'_>> = unsure.flat_map(|t| begin(t, &answers)).flatten().collect();
     let mut proofs = vec![None; tasks.len()];
@@ -183,10 +188,11 @@ pub fn search(problem: &Problem, outcome: &Outcome, budget: Option<usize>, run: 
     SearchedExtremes { extremes, spent: answers.spent }
 }
 
-/// An interval that no assembly of a characteristic leaves, by interval arithmetic alone; None where its function has no bounds.
+/// Bounds a characteristic over the box by interval arithmetic alone. Returns None if the assembly function has no
+/// bounds.
 ///
-/// `proven` says that values within `near` of both ends exist. Ends after 1000 boxes a side, fewer where there are more than ten
-/// dimensions. No evaluation.
+/// `proven` is true if values within `near` of both ends exist. The proof stops after 1000 boxes a side, fewer for more
+/// than ten dimensions. It costs no evaluation.
 pub(crate) fn enclose(
     problem: &Problem,
     outcome: &Outcome,
@@ -199,7 +205,7 @@ pub(crate) fn enclose(
         .filter(|proof| proof.bounds.iter().all(|end| end.is_finite()))
 }
 
-/// A search of one characteristic and side.
+/// Search of one characteristic on one side.
 struct Ongoing<'t> {
     t: usize,
     /// 1 for the least value, -1 for the greatest.
@@ -213,7 +219,7 @@ impl Ongoing<'_> {
     }
 }
 
-/// All searches side by side, until each has ended or nothing more can be asked.
+/// Runs all searches side by side, until each has ended or no more points can be evaluated.
 fn go_on(answers: &mut Answers<'_>, tasks: &[Task], asked: &mut [usize], mut climbs: Vec<Ongoing<'_>>) {
     let of = |climbs: &[Ongoing<'_>], t: usize, what: &dyn Fn(&Ongoing<'_>) -> Vec<Vec<f64>>| -> Vec<Vec<f64>> {
         climbs.iter().filter(|ongoing| ongoing.t == t).flat_map(what).collect()
@@ -229,7 +235,7 @@ fn go_on(answers: &mut Answers<'_>, tasks: &[Task], asked: &mut [usize], mut cli
             let value = |x: &[f64]| tasks[ongoing.t].value(answers, x).map(|value| ongoing.sign * value);
             let tried = [ongoing.climb.samples(), ongoing.climb.candidates(&value)].concat();
             ongoing.climb.advance(&tried, &value, GAIN * tasks[ongoing.t].range(answers));
-            // Those of one characteristic and side that meet are one.
+            // Searches of one characteristic and side that meet at a point are merged.
             let place = (ongoing.t, ongoing.sign, ongoing.climb.x.clone());
             let new = !places.contains(&place);
             places.push(place);
@@ -238,7 +244,7 @@ fn go_on(answers: &mut Answers<'_>, tasks: &[Task], asked: &mut [usize], mut cli
     }
 }
 
-/// Asks for the points that each task wants, and counts for each those that were not known.
+/// Evaluates the points that each task wants. Counts for each task the points that were not known before.
 fn ask(answers: &mut Answers<'_>, tasks: &[Task], asked: &mut [usize], wanted: impl Fn(usize) -> Vec<Vec<f64>>) {
     let mut points = Vec::new();
     for (t, task) in tasks.iter().enumerate() {

@@ -1,30 +1,31 @@
-//! A model of a characteristic in the box, as quartics along the axes and products: where it would be least.
+//! Local model of a characteristic in the box: quartics along the axes, and products. It predicts the place of the
+//! least value.
 
-/// The box of one characteristic's dimensions.
+/// Box of one characteristic's dimensions.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Region {
     pub(crate) lower: Vec<f64>,
     pub(crate) upper: Vec<f64>,
 }
 
-/// `y(x) - y(base) ~ sum_j g_j(u_j) + sum_{j<k} A_jk u_j u_k` with `u_j = (x_j - base_j)/scale_j` and quartics `g_j`.
+/// Model `y(x) - y(base) ~ sum_j g_j(u_j) + sum_{j<k} A_jk u_j u_k` with `u_j = (x_j - base_j)/scale_j` and quartics
+/// `g_j`.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Model {
     pub(crate) base: Vec<f64>,
     pub(crate) scale: Vec<f64>,
-    /// Coefficients of `u` to `u^4`.
+    /// Coefficients of `u` to `u^4` for every dimension.
     pub(crate) parts: Vec<[f64; 4]>,
-    /// For every dimension its products, `(k, A_jk)`.
+    /// Products `(k, A_jk)` for every dimension `j`. Each product is listed with both of its dimensions.
     pub(crate) products: Vec<Vec<(usize, f64)>>,
 }
 
-/// Sweeps over all coordinates until the descent ends wherever it is.
+/// Sweeps over all coordinates after which a descent ends in any case.
 const SWEEPS: usize = 100;
-/// Halvings after which two doubles are one.
+/// Halvings of an interval after which its ends are neighbouring doubles.
 const HALVINGS: usize = 200;
 
 impl Region {
-    /// How many dimensions it has.
     pub(super) fn len(&self) -> usize {
         self.lower.len()
     }
@@ -37,7 +38,7 @@ impl Region {
         x.clamp(self.lower[d], self.upper[d])
     }
 
-    /// The point at these parts of the way from the lower to the upper bounds.
+    /// Point at the given parts of the way from the lower to the upper bounds.
     pub(super) fn at(&self, part: impl Fn(usize) -> f64) -> Vec<f64> {
         let at = |d: usize| match part(d) {
             1.0 => self.upper[d], // lower + width may be rounded to its neighbour
@@ -46,23 +47,23 @@ impl Region {
         (0..self.len()).map(at).collect()
     }
 
-    /// Whether a point lies within.
+    /// True if the box holds the point.
     pub(super) fn contains(&self, x: &[f64]) -> bool {
         (0..self.len()).all(|d| self.lower[d] <= x[d] && x[d] <= self.upper[d])
     }
 }
 
 impl Model {
-    /// How far `y` lies above its value at the base.
+    /// Model value at `x` minus the value at the base.
     pub(crate) fn rise(&self, x: &[f64]) -> f64 {
         let u: Vec<f64> = (0..x.len()).map(|d| (x[d] - self.base[d]) / self.scale[d]).collect();
         let own: f64 = u.iter().zip(&self.parts).map(|(&u, part)| quartic(part, u)).sum();
-        // Every product stands with both of its dimensions.
+        // Half, because every product is listed with both of its dimensions.
         let along = |j: usize| self.products[j].iter().map(|&(k, a)| a * u[k]).sum::<f64>();
         own + 0.5 * (0..x.len()).map(|j| u[j] * along(j)).sum::<f64>()
     }
 
-    /// How far it rises from one place of a coordinate to another, where the others are.
+    /// Change of the value as one coordinate moves between two places, with the others at `x`.
     pub(super) fn rise_along(&self, x: &[f64], d: usize, [from, to]: [f64; 2]) -> f64 {
         let u = |d: usize, x: f64| (x - self.base[d]) / self.scale[d];
         let tilt: f64 = self.products[d].iter().map(|&(k, a)| a * u(k, x[k])).sum();
@@ -70,14 +71,14 @@ impl Model {
         quartic(&self.parts[d], to) - quartic(&self.parts[d], from) + tilt * (to - from)
     }
 
-    /// How it rises along one coordinate, per unit of it.
+    /// Slope of the value along one coordinate, per unit of it.
     pub(crate) fn slope(&self, x: &[f64], d: usize) -> f64 {
         let u = |d: usize| (x[d] - self.base[d]) / self.scale[d];
         let tilt: f64 = self.products[d].iter().map(|&(k, a)| a * u(k)).sum();
         (steepness(&self.parts[d], u(d)) + tilt) / self.scale[d]
     }
 
-    /// The same, upside down.
+    /// Model of the negated characteristic.
     pub(crate) fn negated(&self) -> Self {
         let mut negated = self.clone();
         negated.parts.iter_mut().flatten().for_each(|coefficient| *coefficient = -*coefficient);
@@ -85,13 +86,13 @@ impl Model {
         negated
     }
 
-    /// The same without its products.
+    /// Model without its products.
     pub(super) fn separate(&self) -> Self {
         Self { products: vec![Vec::new(); self.parts.len()], ..self.clone() }
     }
 
-    /// A point from which no move along one coordinate leads further down, reached from `start` by such moves, each to the
-    /// lowest value of its line within the box.
+    /// Descends from `start` by moves along one coordinate, each to the lowest value of its line within the box.
+    /// Returns a point from which no such move leads further down.
     pub(super) fn descend(&self, region: &Region, start: &[f64]) -> Vec<f64> {
         let mut x = start.to_vec();
         for _ in 0..SWEEPS {
@@ -110,7 +111,7 @@ impl Model {
         x
     }
 
-    /// Where the line through `x` along one coordinate is lowest within the box, and by how much it is lower there.
+    /// Lowest place within the box on the line through `x` along one coordinate, and the gain from `x` to it.
     pub(super) fn lowest(&self, region: &Region, x: &[f64], d: usize) -> (f64, f64) {
         let u_of = |d: usize, x: f64| (x - self.base[d]) / self.scale[d];
         let [c1, c2, c3, c4] = self.parts[d];
@@ -118,7 +119,7 @@ impl Model {
         let line = [c1 + tilt, c2, c3, c4];
         let (from, to) = (u_of(d, region.lower[d]), u_of(d, region.upper[d]));
         let here = quartic(&line, u_of(d, x[d]));
-        // A change of the line by rounding alone is not a gain.
+        // A change of the line within rounding is not a gain.
         let size = [from, to].map(|u| u.abs().max(1.0)).into_iter().fold(0.0, f64::max);
         let noise =
             8.0 * f64::EPSILON * line.iter().enumerate().map(|(n, c)| c.abs() * size.powi(n as i32 + 1)).sum::<f64>();
@@ -144,15 +145,16 @@ fn steepness([c1, c2, c3, c4]: &[f64; 4], u: f64) -> f64 {
     c1 + u * (2.0 * c2 + u * (3.0 * c3 + u * 4.0 * c4))
 }
 
-/// Where the quartic may be least between `from` and `to`: every zero of its derivative, and some other places.
+/// Candidates for the least value of the quartic between `from` and `to`: every zero of its derivative, and some other
+/// places.
 fn stationary(coefficients: &[f64; 4], from: f64, to: f64) -> Vec<f64> {
     let [_, c2, c3, c4] = *coefficients;
     let slope = |u: f64| steepness(coefficients, u);
-    // Between the zeros of its own derivative the slope is monotonic and has one zero at most.
+    // Between two zeros of its own derivative the slope is monotonic and has at most one zero.
     let mut ends = vec![from, to];
     ends.extend(quadratic_roots(2.0 * c2, 6.0 * c3, 12.0 * c4).into_iter().filter(|u| from < *u && *u < to));
     ends.sort_unstable_by(f64::total_cmp);
-    // A zero that is one of these points changes no sign on either side of it.
+    // The slope keeps its sign at a zero that is one of these points, so the bisection misses it.
     let inner = ends[1..ends.len() - 1].to_vec();
     ends.windows(2).filter_map(|ends| bisect(slope, ends[0], ends[1])).chain(inner).collect()
 }
@@ -188,7 +190,7 @@ fn bisect(slope: impl Fn(f64) -> f64, mut from: f64, mut to: f64) -> Option<f64>
 mod tests {
     use super::*;
 
-    /// `u^4 - 2 u^2` has its minima at -1 and 1; a tilt by a product makes one of them the lower.
+    /// `u^4 - 2 u^2` has its minima at -1 and 1. A tilt by a product makes one of them the lower.
     #[test]
     fn the_lower_of_two_minima_is_found() {
         let region = Region { lower: vec![-3.0, -1.0], upper: vec![3.0, 1.0] };

@@ -1,7 +1,7 @@
-//! Branch and bound: certainty that no assembly lies beyond an extreme.
+//! Branch and bound in interval arithmetic, which proves that no assembly lies beyond an extreme.
 //!
-//! Source: Moore, Kearfott and Cloud, Introduction to Interval Analysis, 2009, chapters 6 and 11: monotonicity test and mean
-//! value form, boxes with the lowest bound first.
+//! Source: Moore, Kearfott and Cloud, Introduction to Interval Analysis, 2009, chapters 6 and 11: monotonicity test,
+//! mean value form, boxes with the lowest bound first.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -10,29 +10,30 @@ use super::zone::{EDGE, Zone};
 use crate::assembly::Bounds;
 use crate::assembly::formula::Interval;
 
-/// A box, an interval for every dimension.
+/// Box: an interval for every dimension.
 type Region = Vec<[f64; 2]>;
 
 /// Certain bounds of the least value in a box.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Least {
-    /// No value is below.
+    /// Lower bound: no value in the box is below it.
     pub(super) lower: f64,
-    /// Boxes that were looked at.
+    /// Number of boxes on which the bounds were computed.
     pub(super) boxes: usize,
-    /// The value that was believed to be the least, or the upper bound of the value at a better point.
+    /// Upper bound of the least value: the given one, or that of the value at a better point.
     pub(super) best: f64,
-    /// A point whose value is below what was believed to be the least.
+    /// Point whose value is below the given least value, if one was found.
     pub(super) better: Option<Vec<f64>>,
 }
 
-/// How often a box that has lost dimensions is looked at again before it is split.
+/// Greatest number of times that a box with newly held dimensions is bounded again before it is split.
 const AGAIN: usize = 4;
 
-/// Bounds the least value of `bounds` over the part of `region` within all `zones`, until it is certain to be no more than `allowed`
-/// below `best`, or `limit` boxes have been looked at, or `stop` says so.
+/// Bounds the least value of `bounds` over the part of `region` within all `zones`.
 ///
-/// A dimension along which the value only rises or only falls is held at the end where it is least, where no zone ends before.
+/// It ends when the bound is at most `allowed` below `best`, when `limit` boxes have been examined, or when `stop`
+/// returns true. A dimension along which the value is monotonic is held at the end with the lesser value, unless a zone
+/// ends before it.
 pub(super) fn least(
     bounds: &dyn Fn(&[[f64; 2]]) -> Bounds,
     region: &[[f64; 2]],
@@ -44,7 +45,7 @@ pub(super) fn least(
 ) -> Least {
     let mut search = Search { bounds, zones, best, allowed, stop, boxes: 0, better: None };
     let mut open: BinaryHeap<Open> = search.examine(region.to_vec(), f64::NEG_INFINITY).into_iter().collect();
-    // The least bound of the boxes that cannot be split.
+    // Least bound of the boxes that cannot be split.
     let mut lower = f64::INFINITY;
     while let Some(next) = open.pop() {
         if next.lower >= search.best - allowed || search.boxes >= limit || stop() {
@@ -69,27 +70,29 @@ struct Search<'b> {
     better: Option<Vec<f64>>,
 }
 
-/// A box that may hold the least value. The one with the lowest bound is the greatest.
+/// Box that may hold the least value. The order is reversed: the box with the lowest bound is the greatest, for the
+/// heap.
 struct Open {
     lower: f64,
     region: Region,
-    /// How much the value may change along each dimension.
+    /// Greatest change of the value along each dimension.
     swing: Vec<f64>,
 }
 
 impl Search<'_> {
-    /// None when nothing in the box has a value.
+    /// Bounds a box, and evaluates its middle for a better least value. Returns None if nothing in the box has a value.
     fn examine(&mut self, mut region: Region, above: f64) -> Option<Open> {
         if self.zones.iter().any(|zone| zone.leaves_out(&region)) {
             return None;
         }
         self.zones.iter().for_each(|zone| zone.shrink(&mut region));
         let mut found = self.look(&region);
+        // Each held dimension narrows the bounds of the slopes, which may hold more dimensions.
         for _ in 0..AGAIN {
             if found.value.is_empty() {
                 return None;
             }
-            // The bounds of a long formula of many dimensions are many operations: a stop is heard between two of them.
+            // Bounds of a long formula of many dimensions take many operations, so `stop` is asked between two of them.
             if !found.value.is_whole() || (self.stop)() || !hold(&mut region, &found.slopes, self.zones) {
                 break;
             }
@@ -97,6 +100,7 @@ impl Search<'_> {
         }
         let middle: Vec<f64> = region.iter().map(|&[lower, upper]| middle(lower, upper)).collect();
         let at = self.look(&middle.iter().map(|&x| [x, x]).collect::<Region>()).value;
+        // The middle is moved into the zones, so that its value belongs to a possible assembly.
         let mut within = middle.clone();
         self.zones.iter().for_each(|zone| zone.enter(&mut within, EDGE));
         match within == middle {
@@ -105,6 +109,8 @@ impl Search<'_> {
         }
         let mut lower = above.max(found.value.lower());
         let mut swing = vec![f64::INFINITY; region.len()];
+        // Mean value form: the value at the middle plus the changes along all dimensions, often tighter than the
+        // bounds.
         if found.value.is_whole() {
             let changes: Vec<Interval> =
                 (0..region.len()).map(|d| change(&region, &middle, &found.slopes, d)).collect();
@@ -118,7 +124,8 @@ impl Search<'_> {
         Some(Open { lower, region, swing })
     }
 
-    /// The bound of a tangent plane at the middle of a box over the zones, and of how far slopes differ from its own.
+    /// Lower bound over the zones: the tangent plane at the middle of the box, plus the deviation of the slopes from
+    /// those of the plane.
     fn over_zones(
         &mut self,
         region: &[[f64; 2]],
@@ -129,6 +136,7 @@ impl Search<'_> {
         let mut about = at;
         let mut lowest = middle.to_vec();
         let zones = self.zones;
+        // Outside the zones the mean value form is used dimension by dimension.
         for (d, change) in changes.iter().enumerate() {
             if !zones.iter().any(|zone| zone.places().contains(&d)) {
                 about = about.add(change);
@@ -147,7 +155,7 @@ impl Search<'_> {
                 about = about.add(&apart.multiply(&offsets(region[d], middle[d])));
             }
             let (bound, place) = zone.lowest(&plane, middle, region);
-            // No row lies within.
+            // No row lies within the box.
             if place.is_empty() {
                 return f64::INFINITY;
             }
@@ -158,7 +166,7 @@ impl Search<'_> {
         about.lower()
     }
 
-    /// The value at a point within all zones, which may be less than what was believed to be the least.
+    /// Computes the value at a point within all zones, and keeps it if it is below the best one.
     fn try_point(&mut self, point: Vec<f64>) {
         let value = self.look(&point.iter().map(|&x| [x, x]).collect::<Region>()).value;
         self.reach(point, value);
@@ -177,18 +185,18 @@ impl Search<'_> {
     }
 }
 
-/// How far the places along a side of a box lie from its middle.
+/// Interval of the distances of a side's places from the middle of the box.
 fn offsets([lower, upper]: [f64; 2], middle: f64) -> Interval {
     let from = |x: f64| Interval::between(x, x).subtract(&Interval::between(middle, middle));
     Interval::between(from(lower).lower(), from(upper).upper())
 }
 
-/// How much the value may change along one dimension of a box.
+/// Interval of the change of the value along one dimension of a box.
 fn change(region: &[[f64; 2]], middle: &[f64], slopes: &[Interval], d: usize) -> Interval {
     slopes[d].multiply(&offsets(region[d], middle[d]))
 }
 
-/// Holds every dimension whose slope has one sign at the end where the value is least; says whether there was any.
+/// Holds every dimension whose slope has one sign at the end with the lesser value. Returns true if there was any.
 fn hold(region: &mut Region, slopes: &[Interval], zones: &[Zone]) -> bool {
     let mut held = false;
     let free: Vec<bool> = (0..region.len()).map(|d| zones.iter().all(|zone| zone.frees(d, region))).collect();
@@ -210,7 +218,8 @@ fn middle(lower: f64, upper: f64) -> f64 {
 }
 
 impl Open {
-    /// Split across the dimension along which the value may change most; None when no double lies between the ends of any.
+    /// Splits the box across the dimension along which the value may change most. Returns None if no double lies
+    /// between the ends of any.
     fn halves(&self) -> Option<[Region; 2]> {
         let splits = |&d: &usize| {
             let [lower, upper] = self.region[d];

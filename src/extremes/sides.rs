@@ -1,20 +1,21 @@
-//! The proof that no assembly lies beyond a limit: of each side by itself, whatever the other one does.
+//! Proof that no assembly lies beyond a limit, for each side of a characteristic independently of the other.
 
 use super::proof::least;
 use crate::assembly::Bounds;
 use crate::problem::Problem;
 use sensitol_numeric::distribution::Distribution;
 
-/// Boxes of a side, as long as there are few dimensions.
+/// Boxes of a side for up to `FEW` dimensions.
 const BOXES: usize = 1000;
+/// Dimensions beyond which fewer boxes are examined, in inverse proportion: each box then takes more operations.
 const FEW: usize = 10;
 
-/// Of the sides that are `asked` for, whether interval arithmetic proves that no assembly is below the lower limit of a characteristic, and
-/// none above the upper one.
+/// Proves for each side in `asked`, by interval arithmetic, that no assembly is below the lower or above the upper
+/// limit.
 ///
-/// Every dimension may be anywhere in the support of its distribution. A side is proven by the bounds over all supports, and where these are
-/// finite by branch and bound until no box can lie beyond the limit. False without that limit, and where the function has no bounds. No
-/// evaluation.
+/// Every dimension may be anywhere in the support of its distribution. A side is first tested with the bounds over all
+/// supports. If these are finite, branch and bound follows until no box can lie beyond the limit. Returns false for a
+/// side without a limit, and if the function has no bounds. It costs no evaluation.
 pub(crate) fn keeps_by_proof(problem: &Problem, c: usize, asked: [bool; 2]) -> [bool; 2] {
     if !asked.contains(&true) || !problem.characteristics()[c].limits().exist() {
         return [false; 2];
@@ -30,7 +31,7 @@ pub(crate) fn keeps_by_proof(problem: &Problem, c: usize, asked: [bool; 2]) -> [
     let limit = BOXES * FEW / region.len().max(FEW);
     let side = |side: usize| {
         let sign = [1.0, -1.0][side];
-        // The least that is kept: of the upper side of what has the other sign.
+        // The upper limit becomes a lower limit of the negated characteristic.
         let kept = sign * problem.kept_limits(c).ends()[side];
         let signed = |bounds: Bounds| if sign > 0.0 { bounds } else { bounds.negated() };
         if !asked[side] || !kept.is_finite() {

@@ -1,25 +1,26 @@
-//! Where a search begins: what the surrogate says, and a few points that put it to the test.
+//! Starts of a search: extremes of the surrogate, and a few points that check the surrogate.
 
 use super::model::{Model, Region};
 
-/// The points that are evaluated first for one characteristic.
+/// Points that are evaluated first for one characteristic.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Starts {
-    /// Where the surrogate is least: its lowest local minima first, then the vertex of the signs of its slopes.
+    /// Places of the surrogate's least values: its lowest local minima first, then the vertex given by the signs of its
+    /// slopes.
     pub(super) least: Vec<Vec<f64>>,
-    /// Where it is greatest.
+    /// Places of the surrogate's greatest values, in the same order.
     pub(super) greatest: Vec<Vec<f64>>,
-    /// Points elsewhere.
+    /// Check points away from the extremes.
     pub(super) checks: Vec<Vec<f64>>,
 }
 
-/// Local minima of the surrogate that are worth an evaluation.
+/// Greatest number of local minima of the surrogate that are evaluated.
 const MINIMA: usize = 3;
-/// Parts of the way through the box that have no pattern: multiples of the golden section.
+/// Golden section. Its multiples, modulo 1, give coordinates of a check point that follow no pattern.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 impl Starts {
-    /// Of a surrogate over a box. Evaluates nothing.
+    /// Computes the starts from a surrogate over a box, without evaluations.
     pub(super) fn of(surrogate: &Model, region: &Region) -> Self {
         let least = least_of(surrogate, region);
         let greatest = least_of(&surrogate.negated(), region);
@@ -27,20 +28,19 @@ impl Starts {
         Self { checks: vec![crossed(surrogate, region, &least[0]), generic], least, greatest }
     }
 
-    /// All of them.
     pub(super) fn points(&self) -> impl Iterator<Item = &Vec<f64>> {
         self.least.iter().chain(&self.greatest).chain(&self.checks)
     }
 }
 
 impl Model {
-    /// Where it is least in a box, as far as descents from several starts tell.
+    /// Place of the surrogate's least value in a box: the lowest end of descents from several starts.
     pub(crate) fn least_in(&self, region: &Region) -> Vec<f64> {
         least_of(self, region).swap_remove(0)
     }
 }
 
-/// Descents from the base, from the vertex of the slopes and the one opposite to it, and from two corners of the box.
+/// Descends from the base, from the vertex of the slopes and its opposite, and from two corners of the box.
 fn least_of(surrogate: &Model, region: &Region) -> Vec<Vec<f64>> {
     let n = region.len();
     let flat = |d: usize| surrogate.parts[d] == [0.0; 4] && surrogate.products[d].is_empty();
@@ -65,7 +65,7 @@ fn least_of(surrogate: &Model, region: &Region) -> Vec<Vec<f64>> {
     least
 }
 
-/// The vertex that differs from `from` in every other coordinate, in the order of what they do to the surrogate.
+/// Vertex that differs from `from` in every second coordinate, sorted by their effect on the surrogate.
 fn crossed(surrogate: &Model, region: &Region, from: &[f64]) -> Vec<f64> {
     let effect = |d: usize| surrogate.rise_along(from, d, [region.lower[d], region.upper[d]]).abs();
     let mut order: Vec<(f64, usize)> = (0..region.len()).map(|d| (effect(d), d)).collect();

@@ -1,4 +1,4 @@
-//! One characteristic's part of the search.
+//! Search of the extremes of one characteristic.
 
 use std::collections::HashMap;
 
@@ -16,38 +16,42 @@ use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::distribution::Distribution;
 use sensitol_numeric::parallel::join;
 
-/// A surrogate has foretold values that it misses by no more than this part of their range.
+/// Greatest error of a surrogate that has predicted a value, as a part of the range of the values.
 const FORETOLD: f64 = 1e-9;
 /// Searches of either side: from the best point, and from the best other start.
 const CLIMBS: usize = 2;
-/// A start whose value is farther from the best than this part of the range is not worth a search.
+/// Greatest distance of a start's value from the best for which a search from it is worthwhile, as a part of the range.
 const STRONG: f64 = 0.5;
 
-/// A bound is as good as an extreme when it lies no farther beyond it than this part of the range and this part of the values.
+/// Greatest distance of a bound beyond an extreme for a proof, as a part of the range.
 const PROVEN: f64 = 1e-9;
+/// Allowance for rounding in the same distance, as a part of the size of the values.
 const ROUNDING: f64 = 1e-12;
-/// Boxes of either side, as long as there are few dimensions.
+/// Boxes of either side for up to `FEW` dimensions.
 const BOXES: usize = 20_000;
-/// Boxes of either side where a proof is not asked for: a twentieth of those of a search.
+/// Boxes of either side if a proof is not asked for: a twentieth of those of a search.
 const ENCLOSING: usize = 1000;
+/// Dimensions beyond which fewer boxes are examined, in inverse proportion: each box then takes more operations.
 const FEW: usize = 10;
-/// More of them where a zone ends: boxes along its edge, whose number goes with the root of the accuracy.
+/// Factor of the number of boxes if there are zones. Their edges need more boxes, whose number grows with the root of
+/// the accuracy.
 const ROUND: usize = 4;
-/// The part of what is near enough to be called reached that a proof without a search tries to close: ends that are printed have their last
-/// digit then.
+/// Accuracy of a proof without a search, as a part of the distance that is near enough. Printed bounds are then right
+/// to the last digit.
 const CLOSED: f64 = 1e-3;
 
+/// Search of one characteristic: its box, zones, surrogate and starts.
 pub(super) struct Task {
     characteristic: usize,
-    /// The dimensions that vary and on which it can depend.
+    /// Dimensions that vary and on which the characteristic can depend.
     dimensions: Vec<usize>,
-    /// Where all the others stay.
+    /// Values of all dimensions at the centre. The other dimensions stay there.
     centre: Vec<f64>,
     region: Region,
-    /// Zones that some of them share.
+    /// Zones that some of the dimensions share.
     zones: Vec<Zone>,
     surrogate: Model,
-    /// The value at the base of the surrogate.
+    /// Value of the characteristic at the base of the surrogate.
     base: Option<f64>,
     pub(super) starts: Starts,
 }
@@ -84,8 +88,8 @@ impl Task {
         Self { characteristic: c, dimensions, centre, region, zones, surrogate, base: fitted.centre, starts }
     }
 
-    /// With all dimensions. A place outside a zone stands for the one on its edge in the same direction, or for the nearest row, so that
-    /// the box covers the zone.
+    /// Point with all dimensions. A place outside a zone is moved to the edge in its direction, or to the nearest row,
+    /// so that the box covers the zone.
     pub(super) fn point(&self, x: &[f64]) -> Vec<f64> {
         let mut own = x.to_vec();
         self.zones.iter().for_each(|zone| zone.enter(&mut own, 0.0));
@@ -94,7 +98,7 @@ impl Task {
         point
     }
 
-    /// Whether no zone is left, but for rounding.
+    /// True if the point lies in all zones, within rounding.
     fn within_zones(&self, x: &[f64]) -> bool {
         self.zones.iter().all(|zone| zone.contains(x))
     }
@@ -107,7 +111,6 @@ impl Task {
         answers.value(&self.point(x), self.characteristic)
     }
 
-    /// Every known value within the box.
     fn known<'a>(&'a self, answers: &'a Answers<'_>) -> impl Iterator<Item = (Vec<f64>, f64)> + 'a {
         (answers.known())
             .filter(|(_, values)| !values[self.characteristic].is_nan())
@@ -115,7 +118,7 @@ impl Task {
             .filter(|(x, _)| self.region.contains(x) && self.within_zones(x))
     }
 
-    /// How far the known values lie apart.
+    /// Greatest known value minus the least.
     pub(super) fn range(&self, answers: &Answers<'_>) -> f64 {
         let [least, greatest] = self
             .known(answers)
@@ -123,7 +126,8 @@ impl Task {
         (greatest - least).max(0.0)
     }
 
-    /// Hands on what the method has found out: the points on the axes, and the extremes of all others.
+    /// Adds the values that the method has evaluated: the points on the axes, and the points of the least and the
+    /// greatest value within the box.
     pub(super) fn learn_from(&self, answers: &mut Answers<'_>, outcome: &Outcome) {
         let (plan, known) = (&outcome.plan, &outcome.evaluated.known);
         let within = |point: &Point| {
@@ -148,7 +152,7 @@ impl Task {
         }
     }
 
-    /// Whether the surrogate has foretold the value of every start, up to rounding.
+    /// True if the surrogate has predicted the value of every start, within `FORETOLD` and rounding.
     pub(super) fn foretold(&self, answers: &Answers<'_>) -> bool {
         let Some(base) = self.base else { return false };
         let rounding = 16.0 * f64::EPSILON * self.region.len() as f64 * base.abs();
@@ -159,7 +163,8 @@ impl Task {
         self.starts.points().all(right)
     }
 
-    /// Searches from the best point known and from the best other start of this side: `sign` 1 goes down, -1 up.
+    /// Searches from the best known point and from the best other start of one side. `sign` 1 searches the least value,
+    /// -1 the greatest.
     pub(super) fn climbs(&self, answers: &Answers<'_>, sign: f64) -> Vec<Climb<'_>> {
         let signed = |(x, y): (Vec<f64>, f64)| (x, sign * y);
         let Some((best, y)) = self.known(answers).map(signed).min_by(|a, b| a.1.total_cmp(&b.1)) else {
@@ -177,7 +182,7 @@ impl Task {
         from.map(|(x, y)| Climb::new(&self.region, &self.surrogate, x, y)).collect()
     }
 
-    /// The bounds of the function over a part of the box by interval arithmetic; None where it has none.
+    /// Bounds the function over a part of the box by interval arithmetic. Returns None if the function has no bounds.
     fn bounds(&self, problem: &Problem, region: &[[f64; 2]]) -> Option<Bounds> {
         let mut all: Vec<[f64; 2]> = self.centre.iter().map(|&x| [x, x]).collect();
         self.dimensions.iter().zip(region).for_each(|(&d, &band)| all[d] = band);
@@ -186,7 +191,8 @@ impl Task {
         Some(bounds)
     }
 
-    /// Bounds of the function over a part of the box, or of its negative. Those over the whole box are computed once and handed in.
+    /// Bounds the function over a part of the box, or its negative if `sign` is -1. The bounds of the whole box are
+    /// computed once and passed in.
     fn signed(
         &self,
         problem: &Problem,
@@ -199,13 +205,13 @@ impl Task {
         if sign > 0.0 { bounds } else { bounds.negated() }
     }
 
-    /// The whole box.
+    /// Ends of the whole box.
     fn bands(&self) -> Vec<[f64; 2]> {
         (0..self.region.len()).map(|d| [self.region.lower[d], self.region.upper[d]]).collect()
     }
 
-    /// Bounds both extremes by interval arithmetic alone, without any value of the model, as closely as boxes allow; they are proven where
-    /// values within `near` of both exist. None where the function has no bounds.
+    /// Bounds both extremes by interval arithmetic alone, without any value of the model, as closely as boxes allow.
+    /// They are proven if values within `near` of both exist. Returns None if the function has no bounds.
     pub(super) fn enclose(&self, problem: &Problem, near: f64, run: &Run<'_>) -> Option<ExtremesProof> {
         let region = self.bands();
         let whole = self.bounds(problem, &region)?;
@@ -225,8 +231,8 @@ impl Task {
         })
     }
 
-    /// Bounds both extremes by interval arithmetic, where the function has bounds; and points that lie beyond them, if it comes
-    /// upon any.
+    /// Bounds both extremes by interval arithmetic, if the function has bounds. Also returns points beyond the known
+    /// extremes, if it finds any.
     pub(super) fn prove(
         &self,
         problem: &Problem,
@@ -257,7 +263,7 @@ impl Task {
         (Some(proof), below.better.into_iter().chain(above.better).collect())
     }
 
-    /// The best that is known.
+    /// Returns the least and the greatest known value, with the proof.
     pub(super) fn result(
         &self,
         problem: &Problem,
@@ -298,7 +304,8 @@ impl Task {
     }
 }
 
-/// From where to where a dimension reaches, but not out of its distribution's support: no assembly has what cannot be.
+/// Interval of a dimension's possible values. Without a tolerance it ends at the support of the distribution, because
+/// nothing can lie beyond it.
 fn band(dimension: &Dimension) -> [f64; 2] {
     let [lower, upper] = dimension.reach().map(|reach| dimension.nominal() + reach);
     let [least, greatest] = dimension.distribution().map_or([f64::NEG_INFINITY, f64::INFINITY], Distribution::support);

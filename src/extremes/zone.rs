@@ -1,4 +1,4 @@
-//! Zones that some dimensions share: the worst case is taken over them, and not over the box about them.
+//! Zones that some dimensions share. The worst case is taken over the zone, not over the box around it.
 //!
 //! ```text
 //! disc      sum of u_j^2 <= 1          u_j: deviation from the middle of the band, in half bands
@@ -7,47 +7,48 @@
 //! rows      the rows of measured parts, where no member has a tolerance of its own
 //! ```
 //!
-//! Over a zone the least value of a plane has a closed form, `-|g|` over a disc or rim, `-max |g_j|` over a diamond, and the least
-//! of all rows. Branch and bound takes it as the bound of a tangent plane, so that a plane is proven in one box.
-//! Source: R. T. Rockafellar, Convex Analysis (1970), section 13: support functions.
+//! The least value of a plane over a zone has a closed form: `-|g|` over a disc or rim, `-max |g_j|` over a diamond,
+//! and the least of all rows. Branch and bound uses it to bound the tangent plane, so that a plane is proven in one
+//! box. Source: R. T. Rockafellar, Convex Analysis (1970), section 13: support functions.
 
 use super::model::Region;
 use crate::assembly::formula::Interval;
 use crate::problem::Problem;
 use sensitol_numeric::correlation::JointLaw;
 
-/// Least and greatest distance of a box from the middle of a zone where it still counts as inside and outside: some roundings.
+/// Tolerance of the distance from the middle of a zone, for tests of inside and outside: some roundings.
 pub(super) const EDGE: f64 = 1e-12;
-/// Rows beyond which the box about them stands for them: every box of a proof is held against every row.
+/// Greatest number of rows that are used. Beyond it the box around the rows is used, because every box of a proof is
+/// compared with every row.
 const MOST_ROWS: usize = 10_000;
 
-/// One zone of a characteristic.
 #[derive(Debug, Clone)]
 pub(super) struct Zone {
-    /// Its coordinates, by their places among the dimensions of the characteristic.
+    /// Coordinates of the zone, as positions among the dimensions of the characteristic.
     places: Vec<usize>,
     shape: ZoneShape,
-    /// For every coordinate the ends of its band.
+    /// Ends of the band of every coordinate.
     bands: Vec<[f64; 2]>,
 }
 
+/// Region of a zone in units of half bands.
 #[derive(Debug, Clone)]
 enum ZoneShape {
     Disc,
     Rim,
     Diamond,
-    /// For every row the value of each coordinate.
+    /// Values of all coordinates, row by row.
     Rows(Vec<Vec<f64>>),
 }
 
-/// The zone or block that some coordinates of a characteristic share.
+/// Zone or block that some coordinates of a characteristic share.
 #[derive(PartialEq)]
 enum Shared<'p> {
     Block(usize),
     Circle(&'p str),
 }
 
-/// The zones of these dimensions of a problem; those of measured rows shrink the box to the rows.
+/// Zones of these dimensions of a problem. Zones of measured rows shrink the box to the rows.
 pub(super) fn zones(problem: &Problem, dimensions: &[usize], region: &mut Region) -> Vec<Zone> {
     let mut groups: Vec<(Shared<'_>, Vec<usize>)> = Vec::new();
     for (place, &d) in dimensions.iter().enumerate() {
@@ -64,7 +65,7 @@ pub(super) fn zones(problem: &Problem, dimensions: &[usize], region: &mut Region
     }
     let mut zones = Vec::new();
     for (shared, places) in groups {
-        // One coordinate alone goes from end to end: its zone says no more than its band.
+        // A single coordinate of a zone has its full band, so that the zone adds nothing.
         if places.len() < 2 {
             continue;
         }
@@ -94,8 +95,8 @@ pub(super) fn zones(problem: &Problem, dimensions: &[usize], region: &mut Region
     zones
 }
 
-/// The measured rows of some coordinates; None where a drawing gives one of them a tolerance, which holds for parts that were not
-/// measured.
+/// Measured rows of some coordinates. Returns None if a drawing gives one of them a tolerance, because the tolerance
+/// also holds for parts that were not measured.
 fn rows_of(problem: &Problem, dimensions: &[usize], places: &[usize], block: usize) -> Option<Vec<Vec<f64>>> {
     let correlation = problem.correlation()?;
     let JointLaw::Rows(rows) = &correlation.blocks()[block].law else { return None };
@@ -124,7 +125,7 @@ impl Zone {
         0.5 * upper - 0.5 * lower
     }
 
-    /// The norm of a round zone or a diamond.
+    /// Euclidean norm, or for a diamond the sum of absolute values.
     fn norm(&self, parts: impl Iterator<Item = f64>) -> f64 {
         match self.shape {
             ZoneShape::Diamond => parts.map(f64::abs).sum(),
@@ -137,7 +138,7 @@ impl Zone {
         self.norm((self.places.iter().enumerate()).map(|(c, &place)| (x[place] - self.middle(c)) / self.half(c)))
     }
 
-    /// Least and greatest distance of a box from the middle.
+    /// Least and greatest distance of a box from the middle, in half bands.
     fn reach(&self, region: &[[f64; 2]]) -> [f64; 2] {
         let ends = |coordinate: usize| {
             let (middle, half) = (self.middle(coordinate), self.half(coordinate));
@@ -158,7 +159,7 @@ impl Zone {
         })
     }
 
-    /// Whether no place of a box lies within the zone.
+    /// True if no place of a box lies within the zone.
     pub(super) fn leaves_out(&self, region: &[[f64; 2]]) -> bool {
         match &self.shape {
             ZoneShape::Rows(rows) => self.rows_in(rows, region).next().is_none(),
@@ -180,7 +181,8 @@ impl Zone {
         self.places.iter().zip(ends).for_each(|(&place, end)| region[place] = end);
     }
 
-    /// Whether a dimension is free to take either end of a box, whatever the others are: it is not a coordinate of a zone, or the whole box lies within.
+    /// True if a dimension can take either end of a box for all values of the others. That is so outside a zone, and if
+    /// the zone holds the whole box.
     pub(super) fn frees(&self, place: usize, region: &[[f64; 2]]) -> bool {
         !self.places.contains(&place)
             || match self.shape {
@@ -189,7 +191,7 @@ impl Zone {
             }
     }
 
-    /// Whether a point lies within, but for rounding.
+    /// True if the zone holds the point, within rounding.
     pub(super) fn contains(&self, x: &[f64]) -> bool {
         match &self.shape {
             ZoneShape::Rows(rows) => {
@@ -200,7 +202,7 @@ impl Zone {
         }
     }
 
-    /// Moves a point that lies outside to the edge in its direction, or to the nearest row; `margin` keeps it off the edge.
+    /// Moves an outside point to the edge in its direction, or to the nearest row. `margin` keeps it off the edge.
     pub(super) fn enter(&self, x: &mut [f64], margin: f64) {
         let radius = self.radius(x);
         match &self.shape {
@@ -213,7 +215,7 @@ impl Zone {
                 let nearest = nearest.expect("a block has rows").clone();
                 self.places.iter().zip(nearest).for_each(|(&place, value)| x[place] = value);
             }
-            // Of the middle every direction is as near.
+            // At the middle every direction is equally near, so the first axis is taken.
             ZoneShape::Rim if radius == 0.0 => x[self.places[0]] = self.bands[0][1],
             ZoneShape::Rim => self.scale(x, radius),
             ZoneShape::Disc | ZoneShape::Diamond if radius > 1.0 => self.scale(x, radius * (1.0 + margin)),
@@ -228,13 +230,13 @@ impl Zone {
         }
     }
 
-    /// The coordinates, by their places among the dimensions of the characteristic.
+    /// Coordinates of the zone, as positions among the dimensions of the characteristic.
     pub(super) fn places(&self) -> &[usize] {
         &self.places
     }
 
-    /// The least value over the zone of a plane with these slopes that is 0 at a point: a certain bound of it, and where it is. Only the
-    /// part of the zone counts that lies within a box, as far as the bound is easily had.
+    /// Certain lower bound over the zone of a plane with these slopes that is 0 at `about`, and the place of the least
+    /// value. The bound uses only the part of the zone within a box, as far as that is cheap.
     pub(super) fn lowest(&self, slopes: &[f64], about: &[f64], region: &[[f64; 2]]) -> (f64, Vec<f64>) {
         let exactly = |x: f64| Interval::between(x, x);
         let place = |coordinate: usize| self.places[coordinate];
@@ -256,6 +258,7 @@ impl Zone {
             exactly(upper).add(&exactly(lower)).multiply(&exactly(0.5))
         };
         let rise = |c: usize| half(c).multiply(&exactly(slopes[c]));
+        // Support function of the zone: the largest fall of the plane from the middle.
         let greatest = match self.shape {
             ZoneShape::Diamond => {
                 let size = |c: usize| rise(c).upper().max(-rise(c).lower());
@@ -267,14 +270,14 @@ impl Zone {
         (bound.max(self.lowest_at_edge(slopes, about, region)), self.lowest_place(slopes))
     }
 
-    /// The same over the part of a box on this side of the edge's tangent, by weak duality:
+    /// Lower bound over the part of a box on this side of the edge's tangent, by weak duality:
     ///
     /// ```text
     /// g (x - m) = (g + l n/h) (x - m) - l n (u - u_m)     n: normal of the edge in half bands h, u = x/h
     /// n u <= 1                                            in the zone; on a rim n u >= 1 - |u - n|^2/2 too
     /// ```
     ///
-    /// Boxes along the edge are told apart by it, for its error goes with the square of their width.
+    /// Its error grows with the square of the width of a box, so that it separates boxes along the edge.
     fn lowest_at_edge(&self, slopes: &[f64], about: &[f64], region: &[[f64; 2]]) -> f64 {
         let exactly = |x: f64| Interval::between(x, x);
         let offset =
@@ -285,14 +288,18 @@ impl Zone {
         if radius == 0.0 {
             return f64::NEG_INFINITY;
         }
+        // The normal at the point of the edge in the direction of `about`.
         let normal: Vec<f64> = match self.shape {
             ZoneShape::Diamond => parts.iter().map(|part| part.signum()).collect(),
             _ => parts.iter().map(|part| part / radius).collect(),
         };
         let square: f64 = normal.iter().map(|n| n * n).sum();
         let along: f64 = slopes.iter().zip(&normal).enumerate().map(|(c, (slope, n))| slope * self.half(c) * n).sum();
+        // The multiplier that removes the part of the slopes along the normal, so that only the tangential part is
+        // left.
         let multiplier = -along / square;
         let is_rim = matches!(self.shape, ZoneShape::Rim);
+        // Within a disc or diamond the constraint is an upper bound, so that a negative multiplier gives no bound.
         if multiplier < 0.0 && !is_rim {
             return f64::NEG_INFINITY;
         }
@@ -306,7 +313,7 @@ impl Zone {
             let [from, to] = region[d].map(|x| offset(x, c).subtract(&exactly(normal[c])));
             apart = apart.add(&Interval::between(from.lower(), to.upper()).squared());
         }
-        // Normals are unit vectors but for rounding, and the edge has some too.
+        // Normals are unit vectors within rounding, and the edge has a tolerance too.
         let edge = match multiplier < 0.0 {
             true => exactly(1.0 - EDGE).subtract(&apart.multiply(&exactly(0.5))),
             false => exactly(1.0 + EDGE),
@@ -314,7 +321,7 @@ impl Zone {
         tangential.subtract(&edge.subtract(&reached).multiply(&exactly(multiplier))).lower()
     }
 
-    /// Where a plane with these slopes is least in a round zone or a diamond.
+    /// Place of the least value of a plane with these slopes in a round zone or a diamond.
     fn lowest_place(&self, slopes: &[f64]) -> Vec<f64> {
         let rises: Vec<f64> = slopes.iter().enumerate().map(|(c, slope)| slope * self.half(c)).collect();
         let steepest = (0..rises.len()).max_by(|&a, &b| rises[a].abs().total_cmp(&rises[b].abs())).unwrap_or(0);

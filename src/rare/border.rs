@@ -1,34 +1,37 @@
-//! From a reject to the likeliest point of the limit near it, on the model itself.
+//! Search of the model's limit, from a reject to the likeliest point of the limit near it.
 
 use super::model::Model;
 use super::place::{FARTHEST, dot, length};
 use super::space::Columns;
 use super::target::Target;
 
-/// Parts into which a way is cut at once: points that can be evaluated together.
+/// Parts into which a way is cut at once. Their points are evaluated together.
 const CUTS: usize = 8;
-/// Rounds of that: the border is known to 1/512 of the way.
+/// Rounds of cuts: three give the border to 1/512 of the way.
 const ROUNDS: usize = 3;
-/// Steps of Hasofer and Lind, and the step of their differences in sigmas.
+/// Most steps of Hasofer and Lind.
 const STEPS: usize = 5;
+/// Step of the differences for the slope of the model, in sigmas.
 const STEP: f64 = 0.02;
-/// Where the line is searched about each.
+/// Factors of the tangent point's distance at which the line through it is searched.
 const LINE: [f64; 7] = [0.9, 0.94, 0.97, 1.0, 1.03, 1.06, 1.1];
-/// A step that brings the point nearer by less than this part of its distance is the last.
+/// Least relative gain in distance of a step that is followed by another.
 const GAIN: f64 = 3e-3;
 
-/// Evaluations of [`nearest`] at most, for so many variables.
+/// Greatest number of evaluations of [`bisected`] and [`nearest`] together, for a number of variables.
 pub(super) fn cost(variables: usize) -> usize {
     3 * ROUNDS * (CUTS - 1) + STEPS * (variables + 1 + LINE.len() + CUTS - 1) + variables + 1
 }
 
-/// The border of what is sought, on the way from the means to a reject: bisection in eight parts.
+/// Border of the sought values on the way from the means to a reject, by bisection in eight parts.
 pub(super) fn bisected(target: &Target<'_>, reject: &[f64], model: &mut Model<'_>) -> Vec<f64> {
     between(target, reject, [0.0, 1.0], ROUNDS, model)
 }
 
-/// The likeliest point of the limit near a point of it: [`stepped`], and where that leads nowhere, as beside a jump, the variables that have
-/// no part in the reject go back to their means.
+/// Likeliest point of the limit near a point of it.
+///
+/// It comes from [`stepped`]. If that leads no nearer, as beside a jump, the variables without a part in the reject go
+/// back to their means.
 pub(super) fn nearest(target: &Target<'_>, border: Vec<f64>, model: &mut Model<'_>) -> Vec<f64> {
     match stepped(target, &border, STEPS, model) {
         Some(point) => point,
@@ -36,13 +39,15 @@ pub(super) fn nearest(target: &Target<'_>, border: Vec<f64>, model: &mut Model<'
     }
 }
 
-/// Evaluations of one step, for so many variables.
+/// Evaluations of one step, for a number of variables.
 pub(super) fn step_cost(variables: usize) -> usize {
     variables + LINE.len() + CUTS
 }
 
-/// Steps of Hasofer and Lind (1974; Rackwitz and Fiessler 1978) from a point of the limit, with differences of the model and a search of the
-/// line about each; None where they lead no nearer.
+/// Steps of Hasofer and Lind (1974; Rackwitz and Fiessler 1978) from a point of the limit.
+///
+/// They use differences of the model and a search of the line about each tangent point. Returns None if they lead no
+/// nearer.
 pub(super) fn stepped(target: &Target<'_>, border: &[f64], steps: usize, model: &mut Model<'_>) -> Option<Vec<f64>> {
     let mut best: Option<Vec<f64>> = None;
     for _ in 0..steps {
@@ -65,7 +70,8 @@ pub(super) fn stepped(target: &Target<'_>, border: &[f64], steps: usize, model: 
     best
 }
 
-/// Where the tangent plane at a point of the limit is nearest to the means; None where the model has no slope there.
+/// Point of the tangent plane nearest to the means, from the model's slope at a point of the limit. Returns None if the
+/// model has no slope there.
 fn tangent(target: &Target<'_>, at: &[f64], model: &mut Model<'_>) -> Option<Vec<f64>> {
     let n = at.len();
     let column = |j: usize| (0..=n).map(|row| at[j] + if row == j + 1 { STEP } else { 0.0 }).collect();
@@ -80,7 +86,7 @@ fn tangent(target: &Target<'_>, at: &[f64], model: &mut Model<'_>) -> Option<Vec
     (distance > 0.0 && distance < FARTHEST).then_some(point)
 }
 
-/// The point with those variables at their means without which it is a reject still.
+/// Reject point with all unneeded variables at their means.
 fn without_idle(target: &Target<'_>, point: Vec<f64>, model: &mut Model<'_>) -> Vec<f64> {
     let n = point.len();
     let without = |j: usize| {
@@ -88,7 +94,7 @@ fn without_idle(target: &Target<'_>, point: Vec<f64>, model: &mut Model<'_>) -> 
         moved[j] = 0.0;
         moved
     };
-    // A little beyond the border, on which a reject is none by the smallest step.
+    // A point a little beyond the border, because on the border the smallest step ends the reject.
     let beyond = |point: Vec<f64>| scaled(&point, 1.0 + 1e-3);
     let idle = sought(target, &(0..n).map(|j| beyond(without(j))).collect::<Vec<_>>(), model);
     let kept: Vec<f64> = point.iter().zip(&idle).map(|(z, idle)| if *idle { 0.0 } else { *z }).collect();
@@ -99,7 +105,7 @@ fn without_idle(target: &Target<'_>, point: Vec<f64>, model: &mut Model<'_>) -> 
     }
 }
 
-/// The first crossing, as eighths show it, between two parts of the way to a reject.
+/// First crossing between two parts of the way to a reject, to the resolution of the cuts.
 fn between(
     target: &Target<'_>,
     reject: &[f64],
@@ -118,7 +124,7 @@ fn between(
     scaled(reject, high)
 }
 
-/// Whether each point is a reject.
+/// True for each point that is a reject.
 fn sought(target: &Target<'_>, points: &[Vec<f64>], model: &mut Model<'_>) -> Vec<bool> {
     let n = points.first().map_or(0, Vec::len);
     let columns: Columns = (0..n).map(|j| points.iter().map(|point| point[j]).collect()).collect();

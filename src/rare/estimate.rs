@@ -4,39 +4,41 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use sensitol_numeric::sampling::Estimate;
 
-/// Fewer effective points beyond the limit have an interval of counts, not of sums.
+/// Number of effective points beyond the limit from which the interval is that of a sum, not of counts.
 const MANY: f64 = 30.0;
-/// A greatest weight above so many times the average of those beyond says that there are greater ones.
+/// Ratio of the greatest weight beyond the limit to the average there above which still greater ones are likely.
 const HEAVY: f64 = 3.0;
 /// The 97.5 % quantile of the normal distribution.
 const Z: f64 = 1.959_963_984_540_054;
-/// No hit leaves room for so many, with 97.5 %: `-ln 0.025`.
+/// Mean number of hits of which none is seen with a probability of 2.5 %: `-ln 0.025`.
 const UNSEEN: f64 = 3.688_879_454_113_936;
-/// A probability below this is told as a bound: some 26 sigmas out.
+/// Least probability that is given as a value, some 26 sigmas out. Below it only a bound is given.
 const FAINTEST: f64 = 1e-150;
-/// Points of a weight up to so many times the greatest of those beyond the limit lie next to these; farther
-/// where weights differ widely: those not seen differ more.
+/// Greatest ratio of a weight to the greatest beyond the limit for a point that lies next to it. The ratio is larger if
+/// weights differ widely, because unseen ones differ more.
 const NEXT: f64 = 3.0;
 
-/// Points as they were weighed, and whether each lies beyond the limit.
+/// Sums over weighted points, each beyond the limit or not.
 ///
-/// Weights are as small as the probability, and their squares would be nothing at 27 sigma: all sums are of weights by the greatest of
-/// those beyond, whose logarithm is `scale`.
+/// Weights are as small as the probability, and their squares would underflow at 27 sigma. All sums are therefore of
+/// weights divided by the greatest beyond the limit, whose logarithm is `scale`.
 #[derive(Debug, Clone)]
 pub(super) struct Weighed {
     scale: f64,
-    /// The sum and the sum of squares of those beyond.
+    /// Sum of the weights beyond the limit.
     sum: f64,
+    /// Sum of their squares.
     squares: f64,
-    /// Of every stage.
     stages: Vec<Stage>,
-    /// How many points there are, how many of these beyond, and how many of unknown value.
+    /// Number of points, including those without a value.
     points: u64,
+    /// Number of points beyond the limit.
     hits: u64,
-    /// Logarithms of the weights of the others, and the sum of those without a value.
+    /// Logarithms of the weights of the points within the limit.
     others: Vec<f64>,
+    /// Sum of the weights of the points without a value.
     unknown: f64,
-    /// The most that lies beyond where no point does, as far as that is known otherwise.
+    /// Bound of the probability from exploration, used if no point lies beyond.
     most: Option<f64>,
 }
 
@@ -56,7 +58,7 @@ impl Default for Weighed {
     }
 }
 
-/// How many points a stage had, the sum of the weights beyond, and the variance of that.
+/// Points of a stage, the sum of their weights beyond, and the variance of that sum.
 #[derive(Debug, Clone, Copy, Default)]
 struct Stage {
     points: f64,
@@ -64,41 +66,42 @@ struct Stage {
     variance: f64,
 }
 
-/// Stages that differ by more than so many squared standard errors, on average, do not agree by chance.
+/// Mean squared deviation of the stages, in squared standard errors, above which they disagree by more than chance.
 const APART: f64 = 4.0;
 
-/// A stage confirms the standard error of all points by one that is up to so many times that which its number of points allows,
+/// Greatest ratio of a stage's standard error to the one that its number of points allows, if it confirms that of all
+/// points.
 const CONFIRMING: f64 = 1.5;
-/// and by a value no more than so many standard errors of the difference away.
+/// Greatest difference of a confirming stage from the others, in standard errors of the difference.
 const AGREEING: f64 = 3.0;
 
-/// A standard error that few points bear is itself uncertain, by about the root of one by their number: the interval is wider by so many times
-/// that.
+/// Factor of the uncertainty of a standard error, by which the interval is wider. That uncertainty is about one by the
+/// root of the number of points that bear it.
 const UNSURE: f64 = 5.0;
-/// A single point that bears more than this widens the interval by its part.
+/// Part of the estimate on a single point above which the interval is wider by this part.
 const ALONE: f64 = 0.1;
 
-/// A probability, as far as it is known.
+/// Estimate of a probability.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct ProbabilityEstimate {
-    /// None where no point lies beyond.
+    /// None if no point lies beyond.
     pub(super) probability: Option<Estimate>,
     pub(super) interval: [f64; 2],
-    /// If no point without a value lies beyond, and if all do.
+    /// Probability if no point without a value lies beyond, and if all do.
     pub(super) bounds: [f64; 2],
     pub(super) hits: u64,
-    /// Points with a value, those beyond and the others.
+    /// Points with a value, beyond the limit or not.
     pub(super) points: u64,
     pub(super) effective: f64,
-    /// The greatest part of it that is a single point's.
+    /// Part of the estimate that the heaviest point has.
     pub(super) greatest_part: Option<f64>,
 }
 
 impl Weighed {
-    /// Adds a stage: points with the component that each was drawn from, the logarithm of its weight, and whether it is one of those
-    /// sought, None where the model has no value.
+    /// Adds a stage. Each point has the component that it was drawn from, the logarithm of its weight, and true if it
+    /// is sought. The last is None if the model has no value.
     ///
-    /// How many points a component has is not left to chance, so that the variance is the sum of the components' own.
+    /// The number of points of each component is fixed, so that the variance is the sum of the components' own.
     pub(super) fn add(&mut self, components: usize, points: &[(usize, f64, Option<bool>)]) {
         let hits = points.iter().filter(|point| point.2 == Some(true));
         self.rescale(hits.map(|point| point.1).fold(self.scale, f64::max));
@@ -122,7 +125,7 @@ impl Weighed {
             stage.points += n;
             stage.sum += sum;
             self.squares += squares;
-            // Of a single point nothing is known but its square.
+            // A single point gives no deviation, so its square is used.
             let apart = if n > 1.0 { (squares - sum * sum / n).max(0.0) * n / (n - 1.0) } else { squares };
             stage.variance += apart;
         }
@@ -130,23 +133,23 @@ impl Weighed {
         self.stages.push(stage);
     }
 
-    /// Takes what lies beyond to be no more than this, should no point lie there.
+    /// Sets the bound of the probability that is used if no point lies beyond.
     pub(super) fn bound(&mut self, most: Option<f64>) {
         self.most = most;
     }
 
-    /// Begins anew.
+    /// Drops all points, and keeps the bound.
     pub(super) fn forget(&mut self) {
         *self = Self { most: self.most, ..Self::default() };
     }
 
-    /// The part of the sum that points of these logarithms of weights bear.
+    /// Part of the sum that is borne by points with these logarithms of weights.
     pub(super) fn part(&self, logarithms: impl Iterator<Item = f64>) -> f64 {
         logarithms.map(|weight| libm::exp(weight - self.scale)).sum::<f64>() / self.sum
     }
 
-    /// Whether the last stage by itself agrees with those before, and has the standard error that its part of the points allows, half as
-    /// much again at most.
+    /// True if the last stage alone agrees with those before, and its standard error is at most half as much again as
+    /// its number of points allows.
     pub(super) fn confirmed(&self, wanted: f64) -> bool {
         let Some((last, before)) = self.stages.split_last().filter(|(_, before)| !before.is_empty()) else {
             return false;
@@ -162,7 +165,7 @@ impl Weighed {
         last.variance.sqrt() <= allowed * last.sum && apart <= AGREEING * error
     }
 
-    /// Measures all sums by a greater weight, whose logarithm this is.
+    /// Changes the scale of all sums to a greater weight with this logarithm.
     fn rescale(&mut self, scale: f64) {
         if scale > self.scale {
             let by = libm::exp(self.scale - scale);
@@ -176,12 +179,14 @@ impl Weighed {
         }
     }
 
-    /// The variance of the sum: of all components of all stages; more where stages do not agree (Birge 1932), because
-    /// something has been found that some of them knew nothing of.
+    /// Variance of the sum: the sum over all components of all stages.
+    ///
+    /// It is greater if the stages disagree (Birge 1932), because a late stage has then found rejects that earlier ones
+    /// missed.
     fn variance(&self) -> f64 {
         let (mean, all) = (self.sum / self.points as f64, self.stages.iter().map(|stage| stage.variance).sum::<f64>());
         let apart = |stage: &Stage| {
-            // A stage that saw nothing has no variance of its own: it has its part of that of all.
+            // A stage without a hit has no variance of its own, so it gets its part of that of all.
             let variance = stage.variance.max(all * stage.points / self.points as f64);
             (stage.sum - mean * stage.points).powi(2) / variance
         };
@@ -189,12 +194,14 @@ impl Weighed {
         if ratio > APART { all * ratio } else { all }
     }
 
-    /// The mean of the weights beyond; its standard error is that of the mean.
+    /// Estimate from the mean of the weights beyond the limit and its standard error. Returns None if there is no
+    /// point.
     ///
-    /// The interval is lognormal where many points bear it, wider by what these leave uncertain of the standard error, and that of a weighted count where few do or their weights
-    /// differ widely (Fay and Feuer 1997; with a greater weight than any seen in the second case).
-    /// The region next to the farthest of them, where no point was beyond, may hold as much as no hit leaves room for: the
-    /// two are joined as Zou and Donner (2008) do. The region that lies farther is taken to be as the points say: empty.
+    /// The interval is lognormal if many points bear it, and wider by the uncertainty of the standard error. If few
+    /// points bear it or their weights differ widely, it is that of a weighted count (Fay and Feuer 1997), in the
+    /// second case with a greater weight than any seen. The region next to the farthest of them, where no point was
+    /// beyond, may hold as much as the bound for no hit. The two are joined by the method of Zou and Donner (2008). The
+    /// region farther out is taken to be empty, as the points show.
     pub(super) fn found(&self) -> Option<ProbabilityEstimate> {
         if self.points == 0 {
             return None;
@@ -244,21 +251,21 @@ impl Weighed {
         Some(if probability(value) < FAINTEST { found.out_of_reach() } else { found })
     }
 
-    /// Points with a value.
+    /// Number of points with a value.
     fn seen(&self) -> u64 {
         self.hits + self.others.len() as u64
     }
 }
 
 impl ProbabilityEstimate {
-    /// Of what is so improbable that only a bound is told.
+    /// Bound in place of an estimate, for a probability below `FAINTEST`.
     fn out_of_reach(self) -> Self {
         let bound = |high: f64| high.max(FAINTEST);
         let (interval, bounds) = ([0.0, bound(self.interval[1])], [0.0, bound(self.bounds[1])]);
         Self { probability: None, interval, bounds, greatest_part: None, ..self }
     }
 
-    /// Of everything else than what was sought. Where nothing of that was seen, everything else is all.
+    /// Estimate for the complement of the sought values. If none of those was seen, its probability is 1.
     pub(super) fn complement(self) -> Self {
         let all = Estimate { value: 1.0, standard_error: None };
         let rest = |Estimate { value, standard_error }: Estimate| Estimate { value: 1.0 - value, standard_error };
@@ -273,13 +280,13 @@ impl ProbabilityEstimate {
 }
 
 impl Weighed {
-    /// The greatest weight of those sought by the average of them.
+    /// Greatest weight beyond the limit divided by the average there.
     fn spread(&self) -> f64 {
         self.hits as f64 / self.sum
     }
 
-    /// The weight, on average, of the points next to those sought, on the side of the means, of which none is sought; of the
-    /// nearest of them where none is near.
+    /// Average weight of the points next to those sought, on the side of the means. If none is near, the weight of the
+    /// nearest.
     fn next(&self) -> f64 {
         let times = NEXT * (if self.spread() > HEAVY { self.spread() } else { 1.0 });
         let above = || self.others.iter().map(|weight| weight - self.scale).filter(|&by| by > 0.0);
@@ -294,7 +301,7 @@ impl Weighed {
     }
 }
 
-/// The 95 % interval of a sum of weighted counts with this value, this sum of squares and this greatest weight.
+/// The 95 % interval of a weighted count with this value, this sum of squares and this greatest weight.
 fn counted(value: f64, squares: f64, greatest: f64) -> [f64; 2] {
     let quantile = |p: f64, freedom: f64| ChiSquared::new(freedom).map_or(f64::NAN, |law| law.inverse_cdf(p));
     let low = squares / (2.0 * value) * quantile(0.025, 2.0 * value * value / squares);
@@ -302,16 +309,17 @@ fn counted(value: f64, squares: f64, greatest: f64) -> [f64; 2] {
     [low, wide / (2.0 * more) * quantile(0.975, 2.0 * more * more / wide)]
 }
 
-/// By which part of a function's variance each component of a mixture should be drawn.
+/// Parts of the components that minimise the variance of the weights.
 ///
-/// Minimises `sum_i w_i / sum_k a_k h_ik`, the second moment of the weights as `hits` estimate it, over the parts `a`: a
-/// convex function, by multiplicative steps that never leave the simplex (Silvey, Titterington and Torsney 1978, with the
-/// exponent 1/2 of Yu 2010).
+/// Minimises `sum_i w_i / sum_k a_k h_ik`, the second moment of the weights estimated from `hits`, over the parts `a`.
+/// This is a convex function. The multiplicative steps never leave the simplex (Silvey, Titterington and Torsney 1978,
+/// with the exponent 1/2 of Yu 2010).
 ///
-/// Shapes: a hit is the logarithm of its weight and those of the heights of the K components there; `start` has length K.
+/// Shapes: a hit has the logarithm of its weight, and the logarithms of the heights of the K components there. `start`
+/// has length K.
 pub(super) fn best_parts(hits: &[(f64, Vec<f64>)], start: &[f64]) -> Vec<f64> {
     let highest = |heights: &[f64]| heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    // The gains of all hits by the greatest of them: w h / d^2 is of the size of w / h.
+    // Gains of all hits relative to the greatest: w h / d^2 is of the size of w / h.
     let sizes: Vec<f64> = hits.iter().map(|(weight, heights)| weight - highest(heights)).collect();
     let greatest = highest(&sizes);
     let scaled: Vec<(f64, Vec<f64>)> = (hits.iter().zip(&sizes))
@@ -349,7 +357,7 @@ mod tests {
         }
     }
 
-    /// Of two components with heights (4, 0) where hits lie, all goes to the first.
+    /// All goes to the first of two components with heights (4, 0) at the hits.
     #[test]
     fn parts_go_where_hits_are() {
         let (none, four) = (f64::NEG_INFINITY, 4f64.ln());

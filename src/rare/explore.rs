@@ -1,7 +1,8 @@
-//! Points of the model itself before any are drawn: rejects where the surrogate knows of none, and a bound where there are none.
+//! Exploration of the model before any points are drawn. It finds rejects that the surrogate does not predict, and a
+//! bound if there are none.
 //!
-//! The groups are drawn from the inputs' own density and from wider ones, `N(0, s^2)` in independent normal variables, and beside the
-//! switches that the model tells of. No estimate rests on these points: they say where to draw.
+//! Groups of points are drawn from the inputs' own density, from wider ones `N(0, s^2)` in normal space, and beside the
+//! switches of the model. No estimate rests on these points. They show where to draw.
 
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
@@ -15,31 +16,36 @@ use super::target::Target;
 use crate::verification::seldom_points;
 use sensitol_numeric::distribution::standard_normal;
 
-/// How wide the groups are; with more variables than this, all points of a wide group lie far out, where nothing is likely.
+/// Widths of the groups in sigmas.
 const SCALES: [f64; 4] = [1.0, 1.5, 2.0, 3.0];
+/// Widths for more than `MANY_VARIABLES` variables: all points of a wider group would lie far out, where nothing is
+/// likely.
 const MODEST_SCALES: [f64; 3] = [1.0, 1.2, 1.5];
+/// Number of variables above which the modest widths are used.
 const MANY_VARIABLES: usize = 30;
-/// A group for the limits that nothing has reached: so many times as wide as the widest, and so many times as many points.
+/// Width of a further group for limits that nothing has reached, relative to the widest group.
 const WIDER: f64 = 2.0;
+/// Number of points of that group, relative to the others.
 const LARGER: usize = 4;
-/// The most points of a group, and the part of all points that it is: less where there are few, which the surrogate needs.
+/// Most points of a group.
 const MOST: usize = 400;
+/// Part of all points for one group, least and greatest. It is less for few points, which the other stages need.
 const PART: [f64; 2] = [1.0 / 50.0, 1.0 / 25.0];
+/// Number of points from which the greatest part is used.
 const ENOUGH: f64 = 2000.0;
-/// The probability that a bound is wrong by chance: 2.5 %, the upper half of a 95 % interval.
+/// Probability that a bound is wrong by chance: 2.5 %, the upper half of a 95 % interval.
 const CHANCE: f64 = 0.025;
 
-/// The model's answers before any points were drawn.
+/// Values of the model at the explored points.
 pub(super) struct Explored {
-    /// Normal variables of all points.
     normals: Columns,
     answers: Vec<Answers>,
-    /// The width of the group of every point; None for those beside switches.
+    /// Width of the group of every point. None for those beside switches.
     scales: Vec<Option<f64>>,
 }
 
 impl Explored {
-    /// Evaluates the groups: a quarter of `samples` points at most, two fifths where the surrogate has not `reached` a target.
+    /// Evaluates the groups: at most a quarter of `samples`, or two fifths if the surrogate has not `reached` a target.
     pub(super) fn new(
         targets: &[Target<'_>],
         reached: &[bool],
@@ -73,7 +79,7 @@ impl Explored {
         explored
     }
 
-    /// Points in the half-spaces beyond switches that are seldom met.
+    /// Evaluates points in the half-spaces beyond switches that are seldom met.
     fn beside_switches(&mut self, targets: &[Target<'_>], each: usize, seed: u64, model: &mut Model<'_>) {
         let n = self.normals.len();
         let varying: Vec<usize> = model.space.dimensions().collect();
@@ -109,12 +115,12 @@ impl Explored {
         }
     }
 
-    /// Every point's value of a characteristic, None without one.
+    /// Value of a characteristic at every point. None if it has none.
     fn values(&self, characteristic: usize) -> impl Iterator<Item = Option<f64>> + '_ {
         self.answers.iter().flat_map(move |answers| answers.values(characteristic))
     }
 
-    /// The points of the inputs' own density, counted for a target.
+    /// Counts the points of the inputs' own density for a target.
     pub(super) fn plain(&self, target: &Target<'_>) -> PlainPoints {
         let mut plain = PlainPoints::default();
         let own: Vec<usize> = (0..self.scales.len()).filter(|&row| self.scales[row] == Some(1.0)).collect();
@@ -126,7 +132,7 @@ impl Explored {
         plain
     }
 
-    /// The points that a target seeks, nearest to the means first.
+    /// Rejects of a target, sorted with the nearest to the means first.
     pub(super) fn rejects(&self, target: &Target<'_>) -> Vec<Vec<f64>> {
         let sought = self.values(target.characteristic).enumerate();
         let sought = sought.filter(|(_, value)| value.is_some_and(|value| target.sought(value)));
@@ -138,14 +144,14 @@ impl Explored {
         points.into_iter().map(|(_, point)| point).collect()
     }
 
-    /// The largest probability of a target that no point has reached, if it is a half-space.
+    /// Largest possible probability of a target that no point has reached, if the target is a half-space.
     ///
-    /// A half-space at the distance `b` holds a point of `N(0, s^2)` with the probability `Phi(-b/s)`, whatever its direction. That none
-    /// of `n_s` points of each scale lies in it has the probability `prod_s (1 - Phi(-b/s))^(n_s)`, which rises with `b`: where it is
-    /// 2.5 %, `b` is the least distance that is left, and `Phi(-b)` the most that can lie beyond. Of a single scale,
-    /// `b = s Phi^-1(0.025^(1/n))`.
+    /// A half-space at the distance `b` holds a point of `N(0, s^2)` with the probability `Phi(-b/s)`, for any
+    /// direction. The probability that none of `n_s` points of each scale lies in it is `prod_s (1 - Phi(-b/s))^(n_s)`,
+    /// which rises with `b`. At the `b` where it is 2.5 %, `b` is the least possible distance and `Phi(-b)` the
+    /// greatest possible probability beyond. For a single scale, `b = s Phi^-1(0.025^(1/n))`.
     ///
-    /// None where a point reached it, or none has a value.
+    /// Returns None if a point reached the target, or no point has a value.
     pub(super) fn bound(&self, target: &Target<'_>) -> Option<f64> {
         let mut groups: Vec<(f64, f64)> = Vec::new();
         for (value, scale) in self.values(target.characteristic).zip(&self.scales) {
@@ -162,7 +168,7 @@ impl Explored {
     }
 }
 
-/// See [`Explored::bound`]: of scales and numbers of points.
+/// Bound of [`Explored::bound`] from pairs of scale and number of points.
 fn half_space(groups: &[(f64, f64)]) -> Option<f64> {
     let none = |b: f64| {
         groups.iter().map(|&(scale, points)| points * libm::log1p(-standard_normal::sf(b / scale))).sum::<f64>()
@@ -171,7 +177,7 @@ fn half_space(groups: &[(f64, f64)]) -> Option<f64> {
     if groups.is_empty() || none(low) > libm::log(CHANCE) {
         return None;
     }
-    // Halved until a double has no more digits.
+    // Sixty halvings use up the digits of a double.
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
         if none(middle) < libm::log(CHANCE) {
@@ -187,17 +193,17 @@ fn half_space(groups: &[(f64, f64)]) -> Option<f64> {
 mod tests {
     use super::*;
 
-    /// 400 points three times as wide of which none is a reject: `1 - Phi(-b/3) = 0.025^(1/400)`, and `Phi(-7.07)` is 8e-13 (tables
-    /// of the normal distribution give `Phi(-2.357) = 0.0092`).
+    /// 400 points three times as wide without a reject: `1 - Phi(-b/3) = 0.025^(1/400)`, and `Phi(-7.07)` is 8e-13
+    /// (tables of the normal distribution give `Phi(-2.357) = 0.0092`).
     #[test]
     fn no_reject_bounds_the_distance() {
         let bound = half_space(&[(3.0, 400.0)]).unwrap();
         let distance = -standard_normal::quantile(bound);
         assert!((distance - 7.07).abs() < 0.01, "{distance}");
-        // More points, or wider ones, say more.
+        // More points, or wider ones, lower the bound.
         assert!(half_space(&[(3.0, 800.0)]).unwrap() < bound && half_space(&[(6.0, 400.0)]).unwrap() < bound);
         assert!(half_space(&[(1.5, 400.0), (3.0, 400.0)]).unwrap() < bound);
-        // Of a half-space through the middle three points in four would say nothing.
+        // Three points cannot exclude a half-space through the middle: all miss it with a probability of 1/8.
         assert_eq!(half_space(&[(1.0, 3.0)]), None);
         assert_eq!(half_space(&[]), None);
     }

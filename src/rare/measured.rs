@@ -1,7 +1,8 @@
-//! The part of a yield that measured samples leave open, beside the points of the model.
+//! Error of a yield from the size of measured samples, in addition to that of the points of the model.
 //!
-//! Importance sampling knows the rejects of the rows at hand to a few percent. That is the rejects of the process only as far as its rows
-//! are ([`MeasuredBasis`]); the shares of the samples in the variance are those of the surrogate.
+//! Importance sampling gives the reject rate of the measured rows to a few percent. The reject rate of the process is
+//! known only as far as the rows represent it ([`MeasuredBasis`]). The shares of the samples in the variance come from
+//! the surrogate.
 
 use super::RareCharacteristic;
 use crate::method::Outcome;
@@ -11,7 +12,7 @@ use sensitol_numeric::capability::cpk;
 use sensitol_numeric::sampling::{MeasuredBasis, MeasuredSample, SamplingInterval};
 use sensitol_numeric::verdict;
 
-/// Adds what measured samples leave open to the intervals of the yields.
+/// Adds the errors of measured samples to the intervals of the yields.
 pub(super) fn with_sampling(
     problem: &Problem,
     outcome: &Outcome,
@@ -30,8 +31,9 @@ pub(super) fn with_sampling(
     characteristics.into_iter().enumerate().map(one).collect()
 }
 
-/// The interval of a joint yield with what the samples leave open: no fewer assemblies are rejected than by one characteristic, and no more
-/// than by all of them one after the other.
+/// Interval of the joint yield with the errors of the samples.
+///
+/// Its bounds: no fewer assemblies are rejected than by any one characteristic, and no more than by the sum of all.
 pub(super) fn joint(value: Option<f64>, interval: [f64; 2], characteristics: &[RareCharacteristic]) -> [f64; 2] {
     let value = value.unwrap_or(interval[1]);
     let (mut most, mut least, mut measured) = (1.0 - value, 0.0f64, false);
@@ -46,7 +48,8 @@ pub(super) fn joint(value: Option<f64>, interval: [f64; 2], characteristics: &[R
     }
 }
 
-/// None for a characteristic that depends on no sample, or has no yield.
+/// Error of a yield from the measured samples. Returns None if the characteristic depends on no sample, or has no
+/// yield.
 fn sampling(
     problem: &Problem,
     outcome: &Outcome,

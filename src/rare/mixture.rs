@@ -1,16 +1,17 @@
-//! The density that points are drawn from: a mixture of densities beyond the limits, near them, the inputs' own and a wider one.
+//! Density from which points are drawn: a mixture of densities beyond the limits, near them, the inputs' own and a
+//! wider one.
 //!
-//! With `a` the direction of a design point and `c = a.z`, a component draws what is across from the inputs' own law (spread
-//! where the limit bends) and `c` from the tail of a normal variable beyond `t - shift`, where `t` is the crossing of the
-//! surrogate on that very line. Relative to the inputs' density it has the height
+//! Let `a` be the direction of a design point and `c = a.z`. A component draws the coordinates across from the inputs'
+//! own distribution, spread where the limit bends. It draws `c` from the tail of a normal variable beyond `t - shift`,
+//! where `t` is the crossing of the surrogate on that very line. Relative to the inputs' density it has the height
 //!
 //! ```text
 //! h(z) = s(z) [c > t - shift]/Phi(shift - t)          s: of the spreads, 1 without any
 //! ```
 //!
-//! so that a perfect surrogate leaves nothing to chance, and a poor one costs accuracy only: whatever `t` is, it is the same
-//! where points are drawn and where they are weighed. At a place that the model itself showed, `t` is the distance of that place on
-//! every line: a half-space.
+//! so that a perfect surrogate leaves no variance. A poor one costs accuracy but gives no bias, because drawing and
+//! weighting use the same `t`. At a place from the model itself, `t` is the distance of that place on every line: a
+//! half-space.
 
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
@@ -22,8 +23,8 @@ use super::target::Target;
 use sensitol_numeric::distribution::standard_normal;
 use sensitol_numeric::parallel::prelude::*;
 
-/// How likely what lies beyond a component's shifted limit is, by what lies beyond the limit itself, and the component's part
-/// of the points as long as nothing else is known: from far beyond the limit to far before it.
+/// Layers of a place from far beyond the limit to far before it. Each is a pair: the probability beyond the shifted
+/// limit relative to that beyond the limit itself, and the first part of the place's points.
 const LAYERS: [(f64, f64); 9] = [
     (1e-3, 0.03),
     (0.03, 0.05),
@@ -35,60 +36,62 @@ const LAYERS: [(f64, f64); 9] = [
     (150.0, 0.07),
     (1000.0, 0.06),
 ];
-/// The levels where the surrogate does not reach a limit.
+/// Probabilities beyond the shifted limit of the layers, if the surrogate does not reach the limit.
 const LEVELS: [f64; 5] = [0.1, 1e-2, 1e-4, 1e-6, 1e-9];
-/// A target that is more likely than this needs no component but the inputs' own density.
+/// Greatest probability of a layer. A more likely layer needs no component but the inputs' own density.
 const LIKELY: f64 = 0.2;
-/// The parts of the points from the inputs' own density and from a wider one, where that many points are to spare and where they are not.
-/// They find what nothing else knows of, and bound the weights there.
+/// Parts of the points from the inputs' own density and from a wider one, for at least `MANY` points. They find rejects
+/// outside all places, and bound the weights there.
 const SPARE: [f64; 2] = [0.1, 0.1];
+/// The two parts for fewer than `MANY` points.
 const SCARCE: [f64; 2] = [0.05, 0.03];
-/// So many points are enough to spare some.
+/// Number of points that is enough for the greater parts.
 const MANY: u64 = 2000;
-/// How much wider the wide density is, and the variables up to which it is drawn from: of 12, one point in 130 times the density.
+/// Standard deviation of the wide density relative to the inputs' own.
 const WIDTH: f64 = 1.5;
+/// Greatest number of variables for the wide density: for 12, one point in 130 times the density.
 const FEW_VARIABLES: usize = 12;
-/// The part of the points of a target for the half-spaces that the model itself showed, where the surrogate has places too.
+/// Part of a target's points for half-spaces from the model itself, if the surrogate has places too.
 const SHOWN: f64 = 0.3;
-/// Rows that are drawn and weighed together.
+/// Rows that are drawn and weighted together.
 const ROWS: usize = 512;
 
-/// One component.
+/// One component of the mixture.
 #[derive(Debug, Clone, Copy)]
 enum Component {
-    /// The inputs' own density.
+    /// Inputs' own density.
     Plain,
-    /// The same with all standard deviations wider by [`WIDTH`].
+    /// Inputs' density with all standard deviations wider by [`WIDTH`].
     Wide,
-    /// Beyond the shifted limit at a place.
+    /// Density beyond the shifted limit at a place.
     Beyond { place: usize, shift: f64 },
 }
 
-/// All components.
 pub(super) struct Mixture<'a> {
     targets: &'a [Target<'a>],
     places: Vec<Place>,
     components: Vec<Component>,
-    /// The parts of the components at first.
+    /// First parts of the components.
     pub(super) parts: Vec<f64>,
     dimensions: usize,
 }
 
-/// Where a place's line through each point crosses, how far out on it the point lies, and the logarithm of what the spreads make of
-/// the height.
+/// Lines through all points in the direction of a place: distance of the point along it, distance of the crossing, and
+/// logarithm of the spreads' factor of the height.
 struct Crossing {
     along: Vec<f64>,
     crossing: Vec<f64>,
     spread: Vec<f64>,
 }
 
-/// Where a component begins on a line that crosses there; farther out a double knows no probability.
+/// Start of a component on a line with a crossing. It is at most `FARTHEST`, because a double cannot hold the
+/// probabilities farther out.
 fn edge(crossing: f64, shift: f64) -> f64 {
     (crossing - shift).min(FARTHEST)
 }
 
 impl<'a> Mixture<'a> {
-    /// For these targets, all of which get the same part, and about so many points.
+    /// Mixture for these targets, which get equal parts, and for about so many points.
     pub(super) fn new(targets: &'a [Target<'a>], places: Vec<Place>, points: u64) -> Self {
         let dimensions = targets.first().map_or(0, |target| target.space.len());
         let [plain, wide] = if points < MANY { SCARCE } else { SPARE };
@@ -106,7 +109,7 @@ impl<'a> Mixture<'a> {
         mixture
     }
 
-    /// Shares a part out among the places of a target.
+    /// Distributes a part among the places of a target.
     fn share(&mut self, target: usize, part: f64) {
         let of = |shown: bool| -> Vec<usize> {
             let mine = |place: &Place| place.target == target && (place.kind == PlaceKind::HalfSpace) == shown;
@@ -122,12 +125,14 @@ impl<'a> Mixture<'a> {
             true => standard_normal::sf(self.places[p].distance),
             false => 0.0,
         };
-        // As their probabilities, but not less than a tenth of an equal part: the nearest place need not be the whole story.
+        // In proportion to their probabilities, but not less than a tenth of an equal part, because the nearest place
+        // need not hold most of the rejects.
         let total: f64 = known.iter().map(|&p| probability(p)).sum();
         let even = if total > 0.0 { 0.1 } else { 1.0 };
         let by = |p: usize| if total > 0.0 { 0.9 * probability(p) / total } else { 0.0 } + even / known.len() as f64;
         let of_known = known.iter().map(|&p| (p, part * (1.0 - shown_part) * by(p)));
-        // Half evenly, and half as the roots of their probabilities: how much lies in a half-space is not known.
+        // Half evenly, and half as the roots of their probabilities, because the share of rejects in a half-space is
+        // not known.
         let roots: f64 = shown.iter().map(|&p| probability(p).sqrt()).sum();
         let root = |p: usize| if roots > 0.0 { 0.5 * probability(p).sqrt() / roots } else { 0.0 };
         let of_shown = shown.iter().map(|&p| (p, part * shown_part * (0.5 / shown.len() as f64 + root(p))));
@@ -155,12 +160,12 @@ impl<'a> Mixture<'a> {
         }
     }
 
-    /// How many components there are that no place has: the first ones.
+    /// Number of the components without a place. They are the first ones.
     pub(super) fn without_place(&self) -> usize {
         self.components.iter().take_while(|component| !matches!(component, Component::Beyond { .. })).count()
     }
 
-    /// The logarithm of the weight that each point has with the parts as they are at first.
+    /// Logarithm of the weight of each point with the first parts.
     pub(super) fn weights(&self, points: &Columns) -> Vec<f64> {
         let weight = |heights: Vec<f64>| {
             let highest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -171,7 +176,6 @@ impl<'a> Mixture<'a> {
         self.heights(points).into_iter().map(weight).collect()
     }
 
-    /// How many components.
     pub(super) fn len(&self) -> usize {
         self.components.len()
     }
@@ -180,7 +184,8 @@ impl<'a> Mixture<'a> {
         &self.places
     }
 
-    /// So many points of each component, one after the other. The same for any number of threads.
+    /// Draws the given number of points from each component, in order. The result does not depend on the number of
+    /// threads.
     pub(super) fn draw(&self, counts: &[usize], seed: u64) -> Columns {
         let mut tasks = Vec::new();
         for (component, &count) in counts.iter().enumerate() {
@@ -221,7 +226,7 @@ impl<'a> Mixture<'a> {
         columns
     }
 
-    /// The logarithm of every component's height relative to the inputs' own density: a row for every point.
+    /// Logarithms of the heights of all components relative to the inputs' own density, a row for every point.
     pub(super) fn heights(&self, points: &Columns) -> Vec<Vec<f64>> {
         let rows = points.first().map_or(0, Vec::len);
         let firsts: Vec<usize> = (0..rows).step_by(ROWS).collect();
@@ -245,14 +250,14 @@ impl<'a> Mixture<'a> {
         firsts.par_iter().flat_map_iter(of).collect()
     }
 
-    /// The logarithm of the height of the wide density: `N(0, s^2)` by `N(0, 1)`.
+    /// Logarithm of the height of the wide density: `N(0, s^2)` divided by `N(0, 1)`.
     fn wide(&self, points: &Columns, row: usize) -> f64 {
         let square: f64 = points.iter().map(|column| column[row] * column[row]).sum();
         0.5 * square * (1.0 - 1.0 / (WIDTH * WIDTH)) - self.dimensions as f64 * libm::log(WIDTH)
     }
 
-    /// On the line through every point in the direction of the place: where the surrogate crosses the limit, near where it
-    /// does so at the place itself.
+    /// Crossing of the surrogate with the limit on the line through every point in the direction of the place, near its
+    /// crossing at the place.
     fn crossing(&self, place: &Place, points: &Columns) -> Crossing {
         let rows = points.first().map_or(0, Vec::len);
         let along_it = along(points, &place.direction);
@@ -269,9 +274,9 @@ impl<'a> Mixture<'a> {
         Crossing { along: along_it, crossing, spread }
     }
 
-    /// Six steps of the secant method; where they lead nowhere, the distance of the place.
+    /// Crossings by six steps of the secant method. A line without convergence keeps the distance of the place.
     fn secant(&self, place: &Place, points: &Columns, along: &[f64]) -> Vec<f64> {
-        /// So far from the place's own distance a crossing may lie.
+        /// Greatest distance of a crossing from that of the place, in sigmas.
         const REACH: f64 = 5.0;
         let target = &self.targets[place.target];
         let margins = |at: &[f64]| {
@@ -291,7 +296,7 @@ impl<'a> Mixture<'a> {
             for row in 0..now.len() {
                 let slope = (here[row] - before[row]) / (now[row] - last[row]);
                 let step = here[row] / slope;
-                // Outward it must rise.
+                // The margin must rise outward.
                 let next = if slope > 0.0 && step.is_finite() { clamped(now[row] - step) } else { now[row] };
                 if (next - now[row]).abs() > 1e-9 {
                     (last[row], before[row], now[row]) = (now[row], here[row], next);
@@ -302,7 +307,7 @@ impl<'a> Mixture<'a> {
     }
 }
 
-/// How far every point lies in a direction.
+/// Projection of every point on a direction.
 fn along(points: &Columns, direction: &[f64]) -> Vec<f64> {
     let mut along = vec![0.0; points.first().map_or(0, Vec::len)];
     for (column, part) in points.iter().zip(direction) {

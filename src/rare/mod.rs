@@ -1,25 +1,25 @@
-//! Rare events: the probability beyond each limit, by importance sampling that is placed with the surrogate.
+//! Rare events: the probability beyond each limit, by importance sampling that the surrogate guides.
 //!
-//! A yield of 0.999997 is out of the reach of plain sampling: a million evaluations see three rejects. The surrogate of a few
-//! hundred evaluations knows nearly where these lie. Points are drawn there, from a mixture of densities beyond the
-//! surrogate's limit, near it, and the inputs' own, and the model itself says which of them are rejects. With `h_k` the
-//! height of component k relative to the inputs' density and `a_k` its part of the n points,
+//! A yield of 0.999997 is out of reach of plain sampling: a million evaluations find three rejects. A surrogate of a
+//! few hundred evaluations predicts nearly where they lie. Points are drawn there from a mixture of densities: beyond
+//! the surrogate's limit, near it, and the inputs' own. The model itself decides which of them are rejects. With `h_k`
+//! the height of component k relative to the inputs' density and `a_k` its part of the n points,
 //!
 //! ```text
 //! P = E[y beyond the limit] = (1/n) sum_i w_i [y(z_i) beyond],      w_i = 1/sum_k a_k h_k(z_i)
 //! ```
 //!
-//! is unbiased whatever the surrogate is worth (the balance heuristic: Veach and Guibas 1995; Owen and Zhou 2000); a poor one
-//! makes the weights unequal and the interval wide. After every stage the parts follow the rejects that were seen.
+//! is unbiased for any surrogate (the balance heuristic: Veach and Guibas 1995; Owen and Zhou 2000). A poor surrogate
+//! makes the weights unequal and the interval wide. After every stage the parts follow the rejects found so far.
 //!
-//! A surrogate that is wrong does not know where it is wrong. Before points are drawn, some of the model itself are evaluated as the
-//! inputs vary and up to three times as wide, and beside switches that the model tells of. Rejects among them that the surrogate's
-//! components do not cover get components of their own: half-spaces at the likeliest point of the limit near them. So do rejects that
-//! a stage finds by its plain and wide points where no place is.
+//! The surrogate may be wrong in places that it gives no sign of. Before points are drawn, the model is evaluated at
+//! points that vary as the inputs do and up to three times as widely, and beside the model's switches. Rejects among
+//! them that the surrogate's components do not cover get components of their own: half-spaces at the likeliest point of
+//! the limit near them. So do rejects that the plain and wide points of a stage find away from all places.
 //!
-//! No place is of use where rejects lie all around the means in many variables. Where the interval of the weighted points is wider than that
-//! of as many plain ones, the rest of the points are plain, and they alone make the estimate (`plain`): the result is never much worse
-//! than that of plain sampling.
+//! Places are of no use if rejects lie all around the means in many variables. If the interval of the weighted points
+//! is wider than that of as many plain ones, the remaining points are plain, and they alone make the estimate
+//! (`plain`). The result is never much worse than that of plain sampling.
 
 mod border;
 mod estimate;
@@ -62,16 +62,17 @@ use search::Search;
 use space::Space;
 use target::Target;
 
-/// How rare events are sought.
+/// Options of a search for rare events.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RareOptions {
-    /// Points of the model beside those of the surrogate, at most.
+    /// Greatest number of model points in addition to those of the surrogate.
     pub samples: u64,
-    /// Another seed is another sample.
+    /// Seed of the random points. Another seed gives another sample.
     pub seed: u64,
-    /// Ends when the standard error of every probability is below this part of it.
+    /// Greatest relative standard error: the search ends when that of every probability is below it. None if all
+    /// samples are to be used.
     pub until: Option<f64>,
-    /// How the surrogate is had; `auto` is `full` to 20 varying dimensions, `six-n` beyond.
+    /// Options of the surrogate. The method `auto` is `full` for up to 20 varying dimensions, and `six-n` beyond.
     pub surrogate: Options,
 }
 
@@ -82,28 +83,28 @@ impl Default for RareOptions {
 }
 
 impl RareOptions {
-    /// With at most so many points of the model beside those of the surrogate.
+    /// Sets the greatest number of model points in addition to those of the surrogate.
     #[must_use]
     pub fn with_samples(mut self, points: u64) -> Self {
         self.samples = points;
         self
     }
 
-    /// With this seed.
+    /// Sets the seed of the random points.
     #[must_use]
     pub fn with_seed(mut self, seed: u64) -> Self {
         self.seed = seed;
         self
     }
 
-    /// Ending when the standard error of every probability is below this part of it.
+    /// Sets the relative standard error of every probability at which the search ends.
     #[must_use]
     pub fn with_until(mut self, error: f64) -> Self {
         self.until = Some(error);
         self
     }
 
-    /// With the surrogate of an analysis with these options.
+    /// Sets the options of the surrogate's analysis.
     #[must_use]
     pub fn with_surrogate(mut self, analysis: Options) -> Self {
         self.surrogate = analysis;
@@ -111,139 +112,140 @@ impl RareOptions {
     }
 }
 
-/// The results for rare events.
+/// Results of a search for rare events.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
 pub struct RareEvents {
-    /// The method of the surrogate.
+    /// Method of the surrogate.
     #[serde(rename = "surrogate")]
     #[cfg_attr(feature = "schema", schemars(with = "String"))]
     pub method: Method,
-    /// Its points and time, those of the surrogate included; why it ended before all points were drawn or the accuracy was
-    /// reached.
+    /// Evaluations and time, including those of the surrogate, and the reason for an end before all points or the
+    /// accuracy.
     #[serde(flatten)]
     pub run: RunSummary,
-    /// Points that were drawn and answered.
+    /// Points that were drawn and evaluated.
     pub samples: u64,
     /// Evaluations of the surrogate.
     pub surrogate_evaluations: u64,
-    /// Whether what was wanted was reached; None where nothing was.
+    /// True if the wanted accuracy was reached. None if none was wanted.
     pub reached: Option<bool>,
-    /// Where the model answered the nominal point otherwise than before.
-    // Told of as warnings.
+    /// Evaluations in which the model returned another value than before at the nominal point.
+    // Reported as warnings.
     #[serde(skip)]
     pub non_repeatable: Vec<NonRepeatable>,
-    /// The share of assemblies within the limits of all characteristics at once; None with fewer than two that have limits, where the
-    /// means lie beyond one of them, and where no point lies beyond any.
+    /// Joint yield. None for fewer than two characteristics with limits, if the means lie beyond a limit, and if no
+    /// point lies beyond any.
     #[serde(rename = "joint_yield")]
     pub joint: Option<f64>,
-    /// 95 % interval of that.
+    /// 95 % interval of the joint yield.
     #[serde(rename = "joint_yield_interval")]
     pub joint_interval: Option<[f64; 2]>,
-    /// Whether that share reaches the target for all characteristics at once; None without such a target.
+    /// Verdict on the target of the joint yield. None if there is no target.
     #[cfg_attr(feature = "schema", schemars(with = "Option<sensitol_numeric::verdict::JudgedShape>"))]
     pub joint_requirement: Option<Judged>,
-    /// The results of every characteristic, in the problem's order.
+    /// Results of every characteristic, in the problem's order.
     #[cfg_attr(feature = "schema", schemars(with = "Vec<RareShape>"))]
     pub characteristics: Vec<RareCharacteristic>,
-    /// Where the estimates rest on little, and where points have no value.
+    /// Warnings about estimates that rest on few points, and about points without a value.
     #[serde(skip)]
     pub warnings: Vec<Warning>,
 }
 
-/// The results of one characteristic.
+/// Results of one characteristic.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
 pub struct RareCharacteristic {
-    /// The characteristic, with its limits.
+    /// Characteristic, with its limits.
     #[serde(flatten)]
     pub characteristic: Characteristic,
-    /// Points at which it has no value.
+    /// Number of points at which the characteristic has no value.
     pub failed: u64,
-    /// Why not, of the first of them.
+    /// Error at the first of these points.
     #[serde(serialize_with = "text")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<String>"))]
     pub error: Option<EvaluationError>,
-    /// Below its lower limit; None without one.
+    /// Results below the lower limit. None if there is no lower limit.
     #[serde(skip)]
     pub below: Option<Beyond>,
-    /// Above its upper limit; None without one.
+    /// Results above the upper limit. None if there is no upper limit.
     #[serde(skip)]
     pub above: Option<Beyond>,
-    /// The share of assemblies within the limits; None where that beyond one of them is unknown.
+    /// Yield. None if the probability beyond one of the limits is unknown.
     #[serde(rename = "yield")]
     pub yield_: Option<f64>,
-    /// 95 % interval of that.
+    /// 95 % interval of the yield.
     pub yield_interval: Option<[f64; 2]>,
-    /// How far the yield may be off because measured dimensions are known by samples; None where there are none.
+    /// Error of the yield from the size of measured samples. None if no dimension is measured.
     #[serde(rename = "sampling_interval")]
     pub sampling: Option<SamplingInterval>,
-    /// Whether the search was stopped before all points were drawn: no verdict follows from the others.
+    /// True if the run was stopped before all planned points were evaluated. There is no verdict then.
     pub unfinished: bool,
 }
 
-/// The results beyond one limit.
+/// Results beyond one limit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Beyond {
-    /// The limit.
+    /// Limit as it was given.
     pub limit: f64,
-    /// The probability beyond it; None where no point lies there: its interval is then a bound, which takes it for a half-space that none of
-    /// the explored points met.
+    /// Probability beyond the limit. None if no point lies there. The interval is then a bound, for a half-space that
+    /// none of the explored points met.
     #[serde(flatten, serialize_with = "through::<shape::ProbabilityShape, _, _>")]
     #[cfg_attr(feature = "schema", schemars(with = "shape::ProbabilityShape"))]
     pub probability: Option<Estimate>,
-    /// 95 % interval.
+    /// 95 % interval of the probability.
     pub interval: [f64; 2],
-    /// If no point without a value lies beyond, and if all of them do.
+    /// Probability if no point without a value lies beyond, and if all of them do.
     #[serde(skip)]
     pub bounds: [f64; 2],
-    /// Points beyond.
+    /// Number of points beyond the limit.
     pub hits: u64,
-    /// Equally weighted points that would tell as much: `(sum of weights)^2 / sum of their squares`.
+    /// Number of equally weighted points with the same information: `(sum of weights)^2 / sum of their squares`.
     pub effective_samples: f64,
-    /// The part of the estimate that the heaviest point has: where that is large, the surrogate has missed where rejects are.
+    /// Part of the estimate that the heaviest point has. If it is large, the surrogate has missed the place of the
+    /// rejects.
     pub greatest_part: Option<f64>,
-    /// Points of a plain random sample that would have the same standard error.
+    /// Number of points of a plain random sample with the same standard error.
     pub plain_samples: Option<f64>,
-    /// The most likely assembly at the limit, as the surrogate and rejects of the model show it; None where none is known.
+    /// Most likely assembly at the limit, from the surrogate and from rejects of the model. None if none is known.
     pub design_point: Option<DesignPoint>,
-    /// The plain points that make the estimate, where importance sampling was worse; told of as a warning.
+    /// Number of plain points that make the estimate, if importance sampling was worse. It is reported as a warning.
     #[serde(skip)]
     pub plain_points: Option<u64>,
 }
 
-/// The most likely assembly at a limit.
+/// Most likely assembly at a limit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct DesignPoint {
-    /// How far it is from the middle, in standard deviations of independent normal variables.
+    /// Distance from the middle, in standard deviations of independent normal variables.
     pub distance: f64,
-    /// The value of every dimension, in the problem's order.
+    /// Value of every dimension, in the problem's order.
     pub values: Vec<f64>,
 }
 
-/// Why rare events cannot be sought.
+/// Reason why rare events cannot be searched.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RareError {
-    /// There is nothing to be rare.
+    /// No characteristic has a limit.
     #[error("no characteristic asked for has a limit: give it a lower or an upper one")]
     NoLimits,
-    /// Too few points to say anything, or too many.
+    /// Number of points that is too small or too large.
     #[error("rare events take {least} to {most} points, not {samples}")]
     Samples {
-        /// The number asked for.
+        /// Number of points asked for.
         samples: u64,
-        /// The fewest.
+        /// Fewest points.
         least: u64,
-        /// The most.
+        /// Most points.
         most: u64,
     },
-    /// It cannot be simulated, or has no surrogate.
+    /// Problem that cannot be simulated, or has no surrogate.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
 }
@@ -260,19 +262,19 @@ impl From<MethodError> for RareError {
     }
 }
 
-/// A handful says nothing.
+/// Fewest points: a handful gives no estimate.
 const LEAST: u64 = 50;
-/// Every point is kept until the end.
+/// Most points: every point is kept in memory until the end.
 const MOST: u64 = 10_000_000;
-/// Points of a stage from which places and parts are learnt: not fewer and not more.
+/// Fewest and most points of a stage from which places and parts are learnt.
 const FIRST: [u64; 2] = [60, 2000];
-/// Stages of this kind.
+/// Number of learning stages.
 const LEARNING: u64 = 2;
 
 /// Estimates the probability beyond every limit.
 ///
-/// Evaluations: those of the surrogate's method, and the points asked for. Accuracy: standard errors and 95 % intervals;
-/// where the surrogate is good, a probability near 3e-6 is known to 5 % by some hundred points.
+/// Cost: the evaluations of the surrogate's method, and the points asked for. Accuracy: standard errors and 95 %
+/// intervals. With a good surrogate some hundred points give a probability near 3e-6 to 5 %.
 ///
 /// # Errors
 /// When no characteristic has a limit, a dimension cannot be sampled, or there is no surrogate.
@@ -293,7 +295,7 @@ pub fn rare(problem: &Problem, options: &RareOptions) -> Result<RareEvents, Rare
     rare_with(problem, options, &Run::to_the_end(), &|_| {})
 }
 
-/// [`rare`], telling of its pace and stopping when told to.
+/// Runs [`rare`] with reports of its pace, and stops when `run` is stopped.
 pub fn rare_with(
     problem: &Problem,
     options: &RareOptions,
@@ -341,14 +343,17 @@ fn sought(
         return Err(RareError::NoLimits);
     }
     problem.function().prepare(problem.outputs()).map_err(|error| SimulationError::Model { error })?;
+    // The surrogate comes first: its design points are the places at which points will be drawn.
     let begun = Instant::now();
     let surrogates = Surrogates::of(problem, &options.surrogate, run)?;
     let space = Space::new(problem, &surrogates.outcome)?;
     let targets = targets(problem, &surrogates, &space);
     let mut model = Model::new(problem, &space, run);
     let places: Vec<Place> = targets.iter().enumerate().flat_map(|(index, target)| places(index, target)).collect();
+    // Each place is checked against the model, which may cross the limit elsewhere.
     let places = correct(places, &targets, (options.samples / 4) as usize, &mut model);
     let mut search = Search::new(&targets, places, (options.samples, options.seed));
+    // Points all over the inputs find rejects that the surrogate does not predict.
     if !targets.is_empty() {
         let explored = Explored::new(&targets, &search.reached(), options.samples, !options.seed, &mut model);
         search.learn(&explored, (options.samples / 10) as usize, &mut model);
@@ -358,7 +363,7 @@ fn sought(
         let left = options.samples.saturating_sub(model.answered);
         let stage = match options.until {
             Some(_) => search.points.max(FIRST[0]),
-            // In many variables the first stage decides whether there is a second of its kind.
+            // With many variables the first stage decides whether there is a second of its kind.
             None if search.stages == 0 && search.has_many_variables() => {
                 (options.samples / 20).clamp(FIRST[0], FIRST[1])
             }
@@ -380,6 +385,7 @@ fn sought(
             search.follow((left / 4) as usize, &mut model);
         }
     }
+    // The results count the evaluations of the surrogate and of the search together.
     let surrogate = &surrogates.outcome.evaluated;
     let spent = surrogate.summary();
     let drawn = RunSummary {
@@ -423,7 +429,7 @@ fn sought(
     })
 }
 
-/// Every limit of every characteristic that has a surrogate that varies.
+/// Targets: every limit of every characteristic whose surrogate varies.
 fn targets<'a>(problem: &Problem, surrogates: &'a Surrogates, space: &'a Space<'a>) -> Vec<Target<'a>> {
     let mut targets = Vec::new();
     for (c, characteristic) in problem.characteristics().iter().enumerate() {
@@ -440,18 +446,19 @@ fn targets<'a>(problem: &Problem, surrogates: &'a Surrogates, space: &'a Space<'
     targets
 }
 
-/// Looks at the model itself on the way to each place, nearest first and as many as the budget allows, and moves the places
-/// to where it crosses. These points are not drawn: no estimate rests on them. Places on the way to which the model crosses
-/// nothing are left out, unless a target has no other.
+/// Evaluates the model on the way to each place, and moves the places to its crossings.
+///
+/// Nearest places come first, as many as the budget allows. These points are not drawn, so no estimate rests on them.
+/// Places without a crossing of the model on the way are left out, unless a target has no other.
 fn correct(places: Vec<Place>, targets: &[Target<'_>], budget: usize, model: &mut Model<'_>) -> Vec<Place> {
     let mut order: Vec<usize> = (0..places.len()).collect();
-    // The first place of every target before the second of any.
+    // The first place of every target comes before the second of any.
     let rank = |p: &usize| places[..*p].iter().filter(|other| other.target == places[*p].target).count();
     order.sort_by_key(|p| (rank(p), *p));
     let mut asked: Vec<(usize, f64)> = Vec::new();
     for p in order {
         let stations = places[p].stations();
-        // As many again and a half are for the second look.
+        // Half as many points again are kept for the second round.
         if asked.len() + stations.len() > budget * 2 / 3 {
             break;
         }
@@ -474,15 +481,16 @@ fn correct(places: Vec<Place>, targets: &[Target<'_>], budget: usize, model: &mu
     places.into_iter().zip(crosses).filter_map(kept).collect()
 }
 
-/// The model's answers on the way to some places.
+/// Values of the model on the way to some places.
 struct Looked {
-    /// For every place, distances and values, ascending.
+    /// Distances and values for every place, ascending.
     values: Vec<Vec<(f64, f64)>>,
-    /// Whether the model crosses on the way to it; None where it was not looked at.
+    /// True if the model crosses the limit on the way to the place. None if it was not evaluated there.
     crosses: Vec<Option<bool>>,
 }
 
-/// Asks the model at these distances on the way to these places, and corrects them by that and what was known.
+/// Evaluates the model at these distances on the way to the places. Corrects the places by these values and the earlier
+/// ones.
 fn look(
     places: &mut [Place],
     targets: &[Target<'_>],

@@ -1,4 +1,4 @@
-//! The model, asked at points of normal variables, and what was spent on it.
+//! Model evaluated at points in normal space, with a count of its cost.
 
 use std::time::Duration;
 
@@ -7,36 +7,35 @@ use crate::assembly::{EvaluationError, NonRepeatable, Points, Request, Responses
 use crate::problem::Problem;
 use sensitol_numeric::time::Instant;
 
-/// Points that are evaluated between two looks at the clock.
+/// Points that are evaluated between two checks of the time limit.
 const BATCH: usize = 1 << 14;
 
+/// Model with the counts of its evaluations.
 pub(super) struct Model<'a> {
     pub(super) problem: &'a Problem,
     pub(super) space: &'a Space<'a>,
     run: &'a Run<'a>,
-    /// Points that were answered.
+    /// Number of points that were answered.
     pub(super) answered: u64,
-    /// Points beside these: those that were tried again, less those that were known.
+    /// Evaluations in addition to these: points that were tried again, minus those that were known.
     pub(super) extra: i64,
     pub(super) reused: u64,
-    /// Points sent again.
     pub(super) retried: u64,
-    /// Batches.
+    /// Number of batches.
     pub(super) stages: u64,
-    /// Points that lost at least one characteristic.
+    /// Number of points without a value of at least one characteristic.
     pub(super) failed: u64,
-    /// For every characteristic how many points lost it, and why the first did.
+    /// For every characteristic, the number of points without a value, and the first error.
     pub(super) lost: Vec<(u64, Option<EvaluationError>)>,
     pub(super) in_model: Duration,
-    /// Where it answered the nominal point otherwise than before.
+    /// Evaluations in which the model returned another value than before at the nominal point.
     pub(super) non_repeatable: Vec<NonRepeatable>,
 }
 
-/// The model's answers.
 pub(super) struct Answers {
-    /// A column for every characteristic, NaN where there is no value.
+    /// Column of values for every characteristic. NaN if there is none.
     columns: Vec<Vec<f64>>,
-    /// Whether a row was finished before the run was stopped.
+    /// True for each row that was finished before the run was stopped.
     answered: Vec<bool>,
 }
 
@@ -45,7 +44,7 @@ impl Answers {
         Some(self.columns[characteristic][row]).filter(|value| !value.is_nan())
     }
 
-    /// The values of all rows, None where there is none.
+    /// Values of all rows. None if a row has none.
     pub(super) fn values(&self, characteristic: usize) -> impl Iterator<Item = Option<f64>> + '_ {
         self.columns[characteristic].iter().map(|&value| Some(value).filter(|value| !value.is_nan()))
     }
@@ -75,7 +74,6 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// All dimensions at their means.
     pub(super) fn middle(&self) -> Vec<f64> {
         self.problem.dimensions().iter().map(|dimension| dimension.mean()).collect()
     }

@@ -1,51 +1,53 @@
-//! Where the surrogate crosses a limit first: its design points, and how the limit bends there.
+//! Places where the surrogate crosses a limit first: its design points, and the bend of the limit there.
 
 use faer::{Mat, Side};
 
 use super::space::Columns;
 use super::target::Target;
 
-/// Farther out nothing has a probability that a double knows.
+/// Greatest distance in sigmas. Probabilities farther out are below the smallest double.
 pub(super) const FARTHEST: f64 = 37.0;
-/// How far a half-space begins before its place, in sigmas: the place is known to some hundredths, and a limit may bend towards the means.
+/// Start of a half-space before its place, in sigmas. The place is known to some hundredths, and the limit may bend
+/// towards the means.
 pub(super) const BEFORE: f64 = 0.3;
-/// The most places of one target.
+/// Most places of one target.
 const PLACES: usize = 12;
-/// A place this much less probable than the nearest adds nothing.
+/// Least probability of a place relative to the nearest one: less likely places add nothing.
 pub(super) const FAINT: f64 = 1e-3;
-/// Dimensions up to which the bend of the limit is looked at: the square of them times the surrogate's cost.
+/// Most dimensions for which the bend of the limit is computed. Its cost is their square times that of the surrogate.
 const BENT: usize = 40;
-/// Dimensions, and pairs of them, along which places are looked for beside the steepest way.
+/// Number of axes along which places are searched in addition to the steepest way.
 const AXES: usize = 8;
+/// Number of pairs of dimensions along whose diagonals places are searched.
 const DIAGONALS: usize = 4;
 
-/// How a place was found, and what is drawn there.
+/// Origin of a place, which decides the density of its points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum PlaceKind {
-    /// The surrogate crosses the limit there: points follow its crossings.
+    /// Crossing of the surrogate: points follow the crossings on all lines.
     Surrogate,
-    /// Only a way on which the surrogate comes near.
+    /// Way on which the surrogate only comes near the limit.
     Way,
-    /// The model itself crosses there: points are drawn from the half-space that begins a little before.
+    /// Crossing of the model itself: points are drawn from the half-space that begins a little before it.
     HalfSpace,
 }
 
-/// A direction in which a limit is crossed.
+/// Direction in which a limit is crossed.
 #[derive(Debug, Clone)]
 pub(super) struct Place {
     pub(super) target: usize,
-    /// Of length 1.
+    /// Unit vector from the means.
     pub(super) direction: Vec<f64>,
-    /// How far out, in sigmas.
+    /// Distance from the means, in sigmas.
     pub(super) distance: f64,
     pub(super) kind: PlaceKind,
-    /// The surrogate's margin at the crossing: 0 for its own, other where the model crosses elsewhere.
+    /// Margin of the surrogate at the crossing: 0 at its own, another value if the model crosses elsewhere.
     pub(super) offset: f64,
-    /// Directions across, of length 1, in which points are spread otherwise than the inputs are, by so much.
+    /// Unit vectors across the direction in which points spread otherwise than the inputs, each with its factor.
     pub(super) spreads: Vec<(Vec<f64>, f64)>,
 }
 
-/// The places of a target; none where the means themselves lie beyond the limit.
+/// Places of a target. The list is empty if the means themselves lie beyond the limit.
 pub(super) fn places(index: usize, target: &Target<'_>) -> Vec<Place> {
     let n = target.space.len();
     let (margin, gradient) = target.gradient(&vec![0.0; n]);
@@ -69,7 +71,7 @@ pub(super) fn places(index: usize, target: &Target<'_>) -> Vec<Place> {
         found.retain(|place| probability(place.distance) >= FAINT * probability(first));
         found.truncate(PLACES);
     }
-    // The steepest way too, should the surrogate be wrong about where it leads.
+    // The steepest way is added too, because the surrogate may be wrong about it.
     let way = if found.is_empty() { steepest(target, gradient) } else { unit(gradient) };
     if let Some(direction) = way.filter(|way| !found.iter().any(|place| dot(&place.direction, way) > 0.9)) {
         found.push(Place::uncrossed(index, direction));
@@ -78,29 +80,29 @@ pub(super) fn places(index: usize, target: &Target<'_>) -> Vec<Place> {
 }
 
 impl Place {
-    /// A way on which no crossing is known.
+    /// Way without a known crossing.
     pub(super) fn uncrossed(target: usize, direction: Vec<f64>) -> Self {
         Self { target, direction, distance: 0.0, kind: PlaceKind::Way, offset: 0.0, spreads: Vec::new() }
     }
 
-    /// The half-space beside a point of the limit.
+    /// Half-space beside a point of the limit.
     pub(super) fn half_space(target: usize, point: &[f64]) -> Option<Self> {
         let distance = length(point);
         let direction = unit(point.to_vec())?;
         Some(Self { target, direction, distance, kind: PlaceKind::HalfSpace, offset: 0.0, spreads: Vec::new() })
     }
 
-    /// Whether a limit is crossed there.
+    /// True if a limit is crossed at the place.
     pub(super) fn crossed(&self) -> bool {
         self.kind != PlaceKind::Way
     }
 
-    /// Whether a point lies in the half-space that begins a little before the place.
+    /// True if a point lies in the half-space that begins a little before the place.
     pub(super) fn holds(&self, point: &[f64]) -> bool {
         self.crossed() && dot(&self.direction, point) > self.distance - BEFORE
     }
 
-    /// Where the model is looked at on the way out to a place, in sigmas.
+    /// Distances in sigmas at which the model is evaluated on the way to a place.
     pub(super) fn stations(&self) -> Vec<f64> {
         let mut stations = vec![1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 8.0];
         if self.crossed() {
@@ -111,17 +113,19 @@ impl Place {
         stations
     }
 
-    /// Where it is looked at again, once it is known about where it crosses.
+    /// Distances of the second round, close to the crossing that the first round found.
     pub(super) fn closer(&self) -> Vec<f64> {
         [-0.4, 0.0, 0.4].iter().map(|by| self.distance + by).filter(|&t| t > 0.0).collect()
     }
 
-    /// Moves the place to where the model crosses the limit on this way; false, and nothing moved, where it does not.
+    /// Moves the place to the crossing of the model with the limit on this way. Returns false, and moves nothing, if
+    /// there is none.
     ///
-    /// Between the stations the model is taken to be the surrogate and what it was off at these, which is linear between.
+    /// Between the stations the model is taken as the surrogate plus its error, which is interpolated linearly.
     ///
-    /// Shapes: `values` has the model's value at every station that has one.
+    /// Shapes: `values` has the model's value at every distance with one.
     pub(super) fn correct(&mut self, target: &Target<'_>, values: &[(f64, f64)]) -> bool {
+        /// Step along the way, in sigmas.
         const STEP: f64 = 0.02;
         let margins = |at: &[f64]| {
             target.margins(&self.direction.iter().map(|part| at.iter().map(|t| t * part).collect()).collect())
@@ -129,7 +133,7 @@ impl Place {
         let stations: Vec<f64> = values.iter().map(|value| value.0).collect();
         let off =
             values.iter().zip(margins(&stations)).map(|(&(t, value), margin)| (t, target.margin_of(value) - margin));
-        // At the means model and surrogate are the same.
+        // At the means the model and the surrogate agree.
         let off: Vec<(f64, f64)> = std::iter::once((0.0, 0.0)).chain(off).collect();
         let Some(&(last, _)) = off.last() else { return false };
         let ways: Vec<f64> = (1..=(last / STEP) as usize).map(|step| STEP * step as f64).collect();
@@ -147,10 +151,10 @@ impl Place {
     }
 }
 
-/// Points on the limit to start from: on the steepest way, the axes on which the surrogate rises most, and the diagonals of
-/// the strongest interactions.
+/// Points on the limit to start from: on the steepest way, on the axes of the surrogate's greatest rise, and on the
+/// diagonals of the strongest interactions.
 fn starts(target: &Target<'_>, gradient: &[f64]) -> Vec<Vec<f64>> {
-    /// So far a way is followed, in steps.
+    /// Steps of a quarter sigma to which a way is followed.
     const REACH: usize = 40;
     let n = gradient.len();
     let steep = length(gradient);
@@ -184,15 +188,17 @@ fn starts(target: &Target<'_>, gradient: &[f64]) -> Vec<Vec<f64>> {
         let steps = || (1..=REACH).map(|step| 0.25 * step as f64);
         let columns: Columns = way.iter().map(|part| steps().map(|t| t * part).collect()).collect();
         let crossed = target.margins(&columns).iter().position(|&margin| margin >= 0.0);
-        // The steepest way leads somewhere though it may be bent.
+        // The steepest way is kept even without a crossing, because a bent way may still lead to one.
         let t = crossed.map(|at| 0.25 * (at + 1) as f64).or((index == 0 && steep > 0.0).then_some(3.0))?;
         Some(way.into_iter().map(|part| t * part).collect())
     };
     ways.into_iter().enumerate().filter_map(crossing).collect()
 }
 
-/// The point of the limit that is nearest to the means, by the improved method of Hasofer, Lind, Rackwitz and Fiessler
-/// (Zhang and Der Kiureghian 1995): each step goes to where the tangent plane says, shortened until it is one for the better.
+/// Point of the limit nearest to the means, by the improved method of Hasofer, Lind, Rackwitz and Fiessler (Zhang and
+/// Der Kiureghian 1995).
+///
+/// Each step goes to the nearest point of the tangent plane, shortened until it lowers the merit.
 fn nearest(target: &Target<'_>, start: Vec<f64>) -> Option<Vec<f64>> {
     let mut z = start;
     let (mut margin, mut gradient) = target.gradient(&z);
@@ -223,8 +229,9 @@ fn nearest(target: &Target<'_>, start: Vec<f64>) -> Option<Vec<f64>> {
     None
 }
 
-/// The direction in which the surrogate comes nearest to a limit that it does not reach, five sigmas out.
+/// Direction of the surrogate's nearest approach to a limit that it does not reach, at five sigmas.
 fn steepest(target: &Target<'_>, gradient: Vec<f64>) -> Option<Vec<f64>> {
+    /// Distance from the means at which the gradient is followed, in sigmas.
     const RADIUS: f64 = 5.0;
     let mut direction = gradient;
     for _ in 0..50 {
@@ -238,10 +245,12 @@ fn steepest(target: &Target<'_>, gradient: Vec<f64>) -> Option<Vec<f64>> {
     unit(direction)
 }
 
-/// Where the limit bends away from the tangent plane, by `k c^2/2` at a distance `c` across, what lies beyond it is spread by
-/// `1/sqrt(1 + distance k)` (Breitung 1984), and more where it bends towards the means.
+/// Directions across in which the points beyond the limit spread otherwise than the inputs, with their factors.
+///
+/// If the limit bends away from the tangent plane by `k c^2/2` at a distance `c` across, the points beyond it spread by
+/// `1/sqrt(1 + distance k)` (Breitung 1984). The spread is greater if the limit bends towards the means.
 fn spreads(target: &Target<'_>, point: &[f64], distance: f64) -> Vec<(Vec<f64>, f64)> {
-    /// In sigmas.
+    /// Step of the second differences, in sigmas.
     const STEP: f64 = 0.1;
     let n = point.len();
     if !(2..=BENT).contains(&n) {
@@ -278,7 +287,7 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// In this direction, of length 1; None where there is none.
+/// Unit vector of a direction. Returns None if it has no length.
 pub(super) fn unit(mut direction: Vec<f64>) -> Option<Vec<f64>> {
     let size = length(&direction);
     direction.iter_mut().for_each(|part| *part /= size);

@@ -1,16 +1,16 @@
-//! Plain points: the estimate where importance sampling is worse.
+//! Plain points: the estimate if importance sampling is worse.
 //!
-//! In a hundred variables nearly all assemblies lie on a thin shell about the means. Where rejects lie all over it, no place draws
-//! near them: most points that are drawn are rejects of a weight near 0, and the few that matter are those of the inputs' own density.
-//! These are a sample by themselves, whatever the other components are. With `m` and `s` whether the model and the surrogate lie
-//! beyond the limit,
+//! In a hundred variables nearly all assemblies lie on a thin shell around the means. If rejects lie all over it, no
+//! place draws near them. Most of the drawn points are then rejects of a weight near 0, and the few that matter come
+//! from the inputs' own density. These are a sample of their own, independent of the other components. With `m` and `s`
+//! equal to 1 if the model and the surrogate lie beyond the limit, and 0 otherwise,
 //!
 //! ```text
 //! P = mean m          P = P_s + mean (m - s)
 //! ```
 //!
-//! over them, where the share `P_s` of the surrogate is counted at as many points as one likes, without the model. The second is taken
-//! where model and surrogate differ at fewer points than lie beyond the limit. Source: Glynn and Szechtman (2002).
+//! over them, where the share `P_s` of the surrogate is counted at many points without the model. The second form is
+//! used if model and surrogate differ at fewer points than lie beyond the limit. Source: Glynn and Szechtman (2002).
 
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
@@ -22,25 +22,27 @@ use super::target::Target;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::sampling::{Estimate, clopper_pearson};
 
-/// Points of the surrogate at most, and the numbers that they may have together: some tenths of a second.
+/// Most points of the surrogate.
 const SURROGATE: usize = 1 << 20;
+/// Most coordinates of these points in all, for a time of some tenths of a second.
 const NUMBERS: usize = 1 << 27;
 /// Points of the surrogate that are evaluated together.
 const ROWS: usize = 1 << 12;
 
-/// The points of the inputs' own density, counted for one target.
+/// Points of the inputs' own density, counted for one target.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct PlainPoints {
     points: u64,
-    /// Those that the target seeks, and those without a value.
+    /// Points that the target seeks.
     hits: u64,
     unknown: u64,
-    /// Those that only the model has among those sought, and those that only the surrogate has.
+    /// Points that only the model has among those sought, and points that only the surrogate has.
     only: [u64; 2],
 }
 
 impl PlainPoints {
-    /// Adds a point: whether the model has it among those sought, None without a value, and whether the surrogate has.
+    /// Adds a point. `model` is true if the model's value is sought, and None if there is none. `surrogate` is true if
+    /// the surrogate's value is sought.
     pub(super) fn add(&mut self, model: Option<bool>, surrogate: bool) {
         self.points += 1;
         match model {
@@ -53,18 +55,17 @@ impl PlainPoints {
         }
     }
 
-    /// How many points.
     pub(super) fn count(&self) -> u64 {
         self.points
     }
 
-    /// The width of the interval that a plain sample of so many points has of this probability.
+    /// Width of the interval of this probability from a plain sample of so many points.
     pub(super) fn width(points: f64, probability: f64) -> f64 {
         let [low, high] = clopper_pearson(probability * points, points);
         high - low
     }
 
-    /// The estimate beside the surrogate's own share, if it is known; None without a point.
+    /// Estimate from these points, with the surrogate's own share if it is known. Returns None if there is no point.
     pub(super) fn found(&self, surrogate: Option<SurrogateShare>) -> Option<ProbabilityEstimate> {
         if self.points == 0 {
             return None;
@@ -92,8 +93,10 @@ impl PlainPoints {
         })
     }
 
-    /// Value, variance and interval as the surrogate's share and the difference of the model's. The interval joins those of the share and of
-    /// the points that only the one and only the other has (Zou and Donner 2008), so that no difference seen is not taken for none.
+    /// Value, variance and interval from the surrogate's share plus the difference of the model's.
+    ///
+    /// The interval joins those of the share and of the two counts of points that differ (Zou and Donner 2008). A count
+    /// of zero thus still adds to the interval.
     fn beside(&self, share: SurrogateShare) -> (f64, f64, [f64; 2]) {
         let n = self.points as f64;
         let [more, fewer] = self.only.map(|count| (count as f64 / n, clopper_pearson(count as f64, n)));
@@ -106,7 +109,7 @@ impl PlainPoints {
     }
 }
 
-/// How many points of the surrogate lie among those that a target seeks.
+/// Share of the surrogate's points among those that a target seeks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct SurrogateShare {
     points: f64,
@@ -114,7 +117,8 @@ pub(super) struct SurrogateShare {
 }
 
 impl SurrogateShare {
-    /// Of a target, by points that take no evaluation of the model. The same for any number of threads.
+    /// Counts points of a target without an evaluation of the model. The result does not depend on the number of
+    /// threads.
     pub(super) fn of(target: &Target<'_>, seed: u64) -> Self {
         let n = target.space.len();
         let blocks = (SURROGATE.min(NUMBERS / n.max(1)) / ROWS).max(1);
@@ -148,7 +152,7 @@ mod tests {
         all
     }
 
-    /// 4 of 1000 have the exact interval of a count.
+    /// Exact interval of a count of 4 in 1000 points.
     #[test]
     fn plain_points_are_a_count() {
         let plain = counted(&[(Some(true), false, 4), (Some(false), false, 996)]);
@@ -160,7 +164,7 @@ mod tests {
         assert_eq!(PlainPoints::default().found(None), None);
     }
 
-    /// A surrogate that agrees at every point has the value; what was not seen of a difference stays in the interval.
+    /// A surrogate that agrees at every point gives the value. Unseen differences stay in the interval.
     #[test]
     fn an_agreeing_surrogate_has_the_value() {
         let share = SurrogateShare { points: 1e6, hits: 400.0 };
@@ -169,7 +173,7 @@ mod tests {
         assert_eq!(found.probability.unwrap().value, 4e-4);
         let unseen = clopper_pearson(0.0, 10_000.0)[1];
         assert!(found.interval[1] > 4e-4 + unseen && found.interval[1] < 4e-4 + 1.02 * unseen, "{found:?}");
-        // One that differs wherever rejects are is not asked.
+        // A surrogate that misses the rejects is not used.
         let apart = counted(&[(Some(true), false, 5), (Some(false), true, 8), (Some(false), false, 9987)]);
         assert_eq!(apart.found(Some(share)).unwrap().interval, clopper_pearson(5.0, 10_000.0));
     }

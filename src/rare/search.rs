@@ -1,4 +1,4 @@
-//! Points drawn and weighed, stage after stage.
+//! Points drawn and weighted in stages.
 
 use super::estimate::{ProbabilityEstimate, Weighed, best_parts};
 use super::explore::Explored;
@@ -15,61 +15,64 @@ use sensitol_numeric::characteristic::Characteristic;
 use sensitol_numeric::distribution::standard_normal;
 use sensitol_numeric::sampling::Estimate;
 
-/// Rejects by which the parts of the components are chosen, at most.
+/// Most rejects that are kept to choose the parts of the components.
 const GUIDES: usize = 2000;
-/// Fewer say nothing of where the others are.
+/// Fewest rejects that show the place of the others.
 const FEW: usize = 8;
-/// The part of the components' shares that stays as it was at first, whatever was seen.
+/// Part of the components' first shares that is kept in every stage.
 const KEPT: f64 = 0.25;
 
-/// The most half-spaces of a target.
+/// Most half-spaces of a target.
 const HALF_SPACES: usize = 10;
-/// A reject that the components draw with a weight of no more than so many times the probability needs no place of its own.
+/// Greatest ratio of a reject's weight to the probability for which the reject needs no place of its own.
 const DENSE: f64 = 30.0;
-/// Steps from a surrogate's place, how far beyond it they begin, and the cosine from which two directions are the same.
+/// Most steps from a surrogate's place.
 const TURNS: usize = 3;
+/// Distance beyond the place at which these steps begin, in sigmas.
 const BESIDE: f64 = 3e-3;
+/// Cosine above which two directions count as the same.
 const ALIKE: f64 = 0.97;
-/// Where rejects that no place holds bear more than this of a sum, stages before they were known say little.
+/// Part of a sum that rejects outside all places may bear. Beyond it the earlier stages are dropped.
 const STRAYED: f64 = 0.05;
-/// The part of a component without a place stays at least this much of its first.
+/// Least part of a component without a place, relative to its first.
 const WATCHING: f64 = 0.5;
-/// Variables from which on places are judged after the first stage: what they draw there is seldom what matters.
+/// Number of variables above which places are judged after the first stage, because points drawn there seldom matter.
 const MANY_VARIABLES: usize = 30;
 
-/// The points that have been drawn and answered so far.
+/// Points drawn and evaluated so far, and the mixture for the next ones.
 pub(super) struct Search<'a> {
     targets: &'a [Target<'a>],
     mixture: Mixture<'a>,
     weighed: Vec<Weighed>,
-    /// Of what lies beyond any limit; None with fewer than two characteristics that have limits, and where the means lie beyond one.
+    /// Weighted points of assemblies beyond any limit. None for fewer than two characteristics with limits, and if the
+    /// means lie beyond a limit.
     joint: Option<Weighed>,
-    /// The points of the inputs' own density, of every target and of what lies beyond any limit.
+    /// Points of the inputs' own density, counted for every target.
     plain: Vec<PlainPoints>,
+    /// Points of the inputs' own density, counted for assemblies beyond any limit.
     plain_joint: PlainPoints,
-    /// The targets of which plain points know more than weighted ones do.
+    /// True for each target whose plain points give the narrower interval.
     falls_back: Vec<bool>,
     seed: u64,
-    /// For every target some rejects: the logarithms of their weights, and their normal variables.
+    /// Some rejects for every target: the logarithms of their weights, and their normal variables.
     guides: Vec<Vec<(f64, Vec<f64>)>>,
-    /// Points drawn and answered.
     pub(super) points: u64,
     pub(super) stages: u64,
-    /// About how many points there will be.
+    /// Expected number of points in all.
     expected: u64,
 }
 
-/// Points of one stage, the components in turn, so that those of any beginning are shared out alike.
+/// Points of one stage. The components take turns, so that every first part of the stage has the same shares.
 struct Drawn {
-    /// The component of every point.
+    /// Component of every point.
     from: Vec<usize>,
     normals: Columns,
-    /// Their natural logarithms.
+    /// Natural logarithms of the heights of all components at every point.
     heights: Vec<Vec<f64>>,
 }
 
 impl<'a> Search<'a> {
-    /// Of so many points.
+    /// Search with an expected number of points.
     pub(super) fn new(targets: &'a [Target<'a>], places: Vec<Place>, (expected, seed): (u64, u64)) -> Self {
         let mixture = Mixture::new(targets, places, expected);
         let (weighed, guides) = (vec![Weighed::default(); targets.len()], vec![Vec::new(); targets.len()]);
@@ -93,14 +96,15 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Whether some place of each target crosses its limit.
+    /// True for each target with a place at which its limit is crossed.
     pub(super) fn reached(&self) -> Vec<bool> {
         let places = self.mixture.places();
         let crossed = |target: usize| places.iter().any(|place| place.target == target && place.crossed());
         (0..self.targets.len()).map(crossed).collect()
     }
 
-    /// Takes half-spaces beside explored rejects that the surrogate's components do not cover, and the bounds where there are none.
+    /// Adds half-spaces beside explored rejects that the surrogate's components do not cover. Keeps bounds for targets
+    /// without a reject.
     pub(super) fn learn(&mut self, explored: &Explored, budget: usize, model: &mut Model<'_>) {
         let mut found = Vec::new();
         let each = budget / self.targets.len().max(1);
@@ -114,12 +118,14 @@ impl<'a> Search<'a> {
         self.take(found);
     }
 
-    /// The half-space at the surrogate's nearest place, should the surrogate be wrong about how the limit goes on from there, and the one to
-    /// which the model leads from it, should the surrogate have looked in a wrong direction.
+    /// Half-spaces in case the surrogate is wrong about the limit.
+    ///
+    /// One is at the surrogate's nearest place, in case the limit continues otherwise. The other is at the point to
+    /// which the model leads from it, in case the surrogate gave a wrong direction.
     fn guards(&self, index: usize, budget: usize, model: &mut Model<'_>) -> Vec<Place> {
         let mine = self.mixture.places().iter().filter(|place| place.target == index && place.crossed());
         let Some(place) = mine.min_by(|a, b| a.distance.total_cmp(&b.distance)) else { return Vec::new() };
-        // A little beyond: the place itself may have been evaluated on the way to it.
+        // A little beyond, because the place itself may have been evaluated on the way to it.
         let point: Vec<f64> = place.direction.iter().map(|part| part * (place.distance + BESIDE)).collect();
         let steps = budget / border::step_cost(model.space.len());
         let turned = border::stepped(&self.targets[index], &point, steps.min(TURNS), model);
@@ -128,7 +134,7 @@ impl<'a> Search<'a> {
         Place::half_space(index, &point).into_iter().chain(turned).collect()
     }
 
-    /// Half-spaces for rejects, of which the first is nearest to the means, within a budget of evaluations.
+    /// Half-spaces for rejects, sorted with the nearest to the means first, within a budget of evaluations.
     fn half_spaces(&self, index: usize, rejects: &[Vec<f64>], budget: usize, model: &mut Model<'_>) -> Vec<Place> {
         let (target, allowed) = (&self.targets[index], model.answered + budget as u64);
         let mine = || self.mixture.places().iter().filter(|place| place.target == index && place.crossed());
@@ -152,7 +158,7 @@ impl<'a> Search<'a> {
                 break;
             }
             let point = border::bisected(target, reject, model);
-            // Beside a place that is a thousand times as likely it adds nothing.
+            // A place that is a thousand times less likely adds nothing.
             let faint = Place::half_space(index, &point)
                 .is_none_or(|place| standard_normal::sf(place.distance) < FAINT * probability);
             if faint || held(&found, &point) {
@@ -174,7 +180,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Draws and weighs so many points; whether some of them were not answered.
+    /// Draws and weights a stage of points. Returns true if some of them were not answered.
     pub(super) fn stage(&mut self, points: usize, model: &mut Model<'_>) -> bool {
         let drawn = self.draw(points, mixed_seed(self.seed, self.stages));
         self.stages += 1;
@@ -183,13 +189,15 @@ impl<'a> Search<'a> {
         (0..points).any(|row| !answers.answered(row))
     }
 
-    /// Whether the variables are so many that places are judged after the first stage.
+    /// True if there are so many variables that places are judged after the first stage.
     pub(super) fn has_many_variables(&self) -> bool {
         self.targets.first().is_some_and(|target| target.space.len() > MANY_VARIABLES)
     }
 
-    /// Falls back to plain points for every target whose interval is wider than that of a plain sample of as many points as were
-    /// evaluated, where many variables hide the places. With few variables wide intervals are caution, and places are found.
+    /// Switches a target to plain points if its interval is wider than that of a plain sample of as many points as were
+    /// evaluated.
+    ///
+    /// Only many variables hide the places. With few variables wide intervals are caution, and places are found.
     pub(super) fn judge(&mut self, evaluated: u64) {
         if !self.has_many_variables() {
             return;
@@ -201,12 +209,13 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Whether plain points are drawn alone.
+    /// True if only plain points are drawn.
     pub(super) fn is_plain(&self) -> bool {
         !self.falls_back.is_empty() && self.falls_back.iter().all(|&falls_back| falls_back)
     }
 
-    /// The estimate of a target, by the points that know more; of plain ones without the surrogate, which takes a while.
+    /// Estimate of a target, from plain points if it has switched to them. Plain points are used without the surrogate
+    /// here, because its share takes a while.
     fn found(&self, index: usize) -> Option<ProbabilityEstimate> {
         match self.falls_back[index] {
             true => self.plain[index].found(None),
@@ -214,7 +223,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The same of every target, with the surrogate.
+    /// Final estimates of all targets. Plain points use the surrogate as control variate.
     fn conclusions(&self) -> Vec<Option<ProbabilityEstimate>> {
         let beside = |index: usize| SurrogateShare::of(&self.targets[index], !self.seed);
         let conclusion = |index: usize| match self.falls_back[index] {
@@ -224,11 +233,11 @@ impl<'a> Search<'a> {
         (0..self.targets.len()).map(conclusion).collect()
     }
 
-    /// Adds a place for every target whose rejects lie on average in a direction in which there is none, and half-spaces for rejects that
-    /// no place holds.
+    /// Adds a place for every target whose rejects lie on average in a direction without one, and half-spaces for
+    /// rejects outside all places.
     ///
-    /// Where such rejects bear much of the sum, it begins anew: the stages that come are unbiased whatever led to their places, and
-    /// those before did not draw where it matters.
+    /// If such rejects bear much of the sum, the sum begins anew. The next stages are unbiased however their places
+    /// were found, and the earlier ones did not draw where it matters.
     pub(super) fn follow(&mut self, budget: usize, model: &mut Model<'_>) {
         let mut places = self.mixture.places().to_vec();
         let before = places.len();
@@ -267,14 +276,14 @@ impl<'a> Search<'a> {
         self.take(found.into_iter().flatten().collect());
     }
 
-    /// Rejects drawn so far that no place holds.
+    /// Rejects drawn so far that lie outside all places.
     fn strayed(&self, index: usize) -> Vec<&Vec<f64>> {
         let held =
             |point: &Vec<f64>| self.mixture.places().iter().any(|place| place.target == index && place.holds(point));
         self.guides[index].iter().map(|guide| &guide.1).filter(|point| !held(point)).collect()
     }
 
-    /// How the next points are shared out among the components: as at first, or as the rejects so far say.
+    /// Shares of the components in the next points: the first shares, or those that fit the rejects found so far.
     fn parts(&self) -> Vec<f64> {
         let first = &self.mixture.parts;
         let mut parts = vec![0.0; first.len()];
@@ -299,7 +308,7 @@ impl<'a> Search<'a> {
         parts.into_iter().map(|part| part / total).collect()
     }
 
-    /// Weights with the heights of all components instead of the points, all as logarithms.
+    /// Weights of the rejects with the heights of all components at them, all as logarithms.
     fn heights(&self, guides: &[(f64, Vec<f64>)]) -> Vec<(f64, Vec<f64>)> {
         let dimensions = guides.first().map_or(0, |guide| guide.1.len());
         let columns = (0..dimensions).map(|j| guides.iter().map(|guide| guide.1[j]).collect()).collect();
@@ -320,7 +329,10 @@ impl<'a> Search<'a> {
         Drawn { from: rows.iter().map(|&row| order[row].1).collect(), normals, heights }
     }
 
-    /// Weights are by the points that were answered: which these are has nothing to do with what was answered.
+    /// Adds the answered points to all sums.
+    ///
+    /// Weights use the number of points that were answered. That is unbiased, because a point is answered or not
+    /// independently of its value.
     fn weigh(&mut self, drawn: &Drawn, answers: &Answers) {
         let rows: Vec<usize> = (0..drawn.from.len()).filter(|&row| answers.answered(row)).collect();
         let mut counts = vec![0.0; self.mixture.len()];
@@ -344,7 +356,7 @@ impl<'a> Search<'a> {
             }
         }
         if let Some(joint) = &mut self.joint {
-            // A limit that is broken decides, whatever is unknown of the others.
+            // One broken limit makes a reject, even if other values are unknown.
             let beyond = |row: usize| {
                 let each =
                     |target: &Target<'_>| answers.value(row, target.characteristic).map(|value| target.sought(value));
@@ -368,7 +380,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The worst standard error, relative to its probability.
+    /// Worst standard error relative to its probability.
     pub(super) fn shortfall(&self) -> f64 {
         let relative = |index: usize| {
             let probability = self.found(index).and_then(|found| found.probability);
@@ -379,17 +391,19 @@ impl<'a> Search<'a> {
         (0..self.targets.len()).map(relative).fold(0.0, f64::max)
     }
 
-    /// Whether the last stage by itself confirms the standard errors of all: it is independent of the moment at which these were small.
+    /// True if the last stage alone confirms the standard errors of all targets. It is independent of the moment at
+    /// which these became small.
     pub(super) fn confirmed(&self, wanted: f64) -> bool {
-        // Plain points are independent of each other, and need no confirmation.
+        // Plain points are independent of each other and need no confirmation.
         let confirmed = self.weighed.iter().zip(&self.falls_back);
         confirmed.into_iter().all(|(weighed, &falls_back)| falls_back || weighed.confirmed(wanted))
     }
 
-    /// The share within all limits at once, and its 95 % interval, where points without a value may all be rejected ones; the share is None
-    /// where no point lies beyond any limit.
+    /// Joint yield and its 95 % interval, in which points without a value may all be rejects.
+    ///
+    /// The yield is None if no point lies beyond any limit.
     pub(super) fn within_all(&self, problem: &Problem) -> Option<(Option<f64>, [f64; 2])> {
-        // Every limit has a target, but for one of a surrogate that does not vary.
+        // Every limit has a target, except if its surrogate does not vary.
         let ends = |one: &Characteristic| [one.limits().lower(), one.limits().upper()].iter().flatten().count();
         let limits: usize = problem.characteristics().iter().map(ends).sum();
         let joint = self.joint.as_ref().filter(|_| limits == self.targets.len())?;
@@ -398,7 +412,6 @@ impl<'a> Search<'a> {
         Some((found.probability.map(|found| 1.0 - found.value), [1.0 - high, 1.0 - low]))
     }
 
-    /// The results of every characteristic.
     pub(super) fn characteristics(self, model: &Model<'_>, unfinished: bool) -> Vec<RareCharacteristic> {
         let space = model.space;
         let conclusions = self.conclusions();
@@ -455,7 +468,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Whole numbers in these parts that sum to `points`: rounded down, and the largest remainders up.
+/// Whole numbers in these proportions that sum to `points`: rounded down, and the largest remainders up.
 fn shared_out(points: usize, parts: &[f64]) -> Vec<usize> {
     let mut counts: Vec<usize> = parts.iter().map(|part| (part * points as f64) as usize).collect();
     let mut order: Vec<usize> = (0..parts.len()).collect();
@@ -464,7 +477,7 @@ fn shared_out(points: usize, parts: &[f64]) -> Vec<usize> {
     order.sort_by(|&a, &b| rests[b].total_cmp(&rests[a]).then(a.cmp(&b)));
     let short = points.saturating_sub(counts.iter().sum());
     order.iter().cycle().take(short).for_each(|&k| counts[k] += 1);
-    // The inputs' own density, without which some points could never be drawn.
+    // The inputs' own density needs a point, because some places could otherwise never be drawn.
     if let Some(most) = (0..counts.len()).max_by_key(|&k| counts[k]).filter(|_| counts[0] == 0) {
         (counts[0], counts[most]) = (1, counts[most] - 1);
     }
@@ -472,6 +485,6 @@ fn shared_out(points: usize, parts: &[f64]) -> Vec<usize> {
 }
 
 fn mixed_seed(seed: u64, stage: u64) -> u64 {
-    // Any odd constant keeps stages apart; the generator mixes what it is seeded with.
+    // Any odd constant keeps stages apart, because the generator mixes its seed.
     seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ (stage + 1).wrapping_mul(0xD1B5_4A32_D192_ED03)
 }

@@ -1,4 +1,4 @@
-//! How rare events are written.
+//! Serialised forms of the results for rare events.
 
 use serde::{Serialize, Serializer};
 
@@ -9,22 +9,22 @@ use sensitol_numeric::verdict::{Judged, Verdict};
 
 warnings_last!(RareEvents);
 
-/// A characteristic with its verdicts, as it is written.
+/// Characteristic with its verdicts, as it is written.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(crate) struct RareShape<'r> {
     #[serde(flatten, serialize_with = "RareCharacteristic::serialize")]
     #[cfg_attr(feature = "schema", schemars(with = "RareCharacteristic"))]
     own: &'r RareCharacteristic,
-    /// Rejects below the lower limit; null without one.
+    /// Rejects below the lower limit; null if there is no lower limit.
     below: Option<BeyondShape<'r>>,
-    /// Rejects above the upper limit; null without one.
+    /// Rejects above the upper limit; null if there is no upper limit.
     above: Option<BeyondShape<'r>>,
-    /// Whether the interval of the yield lies above the target (true), below (false), or around it (null).
+    /// True if the interval of the yield lies above the target, false if below, null if around it.
     met: Option<bool>,
-    /// The same in a word; null without a target.
+    /// Verdict on the target yield; null if there is no target.
     verdict: Option<Verdict>,
-    /// Everything that is required of it, the target yield included.
+    /// Verdicts on all requirements, including the target yield.
     #[cfg_attr(feature = "schema", schemars(with = "Vec<sensitol_numeric::verdict::JudgedShape>"))]
     requirements: Vec<Judged>,
 }
@@ -36,7 +36,7 @@ struct BeyondShape<'r> {
     #[serde(flatten)]
     #[cfg_attr(feature = "schema", schemars(with = "Beyond"))]
     own: &'r Beyond,
-    /// If no point without a value lies beyond, and if all do; null where every point has a value.
+    /// Probability if no point without a value lies beyond, and if all do; null if every point has a value.
     bounds: Option<[f64; 2]>,
 }
 
@@ -55,15 +55,15 @@ impl Serialize for RareCharacteristic {
     }
 }
 
-/// A probability as it is written.
+/// Probability as it is written.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(super) struct ProbabilityShape {
-    /// The probability of an assembly beyond it; null where none was seen.
+    /// Probability of an assembly beyond the limit; null if no point lies there.
     probability: Option<f64>,
-    /// Its standard error.
+    /// Standard error of the probability.
     standard_error: Option<f64>,
-    /// The probability in millionths.
+    /// Probability in parts per million.
     ppm: Option<f64>,
 }
 

@@ -1,7 +1,8 @@
-//! Independent standard normal variables, and the inputs that they stand for.
+//! Independent standard normal variables, and the inputs that are functions of them.
 //!
-//! An input is its own quantile function of a normal variable, and correlated ones are functions of correlated normal
-//! variables (Nataf's law, [`sensitol_numeric::correlation`]), which a factor of their matrix makes of independent ones.
+//! An input is its own quantile function of a normal variable. Correlated inputs are functions of correlated normal
+//! variables (Nataf's law, [`sensitol_numeric::correlation`]). A factor of their correlation matrix makes these of
+//! independent ones.
 
 use crate::method::Outcome;
 use crate::problem::Problem;
@@ -13,10 +14,10 @@ use sensitol_numeric::sampling::SamplingError;
 /// Points as columns, one for every varying dimension.
 pub(super) type Columns = Vec<Vec<f64>>;
 
-/// The varying dimensions of a problem, N of them.
+/// Normal space of the N varying dimensions of a problem.
 pub(super) struct Space<'p> {
     inputs: Vec<Input<'p>>,
-    /// How some of them vary together.
+    /// Correlation of some of the dimensions.
     correlated: Option<Together>,
 }
 
@@ -29,7 +30,7 @@ struct Input<'p> {
 }
 
 impl<'p> Space<'p> {
-    /// Of the dimensions that vary in the surrogate.
+    /// Normal space of the dimensions that vary in the surrogate.
     pub(super) fn new(problem: &'p Problem, outcome: &Outcome) -> Result<Self, SamplingError> {
         let input = |&d: &usize| {
             let dimension: &Dimension = &problem.dimensions()[d];
@@ -49,17 +50,16 @@ impl<'p> Space<'p> {
         Ok(Self { inputs, correlated })
     }
 
-    /// How many normal variables there are.
     pub(super) fn len(&self) -> usize {
         self.inputs.len()
     }
 
-    /// The dimension behind every column.
+    /// Dimension of every column.
     pub(super) fn dimensions(&self) -> impl Iterator<Item = usize> {
         self.inputs.iter().map(|input| input.dimension)
     }
 
-    /// The inputs in sigmas off their means, as the surrogate takes them: tabulated, to 1e-6.
+    /// Inputs in sigmas off their means, for the surrogate. They are tabulated to 1e-6.
     pub(super) fn standardised(&self, normals: &Columns) -> Columns {
         let mut columns = self.together(normals);
         for (input, column) in self.inputs.iter().zip(&mut columns) {
@@ -70,7 +70,7 @@ impl<'p> Space<'p> {
         columns
     }
 
-    /// The inputs themselves, as the model takes them: exact.
+    /// Exact values of the inputs, for the model.
     pub(super) fn values(&self, normals: &Columns) -> Columns {
         let mut columns = self.together(normals);
         for (input, column) in self.inputs.iter().zip(&mut columns) {
@@ -82,7 +82,7 @@ impl<'p> Space<'p> {
         columns
     }
 
-    /// The normal variables, correlated as the inputs want them.
+    /// Normal variables with the correlation of the inputs.
     fn together(&self, normals: &Columns) -> Columns {
         self.correlated.as_ref().map_or_else(|| normals.clone(), |together| together.apply(normals))
     }

@@ -1,42 +1,43 @@
-//! A rare event: a characteristic beyond one of its limits, as the surrogate sees it.
+//! Rare event: a characteristic beyond one of its limits, by its surrogate.
 
 use super::space::{Columns, Space};
 use sensitol_numeric::surrogate::Surrogate;
 
-/// One limit of one characteristic.
 pub(super) struct Target<'a> {
     pub(super) space: &'a Space<'a>,
     pub(super) characteristic: usize,
-    /// 1 for what lies above the limit, -1 for what lies below.
+    /// 1 if rejects lie above the limit, -1 if they lie below.
     pub(super) side: f64,
-    /// Where the means lie beyond the limit, what keeps it is sought instead: the rarer of the two.
+    /// True if the means lie beyond the limit. Values that keep the limit are then sought, because they are the rarer
+    /// ones.
     pub(super) kept: bool,
-    /// The limit as it was given.
+    /// Limit as it was given.
     pub(super) given: f64,
-    /// The last value that keeps it.
+    /// Last value that keeps the limit.
     pub(super) limit: f64,
     pub(super) surrogate: &'a Surrogate,
-    /// The surrogate's, to measure by.
+    /// Sigma of the surrogate, the unit of margins.
     pub(super) sigma: f64,
 }
 
 impl Target<'_> {
-    /// 1 where what is sought lies above the limit, -1 where it lies below.
+    /// 1 if the sought values lie above the limit, -1 if they lie below.
     fn sign(&self) -> f64 {
         if self.kept { -self.side } else { self.side }
     }
 
-    /// Whether a value of the model is one that is sought.
+    /// True if a value of the model is one of those sought.
     pub(super) fn sought(&self, value: f64) -> bool {
         (self.side * (value - self.limit) > 0.0) != self.kept
     }
 
-    /// How far a value lies among those sought, in sigmas; negative where it is none.
+    /// Distance of a value from the limit in sigmas, positive on the sought side.
     pub(super) fn margin_of(&self, value: f64) -> f64 {
         self.sign() * (value - self.limit) / self.sigma
     }
 
-    /// How far the surrogate lies among those sought at these normal variables, in sigmas; negative where it does not.
+    /// Distance of the surrogate's values from the limit in sigmas at these normal variables, positive on the sought
+    /// side.
     pub(super) fn margins(&self, normals: &Columns) -> Vec<f64> {
         let mut margins = self.surrogate.rises(&self.space.standardised(normals)).unwrap_or_default();
         let short = self.limit - self.surrogate.centre;
@@ -44,9 +45,9 @@ impl Target<'_> {
         margins
     }
 
-    /// The margin at a point and its gradient by central differences.
+    /// Margin at a point, and its gradient by central differences.
     pub(super) fn gradient(&self, at: &[f64]) -> (f64, Vec<f64>) {
-        /// In sigmas: the surrogate is a polynomial of low degree.
+        /// Step in sigmas. It is small enough because the surrogate is a polynomial of low degree.
         const STEP: f64 = 1e-2;
         let n = at.len();
         let mut around: Columns = at.iter().map(|&z| vec![z; 2 * n + 1]).collect();

@@ -1,9 +1,9 @@
-//! Where the estimates of rare events rest on little.
+//! Warnings about estimates of rare events that rest on few points.
 
 use super::RareCharacteristic;
 use crate::warning::Warning;
 
-/// More of an estimate than this on one point is a warning.
+/// Part of an estimate on a single point above which there is a warning.
 const HEAVY: f64 = 0.25;
 
 pub(super) fn of(characteristics: &[RareCharacteristic], samples: u64, evaluations: u64) -> Vec<Warning> {

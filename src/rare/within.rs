@@ -1,4 +1,4 @@
-//! The share within the limits, from what lies beyond each of them.
+//! Yield of a characteristic from the probabilities beyond each of its limits.
 
 use super::estimate::ProbabilityEstimate;
 use super::{Beyond, RareCharacteristic};
@@ -7,20 +7,21 @@ use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::sampling::Estimate;
 use sensitol_numeric::verdict::{self, Judged, Verdict};
 
-/// The share within the limits.
+/// Yield of a characteristic.
 #[derive(Clone, Copy)]
 pub(super) struct Within {
-    /// None where beyond some limit no point was seen and that may matter.
+    /// Yield. None if no point lies beyond some limit, and the probability there may matter.
     pub(super) value: Option<f64>,
     /// 95 % interval.
     pub(super) interval: [f64; 2],
 }
 
-/// Of both sides; None where there is no limit, or one of them could not be looked at.
+/// Yield from both sides. Returns None if there is no limit, or no result for one of them.
 ///
-/// A side beyond which nothing was seen adds to the interval; where that is less than what the other side leaves open, the value
-/// is that of the other. Two independent errors are joined as Zou and Donner (2008) do.
-/// Where the means lie beyond a limit, `kept` is what keeps that one: the share within the limits is what of it keeps the other too.
+/// A side with no point beyond adds to the interval only. If it adds less than the uncertainty of the other side, the
+/// value is that of the other side. Two independent errors are joined by the method of Zou and Donner (2008). If the
+/// means lie beyond a limit, `kept` is the probability of keeping that limit. The yield is then `kept` minus the
+/// probability beyond the other limit.
 pub(super) fn within(
     limits: SpecLimits,
     sides: [&Option<Beyond>; 2],
@@ -51,7 +52,7 @@ pub(super) fn within(
     Some(Within { value, interval })
 }
 
-/// The probability of keeping one limit, less that of lying beyond the other.
+/// Probability of keeping one limit, minus that of lying beyond the other.
 fn keeping(kept: ProbabilityEstimate, other: Option<&Beyond>) -> Within {
     let estimate = |probability: Option<Estimate>| probability.map_or(0.0, |estimate| estimate.value);
     let (keeps, lost) = (estimate(kept.probability), other.map_or(0.0, |beyond| estimate(beyond.probability)));
@@ -66,14 +67,16 @@ fn keeping(kept: ProbabilityEstimate, other: Option<&Beyond>) -> Within {
 }
 
 impl RareCharacteristic {
-    /// The probability beyond one of its limits if no point without a value lies there, and if all do; None where every point has a
-    /// value.
+    /// Probability beyond one of the limits if no point without a value lies there, and if all do. Returns None if
+    /// every point has a value.
     pub fn bounds(&self, beyond: &Beyond) -> Option<[f64; 2]> {
         (self.failed > 0).then_some(beyond.bounds)
     }
 
-    /// How a requirement is kept, whether or not it is the characteristic's own: a yield by its interval, where points without a
-    /// value may all be rejected ones. Of what lies between the limits nothing is known, so that no other is judged.
+    /// Verdict on any requirement, the characteristic's own or another.
+    ///
+    /// A yield is judged by its interval, in which points without a value may all be rejects. Other requirements have
+    /// no verdict, because nothing is known of the values between the limits.
     pub(crate) fn judge(&self, requirement: Requirement) -> Judged {
         let sides = [&self.below, &self.above].into_iter().flatten();
         let unknown: f64 = sides.map(|beyond| beyond.bounds[1] - beyond.bounds[0]).sum();
@@ -84,12 +87,12 @@ impl RareCharacteristic {
         Judged::of(requirement, value, interval).unless(self.unfinished)
     }
 
-    /// How everything is kept that is required of it: its target yield, and what else there is.
+    /// Verdicts on all requirements of the characteristic, including its target yield.
     pub fn requirements(&self) -> Vec<Judged> {
         verdict::judged(&self.characteristic, |requirement| self.judge(requirement))
     }
 
-    /// The verdict on its target yield; None without one.
+    /// Verdict on the target yield. Returns None if there is no target.
     pub fn verdict(&self) -> Option<Verdict> {
         self.characteristic.target_yield().map(|target| self.judge(Requirement::Yield(target)).verdict)
     }
