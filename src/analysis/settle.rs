@@ -2,11 +2,9 @@
 //!
 //! | source | condition | error |
 //! |---|---|---|
-//! | proof | nothing varies; or no input is measured, and the extremes are proven to keep the limits, or the formula's degree proves that
-//! the surface is the function, and the distribution of the surface is exact | that of the distribution |
+//! | proof | nothing varies; or no input is measured, and the extremes are proven to keep the limits, or the formula's degree proves that the surface is the function, and the distribution of the surface is exact | that of the distribution |
 //! | samples | points of the model itself, with the surface distribution as control variate if there is one | the sample's |
-//! | surface law | a surface, verified at check points or not at all; a proven surface of measured inputs | distribution and checks as the
-//! root of the sum of squares; without checks, the change of the tails by the errors of the moments |
+//! | surface law | a surface, verified at check points or not at all; a proven surface of measured inputs | distribution and checks as the root of the sum of squares; without checks, the change of the tails by the errors of the moments |
 //! | Pearson fit | only moments are known | change by the errors of the moments |
 //!
 //! The distribution of a surface is tested before it is used (`law_guard`). If points contradict it, counts of them replace it, and a
