@@ -33,18 +33,18 @@ const FIT: usize = 30_000;
 const VALUE: usize = 50;
 /// Groups of values that are left out in turn, of all samples together.
 const GROUPS: usize = 400;
-/// Fewest groups of each sample.
+/// Fewest groups of values of each sample, even if there are many samples.
 const LEAST_GROUPS: usize = 20;
 /// Curvature below this part of the slope is rounding, and needs no higher moment.
 const STRAIGHT: f64 = 1e-9;
 
-/// Number of figures with intervals: mean, sigma, skewness, kurtosis, reject rate, Cpk.
+/// Number of figures that get intervals: mean, sigma, skewness, kurtosis, reject rate, Cpk.
 const FIGURES: usize = 6;
 type Figures = [f64; FIGURES];
 
 /// A measured dimension, or several dimensions measured together as rows.
 struct Measurement<'p> {
-    /// Positions among the varying dimensions.
+    /// Positions of its dimensions among the varying ones.
     positions: Vec<usize>,
     kind: MeasurementKind<'p>,
 }
@@ -61,7 +61,7 @@ enum MeasurementKind<'p> {
 /// A resample of a measured sample.
 enum Redrawn {
     Law(Reweighted),
-    /// Weights of the rows.
+    /// Weights of the rows of the block.
     Rows(Vec<f64>),
 }
 

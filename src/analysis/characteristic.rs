@@ -55,13 +55,13 @@ pub struct CharacteristicAnalysis {
     /// if the distribution has none.
     #[serde(skip)]
     pub density: Option<Vec<[f64; 3]>>,
-    /// Source of the yield. None without a yield.
+    /// Source of the yield. None if there is no yield.
     pub yield_source: Option<YieldSource>,
     /// True if the run was stopped before all planned points were evaluated. There is no verdict then.
     pub unfinished: bool,
     /// Evaluated points without a value of the characteristic.
     pub without_value: usize,
-    /// Estimated errors of these results. None without moments.
+    /// Estimated errors of these results. None if there are no moments.
     pub error_estimate: Option<ErrorEstimate>,
     /// Residual of a fitted surface at the values that it was fitted to. None if nothing was fitted.
     #[serde(rename = "least_squares")]
@@ -75,8 +75,8 @@ pub struct CharacteristicAnalysis {
     #[serde(flatten, serialize_with = "through::<CapabilityShape, _, _>")]
     #[cfg_attr(feature = "schema", schemars(with = "CapabilityShape"))]
     pub capability: Option<Capability>,
-    /// 95 % intervals of the shares below and above the limits, each side separately: 0 to 0 if a proof excludes a side, None without that
-    /// limit and if it is unknown.
+    /// 95 % intervals of the shares below and above the limits, each side separately: 0 to 0 if a proof excludes a side. None if
+    /// that limit does not exist, and if it is unknown.
     #[serde(flatten, serialize_with = "through::<RejectIntervals, _, _>")]
     #[cfg_attr(feature = "schema", schemars(with = "RejectIntervals"))]
     pub reject_intervals: [Option<[f64; 2]>; 2],
@@ -90,9 +90,9 @@ pub struct CharacteristicAnalysis {
     pub normal: Option<Capability>,
     /// Intervals that hold the requested share of assemblies. None if none was requested.
     pub coverage: Option<CoverageIntervals>,
-    /// Risks of the inspection. None without a gauge.
+    /// Risks of the inspection. None if there is no gauge.
     pub inspection: Option<InspectionRisks>,
-    /// Uncertainty of the results because measured dimensions are known by samples. None without measured dimensions.
+    /// Uncertainty of the results because measured dimensions are known by samples. None if there are no measured dimensions.
     #[serde(rename = "sampling_interval")]
     pub sampling: Option<SamplingInterval>,
     /// Interval that no assembly of a linear model leaves: around the nominal, with every dimension at the unfavourable end of its band,
@@ -155,7 +155,7 @@ pub struct Sensitivity {
     pub second: Option<f64>,
     /// True if both derivatives are exact rather than differences.
     pub exact: bool,
-    /// Source of the shares: `exact`, `evaluated`, or `screened` if an estimate has a part in them. None without shares.
+    /// Source of the shares: `exact`, `evaluated`, or `screened` if an estimate has a part in them. None if there are no shares.
     pub origin: Option<DerivativeOrigin>,
     /// Largest effect on the two derivatives of a rounding error of the characteristic. It is computed for the steps used, and for one
     /// sigma if the derivatives are exact.
@@ -328,12 +328,12 @@ impl CharacteristicAnalysis {
         verdict::judged(&self.characteristic, |requirement| self.judge(requirement))
     }
 
-    /// Verdict on the target yield. None without one.
+    /// Verdict on the target yield. Returns None if there is no target.
     pub fn verdict(&self) -> Option<Verdict> {
         self.characteristic.target_yield().map(|target| self.judge(Requirement::Yield(target)).verdict)
     }
 
-    /// True if the target yield is met. None without a target, and if it is unknown.
+    /// True if the target yield is met. Returns None if there is no target, and if it is unknown.
     pub fn met(&self) -> Option<bool> {
         self.verdict()?.met()
     }
@@ -475,7 +475,7 @@ fn exact_derivatives(outcome: &Outcome, c: usize, d: usize) -> Option<[Wide; 2]>
     }
 }
 
-/// Second derivative by a dimension: exact if it is known, else a difference.
+/// Second derivative of a characteristic by a dimension: exact if it is known, else a difference.
 pub(super) fn curvature(outcome: &Outcome, c: usize, d: usize) -> Option<Wide> {
     if let Some([_, second]) = exact_derivatives(outcome, c, d) {
         return Some(second);

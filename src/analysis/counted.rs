@@ -21,13 +21,12 @@ const STREAM: u64 = 1;
 const NUMBERS: usize = 4_000_000;
 /// Fewest points that are drawn, with any number of inputs.
 const FEWEST: usize = 1 << 13;
-/// Points added on either side of a count for its error, so that a count of zero has an error too: three errors then reach 5/n. Without any
-/// hit among `n` points, 1 % confidence remains beyond 4.6/n.
+/// Points added on either side of a count for its error, so that a count of zero has an error too. Three errors then reach 5/n. With no hit
+/// among `n` points, the share exceeds 4.6/n with a probability of 1 % only.
 const UNSEEN: f64 = 3.0;
 
-/// The counts of one characteristic.
 pub(super) struct Counted {
-    /// Shares below and above the limits. None without that limit.
+    /// Shares below and above the limits. None if that limit does not exist.
     pub(super) beyond: [Option<LawFigure>; 2],
     pub(super) quantiles: [LawFigure; 7],
     pub(super) points: usize,
@@ -111,7 +110,7 @@ fn error(count: f64, points: usize) -> f64 {
     QUANTILE * (n * share * (1.0 - share)).sqrt()
 }
 
-/// Quantile at probability `p`. Its error comes from the values at the count plus and minus its error.
+/// Value of the quantile at probability `p`. Its error comes from the values at the count plus and minus its error.
 fn quantile(values: &[f64], tail: LawTail, p: f64) -> LawFigure {
     let n = values.len();
     let at = |beyond: f64| {

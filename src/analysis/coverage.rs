@@ -18,7 +18,7 @@ const ROUNDS: usize = 4;
 /// Smallest relative gain in length that counts as shorter: quantiles are known to 1e-7 sigma.
 const SHORTER: f64 = 1e-6;
 
-/// Coverage intervals of a characteristic, without evaluations. None if nothing is known of its distribution.
+/// Coverage intervals of a characteristic, without evaluations. Returns None if nothing is known of its distribution.
 ///
 /// `law` is the distribution of the surface, if the moments follow from a surface.
 ///

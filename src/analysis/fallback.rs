@@ -113,11 +113,11 @@ pub(super) fn fall_back(
     spent
 }
 
-/// Result of strides.
+/// Result of the attempt with strides.
 enum Strided {
     /// Every figure has the requested accuracy, or the run was stopped.
     Enough,
-    /// The accuracy was not reached. Contains the answers of the model.
+    /// The requested accuracy was not reached. Contains the answers of the model.
     Known(Box<Remembered>),
     Nothing,
 }

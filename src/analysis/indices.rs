@@ -140,7 +140,7 @@ fn of_surface(one: &CharacteristicAnalysis, factors: &[Vec<usize>]) -> Vec<Pair>
     inside.iter().zip(&across).map(of).collect()
 }
 
-/// Indices from the model: from the exchange of its verification, from an exchange of factors, or from the ranks of its sample.
+/// Indices of the model itself: from the exchange of its verification, from an exchange of factors, or from the ranks of its sample.
 fn of_model(
     problem: &Problem,
     (c, options): (usize, &Options),

@@ -8,8 +8,8 @@ use sensitol_numeric::characteristic::SpecLimits;
 use sensitol_numeric::inspection::{Guard, Inspection};
 use sensitol_numeric::law::SurfaceLaw;
 
-/// Risks of the inspection of a characteristic whose yield is settled. Returns None without an inspection, and if nothing is known of its
-/// distribution.
+/// Risks of the inspection of a characteristic whose yield is settled. Returns None if there is no inspection, and if nothing is known of
+/// its distribution.
 ///
 /// `points` of the surface, in ascending order, replace a distribution that is refuted.
 pub(super) fn inspected(

@@ -18,8 +18,8 @@ pub struct Interaction<'a> {
     pub missing: Option<Missing>,
     /// True if the derivative is exact rather than a difference.
     pub exact: bool,
-    /// Source of the share: `exact`, `evaluated`, or `screened` if it is an estimate without an evaluation of its own. None without a
-    /// share.
+    /// Source of the share: `exact`, `evaluated`, or `screened` if it is an estimate without an evaluation of its own. None if
+    /// there is no share.
     pub origin: Option<DerivativeOrigin>,
     /// Largest effect of a rounding error of the characteristic on the derivative.
     pub rounding: Option<f64>,
@@ -116,7 +116,7 @@ impl InteractionList {
         self.rows.iter().map(|row| row.interaction(&self.names))
     }
 
-    /// Creates a list. The rows refer to `names` by index.
+    /// Creates a list of interactions. The rows refer to `names` by index.
     pub(super) fn of(names: Vec<String>, rows: Vec<Row>) -> Self {
         Self { names, rows }
     }
@@ -132,7 +132,7 @@ impl InteractionList {
         rows.shrink_to_fit();
     }
 
-    /// Sets all shares to unknown.
+    /// Sets all shares of the variance to unknown.
     pub(super) fn forget_shares(&mut self) {
         self.rows.iter_mut().for_each(|row| row.share = f64::NAN);
     }

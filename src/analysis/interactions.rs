@@ -20,7 +20,7 @@ pub(super) fn pairs_of(outcome: &Outcome, c: usize) -> impl Iterator<Item = usiz
     })
 }
 
-/// Source of the part of a pair in the surface, or in the variance if there is no surface. None if it has no part.
+/// Source of the part of a pair in the surface, or in the variance if there is no surface. Returns None if it has no part.
 pub(super) fn origin_of(outcome: &Outcome, c: usize, index: usize) -> Option<DerivativeOrigin> {
     let fitted = &outcome.fitted[c];
     match &fitted.integrated {

@@ -21,9 +21,9 @@ const CURVED: f64 = 0.5;
 const MATTERS: f64 = 0.1;
 /// Most axes that are searched, the most curved ones.
 const AXES: usize = 3;
-/// Halvings before the first decision.
+/// Halvings after which a side without a jump is dropped.
 const FIRST: usize = 3;
-/// Halvings in all.
+/// Halvings in all, for the sides that remain.
 const ALL: usize = 6;
 /// Part of the change that a jump has in the last interval. A smooth function has 24 % of its change in the last eighth of a side, and 3 %
 /// in the last of 64 parts.
@@ -41,7 +41,7 @@ pub(super) struct FoundJumps {
 struct Side {
     characteristic: usize,
     dimension: usize,
-    /// Coordinate of the node.
+    /// Coordinate of the node, in the unit of the dimension.
     end: f64,
     /// Change from the centre to the node.
     change: f64,

@@ -31,7 +31,7 @@ pub enum LawTest {
 }
 
 impl LawTest {
-    /// Returns the name in JSON.
+    /// Returns the name of the test in JSON.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Monotone => "monotone",
@@ -60,7 +60,7 @@ rescale!(LawRefutation { limit } without { test, law, counted, error });
 
 /// Quantiles of a distribution that give no intervals.
 pub(super) enum FaultyQuantiles {
-    /// One of them is unknown.
+    /// At least one quantile is unknown.
     Unknown,
     /// A probability and its quantile, which is lower than that of a smaller probability.
     Fall(f64, f64),
@@ -74,7 +74,7 @@ pub(super) struct LawGuard<'a> {
 }
 
 impl<'a> LawGuard<'a> {
-    /// Creates the guard. Rounding moves values by `rounding`, or in proportion to the largest point if that is more.
+    /// Creates the guard from sorted points. Rounding moves values by `rounding`, or in proportion to the largest point if that is more.
     pub(super) fn new(points: &'a [f64], rounding: f64) -> Self {
         let largest = points.first().into_iter().chain(points.last()).fold(0.0, |largest: f64, y| largest.max(y.abs()));
         Self { points, rounding: rounding.max(KeptLimits::rounding_of(largest)) }

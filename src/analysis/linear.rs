@@ -31,7 +31,7 @@ use crate::problem::Problem;
 use sensitol_numeric::correlation::JointLaw;
 use sensitol_numeric::dimension::RssFactor;
 
-/// Factor of the inflated RSS.
+/// Factor of the inflated RSS without a choice of the study (Bender).
 const INFLATION: f64 = 1.5;
 /// Shift of the mean as a part of each half band: 1.5 sigma of 3.
 const MEAN_SHIFT: f64 = 0.5;

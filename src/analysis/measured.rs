@@ -60,7 +60,7 @@ fn by_resamples(found: Option<ResampledIntervals>) -> SamplingInterval {
     SamplingInterval { mean, sigma, skewness, kurtosis, rejected, cpk, level: CONFIDENCE, resamples, samples }
 }
 
-/// Interval of the reject rate. Returns None without limits, and if the reject rate is unknown.
+/// Interval of a characteristic's reject rate. Returns None if there are no limits, and if the reject rate is unknown.
 fn rejected(
     one: &CharacteristicAnalysis,
     samples: &[MeasuredSample],

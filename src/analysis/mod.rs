@@ -109,7 +109,7 @@ pub struct Analysis {
     /// Interval of the joint yield: two errors on either side, widened by the uncertainty of measured samples. None if it is unknown.
     #[serde(rename = "joint_yield_interval")]
     pub joint_interval: Option<[f64; 2]>,
-    /// Verdict on the target for the joint yield. None without such a target.
+    /// Verdict on the target for the joint yield. None if there is no such target.
     #[cfg_attr(feature = "schema", schemars(with = "Option<sensitol_numeric::verdict::JudgedShape>"))]
     pub joint_requirement: Option<Judged>,
     /// Correlations of every two characteristics. Empty with one characteristic, and with more than 40.
@@ -248,7 +248,7 @@ pub(crate) fn analyze_keeping(
         // Nothing uses the distributions again, and with many inputs they are large.
         laws.clear();
     }
-    // Interactions come after the verification, which decides whether the surface is trusted.
+    // The list needs much memory with many inputs: it is made after the distributions were dropped.
     for (c, (one, shares)) in characteristics.iter_mut().zip(shares).enumerate() {
         one.interactions = interactions::listed(problem, &outcome, c, shares.as_ref());
     }
@@ -314,7 +314,7 @@ fn joint_requirement(
     Some(judged.unless(characteristics.iter().any(|one| one.unfinished)))
 }
 
-/// Interval of a joint yield. Returns None if measured samples leave it unknown.
+/// Interval that contains a joint yield. Returns None if measured samples leave it unknown.
 fn joint_interval(joint: Verified, characteristics: &[CharacteristicAnalysis]) -> Option<[f64; 2]> {
     let own = verdict::about(joint.value, Some(joint.error))?;
     let interval = match settle::joint_sampling(characteristics, joint.value) {
@@ -348,7 +348,7 @@ fn spent(outcome: &Outcome, options: &Options) -> RunSummary {
     RunSummary { stopped: spent.stopped.or(budget), ..spent }
 }
 
-/// Runs the method. `auto` continues until the errors of results other than sigma also meet their accuracies.
+/// Runs the method of the options. `auto` continues until the errors of results other than sigma also meet their accuracies.
 fn run_method(problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Outcome, MethodError> {
     let narrow = if options.accuracies.any() { None } else { Narrow::of(problem, options) };
     if let Some(narrow) = narrow {

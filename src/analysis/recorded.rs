@@ -7,7 +7,7 @@ use crate::problem::Problem;
 use crate::verification::Share;
 use sensitol_numeric::sampling::rank_first;
 
-/// Most points that are stored: a costly model is seldom evaluated more often.
+/// Greatest number of stored points: a costly model is seldom evaluated more often.
 const MOST: usize = 1 << 14;
 
 /// Model that stores its points and answers.

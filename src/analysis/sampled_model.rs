@@ -28,7 +28,7 @@ pub struct SampledModel {
     #[serde(flatten, serialize_with = "through::<YieldShape, _, _>")]
     #[cfg_attr(feature = "schema", schemars(with = "YieldShape"))]
     pub yield_: Option<(f64, [f64; 2])>,
-    /// Shares of the sample below the lower and above the upper limit. None without that limit.
+    /// Shares of the sample below the lower and above the upper limit. None if that limit does not exist.
     pub beyond: [Option<f64>; 2],
     /// 95 % intervals of `beyond`.
     #[serde(skip)]

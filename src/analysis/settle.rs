@@ -46,9 +46,9 @@ struct Rejected {
     beyond: [Option<f64>; 2],
     /// Error of the share of all rejects. None if it is unknown.
     error: Option<f64>,
-    /// Error of either side. None if it is unknown.
+    /// Error of the share on either side. None if it is unknown.
     errors: [Option<f64>; 2],
-    /// 95 % interval of either side. None if it is unknown.
+    /// 95 % interval of the share on either side. None if it is unknown.
     intervals: [Option<[f64; 2]>; 2],
 }
 
@@ -215,7 +215,7 @@ pub(super) fn joint(
 }
 
 /// Joint yield from the surface distributions, corrected by the difference of each characteristic's reject rate to that of its own source.
-/// The correction counts as an error of the common rejects. Returns None without a distribution of each, and if a sample of the model
+/// The correction counts as an error of the common rejects. Returns None if one of them has no distribution, and if a sample of the model
 /// refutes one of the surfaces.
 fn by_laws(
     characteristics: &[CharacteristicAnalysis],
@@ -257,8 +257,8 @@ fn by_points(
 }
 
 /// Interval of the joint yield `value` by the uncertainty of measured samples. At least as many assemblies are rejected as by one
-/// characteristic, and at most as many as by all of them one after the other. Returns None without measured samples, and Some(None) if one
-/// of them leaves it unknown.
+/// characteristic, and at most as many as by all of them one after the other. Returns None if there are no measured samples, and Some(None)
+/// if one of them leaves it unknown.
 pub(super) fn joint_sampling(characteristics: &[CharacteristicAnalysis], value: f64) -> Option<Option<[f64; 2]>> {
     let limited = || characteristics.iter().filter(|one| one.characteristic.limits().exist());
     limited().find(|one| one.sampling.is_some())?;
@@ -292,7 +292,7 @@ fn fit(one: &CharacteristicAnalysis) -> Option<&Law> {
     one.law.as_ref()?.as_ref().ok()
 }
 
-/// Rejects from the best source. Returns None if nothing is known.
+/// Rejects from the best available source. Returns None if nothing is known.
 fn rejected(
     problem: &Problem,
     outcome: &Outcome,
@@ -303,7 +303,7 @@ fn rejected(
     proof(problem, outcome, c, one).or_else(|| samples(one)).or_else(|| surface(one, law)).or_else(|| pearson(one))
 }
 
-/// Rejects by proof: of a constant, by proven extremes, or by a proven surface.
+/// Rejects that are proven: of a constant, by proven extremes, or by a proven surface.
 fn proof(problem: &Problem, outcome: &Outcome, c: usize, one: &CharacteristicAnalysis) -> Option<Rejected> {
     let limits = one.characteristic.limits();
     let exactly = |beyond| Rejected::new(YieldSource::Proof, beyond, Some(0.0), [Some(0.0); 2]);
@@ -453,7 +453,7 @@ fn surface(one: &CharacteristicAnalysis, whole: Option<&SurfaceLaw>) -> Option<R
     Some(Rejected::new(YieldSource::SurfaceLaw, beyond.map(|of| of.map(|of| of.value)), error, errors))
 }
 
-/// Rejects from the Pearson fit.
+/// Rejects from the Pearson fit, if nothing better is known.
 fn pearson(one: &CharacteristicAnalysis) -> Option<Rejected> {
     let own = one.pearson?;
     let error = one.error_estimate.as_ref().and_then(|of| of.yield_);

@@ -15,16 +15,16 @@ use sensitol_numeric::surrogate::Univariate;
 /// Shape along an axis other than smooth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Shape {
-    /// Two slopes meet.
+    /// Place at which two slopes meet.
     Kink {
         /// Slopes on the left and on the right, per sigma.
         slopes: [f64; 2],
         /// Places on either side of the kink, in sigmas.
         between: [f64; 2],
     },
-    /// The value jumps.
+    /// Place at which the value jumps.
     Jump {
-        /// Height of the jump.
+        /// Height of the jump, in the unit of the values.
         by: f64,
         /// Places on either side of the jump, in sigmas.
         between: [f64; 2],

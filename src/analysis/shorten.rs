@@ -4,7 +4,7 @@ use super::{Analysis, CharacteristicAnalysis, Missing};
 
 /// Smallest share of the variance of an interaction that is listed.
 const LEAST: f64 = 1e-6;
-/// Most interactions that are listed: some megabytes of JSON.
+/// Greatest number of listed interactions: some megabytes of JSON.
 const MOST: usize = 10_000;
 
 impl Analysis {

@@ -45,7 +45,7 @@ pub struct SobolIndices {
 }
 
 impl IndexSource {
-    /// Returns the name in reports.
+    /// Returns the name of the source in reports.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Surface => "surface",

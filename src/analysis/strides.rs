@@ -50,7 +50,7 @@ const EXACT: f64 = 4.0;
 /// Ratio of scale to origin below which roundings would exceed 1e-8 of a fourth power.
 const CANCELS: f64 = 1e-2;
 
-/// Points that were drawn together: `rows` of every scrambling, one scrambling after the other.
+/// A batch of points drawn together: `rows` of every scrambling, one scrambling after the other.
 struct Stride {
     rows: usize,
     /// Standardised inputs, a column for every varying dimension.
@@ -59,7 +59,7 @@ struct Stride {
     y: Vec<Vec<f64>>,
 }
 
-/// All points drawn so far.
+/// All points drawn so far, with their answers.
 pub(super) struct Strides<'p> {
     problem: &'p Problem,
     outcome: &'p Outcome,
@@ -85,7 +85,7 @@ enum Basis {
     /// The exponential of a regression on products, for values of one sign. Products and powers of the inputs become sums in the logarithm
     /// (Box and Cox 1964).
     Logarithm,
-    /// Like `Logarithm` without products: each input has a factor of its own.
+    /// Like `Logarithm`, but without products: each input has a factor of its own.
     Factors,
 }
 
@@ -102,12 +102,12 @@ pub(super) struct Beside<'p> {
     surface: Option<(&'p Surrogate, Moments)>,
     /// True if the moments of the surface are exact.
     exact: bool,
-    /// Regression of each part. Empty if a logarithm is to be fitted and the values have both signs.
+    /// Regression of each of the parts. Empty if a logarithm is to be fitted and the values have both signs.
     parts: Vec<Sparse>,
     /// Sign of values that are fitted by their logarithm.
     sign: f64,
     rows: usize,
-    /// Error of the regressions three sigma out, at points that were not fitted.
+    /// Error of the regressions three sigma out, in the unit of the characteristic, at points that were not fitted.
     far: f64,
 }
 
@@ -120,7 +120,7 @@ struct Figures {
 
 /// Estimates for one characteristic from the points.
 pub(super) struct StridedFigures {
-    /// Mean, sigma, skewness, kurtosis.
+    /// Estimates of mean, sigma, skewness, kurtosis.
     pub(super) moments: [Estimate; MOMENTS],
     pub(super) sampled: SampledModel,
 }
@@ -160,7 +160,7 @@ impl<'p> Strides<'p> {
         REPLICATES * rows.max(1).min((most / REPLICATES).saturating_sub(rows))
     }
 
-    /// Evaluates the next stride. Returns true if all of it was answered.
+    /// Evaluates the points of the next stride. Returns true if all of it was answered.
     pub(super) fn draw(&mut self, most: usize, run: &Run<'_>) -> bool {
         let rows = self.next(most) / REPLICATES;
         let points = points(&self.draws, self.rows(), rows);
@@ -222,7 +222,7 @@ impl<'p> Strides<'p> {
         Beside { kind, chaos, surface, exact, parts: Vec::new(), sign: 1.0, rows: 0, far: 0.0 }
     }
 
-    /// Estimates from all points. Regressions are fitted anew if points were added.
+    /// Estimates from all points drawn so far. Regressions are fitted anew if points were added.
     pub(super) fn found(&self, c: usize, beside: &mut [Beside<'_>], left: f64) -> Option<StridedFigures> {
         for beside in beside.iter_mut().filter(|beside| beside.rows < self.rows()) {
             self.fit(c, beside);
@@ -542,7 +542,7 @@ impl Beside<'_> {
         values
     }
 
-    /// Held-out values: at every point those of the regression that was not fitted to it.
+    /// Held-out values of the regressions: at every point those of the regression that was not fitted to it.
     fn values(&self, stride: &Stride) -> Vec<f64> {
         let rows = REPLICATES * stride.rows;
         let surface = self.surface(&stride.u, rows);

@@ -47,13 +47,13 @@ const TERMS_OF_ATOMS: f64 = 1e7;
 /// Points of a contour times the part of sigma that has a density. The transform vanishes beyond 8 divided by the sigma of that part, and
 /// the distance of points is a third divided by the whole sigma.
 const POINTS_OF_SIGMA: f64 = 24.0;
-/// Most points of a contour.
+/// Greatest number of points of a contour.
 const MOST_POINTS: f64 = 2048.0;
 /// Most values of a step function that are listed.
 const STEPS: usize = 1 << 18;
 /// Tail probability at which a drawn density ends.
 const DRAWN: f64 = 1e-5;
-/// Places of a drawn density: a pixel or two each.
+/// Number of places of a drawn density: a pixel or two each.
 const PLACES: usize = 240;
 /// Places of a drawn density if each is a sum over points. Lines between them are within 0.1 % of the peak of a normal density.
 const FEW_PLACES: usize = 96;
@@ -62,17 +62,17 @@ const FEW_PLACES: usize = 96;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct SurfaceShares {
-    /// Computation of the distribution.
+    /// Kind of computation of the distribution.
     pub branch: Branch,
     /// Number of surface points that were counted because the distribution could not be computed or is refuted. None if it was computed.
     pub counted: Option<usize>,
-    /// Contradiction because of which points replace the distribution. None without one.
+    /// Contradiction because of which points replace the distribution. None if there is none.
     pub refuted: Option<LawRefutation>,
     /// True if the distribution is a step function: every input with an effect has measured values only.
     pub steps: bool,
-    /// Share below the lower limit. None without one.
+    /// Share below the lower limit. None if there is no such limit.
     pub below: Option<LawFigure>,
-    /// Share above the upper limit. None without one.
+    /// Share above the upper limit. None if there is no such limit.
     pub above: Option<LawFigure>,
     /// Quantiles at the [`PROBABILITIES`](sensitol_numeric::capability::PROBABILITIES). None if one of them is unknown: those of the
     /// Pearson fit are reported then.
@@ -85,7 +85,7 @@ rescale!(SurfaceShares { refuted, quantiles } without { branch, counted, steps, 
 /// shares, quantiles, intervals and density.
 pub(super) struct GuardedLaw {
     pub(super) shares: SurfaceShares,
-    /// Distribution for shares beyond limits. None if points replace it.
+    /// Distribution that gives shares beyond limits. None if points replace it.
     pub(super) law: Option<SurfaceLaw>,
     /// Distribution for quantiles, if these include an unexplained variance that `law` does not.
     full: Option<SurfaceLaw>,
@@ -176,7 +176,7 @@ impl GuardedLaw {
         found.map(|figure| Some(figure).filter(|figure| figure.value.is_finite())).collect()
     }
 
-    /// Returns the density as a table, `[y, density, error]`. None if the values are steps.
+    /// Returns the density as a table, `[y, density, error]`. Returns None if the values are steps.
     pub(super) fn density(&self) -> Option<Vec<[f64; 3]>> {
         match (&self.law, &self.points) {
             (Some(law), _) => density(law, self.shares.quantiles.as_ref()),
@@ -227,13 +227,13 @@ impl SurfaceShares {
         [self.below, self.above].iter().flatten().map(|figure| figure.error).fold(0.0, libm::hypot)
     }
 
-    /// Share beyond the limits. None without limits.
+    /// Share of assemblies beyond the limits. Returns None if there are no limits.
     pub(crate) fn rejected(&self) -> Option<f64> {
         let beyond = [self.below, self.above];
         beyond.iter().any(Option::is_some).then(|| beyond.iter().flatten().map(|figure| figure.value).sum::<f64>())
     }
 
-    /// Share within the limits. None without limits.
+    /// Share of assemblies within the limits. Returns None if there are no limits.
     pub fn yield_(&self) -> Option<f64> {
         self.rejected().map(|rejected| 1.0 - rejected)
     }
@@ -287,14 +287,15 @@ fn has_too_many_atoms(
     points > MOST_POINTS || points * atoms.iter().sum::<usize>() as f64 > TERMS_OF_ATOMS
 }
 
-/// Distribution of a characteristic's surface itself. None if there is no surface, or only moments are known of an input.
+/// Distribution of a characteristic's surface itself. Returns None if there is no surface, or only moments are known of an input.
 pub(crate) fn surface_law(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Result<SurfaceLaw, LawError>> {
     let (surrogate, inputs) = surface(problem, outcome, c, None)?;
     let rounding = problem.kept_limits(c).rounding();
     Some(law_over(&surrogate, &inputs, outcome.plan.inputs().correlation(), rounding))
 }
 
-/// Distribution of a surface. None if measured values are too many for a contour, and their sums too many for a list.
+/// Distribution of a surface over its inputs. Returns None if measured values are too many for a contour, and their sums too many for a
+/// list.
 fn known_law(
     surrogate: &Surrogate,
     inputs: &[Arc<dyn Distribution>],
@@ -307,7 +308,7 @@ fn known_law(
     }
 }
 
-/// Options of the distribution. Without limits a tail needs no twelve digits: quantiles of trees of products come from points.
+/// Options for computing the distribution. Without limits a tail needs no twelve digits: quantiles of trees of products come from points.
 fn options(problem: &Problem, c: usize, surrogate: &Surrogate) -> LawOptions {
     let (trees, kept) = (problem.characteristics()[c].limits().exist(), problem.kept_limits(c));
     LawOptions { points: points(surrogate), trees, rounding: kept.rounding(), ..LawOptions::default() }
@@ -358,8 +359,8 @@ pub(super) fn with(
     (surrogate, inputs)
 }
 
-/// Density at places from one far quantile to the other, `[y, density, error]`. None if the values are steps, or if points are drawn of
-/// which none can be integrated.
+/// Density at places from one far quantile to the other, `[y, density, error]`. Returns None if the values are steps, or if points are
+/// drawn of which none can be integrated.
 fn density(law: &SurfaceLaw, quantiles: Option<&[LawFigure; 7]>) -> Option<Vec<[f64; 3]>> {
     if law.is_step_function() {
         return None;
@@ -385,8 +386,8 @@ fn density(law: &SurfaceLaw, quantiles: Option<&[LawFigure; 7]>) -> Option<Vec<[
     (from < to && table.iter().all(|[_, density, _]| *density >= 0.0)).then_some(table)
 }
 
-/// All quantiles of reports. The search starts at those of the Pearson fit, or of a normal distribution if there is no fit. None if one of
-/// them is unknown.
+/// All quantiles of reports. The search starts at those of the Pearson fit, or of a normal distribution if there is no fit. Returns None if
+/// one of them is unknown.
 fn quantiles(law: &SurfaceLaw, fit: Option<&Law>) -> Option<[LawFigure; 7]> {
     let found = law.quantiles(&sought(law, fit, &QUANTILES));
     let known = found.iter().all(|figure| figure.value.is_finite());
@@ -414,7 +415,7 @@ fn sought(law: &SurfaceLaw, fit: Option<&Law>, of: &[(LawTail, f64)]) -> Vec<Sou
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(super) struct SurfaceLawShape {
-    /// Computation of the distribution: `exact`, `single` or `sampled`.
+    /// Kind of computation of the distribution: `exact`, `single` or `sampled`.
     branch: &'static str,
     /// Number of surface points that were counted because the distribution could not be computed or is refuted; null if it was computed.
     counted_points: Option<usize>,

@@ -31,7 +31,7 @@ const TARGET: f64 = 0.1;
 const MOST: usize = 1 << 19;
 /// Standard errors beyond which a figure contradicts the model.
 const OFF: f64 = 3.0;
-/// Smallest deviation that matters: as a part of sigma for mean and sigma, of the value (at least 1) for skewness and kurtosis.
+/// Smallest deviation of a figure that matters: as a part of sigma for mean and sigma, of the value (at least 1) for skewness and kurtosis.
 const MATTERS: f64 = 0.01;
 /// Standard errors beyond which `auto` takes the model's figure.
 const AGREES: f64 = 2.0;
@@ -165,7 +165,7 @@ fn sample(
     let dimension = |d: usize| problem.dimensions()[d].name().to_owned();
     let share = |(d, [first, total]): (usize, [Verified; 2])| VarianceShare { dimension: dimension(d), first, total };
     let shares = shares.map(|shares| shares.into_iter().map(share).collect());
-    // A surface that is not trusted lets the model's figures replace its own.
+    // With `model_figures`, a surface that is not trusted gives way to the model's figures.
     let refuted = options.model_figures && open.is_none_or(|share| share > TRUSTED);
     let replaced = (options.method == Method::Auto || refuted) && replace(one, &found);
     let Some(moments) = one.moments else { return true };

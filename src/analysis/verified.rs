@@ -43,12 +43,12 @@ pub struct Verification {
     /// Check points without a value. A sample has `valid` instead.
     #[serde(skip)]
     pub(crate) failed: usize,
-    /// Share of the assemblies that have a value. None without a sample.
+    /// Share of the assemblies that have a value. None if there is no sample.
     #[serde(rename = "valid_share")]
     pub valid: Option<Verified>,
     /// Share of the variance that the surface leaves unexplained.
     pub left: Option<f64>,
-    /// Mean, sigma, skewness and kurtosis by the model. None without a sample of it.
+    /// Mean, sigma, skewness and kurtosis by the model. None if there is no sample of it.
     #[serde(skip)]
     pub figures: [Option<Verified>; 4],
     /// Share within the limits: by the model, or by the surface with the error from check points.
@@ -60,7 +60,7 @@ pub struct Verification {
     /// Weight of one point of a sample.
     #[serde(skip)]
     pub(crate) point: f64,
-    /// Difference of the shares of model and surface within the limits, below and above them. None without a sample of both.
+    /// Difference of the shares of model and surface within the limits, below and above them. None if there is no sample of both.
     pub difference: Option<[Verified; 3]>,
     /// Switches that were met. None if the model does not report where it changes its form.
     pub switches: Option<Vec<FoundSwitch>>,
@@ -69,7 +69,7 @@ pub struct Verification {
     pub unseen: Option<f64>,
     /// Shares of the variance from the model, if the surface is not trusted.
     pub shares: Option<Vec<VarianceShare>>,
-    /// Tails of the sample towards the limits. None without limits.
+    /// Tails of the sample towards the limits. None if there are no limits.
     pub tails: Option<Tails>,
     /// True if figures of the characteristic are the model's, in place of the surface's.
     pub replaced: bool,

@@ -47,13 +47,13 @@ impl Serialize for CharacteristicAnalysis {
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct WorstCase<'r> {
-    /// Interval of the linear model.
+    /// Worst case of the linear model, an interval.
     linear: Option<[f64; 2]>,
     /// Interval of the model itself, if it was searched.
     extremes: Option<[f64; 2]>,
     /// True if it is proven that no assembly lies beyond the extremes.
     proven: Option<bool>,
-    /// Places of the extremes: every dimension that matters by name.
+    /// Points at which the extremes are: every dimension that matters by name.
     at: Option<ExtremesAt<'r>>,
     /// Interval that no assembly leaves, by interval arithmetic. Only for formulas.
     bounds: Option<[f64; 2]>,

@@ -167,7 +167,6 @@ pub struct Histogram {
     pub counts: Vec<u64>,
 }
 
-/// Probabilities of the estimated quantiles.
 const QUANTILES: [f64; 7] = [TAIL, 0.01, 0.05, 0.5, 0.95, 0.99, 1.0 - TAIL];
 
 /// Fewest values beyond a quantile with which its standard error is meaningful.
@@ -437,7 +436,7 @@ impl<'a> Evidence<'a> {
         let powers = seldom.filter(|_| sigma > 0.0).map_or([0.0; 4], |seldom| seldom.powers(mean, sigma));
         let standardised = self.all.standardised();
         let shares = self.count.largest().shares(&self.all);
-        // The mean is in the unit of the values, and sigma is half of its square in relative terms.
+        // The mean has the unit of the values, and the relative error of sigma is half of that of its square.
         let of_sides = |power: f64, i: usize, sigma: f64| {
             [sigma, 0.5 * sigma, 1.0, 1.0][i] * (power / self.all.count().max(1) as f64).sqrt()
         };
@@ -474,7 +473,7 @@ impl<'a> Evidence<'a> {
         })
     }
 
-    /// Moments without the surrogate.
+    /// Moments of the sample without the surrogate.
     fn plain(&self) -> [Option<Estimate>; 4] {
         self.settled(moments(&self.all, &self.count.replicates))
     }
@@ -532,7 +531,7 @@ impl<'a> Evidence<'a> {
         }
     }
 
-    /// Share within the limits. Returns None if there are no limits, or no value is known.
+    /// Share of assemblies within the limits. Returns None if there are no limits, or no value is known.
     pub(super) fn yield_of(&self, limits: SpecLimits) -> Option<YieldEstimate> {
         let (known, answered, replicates) = (self.all.count(), self.answered, &self.count.replicates);
         if !limits.exist() || known == 0 {
@@ -595,7 +594,7 @@ fn pooled(replicates: &[Replicate]) -> Option<Fine> {
     Some(all)
 }
 
-/// Moments of all points together. The standard errors come from the sample if it is random, else from the replicates.
+/// Moments of the points of all replicates. The standard errors come from the sample if it is random, else from the replicates.
 fn moments(all: &Summary, replicates: &[Replicate]) -> [Option<Estimate>; 4] {
     let mut estimates = of_moments(all);
     if replicates.len() > 1 {

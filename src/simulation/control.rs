@@ -19,28 +19,28 @@ use sensitol_numeric::surrogate::Surrogate;
 
 /// Points of the surrogate for every point of the model, for the surrogate's own share within the limits.
 const MORE: u64 = 32;
-/// Fewest points of the surrogate.
+/// Fewest points of the surrogate for that share.
 const LEAST: u64 = 1 << 18;
-/// Most points of the surrogate.
+/// Most points of the surrogate for that share.
 const MOST: u64 = 1 << 24;
 /// Most operations for these points, approximately: some seconds.
 const EFFORT: u64 = 1 << 31;
 
-/// Surrogates of a problem.
+/// Surrogates of a problem as control variates.
 pub(super) struct Control<'p> {
     problem: &'p Problem,
     pub(super) outcome: Outcome,
-    /// Surrogates by characteristic. None if a surrogate does not vary, and explains nothing.
+    /// Surrogates of the characteristics. None if a surrogate does not vary, and explains nothing.
     pub(super) twins: Vec<Option<Twin>>,
 }
 
-/// Surrogate of one characteristic.
+/// Surrogate of one characteristic with its exact moments.
 pub(super) struct Twin {
     surrogate: Surrogate,
     pub(super) method: Method,
     pub(super) evaluations: usize,
     pub(super) centre: f64,
-    /// Moments of the surrogate. With `t` the standardised surrogate, `E[t^3]` and `E[t^4]` are its skewness and kurtosis.
+    /// Exact moments of the surrogate. With `t` the standardised surrogate, `E[t^3]` and `E[t^4]` are its skewness and kurtosis.
     pub(super) moments: Shape,
     /// Standard errors of the moments, if correlated inputs permit no closed form.
     pub(super) sampled: Option<Sampled>,
@@ -58,7 +58,7 @@ pub(super) struct Outside {
 }
 
 impl<'p> Control<'p> {
-    /// Analyses the problem. The result has no surrogates if it was stopped meanwhile.
+    /// Analyses the problem for its surrogates. There are none if it was stopped meanwhile.
     pub(super) fn of(
         problem: &'p Problem,
         asked: &Options,

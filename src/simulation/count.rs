@@ -25,7 +25,7 @@ pub(super) struct Replicate {
     pub(super) fine: Option<Fine>,
 }
 
-/// Sums of one characteristic.
+/// Sums of one characteristic in all replicates.
 pub(super) struct Count {
     pub(super) replicates: Vec<Replicate>,
     /// Sums by groups of measured rows. Empty if there are no measured inputs.
@@ -35,14 +35,14 @@ pub(super) struct Count {
 }
 
 impl Count {
-    /// Summary of all replicates together.
+    /// Merges the summaries of all replicates.
     pub(super) fn summary(&self) -> Summary {
         let mut all = Summary::default();
         self.replicates.iter().for_each(|replicate| all.merge(&replicate.summary));
         all
     }
 
-    /// Largest points of all replicates.
+    /// Merges the largest points of all replicates.
     pub(super) fn largest(&self) -> LargestPoints {
         let mut all = LargestPoints::default();
         self.replicates.iter().for_each(|replicate| all.merge(&replicate.largest));

@@ -23,7 +23,7 @@ use sensitol_numeric::sampling::{Estimate, FEWEST, Joint, LargestShare, LargestT
 
 /// Number of powers of the surrogate that serve as controls.
 const CONTROLS: usize = 4;
-/// Number of columns: `n_k - t^k` for k = 0 to 4, then the controls.
+/// Columns of the joint sums: `n_k - t^k` for k = 0 to 4, then the controls.
 const COLUMNS: usize = 1 + 2 * CONTROLS;
 /// Fewest points for a fit of coefficients. With fewer, the differences are used as they are.
 const FITTED: u64 = 64;
@@ -136,7 +136,7 @@ impl Difference {
 struct Coefficients([[f64; CONTROLS]; 1 + CONTROLS]);
 
 impl Coefficients {
-    /// Coefficients of zero: the differences as they are.
+    /// Zero coefficients, which leave the differences as they are.
     fn none() -> Self {
         Self([[0.0; CONTROLS]; 1 + CONTROLS])
     }
@@ -298,9 +298,9 @@ fn apart(model: bool, surrogate: bool, only: &mut [u64; 2]) {
 
 /// Shares outside the limits, and the interval of the share within.
 pub(super) struct Shares {
-    /// Shares below and above.
+    /// Shares below and above the limits.
     pub(super) outside: [f64; 2],
-    /// Intervals of the shares below and above.
+    /// Intervals of `outside`.
     pub(super) intervals: [[f64; 2]; 2],
     pub(super) interval: [f64; 2],
 }

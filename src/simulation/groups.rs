@@ -8,7 +8,7 @@ use sensitol_numeric::correlation::JointLaw;
 use sensitol_numeric::distribution::{Distribution, Sample};
 use sensitol_numeric::sampling::MeasuredSample;
 
-/// Most groups of a sample.
+/// Most groups of a measured sample.
 const GROUPS: usize = 400;
 /// Fewest points of a group on average.
 const POINTS: u64 = 50;

@@ -131,12 +131,12 @@ struct Exchange<'p> {
     space: Space<'p>,
     factors: &'p [Vec<usize>],
     rows: usize,
-    /// Values near the means. Sums are taken about them so that nothing large is squared.
+    /// Values near the means of the characteristics. Sums are taken about them so that nothing large is squared.
     origins: &'p [f64],
     run: &'p Run<'p>,
 }
 
-/// Sums of one scrambling.
+/// Sums of one scrambling, with its cost.
 struct Replicate {
     /// Sums by characteristic: number of points, their sum and squares; then for every factor the number of points, and sums of means,
     /// products, mean squares, and squared differences.

@@ -9,9 +9,8 @@ use sensitol_numeric::sampling::Fine;
 
 /// A part of the sample between two values, without a limit in it.
 struct Piece {
-    /// Middle of the piece.
+    /// Middle of the piece, which represents its values.
     at: f64,
-    /// Number of points.
     points: f64,
     good: bool,
 }
@@ -119,7 +118,7 @@ fn pieces(fine: &Fine, limits: KeptLimits, outside: [u64; 2]) -> Vec<Piece> {
     pieces
 }
 
-/// Means over the pieces. Returns None if there are no points.
+/// Means over all points of the pieces. Returns None if there are no points.
 fn means(pieces: &[Piece], limits: KeptLimits, gauge: f64, guard: f64) -> Option<Means> {
     let total: f64 = pieces.iter().map(|piece| piece.points).sum();
     let (mut shares, mut squares) = ([0.0; 3], [0.0; 3]);

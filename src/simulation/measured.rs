@@ -78,7 +78,7 @@ impl MeasuredGroups<'_> {
         })
     }
 
-    /// Interval of the reject rate. Returns None if there are no limits.
+    /// Interval of a characteristic's reject rate. Returns None if there are no limits.
     fn rejected(
         &self,
         c: usize,

@@ -329,7 +329,7 @@ impl SimulationError {
     }
 }
 
-/// Most points: counts are exact in a double up to here.
+/// Greatest number of points: counts are exact in a double up to here.
 const MOST: u64 = 1 << 52;
 
 /// [`simulate`] with reports of progress and a way to stop.
@@ -404,7 +404,7 @@ impl Simulation {
         self.warnings.iter_mut().for_each(|warning| warning.rescale(|name| back.power_of(name)));
     }
 
-    /// Adds Sobol' indices.
+    /// Adds Sobol' indices from further evaluations.
     fn with_indices(
         mut self,
         problem: &Problem,
@@ -509,7 +509,7 @@ fn drawn(
     }
 }
 
-/// Evaluates one portion.
+/// Evaluates one portion, with surrogates and groups of measured samples.
 fn block(
     problem: &Problem,
     (points, out): (&Points, &mut Responses),
@@ -530,9 +530,9 @@ fn block(
 struct Portions {
     replicates: u64,
     rows: u64,
-    /// Points of all replicates.
+    /// Number of points in all replicates together.
     total: u64,
-    /// Points of a replicate.
+    /// Number of points in each replicate.
     each: u64,
     done: u64,
     costly: bool,

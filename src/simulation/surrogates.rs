@@ -13,11 +13,11 @@ const FULL: usize = 20;
 /// Surrogates, and the analysis that they come from.
 pub(crate) struct Surrogates {
     pub(crate) outcome: Outcome,
-    /// Surrogates by characteristic. None if a surrogate does not vary. Empty if the analysis was stopped.
+    /// Surrogates of the characteristics. None if a surrogate does not vary. Empty if the analysis was stopped.
     pub(crate) known: Vec<Option<KnownSurrogate>>,
 }
 
-/// Surrogate of one characteristic.
+/// Surrogate of one characteristic with its exact moments.
 pub(crate) struct KnownSurrogate {
     pub(crate) surrogate: Surrogate,
     pub(crate) moments: Shape,
@@ -35,7 +35,7 @@ pub(crate) struct Shape {
 }
 
 impl Surrogates {
-    /// Analyses the problem. Returns an error if a characteristic has no surrogate.
+    /// Analyses the problem for its surrogates. Returns an error if a characteristic has no surrogate.
     pub(crate) fn of(problem: &Problem, asked: &Options, run: &Run<'_>) -> Result<Self, SimulationError> {
         let asked = chosen(problem, asked);
         if let Some(first) = problem.characteristics().first().filter(|_| !asked.method.has_surrogate()) {
@@ -54,7 +54,7 @@ impl Surrogates {
         Ok(surrogates)
     }
 
-    /// Surrogates of an existing analysis by characteristic. None if there is none.
+    /// Surrogates of an existing analysis by characteristic. Returns None if there is none.
     pub(super) fn known_of(problem: &Problem, outcome: &Outcome) -> Vec<Option<KnownSurrogate>> {
         (0..problem.characteristics().len()).map(|c| Self::of_one(problem, outcome, c).ok().flatten()).collect()
     }

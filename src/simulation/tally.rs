@@ -21,7 +21,7 @@ use sensitol_numeric::sampling::LargestPoints;
 use sensitol_numeric::sampling::{Fine, Portion, Sampler, Scale, Summary};
 use sensitol_numeric::verdict::Judged;
 
-/// Answers of one portion.
+/// Answers of one portion, counted.
 pub(super) struct Block {
     columns: Vec<Column>,
     answered: u64,
@@ -128,7 +128,7 @@ pub(super) struct Tally<'a> {
     seldom: Option<Vec<Option<Seldom>>>,
     answered: u64,
     extra: i64,
-    /// Cost of the drawn points.
+    /// Cost of the points drawn so far.
     run: RunSummary,
     non_repeatable: Vec<NonRepeatable>,
     pub(super) stopped: bool,
@@ -292,7 +292,7 @@ impl<'a> Tally<'a> {
         SimulatedCharacteristic::of(limited, &self.evidence(c, count))
     }
 
-    /// Surrogate of this characteristic.
+    /// Surrogate of a characteristic, if there is one.
     fn twin(&self, c: usize) -> Option<&Twin> {
         self.control?.twins.get(c)?.as_ref()
     }

@@ -11,7 +11,7 @@ use sensitol_numeric::elementary::{Work, on_this_processor};
 use sensitol_numeric::sampling::{Sampler, wilson};
 use sensitol_numeric::verdict;
 
-/// One number for every part.
+/// One number for every part of a sample.
 type Parts<T> = [T; REPLICATES];
 
 /// Sums of the parts of a sample.
@@ -25,7 +25,7 @@ pub(super) struct Together {
     products: Vec<Parts<f64>>,
     /// Points at which every characteristic with limits has a value.
     known: Parts<u64>,
-    /// Those of the known points that keep all limits.
+    /// Points among `known` that keep all limits.
     kept: Parts<u64>,
 }
 

@@ -33,7 +33,7 @@ const WEAK: f64 = 1e-4;
 const FOLLOWED: f64 = 0.5;
 /// Most inputs with points of their own.
 const AXES: usize = 3;
-/// Most lines.
+/// Most lines with check points.
 const LINES: usize = 3;
 /// Cosine of two directions above which they count as one line.
 const SAME: f64 = 0.95;
@@ -56,7 +56,7 @@ pub(super) struct Wish {
 /// Check points, in the order of their purposes.
 pub(super) struct Design {
     pub(super) points: Vec<Vec<f64>>,
-    /// Directions of the lines. The points at [`ON_LINE`] of the first come first, and so on.
+    /// Directions of all the lines. The points at [`ON_LINE`] of the first come first, and so on.
     pub(super) lines: Vec<Vec<f64>>,
     /// Inputs with two points of their own, after the lines.
     pub(super) axes: Vec<usize>,
@@ -116,13 +116,13 @@ impl Design {
         Some(Self { points, lines, axes, idle, pairs })
     }
 
-    /// Points as columns.
+    /// Points as columns, one for every variable.
     pub(super) fn columns(&self) -> Columns {
         let n = self.points.first().map_or(0, Vec::len);
         (0..n).map(|j| self.points.iter().map(|point| point[j]).collect()).collect()
     }
 
-    /// Index of the line of a characteristic, which may have the opposite sign. Returns None without a line.
+    /// Index of the line of a characteristic, which may have the opposite sign. Returns None if it has no line.
     pub(super) fn line_of(&self, wish: &Wish) -> Option<usize> {
         self.lines.iter().position(|line| dot(line, &wish.line).abs() > SAME)
     }

@@ -2,7 +2,7 @@
 
 use sensitol_numeric::sampling::student_quantile;
 
-/// Number of moments: mean, sigma, skewness, kurtosis. Shares follow them.
+/// Number of moments among the figures: mean, sigma, skewness, kurtosis. Shares follow them.
 pub(crate) const MOMENTS: usize = 4;
 /// Probability below three sigmas of a normal distribution.
 const THREE_SIGMAS: f64 = 0.998_65;
@@ -66,7 +66,7 @@ pub(crate) fn jackknife(of: impl Fn(&[f64]) -> Vec<f64>, sums: &[Vec<f64>]) -> V
         .collect()
 }
 
-/// Sum of every row.
+/// Sum of every row, over all randomisations.
 pub(crate) fn totals(sums: &[Vec<f64>]) -> Vec<f64> {
     sums.iter().map(|row| row.iter().sum()).collect()
 }

@@ -202,7 +202,7 @@ pub(crate) fn seldom_sides(
     (seed, scale): (u64, f64),
     run: &Run<'_>,
 ) -> Option<SeldomSides> {
-    /// Points of a half-space. Its part of a moment is known to about a tenth.
+    /// Number of points of a half-space. Its part of a moment is known to about a tenth.
     const WITHIN: usize = 1 << 8;
     let function = problem.function();
     let told = function.switches(problem.outputs()[c]).filter(|told| !told.list.is_empty());
@@ -275,7 +275,7 @@ pub fn variance_shares(problem: &Problem, characteristic: usize, seed: u64) -> O
     variance_shares_during(problem, characteristic, seed, &Run::to_the_end())
 }
 
-/// [`variance_shares`] during a run. Returns None if the run was stopped meanwhile.
+/// [`variance_shares`] under the conditions of a run. Returns None if the run was stopped meanwhile.
 pub(crate) fn variance_shares_during(
     problem: &Problem,
     characteristic: usize,

@@ -23,7 +23,7 @@ impl<'p> Model<'p> {
         Self::over(problem, characteristic, &dimensions)
     }
 
-    /// Creates it over these dimensions.
+    /// Creates it over the given dimensions of the problem.
     pub(super) fn over(problem: &'p Problem, characteristic: usize, dimensions: &[usize]) -> Self {
         let space = Space::new(problem, dimensions);
         Self { problem, output: problem.outputs()[characteristic], space, run: Run::to_the_end() }
@@ -39,17 +39,16 @@ impl<'p> Model<'p> {
         self.run.stopped()
     }
 
-    /// Standardised inputs.
+    /// Standardised inputs at some points.
     pub(super) fn standardised(&self, z: &Columns) -> Columns {
         self.space.standardised(z)
     }
 
-    /// Number of variables.
     pub(super) fn len(&self) -> usize {
         self.space.len()
     }
 
-    /// Dimension of every variable.
+    /// Dimension of the problem of every variable.
     pub(super) fn dimensions(&self) -> impl Iterator<Item = usize> + '_ {
         self.space.dimensions()
     }

@@ -11,7 +11,7 @@ use sensitol_numeric::characteristic::KeptLimits;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::sampling::{Normals, clopper_pearson};
 
-/// Points of one randomisation.
+/// Number of points of one randomisation.
 const ROWS: usize = 1 << 10;
 /// Number of sums of a pair: points, first, second, their squares, their product.
 const SUMS: usize = 6;
@@ -35,7 +35,7 @@ impl OutputCorrelation {
 }
 
 /// Coefficient of correlation of every pair of characteristics, over the points at which both have a value, in the order `(0, 1), (0, 2),
-/// ..., (1, 2), ...`. None if one of them does not vary.
+/// ..., (1, 2), ...`. Returns None if one of them does not vary.
 ///
 /// 16 randomisations of 1024 Sobol' points of all dimensions that vary, errors by the jackknife and Student's quantile. Pure in
 /// problem and seed. Accuracy: errors of some 1e-3 where the characteristics are smooth.

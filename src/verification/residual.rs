@@ -75,7 +75,7 @@ pub(super) struct Judged {
 /// Estimated shape of the residual (`p` above).
 struct Bend<'d> {
     line: Option<(&'d [f64], [f64; 4])>,
-    /// Input, odd and even coefficient.
+    /// Input, odd and even coefficient of the parts along axes.
     axes: Vec<(usize, f64, f64)>,
 }
 
@@ -152,7 +152,7 @@ pub(super) fn judge(
     let rho = TOO_SMALL * TOO_SMALL * (square(rest) + largest) / k
         + OVERLOOKED * OVERLOOKED * OVERLOOKED_BY / d.len() as f64
         + idle;
-    // Root mean squares of the influences over the whole distribution, for the bound.
+    // Mean squares of the influences over the whole distribution, for the bound.
     let total: f64 = surface.weights.iter().sum();
     let mut spread = [0.0; MOMENTS];
     for (q, weight) in surface.values.iter().zip(&surface.weights) {

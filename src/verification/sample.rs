@@ -23,7 +23,7 @@ use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::sampling::Normals;
 use sensitol_numeric::surrogate::Surrogate;
 
-/// Number of randomisations.
+/// Number of randomisations (scramblings) of a stratum.
 pub(crate) const REPLICATES: usize = 16;
 /// Points of a half-space in all randomisations together.
 pub(super) const TAIL: usize = 1 << 12;
@@ -45,7 +45,6 @@ struct Part {
     surface: Vec<f64>,
 }
 
-/// Sample of one characteristic.
 pub(super) struct Sample {
     parts: Vec<Part>,
     /// Weight of one point of the core.
@@ -202,7 +201,8 @@ impl Sample {
     }
 }
 
-/// Direction of the tails: `E[z d^3]` with `d` the standardised values, winsorised. For a function that is nearly linear it is along `R b`.
+/// Direction along which the tails lie: `E[z d^3]` with `d` the standardised values, winsorised. For a function that is nearly linear it is
+/// along `R b`.
 pub(super) fn steepest(z: &Columns, y: &[f64]) -> Vec<f64> {
     let valid: Vec<f64> = y.iter().copied().filter(|y| y.is_finite()).collect();
     let [mean, sigma, ..] = moments(&valid, &vec![1.0; valid.len()]);

@@ -15,13 +15,13 @@ use super::space::Columns;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::sampling::Normals;
 
-/// Evaluations of all scramblings together.
+/// Number of evaluations of all scramblings together.
 const EVALUATIONS: usize = 1 << 16;
-/// Number of scramblings.
+/// Number of scramblings, which give the errors.
 const REPLICATES: usize = 8;
-/// Fewest points of a scrambling.
+/// Fewest points of a scrambling, with any number of inputs.
 const FEWEST: usize = 64;
-/// Most inputs: more would need too many random numbers.
+/// Greatest number of inputs: more would need too many random numbers.
 const MOST: usize = 256;
 
 /// A share of the variance with its error.

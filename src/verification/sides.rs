@@ -18,11 +18,11 @@ use sensitol_numeric::sampling::Normals;
 
 /// Points at which margins are evaluated, for each of three widths: plain, twice and three times as wide.
 const POINTS: usize = 1 << 11;
-/// Factors of the wider points.
+/// Factors by which the wider points are stretched.
 const WIDE: [f64; 2] = [2.0, 3.0];
 /// Greatest probability of a side that is searched for, 256 of 32 768 points.
 const SELDOM: f64 = 1.0 / 128.0;
-/// Most places of one switch: `abs(x) > c` has two.
+/// Most half-spaces of one switch: `abs(x) > c` has two.
 const PLACES: usize = 4;
 /// Most half-spaces of all switches.
 pub(super) const MOST: usize = 6;
@@ -102,9 +102,9 @@ impl FoundSwitch {
 /// Results of the search for the switches of one output.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Sides {
-    /// Strata of the seldom sides.
+    /// Half-spaces that contain the seldom sides.
     pub(super) half_spaces: Vec<HalfSpace>,
-    /// Switches that were met. None if the model does not report them.
+    /// Switches that assemblies meet. None if the model does not report them.
     pub(super) switches: Option<Vec<FoundSwitch>>,
     /// True if the model reported all of its switches.
     pub(super) complete: bool,
@@ -200,7 +200,7 @@ impl Places<'_> {
         self.normals.columns(stream(index), POINTS)
     }
 
-    /// Points of one width.
+    /// Points of one of the widths, by its index.
     fn widened(&self, index: usize) -> Columns {
         let mut z = self.drawn(1 + index);
         z.iter_mut().flatten().for_each(|z| *z *= WIDE[index]);
@@ -211,7 +211,7 @@ impl Places<'_> {
         self.plain.get_or_init(|| self.drawn(0))
     }
 
-    /// Points of all widths.
+    /// Points of all widths together.
     fn wide(&self) -> &Columns {
         self.wide.get_or_init(|| {
             let mut all = self.widened(0);
@@ -288,7 +288,7 @@ impl Search<'_, '_> {
         at(high)
     }
 
-    /// Bisects a way: returns two parts of it, the first without the sign and the second with it.
+    /// Bisects the way `at`: returns two parts of it, the first without the sign and the second with it.
     fn halved(&self, switch: usize, sign: f64, at: &dyn Fn(f64) -> Vec<f64>, times: usize) -> (f64, f64) {
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..times {
@@ -304,7 +304,7 @@ impl Search<'_, '_> {
     }
 
     /// Probability of a side, by the plain points outside its half-spaces, and by points within each that no earlier one contains. Returns
-    /// None if no point lies on the side.
+    /// Returns None if no point lies on the side.
     fn probability(&self, switch: usize, sign: f64, own: std::ops::Range<usize>, margins: &[f64]) -> Option<f64> {
         let mut outside: Vec<bool> = margins.iter().map(|margin| margin * sign > 0.0).collect();
         let mut sum = 0.0;
@@ -356,7 +356,7 @@ impl Search<'_, '_> {
         (near > BENT && near > 0.5 * far).then_some(Crossing::Kink)
     }
 
-    /// Point on the other side: the middle, unless it is beyond the border itself.
+    /// Point on the other side of the switch: the middle, unless it is beyond the border itself.
     fn start(&self, switch: usize, sign: f64, beyond: &[f64]) -> Vec<f64> {
         let n = beyond.len();
         let other = |point: &[f64]| {

@@ -21,7 +21,7 @@ const PER_UNIT: f64 = 64.0;
 /// Some of the varying dimensions of a problem, N of them.
 pub(crate) struct Space<'p> {
     inputs: Vec<Input<'p>>,
-    /// Correlation of some of them.
+    /// Correlation of some of the inputs.
     correlated: Option<Together>,
     /// All dimensions of the problem at their means.
     centre: Vec<f64>,
@@ -34,7 +34,7 @@ struct Input<'p> {
     law: Law<'p>,
 }
 
-/// Transformation `T`, standardised.
+/// Transformation `T` of a normal variable into a standardised input.
 enum Law<'p> {
     Normal,
     /// Values at evenly spaced places, and the ends of the support.
@@ -61,7 +61,6 @@ impl<'p> Space<'p> {
         }
     }
 
-    /// Number of variables.
     pub(crate) fn len(&self) -> usize {
         self.inputs.len()
     }
@@ -71,7 +70,7 @@ impl<'p> Space<'p> {
         self.inputs.iter().map(|input| input.dimension)
     }
 
-    /// Standardised inputs.
+    /// Standardised inputs at some points.
     pub(crate) fn standardised(&self, normals: &Columns) -> Columns {
         let mut columns = self.together(normals);
         for (input, column) in self.inputs.iter().zip(&mut columns) {
@@ -80,7 +79,7 @@ impl<'p> Space<'p> {
         columns
     }
 
-    /// Points of the problem.
+    /// Points in the form of the problem.
     pub(crate) fn points(&self, normals: &Columns) -> Points {
         let mut points = Points::repeated(&self.centre, normals.first().map_or(1, Vec::len));
         let together = self.correlated.as_ref().map(|together| together.apply(normals));

@@ -3,13 +3,13 @@
 use super::space::Columns;
 use sensitol_numeric::distribution::standard_normal;
 
-/// Greatest distance in sigmas: 6e-16 of all assemblies are beyond.
+/// Greatest distance of a point in sigmas: 6e-16 of all assemblies are beyond.
 pub(super) const REACH: f64 = 8.0;
 
 /// Points with `direction . z > from`.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct HalfSpace {
-    /// Direction of length 1.
+    /// Normal vector of length 1.
     pub(super) direction: Vec<f64>,
     pub(super) from: f64,
 }
@@ -61,7 +61,7 @@ fn shift(z: &mut Columns, direction: &[f64], from: &[f64], to: &[f64]) {
     }
 }
 
-/// Scales a vector to length 1. Returns the first axis if it has no length.
+/// Scales a given vector to length 1. Returns the first axis if it has no length.
 pub(super) fn unit(mut vector: Vec<f64>) -> Vec<f64> {
     let length = length(&vector);
     if length > 0.0 && length.is_finite() {
@@ -83,7 +83,7 @@ mod tests {
 
     /// Points of a stratum in one randomisation.
     const ROWS: usize = 256;
-    /// Number of randomisations.
+    /// Number of randomisations, whose scatter gives the error.
     const RANDOMISATIONS: usize = 16;
 
     /// Sums of all weights and of weight times the square along the direction, in one randomisation.

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::figures::{jackknife, student, totals};
 use sensitol_numeric::power::rescale;
 
-/// Points of a tail.
+/// Greatest number of points of a tail.
 const SHOWN: usize = 40;
 /// Share at which a tail begins.
 const FROM: f64 = 0.1;
