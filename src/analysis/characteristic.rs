@@ -379,6 +379,7 @@ impl CharacteristicAnalysis {
                 sensitivities.iter().flat_map(|one| [one.linear_share, one.curvature_share]).flatten().sum::<f64>();
             own + pair_shares().flatten().sum::<f64>()
         };
+        // A share that is only rounding is 0.
         let left_out_share = match (&shares, unexplained) {
             (Some(Shares::Integrated(integrated)), _) => integrated.left_out,
             (Some(_), Some(_)) if moments.is_some_and(|moments| moments.sigma() > 0.0) => {

@@ -434,6 +434,7 @@ impl<'p> Strides<'p> {
         sums: &mut [Vec<f64>],
     ) {
         let rows = self.knots.rows as f64;
+        // With the exact moments of the surface, only the differences of the regression from it are averaged over points.
         let anchor = beside.surface.as_ref().filter(|_| beside.exact).map(|(_, moments)| {
             let (m, s) = ((moments.mean() - origin) / scale, moments.sigma() / scale);
             let (skewness, kurtosis) = (moments.skewness().unwrap_or(0.0), moments.kurtosis().unwrap_or(0.0));
@@ -470,6 +471,7 @@ impl<'p> Strides<'p> {
             let exact: Option<Vec<f64>> =
                 exact.as_ref().and_then(|parts| parts.iter().map(|part| part.get(index).copied()).collect());
             let (mean, error) = spread(&plain[index]);
+            // The exact moments of a regression are used only if they agree with those at its points.
             let believed =
                 exact.filter(|exact| (exact.iter().sum::<f64>() / PARTS as f64 - mean).abs() <= EXACT * error + 1e-9);
             let anchored = anchor.as_ref().filter(|_| index < MOMENTS && spread(&differences[index]).1 < error);

@@ -206,6 +206,7 @@ fn lost(problem: &Problem, outcome: &Outcome, c: usize) -> Vec<Warning> {
             None
         }
     };
+    // Without a value at the means no derivative is known: one warning covers them all.
     if fitted.centre.is_none() {
         let centre = gone(&[], Loss::Centre);
         return vec![centre.unwrap_or_else(|| lost(Vec::new(), Loss::NotEvaluated { derivatives: 1 }))];
@@ -217,6 +218,7 @@ fn lost(problem: &Problem, outcome: &Outcome, c: usize) -> Vec<Warning> {
                 .value(&Point::of(&[crate::plan::AtNode { dimension: d as u32, node }]), c)
                 .map(|_| axis.nodes[node as usize].u)
         };
+        // The first node of a slot is the intended one, the others replace it if it failed.
         for slot in &axis.slots {
             if let (None, Some(used)) = (value(slot[0]), slot[1..].iter().find_map(|&node| value(node))) {
                 warnings.push(Warning::DomainEdge {

@@ -197,6 +197,7 @@ impl SimulatedCharacteristic {
         let plain = evidence.plain();
         let [mean, sigma, skewness, kurtosis] = evidence.moments().map(finite);
         let shares = evidence.shares();
+        // Shares with a surrogate take precedence over plain counts.
         let share = |side: usize| {
             if let Some(shares) = &shares {
                 return Some(shares.outside[side]);
@@ -209,6 +210,7 @@ impl SimulatedCharacteristic {
             .as_ref()
             .map_or([None; 7], |fine| QUANTILES.map(|p| quantile(p, fine, all.range(), &count.replicates)));
         let range = (known > 0).then(|| all.range());
+        // Ends of the histogram: the outer quantiles, or the range of a small sample.
         let outer = |index: usize, end: usize| {
             quantiles[index].map(|quantile| quantile.value).or(range.map(|range: [f64; 2]| range[end]))
         };

@@ -34,6 +34,7 @@ pub(super) fn inspected(
     let (inspection, limits) = (characteristic.inspection()?, characteristic.limits());
     let (all, gauge) = (all?, inspection.gauge());
     let outside = [0, 1].map(|side| count.replicates.iter().map(|replicate| replicate.outside[side]).sum());
+    // The guard band is chosen for all points, and the scatter of the replicates gives the errors.
     let whole = pieces(all, kept, outside);
     let guard = match inspection.guard() {
         Guard::Width(width) => Some(width),

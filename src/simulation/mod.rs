@@ -469,6 +469,7 @@ fn drawn(
         };
         let asked = Instant::now();
         let costly = portions.costly;
+        // Workers of a costly model share each batch, so its portions are evaluated one after the other.
         let blocks = || match costly {
             true => batch.iter().map(one).collect(),
             false => batch.par_iter().map(one).collect(),
@@ -499,6 +500,7 @@ fn drawn(
     if watched {
         tally.watch(options.seed, run);
     }
+    // A sample whose moments have not settled is complete after `UNSETTLED` points: it was not stopped.
     let settles = !tally.shortfall(options).is_some_and(f64::is_infinite) || tally.samples() < UNSETTLED;
     let open = tally.stopped || reached != Some(true) && settles && !portions.done();
     let stopped = control.and_then(Control::stopped).or_else(|| open.then(|| run.why_open()));

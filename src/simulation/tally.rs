@@ -307,6 +307,7 @@ impl<'a> Tally<'a> {
         let of = |(c, count): (usize, &Count)| {
             let found = SimulatedCharacteristic { unfinished: stopped.is_some(), ..self.characteristic(c, count) };
             match measured.and_then(|measured| measured.interval(c, &found, &count.groups)) {
+                // Measured values that keep a limit prove nothing about the process: the proof is for other inputs only.
                 Some(interval) => found.with_sampling(interval),
                 None => found.with_proof(self.problem, c),
             }
@@ -326,6 +327,7 @@ impl<'a> Tally<'a> {
             seed: Some(options.seed),
             ..self.run
         };
+        // Points of the surrogate are evaluated before those of the sample.
         let before = surrogate.iter().flat_map(|evaluated| &evaluated.non_repeatable).cloned();
         let non_repeatable: Vec<NonRepeatable> = before.chain(self.non_repeatable).collect();
         let failures =

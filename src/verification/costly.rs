@@ -118,6 +118,7 @@ pub fn verify_by_checks(
     let space = Space::new(problem, varying);
     let normals = Normals::new(varying.len(), seed);
     let dependence = problem.dependence();
+    // The surface at many points gives the direction of its line and the figures that residuals change.
     let surfaces: Vec<Option<Surface>> =
         targets.iter().map(|target| surface(&space, &normals, target.surrogate?)).collect();
     let wishes: Vec<Option<Wish>> = (surfaces.iter().zip(targets).zip(&dependence))
@@ -142,6 +143,7 @@ pub fn verify_by_checks(
             let known = surfaces[c].as_ref().zip(wishes[c].as_ref()).zip(targets[c].surrogate);
             let Some(((surface, wish), surrogate)) = known else { return nothing };
             let at: Option<Vec<f64>> = values(surrogate, &standardised);
+            // Ends of the kept limits, so that rounding does not reject a value on a limit.
             let [low, high] = problem.kept_limits(c).ends();
             let within = [[low, high], [low, f64::INFINITY], [f64::NEG_INFINITY, high]];
             let judged = at.and_then(|at| judge(&design, wish, surface, model, &at, &within));

@@ -125,6 +125,7 @@ pub(super) fn judge(
         return None;
     }
     let bend = bend(design, wish, &d);
+    // Effect of the bend on the figures, exact for any size.
     let over_all = bend.at(&surface.z);
     let moved_values: Vec<f64> = surface.values.iter().zip(&over_all).map(|(q, p)| q + sigma * p).collect();
     let moved_figures = moments(&moved_values, &surface.weights);

@@ -145,6 +145,7 @@ impl Sample {
             standard(&raw, origin, scale)
         };
         let mut errors = jackknife(of, &sums);
+        // Few points may carry a high power: the jackknife underestimates its error.
         for (power, error) in errors.iter_mut().enumerate().take(MOMENTS) {
             let terms = values.iter().zip(&weights);
             let carried = terms.map(|(y, weight)| weight * ((y - origin) / scale).abs().powi(power as i32 + 1));

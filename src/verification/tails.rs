@@ -66,6 +66,7 @@ pub(super) fn tail(values: &[Weighed], above: bool, (replicates, one): (usize, f
     for (place, &(value, weight, replicate)) in ordered.iter().enumerate() {
         so_far[replicate] += weight;
         share += weight / total;
+        // A point of the tail includes all values equal to it.
         let last_of_its_value = ordered.get(place + 1).is_none_or(|next| next.0 != value);
         if last_of_its_value && place + 1 >= FEWEST && reached(share, next) {
             at.push(value);
