@@ -11,6 +11,7 @@ use sensitol_numeric::sampling::{Draws, Normals, Portion, SOBOL_DIMENSIONS, Samp
 pub(super) const POINTS: usize = 1 << 16;
 /// Greatest number of points in the test of a distribution: six standard errors of a share of a half are 3 %.
 pub(super) const TESTED: usize = 1 << 13;
+/// Points of the surface that are evaluated together, to limit memory.
 const ROWS: usize = 1024;
 /// Greatest number of products of points and surface terms in a test: some tenths of a second.
 const EFFORT: usize = 1 << 28;
