@@ -1,4 +1,4 @@
-//! The account of `auto`: its findings, and where its points went.
+//! Account of `auto`: its findings, and the use of its points.
 
 use std::fmt;
 
@@ -8,46 +8,46 @@ use super::CharacteristicAnalysis;
 use crate::method::{ClimbEnd, Outcome};
 use crate::problem::Problem;
 
-/// Dimensions that are named in a sentence.
+/// Most dimensions that are named in a sentence.
 const NAMED: usize = 8;
-/// A curvature with a share of the variance below this is none, in every characteristic.
+/// Share of the variance below which a curvature counts as zero. It must be below it in every characteristic.
 const STRAIGHT: f64 = 1e-8;
 
-/// The shapes that `auto` found for the dimensions, and the use of its points. As text it is a sentence.
+/// Shapes of the dimensions that `auto` found, and the use of its points. The text form is a sentence.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Account {
     /// Dimensions that vary and matter.
     pub varying: usize,
-    /// Those that act along straight lines: two points each.
+    /// Dimensions that act along straight lines: two points each.
     pub straight: Vec<String>,
-    /// Those that are curved as a parabola is: two points each.
+    /// Dimensions that act along parabolas: two points each.
     pub curved: Vec<String>,
-    /// Those that are more than a parabola: four points each.
+    /// Dimensions that need more than a parabola: four points each.
     pub refined: Vec<String>,
-    /// Interactions that there can be.
+    /// Possible interactions.
     pub possible_interactions: usize,
     /// Interactions that were examined one by one.
     pub examined: usize,
-    /// Interactions that the formulas give, in every characteristic.
+    /// Interactions that are known from the formulas, in every characteristic.
     pub from_formulas: usize,
-    /// Probes that move all dimensions, of one point each or two, by which interactions were sought.
+    /// Probes of one or two points that move all dimensions to search for interactions.
     pub probes: usize,
-    /// Points that check the surrogate.
+    /// Check points of the surrogate.
     pub checks: usize,
-    /// Points of the model that the moments rest on, where the surrogate was not trusted.
+    /// Points of the model from which the moments follow, if the surrogate was not trusted.
     pub samples: Option<u64>,
-    /// Evaluations of the search, those of such a sample excepted.
+    /// Evaluations of the search, without those of `samples`.
     pub evaluations: usize,
     /// Evaluations that every second derivative would take, `N² + N + 1`.
     pub full_evaluations: usize,
-    /// Why it ended.
+    /// Reason of the end of the search.
     pub rest: ClimbEnd,
 }
 
 impl Account {
-    /// None for other methods, and where nothing varies.
+    /// Returns None for other methods, and if nothing varies.
     pub(super) fn of(
         problem: &Problem,
         outcome: &Outcome,

@@ -1,9 +1,8 @@
-//! How far results may be off because measured dimensions are known by samples only.
+//! Uncertainty of results that comes from the finite size of measured samples.
 //!
-//! Every measured sample is drawn anew from itself, many times. Each time the surrogate stays the function of the
-//! dimensions that it is, and its moments are computed exactly for the law that the resample makes: no point is
-//! evaluated. The scatter of the resamples estimates that of other samples of the same size. Rows of one file are drawn as a
-//! whole, and everything else apart from one another.
+//! Every measured sample is drawn anew from itself, many times. The surrogate stays the same function of the dimensions, and its moments
+//! are computed exactly for the distribution of each resample: no point is evaluated. The scatter of the resamples estimates that of other
+//! samples of the same size. Rows of one file are drawn as a whole. Everything else is drawn independently.
 
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
@@ -22,50 +21,52 @@ use sensitol_numeric::moments::Moments;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::surrogate::{InputShape, Inputs, Pooled, Relocation, Surrogate};
 
-/// As many resamples as an end of the interval needs to be known to a tenth of its width or so;
+/// Number of resamples with which an end of an interval is known to about a tenth of the width.
 const RESAMPLES: usize = 1000;
-/// with so many it still means something.
+/// Fewest resamples with which an interval is still meaningful.
 const LEAST: usize = 200;
-/// Multiplications that all resamples together may take, before there are fewer of them: a second or two.
+/// Budget of multiplications for all resamples together, a second or two. Above it there are fewer resamples.
 const WORK: usize = 3_000_000_000;
-/// Multiplications that a fit of a Pearson law, and a part that is not a parabola at one value, are worth.
+/// Cost of a fit of a Pearson distribution, in multiplications.
 const FIT: usize = 30_000;
+/// Cost of a univariate part other than a parabola at one value, in multiplications.
 const VALUE: usize = 50;
-/// Groups of values that are left out in turn, of all samples together and of each at least.
+/// Groups of values that are left out in turn, of all samples together.
 const GROUPS: usize = 400;
+/// Fewest groups of values of each sample, even if there are many samples.
 const LEAST_GROUPS: usize = 20;
-/// A curvature below this part of the slope is rounding, and asks for no higher moment.
+/// Curvature below this part of the slope is rounding, and needs no higher moment.
 const STRAIGHT: f64 = 1e-9;
 
-/// The results whose intervals are known: mean, sigma, skewness, kurtosis, rejected share, Cpk.
+/// Number of figures that get intervals: mean, sigma, skewness, kurtosis, reject rate, Cpk.
 const FIGURES: usize = 6;
 type Figures = [f64; FIGURES];
 
-/// A dimension that was measured, or several by rows.
+/// A measured dimension, or several dimensions measured together as rows.
 struct Measurement<'p> {
-    /// Among the varying dimensions.
+    /// Positions of its dimensions among the varying ones.
     positions: Vec<usize>,
     kind: MeasurementKind<'p>,
 }
 
 enum MeasurementKind<'p> {
     One(&'p dyn Resample),
-    /// The block of this number, of so many rows.
+    /// Block with this index, with the number of its rows.
     Rows {
         block: usize,
         rows: usize,
     },
 }
 
-/// A sample that was drawn anew.
+/// A resample of a measured sample.
 enum Redrawn {
     Law(Reweighted),
-    /// Weights of the rows.
+    /// Weights of the rows of the block.
     Rows(Vec<f64>),
 }
 
 impl Measurement<'_> {
-    /// How many values or rows there are.
+    /// Number of measured values or rows.
     fn len(&self) -> usize {
         match &self.kind {
             MeasurementKind::One(law) => law.sample().len(),
@@ -73,7 +74,7 @@ impl Measurement<'_> {
         }
     }
 
-    /// How often each distinct value, or each row, was measured.
+    /// Counts of each distinct value, or of each row (1).
     fn counts(&self) -> Vec<u32> {
         match &self.kind {
             MeasurementKind::One(law) => law.sample().counts().to_vec(),
@@ -104,14 +105,16 @@ impl Measurement<'_> {
     }
 }
 
-/// Intervals from resamples: mean, sigma, skewness, kurtosis, rejected share and Cpk.
+/// Intervals from resamples, in the order mean, sigma, skewness, kurtosis, reject rate, Cpk.
 pub(super) struct ResampledIntervals {
     pub(super) intervals: [Option<[f64; 2]>; FIGURES],
     pub(super) resamples: usize,
 }
 
-/// The intervals of every characteristic that depends on a measured dimension. None for any other one, without a surface, and where
-/// dimensions are correlated otherwise than by rows and zones.
+/// Intervals of every characteristic that depends on a measured dimension.
+///
+/// None for a characteristic without such a dimension or without a surface. All are None if dimensions are correlated other than by rows
+/// and zones.
 ///
 /// The rejects are those of the Pearson fit. The numbers depend on the seed alone, not on the number of threads.
 pub(super) fn resampled_intervals(
@@ -124,7 +127,7 @@ pub(super) fn resampled_intervals(
     let correlation = plan.inputs().correlation();
     let mut found: Vec<Option<ResampledIntervals>> = characteristics.iter().map(|_| None).collect();
     if correlation.is_some_and(|correlation| correlation.without_blocks().is_some()) {
-        // A resample of one dimension would leave those that vary with it where they are; `warnings` tells of it.
+        // A resample of one dimension would not move the dimensions that vary with it. `warnings` reports such dimensions.
         return found;
     }
     let of_blocks = correlation.iter().flat_map(|correlation| correlation.blocks().iter().enumerate());
@@ -158,6 +161,7 @@ pub(super) fn resampled_intervals(
     if targets.is_empty() {
         return found;
     }
+    // Left-out groups give the acceleration of the intervals, resamples their scatter.
     let setting = Setting { inputs: plan.inputs(), measured: &measured, targets: &targets };
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);
     let groups = setting.groups(&mut rng);
@@ -167,7 +171,7 @@ pub(super) fn resampled_intervals(
         let analysis = &characteristics[target.index];
         let estimate = {
             let moments = analysis.moments.expect("a target has moments");
-            // As the resamples: by the Pearson fit.
+            // From the Pearson fit, like the figures of the resamples.
             figures(&moments, analysis.pearson.as_ref(), target.limits)
         };
         let interval = |figure: usize| {
@@ -183,11 +187,11 @@ pub(super) fn resampled_intervals(
     found
 }
 
-/// A characteristic whose intervals are wanted.
+/// A characteristic for which intervals are computed.
 struct Target<'o> {
     index: usize,
     surrogate: &'o Surrogate,
-    /// At the places of its blocks.
+    /// Surrogate evaluated at the rows of the blocks of correlated inputs.
     pooled: Option<Pooled>,
     limits: SpecLimits,
 }
@@ -198,11 +202,11 @@ struct Setting<'s> {
     targets: &'s [Target<'s>],
 }
 
-/// For every distinct value of a sample, how many of its measured values are in each of several groups.
+/// Counts of the measured values in each of several groups, by distinct value of a sample.
 type Groups = Vec<Vec<u32>>;
 
 impl Setting<'_> {
-    /// For every resample and target its figures.
+    /// Figures of every resample and target.
     fn resampled(&self, rng: &mut Xoshiro256PlusPlus) -> Vec<Vec<Figures>> {
         let streams: Vec<Xoshiro256PlusPlus> = (0..self.resamples())
             .map(|_| {
@@ -217,7 +221,7 @@ impl Setting<'_> {
         streams.into_par_iter().map(one).collect()
     }
 
-    /// As many as there is time for.
+    /// Number of resamples that the budget of work allows.
     fn resamples(&self) -> usize {
         let values: usize = self.measured.iter().map(Measurement::len).sum();
         let target = |target: &Target<'_>| {
@@ -230,7 +234,7 @@ impl Setting<'_> {
         (WORK / work).clamp(LEAST, RESAMPLES)
     }
 
-    /// Values that are left out together: at random, each by itself where there are few.
+    /// Random groups of values that are left out together. Each value is a group of its own if there are few.
     fn groups(&self, rng: &mut Xoshiro256PlusPlus) -> Vec<Groups> {
         let most = (GROUPS / self.measured.len()).max(LEAST_GROUPS);
         let of = |one: &Measurement<'_>| {
@@ -247,7 +251,7 @@ impl Setting<'_> {
         self.measured.iter().map(of).collect()
     }
 
-    /// For every measured dimension and group of its values, the figures of every target without them.
+    /// Figures of every target without a group of values, by measured dimension and group.
     fn left_out(&self, groups: &[Groups]) -> Vec<Vec<Vec<Figures>>> {
         let without = |m: usize, group: &Vec<u32>| {
             let one = &self.measured[m];
@@ -260,7 +264,7 @@ impl Setting<'_> {
         groups.iter().enumerate().map(of).collect()
     }
 
-    /// The figures of every target where the samples are these; None for one that stays as it is.
+    /// Figures of every target with the given resamples. A sample without one (None) keeps its measured values.
     fn figures(&self, drawn: &[Option<Redrawn>]) -> Vec<Figures> {
         let mut moved = vec![Relocation::NONE; self.inputs.shapes().len()];
         let mut shapes = self.inputs.shapes().to_vec();
@@ -289,7 +293,7 @@ impl Setting<'_> {
                     let mut shapes = shapes.clone();
                     for &position in &alone {
                         let part = surrogate.parts[position].as_ref();
-                        // An infinite moment does no harm to a straight line, which has no use for it.
+                        // A straight line does not use the higher moments, so an infinite one does no harm.
                         if shapes[position].moments.m8.is_nan() && part.is_some_and(|part| part.is_straight(STRAIGHT)) {
                             shapes[position].moments = of_a_line(&shapes[position].moments);
                         }
@@ -312,7 +316,7 @@ impl Setting<'_> {
     }
 }
 
-/// The moments of which a straight line makes use; the others are multiplied by 0 and need only be numbers.
+/// Moments that a straight line uses. The others are multiplied by 0 and need only be finite.
 fn of_a_line(moments: &StandardMoments) -> StandardMoments {
     let kurtosis = moments.kurtosis();
     let known = StandardMoments::from_standard([moments.skewness, kurtosis, 0.0, 0.0, 0.0, 0.0]);
@@ -330,8 +334,8 @@ fn figures(moments: &Moments, capability: Option<&Capability>, limits: SpecLimit
     ]
 }
 
-/// The part that each group of values adds to a figure, from the figure without it: for a mean of `n` values the sum of the
-/// deviations in the group, by `n`.
+/// Influence of each group of values on a figure, from the figure without that group: for a mean of `n` values, the sum of the deviations
+/// in the group, divided by `n`.
 fn influences(without: impl Iterator<Item = f64>, one: &Measurement<'_>, groups: &Groups) -> Vec<f64> {
     let n = one.len() as f64;
     let left = |group: &Vec<u32>| n - group.iter().map(|&count| f64::from(count)).sum::<f64>();

@@ -1,4 +1,4 @@
-//! The results of one characteristic.
+//! Results of one characteristic.
 
 use serde::{Serialize, Serializer};
 
@@ -30,147 +30,149 @@ use sensitol_numeric::verdict::{self, Judged, Verdict};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
 pub struct CharacteristicAnalysis {
-    /// The characteristic, with its limits.
+    /// Characteristic, with its limits.
     #[serde(flatten)]
     pub characteristic: Characteristic,
-    /// Its value at the nominal dimensions.
+    /// Value at the nominal dimensions.
     pub nominal: Option<f64>,
-    /// Its first four moments.
+    /// First four moments.
     #[serde(flatten, serialize_with = "through::<Four<Option<f64>>, _, _>")]
     #[cfg_attr(feature = "schema", schemars(with = "Four<Option<f64>>"))]
     pub moments: Option<Moments>,
-    /// Their uncertainty from sampling the surrogate of correlated inputs; None where they are exact.
+    /// Standard errors of the moments from sampling the surrogate of correlated inputs. None if the moments are exact.
     #[serde(rename = "surrogate_sampling")]
     pub sampled: Option<Sampled>,
-    /// Points of the model that the moments rest on, in place of a surrogate that was not trusted.
+    /// Points of the model from which the moments follow, in place of a surrogate that was not trusted.
     #[serde(rename = "model_sampling")]
     pub model_sampled: Option<SampledModel>,
-    /// The verification of these results by the model itself; None where they were not verified.
+    /// Verification of these results by the model itself. None if they were not verified.
     #[cfg_attr(feature = "schema", schemars(with = "Option<super::verified::VerificationShape>"))]
     pub verification: Option<Verification>,
-    /// The results of its surface distribution; None where its moments follow from no surface.
+    /// Results of the surface distribution. None if the moments follow from no surface.
     #[cfg_attr(feature = "schema", schemars(with = "Option<super::surface_law::SurfaceLawShape>"))]
     pub surface_law: Option<SurfaceShares>,
-    /// The density of that law as `[y, density, error]`, to be drawn; None unless [asked for](crate::Options::densities), and where the
-    /// law has none.
+    /// Density of the surface distribution as `[y, density, error]`, for drawing. None unless [requested](crate::Options::densities), and
+    /// if the distribution has none.
     #[serde(skip)]
     pub density: Option<Vec<[f64; 3]>>,
-    /// The source of its yield; None without a yield.
+    /// Source of the yield. None if there is no yield.
     pub yield_source: Option<YieldSource>,
-    /// Whether planned points were not evaluated because the run was stopped: no verdict follows from the others.
+    /// True if the run was stopped before all planned points were evaluated. There is no verdict then.
     pub unfinished: bool,
-    /// Evaluated points at which it has no value.
+    /// Evaluated points without a value of the characteristic.
     pub without_value: usize,
-    /// How far these results may be off; None without moments.
+    /// Estimated errors of these results. None if there are no moments.
     pub error_estimate: Option<ErrorEstimate>,
-    /// How far a fitted surface misses the values that it was fitted to; None where nothing was fitted.
+    /// Residual of a fitted surface at the values that it was fitted to. None if nothing was fitted.
     #[serde(rename = "least_squares")]
     pub residual: Option<Residual>,
-    /// The distribution that has these moments, or why none has.
+    /// Distribution of the Pearson system with these moments, or the reason why there is none.
     #[serde(rename = "distribution", serialize_with = "fitted")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<Law>"))]
     pub law: Option<Result<Law, PearsonError>>,
-    /// How the limits are kept, by the best that is known ([`yield_source`](Self::yield_source)); quantiles by the law of the
-    /// surface, where there is one.
+    /// Capability from the best available source ([`yield_source`](Self::yield_source)). Quantiles come from the surface distribution if
+    /// there is one.
     #[serde(flatten, serialize_with = "through::<CapabilityShape, _, _>")]
     #[cfg_attr(feature = "schema", schemars(with = "CapabilityShape"))]
     pub capability: Option<Capability>,
-    /// The 95 % intervals of the shares below and above the limits, each by itself: 0 to 0 where a proof excludes a side, None without that
-    /// limit and where it is not known.
+    /// 95 % intervals of the shares below and above the limits, each side separately: 0 to 0 if a proof excludes a side. None if
+    /// that limit does not exist, and if it is unknown.
     #[serde(flatten, serialize_with = "through::<RejectIntervals, _, _>")]
     #[cfg_attr(feature = "schema", schemars(with = "RejectIntervals"))]
     pub reject_intervals: [Option<[f64; 2]>; 2],
-    /// How the distribution with its moments keeps them: the Pearson fit.
+    /// Capability by the Pearson fit.
     #[serde(rename = "pearson_fit")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<CapabilityShape>"))]
     pub pearson: Option<Capability>,
-    /// How the normal distribution with the same mean and sigma would.
+    /// Capability by the normal distribution with the same mean and sigma.
     #[serde(rename = "normal_fit")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<CapabilityShape>"))]
     pub normal: Option<Capability>,
-    /// Intervals that hold the share of assemblies that was asked for; None where none was.
+    /// Intervals that hold the requested share of assemblies. None if none was requested.
     pub coverage: Option<CoverageIntervals>,
-    /// The risks of its inspection; None without a gauge.
+    /// Risks of the inspection. None if there is no gauge.
     pub inspection: Option<InspectionRisks>,
-    /// How far the results may be off because measured dimensions are known by samples; None where there are none.
+    /// Uncertainty of the results because measured dimensions are known by samples. None if there are no measured dimensions.
     #[serde(rename = "sampling_interval")]
     pub sampling: Option<SamplingInterval>,
-    /// The interval that no assembly of a linear model leaves: around the nominal, every dimension at the end of its
-    /// band that hurts, and a point of a circular zone ([`Dimension::within_zone`](crate::Dimension::within_zone)) at its edge.
+    /// Interval that no assembly of a linear model leaves: around the nominal, with every dimension at the unfavourable end of its band,
+    /// and a point of a circular zone ([`Dimension::within_zone`](crate::Dimension::within_zone)) at its edge.
     #[serde(skip)]
     pub worst_case: Option<[f64; 2]>,
-    /// The most that curvatures and interactions add to the worst case, by the surface; None where a curvature is missing.
+    /// Greatest addition of curvatures and interactions to the worst case, by the surface. None if a curvature is missing.
     #[serde(skip)]
     pub curved: Option<f64>,
-    /// The least and the greatest value in the box of the tolerance bands, where they were searched and found.
+    /// Least and greatest value in the box of the tolerance bands, if they were searched and found.
     #[serde(skip)]
     pub extremes: Option<Extremes>,
-    /// An interval that no assembly leaves, by interval arithmetic; of formulas that are verified, where no extremes were searched.
+    /// Interval that no assembly leaves, by interval arithmetic. Only for formulas that are verified, if no extremes were searched.
     #[serde(skip)]
     pub bounds: Option<ExtremesProof>,
-    /// The value of a linear model with every dimension in the middle of its band: the middle of the worst case, of the RSS and of
-    /// the two inflations of it. The nominal where all bands are symmetric.
+    /// Value of a linear model with every dimension in the middle of its band: the middle of the worst case, of the RSS and of the two
+    /// inflations of it. It is the nominal value if all bands are symmetric.
     pub middle: Option<f64>,
-    /// `sqrt(t'R t)` with `t` = slope x half band (three sigma where a dimension has no band) and the correlation `R`:
-    /// without correlation the root of the sum of squares.
+    /// `sqrt(t'R t)` with `t` = slope x half-width (three sigma if a dimension has no band) and the correlation `R`. Without correlation it
+    /// is the root of the sum of squares.
     pub rss: Option<f64>,
     /// 1.5 times the RSS (Bender 1962, 1968), or by the factors of the study.
     pub inflated_rss: Option<f64>,
-    /// RSS with means that are off by half their half bands, 1.5 sigma of 3, all the wrong way:
-    /// `0.5 sum of |slope| x half band + 0.5 rss` (Greenwood and Chase 1987 with m = 0.5).
+    /// RSS with means that are all shifted in the unfavourable direction by half of their half-widths, 1.5 sigma of 3: `0.5 sum of |slope|
+    /// x half-width + 0.5 rss` (Greenwood and Chase 1987 with m = 0.5).
     pub mean_shift_rss: Option<f64>,
-    /// `sqrt(sum of (slope x sigma/(1 - k))^2)` with sigma of a lot and the shift `k` of its mean in half bands, by `cpk`, `drift` or `shift`
-    /// (Harry and Stewart 1988): a sigma, not an interval. None where every mean is in the middle of its band, or one at its end.
+    /// `sqrt(sum of (slope x sigma/(1 - k))^2)` with the sigma of a lot and the shift `k` of its mean in half-widths, from `cpk`, `drift`
+    /// or `shift` (Harry and Stewart 1988). It is a sigma, not an interval. None if every mean is in the middle of its band, or one is at
+    /// an end.
     pub six_sigma: Option<f64>,
-    /// For every dimension of the problem, in order.
+    /// Sensitivities to every dimension of the problem, in order.
     pub sensitivities: Vec<Sensitivity>,
-    /// The interactions examined, strongest first.
+    /// Examined interactions, strongest first.
     #[cfg_attr(feature = "schema", schemars(with = "Vec<super::Interaction<'_>>"))]
     pub interactions: InteractionList,
-    /// The sum of the interactions that are not listed one by one; None where all are.
+    /// Sum of the interactions that are not listed one by one. None if all are listed.
     pub interactions_remainder: Option<Remainder>,
-    /// How many interactions it can have.
+    /// Number of possible interactions.
     pub possible_interactions: usize,
-    /// How many of them were examined, or are known from its formula.
+    /// Number of interactions that were examined, or are known from the formula.
     pub examined_interactions: usize,
-    /// The share of the variance that no contribution accounts for; None where it is unknown.
+    /// Share of the variance that no contribution explains. None if it is unknown.
     pub left_out_share: Option<f64>,
-    /// The source of the Sobol' indices of its [`sensitivities`](Self::sensitivities); None where it does not vary.
+    /// Source of the Sobol' indices of the [`sensitivities`](Self::sensitivities). None if the characteristic does not vary.
     #[serde(rename = "sobol")]
     pub indices: Option<SobolIndices>,
-    /// Whether it can depend on nothing that varies, so that its one value is all that there is.
+    /// True if the characteristic depends on nothing that varies, so that it has a single value.
     pub constant: bool,
 }
 
-/// The effect of one dimension on a characteristic.
+/// Effect of one dimension on a characteristic.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Sensitivity {
-    /// The dimension.
+    /// Name of the dimension.
     pub dimension: String,
     /// First derivative at the mean, in units of the characteristic per unit of the dimension.
     pub first: Option<f64>,
     /// Second derivative at the mean.
     pub second: Option<f64>,
-    /// Whether both are exact rather than differences.
+    /// True if both derivatives are exact rather than differences.
     pub exact: bool,
-    /// The source of its shares: `exact`, `evaluated`, or `screened` where an estimate has a part in them. None where it has no shares.
+    /// Source of the shares: `exact`, `evaluated`, or `screened` if an estimate has a part in them. None if there are no shares.
     pub origin: Option<DerivativeOrigin>,
-    /// The largest effect of a rounding error of the characteristic's own size on the two derivatives: at the steps taken, over a
-    /// sigma where they are exact.
+    /// Largest effect on the two derivatives of a rounding error of the characteristic. It is computed for the steps used, and for one
+    /// sigma if the derivatives are exact.
     pub rounding: Option<[f64; 2]>,
-    /// Where the model was evaluated along it, off its mean and in its unit, ascending: the nodes that answered; empty where none
-    /// was asked.
+    /// Nodes along the dimension at which the model has a value, relative to the mean and in the unit of the dimension, ascending. Empty if
+    /// none was evaluated.
     pub steps: Vec<f64>,
-    /// Share of the variance that the best straight line through its own part explains.
+    /// Share of the variance that the best straight line through the univariate part explains.
     pub linear_share: Option<f64>,
-    /// Share of the variance that its curvature adds.
+    /// Share of the variance that the curvature adds.
     pub curvature_share: Option<f64>,
-    /// How far its curvature moves the mean.
+    /// Mean shift by the curvature.
     pub mean_shift: Option<f64>,
-    /// First-order Sobol' index: the part of the variance that it explains by itself; None of a dimension that varies together with others.
+    /// First-order Sobol' index: the part of the variance that the dimension explains alone. None for a dimension that varies together with
+    /// others.
     pub first_order: Option<EstimatedShare>,
-    /// Total Sobol' index: with every interaction in which it has a part.
+    /// Total Sobol' index: the part of the variance including all interactions of the dimension.
     pub total: Option<EstimatedShare>,
 }
 
@@ -185,31 +187,31 @@ rescale!(CharacteristicAnalysis {
 impl Rescale for Sensitivity {
     fn rescale(&mut self, by: &mut Rescaling) {
         self.first.rescale(by);
-        // That of the second derivative is in the characteristic's unit already, as the derivative itself.
+        // The rounding of the second derivative is in the characteristic's own unit already, as the derivative itself.
         self.rounding.iter_mut().for_each(|[first, _]| first.rescale(by));
         self.mean_shift.rescale(by);
     }
 }
 
-/// The distribution that has the moments; null where there is none.
+/// Serializes the distribution that has the moments; null if there is none.
 fn fitted<S: Serializer>(law: &Option<Result<Law, PearsonError>>, serializer: S) -> Result<S::Ok, S::Error> {
     law.as_ref().and_then(|law| law.as_ref().ok()).serialize(serializer)
 }
 
 impl CharacteristicAnalysis {
-    /// All shares of its dimension: straight line and curvature.
+    /// Share of a dimension: straight line and curvature.
     pub fn share(&self, dimension: usize) -> Option<f64> {
         let sensitivity = &self.sensitivities[dimension];
         Some(sensitivity.linear_share? + sensitivity.curvature_share.unwrap_or(0.0))
     }
 
-    /// The bounds of its worst case by interval arithmetic: beside the extremes where these were searched.
+    /// Bounds of the worst case by interval arithmetic: those of the search for extremes if there was one, else `bounds`.
     pub fn proof(&self) -> Option<&ExtremesProof> {
         self.extremes.as_ref().map_or(self.bounds.as_ref(), |found| found.proof.as_ref())
     }
 
-    /// Within which the yield is known: the estimate and two of its errors, with what measured samples leave open, and down to 0 where
-    /// there are assemblies without a value and they were not counted. None where an error is unknown.
+    /// Interval of the yield: the estimate and two of its errors, with the uncertainty of measured samples. It extends down to 0 if there
+    /// are assemblies without a value that were not counted. Returns None if an error is unknown.
     pub fn yield_interval(&self) -> Option<[f64; 2]> {
         let value = self.capability?.yield_()?;
         let error = if self.constant { Some(0.0) } else { self.error_estimate.as_ref().and_then(|of| of.yield_) };
@@ -220,7 +222,7 @@ impl CharacteristicAnalysis {
             }
             None => around,
         };
-        // How many assemblies have no value, only samples tell.
+        // Only samples give the share of assemblies without a value.
         let counted =
             self.verification.as_ref().filter(|of| of.kind == VerificationKind::Sample).and_then(|of| of.valid);
         let lost = match &self.model_sampled {
@@ -235,11 +237,11 @@ impl CharacteristicAnalysis {
         Some(verdict::share(verdict::losing(around, lost)))
     }
 
-    /// How a requirement is kept, whether or not it is the characteristic's own.
+    /// Judges a requirement, which need not be the characteristic's own.
     ///
-    /// The interval of a yield is [`yield_interval`](Self::yield_interval); that of a Cpk and of sigma follows from the estimated
-    /// errors of mean and sigma, and from what measured samples leave open of them; rss is what it is by the slopes, without an error; the
-    /// worst case lies between what was found and what interval arithmetic excludes.
+    /// The interval of a yield is [`yield_interval`](Self::yield_interval). That of a Cpk and of sigma follows from the estimated errors of
+    /// mean and sigma, and from the uncertainty of measured samples. RSS follows from the slopes, without an error. The worst case lies
+    /// between values that were found and the bounds of interval arithmetic.
     pub(crate) fn judge(&self, requirement: Requirement) -> Judged {
         let limits = self.characteristic.limits();
         let error = |of: fn(&ErrorEstimate) -> Option<f64>| match self.constant {
@@ -248,7 +250,7 @@ impl CharacteristicAnalysis {
         };
         let (mean, sigma) = (error(|of| of.mean), error(|of| of.sigma));
         let part = |value: Option<f64>| (value, value.map(|value| [value; 2]));
-        // Of measured samples whose uncertainty is unknown there is no interval.
+        // No interval if the uncertainty of measured samples is unknown.
         let measured =
             |value: Option<f64>, own: Option<[f64; 2]>, of: fn(&SamplingInterval) -> Option<[f64; 2]>| match &self
                 .sampling
@@ -278,8 +280,10 @@ impl CharacteristicAnalysis {
         Judged::of(requirement, value, interval).unless(self.unfinished)
     }
 
-    /// The part of the room that the worst case takes, and within which that is known: between values that exist and what interval arithmetic
-    /// excludes where the formula has bounds; by the slopes where it is proven to be linear; by the surface otherwise.
+    /// Part of the distance to the limits that the worst case uses, and its interval.
+    ///
+    /// The interval lies between values that exist and the bounds of interval arithmetic, if the formula has bounds. It follows from the
+    /// slopes if the function is proven to be linear, and otherwise from the surface.
     fn worst_case_taken(&self) -> Option<(f64, Option<[f64; 2]>)> {
         let (nominal, linear) = self.nominal.zip(self.worst_case)?;
         let part = |[low, high]: [f64; 2], more: f64| {
@@ -307,44 +311,46 @@ impl CharacteristicAnalysis {
         }
         let around = self.curved.and_then(|curved| Some([part(linear, -curved)?, part(linear, curved)?]));
         Some(match found {
-            // A search that proves nothing shows what is reached, and no more.
+            // A search without a proof shows only values that are reached.
             Some(found) => (found, around.map(|[_, most]| [found, found.max(most)])),
             None => (by_slopes, around),
         })
     }
 
-    /// Whether the formula's own degree proves that the slopes tell everything.
+    /// True if the formula's own degree proves that it is linear: the slopes are exact everywhere.
     pub fn is_proven_linear(&self) -> bool {
         let kind = self.verification.as_ref().map(|of| of.kind);
         matches!(kind, Some(VerificationKind::Exact { degree: 0 | 1 }))
     }
 
-    /// How everything is kept that is required of it: its target yield, and what else there is.
+    /// Verdicts on all requirements of the characteristic, its target yield included.
     pub fn requirements(&self) -> Vec<Judged> {
         verdict::judged(&self.characteristic, |requirement| self.judge(requirement))
     }
 
-    /// The verdict on its target yield; None without one.
+    /// Verdict on the target yield. Returns None if there is no target.
     pub fn verdict(&self) -> Option<Verdict> {
         self.characteristic.target_yield().map(|target| self.judge(Requirement::Yield(target)).verdict)
     }
 
-    /// Whether its target yield is met; None where it has none, and where that is not known.
+    /// True if the target yield is met. Returns None if there is no target, and if it is unknown.
     pub fn met(&self) -> Option<bool> {
         self.verdict()?.met()
     }
 
-    /// Without the list of its interactions, and what [`listed`](super::interactions::listed) makes that of.
+    /// Creates the analysis without the list of interactions. The shares are for [`listed`](super::interactions::listed), which makes that
+    /// list.
     pub(super) fn of(problem: &Problem, outcome: &Outcome, c: usize) -> (Self, Option<Shares>) {
         let fitted = &outcome.fitted[c];
         let plan = &outcome.plan;
         let unexplained = outcome.climbed.as_ref().and_then(|climbed| climbed.unexplained(c));
-        // A variance beyond the largest double is unknown; the warning `overflow` says why.
+        // A variance beyond the largest double is unknown. The warning `overflow` reports it.
         let finite =
             |shares: &Shares| [shares.moments().mean(), shares.moments().sigma()].iter().all(|x| x.is_finite());
         let shares = Shares::of(fitted, plan.inputs()).map(|shares| shares.beside(unexplained)).filter(finite);
         let sensitivities: Vec<Sensitivity> =
             (0..problem.dimensions().len()).map(|d| sensitivity(problem, outcome, c, d, shares.as_ref())).collect();
+        // Without gaps in derivatives and pairs, the surface explains all of its variance.
         let pair_shares = || pairs_of(outcome, c).map(|index| share_of(outcome, c, index, shares.as_ref()));
         let (possible_interactions, examined_interactions) = (plan.pairs_of(c), fitted.known_pairs);
         let complete = outcome.order == Order::Second
@@ -373,6 +379,7 @@ impl CharacteristicAnalysis {
                 sensitivities.iter().flat_map(|one| [one.linear_share, one.curvature_share]).flatten().sum::<f64>();
             own + pair_shares().flatten().sum::<f64>()
         };
+        // A share that is only rounding is 0.
         let left_out_share = match (&shares, unexplained) {
             (Some(Shares::Integrated(integrated)), _) => integrated.left_out,
             (Some(_), Some(_)) if moments.is_some_and(|moments| moments.sigma() > 0.0) => {
@@ -428,8 +435,8 @@ impl CharacteristicAnalysis {
     }
 }
 
-/// `sum of |f_jj| h_j^2/2 + sum of |f_jk| h_j h_k` over the half bands `h`: no corner of a second-order surface lies farther from the linear one.
-/// None with an estimate in the place of a derivative: it bounds nothing.
+/// `sum of |f_jj| h_j^2/2 + sum of |f_jk| h_j h_k` over the half-widths `h`: the greatest distance of a corner of a second-order surface
+/// from the linear one. Returns None if a derivative is a screened guess: it bounds nothing.
 fn curved(problem: &Problem, outcome: &Outcome, c: usize) -> Option<f64> {
     if outcome.fitted[c].screened > 0 {
         return None;
@@ -447,9 +454,9 @@ fn curved(problem: &Problem, outcome: &Outcome, c: usize) -> Option<f64> {
     Some(own + pairs_of(outcome, c).map(both).sum::<Option<f64>>()?)
 }
 
-/// The greatest part of the room between a value and the limits that is taken below and above it; infinite where there is no room.
+/// Greatest part of the distance between a value and the limits that is used, below and above it. Infinite if there is no distance.
 fn taken(limits: SpecLimits, from: f64, [below, above]: [f64; 2]) -> Option<f64> {
-    // Where a nominal value lies at its limit, and nothing reaches beyond, nothing is taken.
+    // If the value is at its limit and nothing extends beyond it, nothing is used.
     let part = |reach: f64, room: f64| match room > 0.0 {
         true => reach / room,
         false if room == 0.0 && reach <= 4.0 * f64::EPSILON * from.abs() => 0.0,
@@ -460,7 +467,7 @@ fn taken(limits: SpecLimits, from: f64, [below, above]: [f64; 2]) -> Option<f64>
     below.into_iter().chain(above).reduce(f64::max)
 }
 
-/// The exact first and second derivative by a dimension; None where one of them is unknown.
+/// Exact first and second derivative by a dimension. Returns None if one of them is unknown.
 fn exact_derivatives(outcome: &Outcome, c: usize, d: usize) -> Option<[Wide; 2]> {
     let exact = outcome.fitted[c].exact.as_ref()?;
     match outcome.plan.depends(c, d) {
@@ -469,7 +476,7 @@ fn exact_derivatives(outcome: &Outcome, c: usize, d: usize) -> Option<[Wide; 2]>
     }
 }
 
-/// The second derivative by a dimension: exact where that is known, a difference elsewhere.
+/// Second derivative of a characteristic by a dimension: exact if it is known, else a difference.
 pub(super) fn curvature(outcome: &Outcome, c: usize, d: usize) -> Option<Wide> {
     if let Some([_, second]) = exact_derivatives(outcome, c, d) {
         return Some(second);
@@ -482,13 +489,14 @@ pub(super) fn curvature(outcome: &Outcome, c: usize, d: usize) -> Option<Wide> {
     })
 }
 
+/// Sensitivity of a characteristic to dimension `d`.
 fn sensitivity(problem: &Problem, outcome: &Outcome, c: usize, d: usize, shares: Option<&Shares>) -> Sensitivity {
     let (plan, dimension) = (&outcome.plan, &problem.dimensions()[d]);
     let part = outcome.fitted[c].parts[d];
     let axis = plan.axis(d);
     let scale = axis.scale;
     let exact = exact_derivatives(outcome, c, d);
-    // Second derivatives by a dimension of extreme size are so only in the characteristic's own unit.
+    // Second derivatives by a dimension of extreme size fit a double only in the characteristic's own unit.
     let in_unit = |second: Wide| second.times_power(problem.power(c)).checked();
     let rounding = outcome.fitted[c].centre.filter(|_| plan.depends(c, d)).and_then(|centre| {
         let slope = |step: f64| f64::EPSILON * centre.abs() / step;
@@ -538,7 +546,7 @@ fn sensitivity(problem: &Problem, outcome: &Outcome, c: usize, d: usize, shares:
     }
 }
 
-/// The source of the part that a varying dimension has in the surface, or in the variance where there is no surface.
+/// Source of the part of a varying dimension in the surface, or in the variance if there is no surface.
 fn origin(outcome: &Outcome, c: usize, position: Option<usize>) -> Option<DerivativeOrigin> {
     let (fitted, position) = (&outcome.fitted[c], position?);
     match &fitted.integrated {
@@ -547,7 +555,7 @@ fn origin(outcome: &Outcome, c: usize, position: Option<usize>) -> Option<Deriva
     }
 }
 
-/// The linear results, from slopes and bands; None where a slope is missing.
+/// Linear results, from slopes and bands. Returns None if a slope is missing.
 fn linear(problem: &Problem, varying: &[usize], sensitivities: &[Sensitivity]) -> Option<Linear> {
     let slopes: Option<Vec<(f64, usize)>> = varying.iter().map(|&d| Some((sensitivities[d].first?, d))).collect();
     Some(Linear::of(problem, &slopes?))

@@ -1,4 +1,4 @@
-//! The shares beyond the limits, the quantiles and the density counted at points of a surface, whose law could not be computed or is refuted.
+//! Shares beyond the limits, quantiles and density, counted at points of a surface whose distribution could not be computed or is refuted.
 
 use crate::method::Outcome;
 use crate::problem::Problem;
@@ -7,35 +7,36 @@ use sensitol_numeric::law::{LawFigure, LawTail, QUANTILE};
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::sampling::{Draws, Normals, Portion, SOBOL_DIMENSIONS, Sampler};
 
-/// Points of the surface that are counted.
+/// Greatest number of surface points that are counted.
 pub(super) const POINTS: usize = 1 << 16;
-/// Points by which a law is tested: six standard errors of a share of a half are 3 %.
+/// Greatest number of points in the test of a distribution: six standard errors of a share of a half are 3 %.
 pub(super) const TESTED: usize = 1 << 13;
-/// Points of a block.
+/// Points of the surface that are evaluated together, to limit memory.
 const ROWS: usize = 1024;
-/// Products of points and terms of the surface that are summed at most for a test: some tenths of a second.
+/// Greatest number of products of points and surface terms in a test: some tenths of a second.
 const EFFORT: usize = 1 << 28;
-/// Streams of the normal variable that stands for what a surface leaves out, beside those of the inputs.
+/// Random stream of the normal variable that represents the variance which the surface does not explain. It differs from the streams of the
+/// inputs.
 const STREAM: u64 = 1;
-/// Of which fewer are drawn where all of them would take more numbers than this.
+/// Greatest count of random numbers (points times inputs). With many inputs, fewer points are drawn.
 const NUMBERS: usize = 4_000_000;
+/// Fewest points that are drawn, with any number of inputs.
 const FEWEST: usize = 1 << 13;
-/// Points on either side that a count has been off at least, so that none that was seen is not none: three errors then reach 5/n, where
-/// no point of `n` leaves 1 % beyond 4.6/n.
+/// Points added on either side of a count for its error, so that a count of zero has an error too. Three errors then reach 5/n. With no hit
+/// among `n` points, the share exceeds 4.6/n with a probability of 1 % only.
 const UNSEEN: f64 = 3.0;
 
-/// The counts of one characteristic.
 pub(super) struct Counted {
-    /// Shares below and above the limits; None without that limit.
+    /// Shares below and above the limits. None if that limit does not exist.
     pub(super) beyond: [Option<LawFigure>; 2],
     pub(super) quantiles: [LawFigure; 7],
     pub(super) points: usize,
 }
 
-/// Values of the surface of one characteristic in ascending order, at as many points as are asked for or fewer.
+/// Values of the surface of one characteristic in ascending order, at `most` points or fewer.
 ///
-/// `unexplained` is the variance of a normal variable beside the surface. Returns None if inputs cannot be drawn, or a part of the surface is
-/// unknown.
+/// `unexplained` is the variance of a normal variable that is added to the surface. Returns None if inputs cannot be drawn, or a part of
+/// the surface is unknown.
 pub(super) fn points(
     problem: &Problem,
     outcome: &Outcome,
@@ -48,10 +49,10 @@ pub(super) fn points(
     let draws = Draws::new(problem.dimensions(), problem.correlation(), sampler, seed).ok()?;
     let numbers = (NUMBERS / varying.len().max(1)).clamp(FEWEST, POINTS).next_power_of_two().min(most);
     let terms = surrogate.parts.len() + surrogate.interactions.each_pair().count();
-    // The points of a test are fewer where every one of them is a sum of half a million products.
+    // A test uses fewer points if each is a sum of half a million products.
     let affordable = if most < POINTS { (EFFORT / terms.max(1)).max(ROWS) } else { numbers };
     let blocks = numbers.min(affordable) / ROWS;
-    // Block by block, so that the inputs of a thousand dimensions take no more memory than those of ten.
+    // In blocks, so that a thousand inputs take no more memory than ten.
     let values = |block: usize| -> Option<Vec<f64>> {
         let points = draws.points(Portion { replicate: 0, first: (block * ROWS) as u64, rows: ROWS });
         let rises = surrogate.rises(&problem.standardised(&points, varying))?;
@@ -67,7 +68,7 @@ pub(super) fn points(
     Some(values)
 }
 
-/// Counts of one characteristic beyond its limits, and its quantiles at these probabilities, by values in ascending order.
+/// Counts beyond the limits of one characteristic, and its quantiles at the given probabilities, from values in ascending order.
 pub(super) fn counted(
     values: &[f64],
     (limits, kept): (SpecLimits, KeptLimits),
@@ -85,7 +86,7 @@ pub(super) fn counted(
     }
 }
 
-/// The density by values in ascending order, `[y, density, error]` at equal distances between far quantiles.
+/// Density from values in ascending order: `[y, density, error]` at equal distances between far quantiles.
 pub(super) fn density(values: &[f64], places: usize) -> Option<Vec<[f64; 3]>> {
     /// Share of the values that is left out on either side.
     const OUTSIDE: f64 = 1e-3;
@@ -103,14 +104,14 @@ pub(super) fn density(values: &[f64], places: usize) -> Option<Vec<[f64; 3]>> {
     (step > 0.0).then(|| (0..=places).map(at).collect())
 }
 
-/// By how many points a count may be off.
+/// Error of a count, in points.
 fn error(count: f64, points: usize) -> f64 {
     let n = points as f64 + 2.0 * UNSEEN;
     let share = (count + UNSEEN) / n;
     QUANTILE * (n * share * (1.0 - share)).sqrt()
 }
 
-/// The value in the middle of those that a count of this probability may have been off.
+/// Value of the quantile at probability `p`. Its error comes from the values at the count plus and minus its error.
 fn quantile(values: &[f64], tail: LawTail, p: f64) -> LawFigure {
     let n = values.len();
     let at = |beyond: f64| {

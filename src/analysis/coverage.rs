@@ -11,19 +11,19 @@ use sensitol_numeric::capability::Law;
 use sensitol_numeric::law::{LawFigure, LawTail};
 use sensitol_numeric::pearson::Pearson;
 
-/// Splits of the share outside that are compared in one round,
+/// Number of splits of the outside share that are compared in one round.
 const SPLITS: usize = 24;
-/// and rounds, each between the neighbours of the best split of the one before: the last step is 3e-5 of the share outside.
+/// Number of rounds, each between the neighbours of the best split of the round before. The last step is 3e-5 of the outside share.
 const ROUNDS: usize = 4;
-/// An interval that is shorter by less than this part is not: quantiles are known to 1e-7 sigma.
+/// Smallest relative gain in length that counts as shorter: quantiles are known to 1e-7 sigma.
 const SHORTER: f64 = 1e-6;
 
-/// The intervals of a characteristic, at no evaluation; None where nothing is known of its distribution.
+/// Coverage intervals of a characteristic, without evaluations. Returns None if nothing is known of its distribution.
 ///
-/// `law` is that of the surface, where the moments follow from one.
+/// `law` is the distribution of the surface, if the moments follow from a surface.
 ///
 /// # Errors
-/// When the quantiles of the law give no intervals: points have to take its place.
+/// Returns an error if the quantiles of the surface distribution give no intervals. Points have to replace the distribution then.
 pub(super) fn covered(
     one: &CharacteristicAnalysis,
     law: Option<&GuardedLaw>,
@@ -57,12 +57,12 @@ pub(super) fn covered(
     Ok(found.and_then(|found| with(YieldSource::Pearson, found)))
 }
 
-/// The intervals by a law whose quantiles rise.
+/// Intervals from a distribution whose quantiles rise. Returns an error if they fall or are unknown.
 fn by_law(law: &GuardedLaw, fit: Option<&Law>, probability: f64) -> Result<[[f64; 2]; 2], FaultyQuantiles> {
     let fallen = Cell::new(None);
     let found = intervals(probability, |sought| {
         let found = law.quantiles(fit, sought)?;
-        // Beside those that are tested by points.
+        // Together with the quantiles that are tested by points.
         let tested = law.shares.quantiles.iter().flat_map(|all| QUANTILES.into_iter().zip(*all));
         let all = sought.iter().copied().zip(found.iter().copied()).chain(tested);
         fallen.set(fallen.get().or(falls(all.collect())));
@@ -74,7 +74,7 @@ fn by_law(law: &GuardedLaw, fit: Option<&Law>, probability: f64) -> Result<[[f64
     }
 }
 
-/// The first probability whose quantile lies below that of a smaller one by more than their errors, with its quantile.
+/// First probability whose quantile lies below that of a smaller probability by more than the errors of both, with its quantile.
 fn falls(quantiles: Vec<((LawTail, f64), LawFigure)>) -> Option<(f64, f64)> {
     let below = |((tail, p), figure): ((LawTail, f64), LawFigure)| match tail {
         LawTail::Lower => (p, figure),
@@ -96,7 +96,7 @@ fn of_pearson(fit: &Pearson, (tail, p): (LawTail, f64)) -> f64 {
     }
 }
 
-/// With equal tails, and the shortest, by the quantiles of a law.
+/// Interval with equal tails, and the shortest interval, from the quantiles of a distribution.
 fn intervals(probability: f64, quantiles: impl Fn(&[(LawTail, f64)]) -> Option<Vec<f64>>) -> Option<[[f64; 2]; 2]> {
     let outside = 1.0 - probability;
     let at = |splits: &[f64]| -> Option<Vec<[f64; 2]>> {
@@ -108,6 +108,7 @@ fn intervals(probability: f64, quantiles: impl Fn(&[(LawTail, f64)]) -> Option<V
     };
     let equal = *at(&[0.5])?.first()?;
     let mut best = equal;
+    // Each round narrows the splits of the outside share to the neighbours of the best.
     let [mut from, mut to] = [0.0, 1.0];
     for _ in 0..ROUNDS {
         let step = (to - from) / SPLITS as f64;
@@ -126,19 +127,19 @@ fn width([low, high]: &[f64; 2]) -> f64 {
     high - low
 }
 
-/// The same of values in order.
+/// Interval with equal tails, and the shortest interval, of values in ascending order.
 fn of_points(values: &[f64], probability: f64) -> Option<[[f64; 2]; 2]> {
     let weighted: Vec<(f64, f64)> = values.iter().map(|&y| (y, 1.0)).collect();
     of_weighted(&weighted, probability)
 }
 
-/// The same of values in order with their weights.
+/// Interval with equal tails, and the shortest interval, of values in ascending order with their weights.
 fn of_weighted(values: &[(f64, f64)], probability: f64) -> Option<[[f64; 2]; 2]> {
     let total: f64 = values.iter().map(|(_, weight)| weight).sum();
     if total.is_nan() || total <= 0.0 {
         return None;
     }
-    // The share up to and with each value.
+    // Cumulative share of each value, inclusive.
     let shares: Vec<f64> = values
         .iter()
         .scan(0.0, |sum, (_, weight)| {

@@ -1,4 +1,4 @@
-//! Intervals that hold a share of assemblies, as they are reported.
+//! Intervals that hold a given share of assemblies, as reported.
 
 use serde::Serialize;
 
@@ -12,13 +12,13 @@ use sensitol_numeric::power::rescale;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct CoverageIntervals {
-    /// The share of assemblies that each holds.
+    /// Share of assemblies that each interval holds.
     pub probability: f64,
-    /// With as many assemblies below as above.
+    /// Interval with equal shares of assemblies below and above it.
     pub equal_tails: [f64; 2],
-    /// The shortest of all.
+    /// Shortest interval.
     pub shortest: [f64; 2],
-    /// Where they come from: a surface that is trusted, else points of the model, else the Pearson fit.
+    /// Source of the intervals: a surface that is trusted, else points of the model, else the Pearson fit.
     pub source: YieldSource,
 }
 

@@ -1,23 +1,24 @@
-//! The errors of the yield that follow from the estimated errors of the moments.
+//! Errors of the yield that follow from the estimated errors of the moments.
 
 use crate::method::ErrorEstimate;
 use sensitol_numeric::capability::{Capability, Law};
 use sensitol_numeric::characteristic::SpecLimits;
 use sensitol_numeric::moments::Moments;
 
-/// How far the rejected share moves when each moment is off by its error, one after the other, as the root of the sum of
-/// squares; None where an error is unknown, there are no limits, or no law has such moments.
+/// Error of the reject rate: its change if each moment in turn is off by its error, combined as the root of the sum of squares.
+///
+/// Returns None if an error is unknown, there are no limits, or no distribution of the Pearson system has such moments.
 pub(super) fn of_yield(estimate: &ErrorEstimate, moments: &Moments, limits: SpecLimits) -> Option<f64> {
     limits.exist().then(|| of_shares(estimate, moments, limits)).flatten().map(|[all, ..]| all)
 }
 
-/// The same of the shares below and above the limits.
+/// Errors of the shares below and above the limits, computed like [`of_yield`].
 pub(super) fn of_sides(estimate: &ErrorEstimate, moments: &Moments, limits: SpecLimits) -> [Option<f64>; 2] {
     let of = of_shares(estimate, moments, limits);
     [of.map(|[_, below, _]| below), of.map(|[.., above]| above)]
 }
 
-/// Of all rejects, of those below and of those above.
+/// Errors of the share of all rejects, of those below and of those above.
 fn of_shares(estimate: &ErrorEstimate, moments: &Moments, limits: SpecLimits) -> Option<[f64; 3]> {
     let rejected = |moments: Moments| {
         let law = Law::fit(&moments).ok()?;
@@ -28,7 +29,7 @@ fn of_shares(estimate: &ErrorEstimate, moments: &Moments, limits: SpecLimits) ->
     let here = rejected(*moments)?;
     let [off_mean, off_sigma, off_skewness, off_kurtosis] =
         [estimate.mean?, estimate.sigma?, estimate.skewness?, estimate.kurtosis?];
-    // Errors as large as this say that nothing is known.
+    // An error of sigma as large as sigma leaves nothing known.
     if off_sigma >= sigma {
         return None;
     }
@@ -42,7 +43,7 @@ fn of_shares(estimate: &ErrorEstimate, moments: &Moments, limits: SpecLimits) ->
     };
     let (up, down) = (moved(1.0), moved(-1.0));
     let part = |(up, down): (&Moments, &Moments)| {
-        // A moment at the border of what is possible has one side only.
+        // A moment at the border of possible values can be moved to one side only.
         let off = [*up, *down].into_iter().filter_map(rejected);
         let off = off.map(|other| std::array::from_fn(|share| (other[share] - here[share]).abs()));
         off.reduce(|a: [f64; 3], b| std::array::from_fn(|share| a[share].max(b[share])))

@@ -1,4 +1,4 @@
-//! Where a surrogate is not trusted: points of the model itself, with the surrogate as control variate.
+//! Fallback if a surrogate is not trusted: points of the model itself, with the surrogate as control variate.
 
 use std::sync::Arc;
 
@@ -19,26 +19,27 @@ use sensitol_numeric::capability::{Capability, Law};
 use sensitol_numeric::moments::Moments;
 use sensitol_numeric::sampling::{Estimate, SOBOL_DIMENSIONS, Sampler, one_error};
 
-/// Points of a cheap model, at most;
+/// Most points of a cheap model.
 const MOST: u64 = 1 << 18;
-/// and with fewer of a costly one it is better not begun.
+/// Fewest points for which the sample of a costly model is useful.
 const FEWEST: u64 = 48;
-/// Points of the first attempt, at the least.
+/// Fewest points of the first sample.
 const FIRST: u64 = 1 << 10;
-/// Points of strides beside regressions, at most: where they have not reached what is wanted, a regression does not follow the model, and
-/// each stride fits all of them anew. Of what a costly model may be asked they are a part, because the points of its sample are others.
+/// Most points of strides with regressions. If the accuracy is not reached with them, a regression does not follow the model, and each
+/// stride fits all regressions anew.
 const STRIDES: usize = 512;
+/// Part of a costly model's budget that strides may use (one in four), because the points of its sample are others.
 const COSTLY_PART: usize = 4;
 
-/// The cost of the fallback.
+/// Cost of the fallback.
 #[derive(Debug, Default)]
 pub(super) struct Spent {
     pub(super) run: RunSummary,
     pub(super) non_repeatable: Vec<NonRepeatable>,
 }
 
-/// Replaces moments that are not known as well as they were wanted, where that can be paid: `left` is what the budget, where
-/// there is one, still allows.
+/// Replaces moments that miss the requested accuracy by those of points of the model, if the budget allows it. `left` is the rest of the
+/// budget, if there is one.
 pub(super) fn fall_back(
     problem: &Problem,
     outcome: &Outcome,
@@ -55,7 +56,7 @@ pub(super) fn fall_back(
     }
     let remembered;
     let costly = problem.function().signature().costly;
-    // A model whose evaluations cost something is sampled only from what was allowed for it.
+    // A costly model is sampled only within its budget.
     let most = match (costly, left.map(|left| left as u64)) {
         (true, None) => 0,
         (true, Some(left)) => left,
@@ -68,7 +69,7 @@ pub(super) fn fall_back(
     let problem = match stride((problem, outcome, climbed), (seed, strided), &short, characteristics, run, &mut spent) {
         Strided::Enough => return spent,
         Strided::Known(answers) => {
-            // The sample begins with these points, and they are not evaluated again.
+            // The sample begins with these points. They are not evaluated again.
             remembered = problem.replacing(0, problem.dimensions()[0].clone(), Arc::new(*answers));
             &remembered
         }
@@ -84,12 +85,12 @@ pub(super) fn fall_back(
     // Points that were evaluated in strides are not evaluated again.
     let most = most + if sampler == Sampler::Sobol { spent.run.evaluations } else { 0 };
     let recorded = Arc::new(Recorded::new(problem));
-    // A cheap model is asked anew, and answers several batches at a time.
+    // A cheap model is evaluated again, and answers several batches at a time.
     let recording = costly.then(|| problem.with_function(recorded.clone()));
     let problem = recording.as_ref().unwrap_or(problem);
     while spent.run.evaluations + samples <= most {
         recorded.clear();
-        // Sobol's points come in powers of two: not more of them than may be.
+        // Sobol' points come in powers of two: the greatest power that is allowed.
         let points = if sampler == Sampler::Sobol { (samples + 1).next_power_of_two() / 2 } else { samples };
         let wish = SimulationOptions { samples: points.max(2), sampler, seed, ..SimulationOptions::default() };
         let Ok(found) = simulate_beside(problem, &wish, outcome, run) else { return spent };
@@ -112,16 +113,16 @@ pub(super) fn fall_back(
     spent
 }
 
-/// The result of strides.
+/// Result of the attempt with strides.
 enum Strided {
-    /// Everything is known as well as it was wanted, or the run was stopped.
+    /// Every figure has the requested accuracy, or the run was stopped.
     Enough,
-    /// They are not enough, and these are their answers.
+    /// The requested accuracy was not reached. Contains the answers of the model.
     Known(Box<Remembered>),
     Nothing,
 }
 
-/// Samples in strides beside sparse regressions, and takes what they say where all of it is known as well as it was wanted.
+/// Samples in strides with sparse regressions as control variates. Takes their figures if all have the requested accuracy.
 fn stride(
     (problem, outcome, climbed): (&Problem, &Outcome, &Climbed),
     (seed, most): (u64, usize),
@@ -153,7 +154,7 @@ fn stride(
 }
 
 impl StridedFigures {
-    /// Whether two errors are within what is wanted, of sigma and of whatever else.
+    /// True if two standard errors are within the requested accuracy, for sigma and all other requested figures.
     fn is_known(&self, climbed: &Climbed) -> bool {
         let within = |error: Option<f64>, wanted: f64| error.is_some_and(|error| error <= PART * wanted);
         let [_, sigma, skewness, kurtosis] = self.moments;
@@ -174,17 +175,17 @@ impl StridedFigures {
     }
 }
 
-/// How far off sigma may be, as a part of it, where that is more than wanted; None where it is not.
+/// Size of the residual as a part of sigma, if the accuracy of sigma or of another figure is missed. Returns None otherwise.
 fn shortfall(one: &CharacteristicAnalysis, climbed: &Climbed, c: usize) -> Option<f64> {
     let (moments, check) = (one.moments?, climbed.checked[c].as_ref()?);
     let error = one.error_estimate.as_ref()?.sigma?;
     let variance = moments.variance();
     let short = error > climbed.accuracy * moments.sigma() || excess(one, &climbed.accuracies) > 1.0;
-    // The part that the surrogate does not explain decides how many points a control variate takes.
+    // The part that the surrogate does not explain decides how many points a control variate needs.
     short.then(|| (check.variance / variance).sqrt().clamp(0.01, 1.0))
 }
 
-/// Whether two standard errors are within what is wanted, of sigma and of whatever else.
+/// True if two standard errors are within the requested accuracy, for sigma and all other requested figures.
 fn known(found: &SimulatedCharacteristic, climbed: &Climbed) -> bool {
     let within = |error: Option<f64>, wanted: f64| error.is_some_and(|error| error <= PART * wanted);
     let error = |estimate: Option<Estimate>| estimate.and_then(|estimate| estimate.standard_error);
@@ -213,7 +214,8 @@ fn replace(
     let (Some(mean), Some(sigma)) = (found.mean, found.sigma) else { return };
     let (Some(skewness), Some(kurtosis)) = (found.skewness, found.kurtosis) else { return };
     let moments = [mean, sigma, skewness, kurtosis];
-    // As the errors of a verification: few randomisations, and few points that carry a power, know little of their own scatter.
+    // Widened as the errors of a verification are: few randomisations, and few points that carry a power, determine their own scatter
+    // badly.
     let carried = found.control.map(|control| control.carried);
     let widths = carried.map_or([1.0; 4], |points| points.map(|points| few * carried_by(points)));
     let standard_errors = std::array::from_fn(|i| moments[i].standard_error.map(|error| widths[i] * error));
@@ -232,14 +234,14 @@ fn replace(
     take(one, StridedFigures { moments, sampled });
 }
 
-/// The share of the variance that the surface leaves, by the check.
+/// Share of the variance that the surface does not explain, by the check points.
 fn left(one: &CharacteristicAnalysis, climbed: &Climbed, c: usize) -> f64 {
     let variance = one.moments.map_or(0.0, |moments| moments.variance());
     let checked = climbed.checked[c].as_ref().map(|check| check.variance);
     checked.map_or(0.0, |off| if variance > 0.0 { (off / variance).min(1.0) } else { 1.0 })
 }
 
-/// Takes the model's figures in place of the surface's.
+/// Replaces the surface's figures by the model's.
 fn take(one: &mut CharacteristicAnalysis, StridedFigures { moments, sampled }: StridedFigures) {
     let [mean, sigma, skewness, kurtosis] = moments.map(|of| of.value);
     let moments = Moments::new(mean, sigma, skewness, kurtosis - 3.0);
@@ -251,7 +253,7 @@ fn take(one: &mut CharacteristicAnalysis, StridedFigures { moments, sampled }: S
     let sources = vec![ErrorSource::Sampled { points: sampled.samples }];
     let [mean, sigma, skewness, kurtosis] = sampled.standard_errors;
     let estimate = ErrorEstimate { mean, sigma, skewness, kurtosis, yield_: None, sources };
-    // The fit of four moments is off the sample itself by what it is off, and the sample by its interval.
+    // Error of the fit of four moments: its distance from the sample's yield, and the error of that yield.
     let of_fit = one.capability.and_then(|capability| capability.yield_()).zip(sampled.yield_);
     let off = of_fit.map(|(fit, (value, interval))| (fit - value).abs() + one_error(value, interval));
     let of_moments = of_yield(&estimate, &moments, limits);

@@ -1,13 +1,14 @@
-//! Sobol' indices: what a dimension explains of the variance alone, and with every interaction in which it has a part.
+//! Sobol' indices: the part of the variance that a dimension explains alone, and with all its interactions.
 //!
 //! ```text
 //! first order  S_j = Var(E[y | x_j]) / Var(y)        total  T_j = E[Var(y | all but x_j)] / Var(y)
 //! ```
 //!
-//! The contributions of a surface have them for nothing: its own line and curvature are `S_j`, and with its interactions they are `T_j`.
-//! Dimensions that vary together are one factor, of which the same is true. A surface that leaves `U` of the variance has them within
-//! `2 sqrt(S U) + U`, by Cauchy and Schwarz. Where a sample of the model does not trust the surface, the indices are the model's: by
-//! exchanging inputs, or by the ranks of a sample that is there already; contributions of that surface are then unknown.
+//! The contributions of a surface give them without evaluations: the linear and the curvature share of a dimension are `S_j`, and with its
+//! interactions they are `T_j`. Dimensions that vary together are one factor, with the same formulas. A surface that leaves `U` of the
+//! variance unexplained has the indices within `2 sqrt(S U) + U`, by Cauchy and Schwarz. If a sample of the model shows that the surface is
+//! not to be trusted, the indices are the model's. They come from exchanging inputs, or from the ranks of an existing sample. Contributions
+//! of that surface are unknown then.
 
 use std::collections::HashMap;
 
@@ -24,7 +25,7 @@ use sensitol_numeric::correlation::factors;
 /// First order and total of one factor.
 type Pair = (Option<EstimatedShare>, Option<EstimatedShare>);
 
-/// Adds its indices to every characteristic, and takes the contributions of a surface away that a sample of the model does not trust.
+/// Adds the indices of every characteristic. Removes the contributions of a surface that a sample of the model does not trust.
 pub(super) fn add(
     problem: &Problem,
     outcome: &Outcome,
@@ -45,7 +46,7 @@ pub(super) fn add(
             false => (IndexSource::Surface, of_surface(one, &factors)),
             true => of_model(problem, (c, options), one, &factors, run),
         };
-        // Contributions of a method that is linear by its name are those of its own sum of squares, whatever the model does.
+        // A method of first order reports the contributions of its own sum of squares, regardless of the model.
         if distrusted && outcome.order == Order::Second {
             forget(one);
         }
@@ -54,26 +55,26 @@ pub(super) fn add(
 }
 
 impl CharacteristicAnalysis {
-    /// The share of the variance that its surface leaves, as far as the model was asked.
+    /// Share of the variance that the surface leaves unexplained, if the model was evaluated for it.
     pub fn left(&self) -> Option<f64> {
         let verified = self.verification.as_ref().and_then(|of| of.left);
         verified.or(self.model_sampled.as_ref().map(|of| of.left))
     }
 
-    /// Within which a share of its surface is that of the model; None where that is not known.
+    /// Error of a share of the surface as a share of the model. Returns None if it is unknown.
     pub fn share_error(&self, share: f64) -> Option<f64> {
         let left = self.left().filter(|_| self.sampled.is_none())?;
         Some((2.0 * (share.max(0.0) * left).sqrt() + left).min(1.0))
     }
 
-    /// Whether a sample of the model says that the contributions of the surface are none.
+    /// True if a sample of the model shows that the contributions of the surface are meaningless.
     fn is_distrusted(&self) -> bool {
         let sampled = self.verification.as_ref().is_some_and(|of| of.kind == VerificationKind::Sample);
         (sampled || self.model_sampled.is_some()) && self.left().is_some_and(|left| left > UNTRUSTED)
     }
 }
 
-/// Contributions that are not those of the model are unknown.
+/// Sets contributions that differ from those of the model to unknown.
 fn forget(one: &mut CharacteristicAnalysis) {
     for row in &mut one.sensitivities {
         (row.linear_share, row.curvature_share) = (None, None);
@@ -82,6 +83,7 @@ fn forget(one: &mut CharacteristicAnalysis) {
     one.left_out_share = None;
 }
 
+/// Stores the indices of dimensions and of factors.
 fn keep(
     problem: &Problem,
     one: &mut CharacteristicAnalysis,
@@ -102,10 +104,11 @@ fn keep(
     one.indices = Some(SobolIndices { source, factors: together, interactions });
 }
 
-/// From the contributions of the surface: those inside of a factor, and those of every interaction with another.
+/// Indices from the contributions of the surface: those inside of a factor, and those of every interaction with another.
 fn of_surface(one: &CharacteristicAnalysis, factors: &[Vec<usize>]) -> Vec<Pair> {
     let left = one.left();
-    // A surface that check points do not trust tells nothing, and neither do slopes alone unless something says that there is no more.
+    // A surface that check points do not trust gives no indices. Slopes alone give none either, unless a check shows that nothing is
+    // missing.
     let trusted = left.is_none_or(|left| left <= UNTRUSTED);
     let own = |d: &usize| {
         let row = &one.sensitivities[*d];
@@ -137,7 +140,7 @@ fn of_surface(one: &CharacteristicAnalysis, factors: &[Vec<usize>]) -> Vec<Pair>
     inside.iter().zip(&across).map(of).collect()
 }
 
-/// From the model: what its verification has by exchange already, or an exchange of factors, or the ranks of its sample.
+/// Indices of the model itself: from the exchange of its verification, from an exchange of factors, or from the ranks of its sample.
 fn of_model(
     problem: &Problem,
     (c, options): (usize, &Options),
@@ -155,7 +158,7 @@ fn of_model(
         };
         return (IndexSource::Exchange, factors.iter().map(of).collect());
     }
-    // A model that is sampled to verify results may be asked for more, as long as no budget says otherwise.
+    // A model that is sampled to verify results may be evaluated more, unless there is a budget.
     let verified = one.verification.as_ref().is_some_and(|of| of.kind == VerificationKind::Sample);
     let affordable = verified && options.budget.is_none() && !run.stopped();
     let found = affordable.then(|| factor_shares(problem, c, options.seed.unwrap_or(Options::SEED), run)).flatten();
@@ -163,14 +166,14 @@ fn of_model(
     if found.is_none() && !ranks.is_empty() {
         let of = |factor: &Vec<usize>| match factor[..] {
             [d] => (ranks.iter().find(|(of, _)| *of == d).map(|(_, share)| EstimatedShare::from(*share)), None),
-            // The order of one of them says nothing of all.
+            // The ranks of one dimension give no index of a whole factor.
             _ => (None, None),
         };
         return (IndexSource::Ranks, factors.iter().map(of).collect());
     }
     let of = |factor: &Vec<usize>| {
         let Some(found) = &found else { return (None, None) };
-        // Of some that vary together a characteristic may depend on a part only.
+        // A characteristic may depend on only some of the dimensions that vary together.
         let own = found.iter().find(|(dimensions, _)| dimensions.iter().all(|d| factor.contains(d)));
         let [first, total] = own.map_or([NOTHING; 2], |(_, shares)| shares.map(EstimatedShare::from));
         (Some(first), Some(total))
@@ -178,5 +181,5 @@ fn of_model(
     (IndexSource::Exchange, factors.iter().map(of).collect())
 }
 
-/// Of a dimension on which a characteristic cannot depend.
+/// Index of a dimension on which a characteristic cannot depend.
 const NOTHING: EstimatedShare = EstimatedShare { value: 0.0, error: Some(0.0) };

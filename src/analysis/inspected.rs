@@ -1,4 +1,4 @@
-//! The risks of an inspection: from the law that the yield comes from, beside the sample of the model where there is one.
+//! Risks of an inspection, from the distribution that the yield comes from, and from the sample of the model if there is one.
 
 use super::{CharacteristicAnalysis, YieldSource};
 use crate::verification::WeightedSample;
@@ -8,9 +8,10 @@ use sensitol_numeric::characteristic::SpecLimits;
 use sensitol_numeric::inspection::{Guard, Inspection};
 use sensitol_numeric::law::SurfaceLaw;
 
-/// Of a characteristic whose yield is settled; None without an inspection, and where nothing is known of its distribution.
+/// Risks of the inspection of a characteristic whose yield is settled. Returns None if there is no inspection, and if nothing is known of
+/// its distribution.
 ///
-/// `points` of the surface, in ascending order, take the place of a law that is refuted.
+/// `points` of the surface, in ascending order, replace a distribution that is refuted.
 pub(super) fn inspected(
     one: &CharacteristicAnalysis,
     kept: KeptLimits,
@@ -20,7 +21,7 @@ pub(super) fn inspected(
     let inspection = one.characteristic.inspection()?;
     let limits = one.characteristic.limits();
     let fit = one.law.as_ref().and_then(|law| law.as_ref().ok());
-    // The law of a surface that does not vary is a step, of which the integrals are worse than the closed form.
+    // The distribution of a surface that does not vary is a step: the closed form is more accurate than the integrals.
     let surface = surface.filter(|_| !matches!(fit, Some(Law::Point { .. })));
     match (surface, fit) {
         (Some(surface), _) => {
@@ -28,7 +29,7 @@ pub(super) fn inspected(
             Some(by(one, inspection, (limits, kept), &Tails { below: &below, above: &above }, surface_error(one)))
         }
         (None, Some(Law::Point { at })) => {
-            // A value that keeps a limit but for rounding is on it.
+            // A value that keeps a limit except for rounding is moved onto it.
             let [least, most] = [limits.lower(), limits.upper()];
             let on = |at: f64| at.max(least.unwrap_or(at)).min(most.unwrap_or(at));
             let at = if kept.contains(*at) { on(*at) } else { *at };
@@ -53,7 +54,7 @@ pub(super) fn inspected(
     }
 }
 
-/// The numerical error of the law of the surface, where that is all that there is.
+/// Numerical error of the surface distribution, if it is the only error.
 fn surface_error(one: &CharacteristicAnalysis) -> Option<f64> {
     let proven = one.yield_source == Some(YieldSource::Proof);
     one.surface_law.filter(|_| proven).map(|law| law.error())
@@ -66,7 +67,8 @@ fn guard(inspection: Inspection, limits: SpecLimits, tails: &Tails<'_>) -> Optio
     }
 }
 
-/// By a law, beside the sample of the model where there is one: without a surface the sample has the say.
+/// Risks from a distribution, and from the sample of the model if there is one. Without a trusted surface distribution the values are those
+/// of the sample.
 fn by(
     one: &CharacteristicAnalysis,
     inspection: Inspection,
@@ -78,7 +80,7 @@ fn by(
     let sample = one.verification.as_ref().and_then(|of| of.sample.as_deref());
     let of = |guard: f64| {
         let mut risks = Risks::of(tails, limits, gauge, guard);
-        // A part that is proven to keep its limits is never bad.
+        // Proven yields bound the risk: no more bad parts are accepted than there are rejects.
         if let Some(rejected) = one.capability.and_then(|of| of.rejected()).filter(|_| proven.is_some()) {
             risks.false_accept = risks.false_accept.min(rejected);
         }
@@ -87,7 +89,7 @@ fn by(
             return (risks, [error.map(|error| error + risks.error); 2]);
         };
         let found = of_sample(sample, kept, gauge, guard);
-        // Points of the model have the say beside a count of the surface.
+        // Points of the model take precedence over a count of the surface.
         if one.surface_law.is_none_or(|law| law.refuted.is_some()) {
             (risks.false_accept, risks.false_reject) = (found[0].value, found[1].value);
         }
@@ -97,7 +99,7 @@ fn by(
     told(one, inspection, guard, guard.map(of))
 }
 
-/// The same means over points of the model.
+/// Shares of bad accepted and good rejected parts, over points of the model.
 fn of_sample(
     sample: &WeightedSample,
     limits: KeptLimits,

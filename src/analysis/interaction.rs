@@ -1,4 +1,4 @@
-//! The interactions of a characteristic, two dimensions each.
+//! Interactions of a characteristic, of two dimensions each.
 
 use std::fmt;
 
@@ -6,42 +6,42 @@ use serde::{Serialize, Serializer};
 
 use sensitol_numeric::power::{Rescale, Rescaling};
 use sensitol_numeric::surrogate::DerivativeOrigin;
-/// The joint effect of two dimensions.
+/// Joint effect of two dimensions.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Interaction<'a> {
-    /// The two dimensions.
+    /// Names of the two dimensions.
     pub dimensions: [&'a str; 2],
-    /// Mixed second derivative at the means; None where it is missing.
+    /// Mixed second derivative at the means. None if it is missing.
     pub mixed: Option<f64>,
-    /// Why it is missing; None where it is not.
+    /// Reason why the derivative is missing. None if it is known.
     pub missing: Option<Missing>,
-    /// Whether it is exact rather than a difference.
+    /// True if the derivative is exact rather than a difference.
     pub exact: bool,
-    /// The source of its share: `exact`, `evaluated`, or `screened` where it is an estimate without an evaluation of its own. None where
-    /// it has no share.
+    /// Source of the share: `exact`, `evaluated`, or `screened` if it is an estimate without an evaluation of its own. None if
+    /// there is no share.
     pub origin: Option<DerivativeOrigin>,
-    /// The largest effect of rounding errors of the characteristic's own size on it.
+    /// Largest effect of a rounding error of the characteristic on the derivative.
     pub rounding: Option<f64>,
     /// Share of the variance.
     pub share: Option<f64>,
-    /// How far it moves the mean: not at all unless the two are correlated.
+    /// Mean shift by the interaction: none unless the two dimensions are correlated.
     pub mean_shift: Option<f64>,
 }
 
-/// Why a derivative is missing.
+/// Reason why a derivative is missing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Missing {
-    /// A point that it takes has no value.
+    /// A point that it needs has no value.
     Failed,
-    /// A point that it takes was not evaluated before the run was stopped.
+    /// A point that it needs was not evaluated before the run was stopped.
     NotEvaluated,
 }
 
-/// Interactions in an order. A thousand dimensions have half a million of them: each takes 48 bytes, and every name is kept once.
+/// List of interactions. A thousand dimensions have half a million of them: each takes 48 bytes, and every name is stored once.
 ///
 /// ```
 /// use sensitol::{Closure, Dimension, Method, Problem, analyze};
@@ -59,7 +59,7 @@ pub struct InteractionList {
     rows: Vec<Row>,
 }
 
-/// An interaction as it is kept: its dimensions by their places among the names, NaN for a number that is unknown.
+/// Stored form of an interaction: its dimensions by the indices of their names, NaN for an unknown number.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Row {
     pub(super) dimensions: [u32; 2],
@@ -96,32 +96,32 @@ impl Rescale for InteractionList {
 }
 
 impl InteractionList {
-    /// How many.
+    /// Number of interactions.
     pub fn len(&self) -> usize {
         self.rows.len()
     }
 
-    /// Whether there are none.
+    /// True if there are no interactions.
     pub fn is_empty(&self) -> bool {
         self.rows.is_empty()
     }
 
-    /// The one at a place.
+    /// Interaction at a place of the list. Returns None beyond its end.
     pub fn get(&self, place: usize) -> Option<Interaction<'_>> {
         self.rows.get(place).map(|row| row.interaction(&self.names))
     }
 
-    /// All of them, in order.
+    /// All interactions, in order.
     pub fn iter(&self) -> impl Iterator<Item = Interaction<'_>> + Clone {
         self.rows.iter().map(|row| row.interaction(&self.names))
     }
 
-    /// Of dimensions with these names.
+    /// Creates a list of interactions. The rows refer to `names` by index.
     pub(super) fn of(names: Vec<String>, rows: Vec<Row>) -> Self {
         Self { names, rows }
     }
 
-    /// Keeps those for which `keep` holds, which is given the rank of each, from 0 on.
+    /// Keeps the interactions for which `keep` returns true. Its first argument is the rank, from 0 on.
     pub(super) fn retain(&mut self, mut keep: impl FnMut(usize, &Interaction<'_>) -> bool) {
         let Self { names, rows } = self;
         let mut rank = 0;
@@ -132,7 +132,7 @@ impl InteractionList {
         rows.shrink_to_fit();
     }
 
-    /// Without their shares.
+    /// Sets all shares of the variance to unknown.
     pub(super) fn forget_shares(&mut self) {
         self.rows.iter_mut().for_each(|row| row.share = f64::NAN);
     }

@@ -1,4 +1,4 @@
-//! How the interactions of a characteristic are listed.
+//! List of the interactions of a characteristic.
 
 use super::interaction::{InteractionList, Missing, Row};
 use super::shares::Shares;
@@ -9,8 +9,8 @@ use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::power::Wide;
 use sensitol_numeric::surrogate::DerivativeOrigin;
 
-/// The pairs on which a characteristic can depend, by their places among all that are listed: those examined, and those whose
-/// interaction was estimated. Not pairs that were listed for another characteristic only.
+/// Pairs on which a characteristic can depend, by their index among all listed pairs: those examined, and those whose interaction was
+/// estimated. Pairs that were listed for another characteristic only are left out.
 pub(super) fn pairs_of(outcome: &Outcome, c: usize) -> impl Iterator<Item = usize> + '_ {
     let mixed = &outcome.fitted[c].mixed;
     (0..mixed.len().min(outcome.pairs.len())).filter(move |&index| {
@@ -20,7 +20,7 @@ pub(super) fn pairs_of(outcome: &Outcome, c: usize) -> impl Iterator<Item = usiz
     })
 }
 
-/// The source of the part that a pair has in the surface, or in the variance where there is no surface; None where it has none.
+/// Source of the part of a pair in the surface, or in the variance if there is no surface. Returns None if it has no part.
 pub(super) fn origin_of(outcome: &Outcome, c: usize, index: usize) -> Option<DerivativeOrigin> {
     let fitted = &outcome.fitted[c];
     match &fitted.integrated {
@@ -33,7 +33,7 @@ pub(super) fn share_of(outcome: &Outcome, c: usize, index: usize, shares: Option
     shares?.pair(index, outcome.pairs[index], outcome.fitted[c].mixed[index].map(|mixed| mixed.value))
 }
 
-/// The mixed derivative of a pair of dimensions at the means: exact where that is known, a difference elsewhere.
+/// Mixed derivative of a pair of dimensions at the means: exact if it is known, else a difference.
 pub(super) fn mixed_of(outcome: &Outcome, c: usize, index: usize) -> Option<Wide> {
     let (fitted, pair) = (&outcome.fitted[c], dimensions_of(outcome, index));
     let exact = fitted.exact.as_ref().and_then(|exact| exact.interaction(index, pair));
@@ -46,13 +46,13 @@ pub(super) fn dimensions_of(outcome: &Outcome, index: usize) -> [usize; 2] {
     [j, k].map(|position| outcome.plan.varying()[position])
 }
 
-/// Of the pairs on which the characteristic can depend, strongest first. Of a thousand dimensions the list takes as much memory as what it
-/// follows from, so that it is made last.
+/// Lists the pairs on which the characteristic can depend, strongest first. With a thousand dimensions the list takes as much memory as its
+/// sources, so it is made last.
 pub(super) fn listed(problem: &Problem, outcome: &Outcome, c: usize, shares: Option<&Shares>) -> InteractionList {
     let plan = &outcome.plan;
     let fitted = &outcome.fitted[c];
     let share = |index: usize| share_of(outcome, c, index, shares);
-    // Places are sorted rather than rows of several words.
+    // Sorting indices moves less memory than sorting whole rows.
     let mut order: Vec<u32> = pairs_of(outcome, c).map(|index| index as u32).collect();
     let mut strengths = vec![-1.0; outcome.pairs.len()];
     order.iter().for_each(|&index| strengths[index as usize] = share(index as usize).unwrap_or(-1.0));
@@ -72,7 +72,7 @@ pub(super) fn listed(problem: &Problem, outcome: &Outcome, c: usize, shares: Opt
         };
         let step = |d: usize| if exact.is_some() { plan.axis(d).scale } else { 0.5 * plan.axis(d).nearest_step() };
         let missing = (exact.is_none() && mixed.is_none()).then(|| missing(outcome, c, &[j, k]));
-        // Mixed derivatives by dimensions of extreme size are so only in the characteristic's own unit.
+        // Mixed derivatives by dimensions of extreme size fit a double only in the characteristic's own unit.
         let in_unit = |mixed: Wide| mixed.times_power(problem.power(c)).checked();
         let rounding =
             fitted.centre.and_then(|centre| in_unit(Wide::of(f64::EPSILON * centre.abs()).over(step(j)).over(step(k))));
@@ -91,7 +91,7 @@ pub(super) fn listed(problem: &Problem, outcome: &Outcome, c: usize, shares: Opt
     InteractionList::of(names, order.par_iter().map(row).collect())
 }
 
-/// Why a derivative by these dimensions is missing: what was stopped before any of its points failed was not evaluated.
+/// Reason why a derivative by these dimensions is missing. It was not evaluated if the run was stopped before any of its points failed.
 pub(super) fn missing(outcome: &Outcome, c: usize, dimensions: &[usize]) -> Missing {
     let within = |point: &Point| point.at().iter().all(|at| dimensions.contains(&(at.dimension as usize)));
     let failed = || outcome.evaluated.known.errors().any(|(point, of, _)| of == c && within(point));

@@ -1,10 +1,10 @@
 //! Jumps of a costly model along axes that have two nodes only.
 //!
-//! With answers `f+`, `f-` on either side of the centre's `f0`, slope `g = |f+ - f-|/2` and curvature `c = |f+ + f- - 2 f0|/2`: where the
-//! change on one side is nothing beside that on the other, `c/g` is 1. So it is at a jump beside the means, at a kink, and at the foot of a
-//! parabola. Halving the side of the larger change tells them apart: that of a jump stays in one half whole, however short it gets.
+//! Answers `f+`, `f-` on either side of the centre's `f0` give slope `g = |f+ - f-|/2` and curvature `c = |f+ + f- - 2 f0|/2`. If the
+//! change on one side is negligible beside that on the other, `c/g` is 1. This holds at a jump beside the means, at a kink, and at the foot
+//! of a parabola. Halving the side of the larger change distinguishes them: a jump stays in one half completely, for any length.
 //!
-//! Evaluations: three for an axis with `c > 0.5 g`, three more where these confirm it, of the three most curved axes at most: 18.
+//! Evaluations: three for an axis with `c > 0.5 g`, three more if these confirm it, for the three most curved axes at most: 18.
 
 use crate::assembly::{NonRepeatable, Points, Request, Responses, Run};
 use crate::method::{Basis, Outcome};
@@ -15,19 +15,21 @@ use sensitol_numeric::time::Instant;
 
 use super::CharacteristicAnalysis;
 
-/// Curvature below this part of the slope is none to look into.
+/// Ratio of curvature to slope below which an axis is not searched.
 const CURVED: f64 = 0.5;
-/// Nor is curvature below this part of sigma.
+/// Curvature, as a part of sigma, below which an axis is not searched.
 const MATTERS: f64 = 0.1;
-/// Axes that are looked into, the most curved ones.
+/// Most axes that are searched, the most curved ones.
 const AXES: usize = 3;
-/// Halvings before the first judgement, and in all.
+/// Halvings after which a side without a jump is dropped.
 const FIRST: usize = 3;
+/// Halvings in all, for the sides that remain.
 const ALL: usize = 6;
-/// A smooth function has 24 % of its change in the last eighth of a side, and 3 % in the last of 64 parts.
+/// Part of the change that a jump has in the last interval. A smooth function has 24 % of its change in the last eighth of a side, and 3 %
+/// in the last of 64 parts.
 const WHOLE: f64 = 0.5;
 
-/// The jumps that were found, and the cost of finding them.
+/// Found jumps, and the cost of the search.
 #[derive(Default)]
 pub(super) struct FoundJumps {
     pub(super) warnings: Vec<Warning>,
@@ -39,26 +41,26 @@ pub(super) struct FoundJumps {
 struct Side {
     characteristic: usize,
     dimension: usize,
-    /// The coordinate of the node.
+    /// Coordinate of the node, in the unit of the dimension.
     end: f64,
-    /// The change from the centre to the node.
+    /// Change from the centre to the node.
     change: f64,
     curvature: f64,
-    /// The interval that has most of the change: parts of the way to the node, with the values there.
+    /// Ends of the interval with most of the change: the part of the way to the node, and the value there.
     ends: [(f64, f64); 2],
-    /// Whether a value was missing.
+    /// True if a value was missing.
     lost: bool,
 }
 
 impl Side {
-    /// Whether the interval has nearly all of the change.
+    /// True if the interval has nearly all of the change.
     fn is_jump(&self) -> bool {
         let [(_, from), (_, to)] = self.ends;
         !self.lost && (to - from).abs() > WHOLE * self.change.abs()
     }
 }
 
-/// Looks for jumps, where the method has two nodes an axis and the model is costly; with no more evaluations than are left.
+/// Searches for jumps if the method has two nodes an axis and the model is costly. Uses no more evaluations than are left.
 pub(super) fn find(
     problem: &Problem,
     outcome: &Outcome,
@@ -93,7 +95,7 @@ pub(super) fn find(
     found
 }
 
-/// The sides of axes on which nearly all of a change lies, with the curvature in sigmas.
+/// Sides of axes with nearly all of a change, with the curvature in sigmas.
 fn suspicious(outcome: &Outcome, c: usize, one: &CharacteristicAnalysis) -> Vec<Side> {
     let plan = &outcome.plan;
     let Some(sigma) = one.moments.map(|moments| moments.sigma()).filter(|&sigma| sigma > 0.0) else {
@@ -119,6 +121,7 @@ fn suspicious(outcome: &Outcome, c: usize, one: &CharacteristicAnalysis) -> Vec<
 }
 
 impl FoundJumps {
+    // One point for each side, all in one batch.
     /// Evaluates the middle of every interval, and keeps the half with the larger change.
     fn halve(&mut self, problem: &Problem, outcome: &Outcome, sides: &mut [Side], run: &Run<'_>) {
         let centre = outcome.plan.centre();
@@ -153,7 +156,7 @@ fn warning(problem: &Problem, outcome: &Outcome, side: &Side, characteristics: &
     let [(from, before), (to, after)] = side.ends;
     let place = |part: f64| axis.mean + part * (side.end - axis.mean);
     let mut at = [place(from), place(to)];
-    // From the mean outwards, and so downwards on the left.
+    // The interval goes from the mean outwards, and so downwards on the left.
     let by = if at[0] > at[1] { before - after } else { after - before };
     at.sort_unstable_by(f64::total_cmp);
     let sigma = characteristics[side.characteristic].moments.map_or(f64::NAN, |moments| moments.sigma());

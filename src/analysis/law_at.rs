@@ -1,4 +1,4 @@
-//! The law of a surface whose inputs have moved.
+//! Distribution of a surface whose inputs have moved.
 
 use super::surface::Surface;
 use super::surface_law::{law_over, with};
@@ -6,8 +6,8 @@ use crate::problem::Problem;
 use sensitol_numeric::law::{LawError, SurfaceLaw};
 use sensitol_numeric::surrogate::Relocation;
 
-/// The law of a characteristic's surface where its inputs have moved and keep their shapes, beside what the surface leaves out: what
-/// pages compute by themselves. None where the moments follow from no surface.
+/// Distribution of a characteristic's surface if its inputs have moved and keep their shapes, including the unexplained variance.
+/// Interactive report pages compute the same. Returns None if the moments follow from no surface.
 pub fn law_at(
     problem: &Problem,
     surface: &Surface,

@@ -1,12 +1,12 @@
-//! Tests of the law of a surface before any of its figures is reported.
+//! Tests of the distribution of a surface before any of its figures is reported.
 //!
-//! | test | a law passes if |
+//! | test | a distribution passes if |
 //! |---|---|
 //! | monotone | its quantiles rise, and the share beyond a limit lies between those of the quantiles on either side |
-//! | count | every share agrees with the count of points beyond its limit: points of the surface, and of the sample of the model where there is one |
+//! | count | every share agrees with the count of points beyond its limit: points of the surface, and of the sample of the model if there is one |
 //!
-//! Agreement is within six standard errors of the count and the errors that the law states. A law that fails is not reported: points of the
-//! surface take its place.
+//! Agreement is within six standard errors of the count and the errors of the distribution. A distribution that fails is not reported:
+//! points of the surface replace it.
 
 use serde::{Serialize, Serializer};
 
@@ -15,12 +15,12 @@ use sensitol_numeric::characteristic::{KeptLimits, SpecLimits};
 use sensitol_numeric::law::{LawFigure, LawTail};
 use sensitol_numeric::power::rescale;
 
-/// Standard errors of a count that bound it: a right law fails in one of 500 million tests.
+/// Greatest deviation of a count, in standard errors: a right distribution fails in one of 500 million tests.
 const ERRORS: f64 = 6.0;
-/// Points of which a count of few may be off where its standard error is not known.
+/// Points that are added to the tolerance of a count, because the standard error of a small count is itself uncertain.
 const FEW: f64 = 8.0;
 
-/// The test that a law has failed.
+/// Failed test of a surface distribution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LawTest {
@@ -31,7 +31,7 @@ pub enum LawTest {
 }
 
 impl LawTest {
-    /// The name in JSON.
+    /// Returns the name of the test in JSON.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Monotone => "monotone",
@@ -40,15 +40,15 @@ impl LawTest {
     }
 }
 
-/// A contradiction that refutes the law of a surface.
+/// Contradiction that refutes the distribution of a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct LawRefutation {
-    /// The failed test.
+    /// Failed test.
     pub test: LawTest,
-    /// The limit at which it failed.
+    /// Limit at which it failed.
     pub limit: f64,
-    /// Share of assemblies below the limit by the law.
+    /// Share of assemblies below the limit by the distribution.
     pub law: f64,
     /// Share of points below the limit.
     pub counted: f64,
@@ -58,23 +58,23 @@ pub struct LawRefutation {
 
 rescale!(LawRefutation { limit } without { test, law, counted, error });
 
-/// Quantiles of a law that give no intervals.
+/// Quantiles of a distribution that give no intervals.
 pub(super) enum FaultyQuantiles {
-    /// One of them is unknown.
+    /// At least one quantile is unknown.
     Unknown,
-    /// This probability has a lower quantile, the second number, than a smaller one.
+    /// A probability and its quantile, which is lower than that of a smaller probability.
     Fall(f64, f64),
 }
 
-/// Points of a surface in ascending order, by which its law is tested.
+/// Points of a surface in ascending order, for the tests of its distribution.
 pub(super) struct LawGuard<'a> {
     points: &'a [f64],
-    /// By how much rounding may move a value, on a limit or at a quantile.
+    /// Greatest change of a value by rounding, on a limit or at a quantile.
     rounding: f64,
 }
 
 impl<'a> LawGuard<'a> {
-    /// With values that rounding moves by no more than this, or than parts of the points.
+    /// Creates the guard from sorted points. Rounding moves values by `rounding`, or in proportion to the largest point if that is more.
     pub(super) fn new(points: &'a [f64], rounding: f64) -> Self {
         let largest = points.first().into_iter().chain(points.last()).fold(0.0, |largest: f64, y| largest.max(y.abs()));
         Self { points, rounding: rounding.max(KeptLimits::rounding_of(largest)) }
@@ -103,14 +103,14 @@ impl<'a> LawGuard<'a> {
         })
     }
 
-    /// Tests the share beyond a limit, also beside quantiles.
+    /// Tests the share beyond a limit against the count and against the quantiles.
     pub(super) fn tail(
         &self,
         (limit, tail): (f64, LawTail),
         share: LawFigure,
         quantiles: &[((LawTail, f64), LawFigure)],
     ) -> Option<LawRefutation> {
-        // A value that only rounding separates from the limit keeps it.
+        // A value that differs from the limit by rounding only keeps it.
         let counted = self.share(limit + tail.sign() * self.rounding, tail);
         let room = ERRORS * self.error(counted.max(share.value)) + FEW / self.points.len() as f64 + share.error;
         let law = if tail == LawTail::Lower { share.value } else { 1.0 - share.value };
@@ -143,22 +143,22 @@ impl<'a> LawGuard<'a> {
         (share * (1.0 - share) / self.points.len() as f64).max(0.0).sqrt()
     }
 
-    /// The contradiction of a share below a limit.
+    /// Refutation for a share `law` below a limit.
     pub(super) fn refutation(&self, test: LawTest, limit: f64, law: f64) -> LawRefutation {
         let counted = self.share(limit, LawTail::Lower);
         LawRefutation { test, limit, law, counted, error: self.error(counted) }
     }
 }
 
-/// Part of a probability within which quantiles are sought.
+/// Relative accuracy of the probabilities of quantiles.
 const NEAR: f64 = 1e-4;
 
-/// The probability below the quantile of this tail.
+/// Probability below the quantile of this tail.
 fn below_of((tail, p): (LawTail, f64)) -> f64 {
     if tail == LawTail::Lower { p } else { 1.0 - p }
 }
 
-/// Tests the shares beyond the limits by the sample of the model: the share of its points that the surface has beyond them.
+/// Tests the shares beyond the limits by the sample of the model: the share of its points that are beyond them on the surface.
 pub(super) fn by_sample(
     verification: &Verification,
     limits: SpecLimits,
@@ -180,15 +180,15 @@ pub(super) fn by_sample(
     })
 }
 
-/// A refutation as it is written.
+/// A refutation in JSON.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(super) struct LawRefutationShape {
     /// `monotone` (quantiles or shares fall) or `count` (points contradict a share).
     test: &'static str,
-    /// The limit at which the law failed.
+    /// Limit at which the distribution failed.
     limit: f64,
-    /// Share of assemblies below the limit by the law.
+    /// Share of assemblies below the limit by the distribution.
     law: f64,
     /// Share of points below the limit.
     counted: f64,
@@ -211,7 +211,7 @@ mod tests {
         LawFigure::counted(value, 1e-9)
     }
 
-    /// Ten thousand points that are even between 0 and 1.
+    /// Returns ten thousand evenly spaced points between 0 and 1.
     fn even() -> Vec<f64> {
         (0..10_000).map(|i| (f64::from(i) + 0.5) / 1e4).collect()
     }
@@ -252,7 +252,7 @@ mod tests {
         assert!((found.error - (0.21f64 / 1e4).sqrt()).abs() < 1e-12);
     }
 
-    /// A share that a count of few points does not contradict, but a quantile does.
+    /// The share agrees with the count within its error, but contradicts a quantile.
     #[test]
     fn a_tail_that_crosses_a_quantile_is_refuted() {
         let points = even();

@@ -8,54 +8,52 @@
 //! six sigma        sqrt(sum of (b_i s_i/(1 - k_i))^2)
 //! ```
 //!
-//! about the value at the middles of all bands, in one linear model. Coordinates of one circular zone reach `T sqrt(b_x^2 + b_y^2)`
-//! together in the worst case, not `T (|b_x| + |b_y|)`: no point of the zone is at both ends at once. Those of a diamond reach
-//! the larger of the two. The root of the sum
-//! of squares is the same for zone and box.
+//! All are half-widths about the value at the middles of all bands, in one linear model. Coordinates of one circular zone reach `T
+//! sqrt(b_x^2 + b_y^2)` together in the worst case, not `T (|b_x| + |b_y|)`: no point of the zone is at both ends at once. Coordinates of a
+//! diamond reach the larger of the two. The root of the sum of squares is the same for zone and box.
 //!
-//! Sources: A. Bender, "Benderizing tolerances", Graphic Science, December 1962, and SAE paper 680490 (1968): processes are not as
-//! normal and as centred as RSS takes them to be, and a factor of 1.5 covers that. W. H. Greenwood, K. W. Chase, "A new
-//! tolerance analysis method for designers and manufacturers", J. Eng. Industry 109 (1987), and K. W. Chase, A. R. Parkinson, "A
-//! survey of research in the application of tolerance analysis", Research in Engineering Design 3 (1991), the estimated
-//! mean shift model `sum of m_i |b_i| T_i + sqrt(sum of ((1 - m_i) b_i T_i)^2)`: means may lie off their middles, all the
-//! wrong way, and what is left of each band is random. With the six-sigma tradition's shift of 1.5 sigma and three
-//! sigma in every half band, all `m_i` are 0.5. That shift is of the band and not of a dimension's own sigma, as RSS and worst
-//! case are of the bands: a process that is better than its tolerance asks is rewarded by the moments.
+//! Sources: A. Bender, "Benderizing tolerances", Graphic Science, December 1962, and SAE paper 680490 (1968): processes are less normal and
+//! less centred than RSS assumes, and a factor of 1.5 covers that. W. H. Greenwood, K. W. Chase, "A new tolerance analysis method for
+//! designers and manufacturers", J. Eng. Industry 109 (1987), and K. W. Chase, A. R. Parkinson, "A survey of research in the application of
+//! tolerance analysis", Research in Engineering Design 3 (1991), the estimated mean shift model `sum of m_i |b_i| T_i + sqrt(sum of ((1 -
+//! m_i) b_i T_i)^2)`: all means may lie off their middles in the unfavourable direction, and the rest of each band is random. The shift of
+//! 1.5 sigma of the six-sigma tradition, with three sigma in every half band, makes all `m_i` 0.5. That shift is a part of the band, not of
+//! a dimension's own sigma, because RSS and worst case are computed from the bands. The gain of a process that is better than its tolerance
+//! shows in the moments.
 //!
-//! Factors and shifts may be said of every dimension: then `sqrt(sum of (c_i b_i T_i)^2)` and `sum of m_i |b_i| T_i + sqrt(sum of
-//! ((1 - m_i) b_i T_i)^2)`. The modified factor is `1 + (W - R)/(2 R (sqrt n - 1))` of `n` dimensions, 1 of one (P. Drake, Dimensioning and
-//! Tolerancing Handbook, McGraw-Hill 1999, chapter 9). The six-sigma sum takes sigma of a lot `s` and the shift `k` of its mean in half
-//! bands as an effective sigma `s/(1 - k)` (M. J. Harry, R. Stewart, Six Sigma Mechanical Design Tolerancing, Motorola 1988); with a shift of
-//! a whole half band there is none.
+//! Factors and shifts may be given for each dimension: then `sqrt(sum of (c_i b_i T_i)^2)` and `sum of m_i |b_i| T_i + sqrt(sum of ((1 -
+//! m_i) b_i T_i)^2)`. The modified factor is `1 + (W - R)/(2 R (sqrt n - 1))` for `n` dimensions, 1 for one (P. Drake, Dimensioning and
+//! Tolerancing Handbook, McGraw-Hill 1999, chapter 9). The six-sigma sum uses the sigma `s` of a lot and the shift `k` of its mean in half
+//! bands for an effective sigma `s/(1 - k)` (M. J. Harry, R. Stewart, Six Sigma Mechanical Design Tolerancing, Motorola 1988). It does not
+//! exist if a mean is shifted by a whole half band.
 
 use crate::problem::Problem;
 use sensitol_numeric::correlation::JointLaw;
 use sensitol_numeric::dimension::RssFactor;
 
-/// The factor of the inflated RSS.
+/// Factor of the inflated RSS without a choice of the study (Bender).
 const INFLATION: f64 = 1.5;
-/// The part of every half band by which its mean may be off: 1.5 sigma of 3.
+/// Shift of the mean as a part of each half band: 1.5 sigma of 3.
 const MEAN_SHIFT: f64 = 0.5;
 
-/// The intervals of one characteristic in a linear model, as half widths about `middle`.
+/// Results of one characteristic in a linear model, as half-widths about `middle`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Linear {
-    /// How far the characteristic is from nominal with every dimension in the middle of its band.
+    /// Deviation of the characteristic from its nominal with every dimension in the middle of its band.
     pub(super) middle: f64,
-    /// The bounds that no assembly exceeds.
+    /// Greatest deviation of any assembly with all dimensions within their bands.
     pub(super) worst_case: f64,
-    /// Root of the sum of squares.
     pub(super) rss: f64,
-    /// 1.5 times that.
+    /// RSS with the factors of the dimensions, 1.5 by default.
     pub(super) inflated_rss: f64,
-    /// Half the worst case and half the RSS.
+    /// Sum of parts of the worst case and of the RSS, half of each by default.
     pub(super) mean_shift_rss: f64,
-    /// Root of the sum of squares of effective sigmas; None where every mean is in the middle of its band, or one at its end.
+    /// Root of the sum of squares of effective sigmas. None if every mean is in the middle of its band, or one is at an end.
     pub(super) six_sigma: Option<f64>,
 }
 
 impl Linear {
-    /// Of dimensions of this problem with their slopes.
+    /// Computes the results from pairs of slope and index of the dimension.
     pub(super) fn of(problem: &Problem, slopes: &[(f64, usize)]) -> Self {
         let dimensions = problem.dimensions();
         let [middle, worst_case, rss] = sums(problem, slopes, |_| 1.0);
@@ -78,7 +76,7 @@ impl Linear {
     }
 }
 
-/// The middle, the worst case and the RSS with every half band times a weight.
+/// Middle, worst case and RSS with every half band multiplied by a weight.
 fn sums(problem: &Problem, slopes: &[(f64, usize)], weight: impl Fn(usize) -> f64) -> [f64; 3] {
     let (mut middle, mut worst_case, mut rss) = (0.0, 0.0, 0.0f64);
     let mut zones: Vec<(&str, f64)> = Vec::new();
@@ -110,22 +108,22 @@ fn sums(problem: &Problem, slopes: &[(f64, usize)], weight: impl Fn(usize) -> f6
     [middle, worst_case, rss]
 }
 
-/// The value that all dimensions share, `usual` where there are none; None where they differ.
+/// Common value of all dimensions, `usual` without dimensions. Returns None if they differ.
 fn common(slopes: &[(f64, usize)], of: impl Fn(usize) -> f64, usual: f64) -> Option<f64> {
     let first = slopes.first().map_or(usual, |&(_, d)| of(d));
     slopes.iter().all(|&(_, d)| of(d) == first).then_some(first)
 }
 
-/// The factor between worst case and RSS that their distance suggests.
+/// Modified RSS factor, from the ratio of worst case to RSS.
 fn modified(problem: &Problem, slopes: &[(f64, usize)], [worst_case, rss]: [f64; 2]) -> f64 {
     let counts = |&&(slope, d): &&(f64, usize)| slope * problem.dimensions()[d].half_band() != 0.0;
     let n = slopes.iter().filter(counts).count();
     if n < 2 || rss == 0.0 { 1.0 } else { 1.0 + 0.5 * (worst_case - rss) / (rss * ((n as f64).sqrt() - 1.0)) }
 }
 
-/// Root of the sum of squares of effective sigmas.
+/// Root of the sum of squares of effective sigmas, with correlation.
 fn six_sigma(problem: &Problem, slopes: &[(f64, usize)]) -> Option<f64> {
-    /// A shift below this part of a half band is a rounding error.
+    /// Smallest shift, in half bands, that is not a rounding error.
     const NOTHING: f64 = 1e-9;
     let slopes: Vec<(f64, usize)> = slopes.iter().filter(|(slope, _)| *slope != 0.0).copied().collect();
     let off = |&(_, d): &(f64, usize)| problem.dimensions()[d].lot()[1];
@@ -140,14 +138,14 @@ fn six_sigma(problem: &Problem, slopes: &[(f64, usize)]) -> Option<f64> {
     Some(alone * together(problem, &slopes, alone, effective))
 }
 
-/// The block of a dimension that shares a diamond with another: at an end of one the other is in its middle.
+/// Block of a dimension that shares a diamond with another one: at the tip of one coordinate the other is in its middle.
 fn diamond(problem: &Problem, dimension: usize) -> Option<usize> {
     let correlation = problem.correlation()?;
     let (block, _) = correlation.block_of(dimension)?;
     (correlation.blocks()[block].law == JointLaw::Diamond).then_some(block)
 }
 
-/// By what correlation widens or narrows a root of a sum of squares of slopes by reaches: `sqrt(t'R t)/|t|`.
+/// Factor of correlation on a root of a sum of squares of slopes by reaches: `sqrt(t'R t)/|t|`.
 fn together(problem: &Problem, slopes: &[(f64, usize)], alone: f64, reach: impl Fn(usize) -> f64) -> f64 {
     let Some(correlation) = problem.correlation().filter(|_| alone > 0.0) else { return 1.0 };
     let member = |&&(_, d): &&(f64, usize)| correlation.members().binary_search(&d).is_ok();

@@ -1,8 +1,8 @@
-//! Intervals of results that rest on measured samples.
+//! Intervals of results that depend on measured samples.
 //!
-//! A sample that keeps the limits proves nothing of the process that it comes from. Mean, sigma, skewness, kurtosis and Cpk have the
-//! intervals of resamples ([`super::bootstrap`]). The rejected share has that of counts ([`MeasuredBasis`]); where other inputs
-//! vary too, it is widened to that of the resamples, which follow the surface.
+//! A sample that keeps the limits proves nothing about its process. Mean, sigma, skewness, kurtosis and Cpk have the intervals of resamples
+//! ([`super::bootstrap`]). The reject rate has the interval of counts ([`MeasuredBasis`]). If other inputs vary too, it is widened to that
+//! of the resamples, which follow the surface.
 
 use super::bootstrap::{ResampledIntervals, resampled_intervals};
 use super::{CharacteristicAnalysis, SamplingInterval};
@@ -13,14 +13,14 @@ use sensitol_numeric::capability::Capability;
 use sensitol_numeric::sampling::{MeasuredBasis, MeasuredSample};
 use sensitol_numeric::verdict::{including, share, sides_with_samples};
 
-/// The measured samples on which a characteristic depends.
+/// Measured samples on which a characteristic depends.
 pub(super) fn samples_of(problem: &Problem, outcome: &Outcome, c: usize) -> Vec<MeasuredSample> {
     let mut samples = MeasuredSample::all(problem.dimensions(), problem.correlation());
     samples.retain(|one| one.dimensions.iter().any(|&d| outcome.plan.depends(c, d)));
     samples
 }
 
-/// Adds the intervals of every characteristic that depends on measured samples. Returns whether samples were drawn anew for it.
+/// Adds the intervals of every characteristic that depends on measured samples. Returns true if samples were drawn anew for it.
 pub(super) fn add_sampling_intervals(
     problem: &Problem,
     outcome: &Outcome,
@@ -52,7 +52,7 @@ pub(super) fn add_sampling_intervals(
     drawn
 }
 
-/// The intervals of all figures but the rejected share.
+/// Intervals of all figures except the reject rate.
 fn by_resamples(found: Option<ResampledIntervals>) -> SamplingInterval {
     let resamples = found.as_ref().map_or(0, |found| found.resamples);
     let [mean, sigma, skewness, kurtosis, _, cpk] = found.map_or([None; 6], |found| found.intervals);
@@ -60,7 +60,7 @@ fn by_resamples(found: Option<ResampledIntervals>) -> SamplingInterval {
     SamplingInterval { mean, sigma, skewness, kurtosis, rejected, cpk, level: CONFIDENCE, resamples, samples }
 }
 
-/// The interval of the rejected share; None without limits, and where that share is unknown.
+/// Interval of a characteristic's reject rate. Returns None if there are no limits, and if the reject rate is unknown.
 fn rejected(
     one: &CharacteristicAnalysis,
     samples: &[MeasuredSample],
@@ -76,14 +76,14 @@ fn rejected(
         return Some(counted);
     }
     let of_fit = resampled.and_then(|found| found.intervals[4]);
-    // Those of the fit, and as many times more and fewer than are reported as the size of the sample leaves open.
+    // Ends of the interval of the fit, and the same ends scaled by the ratio of the reported reject rate to that of the fit.
     let by = rejected(one.pearson).map(|fit| reported / fit).filter(|by| by.is_finite() && *by > 0.0);
     let in_proportion = of_fit.zip(by).map(|(ends, by)| ends.map(|end| by * end));
     let ends = of_fit.into_iter().chain(in_proportion).flatten();
     Some(share(ends.fold(counted, including)))
 }
 
-/// The share of the variance that the dimensions of a sample have together, with all interactions; 1 where it is unknown.
+/// Share of the variance of all dimensions of a sample together, with all interactions. Returns 1 if it is unknown.
 fn variance_share(one: &CharacteristicAnalysis, sample: &MeasuredSample) -> f64 {
     if let Some(of_model) = one.verification.as_ref().and_then(|of| of.shares.as_ref()) {
         let name = |d: usize| one.sensitivities[d].dimension.as_str();

@@ -91,28 +91,28 @@ use shares::Shares;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
 pub struct Analysis {
-    /// The method that was run: for `auto`, what it stands for.
+    /// Method that was run. For `auto`, the method that it chose.
     #[cfg_attr(feature = "schema", schemars(with = "String"))]
     pub method: Method,
     /// Dimensions that vary and on which some characteristic can depend, N.
     pub varying: usize,
-    /// Its points and time, and why it ended early; the seed, where one was given or random numbers were drawn.
+    /// Points, time, and the reason of an early end. The seed, if one was given or random numbers were drawn.
     #[serde(flatten)]
     pub run: RunSummary,
     /// The results of every characteristic, in the problem's order.
     #[cfg_attr(feature = "schema", schemars(with = "Vec<CharacteristicShape>"))]
     pub characteristics: Vec<CharacteristicAnalysis>,
-    /// The share of assemblies that keep the limits of all characteristics at once, and its error; None with fewer than two that have
-    /// limits, and where it is not known.
+    /// Share of assemblies that keep the limits of all characteristics at once, with its error. None if fewer than two characteristics have
+    /// limits, or if it is unknown.
     #[serde(rename = "joint_yield")]
     pub joint: Option<Verified>,
-    /// Within which that share is known: two errors on either side, with what measured samples leave open; None where it is not known.
+    /// Interval of the joint yield: two errors on either side, widened by the uncertainty of measured samples. None if it is unknown.
     #[serde(rename = "joint_yield_interval")]
     pub joint_interval: Option<[f64; 2]>,
-    /// Whether that share reaches the target for all characteristics at once; None without such a target.
+    /// Verdict on the target for the joint yield. None if there is no such target.
     #[cfg_attr(feature = "schema", schemars(with = "Option<sensitol_numeric::verdict::JudgedShape>"))]
     pub joint_requirement: Option<Judged>,
-    /// How every two characteristics vary together; empty with one characteristic, and with more than 40.
+    /// Correlations of every two characteristics. Empty with one characteristic, and with more than 40.
     #[serde(rename = "characteristic_correlation")]
     pub correlations: Vec<OutputCorrelation>,
     /// The findings of `auto` and the use of its points; None for any other method.
@@ -121,22 +121,22 @@ pub struct Analysis {
     #[serde(flatten, serialize_with = "through::<shape::BasisShape, _, _>")]
     #[cfg_attr(feature = "schema", schemars(with = "shape::BasisShape"))]
     pub basis: Basis,
-    /// The surface that the moments follow from.
+    /// Surface from which the moments follow.
     #[serde(skip)]
     pub surface: Surface,
-    /// Where an assumption fails.
+    /// Assumptions that fail.
     #[serde(skip)]
     pub warnings: Vec<Warning>,
 }
 
 /// Analyses a problem.
 ///
-/// Evaluations: as [`Options::cost`] says, one more when some mean is not the nominal, and more only where the model fails; with
-/// [`Options::extremes`] those of the search too.
+/// Evaluations: as [`Options::cost`] states, one more if some mean is not the nominal, and more only if the model fails. With
+/// [`Options::extremes`], those of the search are added.
 ///
 /// # Errors
-/// When the options do not fit the problem; nothing is evaluated then. A model that fails is not an error: what it costs is
-/// missing from the result and named in the warnings.
+/// Returns an error if the options do not fit the problem; nothing is evaluated then. A model that fails is not an error: the figures that
+/// it prevents are missing from the result and named in the warnings.
 ///
 /// ```
 /// use sensitol::{Closure, Dimension, Method, Problem, analyze};
@@ -153,7 +153,7 @@ pub fn analyze(problem: &Problem, options: &Options) -> Result<Analysis, MethodE
     analyze_with(problem, options, &Run::to_the_end())
 }
 
-/// [`analyze`], telling of finished points and stopping when told to.
+/// [`analyze`] with reports of progress and a way to stop.
 pub fn analyze_with(problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Analysis, MethodError> {
     at_any_size(problem, run, |problem, run| {
         let (mut analysis, findings) = analyze_keeping(problem, options, run)?;
@@ -179,7 +179,7 @@ impl Analysis {
             let mut rescaling = Rescaling::by(back.power(c));
             one.characteristic = back.problem.characteristics()[c].clone();
             one.rescale(&mut rescaling);
-            // Values of the characteristic, densities per unit of it.
+            // Values of the characteristic, and densities per unit of it.
             for [at, density, error] in one.density.iter_mut().flatten() {
                 at.rescale(&mut rescaling);
                 rescaling.divide(density);
@@ -195,14 +195,14 @@ impl Analysis {
     }
 }
 
-/// The findings of an analysis, for who goes on from there.
+/// Intermediate results of an analysis, for later steps.
 pub(crate) struct Findings {
     pub(crate) outcome: Outcome,
-    /// The laws of the surfaces by characteristic, where the yields have them.
+    /// Distributions of the surfaces by characteristic, if the yields use them.
     laws: Vec<Option<SurfaceLaw>>,
 }
 
-/// [`analyze_with`] as far as a search of tolerances reads it, which asks for one result after another: [`Analysis::complete`] adds the rest.
+/// The part of [`analyze_with`] that a search of tolerances needs for each of its trials. [`Analysis::complete`] adds the rest.
 pub(crate) fn analyze_keeping(
     problem: &Problem,
     options: &Options,
@@ -216,7 +216,7 @@ pub(crate) fn analyze_keeping(
     let (mut characteristics, shares): (Vec<_>, Vec<_>) = of_all(problem, &outcome).into_iter().unzip();
     let left = left.map(|left| left.saturating_sub(found.spent.run.evaluations as usize));
     let seed = options.seed.unwrap_or(Options::SEED);
-    // A cheap model that is verified is sampled anyway, and by points that need no surface.
+    // A cheap model that is verified is sampled anyway, at points that need no surface: no fallback is needed.
     let signature = problem.function().signature();
     let sampled = options.verification(signature) > 0 && !signature.costly;
     let fallback = match sampled {
@@ -239,21 +239,22 @@ pub(crate) fn analyze_keeping(
     let bounded = options.verification(signature) > 0 && !run.stopped();
     let bounds = || if bounded { bounds(problem, &outcome, &characteristics, run) } else { Vec::new() };
     let laws = || settle::laws(problem, &outcome, options, &characteristics);
-    // Both have matrices of all inputs: from four megabytes on they do not stand beside each other.
+    // Both need matrices of all inputs. From four megabytes on they are computed one after the other, so that only one is in memory.
     let large = outcome.plan.varying().len().pow(2) * size_of::<f64>() > 4 << 20;
     let (bounds, laws) = if large { (bounds(), laws()) } else { join(bounds, laws) };
     characteristics.iter_mut().zip(bounds).for_each(|(one, bounds)| one.bounds = bounds);
     let mut laws = settle::settle(problem, &outcome, options, &mut characteristics, laws);
     if !settle::have_joint_yield(&characteristics) {
-        // Nothing else asks for them again, and of many inputs they are large.
+        // Nothing uses the distributions again, and with many inputs they are large.
         laws.clear();
     }
+    // The list needs much memory with many inputs: it is made after the distributions were dropped.
     for (c, (one, shares)) in characteristics.iter_mut().zip(shares).enumerate() {
         one.interactions = interactions::listed(problem, &outcome, c, shares.as_ref());
     }
     let joint = options.target_joint_yield.and_then(|_| settle::joint(problem, options, &characteristics, &laws));
     let spent = spent(&outcome, options).and(&fallback.run).and(&jumps.run).and(&verified);
-    // The extremes say nothing of a share.
+    // The extremes do not affect shares: only the other runs decide whether a share is unfinished.
     characteristics.iter_mut().for_each(|one| one.unfinished = spent.unfinished());
     let warnings = warnings::of(problem, &outcome, &characteristics, jumps.warnings);
     let account = Account::of(problem, &outcome, &characteristics, outcome.evaluated.evaluations);
@@ -282,7 +283,7 @@ pub(crate) fn analyze_keeping(
 }
 
 impl Analysis {
-    /// Adds the results that no other one needs: the joint yield, how characteristics vary together, and the indices of Sobol'.
+    /// Adds the results that no other one needs: the joint yield, the correlations of characteristics, and Sobol' indices.
     pub(crate) fn complete(&mut self, findings: &Findings, problem: &Problem, options: &Options, run: &Run<'_>) {
         let begun = Instant::now();
         let Findings { outcome, laws } = findings;
@@ -291,13 +292,13 @@ impl Analysis {
             self.joint_interval = self.joint.and_then(|joint| joint_interval(joint, &self.characteristics));
         }
         self.correlations = outputs::correlations(problem, outcome, options, &self.characteristics);
-        // Last, because warnings and accounts read the contributions of a surface that is not trusted too.
+        // Last, because warnings and accounts also read the contributions of a surface that is not trusted.
         indices::add(problem, outcome, options, &mut self.characteristics, run);
         self.run.wall += begun.elapsed();
     }
 }
 
-/// Whether the joint yield reaches its target: by its value, two errors on either side, and what measured samples leave open.
+/// Verdict on the joint yield, from its value, two errors on either side, and the uncertainty of measured samples.
 fn joint_requirement(
     problem: &Problem,
     options: &Options,
@@ -313,7 +314,7 @@ fn joint_requirement(
     Some(judged.unless(characteristics.iter().any(|one| one.unfinished)))
 }
 
-/// Within which a joint yield is known; None where measured samples leave it unknown.
+/// Interval that contains a joint yield. Returns None if measured samples leave it unknown.
 fn joint_interval(joint: Verified, characteristics: &[CharacteristicAnalysis]) -> Option<[f64; 2]> {
     let own = verdict::about(joint.value, Some(joint.error))?;
     let interval = match settle::joint_sampling(characteristics, joint.value) {
@@ -323,14 +324,14 @@ fn joint_interval(joint: Verified, characteristics: &[CharacteristicAnalysis]) -
     Some(verdict::share(interval))
 }
 
-/// The bounds of interval arithmetic, where a formula has them and the extremes were not searched.
+/// Bounds by interval arithmetic, for characteristics with a formula whose extremes were not searched.
 fn bounds(
     problem: &Problem,
     outcome: &Outcome,
     characteristics: &[CharacteristicAnalysis],
     run: &Run<'_>,
 ) -> Vec<Option<ExtremesProof>> {
-    /// Of sigma: ends nearer than this look the same in print.
+    /// Accuracy of the bounds, as a part of sigma: nearer ends look the same in print.
     const NEAR: f64 = 1e-3;
     let of = |(c, one): (usize, &CharacteristicAnalysis)| {
         let sigma = one.moments.filter(|_| one.extremes.is_none() && !one.constant)?.sigma();
@@ -339,7 +340,7 @@ fn bounds(
     characteristics.par_iter().enumerate().map(of).collect()
 }
 
-/// The points and time of the method; its budget ended it where that is why it asked for no more.
+/// Points and time of the method, with the budget as stop reason if the method ended because of it.
 fn spent(outcome: &Outcome, options: &Options) -> RunSummary {
     let spent = outcome.evaluated.summary();
     let rest = outcome.climbed.as_ref().map(|climbed| climbed.rest);
@@ -347,7 +348,7 @@ fn spent(outcome: &Outcome, options: &Options) -> RunSummary {
     RunSummary { stopped: spent.stopped.or(budget), ..spent }
 }
 
-/// Runs the method, `auto` until the errors of other results than sigma are what is wanted too.
+/// Runs the method of the options. `auto` continues until the errors of results other than sigma also meet their accuracies.
 fn run_method(problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Outcome, MethodError> {
     let narrow = if options.accuracies.any() { None } else { Narrow::of(problem, options) };
     if let Some(narrow) = narrow {

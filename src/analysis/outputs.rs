@@ -1,14 +1,13 @@
-//! How characteristics vary together.
+//! Correlations of characteristics.
 //!
-//! | source | when | its error |
+//! | source | condition | error |
 //! |---|---|---|
 //! | points of the model | the model is cheap and verified | jackknife over 16 randomisations |
-//! | both surfaces | there is a surface of each | see below; none where the formulas' degree proves both surfaces |
+//! | both surfaces | there is a surface of each | see below; none if the formulas' degree proves both surfaces |
 //!
-//! Of two surfaces the covariance is exact, by the moments of their sum and their difference:
-//! `rho = (Var(q_1/s_1 + q_2/s_2) - Var(q_1/s_1 - q_2/s_2)) / 4`. The checks leave shares `U_1`, `U_2` of the variances unexplained. A residual
-//! hardly correlates with its own surface, so that with the other one it correlates by `sqrt(1 - rho^2)` at most:
-//! `error = sqrt((1 - rho^2)(U_1 + U_2) + U_1 U_2)`.
+//! The covariance of two surfaces is exact, by the moments of their sum and their difference: `rho = (Var(q_1/s_1 + q_2/s_2) - Var(q_1/s_1
+//! - q_2/s_2)) / 4`. The checks leave shares `U_1`, `U_2` of the variances unexplained. A residual hardly correlates with its own surface.
+//! Its correlation with the other surface is `sqrt(1 - rho^2)` at most: `error = sqrt((1 - rho^2)(U_1 + U_2) + U_1 U_2)`.
 
 use super::CharacteristicAnalysis;
 use super::verified::VerificationKind;
@@ -17,9 +16,9 @@ use crate::problem::Problem;
 use crate::verification::{OutputCorrelation, Verified, output_correlations};
 use sensitol_numeric::surrogate::Surrogate;
 
-/// The correlation of every pair of characteristics; empty with one characteristic, and with more than 40.
+/// Correlations of every pair of characteristics. Empty with one characteristic, and with more than 40.
 ///
-/// Evaluates a cheap model that is to be verified at 16 384 points, and a costly one nowhere.
+/// Evaluates a cheap model that is to be verified at 16 384 points, and a costly one never.
 pub(super) fn correlations(
     problem: &Problem,
     outcome: &Outcome,
@@ -60,11 +59,11 @@ pub(super) fn correlations(
         .collect()
 }
 
-/// A coefficient near 1 is a difference of variances near 4 and 0, each with a dozen roundings.
+/// Least error of a coefficient: a value near 1 is a difference of variances near 4 and 0, each with a dozen roundings.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// Exact for the surfaces of both characteristics, but for a standard error where their moments are sampled; None where one is not
-/// known or does not vary.
+/// Correlation of the surfaces of two characteristics, with its standard error: 0 if it is exact, positive if moments are sampled. Returns
+/// Returns None if a surface is unknown or does not vary.
 fn of_surfaces(outcome: &Outcome, [a, b]: [usize; 2]) -> Option<(f64, f64)> {
     let inputs = outcome.plan.inputs();
     let scaled = |c: usize| -> Option<(&Surrogate, f64)> {

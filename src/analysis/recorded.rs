@@ -1,4 +1,4 @@
-//! The points of a costly model's sample, kept for who asks more of them than moments.
+//! Stores evaluated points of a costly model for later statistics.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -7,18 +7,18 @@ use crate::problem::Problem;
 use crate::verification::Share;
 use sensitol_numeric::sampling::rank_first;
 
-/// Points that are kept: a costly model is seldom asked for more.
+/// Greatest number of stored points: a costly model is seldom evaluated more often.
 const MOST: usize = 1 << 14;
 
-/// A model that keeps what it is asked and what it answers.
+/// Model that stores its points and answers.
 ///
-/// A costly model is asked one batch after the other, so that the order of the points does not depend on threads.
+/// A costly model is evaluated one batch after the other, so that the order of the points does not depend on threads.
 pub(super) struct Recorded {
     problem: Problem,
     kept: Mutex<Kept>,
 }
 
-/// A column for every dimension of the problem, and one for every output asked.
+/// Columns of all dimensions of the problem, and of all outputs.
 #[derive(Default)]
 struct Kept {
     x: Vec<Vec<f64>>,
@@ -30,12 +30,12 @@ impl Recorded {
         Self { problem: problem.clone(), kept: Mutex::default() }
     }
 
-    /// Forgets what was asked so far: another sample begins.
+    /// Removes all points, for another sample.
     pub(super) fn clear(&self) {
         *self.kept.lock().unwrap_or_else(PoisonError::into_inner) = Kept::default();
     }
 
-    /// First-order indices of these dimensions, of a characteristic by its place.
+    /// First-order indices of these dimensions for a characteristic.
     pub(super) fn ranks(&self, c: usize, dimensions: &[usize]) -> Vec<(usize, Share)> {
         let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         let of = |&d: &usize| ranked(d, kept.x.get(d)?, kept.y.get(c)?);
@@ -43,7 +43,7 @@ impl Recorded {
     }
 }
 
-/// The index of a dimension by the ranks of a sample.
+/// First-order index of a dimension, by the ranks of a sample.
 pub(super) fn ranked(dimension: usize, x: &[f64], y: &[f64]) -> Option<(usize, Share)> {
     let (value, error) = rank_first(x, y)?;
     Some((dimension, Share { value, error }))

@@ -1,4 +1,4 @@
-//! The joint effect of interactions that are not listed one by one.
+//! Sum of the interactions that are not listed one by one.
 
 use serde::Serialize;
 
@@ -7,10 +7,10 @@ use serde::Serialize;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Remainder {
-    /// How many.
+    /// Number of interactions.
     pub count: usize,
-    /// Their shares of the variance, added up; of those whose share is known.
+    /// Sum of their shares of the variance, as far as they are known.
     pub share: f64,
-    /// How many of them were not evaluated before the run was stopped.
+    /// Number of interactions that were not evaluated before the run was stopped.
     pub not_evaluated: usize,
 }

@@ -1,14 +1,14 @@
-//! A model with answers that are known already: points of a sample that goes on.
+//! Model that reuses known answers: points of a sample that is continued.
 
 use std::collections::HashMap;
 
 use crate::assembly::{AssemblyFunction, Points, Request, Responses, Run, Signature};
 use crate::problem::Problem;
 
-/// The answers of points, by all outputs that a problem asks for, and the model for every other point.
+/// Stored answers for all outputs that a problem uses, and the model for every other point.
 pub(super) struct Remembered {
     problem: Problem,
-    /// The batch that answered a point, and its row there, by the bits of its coordinates.
+    /// Batch that answered a point, and the row in it, by the bits of the coordinates.
     places: HashMap<Vec<u64>, (usize, usize)>,
     batches: Vec<Responses>,
 }
@@ -22,7 +22,7 @@ impl Remembered {
         Self { problem: problem.clone(), places: HashMap::new(), batches: Vec::new() }
     }
 
-    /// Keeps the answers of these points, which have the problem's outputs.
+    /// Stores the answers of these points, for all outputs of the problem.
     pub(super) fn keep(&mut self, points: &Points, answers: Responses) {
         let batch = self.batches.len();
         self.places.extend((0..points.rows()).map(|row| (key(points, row), (batch, row))));
@@ -53,7 +53,7 @@ impl AssemblyFunction for Remembered {
             };
             (0..out.outputs()).for_each(|output| out.pass_on(row, output, &self.batches[batch], from, output));
         }
-        // They were counted when they were evaluated.
+        // Stored points were counted when they were evaluated.
         out.spent(missing.len() as i64 - points.rows() as i64);
         if missing.is_empty() {
             return;

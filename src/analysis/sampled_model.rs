@@ -1,4 +1,4 @@
-//! The results of a sample of the model where its surrogate was not trusted.
+//! Results of a sample of the model whose surrogate was not trusted.
 
 use serde::Serialize;
 
@@ -12,30 +12,30 @@ use sensitol_numeric::shape::{Four, through};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct SampledModel {
-    /// Points.
+    /// Number of points with a value.
     pub samples: u64,
-    /// Points at which the model has no value, beside these.
+    /// Number of further points at which the model has no value.
     pub failed: u64,
-    /// Why not, of the first.
+    /// Error of the first of them.
     pub error: Option<String>,
-    /// The share of the variance that the surrogate left unexplained at the check.
+    /// Share of the variance that the surrogate left unexplained at the check points.
     pub left: f64,
-    /// Standard errors of mean, sigma, skewness and kurtosis, as far as they are known.
+    /// Standard errors of mean, sigma, skewness and kurtosis. None if unknown.
     #[serde(flatten, serialize_with = "through::<Four<Option<f64>>, _, _>")]
     #[cfg_attr(feature = "schema", schemars(with = "Four<Option<f64>>"))]
     pub standard_errors: [Option<f64>; 4],
-    /// The share of the sample within the limits with its 95 % interval.
+    /// Share of the sample within the limits with its 95 % interval.
     #[serde(flatten, serialize_with = "through::<YieldShape, _, _>")]
     #[cfg_attr(feature = "schema", schemars(with = "YieldShape"))]
     pub yield_: Option<(f64, [f64; 2])>,
-    /// Its shares below the lower and above the upper limit; None without that limit.
+    /// Shares of the sample below the lower and above the upper limit. None if that limit does not exist.
     pub beyond: [Option<f64>; 2],
-    /// The 95 % intervals of these shares.
+    /// 95 % intervals of `beyond`.
     #[serde(skip)]
     pub(crate) intervals: [Option<[f64; 2]>; 2],
-    /// The sample, counted in some tens of intervals.
+    /// Histogram of the sample, with some tens of intervals.
     pub histogram: Option<Histogram>,
-    /// First-order indices of the dimensions, by the ranks of the sample; empty where the model is cheap enough to be asked anew.
+    /// First-order indices of the dimensions, by the ranks of the sample. Empty if the model is cheap enough to be evaluated again.
     #[serde(skip)]
     pub(crate) ranks: Vec<(usize, Share)>,
 }
@@ -51,14 +51,14 @@ impl Rescale for SampledModel {
 
 impl Unknown for SampledModel {}
 
-/// A share and its interval, as they are written.
+/// A share and its interval, in JSON.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct YieldShape {
-    /// The share of the sample within the limits.
+    /// Share of the sample within the limits.
     #[serde(rename = "yield")]
     yield_: Option<f64>,
-    /// Its 95 % interval.
+    /// 95 % interval of `yield`.
     yield_interval: Option<[f64; 2]>,
 }
 

@@ -1,20 +1,20 @@
-//! Where a yield comes from: the best of what is known, decided here only.
+//! Choice of the source of a yield: the best available one. No other module decides it.
 //!
-//! | source | when | its error |
+//! | source | condition | error |
 //! |---|---|---|
-//! | proof | nothing varies; or no input is measured, and the extremes are proven to keep the limits, or the formula's degree proves that the surface is the function, and the law of the surface is exact | that of the law |
-//! | samples | points of the model itself, with the law of a surface as control where there is one | the sample's |
-//! | surface law | a surface, verified at check points or not at all; a proven surface of measured inputs | law and checks as the root of the sum of squares; without checks, what the errors of the moments move the tails |
-//! | Pearson fit | moments are all that is known | what the errors of the moments move it |
+//! | proof | nothing varies; or no input is measured, and the extremes are proven to keep the limits, or the formula's degree proves that the surface is the function, and the distribution of the surface is exact | that of the distribution |
+//! | samples | points of the model itself, with the surface distribution as control variate if there is one | the sample's |
+//! | surface law | a surface, verified at check points or not at all; a proven surface of measured inputs | distribution and checks as the root of the sum of squares; without checks, the change of the tails by the errors of the moments |
+//! | Pearson fit | only moments are known | change by the errors of the moments |
 //!
-//! The law of a surface is tested before it is used (`law_guard`): where points contradict it, these take its place, and a sample has no control.
-//! With the law of a surface as control a share is `P = P_law + mean(1_model - 1_surface)` over the sample: what model and surface
-//! agree on is exact, and only what they differ by is sampled.
+//! The distribution of a surface is tested before it is used (`law_guard`). If points contradict it, counts of them replace it, and a
+//! sample has no control variate. With the surface distribution as control variate a share is `P = P_law + mean(1_model - 1_surface)` over
+//! the sample. The points on which model and surface agree contribute exactly, and only the difference is sampled.
 //!
-//! Measured inputs prove nothing: that their values keep the limits says so of these parts, and not of the process.
+//! Measured inputs prove nothing: measured values that keep the limits are a fact about these parts, and not about the process.
 //!
-//! Each side of the limits has an interval of its own: by its own error, of a sample by as many points as would scatter as much, and 0 to 0
-//! where a proof excludes the side, whatever the other one does.
+//! Each side of the limits has an interval of its own. It follows from the error of that side, and for a sample from the number of points
+//! that would scatter as much. It is 0 to 0 if a proof excludes the side, regardless of the other side.
 
 use super::CharacteristicAnalysis;
 use super::coverage::covered;
@@ -37,36 +37,36 @@ use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::sampling::{one_error, weighted_interval};
 use sensitol_numeric::verdict;
 
-/// The error of a joint yield by laws above which points of the model are asked too.
+/// Error of a joint yield from surface distributions above which points of the model are evaluated too.
 const CORRECTED: f64 = 1e-3;
 
-/// A share beyond each limit, and how far it may be off.
+/// Shares beyond each limit with their errors.
 struct Rejected {
     source: YieldSource,
     beyond: [Option<f64>; 2],
-    /// The error of all rejects; None where it is unknown.
+    /// Error of the share of all rejects. None if it is unknown.
     error: Option<f64>,
-    /// The error of either side; None where it is unknown.
+    /// Error of the share on either side. None if it is unknown.
     errors: [Option<f64>; 2],
-    /// The 95 % interval of either side; None where it is unknown.
+    /// 95 % interval of the share on either side. None if it is unknown.
     intervals: [Option<[f64; 2]>; 2],
 }
 
 impl Rejected {
-    /// With intervals of two errors on either side.
+    /// Creates it with intervals of two errors on either side.
     fn new(source: YieldSource, beyond: [Option<f64>; 2], error: Option<f64>, errors: [Option<f64>; 2]) -> Self {
         let interval = |side: usize| Some(verdict::share(verdict::about(beyond[side]?, errors[side])?));
         Self { source, beyond, error, errors, intervals: [interval(0), interval(1)] }
     }
 
-    /// Without the rejects of the sides that are proven to have none.
+    /// Sets the rejects of the sides that are proven to have none to zero.
     fn excluding(mut self, proven: [bool; 2]) -> Self {
         let limited = self.beyond.map(|share| share.is_some());
         let excluded = [0, 1].map(|side| limited[side] && proven[side]);
         for side in (0..2).filter(|&side| excluded[side]) {
             (self.beyond[side], self.errors[side], self.intervals[side]) = (Some(0.0), Some(0.0), Some([0.0; 2]));
         }
-        // The error of all rejects is then that of the other side.
+        // The error of all rejects is that of the other side then.
         match excluded {
             [false, false] => {}
             _ if excluded == limited => (self.source, self.error) = (YieldSource::Proof, Some(0.0)),
@@ -76,7 +76,7 @@ impl Rejected {
         self
     }
 
-    /// With no side that may have more rejects than all of them together.
+    /// Limits the interval of each side to the greatest share of all rejects.
     fn bounded(mut self) -> Self {
         let all: f64 = self.beyond.iter().flatten().sum();
         if let Some([_, most]) = verdict::about(all, self.error) {
@@ -89,13 +89,13 @@ impl Rejected {
     }
 }
 
-/// The law of a surface after its tests, with its density where that is asked for.
+/// Distribution of a surface after its tests, with its density if that is requested.
 pub(super) struct SharesByLaw {
     law: GuardedLaw,
     density: Option<Vec<[f64; 3]>>,
 }
 
-/// The law of the surface of every characteristic whose moments follow from one. Evaluates nothing of the model.
+/// Distribution of the surface of every characteristic whose moments follow from one. Evaluates nothing of the model.
 pub(super) fn laws(
     problem: &Problem,
     outcome: &Outcome,
@@ -122,8 +122,8 @@ fn request<'a>(
     LawRequest { problem, outcome, c, seed, fit: fit(one), verification: one.verification.as_ref() }
 }
 
-/// Decides for every characteristic what its yield comes from, and sets capability and the error of the yield accordingly; the
-/// laws of the surfaces. Evaluates nothing of the model.
+/// Chooses the source of the yield of every characteristic, and sets capability and error of the yield accordingly. Returns the surface
+/// distributions. Evaluates nothing of the model.
 pub(super) fn settle(
     problem: &Problem,
     outcome: &Outcome,
@@ -141,6 +141,7 @@ pub(super) fn settle(
         let (mut guarded, density) = found.map_or((None, None), |SharesByLaw { law, density }| (Some(law), density));
         one.density = density;
         if let Some(probability) = options.coverage {
+            // Quantiles that give no intervals refute the distribution: points of the surface replace it.
             one.coverage = covered(one, guarded.as_ref(), probability).unwrap_or_else(|faulty| {
                 guarded = GuardedLaw::without(request(problem, outcome, options, (c, one)), &faulty);
                 covered(one, guarded.as_ref(), probability).unwrap_or(None)
@@ -150,6 +151,7 @@ pub(super) fn settle(
         let points = guarded.as_mut().and_then(|law| law.points.take());
         laws[c] = guarded.and_then(|law| law.law);
         let Some(found) = rejected(problem, outcome, c, one, laws[c].as_ref()) else { continue };
+        // A side without rejects by proof needs no estimate.
         let proven = proven_sides(problem, outcome, c, one, &found);
         let found = found.excluding(proven).bounded();
         one.reject_intervals = found.intervals;
@@ -164,15 +166,15 @@ pub(super) fn settle(
     laws
 }
 
-/// The share of assemblies that keep the limits of all characteristics:
+/// Share of assemblies that keep the limits of all characteristics:
 ///
 /// ```text
 /// P(all kept) = 1 - sum of all rejects + E[(number of broken limits - 1)+]
 /// ```
 ///
-/// The rejects are those of each characteristic's own source. Their common part is by the laws of the surfaces where these are trusted,
-/// by points of a cheap model elsewhere, and anything that the rejects allow where neither is at hand: half of that is its error then.
-/// None with fewer than two characteristics with limits, and where the rejects of one or their error are not known.
+/// The rejects are those of each characteristic's own source. Their common part follows from the surface distributions if these are
+/// trusted, and otherwise from points of a cheap model. Without either it is the middle of its possible range, and its error is half of the
+/// range. Returns None with fewer than two characteristics with limits, and if the rejects of one or their error are unknown.
 pub(super) fn joint(
     problem: &Problem,
     options: &Options,
@@ -190,7 +192,7 @@ pub(super) fn joint(
         rejects.push(one.capability?.rejected()?);
         let exact = one.verification.as_ref().is_some_and(|of| matches!(of.kind, VerificationKind::Exact { .. }));
         square += match one.yield_source? {
-            // Limits outside of the proven range have no error; neither have those of an exact surface of measured inputs.
+            // Limits outside of the proven range have no error. The same holds for an exact surface of measured inputs.
             YieldSource::Proof => one.error_estimate.as_ref().and_then(|of| of.yield_).unwrap_or(0.0),
             YieldSource::SurfaceLaw if exact => one.error_estimate.as_ref().and_then(|of| of.yield_).unwrap_or(0.0),
             _ => one.error_estimate.as_ref()?.yield_?,
@@ -201,7 +203,7 @@ pub(super) fn joint(
     let by_laws = by_laws(characteristics, laws, &limited);
     let found = match by_laws {
         Some(found) if found.error <= CORRECTED => by_laws,
-        // A surface that keeps other values than the model says little of what they have in common.
+        // If model and surface keep different assemblies, the surface gives little information about the common rejects.
         _ => {
             let by_points = by_points(problem, options, characteristics, &limited, &rejects);
             by_laws.into_iter().chain(by_points).min_by(|a, b| a.error.total_cmp(&b.error))
@@ -212,8 +214,9 @@ pub(super) fn joint(
     Some(Verified { value: value.max(least).min(most), error: (error * error + square).sqrt() })
 }
 
-/// By the laws of the surfaces, corrected by what the rejects of each are by its own source: by as much what they have in common may be off.
-/// None without a law of each, and where a sample of the model refutes one of the surfaces.
+/// Joint yield from the surface distributions, corrected by the difference of each characteristic's reject rate to that of its own source.
+/// The correction counts as an error of the common rejects. Returns None if one of them has no distribution, and if a sample of the model
+/// refutes one of the surfaces.
 fn by_laws(
     characteristics: &[CharacteristicAnalysis],
     laws: &[Option<SurfaceLaw>],
@@ -236,7 +239,8 @@ fn by_laws(
     Some(Verified { value, error })
 }
 
-/// By points of a cheap model, where others are evaluated for its verification or nothing is said of a budget; None of a costly one.
+/// Joint yield from points of a cheap model, if its verification evaluates points anyway or there is no budget. Returns None for a costly
+/// model.
 fn by_points(
     problem: &Problem,
     options: &Options,
@@ -252,8 +256,9 @@ fn by_points(
     Some(Verified { value: 1.0 - rejects.iter().sum::<f64>() + common.value, error: common.error })
 }
 
-/// Within which measured samples leave the joint yield, of this value: no fewer assemblies are rejected than by one characteristic,
-/// and no more than by all of them one after the other. None without measured samples, and Some(None) where one leaves it unknown.
+/// Interval of the joint yield `value` by the uncertainty of measured samples. At least as many assemblies are rejected as by one
+/// characteristic, and at most as many as by all of them one after the other. Returns None if there are no measured samples, and Some(None)
+/// if one of them leaves it unknown.
 pub(super) fn joint_sampling(characteristics: &[CharacteristicAnalysis], value: f64) -> Option<Option<[f64; 2]>> {
     let limited = || characteristics.iter().filter(|one| one.characteristic.limits().exist());
     limited().find(|one| one.sampling.is_some())?;
@@ -268,12 +273,12 @@ pub(super) fn joint_sampling(characteristics: &[CharacteristicAnalysis], value: 
     Some(Some([1.0 - most, 1.0 - least.min(1.0 - value)]))
 }
 
-/// Whether two of them have limits, which can be kept together or not.
+/// True if at least two characteristics have limits.
 pub(super) fn have_joint_yield(characteristics: &[CharacteristicAnalysis]) -> bool {
     characteristics.iter().filter(|one| one.characteristic.limits().exist()).count() > 1
 }
 
-/// Whether the moments are those of a surface, or the model's in place of those of a surface that is trusted all the same.
+/// True if the moments are those of a surface, or the model's in place of those of a surface that is trusted nevertheless.
 fn follows_from_a_surface(one: &CharacteristicAnalysis) -> bool {
     let replaced = |of: &Verification| of.replaced && of.left.is_none_or(|left| left > TRUSTED);
     one.model_sampled.is_none() && !one.verification.as_ref().is_some_and(replaced)
@@ -287,7 +292,7 @@ fn fit(one: &CharacteristicAnalysis) -> Option<&Law> {
     one.law.as_ref()?.as_ref().ok()
 }
 
-/// The rule. None where nothing is known.
+/// Rejects from the best available source. Returns None if nothing is known.
 fn rejected(
     problem: &Problem,
     outcome: &Outcome,
@@ -298,6 +303,7 @@ fn rejected(
     proof(problem, outcome, c, one).or_else(|| samples(one)).or_else(|| surface(one, law)).or_else(|| pearson(one))
 }
 
+/// Rejects that are proven: of a constant, by proven extremes, or by a proven surface.
 fn proof(problem: &Problem, outcome: &Outcome, c: usize, one: &CharacteristicAnalysis) -> Option<Rejected> {
     let limits = one.characteristic.limits();
     let exactly = |beyond| Rejected::new(YieldSource::Proof, beyond, Some(0.0), [Some(0.0); 2]);
@@ -313,7 +319,7 @@ fn proof(problem: &Problem, outcome: &Outcome, c: usize, one: &CharacteristicAna
     let law = one.surface_law.as_ref().filter(|law| exact && law.branch != Branch::Sampled)?;
     let beyond = [law.below, law.above];
     let outside = beyond.iter().flatten().all(|figure| figure.proven);
-    // A limit outside of the proven range lies there by any rounding: the range has room for that.
+    // A limit outside of the proven range stays outside with any rounding, because the range includes rounding errors.
     let rounding = if outside { 0.0 } else { one.error_estimate.as_ref()?.yield_? };
     let error = Some(libm::hypot(law.error(), rounding));
     let source = if measured { YieldSource::SurfaceLaw } else { YieldSource::Proof };
@@ -325,21 +331,21 @@ fn proof(problem: &Problem, outcome: &Outcome, c: usize, one: &CharacteristicAna
     Some(Rejected::new(source, beyond.map(|of| of.map(|of| of.value)), error, errors))
 }
 
-/// The errors of the shares below and above that the errors of the moments make.
+/// Errors of the shares below and above the limits by the errors of the moments.
 fn by_moments(one: &CharacteristicAnalysis) -> [Option<f64>; 2] {
     let known = one.error_estimate.as_ref().zip(one.moments.as_ref());
     known.map_or([None; 2], |(estimate, moments)| of_sides(estimate, moments, one.characteristic.limits()))
 }
 
-/// Whether the proven extremes keep the lower and the upper limit, where no input leaves the box in which they were searched; true without
-/// that limit.
+/// True for each limit that the proven extremes keep, or that does not exist. False if an input can leave the box in which the extremes
+/// were searched.
 fn kept_by_extremes(problem: &Problem, outcome: &Outcome, c: usize, one: &CharacteristicAnalysis) -> [bool; 2] {
     let Some(proof) = one.proof() else { return [false; 2] };
     let bounded = |&d: &usize| {
         let dimension = &problem.dimensions()[d];
         let [lower, upper] = dimension.reach().map(|deviation| dimension.nominal() + deviation);
         let slack = 4.0 * f64::EPSILON * dimension.nominal().abs().max(dimension.mean().abs());
-        // Coordinates of a circle that vary independently of each other reach the corners of the box about it.
+        // Coordinates of a circle that vary independently of each other reach the corners of the box around it.
         let blocks = |d: usize| problem.correlation().is_some_and(|of| of.block_of(d).is_some());
         let alone = dimension.zone().is_none() || blocks(d);
         alone
@@ -354,9 +360,9 @@ fn kept_by_extremes(problem: &Problem, outcome: &Outcome, c: usize, one: &Charac
     [0, 1].map(|side| all && !kept.broken(proof.bounds[side])[side])
 }
 
-/// Whether no assembly is below the lower limit, and none above the upper one, by interval arithmetic.
+/// True for each side that is proven to have no rejects, by interval arithmetic.
 ///
-/// Beside the bounds at hand a side is sought a proof for where its rejects are not told apart from none.
+/// A further proof is tried for a side that the known bounds leave open, if its interval of rejects contains 0.
 fn proven_sides(
     problem: &Problem,
     outcome: &Outcome,
@@ -377,6 +383,7 @@ fn proven_sides(
     [0, 1].map(|side| known[side] || more[side])
 }
 
+/// Rejects from points of the model, with the surface distribution as control variate if that lowers the error.
 fn samples(one: &CharacteristicAnalysis) -> Option<Rejected> {
     let source = YieldSource::Samples;
     if let Some(sampled) = &one.model_sampled {
@@ -395,7 +402,7 @@ fn samples(one: &CharacteristicAnalysis) -> Option<Rejected> {
         errors: verification.beyond.map(|of| of.map(|of| of.error)),
         intervals: verification.beyond.map(|of| of.map(|of| interval(of.value, of.error))),
     };
-    // Counts of the surface are no control: the sample counts as well.
+    // Counts of the surface are no control variate: the sample is as accurate.
     let control = one.surface_law.as_ref().filter(|law| law.counted.is_none());
     let (Some([within, differences @ ..]), Some(law)) = (verification.difference, control) else {
         return Some(plain());
@@ -404,7 +411,7 @@ fn samples(one: &CharacteristicAnalysis) -> Option<Rejected> {
     let of_law = [law.below, law.above];
     let beyond = [0, 1].map(|side| of_law[side].map(|of| of.value + differences[side].value));
     let errors = [0, 1].map(|side| of_law[side].map(|of| libm::hypot(of.error, differences[side].error)));
-    // By what model and surface differ, and what no point shows of that.
+    // Half-width: scatter of the differences of model and surface, and the share that no point may have shown.
     let [_, unseen] = weighted_interval(0.0, 0.0, point);
     let reach = |side: usize| {
         let scattered = libm::hypot(scatter(differences[side].error, point), of_law[side]?.error);
@@ -417,7 +424,7 @@ fn samples(one: &CharacteristicAnalysis) -> Option<Rejected> {
     }
 }
 
-/// The part of a sample's error by which its points differ, without what no point shows.
+/// Part of a sample's error that comes from the scatter of its points, without the allowance for rejects that no point has shown.
 fn scatter(error: f64, point: f64) -> f64 {
     (error * error - point * point).max(0.0).sqrt()
 }
@@ -426,6 +433,7 @@ fn value(of: Option<Verified>) -> Option<f64> {
     of.map(|of| of.value)
 }
 
+/// Rejects from the surface distribution, with the errors of check points, or of moments and tails without them.
 fn surface(one: &CharacteristicAnalysis, whole: Option<&SurfaceLaw>) -> Option<Rejected> {
     let law = one.surface_law.as_ref().filter(|_| one.characteristic.limits().exist())?;
     let beyond = [law.below, law.above];
@@ -445,13 +453,14 @@ fn surface(one: &CharacteristicAnalysis, whole: Option<&SurfaceLaw>) -> Option<R
     Some(Rejected::new(YieldSource::SurfaceLaw, beyond.map(|of| of.map(|of| of.value)), error, errors))
 }
 
+/// Rejects from the Pearson fit, if nothing better is known.
 fn pearson(one: &CharacteristicAnalysis) -> Option<Rejected> {
     let own = one.pearson?;
     let error = one.error_estimate.as_ref().and_then(|of| of.yield_);
     Some(Rejected::new(YieldSource::Pearson, [own.below, own.above], error, by_moments(one)))
 }
 
-/// How the best law keeps the limits: shares beyond them by the source, quantiles by the surface law where there is one.
+/// Capability with the rejects of the chosen source. Quantiles come from the surface distribution if there is one.
 fn capability(one: &CharacteristicAnalysis, [below, above]: [Option<f64>; 2]) -> Option<Capability> {
     let moments = one.moments?;
     let limits = one.characteristic.limits();

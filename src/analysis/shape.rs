@@ -4,13 +4,13 @@ use serde::Serialize;
 
 use crate::method::{Basis, DerivativeSource};
 
-/// The basis of the moments, as it is written.
+/// Basis of the moments, in JSON.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(super) struct BasisShape {
-    /// Where the derivatives that the moments rest on come from: `exact` or `difference`; null where they rest on none.
+    /// Source of the derivatives from which the moments follow: `exact` or `difference`; null if they follow from none.
     derivatives: Option<&'static str>,
-    /// The basis of the moments.
+    /// Basis of the moments.
     basis: Basis,
 }
 

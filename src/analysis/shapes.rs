@@ -1,4 +1,4 @@
-//! Effects of a characteristic that the five points of an axis show beside its polynomial: kinks, jumps, powers that matter.
+//! Effects that the five points of an axis show in addition to its polynomial: kinks, jumps, and powers that matter.
 //!
 //! With second divided differences over the left three, the middle three and the right three points,
 //!
@@ -6,40 +6,40 @@
 //! L = f[u1, u2, 0]     M = f[u2, 0, u3]     R = f[0, u3, u4]
 //! ```
 //!
-//! a parabola has `L = M = R`, and for what is smooth at the scale of the points they vary slowly. A kink at the mean is in `M`
-//! alone: it is the curvature that does not scale, since differences over steps `h` go like `1/h`. A kink beside the mean is in two
-//! neighbours of which the third knows nothing, and a jump is in two neighbours with opposite signs.
+//! A parabola has `L = M = R`, and for functions that are smooth at the scale of the points they vary slowly. A kink at the mean shows in
+//! `M` alone. Such a curvature does not scale, because differences over steps `h` go like `1/h`. A kink beside the mean shows in two
+//! neighbours but not in the third. A jump shows in two neighbours with opposite signs.
 
 use sensitol_numeric::surrogate::Univariate;
 
-/// The shape along an axis.
+/// Shape along an axis other than smooth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Shape {
-    /// Two slopes meet.
+    /// Place at which two slopes meet.
     Kink {
-        /// The slopes on the left and on the right, per sigma.
+        /// Slopes on the left and on the right, per sigma.
         slopes: [f64; 2],
-        /// Between which places, in sigmas.
+        /// Places on either side of the kink, in sigmas.
         between: [f64; 2],
     },
-    /// The value jumps.
+    /// Place at which the value jumps.
     Jump {
-        /// By how much.
+        /// Height of the jump, in the unit of the values.
         by: f64,
-        /// Between which places, in sigmas.
+        /// Places on either side of the jump, in sigmas.
         between: [f64; 2],
     },
 }
 
-/// The middle exceeds its neighbours by this factor only where something happens between the inner points.
+/// Ratio of the middle second difference to its neighbours above which there is a kink between the inner points.
 const KINK: f64 = 4.0;
-/// A difference below this part of another is rounding.
+/// Ratio of second differences below which the smaller one is rounding.
 const NONE: f64 = 1e-6;
-/// Slopes on both sides of a jump agree to this part of it.
+/// Greatest difference of the slopes on both sides of a jump, as a part of the jump.
 const JUMP: f64 = 0.05;
 
-/// Of the values at four nodes beside the mean, two on either side, as differences to the centre; `least` is a second
-/// difference that does not matter.
+/// Returns the kink or jump that the values at four nodes show, two on either side of the mean. Values are differences to the centre.
+/// `least` is a second difference that does not matter.
 pub(super) fn shape(samples: &[(f64, f64)], least: f64) -> Option<Shape> {
     let [(u1, y1), (u2, y2), (u3, y3), (u4, y4)] = *samples else { return None };
     if !(u1 < u2 && u2 < 0.0 && 0.0 < u3 && u3 < u4) {
@@ -54,7 +54,7 @@ pub(super) fn shape(samples: &[(f64, f64)], least: f64) -> Option<Shape> {
         return None;
     }
     let none = |difference: f64| difference.abs() <= NONE * largest;
-    // A jump between two points is one steep chord between two that agree.
+    // A jump between two points is a steep chord between two chords of equal slope.
     let chords = [far_left, left, right, far_right];
     let ends = [[u1, u2], [u2, 0.0], [0.0, u3], [u3, u4]];
     for inner in [1, 2] {
@@ -68,7 +68,7 @@ pub(super) fn shape(samples: &[(f64, f64)], least: f64) -> Option<Shape> {
     if m.abs() > KINK * l.abs().max(r.abs()) {
         return Some(Shape::Kink { slopes: [left, right], between: [u2, u3] });
     }
-    // Straight as a line on one side, and not on the other.
+    // A straight line on one side only.
     match (none(l), none(r)) {
         (true, false) if !none(m) => Some(Shape::Kink { slopes: [left, far_right], between: [0.0, u4] }),
         (false, true) if !none(m) => Some(Shape::Kink { slopes: [far_left, right], between: [u1, 0.0] }),
@@ -78,7 +78,7 @@ pub(super) fn shape(samples: &[(f64, f64)], least: f64) -> Option<Shape> {
     }
 }
 
-/// Third and fourth coefficient of a part that has them.
+/// Third and fourth coefficient of a part of degree four.
 pub(super) fn higher(part: &Univariate) -> Option<[f64; 2]> {
     let [_, _, third, fourth] = part.coefficients();
     (part.degree() >= 4).then_some([third, fourth])

@@ -1,10 +1,10 @@
-//! The parts of the variance, wherever a method has it from.
+//! Parts of the variance, independent of the method that they come from.
 
 use crate::method::{Fitted, Integrated};
 use sensitol_numeric::moments::{Contributions, Moments, Sampled};
 use sensitol_numeric::surrogate::Inputs;
 
-/// Moments and contributions: of a surrogate, or integrated without one.
+/// Moments and contributions, of a surrogate or of an integration without one.
 pub(super) enum Shares {
     Surrogate(Contributions),
     Integrated(Integrated),
@@ -18,7 +18,7 @@ impl Shares {
         }
     }
 
-    /// Beside an independent part with this variance.
+    /// Adds an independent part with this variance.
     pub(super) fn beside(self, variance: Option<f64>) -> Self {
         match (self, variance) {
             (Self::Surrogate(contributions), Some(variance)) => Self::Surrogate(contributions.beside(variance.sqrt())),
@@ -61,7 +61,7 @@ impl Shares {
         }
     }
 
-    /// Of the pair at this place among those examined, with its coefficient.
+    /// Share of the pair at this place among the examined ones, with its coefficient.
     pub(super) fn pair(&self, index: usize, (j, k): (usize, usize), coefficient: Option<f64>) -> Option<f64> {
         match self {
             Self::Surrogate(contributions) => Some(contributions.share(j, k, coefficient?)),
@@ -69,7 +69,7 @@ impl Shares {
         }
     }
 
-    /// How far the pair at this place moves the mean, with its coefficient and the correlation of the two.
+    /// Mean shift by the pair at this place, with its coefficient and the correlation of the two.
     pub(super) fn pair_shift(&self, index: usize, coefficient: Option<f64>, together: f64) -> Option<f64> {
         match self {
             Self::Surrogate(_) => Some(coefficient? * together),

@@ -1,14 +1,14 @@
-//! Half a million interactions as the few that matter, and what all others make together.
+//! Lists the strongest interactions and sums the rest.
 
 use super::{Analysis, CharacteristicAnalysis, Missing};
 
-/// An interaction below this share of the variance is not listed by itself,
+/// Smallest share of the variance of an interaction that is listed.
 const LEAST: f64 = 1e-6;
-/// nor one that so many exceed: some megabytes of JSON.
+/// Greatest number of listed interactions: some megabytes of JSON.
 const MOST: usize = 10_000;
 
 impl Analysis {
-    /// Without the interactions that hardly matter: what they make together stands in their place.
+    /// Keeps the interactions that matter. The sum of the others replaces them.
     pub fn shortened(mut self) -> Self {
         self.characteristics.iter_mut().for_each(CharacteristicAnalysis::shorten);
         self
@@ -16,10 +16,10 @@ impl Analysis {
 }
 
 impl CharacteristicAnalysis {
-    /// The same of one characteristic.
+    /// Keeps the interactions that matter. The sum of the others is [`interactions_remainder`](Self::interactions_remainder).
     pub fn shorten(&mut self) {
         let mut remainder = self.interactions_remainder.unwrap_or_default();
-        // Strongest first: a place is a rank.
+        // The strongest are first: the index is the rank.
         self.interactions.retain(|rank, pair| {
             let open = pair.missing == Some(Missing::NotEvaluated);
             let listed = rank < MOST && !open && pair.share.is_none_or(|share| share >= LEAST);

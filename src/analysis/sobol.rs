@@ -1,11 +1,11 @@
-//! Sobol' indices as results have them.
+//! Sobol' indices in results.
 
 use serde::{Serialize, Serializer};
 
 use crate::verification::Share;
 use sensitol_numeric::capability::EstimatedShare;
 
-/// The source of Sobol' indices.
+/// Source of Sobol' indices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum IndexSource {
@@ -13,7 +13,7 @@ pub enum IndexSource {
     Surface,
     /// The model, by exchanging inputs between two samples.
     Exchange,
-    /// A sample of the model that was there already, by the ranks of every input: first order only.
+    /// An existing sample of the model, by the ranks of every input: first order only.
     Ranks,
 }
 
@@ -22,30 +22,30 @@ pub enum IndexSource {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct FactorIndices {
-    /// The dimensions.
+    /// Names of the dimensions.
     pub dimensions: Vec<String>,
-    /// The part of the variance that they explain by themselves.
+    /// Part of the variance that the factor explains alone.
     pub first_order: Option<EstimatedShare>,
-    /// The same with everything in which they have a part.
+    /// Part of the variance with all interactions of the factor.
     pub total: Option<EstimatedShare>,
 }
 
-/// Where the indices of a characteristic come from, and those of factors that are no single dimension.
+/// Source of the indices of a characteristic, and the indices of factors with several dimensions.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct SobolIndices {
-    /// Their source: `surface`, `exchange` of inputs of the model, or `ranks` of a sample.
+    /// Source: `surface`, `exchange` of inputs of the model, or `ranks` of a sample.
     #[cfg_attr(feature = "schema", schemars(with = "String"))]
     pub source: IndexSource,
-    /// Dimensions that vary together: these have indices as one factor only.
+    /// Dimensions that vary together and have indices as one factor only.
     pub factors: Vec<FactorIndices>,
-    /// 1 less the sum of all first orders: interactions, and what the first orders are off.
+    /// One minus the sum of all first orders: interactions, and the errors of the first orders.
     pub interactions: Option<f64>,
 }
 
 impl IndexSource {
-    /// Its name in reports.
+    /// Returns the name of the source in reports.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Surface => "surface",

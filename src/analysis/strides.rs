@@ -1,17 +1,17 @@
-//! Points of the model in strides, and what they say beside a regression that has not seen them.
+//! Cross-fitted sparse regression as control variate, on Sobol' points added in batches (strides) that double.
 //!
-//! Sobol' points in 16 scramblings (Owen 1997), of which every stride doubles the number: 16, 32, 64, ... The scramblings fall into
-//! four parts. For each part a sparse regression `s` is fitted to the points of the other three, and to those that the method has
-//! evaluated before; with `v` whether the model has a value,
+//! Sobol' points are drawn in 16 scramblings (Owen 1997). Every stride doubles their number: 16, 32, 64, ... The scramblings are divided
+//! into four parts. For each part a sparse regression `s` is fitted to the points of the other three, and to the points that the method has
+//! evaluated before. With `v` 1 if the model has a value and 0 if not,
 //!
 //! ```text
-//! E[v y^p] = E[s^p] + E[v y^p - s^p]        p = 1 .. 4, and the same of the indicators of a share
+//! E[v y^p] = E[s^p] + E[v y^p - s^p]        p = 1 .. 4, and likewise for the indicators of a share
 //! ```
 //!
-//! the first by many points of `s`, which cost nothing, and the second by the part that `s` has not seen. So the estimate has no
-//! bias, whatever the regression is worth, and its error is that of what the regression leaves (Glynn and Szechtman 2002 on control
-//! variates, Chernozhukov and others 2018 on the exchange of parts). Errors are those of the jackknife over the scramblings, and
-//! never below what so few points overlook.
+//! The first term is computed from many points of `s`, which cost nothing, and the second from the held-out part. So the estimate has no
+//! bias, regardless of the quality of the regression, and its error comes from the residuals (Glynn and Szechtman 2002 on control variates,
+//! Chernozhukov and others 2018 on cross-fitting). Errors are those of the jackknife over the scramblings, and at least those of effects
+//! that so few points overlook.
 
 use super::SampledModel;
 use super::recorded::ranked;
@@ -31,58 +31,61 @@ use sensitol_numeric::sampling::{Draws, Estimate, Fine, Portion, SOBOL_DIMENSION
 use sensitol_numeric::surrogate::{Chaos, Places, Sparse, Surrogate};
 use sensitol_numeric::time::Instant;
 
-/// The parts into which the scramblings fall.
+/// Number of parts into which the scramblings are divided.
 const PARTS: usize = 4;
-/// Points that the method has evaluated and a regression is fitted to as well, at most.
+/// Most points evaluated by the method that a regression is also fitted to.
 const FITTED: usize = 1 << 10;
-/// Points of a regression in each scrambling, at most and at least, and the numbers that all of them may take.
+/// Most points of a regression in each scrambling.
 const KNOTS: usize = 1 << 12;
+/// Fewest points of a regression in each scrambling.
 const FEWEST: usize = 1 << 8;
+/// Most random numbers for the points of all scramblings together.
 const NUMBERS: usize = 1 << 21;
-/// The root mean squares of the influence of a point on mean, sigma, skewness and kurtosis of a normal law, in its sigmas
-/// (Serfling 1980).
+/// Root mean squares of the influence of a point on mean, sigma, skewness and kurtosis of a normal distribution, in its sigmas (Serfling
+/// 1980).
 const INFLUENCE: [f64; MOMENTS] = [1.0, 1.0, 4.3, 9.8];
-/// Exact moments of a regression that differ from its own points by more standard errors than that are not believed.
+/// Greatest deviation of the exact moments of a regression from those at its points, in standard errors. Beyond it the exact ones are not
+/// used.
 const EXACT: f64 = 4.0;
-/// With a scale below this part of the origin, roundings would take more than 1e-8 of a fourth power.
+/// Ratio of scale to origin below which roundings would exceed 1e-8 of a fourth power.
 const CANCELS: f64 = 1e-2;
 
-/// Points that were drawn together, the same number of every scrambling, one scrambling after the other.
+/// A batch of points drawn together: `rows` of every scrambling, one scrambling after the other.
 struct Stride {
     rows: usize,
-    /// In sigmas off the means, a column for every varying dimension.
+    /// Standardised inputs, a column for every varying dimension.
     u: Vec<Vec<f64>>,
-    /// A column for every characteristic.
+    /// Values, a column for every characteristic.
     y: Vec<Vec<f64>>,
 }
 
-/// The points so far.
+/// All points drawn so far, with their answers.
 pub(super) struct Strides<'p> {
     problem: &'p Problem,
     outcome: &'p Outcome,
     draws: Draws<'p>,
     strides: Vec<Stride>,
-    /// Points of the regressions: of every scrambling as many.
+    /// Points for the means of the regressions, the same number for every scrambling.
     knots: Stride,
     failed: Vec<(usize, Option<EvaluationError>)>,
-    /// All answers, for who goes on with the same points.
+    /// All answers, so that a later sample can reuse them.
     pub(super) answers: Remembered,
     pub(super) run: RunSummary,
     pub(super) non_repeatable: Vec<NonRepeatable>,
 }
 
-/// The basis of the regression beside the model.
+/// Basis of the regression that serves as control variate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Basis {
-    /// The known surface as it is.
+    /// The known surface without a regression.
     Surface,
     Products,
-    /// With powers of the known surface.
+    /// Products and powers of the known surface.
     Powers,
-    /// The exponential of a regression on products, for values of one sign: products and powers of the inputs are sums there (Box and Cox
-    /// 1964).
+    /// The exponential of a regression on products, for values of one sign. Products and powers of the inputs become sums in the logarithm
+    /// (Box and Cox 1964).
     Logarithm,
-    /// The same without products: each input has a factor of its own.
+    /// Like `Logarithm`, but without products: each input has a factor of its own.
     Factors,
 }
 
@@ -92,38 +95,38 @@ impl Basis {
     }
 }
 
-/// The regressions of one characteristic, one for every part, and its known surface with mean and sigma.
+/// Regressions of one characteristic, one for every part, and its known surface with mean and sigma.
 pub(super) struct Beside<'p> {
     kind: Basis,
     chaos: Chaos,
     surface: Option<(&'p Surrogate, Moments)>,
-    /// Whether the moments of the surface are exact.
+    /// True if the moments of the surface are exact.
     exact: bool,
-    /// None where the values are not of one sign and a logarithm is wanted of them.
+    /// Regression of each of the parts. Empty if a logarithm is to be fitted and the values have both signs.
     parts: Vec<Sparse>,
-    /// The sign of values that are fitted by their logarithm.
+    /// Sign of values that are fitted by their logarithm.
     sign: f64,
     rows: usize,
-    /// By how many sigmas the regressions are off three sigma out, at points that they have not seen.
+    /// Error of the regressions three sigma out, in the unit of the characteristic, at points that were not fitted.
     far: f64,
 }
 
-/// Mean, sigma, skewness and kurtosis, with the shares below and above the limits and within them.
+/// Mean, sigma, skewness and kurtosis, then the shares below and above the limits and within them.
 #[derive(Clone)]
 struct Figures {
     values: Vec<f64>,
     errors: Vec<f64>,
 }
 
-/// The estimates for one characteristic by the points.
+/// Estimates for one characteristic from the points.
 pub(super) struct StridedFigures {
-    /// Mean, sigma, skewness, kurtosis.
+    /// Estimates of mean, sigma, skewness, kurtosis.
     pub(super) moments: [Estimate; MOMENTS],
     pub(super) sampled: SampledModel,
 }
 
 impl<'p> Strides<'p> {
-    /// None where a dimension cannot be sampled.
+    /// Returns None if a dimension cannot be sampled.
     pub(super) fn new(problem: &'p Problem, outcome: &'p Outcome, seed: u64) -> Option<Self> {
         let n = outcome.plan.varying().len();
         let all = problem.dimensions().iter().filter(|dimension| dimension.sigma() > 0.0).count();
@@ -146,18 +149,18 @@ impl<'p> Strides<'p> {
         })
     }
 
-    /// Points of one scrambling.
+    /// Points of one scrambling so far.
     fn rows(&self) -> usize {
         self.strides.iter().map(|stride| stride.rows).sum()
     }
 
-    /// How many points the next stride has: as many as there are, of at most so many in all.
+    /// Number of points of the next stride: as many as there are, within `most` in all.
     pub(super) fn next(&self, most: usize) -> usize {
         let rows = self.rows();
         REPLICATES * rows.max(1).min((most / REPLICATES).saturating_sub(rows))
     }
 
-    /// Evaluates the next stride; whether all of it was answered.
+    /// Evaluates the points of the next stride. Returns true if all of it was answered.
     pub(super) fn draw(&mut self, most: usize, run: &Run<'_>) -> bool {
         let rows = self.next(most) / REPLICATES;
         let points = points(&self.draws, self.rows(), rows);
@@ -192,8 +195,8 @@ impl<'p> Strides<'p> {
         whole
     }
 
-    /// Nothing yet, of one characteristic: its surface as it is, a regression on products, one with powers of the surface too, and two of
-    /// the logarithm.
+    /// Unfitted control variates of one characteristic: its surface, a regression on products, one with powers of the surface too, and two
+    /// of the logarithm.
     pub(super) fn beside(&self, c: usize) -> Vec<Beside<'p>> {
         let kinds = [Basis::Surface, Basis::Products, Basis::Powers, Basis::Logarithm, Basis::Factors];
         let kinds = kinds.map(|kind| self.kind(c, kind));
@@ -219,7 +222,7 @@ impl<'p> Strides<'p> {
         Beside { kind, chaos, surface, exact, parts: Vec::new(), sign: 1.0, rows: 0, far: 0.0 }
     }
 
-    /// The estimates by the points, the regressions fitted anew where points were added.
+    /// Estimates from all points drawn so far. Regressions are fitted anew if points were added.
     pub(super) fn found(&self, c: usize, beside: &mut [Beside<'_>], left: f64) -> Option<StridedFigures> {
         for beside in beside.iter_mut().filter(|beside| beside.rows < self.rows()) {
             self.fit(c, beside);
@@ -269,7 +272,7 @@ impl<'p> Strides<'p> {
         depends.filter_map(|(j, &d)| ranked(d, &column(j), values)).collect()
     }
 
-    /// Fits the regression of every part to the points of the others, and to those that were evaluated before.
+    /// Fits the regression of every part to the points of the others, and to points that were evaluated before.
     fn fit(&self, c: usize, beside: &mut Beside<'_>) {
         let plan = &self.outcome.plan;
         let known = &self.outcome.evaluated.known;
@@ -283,7 +286,7 @@ impl<'p> Strides<'p> {
             }
             u
         };
-        // A difference plan is right where it stands: what it has on its axes is not a point of the distribution.
+        // Only points off the axes: a point on an axis is not typical of the distribution, and the difference plan is exact there.
         let off_axes = |point: &&Point| point.at().len() > 2 || n <= 2 && point.at().len() == n;
         let looked = self.outcome.climbed.iter().flat_map(|climbed| &climbed.far);
         let far: Vec<&Point> = looked.filter(|(of, _)| *of == c).flat_map(|(_, points)| points).collect();
@@ -322,6 +325,7 @@ impl<'p> Strides<'p> {
                 beside.chaos.fit(Places { u: &u, surface: &surface }, &y)
             })
             .collect();
+        // Points far out that no regression was fitted to show its error there.
         let seen: Vec<(Vec<f64>, f64)> =
             far.iter().filter_map(|point| Some((place(point), known.value(point, c)?))).collect();
         let columns: Vec<Vec<f64>> = (0..n).map(|j| seen.iter().map(|(u, _)| u[j]).collect()).collect();
@@ -332,11 +336,12 @@ impl<'p> Strides<'p> {
             values.iter().zip(&seen).map(|(s, (_, y))| (y - s).abs()).fold(0.0, f64::max)
         };
         let off = beside.parts.iter().map(off).sum::<f64>() / PARTS as f64;
-        // No value there: nothing follows it.
+        // A point without a value is a jump that no regression follows.
         beside.far = if seen.len() < far.len() { f64::INFINITY } else { off };
     }
 
-    /// The figures, in a unit of origin and scale; None where none is known.
+    /// Figures with a control variate, or without. Values are centred and scaled by `origin` and `scale`. Returns None if a figure is
+    /// unknown.
     fn figures(&self, c: usize, beside: Option<&Beside<'_>>, [origin, scale]: [f64; 2]) -> Option<Figures> {
         if beside.is_some_and(|beside| beside.parts.is_empty()) {
             return None;
@@ -344,7 +349,7 @@ impl<'p> Strides<'p> {
         let limits = self.problem.characteristics()[c].limits();
         let kept = self.problem.kept_limits(c);
         let sides = |y: f64| kept.broken(y).map(|side| f64::from(u8::from(side)));
-        // The powers of a value, and the two sides of the limits.
+        // Four powers of a value, and the two sides of the limits.
         const TERMS: usize = MOMENTS + 2;
         let terms = |y: f64| {
             let v = (y - origin) / scale;
@@ -352,7 +357,7 @@ impl<'p> Strides<'p> {
             [v, v * v, v.powi(3), v.powi(4), below, above]
         };
         let rows = self.rows() as f64;
-        // Of the valid, and of every term.
+        // Sums of the valid points, and of every term.
         let mut sums = vec![vec![0.0; REPLICATES]; 1 + TERMS];
         let mut carried: Vec<Vec<f64>> = vec![Vec::new(); MOMENTS];
         let (mut square, mut count) = (0.0, 0.0);
@@ -395,8 +400,8 @@ impl<'p> Strides<'p> {
             *error *= student(REPLICATES) * carried_by(effective(carried[moment].iter().copied()));
             *error = libm::hypot(*error, floor * INFLUENCE[moment] * units[moment]);
         }
-        // That no point was seen does not mean that there is none: the weight of one, or what limits that are off by the difference
-        // change, whichever is less.
+        // A side may have rejects although no point shows any. Its allowance is the weight of one point, or the change of the share if the
+        // limit moves by the residual, whichever is less.
         let rho = TOO_SMALL * (square / f64::max(count, 1.0)).sqrt() + OVERLOOKED * (OVERLOOKED_BY / all as f64).sqrt();
         let moved = |side: usize| {
             let limit = [limits.lower(), limits.upper()][side];
@@ -418,8 +423,8 @@ impl<'p> Strides<'p> {
         whole.then_some(Figures { values, errors })
     }
 
-    /// Adds the means of the regressions' terms: of the powers from the exact moments of the regression, or of the surface and what
-    /// the regression differs by at its points.
+    /// Adds the means of the regressions' terms. Those of the powers come from the exact moments of the regression if possible, else from
+    /// the moments of the surface and the differences of the regression from it at its points.
     fn integrate<const TERMS: usize>(
         &self,
         beside: &Beside<'_>,
@@ -429,6 +434,7 @@ impl<'p> Strides<'p> {
         sums: &mut [Vec<f64>],
     ) {
         let rows = self.knots.rows as f64;
+        // With the exact moments of the surface, only the differences of the regression from it are averaged over points.
         let anchor = beside.surface.as_ref().filter(|_| beside.exact).map(|(_, moments)| {
             let (m, s) = ((moments.mean() - origin) / scale, moments.sigma() / scale);
             let (skewness, kurtosis) = (moments.skewness().unwrap_or(0.0), moments.kurtosis().unwrap_or(0.0));
@@ -442,7 +448,7 @@ impl<'p> Strides<'p> {
             (m, s, raw)
         });
         let surface = beside.surface(&self.knots.u, knots.len());
-        // Of the terms as they are, and of their differences from those of the surface.
+        // Means of the terms, and of their differences from those of the surface.
         let mut plain = vec![vec![0.0; REPLICATES]; TERMS];
         let mut differences = plain.clone();
         for (row, &value) in knots.iter().enumerate() {
@@ -465,6 +471,7 @@ impl<'p> Strides<'p> {
             let exact: Option<Vec<f64>> =
                 exact.as_ref().and_then(|parts| parts.iter().map(|part| part.get(index).copied()).collect());
             let (mean, error) = spread(&plain[index]);
+            // The exact moments of a regression are used only if they agree with those at its points.
             let believed =
                 exact.filter(|exact| (exact.iter().sum::<f64>() / PARTS as f64 - mean).abs() <= EXACT * error + 1e-9);
             let anchored = anchor.as_ref().filter(|_| index < MOMENTS && spread(&differences[index]).1 < error);
@@ -480,8 +487,8 @@ impl<'p> Strides<'p> {
 }
 
 impl Strides<'_> {
-    /// For every part the first means of its powers in a unit of origin and scale, as far as they are known without points: two of a
-    /// polynomial, four of a product of functions of one input each. None with correlated inputs.
+    /// First means of the powers of every part, centred and scaled by `origin` and `scale`, as far as they are known without points: two of
+    /// a polynomial, four of a product of functions of one input each. Returns None with correlated inputs.
     fn exact(&self, beside: &Beside<'_>, [origin, scale]: [f64; 2]) -> Option<Vec<Vec<f64>>> {
         if self.problem.correlation().is_some() {
             return None;
@@ -501,7 +508,7 @@ impl Strides<'_> {
             }
             beside.chaos.squares(sparse, shapes, surface).map(Vec::from)
         };
-        // About an origin that many sigmas from 0 nothing would be left of a high power.
+        // About an origin many sigmas from 0, cancellation would leave nothing of a high power.
         let most = if scale.abs() > CANCELS * origin.abs() { MOMENTS } else { 2 };
         let about = |raw: Vec<f64>| -> Vec<f64> {
             let power = |p: usize| {
@@ -521,14 +528,14 @@ impl Strides<'_> {
 }
 
 impl Beside<'_> {
-    /// The known surface in its sigmas.
+    /// Standardised values of the known surface.
     fn surface(&self, u: &[Vec<f64>], rows: usize) -> Vec<f64> {
         let Some((surrogate, moments)) = &self.surface else { return Vec::new() };
         let rises = surrogate.rises(u).unwrap_or_else(|| vec![0.0; rows]);
         rises.into_iter().map(|rise| (surrogate.centre + rise - moments.mean()) / moments.sigma()).collect()
     }
 
-    /// The values of one of its regressions.
+    /// Values of one of its regressions.
     fn of(&self, sparse: &Sparse, places: Places<'_>, rows: usize) -> Vec<f64> {
         let mut values = self.chaos.values(sparse, places, rows);
         if self.kind.is_logarithm() {
@@ -537,7 +544,7 @@ impl Beside<'_> {
         values
     }
 
-    /// At every point the regression that has not seen it.
+    /// Held-out values of the regressions: at every point those of the regression that was not fitted to it.
     fn values(&self, stride: &Stride) -> Vec<f64> {
         let rows = REPLICATES * stride.rows;
         let surface = self.surface(&stride.u, rows);
@@ -547,7 +554,8 @@ impl Beside<'_> {
     }
 }
 
-/// Figure by figure those with the smaller error, where such moments are possible; else those of the smaller error of sigma.
+/// Figures with the smaller error, chosen one by one. If such moments are impossible, all moments come from the estimate with the smaller
+/// error of sigma.
 fn chosen(plain: &Figures, with: &Figures) -> Figures {
     let pick = |better: &dyn Fn(usize) -> bool| {
         let of = |i: usize| if better(i) { with } else { plain };
@@ -557,7 +565,7 @@ fn chosen(plain: &Figures, with: &Figures) -> Figures {
         }
     };
     let shares = |i: usize| i >= MOMENTS;
-    // All shares are of one origin, so that they add up.
+    // All shares come from one estimate, so that they add up.
     let within = with.errors[MOMENTS + 2] < plain.errors[MOMENTS + 2];
     let each = pick(&|i| if shares(i) { within } else { with.errors[i] < plain.errors[i] });
     let [.., skewness, kurtosis] = [each.values[0], each.values[1], each.values[2], each.values[3]];
@@ -568,7 +576,7 @@ fn chosen(plain: &Figures, with: &Figures) -> Figures {
     pick(&|i| if shares(i) { within } else { sigma })
 }
 
-/// `rows` points of every scrambling from `first` on, one scrambling after the other.
+/// Returns `rows` points of every scrambling from `first` on, one scrambling after the other.
 fn points(draws: &Draws<'_>, first: usize, rows: usize) -> Points {
     let portion = |replicate: usize| draws.points(Portion { replicate: replicate as u64, first: first as u64, rows });
     let each: Vec<Points> = (0..REPLICATES).map(portion).collect();

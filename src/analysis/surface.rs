@@ -1,4 +1,4 @@
-//! The basis of the moments, kept so that other tolerances and means can be tried without a further evaluation.
+//! Basis of the moments, kept so that other tolerances and means can be tried without further evaluations.
 
 use super::CharacteristicAnalysis;
 use crate::method::Outcome;
@@ -6,30 +6,30 @@ use sensitol_numeric::moments::Contributions;
 use sensitol_numeric::power::rescale;
 use sensitol_numeric::surrogate::{InputShape, Inputs, Relocation, Surrogate};
 
-/// The surrogates of all characteristics over the dimensions that vary.
+/// Surrogates of all characteristics over the dimensions that vary.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Surface {
-    /// Where the varying dimensions stand among the problem's.
+    /// Indices of the varying dimensions among the problem's dimensions.
     pub varying: Vec<usize>,
-    /// Their shapes, in that order.
+    /// Shapes of the varying dimensions, in that order.
     pub shapes: Vec<InputShape>,
-    /// For every characteristic what its moments follow from, or why they follow from no surrogate.
+    /// Basis of the moments of every characteristic, or the reason why they follow from no surrogate.
     pub characteristics: Vec<Result<Fit, NoFit>>,
 }
 
-/// The basis of the moments of one characteristic.
+/// Basis of the moments of one characteristic.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fit {
-    /// The surrogate.
+    /// Surrogate, with a known part for every varying dimension.
     pub surrogate: Surrogate,
-    /// The standard deviation of a part beside it, of what checks found that it leaves out.
+    /// Standard deviation of the part that the surrogate does not explain, as estimated at check points.
     pub unexplained_sigma: Option<f64>,
-    /// Products of the surrogate that are estimates without an evaluation of their own.
+    /// Products of the surrogate that are screened guesses, without an evaluation of their own.
     pub screened: usize,
 }
 
-/// Why the moments of a characteristic cannot be had at other tolerances.
+/// Reason why the moments of a characteristic are not available at other tolerances.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NoFit {
@@ -75,13 +75,13 @@ impl Surface {
         }
     }
 
-    /// Moments and contributions of one characteristic where inputs have moved and keep their shapes; None where they follow
-    /// from no surrogate.
+    /// Moments and contributions of one characteristic if inputs have moved and keep their shapes. Returns None if they follow from no
+    /// surrogate.
     ///
-    /// The part of the variance that the surrogate leaves out stays as it is.
+    /// The variance that the surrogate does not explain stays as it is.
     ///
-    /// Shapes: `moved` has an element for every varying dimension. No evaluation; the error is that of the surrogate so far
-    /// from where it was made.
+    /// Shapes: `moved` has an element for every varying dimension. No evaluation. The error is that of the surrogate at this distance from
+    /// its nodes.
     ///
     /// ```
     /// use sensitol::{Closure, Dimension, Method, Problem, analyze};

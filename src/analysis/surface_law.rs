@@ -1,4 +1,4 @@
-//! The law of a characteristic's surface: the shares beyond its limits, and its quantiles.
+//! Distribution of a characteristic's surface: shares beyond the limits, quantiles, density.
 
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ use sensitol_numeric::pearson::Pearson;
 use sensitol_numeric::power::rescale;
 use sensitol_numeric::surrogate::{Surrogate, Univariate};
 
-/// The probabilities of the quantiles of reports, lowest first, each by the tail that it leaves.
+/// Probabilities of the quantiles in reports, lowest first, each with the tail that it leaves.
 pub const QUANTILES: [(LawTail, f64); 7] = [
     (LawTail::Lower, TAIL),
     (LawTail::Lower, 0.01),
@@ -29,69 +29,71 @@ pub const QUANTILES: [(LawTail, f64); 7] = [
     (LawTail::Upper, 0.01),
     (LawTail::Upper, TAIL),
 ];
-/// Where the outer two and the median stand among them.
+/// Indices of the outer two and the median among them.
 const OUTER: [usize; 3] = [0, 3, 6];
 
-/// Variance that a surface leaves out, by its own: below this part it moves no probability by more than 1e-10.
+/// Unexplained variance, as a part of the surface's own, below which it moves no probability by more than 1e-10.
 const IDLE: f64 = 1e-10;
-/// Points of a limit in the sampled branch,
+/// Points for a limit in the sampled branch, for surfaces of up to [`TERMS`] terms.
 const POINTS: usize = 1 << 12;
-/// and terms of the surface, from which on there are fewer.
+/// Number of terms of the surface above which fewer points are used.
 const TERMS: usize = 1 << 10;
+/// Fewest points for a limit in the sampled branch.
 const FEWEST: usize = 1 << 9;
-/// Measured values of one input up to which every point of a contour is a short sum.
+/// Most measured values of one input for which every point of a contour is a short sum.
 const ATOMS: usize = 64;
-/// Beyond, terms of all points of a contour at most: the surface is counted at points instead where they are more,
+/// Most terms at all points of a contour, if an input has more than [`ATOMS`] values. Above it the surface is counted at points instead.
 const TERMS_OF_ATOMS: f64 = 1e7;
-/// and points of a contour, as many as this by the part of sigma that has a density: beyond 8 by the sigma of that part its transform
-/// vanishes, and points are a third by the sigma of the whole from each other.
+/// Points of a contour times the part of sigma that has a density. The transform vanishes beyond 8 divided by the sigma of that part, and
+/// the distance of points is a third divided by the whole sigma.
 const POINTS_OF_SIGMA: f64 = 24.0;
+/// Greatest number of points of a contour.
 const MOST_POINTS: f64 = 2048.0;
-/// Values of a step function that are listed.
+/// Most values of a step function that are listed.
 const STEPS: usize = 1 << 18;
-/// A drawn density ends where so little lies beyond,
+/// Tail probability at which a drawn density ends.
 const DRAWN: f64 = 1e-5;
-/// and has so many places: a pixel or two each,
+/// Number of places of a drawn density: a pixel or two each.
 const PLACES: usize = 240;
-/// or so many where each is a sum over points: lines between them are within 0.1 % of the peak of a normal density.
+/// Places of a drawn density if each is a sum over points. Lines between them are within 0.1 % of the peak of a normal density.
 const FEW_PLACES: usize = 96;
 
-/// The shares of a characteristic by the law of its surface.
+/// Shares of a characteristic by the distribution of its surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct SurfaceShares {
-    /// How the law is computed.
+    /// Kind of computation of the distribution.
     pub branch: Branch,
-    /// Points of the surface at which its law was counted, because it could not be computed or is refuted; None where it was computed.
+    /// Number of surface points that were counted because the distribution could not be computed or is refuted. None if it was computed.
     pub counted: Option<usize>,
-    /// The contradiction for which points took the place of a law; None where there is none.
+    /// Contradiction because of which points replace the distribution. None if there is none.
     pub refuted: Option<LawRefutation>,
-    /// Whether it is a step function: every input that counts has measured values only.
+    /// True if the distribution is a step function: every input with an effect has measured values only.
     pub steps: bool,
-    /// The share below the lower limit; None without one.
+    /// Share below the lower limit. None if there is no such limit.
     pub below: Option<LawFigure>,
-    /// The share above the upper limit; None without one.
+    /// Share above the upper limit. None if there is no such limit.
     pub above: Option<LawFigure>,
-    /// At the [`PROBABILITIES`](sensitol_numeric::capability::PROBABILITIES); None where one of them is unknown: those of the Pearson fit are then
-    /// reported.
+    /// Quantiles at the [`PROBABILITIES`](sensitol_numeric::capability::PROBABILITIES). None if one of them is unknown: those of the
+    /// Pearson fit are reported then.
     pub quantiles: Option<[LawFigure; 7]>,
 }
 
 rescale!(SurfaceShares { refuted, quantiles } without { branch, counted, steps, below, above });
 
-/// The law of a characteristic's surface that has passed its tests, or points of the surface in its place: the one source of its shares,
-/// quantiles, intervals and density.
+/// Distribution of a characteristic's surface that has passed its tests, or points of the surface in its place. It is the only source of
+/// shares, quantiles, intervals and density.
 pub(super) struct GuardedLaw {
     pub(super) shares: SurfaceShares,
-    /// Returns shares beyond limits; None where points take its place.
+    /// Distribution that gives shares beyond limits. None if points replace it.
     pub(super) law: Option<SurfaceLaw>,
-    /// Has the quantiles, where these include a variance that the other one leaves out.
+    /// Distribution for quantiles, if these include an unexplained variance that `law` does not.
     full: Option<SurfaceLaw>,
-    /// Points in its place, ascending.
+    /// Points of the surface that replace the distribution, ascending.
     pub(super) points: Option<Vec<f64>>,
 }
 
-/// A characteristic whose law is asked for: its place, the seed of points, and its verification.
+/// Request of the distribution of a characteristic: its index, the seed of points, and its verification.
 #[derive(Clone, Copy)]
 pub(super) struct LawRequest<'a> {
     pub(super) problem: &'a Problem,
@@ -103,16 +105,16 @@ pub(super) struct LawRequest<'a> {
 }
 
 impl GuardedLaw {
-    /// Returns None if the moments do not follow from a surface, or nothing but moments is known of an input. Quantiles are sought from those
-    /// of the fit.
+    /// Computes and tests the distribution. Returns None if the moments do not follow from a surface, or only moments are known of an
+    /// input. The search for quantiles starts at those of `fit`.
     ///
-    /// A variance that the surface leaves out is a normal input beside it. A sample of the model has it already: then only quantiles include it.
+    /// Unexplained variance is added as a normal input. A sample of the model contains it already: only quantiles include it in that case.
     pub(super) fn of(request: LawRequest<'_>) -> Option<Self> {
         let LawRequest { problem, outcome, c, .. } = request;
         if outcome.fitted[c].integrated.is_some() {
             return None;
         }
-        // Of a surface that is proven to be the function nothing is left out but rounding.
+        // A surface that is proven to equal the function leaves only rounding unexplained.
         let exact = request.verification.is_some_and(|of| matches!(of.kind, VerificationKind::Exact { .. }));
         let unexplained = outcome.climbed.as_ref().and_then(|climbed| climbed.unexplained(c)).filter(|_| !exact);
         let beside = request.verification.is_some_and(|of| of.kind == VerificationKind::Sample);
@@ -150,7 +152,7 @@ impl GuardedLaw {
         }
     }
 
-    /// Points in place of a law that could not be computed, or is refuted.
+    /// Counts points in place of a distribution that could not be computed, or is refuted.
     fn counted(request: LawRequest<'_>, refuted: Option<LawRefutation>) -> Option<Self> {
         let LawRequest { problem, outcome, c, seed, .. } = request;
         let points = counted::points(problem, outcome, (c, seed), (counted::POINTS, None))?;
@@ -161,19 +163,20 @@ impl GuardedLaw {
         Some(Self { shares, law: None, full: None, points: Some(points) })
     }
 
-    /// Returns the law of the quantiles.
+    /// Returns the distribution that quantiles are taken from.
     fn of_quantiles(&self) -> Option<&SurfaceLaw> {
         self.full.as_ref().or(self.law.as_ref())
     }
 
-    /// Quantiles with these tails and probabilities, at most one half each, by a law that has passed its tests; None where one of them is unknown.
+    /// Quantiles at these tails and probabilities, at most one half each, by a distribution that has passed its tests. Returns None if one
+    /// of them is unknown.
     pub(super) fn quantiles(&self, fit: Option<&Law>, of: &[(LawTail, f64)]) -> Option<Vec<LawFigure>> {
         let law = self.of_quantiles()?;
         let found = law.quantiles(&sought(law, fit, of)).into_iter();
         found.map(|figure| Some(figure).filter(|figure| figure.value.is_finite())).collect()
     }
 
-    /// Returns the density as a table, `[y, density, error]`; None where values are steps.
+    /// Returns the density as a table, `[y, density, error]`. Returns None if the values are steps.
     pub(super) fn density(&self) -> Option<Vec<[f64; 3]>> {
         match (&self.law, &self.points) {
             (Some(law), _) => density(law, self.shares.quantiles.as_ref()),
@@ -182,7 +185,7 @@ impl GuardedLaw {
         }
     }
 
-    /// Points in place of a law whose quantiles give no coverage intervals.
+    /// Counts points in place of a distribution whose quantiles give no coverage intervals.
     pub(super) fn without(request: LawRequest<'_>, faulty: &FaultyQuantiles) -> Option<Self> {
         let mut counted = Self::counted(request, None)?;
         if let (FaultyQuantiles::Fall(p, y), Some(points)) = (faulty, &counted.points) {
@@ -193,8 +196,8 @@ impl GuardedLaw {
 }
 
 impl SurfaceShares {
-    /// Tests shares and quantiles by points of the surface and by the sample of the model. Quantiles with an unexplained variance that the
-    /// shares leave to that sample are tested `apart` from them.
+    /// Tests shares and quantiles by points of the surface and by the sample of the model. `apart` is true if quantiles include an
+    /// unexplained variance that the shares leave to that sample: the shares are not compared with these points then.
     fn refutation(
         &self,
         request: LawRequest<'_>,
@@ -219,34 +222,34 @@ impl SurfaceShares {
         }
     }
 
-    /// The numerical error of the share within the limits.
+    /// Numerical error of the share within the limits.
     pub(crate) fn error(&self) -> f64 {
         [self.below, self.above].iter().flatten().map(|figure| figure.error).fold(0.0, libm::hypot)
     }
 
-    /// The share beyond the limits; None without any.
+    /// Share of assemblies beyond the limits. Returns None if there are no limits.
     pub(crate) fn rejected(&self) -> Option<f64> {
         let beyond = [self.below, self.above];
         beyond.iter().any(Option::is_some).then(|| beyond.iter().flatten().map(|figure| figure.value).sum::<f64>())
     }
 
-    /// The share within the limits; None without any.
+    /// Share of assemblies within the limits. Returns None if there are no limits.
     pub fn yield_(&self) -> Option<f64> {
         self.rejected().map(|rejected| 1.0 - rejected)
     }
 
-    /// Its quantiles by the names of their probabilities.
+    /// Quantiles by the names of their probabilities.
     pub fn named_quantiles(&self) -> Option<Quantiles> {
         self.quantiles.map(|all| Quantiles(all.map(|figure| figure.value)))
     }
 
-    /// The lower, the middle and the upper quantile by which a process is judged.
+    /// Lower, middle and upper quantile for percentile capability.
     pub(super) fn capability_quantiles(&self) -> Option<[f64; 3]> {
         self.quantiles.map(|all| OUTER.map(|index| all[index].value))
     }
 }
 
-/// Whether measured values make the points of a contour sums that are too long, and more of them than a list.
+/// True if measured values make the sums at the points of a contour too long, and the combinations of values are too many for a list.
 fn has_too_many_atoms(
     surrogate: &Surrogate,
     inputs: &[Arc<dyn Distribution>],
@@ -284,14 +287,15 @@ fn has_too_many_atoms(
     points > MOST_POINTS || points * atoms.iter().sum::<usize>() as f64 > TERMS_OF_ATOMS
 }
 
-/// The law of a characteristic's surface itself; None where there is no surface, or nothing but moments is known of an input.
+/// Distribution of a characteristic's surface itself. Returns None if there is no surface, or only moments are known of an input.
 pub(crate) fn surface_law(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Result<SurfaceLaw, LawError>> {
     let (surrogate, inputs) = surface(problem, outcome, c, None)?;
     let rounding = problem.kept_limits(c).rounding();
     Some(law_over(&surrogate, &inputs, outcome.plan.inputs().correlation(), rounding))
 }
 
-/// The law of a surface; None where measured values are too many for a contour and their sums for a list.
+/// Distribution of a surface over its inputs. Returns None if measured values are too many for a contour, and their sums too many for a
+/// list.
 fn known_law(
     surrogate: &Surrogate,
     inputs: &[Arc<dyn Distribution>],
@@ -304,13 +308,13 @@ fn known_law(
     }
 }
 
-/// Without limits a tail has no call for twelve digits: quantiles of trees of products are those of points.
+/// Options for computing the distribution. Without limits a tail needs no twelve digits: quantiles of trees of products come from points.
 fn options(problem: &Problem, c: usize, surrogate: &Surrogate) -> LawOptions {
     let (trees, kept) = (problem.characteristics()[c].limits().exist(), problem.kept_limits(c));
     LawOptions { points: points(surrogate), trees, rounding: kept.rounding(), ..LawOptions::default() }
 }
 
-/// The law of a surface over these inputs, with as many points as reports take, whose values rounding moves by no more than this.
+/// Distribution of a surface over these inputs, with the number of points for reports. Rounding moves values by no more than `rounding`.
 pub(crate) fn law_over(
     surrogate: &Surrogate,
     inputs: &[Arc<dyn Distribution>],
@@ -321,7 +325,7 @@ pub(crate) fn law_over(
     SurfaceLaw::of(surrogate, inputs, correlation, &options)
 }
 
-/// A surface and the distributions of its inputs, beside a variance that it leaves out.
+/// A surface and the distributions of its inputs, with an unexplained variance as a further input.
 fn surface(
     problem: &Problem,
     outcome: &Outcome,
@@ -332,12 +336,13 @@ fn surface(
     Some(with(outcome.fitted[c].surrogate.as_ref()?, inputs.collect::<Option<_>>()?, unexplained))
 }
 
+/// Number of points for a limit in the sampled branch, fewer for a surface with many terms.
 fn points(surrogate: &Surrogate) -> usize {
     let terms = surrogate.parts.len() + surrogate.interactions.each_pair().count();
     (POINTS * TERMS / terms.max(TERMS)).max(FEWEST)
 }
 
-/// The surface beside what it leaves out, as a normal input of its own.
+/// Adds unexplained variance to the surface as a normal input of its own.
 pub(super) fn with(
     own: &Surrogate,
     mut inputs: Vec<Arc<dyn Distribution>>,
@@ -354,7 +359,7 @@ pub(super) fn with(
     (surrogate, inputs)
 }
 
-/// The density at places from one far quantile to the other, `[y, density, error]`; None where its values are steps, and where points are
+/// Density at places from one far quantile to the other, `[y, density, error]`. Returns None if the values are steps, or if points are
 /// drawn of which none can be integrated.
 fn density(law: &SurfaceLaw, quantiles: Option<&[LawFigure; 7]>) -> Option<Vec<[f64; 3]>> {
     if law.is_step_function() {
@@ -363,7 +368,7 @@ fn density(law: &SurfaceLaw, quantiles: Option<&[LawFigure; 7]>) -> Option<Vec<[
     let sampled = law.branch() == Branch::Sampled;
     let places = if sampled { FEW_PLACES } else { PLACES };
     let [from, to] = match quantiles.filter(|_| sampled) {
-        // Half as far again: of a normal distribution from 3 to 4.5 sigma.
+        // Extends the range by half: for a normal distribution from 3 to 4.5 sigma.
         Some(all) => {
             let [low, middle, high] = OUTER.map(|index| all[index].value);
             let [least, most] = law.range();
@@ -381,8 +386,8 @@ fn density(law: &SurfaceLaw, quantiles: Option<&[LawFigure; 7]>) -> Option<Vec<[
     (from < to && table.iter().all(|[_, density, _]| *density >= 0.0)).then_some(table)
 }
 
-/// All quantiles of reports, sought from those of the Pearson fit, or of a normal distribution where nothing else has the moments; None
-/// where one of them is unknown.
+/// All quantiles of reports. The search starts at those of the Pearson fit, or of a normal distribution if there is no fit. Returns None if
+/// one of them is unknown.
 fn quantiles(law: &SurfaceLaw, fit: Option<&Law>) -> Option<[LawFigure; 7]> {
     let found = law.quantiles(&sought(law, fit, &QUANTILES));
     let known = found.iter().all(|figure| figure.value.is_finite());
@@ -406,29 +411,29 @@ fn sought(law: &SurfaceLaw, fit: Option<&Law>, of: &[(LawTail, f64)]) -> Vec<Sou
     of.iter().map(one).collect()
 }
 
-/// The results of the surface distribution, as they are written.
+/// Results of the surface distribution, in JSON.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(super) struct SurfaceLawShape {
-    /// `exact`, `single` or `sampled`: how it is computed.
+    /// Kind of computation of the distribution: `exact`, `single` or `sampled`.
     branch: &'static str,
-    /// Points of the surface at which the law was counted, where it could not be computed or is refuted; null where it was computed.
+    /// Number of surface points that were counted because the distribution could not be computed or is refuted; null if it was computed.
     counted_points: Option<usize>,
-    /// The contradiction for which points took the place of the law; null where there is none.
+    /// Contradiction because of which points replace the distribution; null without one.
     #[cfg_attr(feature = "schema", schemars(with = "Option<super::law_guard::LawRefutationShape>"))]
     refuted: Option<LawRefutation>,
-    /// Whether the law is a step function, because every input that counts has measured values only.
+    /// True if the distribution is a step function, because every input with an effect has measured values only.
     step_function: bool,
-    /// The share within the limits; null without any.
+    /// Share within the limits; null without limits.
     #[serde(rename = "yield")]
     yield_: Option<f64>,
     /// Assemblies below the lower limit, per million.
     ppm_below: Option<f64>,
     /// Assemblies above the upper limit, per million.
     ppm_above: Option<f64>,
-    /// The numerical error of the share within the limits: of the law of this surface, not of the surface.
+    /// Numerical error of the share within the limits: of the distribution of this surface, not of the surface.
     yield_error: Option<f64>,
-    /// Quantiles; null where one of them is unknown.
+    /// Quantiles; null if one of them is unknown.
     quantiles: Option<Quantiles>,
 }
 

@@ -1,4 +1,4 @@
-//! Where a surrogate does not do what the moments take it to do.
+//! Warnings of surrogates that violate the assumptions of the moments.
 
 use super::shapes::{Shape, higher, shape};
 use super::verified::UNTRUSTED;
@@ -10,26 +10,28 @@ use crate::problem::Problem;
 use crate::warning::{Figure, Warning};
 use sensitol_numeric::verdict::ERRORS;
 
-/// A second difference below this part of sigma does not matter: what it bends is far below what anybody wants to know.
+/// Second difference, as a part of sigma, below which a bend does not matter: its effect is far below any useful accuracy.
 const BEND: f64 = 1e-3;
-/// The share of the variance from which powers beyond the second are worth a warning, where the surrogate has them,
+/// Share of the variance by powers beyond the second above which there is a warning, if the surrogate contains them.
 const HELD: f64 = 0.01;
-/// and where it has not, by how much they move sigma.
+/// Scatter of the model's answers, as a part of sigma, above which there is a warning.
 const SCATTER: f64 = 1e-4;
-/// Variance that is left unexplained is worth a warning from here on.
+/// Unexplained share of the variance above which there is a warning.
 const LEFT_OUT: f64 = 1e-3;
 
-/// The Pearson fit is worth a warning where it is off by more than the interval of the yield, by this part of what is rejected, and by
-/// more than a hundredth of a part per million, which does not matter.
+/// Difference of the reject rate of the Pearson fit, as a part of the rejects, above which there is a warning. It must also exceed the
+/// interval of the yield and [`COUNTED`].
 const APART: f64 = 0.01;
+/// Smallest difference of reject rates that matters: a hundredth of a part per million.
 const COUNTED: f64 = 1e-8;
 
+/// Warnings of one characteristic about its surrogate and its Pearson fit.
 pub(super) fn of(problem: &Problem, outcome: &Outcome, c: usize, analysis: &CharacteristicAnalysis) -> Vec<Warning> {
     let Some(sigma) = analysis.moments.map(|moments| moments.sigma()).filter(|&sigma| sigma > 0.0) else {
         return Vec::new();
     };
     let mut warnings = axes(problem, outcome, c, sigma);
-    // The formula names its own switches, and where.
+    // The switches of a formula, with their places, replace guesses from the axes.
     if analysis.verification.as_ref().is_some_and(|verification| verification.switches.is_some()) {
         let seen = |warning: &Warning| matches!(warning, Warning::Kink { .. } | Warning::Discontinuity { .. });
         warnings.retain(|warning| !seen(warning));
@@ -37,12 +39,12 @@ pub(super) fn of(problem: &Problem, outcome: &Outcome, c: usize, analysis: &Char
     warnings.extend(pearson(analysis));
     if let Some(climbed) = &outcome.climbed {
         let mut found = climb(outcome, climbed, c, (analysis, sigma));
-        // Scatter of a formula's answers next to the means is a kink, or a root that is not smooth.
+        // If answers of a formula scatter next to the means, there is a kink or a root that is not smooth.
         let formula = problem.function().switches(problem.outputs()[c]).is_some_and(|switches| switches.complete);
         if analysis.verification.is_some() {
             found.retain(|warning| match warning {
                 Warning::Scatter { .. } => !formula,
-                // The sample says what is left out, and how far that is off.
+                // The sample shows the unexplained share and its effect.
                 Warning::UntrustedSurrogate { .. } | Warning::InteractionsLeftOut { .. } => false,
                 _ => true,
             });
@@ -52,12 +54,12 @@ pub(super) fn of(problem: &Problem, outcome: &Outcome, c: usize, analysis: &Char
     warnings
 }
 
-/// Whether the Pearson fit is not to be trusted with the yield.
+/// Warning of a Pearson fit that gives a wrong yield.
 fn pearson(analysis: &CharacteristicAnalysis) -> Option<Warning> {
     let source = analysis.yield_source.filter(|source| *source != YieldSource::Pearson)?;
     let fit = analysis.pearson?.rejected()?;
     let rejected = analysis.capability?.rejected()?;
-    // Of a proof without an estimate nothing is left open.
+    // A proof without an estimate has no error.
     let error = match analysis.error_estimate.as_ref().and_then(|estimate| estimate.yield_) {
         None if source == YieldSource::Proof => 0.0,
         error => error?,
@@ -68,9 +70,9 @@ fn pearson(analysis: &CharacteristicAnalysis) -> Option<Warning> {
     differs.then_some(Warning::PearsonDiffers { characteristic, pearson: fit, rejected, error })
 }
 
-/// Kinks, jumps and higher powers along the axes that have five points.
+/// Warnings of kinks, jumps and higher powers along the axes that have five points.
 fn axes(problem: &Problem, outcome: &Outcome, c: usize, sigma: f64) -> Vec<Warning> {
-    // A formula that is a polynomial has no kink, and no power that its surface does not hold.
+    // A formula that is a polynomial has no kink, and no power beyond those of its surface.
     if outcome.fitted[c].proof.is_some() {
         return Vec::new();
     }
@@ -113,7 +115,7 @@ fn axes(problem: &Problem, outcome: &Outcome, c: usize, sigma: f64) -> Vec<Warni
         let Some([third, fourth]) = outcome.fitted[c].parts[d].as_ref().and_then(higher) else { continue };
         let coefficients = [third / sigma, fourth / sigma];
         let rule = &plan.inputs().shapes()[position].rule;
-        // As far as no parabola has them: the powers by themselves, less their best straight line and constant.
+        // Only the part that no parabola can represent: the powers without their best parabola.
         let share = rule.mean(|u| {
             (coefficients[0] * (u.powi(3) - 3.0 * u) + coefficients[1] * (u.powi(4) - 6.0 * u * u + 3.0)).powi(2)
         });
@@ -125,7 +127,7 @@ fn axes(problem: &Problem, outcome: &Outcome, c: usize, sigma: f64) -> Vec<Warni
     warnings
 }
 
-/// Warnings by the findings of `auto` on its surrogate.
+/// Warnings from the findings of `auto` about its surrogate.
 fn climb(
     outcome: &Outcome,
     climbed: &Climbed,
@@ -135,7 +137,7 @@ fn climb(
     let characteristic = || analysis.characteristic.name().to_owned();
     let mut warnings = Vec::new();
     if let Some(scatter) = climbed.noise[c].map(|scatter| scatter / sigma).filter(|&scatter| scatter > SCATTER) {
-        // A second difference of values that scatter: root of six of it.
+        // Scatter of a second difference is the root of six times that of a value.
         let drowned = |&&d: &&usize| {
             let samples = outcome.plan.samples(&outcome.evaluated.known, c, d).unwrap_or_default();
             let sum = |u: f64| samples.iter().find(|(node, _)| *node == u).map(|(_, rise)| rise / sigma);

@@ -1,18 +1,18 @@
-//! The error of a share that a surface leaves beyond a limit, where no point of the model tells it.
+//! Error of the reject rate of a surface without verification by points of the model.
 //!
 //! ```text
 //! shift(y) = sigma sqrt((dm/sigma)^2 + (z ds/sigma)^2 + ((z^2 - 1) dskew/6)^2 + ((z^3 - 3 z) dkurt/24)^2),    z = (y - m)/sigma
 //! error    = P(beyond y, moved by its shift towards the mean) - P(beyond y)
 //! ```
 //!
-//! The errors of the moments move every quantile by what the Cornish-Fisher expansion says to first order in each; a limit that is moved
-//! by as much has the share that the true one may have. Far out that is many times the share itself, which the movement of a fit's
-//! parameters does not show. Source: R. A. Fisher, E. A. Cornish, Technometrics 2 (1960), eq. of the second order.
+//! The errors of the moments move every quantile by the first-order terms of the Cornish-Fisher expansion. A limit that is moved by the
+//! same amount gives the greatest share that the true one may have. Far out this is many times the share itself. Moving the parameters of a
+//! fit does not show that. Source: R. A. Fisher, E. A. Cornish, Technometrics 2 (1960), eq. of the second order.
 
 use super::CharacteristicAnalysis;
 use sensitol_numeric::law::{LawTail, SurfaceLaw};
 
-/// The errors of the shares below and above the limits, 0 without that limit; None where the error of a moment is not known.
+/// Errors of the shares below and above the limits, 0 without that limit. Returns None if the error of a moment is unknown.
 pub(super) fn error_of_shares(one: &CharacteristicAnalysis, law: &SurfaceLaw) -> Option<[f64; 2]> {
     let estimate = one.error_estimate.as_ref()?;
     let errors = [estimate.mean?, estimate.sigma?, estimate.skewness?, estimate.kurtosis?];
@@ -27,7 +27,7 @@ pub(super) fn error_of_shares(one: &CharacteristicAnalysis, law: &SurfaceLaw) ->
     Some(sides.map(moved))
 }
 
-/// How far the errors of mean, sigma, skewness and kurtosis move the quantile that lies at a limit.
+/// Distance by which the errors of mean, sigma, skewness and kurtosis move the quantile at a limit.
 fn shift(limit: f64, [mean, sigma]: [f64; 2], [of_mean, of_sigma, of_skewness, of_kurtosis]: [f64; 4]) -> f64 {
     let z = (limit - mean) / sigma;
     let parts = [
@@ -43,16 +43,16 @@ fn shift(limit: f64, [mean, sigma]: [f64; 2], [of_mean, of_sigma, of_skewness, o
 mod tests {
     use super::shift;
 
-    /// A normal law's quantile moves with its mean, and with its sigma as many times as it lies sigmas out: exactly.
+    /// The quantile of a normal distribution moves with its mean exactly, and with its sigma multiplied by its distance in sigmas.
     #[test]
     fn mean_and_sigma_move_a_limit_exactly() {
         assert_eq!(shift(10.0, [4.0, 2.0], [0.5, 0.0, 0.0, 0.0]), 0.5);
-        // Three sigmas out a sigma that is off by 0.1 moves by 0.3.
+        // Three sigmas out an error of 0.1 of sigma moves the quantile by 0.3.
         assert!((shift(10.0, [4.0, 2.0], [0.0, 0.1, 0.0, 0.0]) - 0.3).abs() < 1e-15);
     }
 
-    /// A gamma law of shape k has skewness 2/sqrt(k) and kurtosis 3 + 6/k: against a normal law its quantile at the share that a normal
-    /// one leaves beyond z differs by the shift, up to the next order. Quantile of k = 10,000 at 2.326348 sigmas: 2.34107... by the
+    /// A gamma distribution of shape k has skewness 2/sqrt(k) and kurtosis 3 + 6/k. Its quantile differs from that of a normal distribution
+    /// at the same tail probability by the shift, up to the next order. Quantile of k = 10,000 at 2.326348 sigmas: 2.34107... by the
     /// Wilson-Hilferty cube, whose error is O(1/k^1.5): (1 - 1/(9k) + z/(3 sqrt k))^3.
     #[test]
     fn skewness_moves_a_limit_as_a_gamma_law_is_moved() {

@@ -1,8 +1,8 @@
-//! The stage after any method: the model itself says how far every figure is off.
+//! Verification after any method: estimates the error of every figure from points of the model.
 //!
-//! `../verification` computes it; here it becomes the error estimate of each figure, and warnings. The figures of a method that was
-//! asked for by name stay what they are, with the model's beside them. `auto` takes the model's where its own lies beyond two
-//! standard errors of it; within them both agree, and the figures of one surface stay together.
+//! `../verification` computes it. This module turns it into error estimates and warnings. Figures of a method that was chosen by name stay,
+//! and the model's are shown beside them. `auto` takes the model's figure if its own lies beyond two standard errors of it. Within them
+//! both agree, and the figures of one surface stay together.
 
 use std::sync::Arc;
 
@@ -25,25 +25,26 @@ use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::surrogate::Surrogate;
 use sensitol_numeric::time::Instant;
 
-/// A sample is drawn again, larger, where it leaves more of a share open than this part of what a target lets be rejected: of 1e-4, 1e-5.
+/// Greatest error of a share, as a part of the reject rate that the target allows (of 1e-4: 1e-5). Above it a larger sample is drawn.
 const TARGET: f64 = 0.1;
-/// Points in the core of the largest sample.
+/// Greatest number of points in the core of a sample.
 const MOST: usize = 1 << 19;
-/// From this many errors on a figure contradicts the model, and from this part of sigma on, or this share, it matters.
+/// Standard errors beyond which a figure contradicts the model.
 const OFF: f64 = 3.0;
+/// Smallest deviation of a figure that matters: as a part of sigma for mean and sigma, of the value (at least 1) for skewness and kurtosis.
 const MATTERS: f64 = 0.01;
-/// Beyond so many standard errors `auto` takes the model's figure.
+/// Standard errors beyond which `auto` takes the model's figure.
 const AGREES: f64 = 2.0;
-/// An error of sigma above this part of it says that the surface does not follow the model.
+/// Error of sigma, as a part of sigma, above which the surface does not follow the model.
 const UNKNOWN: f64 = 0.1;
-/// The share of the variance of a correlated dimension of which a method that integrates knows none: any between those from which on an
-/// input is not idle and from which on it gets check points of its own, 1e-4 and 0.03.
+/// Assumed share of the variance of a correlated dimension, for methods that integrate and have no share of it. Any value serves that lies
+/// between 1e-4 (an input is not idle) and 0.03 (an input gets check points of its own).
 const ORDINARY: f64 = 0.01;
-/// The largest error of a difference, in roundings of the value at the means.
+/// Largest error of a difference, in roundings of the value at the means.
 const ROUNDINGS: f64 = 8.0;
 
-/// Verifies every characteristic, unless that is switched off: see [`Options::verify`]. Returns what that took, and where the model answered
-/// otherwise than before.
+/// Verifies every characteristic, unless that is switched off (see [`Options::verify`]). Returns the spent points and time, and the points
+/// at which the model was not repeatable.
 pub(super) fn verify(
     problem: &Problem,
     outcome: &Outcome,
@@ -62,14 +63,15 @@ pub(super) fn verify(
     if open.is_empty() {
         return Default::default();
     }
-    // A budget that does not reach for a sample of each characteristic reaches for check points.
+    // A budget that is too small for a sample of each characteristic may suffice for check points.
     let each = left.map(|left| left / open.len());
     let cores: Option<Vec<usize>> = open.iter().map(|&c| core_within(problem, c, each)).collect();
     let Some(cores) = cores.filter(|_| !costly) else {
         return check(problem, outcome, options, most.min(left.unwrap_or(usize::MAX)), (&open, characteristics), run);
     };
     let seed = options.seed.unwrap_or(Options::SEED);
-    // A long formula takes a while for each of some 45 000 points: what is left has no verification, and the report says so.
+    // A long formula takes a while for each of some 45 000 points. Characteristics that are not reached in time have no verification, and
+    // the report states it.
     let one = |(c, one): (usize, &mut CharacteristicAnalysis)| {
         let core = open.binary_search(&c).map(|place| cores[place]);
         core.map_or(true, |core| sample(problem, outcome, (options, each), (c, core), one, (seed, run)))
@@ -79,7 +81,7 @@ pub(super) fn verify(
     (RunSummary { stopped, ..RunSummary::default() }, Vec::new())
 }
 
-/// Whether the surface is proven to be the function; then its errors are roundings.
+/// True if the surface is proven to equal the function. Its errors are roundings then.
 fn proven(outcome: &Outcome, c: usize, one: &mut CharacteristicAnalysis) -> bool {
     let (Some(proof), Some(moments)) = (outcome.fitted[c].proof, one.moments) else { return false };
     let sampled = one.sampled.is_some() || one.model_sampled.is_some();
@@ -121,8 +123,8 @@ fn proven(outcome: &Outcome, c: usize, one: &mut CharacteristicAnalysis) -> bool
     true
 }
 
-/// Verifies one characteristic by a sample with `core` points in its core, with no more evaluations than are left for it; false where the run was stopped before there
-/// was one.
+/// Verifies one characteristic by a sample with `core` points in its core, within the evaluations that are left for it. Returns false if
+/// the run was stopped before there was a sample.
 fn sample(
     problem: &Problem,
     outcome: &Outcome,
@@ -134,9 +136,10 @@ fn sample(
     let surrogate = outcome.fitted[c].surrogate.as_ref();
     let beside = surrogate.map(|surrogate| (outcome.plan.varying(), surrogate));
     let Some(mut found) = verify_characteristic(problem, c, (seed, core), beside, run) else { return false };
+    // The sample must resolve sigma to the accuracy, and the yield to its target.
     let climbed = outcome.climbed.as_ref();
     let wanted = climbed.map(|climbed| climbed.accuracy);
-    // Of a target that leaves little to be rejected, the weight of one point may be all.
+    // If the target allows few rejects, the weight of a single point may exceed them.
     let rejected = one.characteristic.target_yield().map(|target| 1.0 - target);
     let coarse = |found: &SampledFigures| {
         let sigma = wanted.zip(found.sigma).is_some_and(|(wanted, sigma)| sigma.error > PART * wanted * sigma.value);
@@ -147,11 +150,12 @@ fn sample(
     let affords = |spent: usize, more: usize| left.is_none_or(|left| spent + more <= left);
     while core < MOST && coarse(&found) && !run.stopped() && affords(spent, most_points(MORE * core)) {
         core *= MORE;
-        // Results that are known stay known where there is no time for more.
+        // If there is no time for a larger sample, the smaller one stays.
         let Some(more) = verify_characteristic(problem, c, (seed, core), beside, run) else { break };
         found = more;
         spent += found.points;
     }
+    // Shares of variance cost many points: they are computed only if the surface leaves too much of the variance unexplained.
     let open = beside.and_then(|beside| unexplained(problem, c, beside, seed, run));
     let shares = open
         .filter(|&share| {
@@ -161,6 +165,7 @@ fn sample(
     let dimension = |d: usize| problem.dimensions()[d].name().to_owned();
     let share = |(d, [first, total]): (usize, [Verified; 2])| VarianceShare { dimension: dimension(d), first, total };
     let shares = shares.map(|shares| shares.into_iter().map(share).collect());
+    // With `model_figures`, a surface that is not trusted gives way to the model's figures.
     let refuted = options.model_figures && open.is_none_or(|share| share > TRUSTED);
     let replaced = (options.method == Method::Auto || refuted) && replace(one, &found);
     let Some(moments) = one.moments else { return true };
@@ -203,7 +208,7 @@ fn sample(
     true
 }
 
-/// Takes the model's figures where those at hand contradict them; whether any was taken.
+/// Replaces figures that the model contradicts by the model's. Returns true if any was replaced.
 fn replace(one: &mut CharacteristicAnalysis, found: &SampledFigures) -> bool {
     let (Some(mean), Some(sigma)) = (found.mean, found.sigma) else { return false };
     let sampled = |of: Verified| Some(of.value);
@@ -226,7 +231,7 @@ fn replace(one: &mut CharacteristicAnalysis, found: &SampledFigures) -> bool {
         let of = |i: usize| if take(i) { other[i] } else { own[i] };
         Some(Moments::new(of(0)?, of(1)?, of(2)?, of(3)? - 3.0))
     };
-    // Figures of two origins need not belong to any distribution: then all are the sample's.
+    // Moments of two origins need not belong to any distribution. All are the sample's in that case.
     let mixed = pick(&|i| off[i]).filter(|mixed| Law::fit(mixed).is_ok());
     let Some(moments) = mixed.or_else(|| pick(&|_| true)) else { return false };
     let limits = one.characteristic.limits();
@@ -240,6 +245,7 @@ fn replace(one: &mut CharacteristicAnalysis, found: &SampledFigures) -> bool {
     true
 }
 
+/// Verifies the `open` characteristics of a costly model at check points.
 fn check(
     problem: &Problem,
     outcome: &Outcome,
@@ -270,7 +276,7 @@ fn check(
         (0..answers.rows()).any(|row| !given(row) || answers.is_open(row, c))
     };
     for &c in open {
-        // Points without an answer say nothing.
+        // Points without an answer give no information.
         if !not_given(c) {
             let exact = surface(c).and_then(|of| Some(of.contributions(outcome.plan.inputs())?.moments));
             judge(&mut characteristics[c], &checked, &checked.characteristics[c], exact);
@@ -279,7 +285,7 @@ fn check(
     (answers.summary(begun.elapsed()), answers.non_repeatable().to_vec())
 }
 
-/// The errors of a method's figures: those of the surface, and what the method has beside the surface.
+/// Derives the errors of a method's figures: the error of the surface, and the difference between method and surface.
 fn judge(one: &mut CharacteristicAnalysis, checked: &Checked, found: &CheckedFigures, surface: Option<Moments>) {
     let Some(moments) = one.moments else { return };
     let errors = found.errors;
@@ -318,7 +324,7 @@ fn judge(one: &mut CharacteristicAnalysis, checked: &Checked, found: &CheckedFig
     });
 }
 
-/// The warnings that follow from the verification of one characteristic.
+/// Warnings that follow from the verification of one characteristic.
 pub(super) fn warnings(one: &CharacteristicAnalysis, wanted: Option<f64>) -> Vec<Warning> {
     let Some(verification) = &one.verification else { return Vec::new() };
     let characteristic = || one.characteristic.name().to_owned();

@@ -1,4 +1,4 @@
-//! The results of the verification of a characteristic.
+//! Results of the verification of a characteristic.
 
 use std::sync::Arc;
 
@@ -8,85 +8,86 @@ use crate::verification::{FoundSwitch, Share, Tails, Verified, WeightedSample};
 use sensitol_numeric::power::{Rescale, Rescaling, Unknown};
 use sensitol_numeric::shape::{Four, Sides, through};
 
-/// How figures were verified.
+/// Kind of the verification of figures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum VerificationKind {
-    /// By points of a cheap model.
+    /// Points of a cheap model.
     Sample,
-    /// By check points of a costly model.
+    /// Check points of a costly model.
     Checks,
-    /// By the formula itself, a polynomial of this degree that the surface holds exactly.
+    /// Proof by the formula itself, a polynomial of this degree that the surface represents exactly.
     Exact {
-        /// The degree.
+        /// Degree of the polynomial.
         degree: u32,
     },
 }
 
-/// Of the variance: a surface that leaves more unexplained says nothing of the tails, nor of an optimum.
+/// Greatest unexplained share of the variance of a trusted surface. Above it the surface is no basis for tails or for an optimum.
 pub(crate) const TRUSTED: f64 = 0.01;
-/// A surface that leaves more of the variance unexplained does not follow the model, and has no contributions to show.
+/// Unexplained share of the variance above which a surface does not follow the model, and has no contributions to show.
 pub(super) const UNTRUSTED: f64 = 0.05;
 
-/// The results of the model itself for a characteristic.
+/// Results of the model itself for a characteristic.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
 #[non_exhaustive]
 pub struct Verification {
-    /// How.
+    /// Kind of the verification.
     #[serde(flatten, serialize_with = "through::<KindShape, _, _>")]
     #[cfg_attr(feature = "schema", schemars(with = "KindShape"))]
     pub kind: VerificationKind,
-    /// Points of the model that were evaluated for it.
+    /// Evaluated points of the model.
     pub points: usize,
-    /// Check points without a value; of a sample `valid` tells.
+    /// Check points without a value. A sample has `valid` instead.
     #[serde(skip)]
     pub(crate) failed: usize,
-    /// The share of the assemblies that have a value; None where points do not tell.
+    /// Share of the assemblies that have a value. None if there is no sample.
     #[serde(rename = "valid_share")]
     pub valid: Option<Verified>,
-    /// The share of the variance that the surface leaves unexplained.
+    /// Share of the variance that the surface leaves unexplained.
     pub left: Option<f64>,
-    /// Mean, sigma, skewness and kurtosis by the model; None without a sample of it.
+    /// Mean, sigma, skewness and kurtosis by the model. None if there is no sample of it.
     #[serde(skip)]
     pub figures: [Option<Verified>; 4],
-    /// The share within the limits: by the model, or by the surface with the error that checks give it.
+    /// Share within the limits: by the model, or by the surface with the error from check points.
     #[serde(skip)]
     pub yield_: Option<Verified>,
-    /// The shares beyond the lower and the upper limit.
+    /// Shares beyond the lower and the upper limit.
     #[serde(skip)]
     pub beyond: [Option<Verified>; 2],
-    /// The weight of one point of a sample.
+    /// Weight of one point of a sample.
     #[serde(skip)]
     pub(crate) point: f64,
-    /// How much more of the model than of its surface lies within the limits, below and above them; None without a sample of both.
+    /// Difference of the shares of model and surface within the limits, below and above them. None if there is no sample of both.
     pub difference: Option<[Verified; 3]>,
-    /// The switches that are met; None where the model does not tell where it changes its form.
+    /// Switches that were met. None if the model does not report where it changes its form.
     pub switches: Option<Vec<FoundSwitch>>,
-    /// The share of the assemblies that may do anything else where all points agree, at 95 %; None where points are many.
+    /// Greatest share of the assemblies that may behave differently although all points agree, at 95 %. None for a sample, which has many
+    /// points.
     pub unseen: Option<f64>,
-    /// Shares of the variance from the model, where the surface is not trusted.
+    /// Shares of the variance from the model, if the surface is not trusted.
     pub shares: Option<Vec<VarianceShare>>,
-    /// The tails of the sample towards the limits; None without either.
+    /// Tails of the sample towards the limits. None if there are no limits.
     pub tails: Option<Tails>,
-    /// Whether figures of the characteristic are the model's, in place of the surface's.
+    /// True if figures of the characteristic are the model's, in place of the surface's.
     pub replaced: bool,
-    /// The sample, where an inspection asks for more of it.
+    /// Sample, kept if an inspection or a coverage interval needs its points.
     #[serde(skip)]
     pub(crate) sample: Option<Arc<WeightedSample>>,
 }
 
-/// The part of the variance that a dimension explains, by the model itself.
+/// Part of the variance that a dimension explains, by the model itself.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct VarianceShare {
-    /// The dimension.
+    /// Name of the dimension.
     pub dimension: String,
-    /// By itself.
+    /// Share of the dimension alone.
     pub first: Share,
-    /// With all interactions in which it has a part.
+    /// Share with all interactions of the dimension.
     pub total: Share,
 }
 
@@ -105,7 +106,7 @@ impl Rescale for Verification {
 impl Unknown for Verification {}
 
 impl Verification {
-    /// In one line.
+    /// Describes the verification in one line.
     pub fn words(&self) -> String {
         match self.kind {
             VerificationKind::Sample => format!("verified at {} points of the model", self.points),
@@ -118,13 +119,13 @@ impl Verification {
     }
 }
 
-/// How figures were verified, as it is written.
+/// Kind of the verification, in JSON.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct KindShape {
     /// `sample`, `checks` or `exact`.
     kind: &'static str,
-    /// The degree of the polynomial that the formula is; null where it was not verified so.
+    /// Degree of the polynomial that the formula is; null for other kinds.
     degree: Option<u32>,
 }
 
@@ -139,24 +140,24 @@ impl From<&VerificationKind> for KindShape {
     }
 }
 
-/// A verification as it is written.
+/// A verification in JSON.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(super) struct VerificationShape<'r> {
     #[serde(flatten, serialize_with = "Verification::serialize")]
     #[cfg_attr(feature = "schema", schemars(with = "Verification"))]
     own: &'r Verification,
-    /// By the model itself; null without a sample of it.
+    /// Figures of the model itself; null without a sample of it.
     figures: FiguresShape,
 }
 
-/// The figures of a verification.
+/// Figures of a verification.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct FiguresShape {
     #[serde(flatten)]
     moments: Four<Option<Verified>>,
-    /// The share within the limits; by the surface with the error that checks give it, where there is no sample.
+    /// Share within the limits: by the sample, or by the surface with the error from check points.
     #[serde(rename = "yield")]
     yield_: Option<Verified>,
     #[serde(flatten)]

@@ -1,17 +1,18 @@
-//! Whether the estimated errors are what was wanted.
+//! Comparison of estimated errors with the requested accuracies.
 
 use super::CharacteristicAnalysis;
 use crate::method::Accuracies;
 use crate::warning::Figure;
 
-/// A standard error is this part of what is wanted, so that two of them keep it; where it is more, the sample is drawn again.
+/// Greatest standard error as a part of the requested accuracy, so that two standard errors keep it. Above it the sample is drawn again.
 pub(super) const PART: f64 = 0.5;
-/// A further sample has so many times the points of the one before: half its error, and all samples together take a third more points than
-/// the last.
+/// Ratio of the points of a further sample to those of the one before. The error halves, and all samples together take a third more points
+/// than the last.
 pub(super) const MORE: usize = 4;
 
-/// The figures with an accuracy to reach beside sigma and their estimated errors, infinite where an error is unknown; without
-/// figures that the characteristic does not have: a shape where nothing varies, a yield without limits.
+/// Figures other than sigma with a requested accuracy: figure, estimated error (infinite if unknown), accuracy.
+///
+/// Figures that the characteristic does not have are left out: a shape if nothing varies, a yield without limits.
 pub(super) fn beside_sigma(one: &CharacteristicAnalysis, wanted: &Accuracies) -> Vec<(Figure, f64, f64)> {
     let Some(moments) = one.moments.filter(|moments| moments.sigma() > 0.0) else { return Vec::new() };
     let estimate = one.error_estimate.as_ref();
@@ -26,7 +27,7 @@ pub(super) fn beside_sigma(one: &CharacteristicAnalysis, wanted: &Accuracies) ->
     each.filter_map(|(figure, wanted)| Some((figure, of(figure).unwrap_or(f64::INFINITY), wanted?))).collect()
 }
 
-/// The largest of them in parts of what is wanted; 0 where nothing is.
+/// Largest ratio of an estimated error to its requested accuracy; 0 if none is requested.
 pub(super) fn excess(one: &CharacteristicAnalysis, wanted: &Accuracies) -> f64 {
     beside_sigma(one, wanted).into_iter().map(|(_, error, wanted)| error / wanted).fold(0.0, f64::max)
 }

@@ -1,4 +1,4 @@
-//! Where the results of an analysis rest on something that does not hold.
+//! Warnings of an analysis: assumptions of its results that fail.
 
 use std::collections::HashSet;
 
@@ -16,29 +16,31 @@ use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::names::element;
 use sensitol_numeric::surrogate::Surrogate;
 
-/// The third power of a larger value is beyond the largest double, 1.8e308.
+/// Largest value whose powers are safe: the third power of a larger one is close to the largest double, 1.8e308.
 const LARGEST: f64 = 1e100;
-/// A rounding error of one value above this part of sigma is worth a warning.
+/// Rounding error of a value, as a part of sigma, above which there is a warning.
 const NOISE: f64 = 1e-4;
-/// Curvature that moves the mean by more sigmas than this spoils RSS,
+/// Mean shift by curvature, in sigmas, above which RSS is invalid.
 const SHIFT: f64 = 0.1;
-/// and so does curvature that adds more than this part of the linear variance.
+/// Variance by curvature, as a part of the linear variance, above which RSS is invalid.
 const CURVED: f64 = 0.05;
 
-/// Rules of three nodes are exact to the fifth degree, and the fourth power of a parabola is of the eighth: curvature that adds
-/// more than this part of the variance shows in the kurtosis.
+/// Share of the variance by curvature above which three nodes are too few. Their rules are exact to the fifth degree, and the fourth power
+/// of a parabola has degree eight: the error shows in the kurtosis.
 const SHALLOW_CURVED: f64 = 1e-2;
-/// A fitted surface that misses its values by more than this part of sigma is not to be trusted.
+/// Residual of a fitted surface, as a part of sigma, above which the fit is poor.
 const POOR: f64 = 0.05;
-/// Points at which a characteristic that is not 0 at the means may be exactly 0 by chance.
+/// Fewest points with a value of exactly 0 that count as an atom, if the value at the means is not 0.
 const ATOM: usize = 2;
-/// Along a dimension with a long tail, curvature of this share of the variance is worth one.
+/// Share of the variance by curvature above which a dimension with a long tail gets a warning.
 const LONG_TAIL: f64 = 1e-3;
-/// A kurtosis that exceeds the least possible by no more than this part is worth one too.
+/// Margin of the kurtosis above the least possible one, as a part of it, below which there is a warning.
 const MARGIN: f64 = 0.1;
-/// From here on there are more likely two peaks than one: an arc sine law, which has its mass at both ends, has 2/3.
+/// Sarle's coefficient `(skewness^2 + 1)/kurtosis` above which two peaks are more likely than one. An arc sine distribution, with its mass
+/// at both ends, has 2/3.
 const MODES: f64 = 0.68;
 
+/// Warnings of all characteristics, aggregated; `jumps` are those of the search for jumps.
 pub(super) fn of(
     problem: &Problem,
     outcome: &Outcome,
@@ -78,7 +80,7 @@ pub(super) fn of(
         warnings.extend(not_proven(analysis));
     }
     let possible = outcome.plan.possible_pairs();
-    // Pairs that `auto` did not examine show in its comparison with the model.
+    // Pairs that `auto` did not examine show in its comparison with the model instead.
     let open = outcome.fitted.iter().enumerate().any(|(c, fitted)| fitted.known_pairs < outcome.plan.pairs_of(c));
     if outcome.order == Order::Second && outcome.climbed.is_none() && outcome.pairs.len() < possible && open {
         warnings.push(Warning::PairsNotExamined { examined: outcome.pairs.len(), possible });
@@ -86,7 +88,7 @@ pub(super) fn of(
     aggregated(warnings)
 }
 
-/// Measured dimensions whose sample was not drawn anew.
+/// Warning of measured dimensions whose sample was not drawn anew.
 fn not_resampled(problem: &Problem, outcome: &Outcome) -> Option<Warning> {
     // Rows of measured parts are drawn anew as a whole.
     let correlated = outcome.plan.inputs().correlation().is_some_and(|of| of.without_blocks().is_some());
@@ -100,8 +102,8 @@ fn not_resampled(problem: &Problem, outcome: &Outcome) -> Option<Warning> {
     (!dimensions.is_empty()).then_some(Warning::NoSamplingInterval { dimensions, correlated })
 }
 
-/// Dimensions that vary and on which no characteristic can depend, but for those of a zone or a geometric element of which another one
-/// matters.
+/// Warning of dimensions that vary and affect no characteristic. Coordinates of a zone or a geometric element that has a used coordinate
+/// are left out.
 fn unused(problem: &Problem) -> Option<Warning> {
     let dependence = problem.dependence();
     let used = |d: &usize| dependence.iter().any(|row| row[*d]);
@@ -116,6 +118,7 @@ fn unused(problem: &Problem) -> Option<Warning> {
     (!dimensions.is_empty()).then_some(Warning::UnusedDimension { dimensions })
 }
 
+/// Warning of points without a value.
 fn failed_points(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Warning> {
     let known = &outcome.evaluated.known;
     let mut errors = known.errors().filter(|&(_, of, _)| of == c);
@@ -130,7 +133,7 @@ fn failed_points(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Warni
     })
 }
 
-/// Values, or moments, whose powers are no doubles.
+/// Warning of values or moments whose powers overflow a double.
 fn overflow(outcome: &Outcome, c: usize, analysis: &CharacteristicAnalysis) -> Option<Warning> {
     let moments = analysis.moments.iter().flat_map(|moments| [moments.mean(), moments.sigma()]);
     let largest = outcome.evaluated.known.values(c).chain(moments).fold(0.0, |most: f64, value| most.max(value.abs()));
@@ -138,7 +141,7 @@ fn overflow(outcome: &Outcome, c: usize, analysis: &CharacteristicAnalysis) -> O
     (largest > LARGEST).then_some(Warning::Overflow { characteristic, value: largest, limit: LARGEST })
 }
 
-/// Second derivatives that are known and that a double cannot hold: by dimensions of extreme size.
+/// Warning of known second derivatives that a double cannot hold, because of dimensions of extreme size.
 fn unrepresentable(outcome: &Outcome, c: usize, analysis: &CharacteristicAnalysis) -> Option<Warning> {
     let lost = analysis
         .sensitivities
@@ -150,7 +153,7 @@ fn unrepresentable(outcome: &Outcome, c: usize, analysis: &CharacteristicAnalysi
     lost.then_some(Warning::Unrepresentable { characteristic })
 }
 
-/// A point in words: what is not at its mean.
+/// Description of a point in words: the dimensions that are not at their means.
 fn described(problem: &Problem, outcome: &Outcome, point: &Point) -> String {
     if point == outcome.plan.nominal() {
         return "the nominal dimensions".to_owned();
@@ -166,7 +169,7 @@ fn described(problem: &Problem, outcome: &Outcome, point: &Point) -> String {
     at.collect::<Vec<_>>().join(", ")
 }
 
-/// Moments that could not be had by a method that is not a difference plan.
+/// Warning of missing moments of a method that integrates or fits by least squares.
 fn lost_moments(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Warning> {
     let because = match outcome.fitted[c].lacking? {
         Lacking::Points { lost, of } if outcome.evaluated.stopped.is_some() => {
@@ -184,7 +187,7 @@ fn lost_moments(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Warnin
     Some(Warning::LostMoments { characteristic: name(problem, c), because })
 }
 
-/// Derivatives that could not be had, or only over a shorter step.
+/// Warnings of missing derivatives, and of those known only over a shorter step.
 fn lost(problem: &Problem, outcome: &Outcome, c: usize) -> Vec<Warning> {
     let (plan, fitted, known) = (&outcome.plan, &outcome.fitted[c], &outcome.evaluated.known);
     let mut warnings = Vec::new();
@@ -203,6 +206,7 @@ fn lost(problem: &Problem, outcome: &Outcome, c: usize) -> Vec<Warning> {
             None
         }
     };
+    // Without a value at the means no derivative is known: one warning covers them all.
     if fitted.centre.is_none() {
         let centre = gone(&[], Loss::Centre);
         return vec![centre.unwrap_or_else(|| lost(Vec::new(), Loss::NotEvaluated { derivatives: 1 }))];
@@ -214,6 +218,7 @@ fn lost(problem: &Problem, outcome: &Outcome, c: usize) -> Vec<Warning> {
                 .value(&Point::of(&[crate::plan::AtNode { dimension: d as u32, node }]), c)
                 .map(|_| axis.nodes[node as usize].u)
         };
+        // The first node of a slot is the intended one, the others replace it if it failed.
         for slot in &axis.slots {
             if let (None, Some(used)) = (value(slot[0]), slot[1..].iter().find_map(|&node| value(node))) {
                 warnings.push(Warning::DomainEdge {
@@ -245,7 +250,7 @@ fn lost(problem: &Problem, outcome: &Outcome, c: usize) -> Vec<Warning> {
     warnings
 }
 
-/// Moments that no characteristic has that feels these dimensions' tails so.
+/// Warning of a moment that is infinite because of the tails of some dimensions.
 fn infinite_moment(problem: &Problem, outcome: &Outcome, analysis: &CharacteristicAnalysis) -> Option<Warning> {
     let figure = match analysis.moments {
         None => Figure::Sigma,
@@ -259,7 +264,7 @@ fn infinite_moment(problem: &Problem, outcome: &Outcome, analysis: &Characterist
         law.is_some_and(|law| !law.standard_moments().are_finite()) && slope(d).is_some_and(|slope| slope != 0.0)
     };
     let varying = outcome.plan.varying();
-    // Points that were not evaluated are another reason for a missing sigma.
+    // Points that were not evaluated are another reason of a missing sigma.
     if varying.iter().any(|&d| slope(d).is_none()) {
         return None;
     }
@@ -269,7 +274,7 @@ fn infinite_moment(problem: &Problem, outcome: &Outcome, analysis: &Characterist
     (!dimensions.is_empty()).then_some(Warning::InfiniteMoment { characteristic, figure, dimensions })
 }
 
-/// Curvature along dimensions whose tails reach far beyond what was evaluated.
+/// Warnings of curvature along dimensions whose tails reach far beyond the nodes.
 fn long_tails(problem: &Problem, outcome: &Outcome, analysis: &CharacteristicAnalysis) -> Vec<Warning> {
     let warning = |&d: &usize| {
         let tail = outcome.plan.axis(d).tail.as_ref()?;
@@ -286,7 +291,7 @@ fn long_tails(problem: &Problem, outcome: &Outcome, analysis: &CharacteristicAna
     outcome.plan.varying().iter().filter_map(warning).collect()
 }
 
-/// A minimum distance saturates at 0: several points at which a characteristic is exactly 0, and others at which it is not.
+/// Warning of an atom at 0, as of a minimum distance: several points at which a characteristic is exactly 0, and others at which it is not.
 fn atom(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Warning> {
     let known = &outcome.evaluated.known;
     let points = known.values(c).filter(|&value| value == 0.0).count();
@@ -294,7 +299,7 @@ fn atom(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Warning> {
     (points >= ATOM && elsewhere).then(|| Warning::Atom { characteristic: name(problem, c), points })
 }
 
-/// Results that exist but should not be taken at face value.
+/// Warnings of results that exist but are doubtful.
 fn doubtful(outcome: &Outcome, c: usize, analysis: &CharacteristicAnalysis) -> Vec<Warning> {
     let mut warnings = Vec::new();
     let (Some(moments), fitted) = (analysis.moments, &outcome.fitted[c]) else { return warnings };
@@ -318,6 +323,7 @@ fn doubtful(outcome: &Outcome, c: usize, analysis: &CharacteristicAnalysis) -> V
     if let Some(residual) = residual.filter(|&residual| residual > POOR) {
         warnings.push(Warning::PoorFit { characteristic: characteristic.clone(), residual });
     }
+    // A method of first order assumes straight lines: the surface with the known curvatures shows the error of that.
     if let (Order::First, Some(surrogate)) = (outcome.order, &fitted.surrogate) {
         let plan = &outcome.plan;
         let parts = plan.varying().iter().map(|&d| outcome.fitted[c].parts[d]).collect();
@@ -333,14 +339,14 @@ fn doubtful(outcome: &Outcome, c: usize, analysis: &CharacteristicAnalysis) -> V
     warnings
 }
 
-/// A law of the surface that points contradict.
+/// Warning of a surface distribution that points contradict.
 fn refuted_law(analysis: &CharacteristicAnalysis) -> Option<Warning> {
     let LawRefutation { test, limit, law, counted, error } = analysis.surface_law?.refuted?;
     let characteristic = analysis.characteristic.name().to_owned();
     Some(Warning::SurfaceLawRefuted { characteristic, test: test.name(), limit, law, counted, error })
 }
 
-/// Extremes that were searched only.
+/// Warning of extremes without a proof.
 fn not_proven(analysis: &CharacteristicAnalysis) -> Option<Warning> {
     let extremes = analysis.extremes.as_ref().filter(|extremes| !extremes.proven())?;
     Some(Warning::NotProven {
@@ -353,11 +359,11 @@ fn not_proven(analysis: &CharacteristicAnalysis) -> Option<Warning> {
     })
 }
 
-/// Moments that no distribution has, or hardly any.
+/// Warning of moments that no distribution has, or hardly any.
 fn law(analysis: &CharacteristicAnalysis, characteristic: &str) -> Option<Warning> {
     let characteristic = characteristic.to_owned();
     match analysis.law.as_ref()? {
-        // The warning `infinite-moment` says it.
+        // The warning `infinite-moment` reports this case.
         Err(_) if analysis.moments.is_some_and(|moments| moments.sigma() > 0.0 && moments.kurtosis().is_none()) => None,
         Err(error) => Some(Warning::InfeasibleMoments { characteristic, reason: error.to_string() }),
         Ok(Law::Pearson(law)) if law.margin() < MARGIN => {

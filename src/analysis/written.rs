@@ -1,4 +1,4 @@
-//! How an analysis is written: what follows from its fields stands beside them.
+//! JSON form of an analysis: its fields, and figures that follow from them.
 
 use serde::{Serialize, Serializer};
 
@@ -9,7 +9,7 @@ use sensitol_numeric::verdict::{Judged, Verdict};
 
 warnings_last!(Analysis);
 
-/// A characteristic with its verdicts and intervals, as it is written.
+/// A characteristic with its verdicts and intervals, in JSON.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CharacteristicShape<'r> {
@@ -18,14 +18,14 @@ pub struct CharacteristicShape<'r> {
     own: &'r CharacteristicAnalysis,
     /// Intervals that no assembly leaves.
     worst_case: WorstCase<'r>,
-    /// Whether the target yield is kept; null where that is not known.
+    /// True if the target yield is met; null if unknown.
     met: Option<bool>,
-    /// The same in a word; null without a target.
+    /// Verdict on the target yield; null without a target.
     verdict: Option<Verdict>,
-    /// Everything that is required of it, the target yield included.
+    /// Verdicts on all requirements, the target yield included.
     #[cfg_attr(feature = "schema", schemars(with = "Vec<sensitol_numeric::verdict::JudgedShape>"))]
     requirements: Vec<Judged>,
-    /// Within which the share is known that keeps the limits; null where that is not known.
+    /// Interval of the yield; null if unknown.
     yield_interval: Option<[f64; 2]>,
 }
 
@@ -43,35 +43,35 @@ impl Serialize for CharacteristicAnalysis {
     }
 }
 
-/// Intervals that no assembly leaves, as they are written.
+/// Intervals that no assembly leaves, in JSON.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct WorstCase<'r> {
-    /// Of the linear model.
+    /// Worst case of the linear model, an interval.
     linear: Option<[f64; 2]>,
-    /// Of the model itself, where they were searched.
+    /// Interval of the model itself, if it was searched.
     extremes: Option<[f64; 2]>,
-    /// Whether it is proven that no assembly lies beyond the extremes.
+    /// True if it is proven that no assembly lies beyond the extremes.
     proven: Option<bool>,
-    /// Where the extremes are: every dimension that matters by name.
+    /// Points at which the extremes are: every dimension that matters by name.
     at: Option<ExtremesAt<'r>>,
-    /// An interval that no assembly leaves, by interval arithmetic; of formulas only.
+    /// Interval that no assembly leaves, by interval arithmetic. Only for formulas.
     bounds: Option<[f64; 2]>,
-    /// Whether values next to both bounds exist.
+    /// True if values next to both bounds exist.
     bounds_reached: Option<bool>,
     /// Evaluations of the search; a point that serves several characteristics counts for each.
     evaluations: Option<usize>,
 }
 
-/// Where the extremes are.
+/// Places of the extremes.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct ExtremesAt<'r> {
-    /// The dimensions at the least value.
+    /// Values of the dimensions at the least value.
     #[serde(serialize_with = "coordinates")]
     #[cfg_attr(feature = "schema", schemars(with = "std::collections::BTreeMap<String, f64>"))]
     lower: &'r [Coordinate],
-    /// The dimensions at the greatest value.
+    /// Values of the dimensions at the greatest value.
     #[serde(serialize_with = "coordinates")]
     #[cfg_attr(feature = "schema", schemars(with = "std::collections::BTreeMap<String, f64>"))]
     upper: &'r [Coordinate],

@@ -8,7 +8,7 @@ use serde::Serialize;
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum YieldSource {
-    /// It is proven.
+    /// Proof.
     Proof,
     /// Points of the model itself.
     Samples,
@@ -19,7 +19,7 @@ pub enum YieldSource {
 }
 
 impl YieldSource {
-    /// In a sentence.
+    /// Name of the source in a sentence.
     pub fn words(self) -> &'static str {
         match self {
             Self::Proof => "proof",

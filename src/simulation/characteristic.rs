@@ -1,4 +1,4 @@
-//! The results of a simulation for one characteristic.
+//! Results of a simulation for one characteristic.
 
 use serde::{Serialize, Serializer};
 
@@ -31,18 +31,18 @@ use sensitol_numeric::verdict::{self, Judged, Verdict};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
 pub struct SimulatedCharacteristic {
-    /// The characteristic, with its limits.
+    /// Characteristic, with its limits.
     #[serde(flatten)]
     pub characteristic: Characteristic,
-    /// Points at which it has a value.
+    /// Number of points with a value.
     pub samples: u64,
-    /// Points at which it has none.
+    /// Number of points without a value.
     pub failed: u64,
-    /// Why not, of the first of them.
+    /// Error of the first point without a value.
     #[serde(serialize_with = "text")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<String>"))]
     pub error: Option<EvaluationError>,
-    /// First moment.
+    /// Mean value.
     #[serde(serialize_with = "value")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub mean: Option<Estimate>,
@@ -50,19 +50,19 @@ pub struct SimulatedCharacteristic {
     #[serde(serialize_with = "value")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub sigma: Option<Estimate>,
-    /// Third standardised moment; None where nothing varies.
+    /// Third standardised moment. None if nothing varies.
     #[serde(serialize_with = "value")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub skewness: Option<Estimate>,
-    /// Fourth standardised moment, 3 for a normal; None where nothing varies.
+    /// Fourth standardised moment, 3 for a normal distribution. None if nothing varies.
     #[serde(serialize_with = "value")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub kurtosis: Option<Estimate>,
-    /// Quantiles of the [`PROBABILITIES`](sensitol_numeric::capability::PROBABILITIES); None where the sample is too small for one value beyond, on average, and
-    /// without standard error below five.
+    /// Quantiles at the [`PROBABILITIES`](sensitol_numeric::capability::PROBABILITIES). None if fewer than one value beyond is expected.
+    /// There is no standard error with fewer than five.
     #[serde(skip)]
     pub quantiles: [Option<Estimate>; 7],
-    /// The share of assemblies within the limits; None without any limit.
+    /// Share of assemblies within the limits. None if there are no limits.
     #[serde(rename = "yield", serialize_with = "share")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub yield_: Option<YieldEstimate>,
@@ -74,78 +74,78 @@ pub struct SimulatedCharacteristic {
     #[serde(rename = "ppm_above", serialize_with = "millionths")]
     #[cfg_attr(feature = "schema", schemars(description = "Assemblies above the upper limit, per million."))]
     pub above: Option<f64>,
-    /// The 95 % intervals of the shares below and above, each by its own count; 0 to 0 where a proof excludes a side, None without that limit
-    /// or any value.
+    /// 95 % intervals of the shares below and above the limits, each from its own count. 0 to 0 if a proof excludes a side, None if that
+    /// limit does not exist or no point has a value.
     #[serde(flatten, serialize_with = "through::<RejectIntervals, _, _>")]
     #[cfg_attr(feature = "schema", schemars(with = "RejectIntervals"))]
     pub reject_intervals: [Option<[f64; 2]>; 2],
-    /// Width of the limits by six sigma; None unless there are two, and where nothing varies.
+    /// Width of the limits divided by six sigma. None unless there are two limits, and if nothing varies.
     pub cp: Option<f64>,
-    /// Distance of the nearer limit by three sigma.
+    /// Distance of the nearer limit from the mean, divided by three sigma.
     pub cpk: Option<f64>,
-    /// Whether the sample was stopped before all its points were drawn: no verdict follows from the others.
+    /// True if the sample was stopped before all its points were drawn. There is no verdict then.
     pub unfinished: bool,
-    /// The least and the greatest value seen.
+    /// Least and greatest value of the sample.
     pub range: Option<[f64; 2]>,
-    /// The sample, counted in some tens of intervals.
+    /// Histogram of the sample, with some tens of intervals.
     pub histogram: Option<Histogram>,
-    /// The surrogate that stood beside the model; None where none was asked for, or it does not vary.
+    /// Effect of the surrogate as control variate. None if none was requested, or it does not vary.
     #[cfg_attr(feature = "schema", schemars(with = "Option<super::shape::ControlShape>"))]
     pub control: Option<SurrogateControl>,
-    /// Its Sobol' indices, of every input; None where none were asked for, or the sample does not tell.
+    /// Sobol' indices of every input. None if none were requested, or the sample does not determine them.
     #[serde(rename = "sobol")]
     pub indices: Option<Vec<SampledFactor>>,
-    /// The risks of its inspection, among the points of the sample; None without a gauge.
+    /// Risks of the inspection, among the points of the sample. None if there is no gauge.
     pub inspection: Option<InspectionRisks>,
-    /// How far the results may be off because measured dimensions are known by samples; None where there are none.
+    /// Uncertainty of the results because measured dimensions are known by samples. None if there are no measured dimensions.
     #[serde(rename = "sampling_interval")]
     pub sampling: Option<SamplingInterval>,
-    /// The moments that have not settled, which have no standard errors; told of as a warning.
+    /// Moments without standard errors because they have not settled. They are reported as a warning.
     #[serde(skip)]
     pub unsettled: Option<Unsettled>,
 }
 
-/// The effect of a surrogate as control variate.
+/// Effect of a surrogate as control variate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct SurrogateControl {
-    /// The method that it comes from.
+    /// Method of the surrogate.
     pub method: Method,
-    /// The evaluations that it took, of all characteristics together.
+    /// Evaluations of the surrogate, for all characteristics together.
     pub evaluations: usize,
-    /// Standard error of the mean without it by that with it; None where that is unknown, or 0.
+    /// Ratio of the standard errors of the mean without and with the surrogate. None if it is unknown, or the denominator is 0.
     pub mean: Option<f64>,
-    /// The same of sigma.
+    /// Ratio of the standard errors of sigma, as for the mean.
     pub sigma: Option<f64>,
-    /// How many points carry mean, sigma, skewness and kurtosis.
+    /// Number of points that carry mean, sigma, skewness and kurtosis.
     pub(crate) carried: [f64; 4],
 }
 
-/// Moments of a sample without standard errors, because few points or assemblies that it lacks decide them.
+/// Moments of a sample without standard errors, because a few points decide them, or assemblies that the sample does not contain.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unsettled {
-    /// The lowest first.
+    /// Names of the moments, the lowest first.
     figures: Vec<&'static str>,
-    /// The share of the largest points in the sum of the first.
+    /// Share of the largest points in the sum of the first moment.
     share: LargestShare,
-    /// The switch beyond which the assemblies lie that the sample lacks.
+    /// Switch beyond which the assemblies are that the sample does not contain.
     switch: Option<String>,
 }
 
-/// The share of assemblies that keep the limits.
+/// Estimate of the share of assemblies that keep the limits.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct YieldEstimate {
-    /// Among the points that have a value.
+    /// Share among the points that have a value.
     pub value: f64,
-    /// 95 % interval of that, as far as the number of points decides.
+    /// 95 % interval of the share, by the number of points only.
     pub interval: [f64; 2],
-    /// If every point without a value is rejected, and if none is.
+    /// Share if every point without a value is rejected, and if none is.
     pub bounds: [f64; 2],
 }
 
-/// A yield without its interval, which stands elsewhere.
+/// Serializes a yield without its interval, which is written elsewhere.
 fn share<S: Serializer>(estimate: &Option<YieldEstimate>, serializer: S) -> Result<S::Ok, S::Error> {
     estimate.map(|estimate| estimate.value).serialize(serializer)
 }
@@ -156,33 +156,33 @@ rescale!(SimulatedCharacteristic { mean, sigma, quantiles, range, histogram, ins
 });
 rescale!(Histogram { edges } without { counts });
 
-/// How many values lie in which interval.
+/// Counts of values in intervals.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Histogram {
-    /// One more than there are intervals, ascending.
+    /// Ends of the intervals, ascending: one more than there are intervals.
     pub edges: Vec<f64>,
-    /// How many values in each.
+    /// Number of values in each interval.
     pub counts: Vec<u64>,
 }
 
-/// The probabilities whose quantiles are estimated.
 const QUANTILES: [f64; 7] = [TAIL, 0.01, 0.05, 0.5, 0.95, 0.99, 1.0 - TAIL];
 
-/// Fewer values than this beyond a quantile say nothing of its standard error.
+/// Fewest values beyond a quantile with which its standard error is meaningful.
 const BEYOND: f64 = 5.0;
-/// Rejected assemblies in every replicate, on average, from which their differences are an interval of the yield.
+/// Rejects for each replicate, on average, from which on the scatter of the replicates gives the interval of the yield.
 pub(super) const REJECTED: u64 = 5;
-/// The eighth power of a larger value is beyond the largest double, 1.8e308; the standard error of a kurtosis needs it.
+/// Largest value whose powers are safe: the eighth power of a larger one is close to the largest double, 1.8e308. The standard error of a
+/// kurtosis needs it.
 const LARGEST: f64 = 1e38;
 /// Intervals of the histogram between the outer quantiles.
 pub(crate) const BINS: usize = 40;
-/// The factor by which the standard error of the better of two estimates grows: it was chosen by the same points. Errors of 16 replicates
-/// are uncertain by `1/sqrt(30)`, a fifth, and the smaller of two such is 0.56 of that too small where both are alike: a tenth.
+/// Factor on the standard error of the better of two estimates, because the same points decided the choice. Errors of 16 replicates are
+/// uncertain by `1/sqrt(30)`, a fifth. The smaller of two such errors is too small by 0.56 of that if both are alike: a tenth.
 pub(crate) const CHOICE: f64 = 1.1;
 
-/// An estimate that is a number, with an error that is one.
+/// Returns None if the value is not finite, and the value without its error if the error is not finite.
 fn finite(estimate: Option<Estimate>) -> Option<Estimate> {
     let Estimate { value, standard_error } = estimate.filter(|estimate| estimate.value.is_finite())?;
     Some(Estimate { value, standard_error: standard_error.filter(|error| error.is_finite()) })
@@ -197,6 +197,7 @@ impl SimulatedCharacteristic {
         let plain = evidence.plain();
         let [mean, sigma, skewness, kurtosis] = evidence.moments().map(finite);
         let shares = evidence.shares();
+        // Shares with a surrogate take precedence over plain counts.
         let share = |side: usize| {
             if let Some(shares) = &shares {
                 return Some(shares.outside[side]);
@@ -209,6 +210,7 @@ impl SimulatedCharacteristic {
             .as_ref()
             .map_or([None; 7], |fine| QUANTILES.map(|p| quantile(p, fine, all.range(), &count.replicates)));
         let range = (known > 0).then(|| all.range());
+        // Ends of the histogram: the outer quantiles, or the range of a small sample.
         let outer = |index: usize, end: usize| {
             quantiles[index].map(|quantile| quantile.value).or(range.map(|range: [f64; 2]| range[end]))
         };
@@ -256,7 +258,7 @@ impl SimulatedCharacteristic {
         }
     }
 
-    /// With what measured samples leave open, of all rejects and of each side.
+    /// Adds the uncertainty of measured samples, for all rejects and for each side.
     pub(super) fn with_sampling(self, sampling: SamplingInterval) -> Self {
         let sides = [self.below, self.above];
         let reject_intervals = verdict::sides_with_samples(sides, self.reject_intervals, sampling.rejected);
@@ -265,7 +267,7 @@ impl SimulatedCharacteristic {
 }
 
 impl SimulatedCharacteristic {
-    /// With the proof that a side beyond which no point lies has no rejects, where interval arithmetic has one.
+    /// Adds a proof by interval arithmetic that a side without points has no rejects, if there is one.
     pub(super) fn with_proof(mut self, problem: &Problem, c: usize) -> Self {
         let open = [self.below == Some(0.0), self.above == Some(0.0)];
         let proven = keeps_by_proof(problem, c, open);
@@ -275,13 +277,14 @@ impl SimulatedCharacteristic {
         self
     }
 
-    /// How a requirement is kept, whether or not it is the characteristic's own: by the interval of the yield, where points without
-    /// a value may all be rejected ones, or by two standard errors of mean and sigma, with what measured samples leave open of Cpk and
-    /// sigma. Of rss and worst case a sample knows nothing.
+    /// Judges a requirement, which need not be the characteristic's own.
+    ///
+    /// The interval of the yield counts points without a value as possible rejects. Cpk and sigma have two standard errors of mean and
+    /// sigma, with the uncertainty of measured samples. A sample gives no RSS and no worst case.
     pub(crate) fn judge(&self, requirement: Requirement) -> Judged {
         let limits = self.characteristic.limits();
         let known = |estimate: Option<Estimate>| estimate.map(|of| (of.value, of.standard_error));
-        // Of measured samples whose uncertainty is unknown there is no interval.
+        // No interval if the uncertainty of measured samples is unknown.
         let measured =
             |value: Option<f64>, own: Option<[f64; 2]>, of: fn(&SamplingInterval) -> Option<[f64; 2]>| match &self
                 .sampling
@@ -309,8 +312,8 @@ impl SimulatedCharacteristic {
         Judged::of(requirement, value, interval).unless(self.unfinished)
     }
 
-    /// The 95 % interval of the yield: that of the points, with what measured samples leave open. None without limits, and where no point
-    /// has a value.
+    /// 95 % interval of the yield: that of the points, with the uncertainty of measured samples. Returns None if there are no limits, or no
+    /// point has a value.
     pub fn yield_interval(&self) -> Option<[f64; 2]> {
         let YieldEstimate { value, interval, .. } = self.yield_?;
         let rejected = self.sampling.as_ref().and_then(|of| of.rejected);
@@ -318,7 +321,7 @@ impl SimulatedCharacteristic {
         Some(measured.map_or(interval, |measured| verdict::share(verdict::joined(value, interval, measured))))
     }
 
-    /// The errors of mean and sigma that decide their digits: standard errors, with what measured samples leave open.
+    /// Errors of mean and sigma that determine the number of printed digits: standard errors, with the uncertainty of measured samples.
     pub fn errors(&self) -> [Option<f64>; 2] {
         let error = |estimate: Option<Estimate>, of: fn(&SamplingInterval) -> Option<[f64; 2]>| {
             let Estimate { value, standard_error } = estimate?;
@@ -328,32 +331,32 @@ impl SimulatedCharacteristic {
         [error(self.mean, |of| of.mean), error(self.sigma, |of| of.sigma)]
     }
 
-    /// One error of the yield: half of the way to the farther end of its interval.
+    /// One error of the yield: half of the distance to the farther end of its interval.
     pub fn yield_error(&self) -> Option<f64> {
         Some(one_error(self.yield_?.value, self.yield_interval()?))
     }
 
-    /// The same by three errors on either side.
+    /// Judges a requirement by three errors on either side.
     pub(crate) fn judge_widely(&self, requirement: Requirement) -> Judged {
         self.judge(requirement).widely()
     }
 
-    /// The yield if every point without a value is rejected, and if none is; None where every point has a value.
+    /// Yield if every point without a value is rejected, and if none is. Returns None if every point has a value.
     pub fn yield_bounds(&self) -> Option<[f64; 2]> {
         self.yield_.filter(|_| self.failed > 0).map(|share| share.bounds)
     }
 
-    /// How everything is kept that is required of it: its target yield, and what else there is.
+    /// Verdicts on all requirements of the characteristic, its target yield included.
     pub fn requirements(&self) -> Vec<Judged> {
         verdict::judged(&self.characteristic, |requirement| self.judge(requirement))
     }
 
-    /// The verdict on its target yield; None without one.
+    /// Verdict on the target yield. Returns None if there is no target.
     pub fn verdict(&self) -> Option<Verdict> {
         self.characteristic.target_yield().map(|target| self.judge(Requirement::Yield(target)).verdict)
     }
 
-    /// Values whose powers are no doubles.
+    /// Warning of values whose powers overflow a double.
     pub(super) fn overflow(&self) -> Option<Warning> {
         let [least, greatest] = self.range?;
         let characteristic = self.characteristic.name().to_owned();
@@ -361,7 +364,7 @@ impl SimulatedCharacteristic {
         (value > LARGEST).then_some(Warning::Overflow { characteristic, value, limit: LARGEST })
     }
 
-    /// Moments that have not settled.
+    /// Warning of moments that have not settled.
     pub(super) fn unsettled(&self) -> Option<Warning> {
         let Unsettled { figures, share, switch } = self.unsettled.clone()?;
         Some(Warning::UnsettledMoments {
@@ -374,7 +377,7 @@ impl SimulatedCharacteristic {
         })
     }
 
-    /// Points without a value, where there are any.
+    /// Warning of points without a value, if there are any.
     pub(super) fn failures(&self) -> Option<Warning> {
         Some(Warning::FailedSamples {
             characteristic: self.characteristic.name().to_owned(),
@@ -385,7 +388,7 @@ impl SimulatedCharacteristic {
     }
 }
 
-/// The evidence of all counts together, with the surrogate that stands beside the model.
+/// All counts together, with the surrogate as control variate.
 pub(super) struct Evidence<'a> {
     count: &'a Count,
     all: Summary,
@@ -394,26 +397,26 @@ pub(super) struct Evidence<'a> {
     watched: Option<Watched<'a>>,
 }
 
-/// The share of the largest points in the sums that the errors of the moments rest on, and which of these lack a seldom side.
+/// Shares of the largest points in the sums that give the errors of the moments, and the effect of seldom sides on these sums.
 struct Watched<'a> {
     plain: [Watch; 4],
-    /// Of the differences to a surrogate.
+    /// Sums of the differences to a surrogate.
     controlled: [Watch; 4],
     seldom: Option<&'a Seldom>,
 }
 
-/// One sum.
+/// Reliability of one sum.
 #[derive(Clone, Copy, Default)]
 struct Watch {
     share: LargestShare,
-    /// Whether a seldom side adds more to it than all points do.
+    /// True if a seldom side adds more to the sum than all points do.
     lacks_a_side: bool,
-    /// The standard error that the seldom sides make in a sample of as many random points, whether or not it meets them.
+    /// Standard error by the seldom sides in a sample of the same number of random points, no matter whether it contains any.
     of_sides: f64,
 }
 
 impl Watch {
-    /// With the standard error that the sum supports.
+    /// Sets the standard error that the sum supports.
     fn settled(self, estimate: Estimate) -> Estimate {
         let estimate = settled(estimate, self.share);
         let known = estimate.standard_error.filter(|_| !self.lacks_a_side);
@@ -429,13 +432,13 @@ impl<'a> Evidence<'a> {
         Self { count, all, beside, answered, watched: None }
     }
 
-    /// Leaves standard errors out that a few points decide, or assemblies beyond switches that are seldom met.
+    /// Removes standard errors that depend on a few points, or on assemblies beyond switches that are seldom met.
     pub(super) fn watched(mut self, seldom: Option<&'a Seldom>) -> Self {
         let (mean, sigma) = (self.all.mean(), self.all.moment(2).sqrt());
         let powers = seldom.filter(|_| sigma > 0.0).map_or([0.0; 4], |seldom| seldom.powers(mean, sigma));
         let standardised = self.all.standardised();
         let shares = self.count.largest().shares(&self.all);
-        // The mean is in the unit of the values, and half of the square of sigma.
+        // The mean has the unit of the values, and the relative error of sigma is half of that of its square.
         let of_sides = |power: f64, i: usize, sigma: f64| {
             [sigma, 0.5 * sigma, 1.0, 1.0][i] * (power / self.all.count().max(1) as f64).sqrt()
         };
@@ -472,18 +475,18 @@ impl<'a> Evidence<'a> {
         })
     }
 
-    /// Without the surrogate.
+    /// Moments of the sample without the surrogate.
     fn plain(&self) -> [Option<Estimate>; 4] {
         self.settled(moments(&self.all, &self.count.replicates))
     }
 
-    /// With the standard errors that the sums of the sample support.
+    /// Sets the standard errors that the sums of the sample support.
     fn settled(&self, estimates: [Option<Estimate>; 4]) -> [Option<Estimate>; 4] {
         let Some(Watched { plain, .. }) = &self.watched else { return estimates };
         std::array::from_fn(|i| estimates[i].map(|estimate| plain[i].settled(estimate)))
     }
 
-    /// The moments that are told without a standard error because they have not settled.
+    /// Moments without a standard error because they have not settled.
     fn unsettled(&self) -> Option<Unsettled> {
         let watched = self.watched.as_ref().filter(|_| self.all.count() >= FEWEST)?;
         let found = self.moments();
@@ -502,13 +505,13 @@ impl<'a> Evidence<'a> {
         })
     }
 
-    /// Those outside the limits, where a surrogate and limits are.
+    /// Shares outside the limits, if there are a surrogate and limits.
     fn shares(&self) -> Option<Shares> {
         let (twin, differences) = self.beside.as_ref()?;
         shares(differences, twin.outside.as_ref()?, REJECTED * differences.len() as u64)
     }
 
-    /// The interval of the share below (0) or above (1) the limits by its own count; None where no value is known.
+    /// Interval of the share below (0) or above (1) the limits, from its own count. Returns None if no value is known.
     fn interval_of(&self, side: usize) -> Option<[f64; 2]> {
         let (known, replicates) = (self.all.count(), &self.count.replicates);
         if let Some(shares) = self.shares() {
@@ -530,7 +533,7 @@ impl<'a> Evidence<'a> {
         }
     }
 
-    /// The share within the limits; None where there are none, or no value is known.
+    /// Share of assemblies within the limits. Returns None if there are no limits, or no value is known.
     pub(super) fn yield_of(&self, limits: SpecLimits) -> Option<YieldEstimate> {
         let (known, answered, replicates) = (self.all.count(), self.answered, &self.count.replicates);
         if !limits.exist() || known == 0 {
@@ -559,13 +562,13 @@ impl<'a> Evidence<'a> {
     }
 }
 
-/// The controlled estimate, or the plain one where it is better; a tenth is added to the standard error for the choice.
+/// Chooses the controlled estimate, or the plain one if it is better. A tenth is added to the standard error for the choice.
 ///
-/// Judged by the scatter of all points as if they were random. Standard errors of 16 replicates are uncertain by a fifth: the smaller
-/// of two would be too small. An estimate whose error is unknown is worse than any other.
+/// The criterion is the scatter of all points as if they were random. Standard errors of 16 replicates are uncertain by a fifth: the
+/// smaller of two would be too small. An estimate with an unknown error is worse than any other.
 fn better(controlled: Option<Controlled>, plain: Option<Estimate>, random: Option<Estimate>) -> Option<Estimate> {
     let Some(Controlled { estimate, random: own }) = controlled else { return plain };
-    // Where powers of the values overflow, only the controlled figure, in units of its own sigma, is left.
+    // If powers of the values overflow, only the controlled figure remains, because it is in units of its own sigma.
     let known = plain.filter(|of| of.value.is_finite() && of.standard_error.is_some());
     let without =
         random.filter(|of| of.value.is_finite()).and_then(|of| of.standard_error).filter(|error| error.is_finite());
@@ -574,12 +577,12 @@ fn better(controlled: Option<Controlled>, plain: Option<Estimate>, random: Optio
     Some(Estimate { standard_error: best.standard_error.map(|error| CHOICE * error), ..best })
 }
 
-/// How many points carry each moment: of the sums with the surrogate and without it the fewer.
+/// Number of points that carry each moment: the smaller one of the sums with and without the surrogate.
 fn fewer([plain, controlled]: [[f64; 4]; 2]) -> [f64; 4] {
     std::array::from_fn(|moment| plain[moment].min(controlled[moment]))
 }
 
-/// By how much the standard error has shrunk.
+/// Ratio of the standard errors without and with the surrogate.
 fn reduction(plain: Option<Estimate>, controlled: Option<Estimate>) -> Option<f64> {
     let error = |estimate: Option<Estimate>| estimate.and_then(|estimate| estimate.standard_error);
     let times = error(plain)? / error(controlled).filter(|&error| error > 0.0)?;
@@ -593,7 +596,7 @@ fn pooled(replicates: &[Replicate]) -> Option<Fine> {
     Some(all)
 }
 
-/// Of all points together; the standard errors of the sample where it is random, of the replicates where there are such.
+/// Moments of the points of all replicates. The standard errors come from the sample if it is random, else from the replicates.
 fn moments(all: &Summary, replicates: &[Replicate]) -> [Option<Estimate>; 4] {
     let mut estimates = of_moments(all);
     if replicates.len() > 1 {
@@ -610,11 +613,11 @@ fn moments(all: &Summary, replicates: &[Replicate]) -> [Option<Estimate>; 4] {
     estimates
 }
 
-/// A quantile; its standard error is half the distance of the quantiles one standard deviation of the binomial count below
-/// and above it, or that of the replicates.
+/// Quantile with its standard error: half the distance of the quantiles one standard deviation of the binomial count below and above it, or
+/// the scatter of the replicates.
 fn quantile(p: f64, fine: &Fine, [least, greatest]: [f64; 2], replicates: &[Replicate]) -> Option<Estimate> {
     let n = fine.total() as f64;
-    // With no value to be expected beyond it, it would be the least or the greatest one, whatever the tail is.
+    // If fewer than one value is expected beyond it, it would be the least or the greatest one for any tail.
     if p.min(1.0 - p) * n < 1.0 {
         return None;
     }
@@ -632,7 +635,7 @@ fn quantile(p: f64, fine: &Fine, [least, greatest]: [f64; 2], replicates: &[Repl
             fine.at_rank(p * fine.total() as f64)
         })),
     };
-    // The error of the interpolation within a bin is part of it.
+    // Includes the error of the interpolation within a bin.
     let standard_error = standard_error.map(|error| libm::hypot(error, fine.blur(p * n)));
     Some(Estimate { value, standard_error })
 }

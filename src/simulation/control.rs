@@ -1,7 +1,7 @@
-//! The second-order surrogate as control variate: what of the moments is known exactly, and how it is had.
+//! Second-order surrogate as control variate: exact moments of the surrogate.
 //!
-//! The moments of the surrogate are exact; only what the model differs by is sampled ([`super::difference`]). Nothing is assumed of the
-//! surrogate: coefficients are fitted, and where the plain sample has the smaller standard error, it is the estimate.
+//! Only the difference of model and surrogate is sampled ([`super::difference`]). Nothing is assumed of the surrogate: coefficients are
+//! fitted, and if the plain sample has the smaller standard error, it is the estimate.
 
 use super::surrogates::{KnownSurrogate, Shape, Surrogates};
 use super::{ROWS, SimulationError, SimulationOptions};
@@ -17,47 +17,48 @@ use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::sampling::{Draws, Portion, Sampler};
 use sensitol_numeric::surrogate::Surrogate;
 
-/// Points of the surrogate for every point of the model, by which its own share within the limits is known,
+/// Points of the surrogate for every point of the model, for the surrogate's own share within the limits.
 const MORE: u64 = 32;
-/// never fewer or more than these,
+/// Fewest points of the surrogate for that share.
 const LEAST: u64 = 1 << 18;
+/// Most points of the surrogate for that share.
 const MOST: u64 = 1 << 24;
-/// and no more operations than this, about: some seconds.
+/// Most operations for these points, approximately: some seconds.
 const EFFORT: u64 = 1 << 31;
 
-/// The surrogates of a problem.
+/// Surrogates of a problem as control variates.
 pub(super) struct Control<'p> {
     problem: &'p Problem,
     pub(super) outcome: Outcome,
-    /// For every characteristic; None where the surrogate does not vary, and explains nothing.
+    /// Surrogates of the characteristics. None if a surrogate does not vary, and explains nothing.
     pub(super) twins: Vec<Option<Twin>>,
 }
 
-/// The surrogate of one characteristic.
+/// Surrogate of one characteristic with its exact moments.
 pub(super) struct Twin {
     surrogate: Surrogate,
     pub(super) method: Method,
     pub(super) evaluations: usize,
     pub(super) centre: f64,
-    /// `E[t^3]` and `E[t^4]` are its skewness and kurtosis.
+    /// Exact moments of the surrogate. With `t` the standardised surrogate, `E[t^3]` and `E[t^4]` are its skewness and kurtosis.
     pub(super) moments: Shape,
-    /// Their standard errors, where correlated inputs leave them no closed form.
+    /// Standard errors of the moments, if correlated inputs permit no closed form.
     pub(super) sampled: Option<Sampled>,
     pub(super) limits: KeptLimits,
-    /// Where there are limits.
+    /// Counts of the surrogate outside the limits, if there are limits.
     pub(super) outside: Option<Outside>,
 }
 
-/// How many values of the surrogate lie outside the limits.
+/// Number of values of the surrogate outside the limits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Outside {
     pub(super) points: u64,
-    /// Below and above.
+    /// Values below and above the limits.
     pub(super) hits: [u64; 2],
 }
 
 impl<'p> Control<'p> {
-    /// Analyses the problem; has no surrogates when it was stopped meanwhile.
+    /// Analyses the problem for its surrogates. There are none if it was stopped meanwhile.
     pub(super) fn of(
         problem: &'p Problem,
         asked: &Options,
@@ -71,7 +72,7 @@ impl<'p> Control<'p> {
         Ok(control)
     }
 
-    /// Of an analysis that has been made, whose points are not counted again.
+    /// Reuses the surrogates of an existing analysis, whose points are not counted again.
     pub(super) fn beside_of(
         problem: &'p Problem,
         outcome: &Outcome,
@@ -85,7 +86,7 @@ impl<'p> Control<'p> {
         Ok(control)
     }
 
-    /// Why it was stopped before the surrogates were known.
+    /// Reason of a stop before the surrogates were known.
     pub(super) fn stopped(&self) -> Option<StopReason> {
         self.outcome.evaluated.stopped
     }
@@ -95,15 +96,14 @@ impl<'p> Control<'p> {
         self.twins.iter().zip(self.rises(points)).map(|(twin, rises)| Some((twin.as_ref()?, rises))).collect()
     }
 
-    /// For every characteristic how far its surrogate lies above its centre at these points; empty where it has none.
+    /// Rises at these points by characteristic: the values of the surrogate minus its centre. Empty if there is no surrogate.
     pub(super) fn rises(&self, points: &Points) -> Vec<Vec<f64>> {
         let inputs = self.problem.standardised(points, self.outcome.plan.varying());
         let rises = |twin: &Option<Twin>| twin.as_ref().and_then(|twin| twin.surrogate.rises(&inputs));
         self.twins.iter().map(|twin| rises(twin).unwrap_or_default()).collect()
     }
 
-    /// The surrogates' own shares outside the limits, by a sample that costs no evaluation, of another stream than the
-    /// model's.
+    /// Counts the surrogates' own values outside the limits, in a sample that costs no evaluation. Its stream differs from the model's.
     fn count_outside(&mut self, options: &SimulationOptions) -> Result<(), SimulationError> {
         let limited = |twin: &&Twin| twin.limits.exist();
         let work: usize = (self.twins.iter().flatten().filter(limited))
@@ -129,7 +129,7 @@ impl<'p> Control<'p> {
             sum.iter_mut().zip(more).for_each(|(sum, more)| *sum = [sum[0] + more[0], sum[1] + more[1]]);
             sum
         };
-        // Whole numbers: the order in which threads finish does not matter.
+        // Integer sums do not depend on the order in which threads finish.
         let hits = (0..blocks).into_par_iter().map(block).collect::<Vec<_>>().into_iter().fold(nothing(), add);
         for (twin, hits) in self.twins.iter_mut().zip(hits) {
             if let Some(twin) = twin.as_mut().filter(|twin| twin.limits.exist()) {
@@ -140,7 +140,7 @@ impl<'p> Control<'p> {
     }
 }
 
-/// The surrogates as they stand beside the model.
+/// Surrogates of all characteristics with their limits.
 fn twins(problem: &Problem, outcome: &Outcome, known: Vec<Option<KnownSurrogate>>) -> Vec<Option<Twin>> {
     let twin = |(c, known): (usize, Option<KnownSurrogate>)| {
         known.map(|KnownSurrogate { surrogate, moments, sampled }| Twin {
@@ -158,7 +158,7 @@ fn twins(problem: &Problem, outcome: &Outcome, known: Vec<Option<KnownSurrogate>
 }
 
 impl Twin {
-    /// Whether the surrogate lies below and above the limits, from its rise.
+    /// True for each limit, lower and upper, that the surrogate breaks at this rise.
     pub(super) fn sides(&self, rise: f64) -> [bool; 2] {
         self.limits.broken(self.centre + rise)
     }

@@ -1,4 +1,4 @@
-//! The counts of one characteristic.
+//! Counts of one characteristic.
 
 use super::difference::Difference;
 use super::groups::GroupSums;
@@ -6,43 +6,43 @@ use crate::assembly::EvaluationError;
 use sensitol_numeric::characteristic::KeptLimits;
 use sensitol_numeric::sampling::{Fine, LargestPoints, Scale, Summary};
 
-/// The limits and the scale by which a portion is counted.
+/// Limits and scale with which a portion is counted.
 #[derive(Clone, Copy)]
 pub(super) struct Lens {
     pub(super) limits: KeptLimits,
-    /// Known after the first batch.
+    /// Scale of the histogram bins, known after the first batch.
     pub(super) scale: Option<Scale>,
 }
 
-/// One replicate of one characteristic.
+/// Sums of one replicate of one characteristic.
 #[derive(Clone)]
 pub(super) struct Replicate {
     pub(super) summary: Summary,
     pub(super) largest: LargestPoints,
     pub(super) outside: [u64; 2],
-    /// Nothing where no surrogate stands beside the model.
+    /// Empty if there is no surrogate.
     pub(super) difference: Difference,
     pub(super) fine: Option<Fine>,
 }
 
-/// All of one characteristic.
+/// Sums of one characteristic in all replicates.
 pub(super) struct Count {
     pub(super) replicates: Vec<Replicate>,
-    /// By groups of measured rows; nothing without measured inputs.
+    /// Sums by groups of measured rows. Empty if there are no measured inputs.
     pub(super) groups: GroupSums,
     pub(super) failed: u64,
     pub(super) error: Option<EvaluationError>,
 }
 
 impl Count {
-    /// Of all replicates together.
+    /// Merges the summaries of all replicates.
     pub(super) fn summary(&self) -> Summary {
         let mut all = Summary::default();
         self.replicates.iter().for_each(|replicate| all.merge(&replicate.summary));
         all
     }
 
-    /// The largest points of all replicates.
+    /// Merges the largest points of all replicates.
     pub(super) fn largest(&self) -> LargestPoints {
         let mut all = LargestPoints::default();
         self.replicates.iter().for_each(|replicate| all.merge(&replicate.largest));

@@ -1,16 +1,16 @@
-//! Model and surrogate at the same points, counted, and what they and the exact moments make together.
+//! Sums of the differences of model and surrogate at the same points, and their combination with the exact moments.
 //!
-//! With `v` and `t` the values of model and surrogate in the surrogate's own units, and `n_k = v^k` where the model has a value and 0
-//! where it has none, k = 0 to 4,
+//! `v` and `t` are the values of model and surrogate, standardised by the surrogate. With `n_k = v^k` if the model has a value and 0 if it
+//! has none, k = 0 to 4,
 //!
 //! ```text
 //! E[n_k] = E[t^k] + E[n_k - t^k] - sum_j b_kj (mean t^j - E[t^j])        j = 1 to 4
 //! ```
 //!
-//! with `b` by least squares over all points of a random sample, and 0 for Sobol' points, whose errors follow from other parts of a
-//! function than its variance. Moments are the ratios to `E[n_0]`, the share of points that have a value: numerators and
-//! denominator are controlled alike, so that points without a value make nothing wrong. Differences over the points with a
-//! value alone would compare the model of some assemblies with the surrogate of all.
+//! `b` comes from least squares over all points of a random sample. It is 0 for Sobol' points, whose errors depend on other properties of a
+//! function than its variance. Moments are the ratios to `E[n_0]`, the share of points that have a value. Numerators and denominator are
+//! controlled alike, so that points without a value cause no bias. Differences over only the points with a value would compare the model of
+//! some assemblies with the surrogate of all.
 //!
 //! Sources: Glynn and Szechtman (2002); Owen and Zhou (2000).
 
@@ -21,28 +21,28 @@ use super::replicate::of_replicates;
 use sensitol_numeric::moments::Sampled;
 use sensitol_numeric::sampling::{Estimate, FEWEST, Joint, LargestShare, LargestTerms, clopper_pearson, wilson};
 
-/// Powers of the surrogate that serve as controls.
+/// Number of powers of the surrogate that serve as controls.
 const CONTROLS: usize = 4;
-/// `n_k - t^k` for k = 0 to 4, then the controls.
+/// Columns of the joint sums: `n_k - t^k` for k = 0 to 4, then the controls.
 const COLUMNS: usize = 1 + 2 * CONTROLS;
-/// Fewer points fit no coefficients: the differences are taken as they are.
+/// Fewest points for a fit of coefficients. With fewer, the differences are used as they are.
 const FITTED: u64 = 64;
-/// Of the greatest: directions of the controls that vary less say nothing that a rounding does not.
+/// Smallest eigenvalue of the controls that is used, relative to the greatest: smaller ones are rounding errors.
 const SINGULAR: f64 = 1e-10;
 
-/// Joint sums of all points, and where model and surrogate do not agree about the limits.
+/// Joint sums of all points, and counts of points at which model and surrogate disagree about the limits.
 #[derive(Clone, Default)]
 pub(super) struct Difference {
     sums: Joint<COLUMNS>,
-    /// Points at which the model has no value.
+    /// Points without a value of the model.
     lost: u64,
     /// Points below, and above, the limits for the model only, and for the surrogate only.
     sides: [[u64; 2]; 2],
     /// Points outside the limits for the model only, and for the surrogate only.
     only: [u64; 2],
-    /// How few points carry the sums of `v^k`, and those of `n_k - t^k`.
+    /// Number of points that carry the sums of `v^k`, and those of `n_k - t^k`.
     carried: [Carried; 2],
-    /// The largest of the `n_k - t^k`.
+    /// Largest of the `n_k - t^k`.
     largest: [LargestTerms; CONTROLS],
 }
 
@@ -64,7 +64,7 @@ impl Carried {
         }
     }
 
-    /// How many points carry each sum, at least 1.
+    /// Number of points that carry each sum, at least 1.
     fn points(&self) -> [f64; CONTROLS] {
         let points =
             |[squares, fourths]: [f64; 2]| if fourths > 0.0 { (squares * squares / fourths).max(1.0) } else { 1.0 };
@@ -73,7 +73,7 @@ impl Carried {
 }
 
 impl Difference {
-    /// Of values, NaN where there is none, and the surrogate's rises at the same points.
+    /// Sums of values, NaN if there is none, and the surrogate's rises at the same points.
     pub(super) fn of(values: &[f64], rises: &[f64], twin: &Twin) -> Self {
         let mut difference = Self::default();
         let mut rows = Vec::with_capacity(values.len());
@@ -89,7 +89,7 @@ impl Difference {
             }
             let d = ((value - twin.centre) - rise) / twin.moments.sigma;
             let v = t + d;
-            // In factors, so that nothing large is subtracted.
+            // Factorised, so that large numbers are not subtracted from each other.
             let differences = [d, d * (v + t), d * (v * v + v * t + t * t), d * (v + t) * (v * v + t * t)];
             let [d1, d2, d3, d4] = differences;
             let [p1, p2, p3, p4] = powers;
@@ -121,27 +121,27 @@ impl Difference {
         self.carried.iter_mut().zip(&other.carried).for_each(|(own, more)| own.merge(more));
     }
 
-    /// The share that the model has more of an event than the surrogate, by the points that are in it for one of them only.
+    /// Share of an event for the model minus that for the surrogate, from the counts of points at which only one of them has it.
     fn net(&self, [model, surrogate]: [u64; 2]) -> f64 {
         (model as f64 - surrogate as f64) / self.sums.count() as f64
     }
 
-    /// Points at which the model has a value.
+    /// Number of points at which the model has a value.
     fn valid(&self) -> u64 {
         self.sums.count() - self.lost
     }
 }
 
-/// The coefficients of the controls for every `n_k`.
+/// Coefficients of the controls for every `n_k`.
 struct Coefficients([[f64; CONTROLS]; 1 + CONTROLS]);
 
 impl Coefficients {
-    /// The differences as they are.
+    /// Zero coefficients, which leave the differences as they are.
     fn none() -> Self {
         Self([[0.0; CONTROLS]; 1 + CONTROLS])
     }
 
-    /// By least squares over these points; 0 where they are too few.
+    /// Least-squares coefficients over these points, 0 if there are too few.
     fn of(sums: &Joint<COLUMNS>) -> Self {
         let mut coefficients = [[0.0; CONTROLS]; 1 + CONTROLS];
         let products = sums.products();
@@ -168,7 +168,7 @@ impl Coefficients {
         self.0.iter().flatten().any(|coefficient| *coefficient != 0.0)
     }
 
-    /// `E[n_0] - 1` and `E[n_k]/E[n_0] - E[t^k]` from the means of some points, with the gradients of the latter by these means.
+    /// `E[n_k]/E[n_0] - E[t^k]` from the means of some points, with their gradients by these means.
     fn moments(&self, means: &[f64; COLUMNS], twin: &Twin) -> ([f64; CONTROLS], [[f64; COLUMNS]; CONTROLS]) {
         let exact = [0.0, 1.0, twin.moments.skewness, twin.moments.kurtosis];
         let off: [f64; CONTROLS] = std::array::from_fn(|j| means[1 + CONTROLS + j] - exact[j]);
@@ -189,8 +189,8 @@ impl Coefficients {
     }
 }
 
-/// Mean, sigma, skewness and kurtosis with their gradients by the four means of the differences; None where the variance
-/// came out as nothing.
+/// Mean, sigma, skewness and kurtosis with their gradients by the four means of the differences. All but the mean are None if the variance
+/// is not positive.
 fn standardised(differences: &[f64; 4], twin: &Twin) -> [Option<(f64, [f64; 4])>; 4] {
     let [d1, d2, d3, d4] = *differences;
     let (m, m2, m3, m4) = (d1, 1.0 + d2, twin.moments.skewness + d3, twin.moments.kurtosis + d4);
@@ -201,6 +201,7 @@ fn standardised(differences: &[f64; 4], twin: &Twin) -> [Option<(f64, [f64; 4])>
     if c2.is_nan() || c2 <= 0.0 {
         return [mean, None, None, None];
     }
+    // Gradients of the central moments by the four raw moments.
     let by2 = [-2.0 * m, 1.0, 0.0, 0.0];
     let by3 = [6.0 * m * m - 3.0 * m2, -3.0 * m, 1.0, 0.0];
     let by4 = [12.0 * m * m2 - 4.0 * m3 - 12.0 * m.powi(3), 6.0 * m * m, -4.0 * m, 1.0];
@@ -215,15 +216,15 @@ fn standardised(differences: &[f64; 4], twin: &Twin) -> [Option<(f64, [f64; 4])>
     ]
 }
 
-/// How many points carry mean, sigma, skewness and kurtosis: without the surrogate, and with it. A handful of them does not know how far
-/// a sum may be off, whatever the replicates say.
+/// Number of points that carry mean, sigma, skewness and kurtosis, without the surrogate and with it. A sum that a handful of points
+/// carries has an uncertain error, regardless of the scatter of the replicates.
 pub(super) fn carried(replicates: &[&Difference]) -> [[f64; CONTROLS]; 2] {
     pooled(replicates).carried.map(|carried| carried.points())
 }
 
-/// How much the largest differences have of the sum of squares that each moment rests on, and the mean square.
+/// Shares of the largest differences in the sum of squares of each moment, and the mean square.
 pub(super) fn largest(replicates: &[&Difference]) -> [(LargestShare, f64); CONTROLS] {
-    /// Squares of differences that rounding makes, in units of sigma: which of them are the largest says nothing.
+    /// Mean square of differences that are only rounding, in units of sigma: the largest of them are meaningless.
     const ROUNDING: f64 = 1e-20;
     pooled(replicates).largest.map(|terms| match terms.mean() {
         rounding if rounding <= ROUNDING => (LargestShare::default(), rounding),
@@ -231,23 +232,23 @@ pub(super) fn largest(replicates: &[&Difference]) -> [(LargestShare, f64); CONTR
     })
 }
 
-/// The squares of `n_k - t^k` at one point, k = 1 to 4, where the model has this value and the surrogate this rise.
+/// Squares of `n_k - t^k` at one point, k = 1 to 4, from the value of the model and the rise of the surrogate.
 pub(super) fn squares(value: f64, rise: f64, twin: &Twin) -> [f64; CONTROLS] {
     let t = (rise - (twin.moments.mean - twin.centre)) / twin.moments.sigma;
     let v = t + ((value - twin.centre) - rise) / twin.moments.sigma;
     std::array::from_fn(|k| (v.powi(k as i32 + 1) - t.powi(k as i32 + 1)).powi(2))
 }
 
-/// A moment with the surrogate as control.
+/// A moment with the surrogate as control variate.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Controlled {
     pub(super) estimate: Estimate,
-    /// Its standard error if all points were random ones.
+    /// Standard error if all points were random ones.
     pub(super) random: Option<f64>,
 }
 
-/// The four moments: exact ones of the surrogate and sampled differences of all replicates, with standard errors of the
-/// sample where it is random, of the replicates where there are such; None where no point has a value.
+/// Four moments from exact ones of the surrogate and sampled differences of all replicates. The standard errors come from the sample if it
+/// is random, else from the replicates. Returns None if no point has a value.
 pub(super) fn moments(replicates: &[&Difference], twin: &Twin) -> [Option<Controlled>; 4] {
     let all = pooled(replicates);
     if all.valid() == 0 {
@@ -259,7 +260,7 @@ pub(super) fn moments(replicates: &[&Difference], twin: &Twin) -> [Option<Contro
     let (differences, by_means) = coefficients.moments(all.sums.means(), twin);
     let found = standardised(&differences, twin);
     let known = replicates.iter().all(|one| one.valid() >= FEWEST);
-    // The degrees of freedom that fitting the coefficients took from the residuals.
+    // Fitting the coefficients takes degrees of freedom from the residuals.
     let n = all.sums.count() as f64;
     let fitted = if coefficients.fitted() { ((n - 1.0) / (n - 1.0 - CONTROLS as f64)).sqrt() } else { 1.0 };
     std::array::from_fn(|moment| {
@@ -286,7 +287,7 @@ fn pooled(replicates: &[&Difference]) -> Difference {
     all
 }
 
-/// Counts a point that is in an event for the model only, or for the surrogate only.
+/// Counts a point that has an event for the model only, or for the surrogate only.
 fn apart(model: bool, surrogate: bool, only: &mut [u64; 2]) {
     match (model, surrogate) {
         (true, false) => only[0] += 1,
@@ -297,19 +298,20 @@ fn apart(model: bool, surrogate: bool, only: &mut [u64; 2]) {
 
 /// Shares outside the limits, and the interval of the share within.
 pub(super) struct Shares {
-    /// Below and above.
+    /// Shares below and above the limits.
     pub(super) outside: [f64; 2],
-    /// The interval of either.
+    /// Intervals of `outside`.
     pub(super) intervals: [[f64; 2]; 2],
     pub(super) interval: [f64; 2],
 }
 
-/// The surrogate's own share and the difference of the model's. The interval combines Wilson's of the surrogate's share and
-/// of the points that only the one and only the other rejects (Zou and Donner 2008), so that no disagreement seen is not
-/// taken for none; where there are `enough` disagreements and replicates, what these differ by. The rejects of one side have that of their
-/// own counts, by the intervals of Clopper and Pearson.
+/// Shares outside the limits: the surrogate's own share, and the difference of the model's.
 ///
-/// None where some points have no value: the surrogate's share is that of all assemblies.
+/// The interval combines Wilson's intervals of the surrogate's share, and of the points that only the model and only the surrogate rejects
+/// (Zou and Donner 2008). So zero disagreements in the sample still leave an uncertainty. With `enough` disagreements and replicates, the
+/// scatter of the replicates gives the interval. The rejects of one side have the interval of their own counts, by Clopper and Pearson.
+///
+/// Returns None if some points have no value, because the surrogate's share refers to all assemblies.
 pub(super) fn shares(replicates: &[&Difference], outside: &Outside, enough: u64) -> Option<Shares> {
     let all = pooled(replicates);
     let (n, points) = (all.sums.count() as f64, outside.points as f64);

@@ -1,4 +1,4 @@
-//! The points of a simulation, parted into groups by the rows or values of measured samples.
+//! Points of a simulation, grouped by the rows or values of measured samples.
 
 use std::collections::HashMap;
 
@@ -8,17 +8,18 @@ use sensitol_numeric::correlation::JointLaw;
 use sensitol_numeric::distribution::{Distribution, Sample};
 use sensitol_numeric::sampling::MeasuredSample;
 
-/// The most groups of a sample, and the fewest points of a group on average.
+/// Most groups of a measured sample.
 const GROUPS: usize = 400;
+/// Fewest points of a group on average.
 const POINTS: u64 = 50;
-/// The half width of the range of a fitted distribution that is parted into groups, in sigmas.
+/// Half-width of the range of a fitted distribution that is divided into groups, in sigmas.
 const RANGE: f64 = 4.0;
 
-/// The measured samples of a problem, each with its groups.
+/// Measured samples of a problem, each with its groups.
 pub(super) struct MeasuredGroups<'p> {
     pub(super) problem: &'p Problem,
     pub(super) samples: Vec<Grouped<'p>>,
-    /// For every characteristic, whether it depends on each dimension.
+    /// Dependence of every characteristic on each dimension.
     pub(super) dependence: Vec<Vec<bool>>,
 }
 
@@ -27,22 +28,22 @@ pub(super) struct Grouped<'p> {
     pub(super) sample: MeasuredSample,
     groups: usize,
     by: Grouping<'p>,
-    /// By how much the variance over groups is divided for that of a mean over the sample.
+    /// Divisor of the variance over groups that gives the variance of a mean over the sample.
     pub(super) divisor: f64,
 }
 
-/// How a point finds its group.
+/// Rule that assigns a point to its group.
 enum Grouping<'p> {
-    /// By the rank of its value in the sample.
+    /// Rank of the value in the sample.
     Rank(&'p Sample),
-    /// By the place of its value within the range of a fitted distribution.
+    /// Place of the value within the range of a fitted distribution.
     Place { mean: f64, sigma: f64 },
-    /// By its row, which the ranks of its values identify.
+    /// Row of the point, which is identified by the ranks of its values.
     Row { samples: Vec<&'p Sample>, groups: HashMap<Vec<usize>, usize> },
 }
 
 impl<'p> MeasuredGroups<'p> {
-    /// Of a simulation with so many points; None without measured inputs.
+    /// Groups for a simulation with this number of points. Returns None if there are no measured inputs.
     pub(super) fn of(problem: &'p Problem, points: u64) -> Option<Self> {
         let found = MeasuredSample::all(problem.dimensions(), problem.correlation());
         let most = (points / POINTS).clamp(2, GROUPS as u64) as usize;
@@ -51,13 +52,13 @@ impl<'p> MeasuredGroups<'p> {
         (!samples.is_empty()).then_some(Self { problem, samples, dependence })
     }
 
-    /// For every sample the group of every point.
+    /// Group of every point, by sample.
     pub(super) fn groups(&self, points: &Points) -> Vec<Vec<usize>> {
         self.samples.iter().map(|one| one.find(points)).collect()
     }
 }
 
-/// A sample in at most so many groups; None where it is not that of a distribution.
+/// Divides a sample into at most `most` groups. Returns None if the sample belongs to no distribution or block of rows.
 fn grouped(problem: &Problem, sample: MeasuredSample, most: usize) -> Option<Grouped<'_>> {
     let law = |d: usize| problem.dimensions()[d].distribution();
     let measured = |d: usize| law(d).and_then(Distribution::measured).map(|of| of.sample());
@@ -75,7 +76,7 @@ fn grouped(problem: &Problem, sample: MeasuredSample, most: usize) -> Option<Gro
     let block = &correlation.blocks()[block];
     let JointLaw::Rows(rows) = &block.law else { return None };
     let ranks = rows.ranks();
-    // Rows in turn: a group is a sample of all rows, not of neighbours, and its mean has the variance of as many.
+    // Rows are assigned in turn: a group is then a sample of all rows, not of neighbours, and its mean has the variance of such a sample.
     let row = |row: usize| (ranks.iter().map(|of| of[row]).collect(), row % groups);
     let samples = block.members.iter().map(|&d| measured(d)).collect::<Option<_>>()?;
     let by = Grouping::Row { samples, groups: (0..rows.len()).map(row).collect() };
@@ -91,7 +92,7 @@ impl Grouped<'_> {
                 let place = |value: &f64| {
                     let distinct = place(sample, *value);
                     let before = if distinct == 0 { 0 } else { sample.upto()[distinct - 1] };
-                    // The middle of equal values.
+                    // Rank of the middle of equal values.
                     let rank = before + (sample.upto()[distinct] - before) / 2;
                     (rank * self.groups / sample.len()).min(last)
                 };
@@ -118,12 +119,12 @@ impl Grouped<'_> {
     }
 }
 
-/// The place of a value among the distinct ones of a sample.
+/// Index of a value among the distinct ones of a sample.
 fn place(sample: &Sample, value: f64) -> usize {
     sample.values().partition_point(|&other| other < value).min(sample.values().len() - 1)
 }
 
-/// Count, mean, sum of squares about it, and rejects of one group.
+/// Count, mean, sum of squares about the mean, and rejects of one group.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Group {
     pub(super) count: f64,
@@ -153,12 +154,12 @@ impl Group {
     }
 }
 
-/// The groups of every sample for one characteristic.
+/// Groups of every sample for one characteristic.
 #[derive(Clone, Default)]
 pub(super) struct GroupSums(pub(super) Vec<Vec<Group>>);
 
 impl GroupSums {
-    /// Of values, NaN where there is none, and the group of every point by sample.
+    /// Sums of values, NaN if there is none, by the group of every point for each sample.
     pub(super) fn of(of: &MeasuredGroups<'_>, groups: &[Vec<usize>], out: &Responses, c: usize) -> Self {
         let limits = of.problem.kept_limits(c);
         let sums = |(one, groups): (&Grouped<'_>, &Vec<usize>)| {

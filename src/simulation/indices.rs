@@ -5,10 +5,10 @@
 //! total        T_j = E[(a - c)^2] / (2 V)                                                  Jansen 1999
 //! ```
 //!
-//! with the model's values `a` and `b` at two independent sets of Sobol' points and `c` at the points of the first whose input j is that of
-//! the second: n (N + 2) evaluations for N factors. A factor is a dimension, or dimensions that vary together. Standard errors are those
-//! of the jackknife over 16 scramblings, intervals by Student's quantile. An index near 0 may come out negative: it is within its
-//! error, and stays as it is.
+//! `a` and `b` are the model's values at two independent sets of Sobol' points, and `c` those at the points of the first set with input j
+//! from the second. This takes n (N + 2) evaluations for N factors. A factor is a dimension, or dimensions that vary together. Standard
+//! errors are those of the jackknife over 16 scramblings, intervals by Student's quantile. An estimate near 0 may be negative: it is
+//! reported unchanged, because 0 is within its error.
 
 use serde::Serialize;
 
@@ -23,40 +23,40 @@ use sensitol_numeric::sampling::Normals;
 use sensitol_numeric::sampling::student_quantile;
 use sensitol_numeric::time::Instant;
 
-/// Evaluations of a costly model without a budget, at most.
+/// Most evaluations of a costly model without a budget.
 const UNASKED: u64 = 10_000;
-/// Numbers of one scrambling, at most: some 64 megabytes.
+/// Most random numbers of one scrambling: some 64 megabytes.
 const NUMBERS: usize = 1 << 23;
-/// The streams of the points, apart from those of other samples.
+/// First stream of the points, apart from those of other samples.
 const STREAM: u64 = 1 << 36;
 
-/// An index with what the sample leaves uncertain of it.
+/// Estimate of an index with its uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct IndexEstimate {
-    /// The estimate; of an index near 0 it may be below.
+    /// Estimate, which may be negative if the index is near 0.
     pub value: f64,
-    /// Its standard error.
+    /// Standard error of the estimate.
     pub standard_error: f64,
-    /// Its 95 % interval.
+    /// 95 % interval of the index.
     pub interval: [f64; 2],
 }
 
-/// The indices of one factor.
+/// Sobol' indices of one factor.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct SampledFactor {
-    /// The dimension, or those that vary together.
+    /// Names of the dimension, or of those that vary together.
     pub dimensions: Vec<String>,
-    /// The part of the variance that it explains by itself.
+    /// Part of the variance that the factor explains alone.
     pub first_order: IndexEstimate,
-    /// The same with every interaction in which it has a part.
+    /// Part of the variance with all interactions of the factor.
     pub total: IndexEstimate,
 }
 
-/// The dimensions of every factor, and how many base points there are in each scrambling.
+/// Varying dimensions, the positions of every factor among them, and the number of base points in each scrambling.
 fn design(problem: &Problem, points: u64) -> (Vec<usize>, Vec<Vec<usize>>, usize) {
     let varies = |&d: &usize| problem.dimensions()[d].sigma() > 0.0;
     let varying: Vec<usize> = (0..problem.dimensions().len()).filter(varies).collect();
@@ -67,7 +67,7 @@ fn design(problem: &Problem, points: u64) -> (Vec<usize>, Vec<Vec<usize>>, usize
     (varying, places, rows)
 }
 
-/// Refuses more evaluations than are allowed.
+/// Returns an error if more evaluations are needed than are allowed.
 pub(super) fn affordable(problem: &Problem, points: u64, budget: Option<u64>) -> Result<(), SimulationError> {
     let (_, factors, rows) = design(problem, points);
     let base = REPLICATES * rows as u64;
@@ -80,8 +80,8 @@ pub(super) fn affordable(problem: &Problem, points: u64, budget: Option<u64>) ->
     }
 }
 
-/// The indices of every characteristic, and what they took; None for one that does not vary, and for all of them where the run was stopped.
-/// Points without a value are left out.
+/// Indices of every characteristic, and their cost. None for a characteristic that does not vary, and for all of them if the run was
+/// stopped. Points without a value are left out.
 ///
 /// Shapes: `origins` has a value near the mean of every characteristic.
 pub(super) fn indices(
@@ -103,7 +103,7 @@ pub(super) fn indices(
     let one = |replicate: u64| exchange.replicate(&normals, replicate);
     let replicates: Vec<Replicate> = match problem.function().signature().costly {
         false => (0..REPLICATES).into_par_iter().map(one).collect(),
-        // One batch after the other: the workers of an external model share each.
+        // One batch after the other: all workers of an external model share each.
         true => (0..REPLICATES)
             .map(|replicate| {
                 let samples = replicate * (rows * (factors.len() + 2)) as u64;
@@ -131,23 +131,24 @@ struct Exchange<'p> {
     space: Space<'p>,
     factors: &'p [Vec<usize>],
     rows: usize,
-    /// Values near the means, about which sums are taken so that nothing large is squared.
+    /// Values near the means of the characteristics. Sums are taken about them so that nothing large is squared.
     origins: &'p [f64],
     run: &'p Run<'p>,
 }
 
-/// The sums of one scrambling.
+/// Sums of one scrambling, with its cost.
 struct Replicate {
-    /// Of every characteristic: points, their sum and squares; then of every factor points, sums of means, products, mean squares, and
-    /// squared differences.
+    /// Sums by characteristic: number of points, their sum and squares; then for every factor the number of points, and sums of means,
+    /// products, mean squares, and squared differences.
     sums: Vec<Vec<f64>>,
     run: RunSummary,
-    /// Whether a point was not evaluated.
+    /// True if a point was not evaluated.
     open: bool,
 }
 
-/// Sums of the whole, and of every factor.
+/// Number of sums of the whole sample: points, sum, squares.
 const WHOLE: usize = 3;
+/// Number of sums of every factor: points, means, products, mean squares, squared differences.
 const OF_FACTOR: usize = 5;
 
 impl Exchange<'_> {
@@ -197,7 +198,7 @@ fn exchange(factor: &[usize], first: &mut Columns, second: &mut Columns) {
     factor.iter().for_each(|&variable| std::mem::swap(&mut first[variable], &mut second[variable]));
 }
 
-/// None where nothing varies.
+/// Indices of all factors from the sums of all scramblings. Returns None if nothing varies.
 fn estimated(
     problem: &Problem,
     varying: &[usize],

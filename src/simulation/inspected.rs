@@ -1,4 +1,4 @@
-//! The risks of an inspection among the points of a sample.
+//! Risks of an inspection, from the points of a sample.
 
 use super::count::{Count, Replicate};
 use super::replicate::of_replicates;
@@ -7,11 +7,10 @@ use sensitol_numeric::characteristic::{Characteristic, KeptLimits};
 use sensitol_numeric::inspection::Guard;
 use sensitol_numeric::sampling::Fine;
 
-/// A piece of the sample between two values that no limit parts.
+/// A part of the sample between two values, without a limit in it.
 struct Piece {
-    /// The middle of it.
+    /// Middle of the piece, which represents its values.
     at: f64,
-    /// How many points.
     points: f64,
     good: bool,
 }
@@ -19,13 +18,13 @@ struct Piece {
 /// Means over all points.
 #[derive(Clone, Copy)]
 struct Means {
-    /// Bad and accepted, good and rejected, accepted.
+    /// Shares of parts that are bad and accepted, good and rejected, and accepted.
     shares: [f64; 3],
-    /// Means of the squares of what every point adds to them.
+    /// Mean squares of the contributions of every point to the shares.
     squares: [f64; 3],
 }
 
-/// Of a characteristic with a gauge; None where no point has a value.
+/// Risks of the inspection of a characteristic with a gauge. Returns None if no point has a value.
 pub(super) fn inspected(
     characteristic: &Characteristic,
     kept: KeptLimits,
@@ -35,6 +34,7 @@ pub(super) fn inspected(
     let (inspection, limits) = (characteristic.inspection()?, characteristic.limits());
     let (all, gauge) = (all?, inspection.gauge());
     let outside = [0, 1].map(|side| count.replicates.iter().map(|replicate| replicate.outside[side]).sum());
+    // The guard band is chosen for all points, and the scatter of the replicates gives the errors.
     let whole = pieces(all, kept, outside);
     let guard = match inspection.guard() {
         Guard::Width(width) => Some(width),
@@ -60,7 +60,7 @@ pub(super) fn inspected(
                 true => Some(((of.squares[index] - value * value).max(0.0) / n).sqrt()),
                 false => of_replicates(replicates.iter().map(|of| of.map(|of| of.shares[index]))),
             };
-            // Where no point was seen, up to three are not ruled out.
+            // Without a hit, up to three are possible: the error is at least one point.
             EstimatedShare { value, error: scatter.map(|error| error.max(1.0 / n)) }
         };
         [0, 1, 2].map(share)
@@ -80,11 +80,11 @@ pub(super) fn inspected(
     })
 }
 
-/// The bins of a sample, parted where the limits are: by the points counted outside, which are exact.
+/// Bins of a sample, divided at the limits. The counts outside, which are exact, divide the points of such a bin.
 fn pieces(fine: &Fine, limits: KeptLimits, outside: [u64; 2]) -> Vec<Piece> {
     let [lower, upper] = limits.ends();
     let beyond = |[from, to]: [f64; 2]| [to <= lower, from > upper];
-    // Those of the bins that a limit parts.
+    // Points outside in the bins that contain a limit.
     let mut left = outside;
     for (ends, count) in fine.filled() {
         for (left, beyond) in left.iter_mut().zip(beyond(ends)) {
@@ -119,7 +119,7 @@ fn pieces(fine: &Fine, limits: KeptLimits, outside: [u64; 2]) -> Vec<Piece> {
     pieces
 }
 
-/// None of no points.
+/// Means over all points of the pieces. Returns None if there are no points.
 fn means(pieces: &[Piece], limits: KeptLimits, gauge: f64, guard: f64) -> Option<Means> {
     let total: f64 = pieces.iter().map(|piece| piece.points).sum();
     let (mut shares, mut squares) = ([0.0; 3], [0.0; 3]);

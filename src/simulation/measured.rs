@@ -1,16 +1,16 @@
-//! The uncertainty of a sample's figures that comes from measured inputs, whose own samples are small.
+//! Uncertainty of a sample's figures that comes from measured inputs, whose own samples are small.
 //!
-//! Points of a simulation repeat the rows of a measured sample over and over: a million of them know no more of the process than its
-//! rows do. The points are parted into groups of equal rows, or of neighbouring values. With `m` and `q` the means of `y` and of
-//! `(y - mean)^2` within a group, a sample of `n` rows leaves
+//! Points of a simulation repeat the rows of a measured sample: a million of them contain no more information about the process than the
+//! rows. The points are divided into groups of equal rows, or of neighbouring values. With `m` and `q` the means of `y` and of `(y -
+//! mean)^2` within a group, a sample of `n` rows leaves the uncertainty
 //!
 //! ```text
 //! var(mean) = Var(m)/n        var(sigma) = Var(q)/(4 sigma^2 n)        var(Cpk) = Var(-+ m/(3 sigma) - Cpk q/(2 sigma^2))/n
 //! ```
 //!
-//! with the variances over the groups, each with its share of the points; independent samples add up. These are the first terms of
-//! Hoeffding's decomposition (1948), by which a mean over several samples is asymptotically normal. The noise of a group's own mean
-//! adds at most a fiftieth of the variance, because a group has fifty points or more.
+//! The variances are over the groups, weighted by their shares of the points. Those of independent samples add up. These are the first
+//! terms of Hoeffding's decomposition (1948), by which a mean over several samples is asymptotically normal. The noise of a group's own
+//! mean adds at most a fiftieth of the variance, because a group has fifty points or more.
 
 use super::SimulatedCharacteristic;
 use super::groups::{Group, GroupSums, Grouped, MeasuredGroups};
@@ -19,7 +19,7 @@ use sensitol_numeric::characteristic::SpecLimits;
 use sensitol_numeric::sampling::{MeasuredBasis, SamplingInterval, student_quantile};
 use sensitol_numeric::verdict::{including, share};
 
-/// The variance over groups, each with its share of the points, of a function of the group.
+/// Variance over groups, weighted by their shares of the points, of a function of the group.
 fn variance(groups: &[Group], of: impl Fn(&Group) -> f64) -> f64 {
     let known = || groups.iter().filter(|group| group.count > 0.0);
     let total: f64 = known().map(|group| group.count).sum();
@@ -27,11 +27,11 @@ fn variance(groups: &[Group], of: impl Fn(&Group) -> f64) -> f64 {
     known().map(|group| group.count * (of(group) - mean).powi(2)).sum::<f64>() / total
 }
 
-/// The error of a figure that is the mean of a function of the group; None where it is unknown.
+/// Error of a figure that is the mean of a function of the group. Returns None if it is unknown.
 type GroupError<'a> = &'a dyn Fn(&dyn Fn(&Group) -> f64) -> Option<f64>;
 
 impl MeasuredGroups<'_> {
-    /// The intervals of a characteristic that measured samples leave open; None where it depends on none.
+    /// Intervals of a characteristic by the uncertainty of measured samples. Returns None if it depends on none.
     pub(super) fn interval(
         &self,
         c: usize,
@@ -43,14 +43,14 @@ impl MeasuredGroups<'_> {
             self.samples.iter().zip(&sums.0).filter(|(one, _)| depends(one)).collect();
         let fewest = own.iter().map(|(one, _)| one.sample.size).min()?;
         let (mean, sigma) = (found.mean?.value, found.sigma?.value);
-        // Two standard errors of as few values reach farther than those of many.
+        // Student's quantile of the smallest sample, because two standard errors of few values are too narrow.
         let wide = student_quantile(0.5 * (1.0 + CONFIDENCE), (fewest.max(2) - 1) as f64);
         let correlated = own.iter().any(|(one, _)| one.sample.is_correlated);
         let error = |of: &dyn Fn(&Group) -> f64| {
             let variance = own.iter().map(|(one, groups)| variance(groups, of) / one.divisor).sum::<f64>();
             Some(wide * variance.sqrt()).filter(|error| error.is_finite() && !correlated)
         };
-        // The mean square about the mean of all.
+        // Mean square about the mean of all points.
         let square = |group: &Group| group.square / group.count + (group.mean - mean).powi(2);
         let about = |value: f64, error: Option<f64>| error.map(|error| [value - error, value + error]);
         let part = error(&square).map(|error| error / (2.0 * sigma * sigma));
@@ -66,7 +66,7 @@ impl MeasuredGroups<'_> {
         };
         Some(SamplingInterval {
             mean: about(mean, error(&|group| group.mean)),
-            // By its logarithm: a sigma is positive.
+            // Symmetric in the logarithm, because sigma is positive.
             sigma: part.filter(|part| part.is_finite()).map(|part| [-part, part].map(|by| sigma * libm::exp(by))),
             skewness: None,
             kurtosis: None,
@@ -78,7 +78,7 @@ impl MeasuredGroups<'_> {
         })
     }
 
-    /// The interval of the rejected share; None without limits.
+    /// Interval of a characteristic's reject rate. Returns None if there are no limits.
     fn rejected(
         &self,
         c: usize,
@@ -89,11 +89,12 @@ impl MeasuredGroups<'_> {
         let rejected = 1.0 - found.yield_?.value;
         let (mean, square) = (found.mean?.value, found.sigma?.value.powi(2));
         let input = |(one, groups): &(&Grouped<'_>, &Vec<Group>)| {
-            // A group of rows in turn has the mean of as many: its variance is smaller by their number.
+            // The mean of a group of rows in turn has a variance that is smaller by the number of rows.
             let rows = one.sample.size as f64 / one.divisor;
             let first = variance(groups, |group| group.mean) * rows / square;
             let spread = |group: &Group| group.square / group.count + (group.mean - mean).powi(2);
-            // A straight line in a normal variable moves the mean square by twice the square of its share; more is by interactions.
+            // A linear effect of a normal variable changes the mean square by twice the square of its share. The rest comes from
+            // interactions.
             let second = 0.5 * variance(groups, spread) * rows / (square * square) - first * first;
             one.sample.with_share(first + second.max(0.0))
         };
@@ -111,7 +112,7 @@ impl MeasuredGroups<'_> {
     }
 }
 
-/// The sign with which the mean moves the distance of the nearer limit.
+/// Sign of the change of the distance to the nearer limit with the mean.
 fn nearer(limits: SpecLimits, mean: f64) -> f64 {
     let room = |limit: Option<f64>| limit.map_or(f64::INFINITY, |limit| (limit - mean).abs());
     if room(limits.lower()) < room(limits.upper()) { 1.0 } else { -1.0 }

@@ -1,4 +1,4 @@
-//! Monte Carlo: the assembly function itself on points of the inputs' distribution, with standard errors.
+//! Monte Carlo simulation: the assembly function at points of the inputs' distribution, with standard errors.
 
 mod characteristic;
 mod control;
@@ -47,7 +47,7 @@ use sensitol_numeric::verdict::Judged;
 pub(crate) use surrogates::{Surrogates, chosen};
 use tally::{Block, Tally};
 
-/// How a problem is simulated.
+/// Options of a simulation.
 ///
 /// ```
 /// use sensitol::simulation::SimulationOptions;
@@ -56,29 +56,29 @@ use tally::{Block, Tally};
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct SimulationOptions {
-    /// Points, at most; Sobol's are rounded up to the next power of two in each replicate.
+    /// Most points. Sobol' points are rounded up to the next power of two in each replicate.
     pub samples: u64,
-    /// How they are drawn.
+    /// Sampler of the points.
     pub sampler: Sampler,
-    /// Another seed is another sample.
+    /// Seed of the random numbers. A different seed gives a different sample.
     pub seed: u64,
-    /// Ends when the standard error of every sigma is below this part of it.
+    /// Standard error of every sigma, as a part of it, at which the simulation ends.
     pub until: Option<f64>,
-    /// Ends when half the interval of every yield is below this.
+    /// Half-width of the interval of every yield at which the simulation ends.
     pub until_yield: Option<f64>,
-    /// Whether the surrogate of an analysis with these options stands beside the model as control variate: its moments are
-    /// exact, only the difference is sampled, and standard errors shrink by what it explains. `auto` is `full` to 20
-    /// varying dimensions, `six-n` beyond. Quantiles and histogram stay those of the sample.
+    /// Options of an analysis whose surrogate serves as control variate: its moments are exact, only the difference to the model is
+    /// sampled, and standard errors shrink by the part that it explains. `auto` is `full` up to 20 varying dimensions, `six-n` beyond.
+    /// Quantiles and histogram stay those of the sample.
     ///
-    /// Where the model fails at some points, their differences are taken to be like the others'. The kurtosis of what is far
-    /// from the surrogate wants more points than a plain one before its standard error is right: of a lognormal with log-sd
-    /// 0.15 two of them hold 88 % at 20 000 random points and 94 % at 100 000.
+    /// If the model fails at some points, their differences are assumed to be like the others'. If the model is far from the surrogate, the
+    /// standard error of the kurtosis needs more points than that of a plain sample. For a lognormal distribution with log-sd 0.15, two
+    /// standard errors cover 88 % at 20 000 random points and 94 % at 100 000.
     pub control: Option<Options>,
-    /// The share of assemblies that must keep the limits of all characteristics at once.
+    /// Target for the share of assemblies that keep the limits of all characteristics at once.
     pub target_joint_yield: Option<f64>,
-    /// Whether there are Sobol' indices too, by exchanging inputs at so many base points, n of them: n (N + 2) evaluations more.
+    /// Number n of base points for Sobol' indices, by exchanging inputs: n (N + 2) evaluations more. None for no indices.
     pub sobol: Option<u64>,
-    /// Most evaluations of these; without it a costly model is evaluated 10 000 times for them at most.
+    /// Most evaluations for Sobol' indices. If it is None, a costly model is evaluated 10 000 times for them at most.
     pub budget: Option<u64>,
 }
 
@@ -99,63 +99,63 @@ impl Default for SimulationOptions {
 }
 
 impl SimulationOptions {
-    /// With at most so many points.
+    /// Sets the greatest number of points.
     #[must_use]
     pub fn with_samples(mut self, points: u64) -> Self {
         self.samples = points;
         self
     }
 
-    /// With points drawn so.
+    /// Sets the sampler.
     #[must_use]
     pub fn with_sampler(mut self, sampler: Sampler) -> Self {
         self.sampler = sampler;
         self
     }
 
-    /// With this seed.
+    /// Sets the seed.
     #[must_use]
     pub fn with_seed(mut self, seed: u64) -> Self {
         self.seed = seed;
         self
     }
 
-    /// Ending when the standard error of every sigma is below this part of it.
+    /// Sets the standard error of every sigma, as a part of it, at which the simulation ends.
     #[must_use]
     pub fn with_until(mut self, error: f64) -> Self {
         self.until = Some(error);
         self
     }
 
-    /// Ending when half the interval of every yield is below this.
+    /// Sets the half-width of the interval of every yield at which the simulation ends.
     #[must_use]
     pub fn with_until_yield(mut self, half: f64) -> Self {
         self.until_yield = Some(half);
         self
     }
 
-    /// With this target for the share that keeps the limits of all characteristics at once.
+    /// Sets the target for the share that keeps the limits of all characteristics at once.
     #[must_use]
     pub fn with_target_joint_yield(mut self, share: f64) -> Self {
         self.target_joint_yield = Some(share);
         self
     }
 
-    /// With Sobol' indices by so many base points.
+    /// Requests Sobol' indices with this number of base points.
     #[must_use]
     pub fn with_sobol(mut self, points: u64) -> Self {
         self.sobol = Some(points);
         self
     }
 
-    /// With at most so many evaluations for Sobol' indices.
+    /// Sets the greatest number of evaluations for Sobol' indices.
     #[must_use]
     pub fn with_budget(mut self, evaluations: u64) -> Self {
         self.budget = Some(evaluations);
         self
     }
 
-    /// With the surrogate of an analysis with these options as control variate.
+    /// Requests the surrogate of an analysis with these options as control variate.
     #[must_use]
     pub fn with_control(mut self, analysis: Options) -> Self {
         self.control = Some(analysis);
@@ -163,71 +163,71 @@ impl SimulationOptions {
     }
 }
 
-/// Replicates of Sobol's points, each scrambled by itself: what they differ by is the standard error.
+/// Number of replicates of Sobol' points, each scrambled independently: their scatter is the standard error.
 pub(crate) const REPLICATES: u64 = crate::verification::REPLICATES as u64;
 /// Points that a task evaluates together.
 pub(crate) const ROWS: usize = 1024;
-/// Tasks between two looks at the clock and at what is wanted.
+/// Number of tasks between two checks of the clock and of the accuracy.
 const TASKS: usize = 64;
-/// Points of a costly model between two looks.
+/// Points of a costly model between two checks.
 const COSTLY: usize = 4096;
-/// Points after which a sample ends whose moments have not settled, where it would go on until they are known.
+/// Points after which a sample with a requested accuracy ends if its moments have not settled.
 const UNSETTLED: u64 = 1 << 24;
 
-/// The results of a simulation.
+/// Results of a simulation.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
 pub struct Simulation {
-    /// How points were drawn.
+    /// Sampler of the points.
     #[serde(flatten, serialize_with = "through::<shape::SamplerShape, _, _>")]
     #[cfg_attr(feature = "schema", schemars(with = "shape::SamplerShape"))]
     pub sampler: Sampler,
-    /// Its points and time, those of the surrogate included; why it ended before all points were drawn or the accuracy was
+    /// Points and time, including those of the surrogate, and the reason of an end before all points were drawn or the accuracy was
     /// reached.
     #[serde(flatten)]
     pub run: RunSummary,
-    /// Points that were answered.
+    /// Number of points that were answered.
     pub samples: u64,
-    /// Evaluations of the surrogate; None where none was asked for.
+    /// Evaluations of the surrogate. None if none was requested.
     pub surrogate_evaluations: Option<u64>,
-    /// Whether what was wanted was reached; None where nothing was.
+    /// True if the requested accuracy was reached. None if none was requested.
     pub reached: Option<bool>,
-    /// Where the model answered the nominal point otherwise than before.
-    // Told of as warnings.
+    /// Answers of the model that differ when a point is evaluated again.
+    // Reported as warnings.
     #[serde(skip)]
     pub non_repeatable: Vec<NonRepeatable>,
-    /// The share of assemblies that keep the limits of all characteristics at once; None with fewer than two that have limits.
+    /// Share of assemblies that keep the limits of all characteristics at once. None if fewer than two have limits.
     #[serde(rename = "joint_yield")]
     pub joint: Option<YieldEstimate>,
-    /// Whether that share reaches the target for all characteristics at once; None without such a target.
+    /// Verdict on the target for the joint yield. None if there is no such target.
     #[cfg_attr(feature = "schema", schemars(with = "Option<sensitol_numeric::verdict::JudgedShape>"))]
     pub joint_requirement: Option<Judged>,
-    /// How every two characteristics vary together; empty with one characteristic, and with more than 40.
+    /// Correlations of every two characteristics. Empty with one characteristic, and with more than 40.
     #[serde(rename = "characteristic_correlation")]
     pub correlations: Vec<OutputCorrelation>,
     /// The results of every characteristic, in the problem's order.
     #[cfg_attr(feature = "schema", schemars(with = "Vec<SimulatedShape>"))]
     pub characteristics: Vec<SimulatedCharacteristic>,
-    /// Where points have no value, and where the model contradicted itself.
+    /// Warnings, such as of points without a value, and of a model that is not repeatable.
     #[serde(skip)]
     pub warnings: Vec<Warning>,
 }
 
-/// How far a simulation is.
+/// Progress of a simulation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Pace {
-    /// Points answered.
+    /// Number of points answered.
     pub samples: u64,
-    /// Points that it will take: all of them, or what the standard errors so far say that the wanted one takes.
+    /// Number of points that will be needed: all of them, or an estimate for the requested accuracy from the standard errors so far.
     pub expected: f64,
-    /// Time so far.
+    /// Elapsed time.
     pub elapsed: Duration,
 }
 
 impl Pace {
-    /// The time that it will take in all, at the speed so far, in seconds.
+    /// Expected total time at the speed so far, in seconds.
     pub fn expected_s(&self) -> f64 {
         self.elapsed.as_secs_f64() * self.expected / self.samples.max(1) as f64
     }
@@ -235,11 +235,11 @@ impl Pace {
 
 /// Simulates a problem.
 ///
-/// Evaluations: as many as samples. Memory: flat in the number of samples: a third of a megabyte of counts for each
-/// characteristic, five for Sobol's points. The numbers are the same for any number of threads.
+/// Evaluations: as many as samples. Memory: independent of the number of samples: a third of a megabyte of counts for each characteristic,
+/// five for Sobol' points. The numbers are the same for any number of threads.
 ///
 /// # Errors
-/// When a dimension cannot be sampled, or the model cannot be used at all; nothing is evaluated then.
+/// Returns an error if a dimension cannot be sampled, or the model cannot be used at all. Nothing is evaluated then.
 ///
 /// ```
 /// use sensitol::simulation::{SimulationOptions, simulate};
@@ -256,68 +256,68 @@ pub fn simulate(problem: &Problem, options: &SimulationOptions) -> Result<Simula
     simulate_with(problem, options, &Run::to_the_end(), &|_| {})
 }
 
-/// Why a problem cannot be simulated.
+/// Reason why a problem cannot be simulated.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SimulationError {
-    /// It cannot be sampled.
+    /// A dimension cannot be sampled.
     #[error(transparent)]
     Sampling(#[from] SamplingError),
     /// The model cannot be used at all.
     #[error("{error}")]
     Model {
-        /// Why not.
+        /// Error of the model.
         error: EvaluationError,
     },
     /// The surrogate's method cannot be run on the problem.
     #[error(transparent)]
     Method(#[from] MethodError),
-    /// There is no surrogate to stand beside a characteristic.
+    /// A characteristic has no surrogate that could serve as control variate.
     #[error("`{characteristic}` has no surrogate by {method}: {reason}; simulate it by itself")]
     NoSurrogate {
-        /// The characteristic.
+        /// Name of the characteristic.
         characteristic: String,
-        /// The method.
+        /// Method of the surrogate.
         method: Method,
-        /// The reason why there is none.
+        /// Reason why there is none.
         reason: String,
     },
-    /// No or too many points.
+    /// Too few or too many points.
     #[error("a simulation takes 2 to {most} points, not {samples}")]
     Samples {
-        /// The number asked for.
+        /// Requested number of points.
         samples: u64,
-        /// The greatest.
+        /// Greatest number of points.
         most: u64,
     },
-    /// Sobol' indices of a costly model.
+    /// Sobol' indices of a costly model need more evaluations than are allowed.
     #[error(
         "Sobol' indices of {factors} inputs at {points} points take {evaluations} evaluations (points x (inputs + 2)), and {most} are \
          allowed: choose fewer points or a greater budget"
     )]
     CostlyIndices {
-        /// Base points.
+        /// Number of base points.
         points: u64,
-        /// Inputs that vary by themselves.
+        /// Number of factors that vary independently.
         factors: usize,
-        /// Evaluations that they take together.
+        /// Evaluations that the indices need.
         evaluations: u64,
         /// Evaluations that are allowed.
         most: u64,
     },
-    /// A yield is wanted where there is no limit.
+    /// An accuracy of the yield is requested, but there is no limit.
     #[error("a yield is to be known that well, but no characteristic asked for has a limit")]
     NoLimits,
-    /// The target of a standard error is not a positive number.
+    /// Requested standard error that is not a positive number.
     #[error("what is wanted of a standard error is a number above 0, not {value}")]
     Wanted {
-        /// The value.
+        /// Requested value.
         value: f64,
     },
 }
 
 impl SimulationError {
-    /// The actions to take.
+    /// Actions that solve the error.
     pub fn advice(&self) -> Vec<Advice> {
         match self {
             Self::NoSurrogate { method, .. } if !method.has_surrogate() => {
@@ -329,10 +329,10 @@ impl SimulationError {
     }
 }
 
-/// Counts are exact in a double up to here.
+/// Greatest number of points: counts are exact in a double up to here.
 const MOST: u64 = 1 << 52;
 
-/// [`simulate`], telling of its pace and stopping when told to.
+/// [`simulate`] with reports of progress and a way to stop.
 pub fn simulate_with(
     problem: &Problem,
     options: &SimulationOptions,
@@ -404,7 +404,7 @@ impl Simulation {
         self.warnings.iter_mut().for_each(|warning| warning.rescale(|name| back.power_of(name)));
     }
 
-    /// With Sobol' indices.
+    /// Adds Sobol' indices from further evaluations.
     fn with_indices(
         mut self,
         problem: &Problem,
@@ -421,8 +421,8 @@ impl Simulation {
     }
 }
 
-/// Samples the model beside the surrogates of an analysis that has been made; those that it has not stand beside nothing.
-/// Counts what is evaluated now only.
+/// Samples the model with the surrogates of an existing analysis as control variates, as far as it has them. Counts only evaluations of
+/// this sample.
 pub(crate) fn simulate_beside(
     problem: &Problem,
     options: &SimulationOptions,
@@ -432,7 +432,7 @@ pub(crate) fn simulate_beside(
     let begun = Instant::now();
     let draws = Draws::new(problem.dimensions(), problem.correlation(), options.sampler, options.seed)?;
     let control = Control::beside_of(problem, outcome, options)?;
-    // Who asks for them here has error estimates of their own.
+    // Callers have error estimates of their own, so standard errors need not be watched.
     Ok(drawn(problem, options, (&draws, Some(&control), false), run, (begun, &|_| {})))
 }
 
@@ -443,14 +443,14 @@ fn drawn(
     run: &Run<'_>,
     (begun, pace): (Instant, &dyn Fn(Pace)),
 ) -> Simulation {
-    /// Where a batch takes less time than this, the next one has so many times as many tasks.
+    /// Duration below which the next batch has more tasks, and the factor on their number.
     const SHORT: (Duration, usize) = (Duration::from_millis(50), 4);
     let measured = MeasuredGroups::of(problem, options.samples);
     let mut tally = Tally::new(problem, control, options.sampler);
     let mut portions = Portions::new(options, problem.function().signature().costly, problem.dimensions().len());
     let rooms = Rooms::none();
     let room = || (Room::default(), Points::repeated(&[], 0), Responses::open(0, 0));
-    // Where the number of points is known beforehand, a batch is counted while the next one is evaluated.
+    // If the number of points is known beforehand, a batch is counted while the next one is evaluated.
     let ahead = !portions.costly && options.until.is_none() && options.until_yield.is_none();
     let mut waiting: (Vec<Portion>, Vec<Block>) = Default::default();
     let (mut reached, mut expected) = (None, portions.total as f64);
@@ -469,6 +469,7 @@ fn drawn(
         };
         let asked = Instant::now();
         let costly = portions.costly;
+        // Workers of a costly model share each batch, so its portions are evaluated one after the other.
         let blocks = || match costly {
             true => batch.iter().map(one).collect(),
             false => batch.par_iter().map(one).collect(),
@@ -485,7 +486,7 @@ fn drawn(
             tally.watch(options.seed, run);
         }
         if let Some(ratio) = tally.shortfall(options) {
-            // Standard errors shrink with the root of the sample.
+            // Standard errors shrink with the root of the sample size.
             expected = expected.min(tally.samples() as f64 * (ratio * ratio).max(1.0));
             reached = Some(ratio <= 1.0);
             if ratio.is_infinite() && tally.samples() >= UNSETTLED {
@@ -499,6 +500,7 @@ fn drawn(
     if watched {
         tally.watch(options.seed, run);
     }
+    // A sample whose moments have not settled is complete after `UNSETTLED` points: it was not stopped.
     let settles = !tally.shortfall(options).is_some_and(f64::is_infinite) || tally.samples() < UNSETTLED;
     let open = tally.stopped || reached != Some(true) && settles && !portions.done();
     let stopped = control.and_then(Control::stopped).or_else(|| open.then(|| run.why_open()));
@@ -509,7 +511,7 @@ fn drawn(
     }
 }
 
-/// Evaluates one portion.
+/// Evaluates one portion, with surrogates and groups of measured samples.
 fn block(
     problem: &Problem,
     (points, out): (&Points, &mut Responses),
@@ -526,17 +528,17 @@ fn block(
     Block::of(out, took, (lenses, sampler, portion.replicate), &beside, groups.as_ref())
 }
 
-/// The portions of a sample, a batch at a time, every replicate as far as the others.
+/// Portions of a sample, a batch at a time, with equal progress of all replicates.
 struct Portions {
     replicates: u64,
     rows: u64,
-    /// Points in all.
+    /// Number of points in all replicates together.
     total: u64,
-    /// Of a replicate.
+    /// Number of points in each replicate.
     each: u64,
     done: u64,
     costly: bool,
-    /// How many times as many as usual between two looks.
+    /// Factor on the number of tasks of a batch.
     at_once: usize,
 }
 

@@ -1,9 +1,9 @@
-//! The standard error that independent replicates tell.
+//! Standard error from independent replicates.
 
 use sensitol_numeric::sampling::{Summary, student_quantile};
 
-/// The standard error of the mean of independent replicates, widened so that two of it are the 95 % interval of Student's
-/// distribution with one degree of freedom fewer than there are replicates; None where one has no value.
+/// Standard error of the mean of independent replicates. It is widened so that two of it are the 95 % interval of Student's distribution,
+/// with one degree of freedom fewer than there are replicates. Returns None if one has no value.
 pub(super) fn of_replicates(values: impl Iterator<Item = Option<f64>>) -> Option<f64> {
     let values: Vec<f64> = values.collect::<Option<_>>()?;
     let count = values.len() as f64;

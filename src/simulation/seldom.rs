@@ -1,9 +1,8 @@
-//! Assemblies beyond switches that are seldom met, and what a sample lacks without them.
+//! Assemblies beyond switches that are seldom met, and their effect on standard errors.
 //!
-//! A jump that one assembly in a million meets is in no sample of 100 000 points, and nothing in the sample tells of it; a surrogate
-//! beside it agrees with every point. A formula tells its switches. Some points beyond those that are seldom met show what that side
-//! adds to the sums on which standard errors rest. A moment has not settled where one side adds more to its sum than all the
-//! points of the sample do.
+//! A jump that one assembly in a million meets is in no sample of 100 000 points, and the sample gives no hint of it. A surrogate agrees
+//! with every point too. A formula reports its switches. Some points beyond those that are seldom met show the contribution of that side to
+//! the sums that give standard errors. A moment has not settled if one side adds more to its sum than all the points of the sample do.
 
 use super::control::{Control, Twin};
 use super::difference::squares;
@@ -12,15 +11,15 @@ use crate::problem::Problem;
 use crate::verification::{SeldomSides, seldom_sides};
 use crate::warning::Warning;
 
-/// The switches of one characteristic, with the sums of the seldom sides.
+/// Switches of one characteristic, with points of the seldom sides.
 pub(super) struct Seldom {
     sides: SeldomSides,
-    /// The surrogate at these points; empty without one.
+    /// Rises of the surrogate at these points. Empty if there is none.
     rises: Vec<f64>,
 }
 
 impl Seldom {
-    /// Of a characteristic with this sigma; None where it tells no switch.
+    /// Searches for the switches of a characteristic with this sigma. Returns None if it reports no switch.
     pub(super) fn of(
         problem: &Problem,
         c: usize,
@@ -33,18 +32,18 @@ impl Seldom {
         Some(Self { sides, rises })
     }
 
-    /// Evaluations that it took.
+    /// Number of evaluations of the search.
     pub(super) fn evaluations(&self) -> u64 {
         self.sides.values.len() as u64
     }
 
-    /// The parts that the sides add to the means of the 2nd, 4th, 6th and 8th powers of deviations, in units of sigma.
+    /// Contributions of the sides to the means of the 2nd, 4th, 6th and 8th powers of deviations, in units of sigma.
     pub(super) fn powers(&self, mean: f64, sigma: f64) -> [f64; 4] {
         let of = |order: i32| self.sum(|_, value| ((value - mean) / sigma).powi(order));
         [of(2), of(4), of(6), of(8)]
     }
 
-    /// The parts that they add to the mean squares of the differences to a surrogate.
+    /// Contributions of the sides to the mean squares of the differences to a surrogate.
     pub(super) fn differences(&self, twin: &Twin) -> [f64; 4] {
         let of =
             |k: usize| self.sum(|row, value| self.rises.get(row).map_or(0.0, |&rise| squares(value, rise, twin)[k]));
@@ -56,13 +55,13 @@ impl Seldom {
         points.filter(|(_, (value, _))| value.is_finite()).map(|(row, (&value, weight))| weight * of(row, value)).sum()
     }
 
-    /// The name of the switch that fewest assemblies meet.
+    /// Name of the switch that the fewest assemblies meet.
     pub(super) fn rarest(&self) -> Option<String> {
         let rarest = self.sides.switches.iter().min_by(|a, b| a.probability.total_cmp(&b.probability));
         rarest.map(|found| found.name.clone())
     }
 
-    /// The warnings that tell of the switches, beside a sample of so many points.
+    /// Warnings of the switches, for a sample with this number of points.
     pub(super) fn warnings(&self, characteristic: &str, points: u64) -> impl Iterator<Item = Warning> {
         self.sides.switches.iter().filter_map(move |found| found.warning(characteristic, Some(points)))
     }

@@ -4,7 +4,7 @@ use serde::{Serialize, Serializer};
 
 use sensitol_numeric::sampling::{Estimate, Sampler};
 
-/// A sampler as a method and as itself.
+/// Sampler in JSON, as a method and by its name.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(super) struct SamplerShape {
@@ -20,29 +20,29 @@ impl From<&Sampler> for SamplerShape {
     }
 }
 
-/// An estimate without its standard error, which stands elsewhere.
+/// Serializes an estimate without its standard error, which is written elsewhere.
 pub(super) fn value<S: Serializer>(estimate: &Option<Estimate>, serializer: S) -> Result<S::Ok, S::Error> {
     estimate.map(|estimate| estimate.value).serialize(serializer)
 }
 
-/// The effect of a surrogate as control variate, as it is written.
+/// Effect of a surrogate as control variate, in JSON.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(super) struct ControlShape {
-    /// The method that it comes from.
+    /// Method of the surrogate.
     pub(super) method: &'static str,
-    /// The evaluations that it took, of all characteristics together.
+    /// Evaluations of the surrogate, for all characteristics together.
     pub(super) evaluations: usize,
-    /// By how much standard errors have shrunk.
+    /// Reduction of standard errors.
     pub(super) reduction: Reduction,
 }
 
-/// The standard error without the surrogate by that with it; null where that is unknown or 0.
+/// Ratios of the standard errors without and with the surrogate; null if unknown or if the denominator is 0.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(super) struct Reduction {
-    /// Of the mean.
+    /// Ratio for the mean.
     pub(super) mean: Option<f64>,
-    /// Of sigma.
+    /// Ratio for sigma.
     pub(super) sigma: Option<f64>,
 }

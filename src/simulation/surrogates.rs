@@ -1,4 +1,4 @@
-//! The surrogates of a problem and their exact moments, as what stands beside the model needs them.
+//! Surrogates of a problem and their exact moments, for use as control variates.
 
 use super::SimulationError;
 use crate::assembly::Run;
@@ -7,25 +7,25 @@ use crate::problem::Problem;
 use sensitol_numeric::moments::Sampled;
 use sensitol_numeric::surrogate::Surrogate;
 
-/// Varying dimensions up to which every interaction is examined.
+/// Most varying dimensions for which every interaction is examined.
 const FULL: usize = 20;
 
-/// The surrogates, and what they were made from.
+/// Surrogates, and the analysis that they come from.
 pub(crate) struct Surrogates {
     pub(crate) outcome: Outcome,
-    /// For every characteristic; None where the surrogate does not vary. Empty when the analysis was stopped.
+    /// Surrogates of the characteristics. None if a surrogate does not vary. Empty if the analysis was stopped.
     pub(crate) known: Vec<Option<KnownSurrogate>>,
 }
 
-/// The surrogate of one characteristic.
+/// Surrogate of one characteristic with its exact moments.
 pub(crate) struct KnownSurrogate {
     pub(crate) surrogate: Surrogate,
     pub(crate) moments: Shape,
-    /// Standard errors of the moments, where correlated inputs leave them no closed form.
+    /// Standard errors of the moments, if correlated inputs permit no closed form.
     pub(crate) sampled: Option<Sampled>,
 }
 
-/// The four moments of what varies.
+/// Four moments of a surrogate that varies.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Shape {
     pub(crate) mean: f64,
@@ -35,7 +35,7 @@ pub(crate) struct Shape {
 }
 
 impl Surrogates {
-    /// Analyses the problem.
+    /// Analyses the problem for its surrogates. Returns an error if a characteristic has no surrogate.
     pub(crate) fn of(problem: &Problem, asked: &Options, run: &Run<'_>) -> Result<Self, SimulationError> {
         let asked = chosen(problem, asked);
         if let Some(first) = problem.characteristics().first().filter(|_| !asked.method.has_surrogate()) {
@@ -54,7 +54,7 @@ impl Surrogates {
         Ok(surrogates)
     }
 
-    /// Those that an analysis has, for every characteristic; None where it has none.
+    /// Surrogates of an existing analysis by characteristic. Returns None if there is none.
     pub(super) fn known_of(problem: &Problem, outcome: &Outcome) -> Vec<Option<KnownSurrogate>> {
         (0..problem.characteristics().len()).map(|c| Self::of_one(problem, outcome, c).ok().flatten()).collect()
     }
@@ -83,7 +83,7 @@ impl Surrogates {
     }
 }
 
-/// `auto` stands for every interaction of few dimensions, and the strongest of many.
+/// Options with a method in place of `auto`: every interaction of few dimensions, the strongest of many.
 pub(crate) fn chosen(problem: &Problem, asked: &Options) -> Options {
     if asked.method != Method::Auto {
         return asked.clone();

@@ -1,4 +1,4 @@
-//! The values that come in, counted: the same whatever the order in which threads finish.
+//! Accumulation of the values of a sample. The result does not depend on the order in which threads finish.
 
 use std::borrow::Cow;
 use std::time::Duration;
@@ -21,7 +21,7 @@ use sensitol_numeric::sampling::LargestPoints;
 use sensitol_numeric::sampling::{Fine, Portion, Sampler, Scale, Summary};
 use sensitol_numeric::verdict::Judged;
 
-/// The answers of one portion.
+/// Answers of one portion, counted.
 pub(super) struct Block {
     columns: Vec<Column>,
     answered: u64,
@@ -35,7 +35,7 @@ pub(super) struct Block {
     together: Option<Together>,
 }
 
-/// The answers of one portion for one characteristic.
+/// Answers of one portion for one characteristic.
 struct Column {
     summary: Summary,
     largest: LargestPoints,
@@ -47,15 +47,15 @@ struct Column {
     error: Option<EvaluationError>,
 }
 
-/// As they are before a scale is known, in bins then.
+/// Raw values until the scale is known, then histogram bins.
 enum Values {
     Plain(Vec<f64>),
     Binned(Vec<u32>),
 }
 
 impl Block {
-    /// `beside` has for every output the surrogate and its rises at the same points, where there is one; `groups` the measured samples, with the
-    /// group of every point for each.
+    /// Sums of one portion. `beside` has the surrogate of every output and its rises at the same points, if there is one. `groups` has the
+    /// measured samples, with the group of every point for each.
     pub(super) fn of(
         out: &Responses,
         took: Duration,
@@ -124,11 +124,11 @@ pub(super) struct Tally<'a> {
     lenses: Vec<Lens>,
     counts: Vec<Count>,
     together: Together,
-    /// Of every characteristic, once it was looked for; None where standard errors are not watched.
+    /// Seldom sides of every characteristic, after the search for them. None if standard errors are not watched.
     seldom: Option<Vec<Option<Seldom>>>,
     answered: u64,
     extra: i64,
-    /// Of the points drawn.
+    /// Cost of the points drawn so far.
     run: RunSummary,
     non_repeatable: Vec<NonRepeatable>,
     pub(super) stopped: bool,
@@ -177,7 +177,7 @@ impl<'a> Tally<'a> {
         self.answered
     }
 
-    /// Takes in the blocks of these portions, in their order: the same in one batch as in several.
+    /// Adds the blocks of these portions in their order. The result is the same for any division into batches.
     pub(super) fn add(&mut self, portions: &[Portion], blocks: Vec<Block>) {
         let mut blocks = blocks.into_iter();
         for portions in portions.chunks(TASKS) {
@@ -215,7 +215,7 @@ impl<'a> Tally<'a> {
                 uncounted.push((c, place, column.values));
             }
         }
-        // The counts of all replicates are larger than a cache near by: those of one after those of another.
+        // The counts of all replicates exceed a nearby cache: each replicate is counted as a whole before the next.
         uncounted.sort_by_key(|&(c, replicate, _)| (c, replicate));
         for (c, replicate, values) in uncounted {
             let Some(scale) = self.lenses[c].scale else { continue };
@@ -227,7 +227,7 @@ impl<'a> Tally<'a> {
         }
     }
 
-    /// The first values of a characteristic give its bins.
+    /// Chooses the bins of a characteristic from its first values.
     fn look(&mut self, blocks: &[Block]) {
         for (c, lens) in self.lenses.iter_mut().enumerate().filter(|(_, lens)| lens.scale.is_none()) {
             let mut values: Vec<f64> = Vec::new();
@@ -242,8 +242,8 @@ impl<'a> Tally<'a> {
         }
     }
 
-    /// Looks for assemblies that the sample hardly has, once it has values: from then on standard errors that these or a few points
-    /// decide are left out.
+    /// Searches for assemblies that the sample hardly contains, once it has values. Standard errors that depend on these or on a few points
+    /// are left out from then on.
     pub(super) fn watch(&mut self, seed: u64, run: &Run<'_>) {
         if self.seldom.is_some() || self.answered == 0 || run.stopped() {
             return;
@@ -264,7 +264,7 @@ impl<'a> Tally<'a> {
         }
     }
 
-    /// The worst ratio of an uncertainty to what is wanted of it; None where nothing is wanted, or nothing known yet.
+    /// Greatest ratio of an uncertainty to its requested accuracy. Returns None if no accuracy is requested.
     pub(super) fn shortfall(&self, options: &SimulationOptions) -> Option<f64> {
         if options.until.is_none() && options.until_yield.is_none() {
             return None;
@@ -292,7 +292,7 @@ impl<'a> Tally<'a> {
         SimulatedCharacteristic::of(limited, &self.evidence(c, count))
     }
 
-    /// The surrogate that stands beside this characteristic.
+    /// Surrogate of a characteristic, if there is one.
     fn twin(&self, c: usize) -> Option<&Twin> {
         self.control?.twins.get(c)?.as_ref()
     }
@@ -307,6 +307,7 @@ impl<'a> Tally<'a> {
         let of = |(c, count): (usize, &Count)| {
             let found = SimulatedCharacteristic { unfinished: stopped.is_some(), ..self.characteristic(c, count) };
             match measured.and_then(|measured| measured.interval(c, &found, &count.groups)) {
+                // Measured values that keep a limit prove nothing about the process: the proof is for other inputs only.
                 Some(interval) => found.with_sampling(interval),
                 None => found.with_proof(self.problem, c),
             }
@@ -326,6 +327,7 @@ impl<'a> Tally<'a> {
             seed: Some(options.seed),
             ..self.run
         };
+        // Points of the surrogate are evaluated before those of the sample.
         let before = surrogate.iter().flat_map(|evaluated| &evaluated.non_repeatable).cloned();
         let non_repeatable: Vec<NonRepeatable> = before.chain(self.non_repeatable).collect();
         let failures =
@@ -350,7 +352,7 @@ impl<'a> Tally<'a> {
     }
 }
 
-/// The median, and the spread of the middle half: a long tail must not make the bins of the bulk coarse.
+/// Scale about the median by the spread of the middle half: a long tail must not make the bins of the bulk coarse.
 fn scale(mut values: Vec<f64>) -> Scale {
     values.sort_unstable_by(f64::total_cmp);
     let at = |share: f64| values[((values.len() - 1) as f64 * share) as usize];

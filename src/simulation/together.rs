@@ -1,4 +1,4 @@
-//! Results of a sample for several characteristics at once: the share that keeps all limits, and how they vary together.
+//! Results of a sample for several characteristics at once: joint yield and correlations.
 
 use super::SimulatedCharacteristic;
 use super::characteristic::{REJECTED, YieldEstimate};
@@ -11,23 +11,26 @@ use sensitol_numeric::elementary::{Work, on_this_processor};
 use sensitol_numeric::sampling::{Sampler, wilson};
 use sensitol_numeric::verdict;
 
-/// A number of every part.
+/// One number for every part of a sample.
 type Parts<T> = [T; REPLICATES];
 
-/// The parts of a sample side by side.
+/// Sums of the parts of a sample.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Together {
-    /// Points at which every characteristic has a value; their means, and the sums of products about them, a triangle by rows.
+    /// Points at which every characteristic has a value.
     count: Parts<f64>,
+    /// Means of the characteristics over these points.
     means: Vec<Parts<f64>>,
+    /// Sums of products about the means, an upper triangle by rows.
     products: Vec<Parts<f64>>,
-    /// Points at which every characteristic with limits has a value, and those of them that keep all limits.
+    /// Points at which every characteristic with limits has a value.
     known: Parts<u64>,
+    /// Points among `known` that keep all limits.
     kept: Parts<u64>,
 }
 
 impl Together {
-    /// The parts of a portion; None of a single characteristic.
+    /// Sums of a portion, by parts. Returns None if there is a single characteristic.
     pub(super) fn of(out: &Responses, lenses: &[Lens], sampler: Sampler, replicate: u64) -> Option<Self> {
         if lenses.len() < 2 {
             return None;
@@ -43,12 +46,12 @@ impl Together {
         }
     }
 
-    /// Takes in another portion, part by part.
+    /// Adds another portion, part by part.
     pub(super) fn merge(&mut self, other: &Self) {
         (0..REPLICATES).for_each(|part| self.merge_part(part, other, part));
     }
 
-    /// Takes one part of another into one of its own (Pébay 2008, equation 3.12).
+    /// Adds one part of another sample to one of its own (Pébay 2008, equation 3.12).
     fn merge_part(&mut self, own: usize, other: &Self, part: usize) {
         self.known[own] += other.known[part];
         self.kept[own] += other.kept[part];
@@ -78,7 +81,7 @@ impl Together {
         }
     }
 
-    /// The coefficient of every pair in the first part, NaN where one of the two does not vary.
+    /// Correlation of every pair in the first part, NaN if one of the two does not vary.
     fn coefficients(&self) -> Vec<f64> {
         let n = self.means.len();
         let at = |a: usize, b: usize| self.products[a * n - a * (a + 1) / 2 + b][0];
@@ -91,7 +94,7 @@ impl Together {
     }
 }
 
-/// Every sixteenth point of a portion is a part of its own.
+/// Sums of a portion in which every sixteenth point belongs to the same part.
 struct Groups<'a> {
     out: &'a Responses,
     lenses: &'a [Lens],
@@ -120,7 +123,7 @@ impl Work for Groups<'_> {
         if lenses.len() > OutputCorrelation::MOST {
             return groups;
         }
-        // Mostly every value is known, and nothing is to be left out.
+        // Usually every value is known, and none has to be left out.
         let complete = columns.iter().all(|column| all_finite(column));
         let full: Vec<f64> = if complete { Vec::new() } else { full(&columns, out.rows()) };
         let known =
@@ -132,7 +135,7 @@ impl Work for Groups<'_> {
         };
         let mut deviations: Vec<Vec<f64>> = Vec::with_capacity(columns.len());
         for column in &columns {
-            // About the first value, so that the sum of large values does not round.
+            // About the first value, so that the sum of large values has no rounding errors.
             let at = column[first];
             let mut apart: Vec<f64> = column.iter().map(|value| value - at).collect();
             if !complete {
@@ -163,7 +166,7 @@ impl Work for Groups<'_> {
     }
 }
 
-/// 1 of a point at which every column has a number, 0 of another.
+/// Returns 1 for a point at which every column is finite, 0 for any other.
 #[inline(always)]
 fn full(columns: &[&[f64]], rows: usize) -> Vec<f64> {
     let mut full = vec![1.0; rows];
@@ -175,7 +178,7 @@ fn full(columns: &[&[f64]], rows: usize) -> Vec<f64> {
     full
 }
 
-/// The sum over the points of every group.
+/// Sums over the points of every group.
 #[inline(always)]
 fn by_group(values: &[f64]) -> [f64; REPLICATES] {
     let (rows, rest) = values.as_chunks::<REPLICATES>();
@@ -189,7 +192,7 @@ fn by_group(values: &[f64]) -> [f64; REPLICATES] {
     sums
 }
 
-/// The same of products.
+/// Sums of products over the points of every group.
 #[inline(always)]
 fn products_by_group(first: &[f64], second: &[f64]) -> [f64; REPLICATES] {
     let (rows, rest) = first.as_chunks::<REPLICATES>();
@@ -204,7 +207,8 @@ fn products_by_group(first: &[f64], second: &[f64]) -> [f64; REPLICATES] {
     sums
 }
 
-/// The correlation of every pair of characteristics; none of a single one, and of more than 40. Errors by the jackknife over the parts.
+/// Correlations of every pair of characteristics. Empty with a single one, and with more than 40. Errors come from the jackknife over the
+/// parts.
 pub(super) fn correlations(problem: &Problem, parts: &Together) -> Vec<OutputCorrelation> {
     let names: Vec<&str> = problem.characteristics().iter().map(|one| one.name()).collect();
     if !(2..=OutputCorrelation::MOST).contains(&names.len()) {
@@ -235,7 +239,7 @@ pub(super) fn correlations(problem: &Problem, parts: &Together) -> Vec<OutputCor
     pairs.enumerate().map(of).collect()
 }
 
-/// The share that keeps all limits, of `answered` points; None with fewer than two characteristics that have limits.
+/// Share that keeps all limits, of `answered` points. Returns None if fewer than two characteristics have limits.
 pub(super) fn joint(parts: &Together, sampler: Sampler, answered: u64) -> Option<YieldEstimate> {
     let [known, kept] = [&parts.known, &parts.kept].map(|counts| counts.iter().sum::<u64>());
     if known == 0 {
@@ -253,8 +257,8 @@ pub(super) fn joint(parts: &Together, sampler: Sampler, answered: u64) -> Option
     Some(YieldEstimate { value, interval, bounds })
 }
 
-/// A joint yield with what measured samples leave open: no fewer assemblies are rejected than by one characteristic, and no more than by all
-/// of them one after the other.
+/// Widens a joint yield by the uncertainty of measured samples: at least as many assemblies are rejected as by one characteristic, and at
+/// most as many as by all of them one after the other.
 pub(super) fn with_sampling(joint: YieldEstimate, characteristics: &[SimulatedCharacteristic]) -> YieldEstimate {
     let (mut most, mut least, mut measured) = (1.0 - joint.value, 0.0f64, false);
     for one in characteristics {

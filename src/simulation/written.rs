@@ -1,4 +1,4 @@
-//! How a simulation is written: values by their names, what is uncertain of them below `standard_error`.
+//! JSON form of a simulation: values by their names, uncertainties in `standard_error`.
 
 use serde::{Serialize, Serializer};
 
@@ -12,26 +12,26 @@ use sensitol_numeric::verdict::{Judged, Verdict};
 
 warnings_last!(Simulation);
 
-/// A characteristic with the standard errors beside the values, as it is written.
+/// A characteristic with standard errors next to the values, in JSON.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SimulatedShape<'r> {
     #[serde(flatten, serialize_with = "SimulatedCharacteristic::serialize")]
     #[cfg_attr(feature = "schema", schemars(with = "SimulatedCharacteristic"))]
     own: &'r SimulatedCharacteristic,
-    /// How uncertain the sample leaves all this.
+    /// Standard errors of the values.
     standard_error: StandardErrors,
-    /// The sample's own distribution.
+    /// Distribution of the sample.
     distribution: Empirical,
-    /// 95 % interval of the yield, with what measured samples leave open; null without limits.
+    /// 95 % interval of the yield, with the uncertainty of measured samples; null if there are no limits.
     yield_interval: Option<[f64; 2]>,
-    /// If all points without a value are rejected, and if none is; null where every point has one.
+    /// Yield if all points without a value are rejected, and if none is; null if every point has one.
     yield_bounds: Option<[f64; 2]>,
-    /// Whether the interval of the yield lies above the target (true), below (false), or around it (null).
+    /// True if the interval of the yield is above the target, false if below, null if it contains the target.
     met: Option<bool>,
-    /// The same in a word; null without a target.
+    /// Verdict on the target yield; null if there is no target.
     verdict: Option<Verdict>,
-    /// Everything that is required of it, the target yield included.
+    /// Verdicts on all requirements, the target yield included.
     #[cfg_attr(feature = "schema", schemars(with = "Vec<sensitol_numeric::verdict::JudgedShape>"))]
     requirements: Vec<Judged>,
 }
@@ -42,14 +42,14 @@ pub struct SimulatedShape<'r> {
 struct StandardErrors {
     #[serde(flatten)]
     moments: Four<Option<f64>>,
-    /// 95 % interval, as far as the number of points decides.
+    /// 95 % interval of the yield, by the number of points only.
     #[serde(rename = "yield")]
     yield_: Option<[f64; 2]>,
-    /// Of the quantiles.
+    /// Standard errors of the quantiles.
     quantiles: Quantiles<Option<f64>>,
 }
 
-/// A distribution that is known by a sample.
+/// Distribution that is known by a sample.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 struct Empirical {

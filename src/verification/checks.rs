@@ -1,10 +1,10 @@
-//! A dozen check points of a costly model: where they lie.
+//! Choice of a dozen check points of a costly model.
 //!
-//! | points | where | what no surface through its own nodes shows |
+//! | points | place | errors that a surface through its own nodes does not show |
 //! |--:|---|---|
 //! | 4 | ±1.5 a and ±3 a along the line that carries the output | skewness by the even part, kurtosis by the odd one |
 //! | 0 to 6 | ±3 on each of at most 3 inputs with more than 3 % of the variance that the line does not follow | a parabola through three nodes has no redundancy |
-//! | 0 or 2 | all inputs below 1e-4 of the variance at once, ±4 | what is idle by its slope: an angle through a full turn, a contact |
+//! | 0 or 2 | all inputs below 1e-4 of the variance at once, ±4 | effects of inputs with no slope: an angle through a full turn, a contact |
 //! | 6 or 8 | random pairs ±z, even along the line | everything else |
 //!
 //! Several characteristics share the points: lines that are nearly the same are one, and there are three at most.
@@ -21,53 +21,58 @@ use sensitol_numeric::distribution::standard_normal;
 pub(super) const ON_LINE: [f64; 4] = [1.5, -1.5, 3.0, -3.0];
 /// Sigmas on either side at which an input is moved by itself.
 pub(super) const ON_AXIS: f64 = 3.0;
-/// How far inputs without effect are moved together.
+/// Distance by which inputs without effect are moved together, in sigmas.
 const IDLE: f64 = 4.0;
-/// The most evaluations of a check.
+/// Most evaluations of a check.
 pub const MOST: usize = 18;
-/// Shares of the variance above which an input gets points of its own, and below which it is idle;
+/// Share of the variance above which an input gets points of its own.
 const STRONG: f64 = 0.03;
+/// Share of the variance below which an input is idle.
 const WEAK: f64 = 1e-4;
-/// inputs that the line follows to this part have theirs on it.
+/// Square of the line's component along an input from which on the points of the line suffice for it.
 const FOLLOWED: f64 = 0.5;
+/// Most inputs with points of their own.
 const AXES: usize = 3;
+/// Most lines with check points.
 const LINES: usize = 3;
-/// Directions with this cosine are one line.
+/// Cosine of two directions above which they count as one line.
 const SAME: f64 = 0.95;
-/// Pairs of random points, and the fewer of them where there are many other points.
+/// Number of pairs of random points, normally and if there are many other points.
 const PAIRS: [usize; 2] = [4, 3];
-/// Other points from which on the fewer pairs are drawn.
+/// Number of other points from which on there are fewer pairs.
 const MANY: usize = 8;
 
-/// A wish of a characteristic's surface for where to look.
+/// Request of a characteristic for check points, from its surface.
 #[derive(Clone)]
 pub(super) struct Wish {
-    /// The line that carries it, of length 1.
+    /// Direction of length 1 along which the surface varies most.
     pub(super) line: Vec<f64>,
-    /// For every variable its share of the variance.
+    /// Share of the variance of every variable.
     pub(super) shares: Vec<f64>,
-    /// For every variable whether the characteristic can depend on it.
+    /// True for every variable on which the characteristic can depend.
     pub(super) depends: Vec<bool>,
 }
 
-/// The points, and what each was chosen for.
+/// Check points, in the order of their purposes.
 pub(super) struct Design {
     pub(super) points: Vec<Vec<f64>>,
-    /// Directions of the lines; the points at [`ON_LINE`] of the first come first, and so on.
+    /// Directions of all the lines. The points at [`ON_LINE`] of the first come first, and so on.
     pub(super) lines: Vec<Vec<f64>>,
-    /// The inputs with two points of their own, after the lines.
+    /// Inputs with two points of their own, after the lines.
     pub(super) axes: Vec<usize>,
-    /// Whether two points move what is idle, after the axes.
+    /// True if two points move all idle inputs together, after the axes.
     pub(super) idle: bool,
-    /// How many random pairs, at the end: all points first, then their images.
+    /// Number of random pairs, at the end: all points first, then their mirror images.
     pub(super) pairs: usize,
 }
 
 impl Design {
-    /// For these characteristics, with so many evaluations at most; None where not even the random pairs are affordable.
+    /// Chooses points for these characteristics within `budget` evaluations. Returns None if the budget does not even allow the random
+    /// pairs.
     pub(super) fn new(wishes: &[Wish], seed: u64, budget: usize) -> Option<Self> {
         let n = wishes.first()?.line.len();
         let mut left = budget.min(MOST).checked_sub(2 * PAIRS[1])?;
+        // Lines take precedence, then idle inputs, then axes. Random pairs have a reserve.
         let mut lines: Vec<Vec<f64>> = Vec::new();
         for wish in wishes {
             let known = lines.iter().any(|line| dot(line, &wish.line).abs() > SAME);
@@ -111,31 +116,31 @@ impl Design {
         Some(Self { points, lines, axes, idle, pairs })
     }
 
-    /// The points as columns.
+    /// Points as columns, one for every variable.
     pub(super) fn columns(&self) -> Columns {
         let n = self.points.first().map_or(0, Vec::len);
         (0..n).map(|j| self.points.iter().map(|point| point[j]).collect()).collect()
     }
 
-    /// The line that is a characteristic's own, with its sign; None where it got none.
+    /// Index of the line of a characteristic, which may have the opposite sign. Returns None if it has no line.
     pub(super) fn line_of(&self, wish: &Wish) -> Option<usize> {
         self.lines.iter().position(|line| dot(line, &wish.line).abs() > SAME)
     }
 
-    /// Where the random pairs begin.
+    /// Index of the first random point.
     pub(super) fn random(&self) -> usize {
         self.points.len() - 2 * self.pairs
     }
 }
 
 impl Wish {
-    /// Whether this input gets points of its own.
+    /// True if this input gets points of its own.
     pub(super) fn has_axis(&self, j: usize) -> bool {
         self.shares[j] > STRONG && self.line[j] * self.line[j] < FOLLOWED
     }
 }
 
-/// Normal points, evenly spread along a direction: the k-th of n between the quantiles `(k - 1)/n` and `k/n` of `|t|`.
+/// Normal points that are evenly distributed along a direction: the k-th of n lies between the quantiles `(k - 1)/n` and `k/n` of `|t|`.
 fn random_pairs(pairs: usize, direction: &[f64], rng: &mut Xoshiro256PlusPlus) -> Vec<Vec<f64>> {
     let mut cells: Vec<usize> = (0..pairs).collect();
     cells.shuffle(rng);

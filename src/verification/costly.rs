@@ -1,4 +1,4 @@
-//! A costly model: its surfaces judged at a dozen points that no surface has seen.
+//! Verification of a costly model: its surfaces at a dozen check points.
 
 use super::checks::{Design, Wish};
 use super::figures::moments;
@@ -13,70 +13,71 @@ use sensitol_numeric::surrogate::Surrogate;
 
 pub use super::checks::MOST as MOST_CHECKS;
 
-/// Points of a surface in its core, and the least of them; a quarter as many in either tail.
+/// Points of a surface in its core. Either tail has a quarter as many.
 const KNOTS: usize = 1 << 13;
+/// Fewest points of a surface in its core.
 const FEWEST: usize = 1 << 9;
-/// Multiplications that all points of a surface may take: a tenth of a second.
+/// Most multiplications for all points of a surface: a tenth of a second.
 const WORK: usize = 200_000_000;
-/// The confidence of an interval, and with which so many points that agree bound the share of the assemblies that does not.
+/// Confidence of intervals, and of the bound for the share of the assemblies that differs from all points.
 pub(crate) const CONFIDENCE: f64 = 0.95;
 
-/// A characteristic whose surface is to be judged.
+/// A characteristic whose surface is verified.
 #[derive(Debug, Clone, Copy)]
 pub struct Target<'s> {
-    /// The surface over the varying dimensions; None where the method has none.
+    /// Surface over the varying dimensions. None if the method has none.
     pub surrogate: Option<&'s Surrogate>,
-    /// For every varying dimension its share of the variance, straight line and curvature.
+    /// Share of the variance of every varying dimension, straight line and curvature.
     pub shares: &'s [f64],
 }
 
-/// The figures of one characteristic by the check points.
+/// Figures of one characteristic from the check points.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct CheckedFigures {
-    /// Errors of mean, sigma, skewness and kurtosis; None where the model has no value at some point, or no surface is known.
+    /// Errors of mean, sigma, skewness and kurtosis. None if the model has no value at some point, or no surface is known.
     pub errors: Option<[f64; 4]>,
-    /// The share within the limits by the surface, and its error; None without limits too.
+    /// Share within the limits by the surface, and its error. Also None if there are no limits.
     pub yield_: Option<super::Verified>,
-    /// The shares beyond the lower and beyond the upper limit.
+    /// Shares beyond the lower and beyond the upper limit.
     pub beyond: [Option<super::Verified>; 2],
-    /// The share of the variance that the surface leaves unexplained.
+    /// Share of the variance that the surface leaves unexplained.
     pub left: Option<f64>,
-    /// For every varying dimension the error of its share of the variance.
+    /// Error of the share of the variance of every varying dimension.
     pub shares: Option<Vec<f64>>,
     /// Points at which the model has no value.
     pub failed: usize,
-    /// Mean, sigma, skewness and kurtosis of the surface over the points of the integrals.
+    /// Mean, sigma, skewness and kurtosis of the surface over the integration points.
     pub surface: Option<[f64; 4]>,
 }
 
-/// The results of checking.
+/// Results of the check points.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Checked {
-    /// For every characteristic.
+    /// Figures of every characteristic.
     pub characteristics: Vec<CheckedFigures>,
-    /// The points, a row each.
+    /// Check points, a row each.
     pub points: Points,
-    /// The answers, a column for every characteristic.
+    /// Answers, a column for every characteristic.
     pub answers: Responses,
-    /// Random points among them, in mirrored pairs.
+    /// Number of random points among them, in mirrored pairs.
     pub random: usize,
 }
 
 impl Checked {
-    /// How many points.
+    /// Number of check points.
     pub fn count(&self) -> usize {
         self.points.rows()
     }
 
-    /// The share of the assemblies that may do anything else at 95 % confidence where so many points agree: `1 - 0.05^(1/n)`.
+    /// Greatest share of the assemblies that may behave differently if all points agree, at 95 % confidence: `1 - 0.05^(1/n)`.
     pub fn unseen(&self) -> f64 {
         unseen(self.count(), 0)[1]
     }
 }
 
-/// The 95 % interval of a share of which `seen` of `points` were: Clopper and Pearson (1934), one-sided where none was.
+/// 95 % interval of a share that `seen` of `points` have: Clopper and Pearson (1934), one-sided if there are none.
 ///
 /// ```
 /// use sensitol::verification::unseen;
@@ -98,11 +99,11 @@ pub fn unseen(points: usize, seen: usize) -> [f64; 2] {
 
 /// Judges the surfaces of all characteristics by the model's values at 12 to 18 points.
 ///
-/// Shapes: a target for every characteristic; surrogate and shares over the dimensions at `varying`. Evaluations: 18 at most, and no
-/// more than `budget`; None, and no evaluation, where fewer than 6 are allowed or no characteristic has a surface.
+/// Shapes: a target for every characteristic; surrogate and shares over the dimensions at `varying`. Evaluations: 18 at most, and no more
+/// than `budget`. Returns None, without an evaluation, if fewer than 6 are allowed or no characteristic has a surface.
 ///
-/// Accuracy: of 3584 figures of 448 surfaces three estimates reach the truth in 98.3 %; estimates are 4 times the error in the
-/// median: that is the price of 15 points.
+/// Accuracy: for 3584 figures of 448 surfaces the true value lay within three estimates in 98.3 %. In the median the estimate is 4 times
+/// the error, because 15 points are few.
 pub fn verify_by_checks(
     problem: &Problem,
     varying: &[usize],
@@ -117,6 +118,7 @@ pub fn verify_by_checks(
     let space = Space::new(problem, varying);
     let normals = Normals::new(varying.len(), seed);
     let dependence = problem.dependence();
+    // The surface at many points gives the direction of its line and the figures that residuals change.
     let surfaces: Vec<Option<Surface>> =
         targets.iter().map(|target| surface(&space, &normals, target.surrogate?)).collect();
     let wishes: Vec<Option<Wish>> = (surfaces.iter().zip(targets).zip(&dependence))
@@ -141,6 +143,7 @@ pub fn verify_by_checks(
             let known = surfaces[c].as_ref().zip(wishes[c].as_ref()).zip(targets[c].surrogate);
             let Some(((surface, wish), surrogate)) = known else { return nothing };
             let at: Option<Vec<f64>> = values(surrogate, &standardised);
+            // Ends of the kept limits, so that rounding does not reject a value on a limit.
             let [low, high] = problem.kept_limits(c).ends();
             let within = [[low, high], [low, f64::INFINITY], [f64::NEG_INFINITY, high]];
             let judged = at.and_then(|at| judge(&design, wish, surface, model, &at, &within));
@@ -180,14 +183,16 @@ impl CheckedFigures {
     }
 }
 
-/// A surrogate over its distribution; None when a part of it is unknown.
+/// Points of a surrogate over its distribution. Returns None if a part of it is unknown.
 fn surface(space: &Space<'_>, normals: &Normals, surrogate: &Surrogate) -> Option<Surface> {
     let work = space.len() + surrogate.interactions.each_pair().count();
     let knots = (WORK / work).clamp(FEWEST, KNOTS);
     let q = |z: &Columns| values(surrogate, &space.standardised(z));
+    // The core between the two tails, along the direction of the tails.
     let mut z = normals.columns(1, knots);
     let line = steepest(&z, &q(&z)?);
     let mut weights = vec![between(&mut z, &line, FAR) / knots as f64; knots];
+    // The tails carry the higher moments, so that they get points of their own.
     for (stream, sign) in [(2, 1.0), (3, -1.0)] {
         let mut tail = normals.columns(stream, knots / 4);
         let space = HalfSpace { direction: line.iter().map(|part| sign * part).collect(), from: FAR };

@@ -1,12 +1,12 @@
-//! One verification for every method: an error estimate for each figure, that comes from the model itself.
+//! Verification for every method: an error estimate for each figure, from the model itself.
 //!
-//! The rule: no figure is printed without an error estimate, and three estimates reach the truth. It belongs to no method: whatever
-//! computed a figure `m`, the model is asked again.
+//! The rule: no figure is printed without an error estimate, and the true value lies within three estimates. It is independent of the
+//! method: the model is evaluated again for any figure `m`.
 //!
 //! - A cheap model is [sampled](verify_by_sampling) at some 45 000 points in strata. A figure's error is `hypot(m - s, se)` with the
 //!   sample's `s` and its standard error `se`.
-//! - A costly model is evaluated at 12 to 18 points that the method has not seen.
-//! - A formula whose own tree proves that the method's surface is the function needs neither.
+//! - A costly model is evaluated at 12 to 18 points that the method has not used.
+//! - A formula needs neither if its own tree proves that the method's surface equals the function.
 
 mod checks;
 mod costly;
@@ -47,22 +47,22 @@ use sensitol_numeric::power::{Rescale, Rescaling, Unknown};
 use sensitol_numeric::sampling::Normals;
 use sensitol_numeric::surrogate::Surrogate;
 
-/// Points of the core of a sample.
+/// Default number of points in the core of a sample.
 pub(crate) const CORE: usize = 1 << 15;
 
-/// Points at which the share that a surface leaves unexplained is counted.
+/// Points for the share of the variance that a surface leaves unexplained.
 const BESIDE: usize = 1 << 10;
 
-/// Evaluations that a sample with so many points in its core takes at most, with those that [`unexplained`] takes beside it.
+/// Most evaluations of a sample with `core` points in its core, including those of [`unexplained`].
 pub(crate) const fn most_points(core: usize) -> usize {
     sample::PILOT + (sides::MOST + 2) * sample::TAIL + core + BESIDE
 }
 
-/// Points in the core of the largest sample that takes no more than `most` evaluations of a characteristic, up to [`CORE`] and down to
-/// as many as a tail has; None where there are too few for that.
+/// Points in the core of the largest sample within `most` evaluations for a characteristic. It is at most [`CORE`], and at least the number
+/// of points of a tail. Returns None if the evaluations do not suffice for that.
 pub(crate) fn core_within(problem: &Problem, c: usize, most: Option<usize>) -> Option<usize> {
     let Some(most) = most else { return Some(CORE) };
-    // Without switches there are no seldom sides.
+    // Without switches there are no strata for seldom sides.
     let switches = problem.function().switches(problem.outputs()[c]).map_or(0, |switches| switches.list.len());
     let sides = if switches == 0 { sides::MOST } else { 0 };
     let others = most_points(0) - sides * sample::TAIL;
@@ -70,18 +70,19 @@ pub(crate) fn core_within(problem: &Problem, c: usize, most: Option<usize>) -> O
     halved.take_while(|&core| core >= sample::TAIL).find(|&core| others + core <= most)
 }
 
-/// Evaluations that [`unexplained`] and then [`variance_shares_during`] over so many inputs take at most.
+/// Most evaluations of [`unexplained`] followed by [`variance_shares_during`] over this number of inputs.
 pub(crate) fn most_points_of_shares(inputs: usize) -> usize {
     BESIDE + shares::most(inputs)
 }
 
-/// A figure as the model itself gives it, and its error: three of it reach the truth whenever three standard errors do.
+/// A figure by the model itself, with its error. The true value lies within three of these errors whenever it lies within three standard
+/// errors.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Verified {
     /// The value.
     pub value: f64,
-    /// Its estimated error.
+    /// Estimated error of the value.
     pub error: f64,
 }
 
@@ -98,42 +99,42 @@ impl Unknown for Verified {
     }
 }
 
-/// The figures of one characteristic by sampling the model.
+/// Figures of one characteristic from a sample of the model.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct SampledFigures {
-    /// Points evaluated.
+    /// Number of evaluated points.
     pub points: usize,
-    /// The mean; None where no point has a value.
+    /// Mean. None if no point has a value.
     pub mean: Option<Verified>,
     /// Standard deviation.
     pub sigma: Option<Verified>,
-    /// Skewness; None where nothing varies.
+    /// Skewness. None if nothing varies.
     pub skewness: Option<Verified>,
-    /// Kurtosis; None where nothing varies.
+    /// Kurtosis. None if nothing varies.
     pub kurtosis: Option<Verified>,
-    /// The share within the limits of those assemblies that have a value; None without limits.
+    /// Share within the limits, of those assemblies that have a value. None if there are no limits.
     pub yield_: Option<Verified>,
-    /// The share below the lower limit, and above the upper one.
+    /// Shares below the lower limit, and above the upper one.
     pub beyond: [Option<Verified>; 2],
-    /// The weight of one point: what no point shows may be as much.
+    /// Weight of one point: the share that may be missed although no point shows it.
     pub point: f64,
-    /// How much more of the model than of its surface lies within the limits, below and above them; None where no surface was given,
-    /// and where some points have no value.
+    /// Difference of the shares of model and surface within the limits, below and above them. None if no surface was given, and if some
+    /// points have no value.
     pub difference: Option<[Verified; 3]>,
-    /// The share of the assemblies that have a value.
+    /// Share of the assemblies that have a value.
     pub valid: Verified,
-    /// The switches that are met; None where the model does not tell where it changes its form.
+    /// Switches that were met. None if the model does not report where it changes its form.
     pub switches: Option<Vec<FoundSwitch>>,
-    /// Whether the model told all of its switches.
+    /// True if the model reported all of its switches.
     pub switches_complete: bool,
-    /// The sample itself, of a characteristic that has limits or is inspected.
+    /// The sample itself, for a characteristic that has limits or is inspected.
     pub(crate) sample: Option<WeightedSample>,
 }
 
 impl Verified {
-    /// The error of another value for the same figure: `hypot(value - own, error)`. Three of it reach the truth whenever three of
-    /// the own error do.
+    /// Error of another value for the same figure: `hypot(value - own, error)`. The true value lies within three of it whenever it lies
+    /// within three of the own error.
     ///
     /// ```
     /// use sensitol::analysis::Verified;
@@ -148,10 +149,10 @@ impl Verified {
 ///
 /// Pure in problem and seed; the number of threads does not matter.
 ///
-/// Evaluations: for every characteristic 1024 points to find the tails, up to 24 576 in half-spaces of seldom sides of switches,
-/// 8192 in the two tails and 32 768 in the core; fewer for more than 30 dimensions, of which a stratum has a million numbers at most.
+/// Evaluations: for every characteristic 1024 points to find the tails, up to 24 576 in half-spaces of seldom sides of switches, 8192 in
+/// the two tails and 32 768 in the core. There are fewer for more than 30 dimensions, because a stratum has a million numbers at most.
 ///
-/// Accuracy: sigma to 4e-4 of it in the median of 88 characteristics. Points without a value are left out of numerator and
+/// Accuracy: the error of sigma is 4e-4 of it in the median of 88 characteristics. Points without a value are left out of numerator and
 /// denominator alike.
 ///
 /// ```
@@ -171,8 +172,8 @@ pub fn verify_by_sampling(problem: &Problem, seed: u64) -> Vec<SampledFigures> {
         .collect()
 }
 
-/// The likeliest points beyond those switches of a cheap model that are seldom met, in independent normal variables of the dimensions at
-/// `varying`; none where the model does not tell its switches.
+/// Likeliest points beyond the seldom switches of a cheap model, in independent normal variables of the dimensions at `varying`. Empty if
+/// the model does not report its switches.
 pub(crate) fn seldom_points(problem: &Problem, c: usize, varying: &[usize], seed: u64) -> Vec<Vec<f64>> {
     let model = Model::over(problem, c, varying);
     let found = sides::sides(&model, &Normals::new(varying.len(), seed), 1.0);
@@ -181,27 +182,27 @@ pub(crate) fn seldom_points(problem: &Problem, c: usize, varying: &[usize], seed
     found.half_spaces.into_iter().map(point).collect()
 }
 
-/// The switches of a characteristic, and points beyond those that are seldom met.
+/// Switches of a characteristic, and points beyond those that are seldom met.
 pub(crate) struct SeldomSides {
     pub(crate) switches: Vec<FoundSwitch>,
-    /// Points of the half-spaces that hold the seldom sides, with the values there, NaN where there is none.
+    /// Points of the half-spaces that contain the seldom sides. Their `values` are NaN if the model has none.
     pub(crate) points: Points,
     pub(crate) values: Vec<f64>,
-    /// Their sum is the probability of the half-spaces.
+    /// Weights of the points, which sum to the probability of the half-spaces.
     pub(crate) weights: Vec<f64>,
 }
 
-/// Looks for the switches of a characteristic whose values spread by `scale`; None where the model is costly, or does not tell its switches, and
-/// where the run was stopped.
+/// Searches for the switches of a characteristic whose values have the spread `scale`. Returns None if the model is costly, does not report
+/// its switches, or if the run was stopped.
 ///
-/// Evaluations: 256 for every half-space, six at most. The margins of switches, and some values beside them, are read besides.
+/// Evaluations: 256 for every half-space, six at most. The margins of switches, and some values beside them, are evaluated in addition.
 pub(crate) fn seldom_sides(
     problem: &Problem,
     c: usize,
     (seed, scale): (u64, f64),
     run: &Run<'_>,
 ) -> Option<SeldomSides> {
-    /// Points of a half-space: a tenth of what its part of a moment is.
+    /// Number of points of a half-space. Its part of a moment is known to about a tenth.
     const WITHIN: usize = 1 << 8;
     let function = problem.function();
     let told = function.switches(problem.outputs()[c]).filter(|told| !told.list.is_empty());
@@ -214,7 +215,7 @@ pub(crate) fn seldom_sides(
     for (index, space) in found.half_spaces.iter().enumerate() {
         let mut z = normals.columns((1 << 34) + index as u64, WITHIN);
         let own = space.enter(&mut z);
-        // A point counts in the first half-space that holds it.
+        // A point counts in the first half-space that contains it.
         let mut held = vec![false; WITHIN];
         for earlier in &found.half_spaces[..index] {
             held.iter_mut().zip(earlier.holds(&z)).for_each(|(held, by)| *held |= by);
@@ -228,8 +229,8 @@ pub(crate) fn seldom_sides(
     (!model.stopped()).then(|| SeldomSides { switches: found.switches.unwrap_or_default(), points, values, weights })
 }
 
-/// The share of a characteristic's variance that a surface over the dimensions at `varying` leaves unexplained, by 1024 points of the
-/// model; None where the surface has no value, or the model none at any point.
+/// Share of a characteristic's variance that a surface over the dimensions at `varying` leaves unexplained, from 1024 points of the model.
+/// Returns None if the surface has no value, or the model none at any point.
 pub(crate) fn unexplained(
     problem: &Problem,
     c: usize,
@@ -253,12 +254,12 @@ pub(crate) fn unexplained(
     (variance > 0.0).then_some(square / variance)
 }
 
-/// The shares of the inputs by a sampled model: for every dimension on which a characteristic depends first-order and total share
-/// of the variance, by exchanging inputs on the model itself.
+/// Shares of the variance by a sampled model: the first-order and the total share of every dimension on which a characteristic depends, by
+/// exchanging inputs of the model itself.
 ///
-/// None with correlated dimensions, of which shares add up in another way, with more than 256 of them, and where nothing varies.
-/// Evaluations: 65 536, for more than 126 inputs 512 for each. Accuracy: 311 of 312 shares of six functions with closed forms lay
-/// within three errors, the largest error 0.026.
+/// Returns None with correlated dimensions, whose shares add up differently, with more than 256 dimensions, and if nothing varies.
+/// Evaluations: 65 536, for more than 126 inputs 512 for each. Accuracy: 311 of 312 shares of six functions with closed forms lay within
+/// three errors, the largest error 0.026.
 ///
 /// ```
 /// use sensitol::{Closure, Dimension, Problem};
@@ -274,7 +275,7 @@ pub fn variance_shares(problem: &Problem, characteristic: usize, seed: u64) -> O
     variance_shares_during(problem, characteristic, seed, &Run::to_the_end())
 }
 
-/// [`variance_shares`]; None where the run was stopped meanwhile.
+/// [`variance_shares`] under the conditions of a run. Returns None if the run was stopped meanwhile.
 pub(crate) fn variance_shares_during(
     problem: &Problem,
     characteristic: usize,
@@ -288,8 +289,8 @@ pub(crate) fn variance_shares_during(
     Some(found.into_iter().map(|(factor, shares)| (factor[0], shares)).collect())
 }
 
-/// [`variance_shares`] of factors: dimensions that vary together are exchanged together. By the dimensions of every factor on which the
-/// characteristic depends.
+/// [`variance_shares`] of factors: dimensions that vary together are exchanged together. Each factor is given by those of its dimensions on
+/// which the characteristic depends.
 pub(crate) fn factor_shares(
     problem: &Problem,
     characteristic: usize,
@@ -304,8 +305,8 @@ pub(crate) fn factor_shares(
     (!model.stopped()).then(|| named.zip(found).collect())
 }
 
-/// One characteristic, by a seed and so many points in the core, beside its surface over these dimensions; None where the run was stopped
-/// meanwhile: a part of the strata is not a sample.
+/// Verifies one characteristic by a sample with `core` points in the core, and compares it with its surface `beside`. Returns None if the
+/// run was stopped meanwhile, because an incomplete set of strata is no sample.
 pub(crate) fn verify_characteristic(
     problem: &Problem,
     c: usize,
@@ -348,7 +349,7 @@ pub(crate) fn verify_characteristic(
     })
 }
 
-/// One point of a characteristic that does not vary says all.
+/// Figures of a characteristic that does not vary, from one point.
 fn constant(model: &Model<'_>, [low, high]: [f64; 2]) -> SampledFigures {
     let value = model.values(&Vec::new())[0];
     let exact = |value: f64| Some(Verified { value, error: 0.0 });

@@ -6,6 +6,7 @@ use crate::problem::Problem;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::surrogate::Surrogate;
 
+/// A characteristic of a cheap model over independent standard normal variables.
 pub(super) struct Model<'p> {
     problem: &'p Problem,
     output: usize,
@@ -14,7 +15,7 @@ pub(super) struct Model<'p> {
 }
 
 impl<'p> Model<'p> {
-    /// A characteristic over the varying dimensions on which it can depend.
+    /// Creates it over the varying dimensions on which the characteristic can depend.
     pub(super) fn new(problem: &'p Problem, characteristic: usize) -> Self {
         let dependence = problem.dependence().swap_remove(characteristic);
         let varies = |&d: &usize| dependence[d] && problem.dimensions()[d].sigma() > 0.0;
@@ -22,43 +23,42 @@ impl<'p> Model<'p> {
         Self::over(problem, characteristic, &dimensions)
     }
 
-    /// A characteristic over these dimensions.
+    /// Creates it over the given dimensions of the problem.
     pub(super) fn over(problem: &'p Problem, characteristic: usize, dimensions: &[usize]) -> Self {
         let space = Space::new(problem, dimensions);
         Self { problem, output: problem.outputs()[characteristic], space, run: Run::to_the_end() }
     }
 
-    /// The same, evaluated under the conditions of a run: what it does not wait for has no value.
+    /// Evaluates under the conditions of a run: points that are unanswered when it stops have no value.
     pub(super) fn during(self, run: &Run<'p>) -> Self {
         Self { run: run.quiet(), ..self }
     }
 
-    /// Whether the run was stopped, so that some points have no value for that reason.
+    /// True if the run was stopped, so that some points have no value for that reason.
     pub(super) fn stopped(&self) -> bool {
         self.run.stopped()
     }
 
-    /// The inputs in sigmas off their means.
+    /// Standardised inputs at some points.
     pub(super) fn standardised(&self, z: &Columns) -> Columns {
         self.space.standardised(z)
     }
 
-    /// How many variables there are.
     pub(super) fn len(&self) -> usize {
         self.space.len()
     }
 
-    /// The dimension behind every variable.
+    /// Dimension of the problem of every variable.
     pub(super) fn dimensions(&self) -> impl Iterator<Item = usize> + '_ {
         self.space.dimensions()
     }
 
-    /// The values at some points, NaN where there is none.
+    /// Values at some points, NaN if there is none.
     pub(super) fn values(&self, z: &Columns) -> Vec<f64> {
         self.points_and_values(z).1
     }
 
-    /// The same with the points themselves, as the model takes them.
+    /// Points in the form of the problem, and the values there.
     pub(super) fn points_and_values(&self, z: &Columns) -> (Points, Vec<f64>) {
         let (points, outputs) = (self.space.points(z), [self.output]);
         let mut out = Responses::open(points.rows(), 1);
@@ -67,8 +67,8 @@ impl<'p> Model<'p> {
         (points, values)
     }
 
-    /// The values of a surface over the dimensions at `varying`, of which those that this characteristic does not depend on have no
-    /// part in it; None when a part is unknown.
+    /// Values of a surface over the dimensions at `varying`. Dimensions that this characteristic does not depend on stay at their means.
+    /// Returns None if a part is unknown.
     pub(super) fn surface(&self, z: &Columns, varying: &[usize], surrogate: &Surrogate) -> Option<Vec<f64>> {
         let own: Vec<usize> = self.dimensions().collect();
         let columns = self.space.standardised(z);
@@ -78,14 +78,14 @@ impl<'p> Model<'p> {
         Some(surrogate.rises(&all)?.into_iter().map(|rise| surrogate.centre + rise).collect())
     }
 
-    /// The margins of the switches at some points; None where the function does not tell.
+    /// Margins of the switches at some points. Returns None if the function does not report them.
     pub(super) fn margins(&self, z: &Columns) -> Option<Vec<Vec<f64>>> {
         let of = |z: &Columns| self.problem.function().margins(self.output, &self.space.points(z));
         let rows = z.first().map_or(1, Vec::len);
         if rows < 256 {
             return of(z);
         }
-        // A quarter of the points at once: of many dimensions all of them would take much memory.
+        // A quarter of the points at once: with many dimensions all of them would need much memory.
         let quarter = rows.div_ceil(4);
         let block = |index: usize| {
             let (first, end) = (index * quarter, rows.min((index + 1) * quarter));

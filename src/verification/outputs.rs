@@ -1,4 +1,4 @@
-//! How the characteristics of a cheap model vary together, and what their rejects have in common, by points of the model itself.
+//! Correlations of the characteristics of a cheap model, and their common rejects, from points of the model itself.
 
 use serde::Serialize;
 
@@ -11,31 +11,31 @@ use sensitol_numeric::characteristic::KeptLimits;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::sampling::{Normals, clopper_pearson};
 
-/// Points of one randomisation.
+/// Number of points of one randomisation.
 const ROWS: usize = 1 << 10;
-/// Sums of a pair: points, first, second, their squares, their product.
+/// Number of sums of a pair: points, first, second, their squares, their product.
 const SUMS: usize = 6;
 
-/// How two characteristics vary together.
+/// Correlation of two characteristics.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct OutputCorrelation {
-    /// The two characteristics.
+    /// Names of the two characteristics.
     pub between: [String; 2],
-    /// Their coefficient of correlation; null where one of them does not vary, or is not known.
+    /// Coefficient of correlation; null if one of them does not vary, or is unknown.
     pub value: Option<f64>,
-    /// The error of the coefficient; null where the model was not asked.
+    /// Error of the coefficient; null if the model was not evaluated for it.
     pub error: Option<f64>,
 }
 
 impl OutputCorrelation {
-    /// More characteristics than this have no table of correlations: its cells grow with their square.
+    /// Most characteristics with a table of correlations, whose size grows with their square.
     pub(crate) const MOST: usize = 40;
 }
 
-/// The coefficient of correlation of every pair of characteristics, over the points at which both have a value, in the order
-/// `(0, 1), (0, 2), ..., (1, 2), ...`; None where one of them does not vary.
+/// Coefficient of correlation of every pair of characteristics, over the points at which both have a value, in the order `(0, 1), (0, 2),
+/// ..., (1, 2), ...`. Returns None if one of them does not vary.
 ///
 /// 16 randomisations of 1024 Sobol' points of all dimensions that vary, errors by the jackknife and Student's quantile. Pure in
 /// problem and seed. Accuracy: errors of some 1e-3 where the characteristics are smooth.
@@ -51,7 +51,7 @@ pub(crate) fn output_correlations(problem: &Problem, seed: u64) -> Vec<Option<Ve
         let z = normals.columns((1 << 34) + replicate as u64, ROWS);
         models.iter().map(|model| model.values(&z)).collect()
     };
-    // In units of the first randomisation, so that no mean is large beside what varies.
+    // In units of the first randomisation, so that no mean is large compared to the scatter.
     let units: Vec<[f64; 2]> = values(0).iter().map(|column| unit(column)).collect();
     let rows: Vec<Vec<[f64; SUMS]>> = (0..REPLICATES)
         .into_par_iter()
@@ -70,17 +70,18 @@ pub(crate) fn output_correlations(problem: &Problem, seed: u64) -> Vec<Option<Ve
         .collect()
 }
 
-/// The mean of the broken characteristics beyond the first, over the points at which all of these have a value: what is counted more than once
-/// where their rejects are added. None where no point has all values.
+/// Mean number of broken characteristics beyond the first, over the points at which all of these have a value: the rejects that are counted
+/// more than once if reject rates are added. Returns None if no point has all values.
 ///
-/// At the points of [`output_correlations`], with its errors; that no point is counted twice is known as none of all of them.
+/// It uses the points of [`output_correlations`], with errors of the same kind. If no point is counted twice, the error is that of zero
+/// hits among all points.
 pub(crate) fn common_rejects(problem: &Problem, characteristics: &[usize], seed: u64) -> Option<Verified> {
     let varying: Vec<usize> =
         (0..problem.dimensions().len()).filter(|&d| problem.dimensions()[d].sigma() > 0.0).collect();
     let models: Vec<Model<'_>> = characteristics.iter().map(|&c| Model::over(problem, c, &varying)).collect();
     let kept: Vec<KeptLimits> = characteristics.iter().map(|&c| problem.kept_limits(c)).collect();
     let normals = Normals::new(varying.len(), seed);
-    // Points with all values, and the broken characteristics beyond the first.
+    // Points with all values, and broken characteristics beyond the first.
     let count = |replicate: usize| -> [f64; 2] {
         let z = normals.columns((1 << 34) + replicate as u64, ROWS);
         let columns: Vec<Vec<f64>> = models.iter().map(|model| model.values(&z)).collect();
@@ -108,7 +109,7 @@ pub(crate) fn common_rejects(problem: &Problem, characteristics: &[usize], seed:
     Some(Verified { value: twice / points, error: error.max(1.0 / points) })
 }
 
-/// Mean and sigma of the values that there are; 0 and 1 where that is nothing to count from.
+/// Mean and sigma of the finite values, 0 and 1 if they are undefined.
 fn unit(column: &[f64]) -> [f64; 2] {
     let valid: Vec<f64> = column.iter().copied().filter(|y| y.is_finite()).collect();
     let [mean, sigma, ..] = super::figures::moments(&valid, &vec![1.0; valid.len()]);

@@ -1,6 +1,6 @@
-//! Figures of a surface by its check points: an error estimate for every figure, by the difference at a dozen points.
+//! Error estimates of the figures of a surface, from its residuals at a dozen check points.
 //!
-//! With `d = (y - q)/sigma` the model minus the surface `q` in sigmas of it, at points of independent normal variables `z`:
+//! With `d = (y - q)/sigma`, the model minus the surface `q` in sigmas, at points of independent normal variables `z`:
 //!
 //! ```text
 //! p(z)    = c_1 t + .. + c_4 t^4  (t = a.z, through the 4 differences on the line and 0)  +  sum_j z_j (z_j^2 - 3)(m_j + k_j z_j)
@@ -13,28 +13,29 @@
 //! error_r = sqrt(moved^2 + seen^2 + bound^2)
 //! ```
 //!
-//! with `|t|` and `|z_j|` clipped at 4.5, and sigma times more for mean and sigma. `3 hypot(m, s) >= m + 2.8 s`, Student's quantile of a
-//! dozen. The floor `0.004 sqrt(14/n)` is what a dozen points overlook: mean and sigma are not known to better than 1.5e-3 of
-//! sigma by them.
+//! `|t|` and `|z_j|` are clipped at 4.5. The errors of mean and sigma are multiplied by sigma. `3 hypot(m, s) >= m + 2.8 s`, Student's
+//! quantile for a dozen points. The floor `0.004 sqrt(14/n)` allows for effects that a dozen points overlook: they give mean and sigma no
+//! better than to 1.5e-3 of sigma.
 
 use super::checks::{Design, ON_AXIS, Wish, dot};
 use super::figures::{MOMENTS, moments};
 use super::space::Columns;
 use super::strata::along;
 
-/// The residual that so many points may overlook, in sigmas; of `n` points it falls as `1/sqrt(n)`.
+/// Residual that [`OVERLOOKED_BY`] points may overlook, in sigmas. With `n` points it falls as `1/sqrt(n)`.
 pub(crate) const OVERLOOKED: f64 = 0.004;
+/// Number of points that [`OVERLOOKED`] refers to.
 pub(crate) const OVERLOOKED_BY: f64 = 14.0;
-/// A root mean square of a handful of residuals is this much too small at times: of a dozen normal ones, the largest counted twice, in 6 %
-/// of all cases; of 32, all counted once, in 3 %.
+/// Factor by which the root mean square of a handful of residuals may be too small. It is exceeded in 6 % of all cases for a dozen normal
+/// residuals with the largest counted twice, and in 3 % for 32 residuals that are counted once.
 pub(crate) const TOO_SMALL: f64 = 1.3;
-/// Polynomials are not followed farther than this, in sigmas.
+/// Distance in sigmas beyond which polynomials are continued as constants.
 const CLIPPED: f64 = 4.5;
-/// The square of the outer nodes at which a surface's own part is right, in normal variables: those of the three-point rule.
+/// Square of the outer nodes of the three-point rule, in normal variables: the univariate parts of a surface are exact there.
 const NODES: f64 = 3.0;
-/// The part of the mean square of the idle inputs' differences, four sigmas out, that counts for all assemblies.
+/// Divisor of the mean square of the idle inputs' differences, four sigmas out, for their effect on all assemblies.
 const IDLE: f64 = 50.0;
-/// The contribution of a residual that follows the output to the figures by its square.
+/// Contribution to the figures of the square of a residual that follows the output.
 const SQUARES: [f64; MOMENTS] = [0.0, 0.5, 2.0, 6.0];
 
 /// A surface at weighted points of the whole distribution.
@@ -47,7 +48,7 @@ pub(super) struct Surface {
 }
 
 impl Surface {
-    /// The share within an interval, ends included.
+    /// Share within an interval, ends included.
     pub(super) fn share(&self, interval: [f64; 2]) -> f64 {
         share_of(&self.values, &self.weights, interval)
     }
@@ -58,23 +59,23 @@ fn share_of(values: &[f64], weights: &[f64], [low, high]: [f64; 2]) -> f64 {
     within.map(|(_, weight)| weight).sum::<f64>() / weights.iter().sum::<f64>()
 }
 
-/// The results of one characteristic by the points.
+/// Results of one characteristic from the check points.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Judged {
     /// Errors of mean, sigma, skewness and kurtosis.
     pub(super) errors: [f64; MOMENTS],
-    /// The error of the share within every interval.
+    /// Error of the share within every interval.
     pub(super) shares: Vec<f64>,
-    /// The share of the variance that the surface leaves unexplained.
+    /// Share of the variance that the surface leaves unexplained.
     pub(super) left: f64,
-    /// The share of the variance that the residual at the random points has, before what the other points found.
+    /// Share of the variance of the residual at the random points, without the bend that the other points show.
     pub(super) rho: f64,
 }
 
-/// The estimated shape of the difference.
+/// Estimated shape of the residual (`p` above).
 struct Bend<'d> {
     line: Option<(&'d [f64], [f64; 4])>,
-    /// Input, odd and even coefficient.
+    /// Input, odd and even coefficient of the parts along axes.
     axes: Vec<(usize, f64, f64)>,
 }
 
@@ -98,7 +99,7 @@ impl Bend<'_> {
     }
 }
 
-/// The quartic without constant through values at 1.5, -1.5, 3 and -3.
+/// Coefficients of the quartic without constant through values at 1.5, -1.5, 3 and -3.
 fn quartic([near_up, near_down, far_up, far_down]: [f64; 4]) -> [f64; 4] {
     let odd = [0.5 * (near_up - near_down) / 1.5, 0.5 * (far_up - far_down) / 3.0];
     let even = [0.5 * (near_up + near_down) / 2.25, 0.5 * (far_up + far_down) / 9.0];
@@ -108,8 +109,8 @@ fn quartic([near_up, near_down, far_up, far_down]: [f64; 4]) -> [f64; 4] {
 
 /// Judges a surface by the model's values at the points of a design.
 ///
-/// Shapes: `model` and `surface_at` have a value for every point of the design; `at` says where a sigma of 0 is. None where the
-/// model has no value at one of the points, or the surface does not vary.
+/// Shapes: `model` and `surface_at` have a value for every point of the design. Returns None if the model has no value at one of the
+/// points, or the surface does not vary.
 pub(super) fn judge(
     design: &Design,
     wish: &Wish,
@@ -124,12 +125,14 @@ pub(super) fn judge(
         return None;
     }
     let bend = bend(design, wish, &d);
+    // Effect of the bend on the figures, exact for any size.
     let over_all = bend.at(&surface.z);
     let moved_values: Vec<f64> = surface.values.iter().zip(&over_all).map(|(q, p)| q + sigma * p).collect();
     let moved_figures = moments(&moved_values, &surface.weights);
     let units = [sigma, sigma, 1.0, 1.0];
     let moved: [f64; MOMENTS] = std::array::from_fn(|r| (moved_figures[r] - surface.figures[r]) / units[r]);
 
+    // Residuals at the random points, less the bend if that makes them smaller.
     let random = design.random();
     let points: Columns = design.columns().iter().map(|column| column[random..].to_vec()).collect();
     let differences = &d[random..];
@@ -150,6 +153,7 @@ pub(super) fn judge(
     let rho = TOO_SMALL * TOO_SMALL * (square(rest) + largest) / k
         + OVERLOOKED * OVERLOOKED * OVERLOOKED_BY / d.len() as f64
         + idle;
+    // Mean squares of the influences over the whole distribution, for the bound.
     let total: f64 = surface.weights.iter().sum();
     let mut spread = [0.0; MOMENTS];
     for (q, weight) in surface.values.iter().zip(&surface.weights) {
@@ -168,6 +172,7 @@ pub(super) fn judge(
     Some(Judged { errors, shares, left: rho + mean_square(&over_all), rho })
 }
 
+/// Fits the bend to the differences at the points on lines and axes.
 fn bend<'d>(design: &'d Design, wish: &Wish, d: &[f64]) -> Bend<'d> {
     let line = design.line_of(wish).map(|index| {
         let own = &d[4 * index..4 * index + 4];
@@ -176,7 +181,7 @@ fn bend<'d>(design: &'d Design, wish: &Wish, d: &[f64]) -> Bend<'d> {
     let first = 4 * design.lines.len();
     let axes = design.axes.iter().enumerate().filter(|&(_, &j)| wish.has_axis(j));
     let part = |(index, &j): (usize, &usize)| {
-        // 0 in the middle and at the nodes, right at three sigma.
+        // The part is 0 in the middle and at the nodes, and exact at three sigma.
         let outer = (ON_AXIS * ON_AXIS - NODES) * ON_AXIS;
         let [up, down] = [d[first + 2 * index] / outer, -d[first + 2 * index + 1] / outer];
         (j, 0.5 * (up + down), (up - down) / (2.0 * ON_AXIS))
@@ -184,7 +189,7 @@ fn bend<'d>(design: &'d Design, wish: &Wish, d: &[f64]) -> Bend<'d> {
     Bend { line, axes: axes.map(part).collect() }
 }
 
-/// How far the share within an interval may be off: by the bend, and by limits that are moved by the residual, which grows outward.
+/// Error of the share within an interval: by the bend, and by limits that move by the residual, which grows outward.
 fn share_error(surface: &Surface, moved: &[f64], interval: [f64; 2], rho: f64) -> f64 {
     let share = |values: &[f64], interval: [f64; 2]| share_of(values, &surface.weights, interval);
     let [mean, sigma, ..] = surface.figures;
@@ -203,13 +208,13 @@ fn share_error(surface: &Surface, moved: &[f64], interval: [f64; 2], rho: f64) -
 }
 
 impl Judged {
-    /// The error of a share of the variance: `2 sqrt(T U/K) + U/(1 + U)` with `U` what is left unexplained.
+    /// Error of a share of the variance: `2 sqrt(T U/K) + U/(1 + U)` with `U` the unexplained share.
     pub(super) fn share_of_variance(&self, share: f64, pairs: usize) -> f64 {
         2.0 * (share.max(0.0) * self.left / (2 * pairs) as f64).sqrt() + self.left / (1.0 + self.left)
     }
 }
 
-/// Normalised covariances of a surface with its variables: the line that carries it.
+/// Normalised covariances of a surface with its variables: the direction along which it varies most.
 pub(super) fn regression(surface: &Surface) -> Vec<f64> {
     let [mean, sigma, ..] = surface.figures;
     let weighted: Vec<f64> =

@@ -1,4 +1,4 @@
-//! Points of a cheap model in strata, and the figures that they give with their errors.
+//! Sample of a cheap model in strata: figures with their errors.
 //!
 //! ```text
 //! E f = sum_s mean over stratum s of w f [in no earlier stratum]
@@ -7,10 +7,10 @@
 //!   3. the core, |a.z| <= 2.5                      32 768 points
 //! ```
 //!
-//! Every point counts in the first stratum that holds it, so that the sum is unbiased whatever the strata are worth. The points are
-//! Sobol's in 16 scramblings (Owen 1997), from which the jackknife takes the errors; these grow by `1 + 5/sqrt(n)` with `n` the
-//! number of points that carry the variance of a power (Kish 1965), by Student's quantile, and for a share by the weight of one
-//! point: that none was seen does not mean that there is none.
+//! Every point counts in the first stratum that contains it, so that the sum is unbiased for any strata. The points are Sobol' points in 16
+//! scramblings (Owen 1997), from which the jackknife computes the errors. These are multiplied by `1 + 5/sqrt(n)`, with `n` the number of
+//! points that carry the variance of a power (Kish 1965), and by Student's quantile. The error of a share also includes the weight of one
+//! point, because a rare event may exist although no point shows it.
 
 use super::Verified;
 use super::figures::{MOMENTS, carried_by, effective, jackknife, moments, standard, student, totals};
@@ -23,47 +23,47 @@ use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::sampling::Normals;
 use sensitol_numeric::surrogate::Surrogate;
 
-/// Randomisations.
+/// Number of randomisations (scramblings) of a stratum.
 pub(crate) const REPLICATES: usize = 16;
 /// Points of a half-space in all randomisations together.
 pub(super) const TAIL: usize = 1 << 12;
-/// Numbers that the points of one stratum may take at most.
+/// Most random numbers for the points of one stratum.
 const NUMBERS: usize = 1_000_000;
-/// Points from which the tails' direction is taken, and how far a value counts for it, in sigmas.
+/// Points that determine the direction of the tails.
 pub(super) const PILOT: usize = 1 << 10;
+/// Greatest absolute value, in sigmas, that counts for the direction of the tails.
 const WINSORISED: f64 = 4.0;
-/// Where the tails begin, in sigmas along their direction.
+/// Distance at which the tails begin, in sigmas along their direction.
 pub(super) const FAR: f64 = 2.5;
 
-/// The points of one stratum in one randomisation that no earlier stratum holds.
+/// Points of one stratum in one randomisation that no earlier stratum contains.
 struct Part {
     replicate: usize,
     values: Vec<f64>,
     weights: Vec<f64>,
-    /// The surface's values at the same points; empty where none is known.
+    /// Values of the surface at the same points. Empty if they are unknown.
     surface: Vec<f64>,
 }
 
-/// The points of one characteristic.
 pub(super) struct Sample {
     parts: Vec<Part>,
-    /// The weight of one point of the core.
+    /// Weight of one point of the core.
     one: f64,
-    /// How many points were evaluated, those that looked for strata included.
+    /// Number of evaluated points, including those that searched for strata.
     pub(super) points: usize,
     pub(super) sides: Sides,
 }
 
-/// Figures of a sample with their errors: mean, sigma, skewness, kurtosis, then a share for every interval asked for.
+/// Figures of a sample with their errors: mean, sigma, skewness, kurtosis, then a share for every requested interval.
 pub(super) struct Figures {
     pub(super) values: Vec<f64>,
     pub(super) errors: Vec<f64>,
-    /// The share of the assemblies that have a value, and its error.
+    /// Share of the assemblies that have a value, and its error.
     pub(super) valid: (f64, f64),
 }
 
 impl Sample {
-    /// Of so many points in the core.
+    /// Draws a sample with `core` points in the core.
     pub(super) fn draw(model: &Model<'_>, seed: u64, core: usize, beside: Option<(&[usize], &Surrogate)>) -> Self {
         let normals = Normals::new(model.len(), seed);
         let (direction, known) = {
@@ -71,6 +71,7 @@ impl Sample {
             let known = model.values(&pilot);
             (steepest(&pilot, &known), known)
         };
+        // The spread of the pilot is the scale of jumps at switches.
         let valid: Vec<f64> = known.iter().copied().filter(|y| y.is_finite()).collect();
         let spread = moments(&valid, &vec![1.0; valid.len()])[1];
         let sides = sides(model, &normals, if spread > 0.0 { spread } else { 1.0 });
@@ -82,7 +83,7 @@ impl Sample {
         let rows = |stratum: usize| (if stratum + 1 < strata { TAIL } else { core } / REPLICATES).min(most);
         let part = |index: usize| -> Part {
             let (replicate, stratum) = (index / strata, index % strata);
-            // Who stopped the run does not wait for the rest of the points.
+            // A stopped run does not wait for the rest of the points.
             let rows = if model.stopped() { 0 } else { rows(stratum) };
             let mut z = normals.columns((replicate * 64 + stratum) as u64, rows);
             let weights = match spaces.get(stratum) {
@@ -108,16 +109,16 @@ impl Sample {
         Self { parts, one, points: drawn + PILOT, sides }
     }
 
-    /// The figures, with the shares of the assemblies within these intervals, ends included.
+    /// Figures, with the shares of the assemblies within these intervals, ends included.
     ///
-    /// Points without a value leave numerator and denominator alike: every figure is of the assemblies that have one.
+    /// Points without a value are left out of numerator and denominator alike: every figure refers to the assemblies that have a value.
     pub(super) fn figures(&self, intervals: &[[f64; 2]]) -> Figures {
         let all = || self.parts.iter().flat_map(|part| part.values.iter().zip(&part.weights));
         let (values, weights): (Vec<f64>, Vec<f64>) = all().filter(|(y, _)| y.is_finite()).unzip();
         let total: f64 = all().map(|(_, weight)| weight).sum();
         let [origin, spread, ..] = moments(&values, &weights);
         let scale = if spread > 0.0 { spread } else { 1.0 };
-        // Sums of the valid, of powers 1 to 4, of every interval, and of all points.
+        // Sums of the valid points, of powers 1 to 4, of every interval, and of all points.
         let count = 1 + MOMENTS + intervals.len();
         let mut sums = vec![vec![0.0; REPLICATES]; count + 1];
         for part in &self.parts {
@@ -144,6 +145,7 @@ impl Sample {
             standard(&raw, origin, scale)
         };
         let mut errors = jackknife(of, &sums);
+        // Few points may carry a high power: the jackknife underestimates its error.
         for (power, error) in errors.iter_mut().enumerate().take(MOMENTS) {
             let terms = values.iter().zip(&weights);
             let carried = terms.map(|(y, weight)| weight * ((y - origin) / scale).abs().powi(power as i32 + 1));
@@ -158,8 +160,8 @@ impl Sample {
         Figures { values: of(&totals(&sums)), errors, valid: (weights.iter().sum::<f64>() / total, off) }
     }
 
-    /// How much more of the model than of the surface lies within each interval, ends included: `mean(1_model - 1_surface)`; None
-    /// without a surface, and where some points have no value, so that the shares are of other assemblies.
+    /// Difference of the shares of model and surface within each interval, ends included: `mean(1_model - 1_surface)`. Returns None if
+    /// there is no surface, or if some points have no value, because the shares refer to different assemblies then.
     pub(super) fn difference<const N: usize>(&self, intervals: &[[f64; 2]; N]) -> Option<[Verified; N]> {
         let whole = |part: &Part| part.surface.len() == part.values.len() && part.values.iter().all(|y| y.is_finite());
         if !self.parts.iter().all(whole) {
@@ -179,28 +181,29 @@ impl Sample {
         let shares = |total: &[f64]| total[..N].iter().map(|sum| sum / total[N]).collect::<Vec<f64>>();
         let (values, errors) = (shares(&totals(&sums)), jackknife(shares, &sums));
         let student = student(REPLICATES);
-        // As for a share: that no point disagrees does not mean that none does.
+        // The weight of one point, as for a share: a difference may exist although no point shows it.
         Some(std::array::from_fn(|i| Verified { value: values[i], error: libm::hypot(student * errors[i], self.one) }))
     }
 
-    /// The weight of one point of the core.
+    /// Weight of one point of the core.
     pub(super) fn point(&self) -> f64 {
         self.one
     }
 
-    /// All of it, for tails and shares that are asked for later.
+    /// Converts it to a sample for tails and shares that are computed later.
     pub(super) fn kept(self) -> WeightedSample {
         let parts = self.parts.into_iter().map(|part| (part.replicate, part.values, part.weights));
         WeightedSample::new(parts, REPLICATES, self.one)
     }
 
-    /// Whether no point has a value.
+    /// True if no point has a value.
     pub(super) fn is_void(&self) -> bool {
         !self.parts.iter().flat_map(|part| &part.values).any(|y| y.is_finite())
     }
 }
 
-/// Where the tails are: `E[z d^3]` with `d` the standardised values, winsorised; along `R b` for a function that is nearly linear.
+/// Direction along which the tails lie: `E[z d^3]` with `d` the standardised values, winsorised. For a function that is nearly linear it is
+/// along `R b`.
 pub(super) fn steepest(z: &Columns, y: &[f64]) -> Vec<f64> {
     let valid: Vec<f64> = y.iter().copied().filter(|y| y.is_finite()).collect();
     let [mean, sigma, ..] = moments(&valid, &vec![1.0; valid.len()]);

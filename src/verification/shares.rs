@@ -5,9 +5,9 @@
 //! total        T_j = E[(c_j - a)^2] / (2 V)           Jansen 1999
 //! ```
 //!
-//! with the model's values `a` and `b` at two independent sets of points and `c_j` at the points of the first whose input j is that of
-//! the second. `S_j` is what the input explains by itself, `T_j` adds every interaction in which it has a part. Errors by the
-//! jackknife over 8 scramblings, widened by Student's quantile.
+//! `a` and `b` are the model's values at two independent sets of points. `c_j` are the values at the points of the first set with input j
+//! from the second. `S_j` is the share that the input explains alone, `T_j` adds all its interactions. Errors come from the jackknife over
+//! 8 scramblings, widened by Student's quantile.
 
 use super::figures::{jackknife, student, totals};
 use super::model::Model;
@@ -15,24 +15,25 @@ use super::space::Columns;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::sampling::Normals;
 
-/// Evaluations, and the scramblings that share them.
+/// Number of evaluations of all scramblings together.
 const EVALUATIONS: usize = 1 << 16;
+/// Number of scramblings, which give the errors.
 const REPLICATES: usize = 8;
-/// The fewest points of a scrambling.
+/// Fewest points of a scrambling, with any number of inputs.
 const FEWEST: usize = 64;
-/// For more inputs the numbers would be too many.
+/// Greatest number of inputs: more would need too many random numbers.
 const MOST: usize = 256;
 
 /// A share of the variance with its error.
 pub type Share = super::Verified;
 
-/// Evaluations over so many inputs at most.
+/// Most evaluations over this number of inputs.
 pub(super) fn most(inputs: usize) -> usize {
     EVALUATIONS.max(REPLICATES * FEWEST * (inputs + 2))
 }
 
-/// First-order and total shares of every factor, which is a variable or some that are exchanged together; None for too many variables,
-/// and where nothing varies.
+/// First-order and total shares of every factor, which is a variable or several that are exchanged together. Returns None with too many
+/// variables, and if nothing varies.
 pub(super) fn shares(model: &Model<'_>, factors: &[Vec<usize>], seed: u64) -> Option<Vec<[Share; 2]>> {
     let n = factors.len();
     if n == 0 || model.len() > MOST {
@@ -50,7 +51,7 @@ pub(super) fn shares(model: &Model<'_>, factors: &[Vec<usize>], seed: u64) -> Op
     values.iter().all(|value| value.is_finite()).then(|| (0..n).map(|j| [share(j), share(n + j)]).collect())
 }
 
-/// The variance, then for every factor the covariance of what it makes by itself, then half the mean square of what it changes.
+/// Variance, then the covariance of every factor alone, then half the mean square of the change by every factor.
 fn exchanged(
     model: &Model<'_>,
     factors: &[Vec<usize>],

@@ -1,9 +1,9 @@
 //! The rare sides of the switches of a model, as half-spaces, and their probability.
 //!
-//! A switch whose smaller side holds less than a hundredth of all assemblies is met by few points of a sample or by none. Its margin is
-//! known, so that it is sought: from the nearest of some points two and three times as wide as the assemblies, steps of Hasofer and
-//! Lind (1974; Rackwitz and Fiessler 1978) lead to the likeliest point beyond, the design point `z*` at the distance `beta`. The
-//! half-space `z*/beta . z > beta - 0.5` holds nearly all of that side, and a stratum of its own makes it known as well as the rest.
+//! A switch whose smaller side holds less than a hundredth of all assemblies is met by few or no points of a sample. Its margin is known,
+//! so that a search can find it. It starts from the nearest of some points with two and three times the scatter of the assemblies. Steps of
+//! Hasofer and Lind (1974; Rackwitz and Fiessler 1978) lead to the likeliest point beyond, the design point `z*` at the distance `beta`.
+//! The half-space `z*/beta . z > beta - 0.5` contains nearly all of that side. A stratum of its own makes it as accurate as the rest.
 
 use std::cell::OnceCell;
 
@@ -16,68 +16,73 @@ use crate::assembly::Switch;
 use crate::warning::{Change, Warning};
 use sensitol_numeric::sampling::Normals;
 
-/// Points at which margins are read, plain, twice and three times as wide.
+/// Points at which margins are evaluated, for each of three widths: plain, twice and three times as wide.
 const POINTS: usize = 1 << 11;
+/// Factors by which the wider points are stretched.
 const WIDE: [f64; 2] = [2.0, 3.0];
-/// A side that is less than this part of all assemblies, 256 of 32 768 points, is sought;
+/// Greatest probability of a side that is searched for, 256 of 32 768 points.
 const SELDOM: f64 = 1.0 / 128.0;
-/// so many places of one switch, as `abs(x) > c` has two, and of all switches.
+/// Most half-spaces of one switch: `abs(x) > c` has two.
 const PLACES: usize = 4;
+/// Most half-spaces of all switches.
 pub(super) const MOST: usize = 6;
-/// How far a half-space begins before its design point, in sigmas.
+/// Distance in sigmas at which a half-space begins before its design point.
 pub(super) const BEFORE: f64 = 0.5;
-/// Steps of Hasofer and Lind, the step of their differences, and where the line is searched about each.
+/// Number of steps of Hasofer and Lind.
 const STEPS: usize = 12;
+/// Step of the difference quotients of margins, in sigmas.
 const STEP: f64 = 1e-3;
+/// Ends of the line search about each step, as factors of its distance.
 const LINE: [f64; 2] = [0.9, 1.1];
-/// Points of a half-space by which its probability is known to a percent.
+/// Points of a half-space, which give its probability to a percent.
 const WITHIN: usize = 1 << 12;
-/// A switch is worth a warning from one assembly in ten million on.
+/// Least probability of a switch that is worth a warning: one assembly in ten million.
 const TOLD: f64 = 1e-7;
-/// Halvings by which a border is found.
+/// Number of halvings that locate a border.
 const HALVINGS: usize = 40;
-/// From which part of sigma on two values are apart, and from which change of the slope by a sigma two slopes are;
+/// Difference of two values, as a part of sigma, above which there is a jump.
 const APART: f64 = 1e-6;
+/// Change of slope, in sigmas of the output for each sigma of the input, above which there is a kink.
 const BENT: f64 = 1e-3;
-/// the distances over which slopes are taken, of which the longer would show a curvature.
+/// Distances over which slopes are computed, in sigmas. A curvature shows more over the longer one.
 const NEAR: [f64; 2] = [1e-5, 1e-4];
-/// So many sigmas off the mean beside a border, a value grows without bound.
+/// Distance of a value from the mean, in sigmas, above which it grows without bound next to a border.
 const WITHOUT_BOUND: f64 = 1e6;
 
-/// The behaviour of an output at a switch, by its values.
+/// Behaviour of an output at a switch, by its values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Crossing {
-    /// Its slope changes.
+    /// Change of slope.
     Kink,
-    /// Its value jumps.
+    /// Jump of the value.
     Jump,
-    /// It has no value beyond.
+    /// Edge of the domain: there is no value beyond.
     Edge,
-    /// It grows without bound: no moments exist.
+    /// Growth without bound: no moments exist.
     Pole,
 }
 
-/// A switch on both sides of which there are assemblies within eight sigmas.
+/// A switch with assemblies within eight sigmas on both of its sides.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct FoundSwitch {
-    /// Where it stands.
+    /// Switch in the function.
     #[serde(skip)]
     pub switch: Switch,
-    /// The part of the formula that does it, as it is written there.
+    /// Part of the formula that causes it, as written there.
     pub name: String,
-    /// The behaviour of the output there.
+    /// Behaviour of the output at the switch.
     #[serde(rename = "kind")]
     pub crossing: Crossing,
-    /// The probability of its smaller side.
+    /// Probability of the smaller side.
     pub probability: f64,
 }
 
 impl FoundSwitch {
-    /// The warning that tells of it, with the points of a sample among which it is; None where it is met too seldom.
+    /// Warning of the switch, with the points of a sample on its smaller side. Returns None if it is met too seldom.
     pub(crate) fn warning(&self, characteristic: &str, sample: Option<u64>) -> Option<Warning> {
         let (switch, probability) = (self.name.clone(), self.probability);
         let change = match self.crossing {
@@ -94,18 +99,18 @@ impl FoundSwitch {
     }
 }
 
-/// The findings on the switches of one output.
+/// Results of the search for the switches of one output.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Sides {
-    /// Strata for what is seldom.
+    /// Half-spaces that contain the seldom sides.
     pub(super) half_spaces: Vec<HalfSpace>,
-    /// The switches that are met; None where the model does not tell.
+    /// Switches that assemblies meet. None if the model does not report them.
     pub(super) switches: Option<Vec<FoundSwitch>>,
-    /// Whether the model told all of its switches.
+    /// True if the model reported all of its switches.
     pub(super) complete: bool,
 }
 
-/// The margins of all switches at some points, without what is not a number.
+/// Margins of all switches at some points, clamped, with 0 for NaN.
 struct Margins(Vec<Vec<f64>>);
 
 impl Margins {
@@ -117,7 +122,7 @@ impl Margins {
         Some(Self(columns))
     }
 
-    /// At more points.
+    /// Adds the margins at further points.
     fn and(mut self, more: Self) -> Self {
         self.0.iter_mut().zip(more.0).for_each(|(all, more)| all.extend(more));
         self
@@ -129,16 +134,16 @@ impl Margins {
     }
 }
 
-/// Looks for the sides that are seldom met.
+/// Searches for the sides that are seldom met.
 ///
-/// `scale` is the spread of the output, for what is a jump. Cost: 6144 points, and `12 (N + 22)` for every place looked at.
+/// `scale` is the spread of the output, to recognise a jump. Cost: 6144 points, and `12 (N + 22)` for every searched place.
 pub(super) fn sides(model: &Model<'_>, normals: &Normals, scale: f64) -> Sides {
     let Some(known) = model.problem().function().switches(model.output()) else { return Sides::default() };
     if known.list.is_empty() {
         return Sides { switches: Some(Vec::new()), complete: known.complete, ..Sides::default() };
     }
     let places = Places { normals, plain: OnceCell::new(), wide: OnceCell::new() };
-    // One place after the other: each is gone before the next is drawn.
+    // One set of points after the other, to save memory: each is dropped before the next is drawn.
     let plain = || Margins::read(model, &places.drawn(0));
     let wide = |index: usize| Margins::read(model, &places.widened(index));
     let margins = plain().zip(wide(0)).zip(wide(1));
@@ -158,7 +163,7 @@ pub(super) fn sides(model: &Model<'_>, normals: &Normals, scale: f64) -> Sides {
         }
         let own = first..found.half_spaces.len();
         let Some(probability) = found.probability(k, sign, own, &plain.0[k]) else { continue };
-        // A point of the smaller side nearest to the middle, whose way from there crosses the border.
+        // The nearest point on the smaller side: the way to it from the middle crosses the border.
         let beyond =
             nearest(|| places.plain(), &plain.0[k], sign).or_else(|| nearest(|| places.wide(), &far.0[k], sign));
         let Some(crossing) = beyond.and_then(|point| found.crossing(k, sign, &switch, &point)) else { continue };
@@ -175,14 +180,14 @@ fn row(z: &Columns, row: usize) -> Vec<f64> {
     z.iter().map(|column| column[row]).collect()
 }
 
-/// The point nearest to the middle where the margin has this sign, of points that are made where there is one.
+/// Nearest point to the middle at which the margin has this sign. `z` makes the points only if there is one.
 fn nearest<'z>(z: impl Fn() -> &'z Columns, margins: &[f64], sign: f64) -> Option<Vec<f64>> {
     let beyond: Vec<usize> = (0..margins.len()).filter(|&at| margins[at] * sign > 0.0).collect();
     let square = |at: usize| z().iter().map(|column| column[at] * column[at]).sum::<f64>();
     beyond.into_iter().min_by(|&a, &b| square(a).total_cmp(&square(b))).map(|at| row(z(), at))
 }
 
-/// The points at which margins are read. They are made again where one is asked for, which is seldom: of many dimensions they take more
+/// Points at which margins are evaluated. They are drawn again if a point is needed, which is seldom: with many dimensions they take more
 /// memory than anything else.
 struct Places<'n> {
     normals: &'n Normals,
@@ -195,7 +200,7 @@ impl Places<'_> {
         self.normals.columns(stream(index), POINTS)
     }
 
-    /// Those of one width.
+    /// Points of one of the widths, by its index.
     fn widened(&self, index: usize) -> Columns {
         let mut z = self.drawn(1 + index);
         z.iter_mut().flatten().for_each(|z| *z *= WIDE[index]);
@@ -206,7 +211,7 @@ impl Places<'_> {
         self.plain.get_or_init(|| self.drawn(0))
     }
 
-    /// Those of every width.
+    /// Points of all widths together.
     fn wide(&self) -> &Columns {
         self.wide.get_or_init(|| {
             let mut all = self.widened(0);
@@ -224,7 +229,7 @@ struct Search<'a, 'p> {
 }
 
 impl Search<'_, '_> {
-    /// Looks for the places of one side of a switch.
+    /// Searches for the places of one side of a switch.
     fn seek(&mut self, switch: usize, sign: f64, margins: &[f64]) {
         let mut open: Vec<bool> = margins.iter().map(|margin| margin * sign > 0.0).collect();
         if !open.contains(&true) {
@@ -253,10 +258,10 @@ impl Search<'_, '_> {
         Margins::read(self.model, z).map_or_else(Vec::new, |mut margins| margins.0.swap_remove(switch))
     }
 
-    /// The likeliest point at which the margin has this sign: steps from `z`, a search of the line about each, then bisection from
-    /// the middle.
+    /// Likeliest point at which the margin has this sign. It is found by steps from `z` with a line search about each, then by bisection
+    /// from the middle.
     fn design_point(&self, switch: usize, sign: f64, mut z: Vec<f64>) -> Vec<f64> {
-        // Places along the line on which the switch is looked for.
+        // Points of a line search.
         const ON_LINE: usize = 21;
         let n = z.len();
         let mut best = z.clone();
@@ -283,7 +288,7 @@ impl Search<'_, '_> {
         at(high)
     }
 
-    /// Two parts of a way, of which the second has the sign and the first has not.
+    /// Bisects the way `at`: returns two parts of it, the first without the sign and the second with it.
     fn halved(&self, switch: usize, sign: f64, at: &dyn Fn(f64) -> Vec<f64>, times: usize) -> (f64, f64) {
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..times {
@@ -298,8 +303,8 @@ impl Search<'_, '_> {
         (low, high)
     }
 
-    /// The probability of a side: by the plain points outside its half-spaces, and by points within each that no earlier one holds.
-    /// None where none of them lies there.
+    /// Probability of a side, by the plain points outside its half-spaces, and by points within each that no earlier one contains. Returns
+    /// Returns None if no point lies on the side.
     fn probability(&self, switch: usize, sign: f64, own: std::ops::Range<usize>, margins: &[f64]) -> Option<f64> {
         let mut outside: Vec<bool> = margins.iter().map(|margin| margin * sign > 0.0).collect();
         let mut sum = 0.0;
@@ -321,8 +326,7 @@ impl Search<'_, '_> {
         (sum > 0.0).then_some(sum)
     }
 
-    /// The change of the output where the way from the middle to a point beyond crosses the border; None where it does not
-    /// change.
+    /// Behaviour of the output at the border between the middle and a point beyond. Returns None if it does not change there.
     fn crossing(&self, switch: usize, sign: f64, of: &Switch, beyond: &[f64]) -> Option<Crossing> {
         use crate::assembly::SwitchKind;
         if of.kind == SwitchKind::Edge {
@@ -352,7 +356,7 @@ impl Search<'_, '_> {
         (near > BENT && near > 0.5 * far).then_some(Crossing::Kink)
     }
 
-    /// A point on the other side: the middle, unless it lies beyond itself.
+    /// Point on the other side of the switch: the middle, unless it is beyond the border itself.
     fn start(&self, switch: usize, sign: f64, beyond: &[f64]) -> Vec<f64> {
         let n = beyond.len();
         let other = |point: &[f64]| {

@@ -1,8 +1,8 @@
-//! Independent standard normal variables, and the inputs that they stand for.
+//! Independent standard normal variables, and the inputs as functions of them.
 //!
-//! An input is its own quantile function of a normal variable, `T(z) = F^-1(Phi(z))`, and correlated ones are functions of correlated
-//! normal variables (Nataf's law, [`sensitol_numeric::correlation`]), which a factor of their matrix makes of independent ones. Correlated
-//! inputs need no case of their own: everything here and after lives in `z`.
+//! An input is its own quantile function of a normal variable, `T(z) = F^-1(Phi(z))`. Correlated inputs are functions of correlated normal
+//! variables (Nataf's distribution, [`sensitol_numeric::correlation`]), which are computed from independent ones by a factor of their
+//! matrix. Correlated inputs need no case of their own: all of the verification works in `z`.
 
 use crate::assembly::Points;
 use crate::problem::Problem;
@@ -12,16 +12,16 @@ use sensitol_numeric::distribution::{Distribution, Normal, PearsonLaw, Probabili
 /// Points as columns, one for every variable.
 pub(crate) type Columns = Vec<Vec<f64>>;
 
-/// Variables beyond this many sigmas stand where those at it do: less than 1e-18 of all assemblies.
+/// Distance in sigmas at which variables are clamped: beyond it are less than 1e-18 of all assemblies.
 const REACH: f64 = 9.0;
-/// Places of a table per sigma. A cubic between them is off by 1e-8 of a sigma where the density is smooth, by 1e-6 beside the mode
-/// of a triangle: a thousandth of what a sample of 40 000 points leaves uncertain.
+/// Places of a table per sigma. A cubic between them is accurate to 1e-8 of a sigma if the density is smooth, and to 1e-6 near the mode of
+/// a triangle: a thousandth of the error of a sample of 40 000 points.
 const PER_UNIT: f64 = 64.0;
 
 /// Some of the varying dimensions of a problem, N of them.
 pub(crate) struct Space<'p> {
     inputs: Vec<Input<'p>>,
-    /// How some of them vary together.
+    /// Correlation of some of the inputs.
     correlated: Option<Together>,
     /// All dimensions of the problem at their means.
     centre: Vec<f64>,
@@ -34,19 +34,19 @@ struct Input<'p> {
     law: Law<'p>,
 }
 
-/// `T` in sigmas off the mean.
+/// Transformation `T` of a normal variable into a standardised input.
 enum Law<'p> {
     Normal,
-    /// At evenly spaced places, between the ends of the support.
+    /// Values at evenly spaced places, and the ends of the support.
     Table(Vec<f64>, [f64; 2]),
-    /// Measured values, between whose atoms nothing may be interpolated.
+    /// Measured values, between which nothing may be interpolated.
     Atoms(&'p dyn Probability),
 }
 
 impl<'p> Space<'p> {
-    /// Of these dimensions, which vary.
+    /// Creates the space of these dimensions, which vary.
     ///
-    /// A dimension that is known by its moments only stands in by the Pearson law of the first four of them.
+    /// A dimension that is known by its moments only has the Pearson distribution with the first four of them.
     pub(crate) fn new(problem: &'p Problem, dimensions: &[usize]) -> Self {
         let input = |&d: &usize| {
             let dimension = &problem.dimensions()[d];
@@ -61,17 +61,16 @@ impl<'p> Space<'p> {
         }
     }
 
-    /// How many variables there are.
     pub(crate) fn len(&self) -> usize {
         self.inputs.len()
     }
 
-    /// The dimension of the problem behind every variable.
+    /// Dimension of the problem of every variable.
     pub(crate) fn dimensions(&self) -> impl Iterator<Item = usize> + '_ {
         self.inputs.iter().map(|input| input.dimension)
     }
 
-    /// The inputs in sigmas off their means.
+    /// Standardised inputs at some points.
     pub(crate) fn standardised(&self, normals: &Columns) -> Columns {
         let mut columns = self.together(normals);
         for (input, column) in self.inputs.iter().zip(&mut columns) {
@@ -80,14 +79,14 @@ impl<'p> Space<'p> {
         columns
     }
 
-    /// The points of the problem.
+    /// Points in the form of the problem.
     pub(crate) fn points(&self, normals: &Columns) -> Points {
         let mut points = Points::repeated(&self.centre, normals.first().map_or(1, Vec::len));
         let together = self.correlated.as_ref().map(|together| together.apply(normals));
         for (input, column) in self.inputs.iter().zip(together.as_ref().unwrap_or(normals)) {
             let values = points.column_mut(input.dimension);
             values.copy_from_slice(column);
-            // A measured value is that value to the last digit.
+            // A measured value is reproduced to the last digit.
             if let Law::Atoms(law) = &input.law {
                 values.iter_mut().for_each(|x| *x = behind_normal(*law, *x));
                 continue;
@@ -98,7 +97,7 @@ impl<'p> Space<'p> {
         points
     }
 
-    /// The normal variables, correlated as the inputs want them.
+    /// Normal variables with the correlation of the inputs.
     fn together(&self, normals: &Columns) -> Columns {
         self.correlated.as_ref().map_or_else(|| normals.clone(), |together| together.apply(normals))
     }

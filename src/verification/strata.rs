@@ -3,22 +3,22 @@
 use super::space::Columns;
 use sensitol_numeric::distribution::standard_normal;
 
-/// Where the world ends, in sigmas: beyond lie 6e-16 of all assemblies.
+/// Greatest distance of a point in sigmas: 6e-16 of all assemblies are beyond.
 pub(super) const REACH: f64 = 8.0;
 
-/// The points with `direction . z > from`.
+/// Points with `direction . z > from`.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct HalfSpace {
-    /// Of length 1.
+    /// Normal vector of length 1.
     pub(super) direction: Vec<f64>,
     pub(super) from: f64,
 }
 
 impl HalfSpace {
-    /// Moves points along the direction into the half-space, evenly as far as [`REACH`], and returns their weights.
+    /// Moves points along the direction into the half-space, evenly up to [`REACH`], and returns their weights.
     ///
-    /// With `t` along the direction, `t' = from + (REACH - from) Phi(t)` is uniform and has the weight
-    /// `(REACH - from) density(t')`: powers 3 and 4 of what grows along it live at 3 to 6 sigma, where plain points are few.
+    /// With `t` along the direction, `t' = from + (REACH - from) Phi(t)` is uniform and has the weight `(REACH - from) density(t')`. Powers
+    /// 3 and 4 of functions that grow along it depend on 3 to 6 sigma, where plain points are few.
     pub(super) fn enter(&self, z: &mut Columns) -> Vec<f64> {
         let width = REACH - self.from;
         let along = along(z, &self.direction);
@@ -27,13 +27,13 @@ impl HalfSpace {
         far.into_iter().map(|t| width * standard_normal::density(t)).collect()
     }
 
-    /// Whether each point lies in it.
+    /// Returns true for each point in the half-space.
     pub(super) fn holds(&self, z: &Columns) -> Vec<bool> {
         along(z, &self.direction).into_iter().map(|t| t > self.from).collect()
     }
 }
 
-/// Moves points along a direction between `-from` and `from`, by the normal law cut there; returns the weight of each.
+/// Moves points along a direction between `-from` and `from`, by the normal distribution truncated there. Returns the weight of each.
 pub(super) fn between(z: &mut Columns, direction: &[f64], from: f64) -> f64 {
     let below = standard_normal::cdf(-from);
     let weight = 1.0 - 2.0 * below;
@@ -44,7 +44,7 @@ pub(super) fn between(z: &mut Columns, direction: &[f64], from: f64) -> f64 {
     weight
 }
 
-/// How far every point lies along a direction.
+/// Coordinates of the points along a direction.
 pub(super) fn along(z: &Columns, direction: &[f64]) -> Vec<f64> {
     let mut sums = vec![0.0; z.first().map_or(0, Vec::len)];
     for (column, &part) in z.iter().zip(direction).filter(|(_, part)| **part != 0.0) {
@@ -61,7 +61,7 @@ fn shift(z: &mut Columns, direction: &[f64], from: &[f64], to: &[f64]) {
     }
 }
 
-/// Of length 1; the first axis for what has no length.
+/// Scales a given vector to length 1. Returns the first axis if it has no length.
 pub(super) fn unit(mut vector: Vec<f64>) -> Vec<f64> {
     let length = length(&vector);
     if length > 0.0 && length.is_finite() {
@@ -81,8 +81,9 @@ mod tests {
     use super::*;
     use sensitol_numeric::sampling::Normals;
 
-    /// Points of a stratum in one randomisation, and randomisations.
+    /// Points of a stratum in one randomisation.
     const ROWS: usize = 256;
+    /// Number of randomisations, whose scatter gives the error.
     const RANDOMISATIONS: usize = 16;
 
     /// Sums of all weights and of weight times the square along the direction, in one randomisation.
@@ -110,18 +111,18 @@ mod tests {
         sums
     }
 
-    /// The two tails and the slab between them hold all probability, and the variance of a normal variable is 1.
+    /// The two tails and the slab between them contain all probability, and the variance of a normal variable is 1.
     ///
-    /// The estimates are unbiased, so that the mean of 16 randomisations lies within four of its standard errors: Student's law of 15
-    /// degrees of freedom leaves 0.0012 beyond.
+    /// The estimates are unbiased, so that the mean of 16 randomisations lies within four of its standard errors: Student's distribution of
+    /// 15 degrees of freedom leaves 0.0012 beyond.
     ///
-    /// An upper bound of the standard error keeps noise from passing. A stratum of n plain points has a variance of at most
-    /// `E[f^2]/n`. In a tail `t` is even over the width `h = 8 - 2.5` and `f = h phi(t) g(t)`, so that
-    /// `E[f^2] = h int phi^2 g^2 dt <= h phi(2.5) int phi g^2 dt`, where `phi(2.5) = 0.01753`. For `g = 1` the integral is
-    /// `P(t > 2.5) = 0.00621`; for `g = t^2` it is `E[t^4; t > 2.5] = (2.5^3 + 3 x 2.5) 0.01753 + 3 x 0.00621 = 0.424`. The weight of the
-    /// slab has no error, and for the square its `E[f^2]` is at most `E[t^4] = 3`. Two tails and the slab make
-    /// `2 x 5.5 x 0.01753 x 0.00621 = 0.0012` and `2 x 5.5 x 0.01753 x 0.424 + 3 = 3.082`. Scrambled points of a base-2 net have at most
-    /// `2^(t + s - 1)` times the variance of plain ones (Pan and Owen 2021), with `t = 1` for three coordinates of Sobol': 8 times.
+    /// An upper bound of the standard error prevents noise from passing the test. A stratum of n plain points has a variance of at most
+    /// `E[f^2]/n`. In a tail `t` is even over the width `h = 8 - 2.5` and `f = h phi(t) g(t)`, so that `E[f^2] = h int phi^2 g^2 dt <= h
+    /// phi(2.5) int phi g^2 dt`, where `phi(2.5) = 0.01753`. For `g = 1` the integral is `P(t > 2.5) = 0.00621`; for `g = t^2` it is
+    /// `E[t^4; t > 2.5] = (2.5^3 + 3 x 2.5) 0.01753 + 3 x 0.00621 = 0.424`. The weight of the slab has no error, and for the square its
+    /// `E[f^2]` is at most `E[t^4] = 3`. Two tails and the slab add up to `2 x 5.5 x 0.01753 x 0.00621 = 0.0012` and `2 x 5.5 x 0.01753 x
+    /// 0.424 + 3 = 3.082`. Scrambled points of a base-2 net have at most `2^(t + s - 1)` times the variance of plain ones (Pan and Owen
+    /// 2021), with `t = 1` for three coordinates of Sobol' points: 8 times.
     #[test]
     fn the_strata_make_a_whole() {
         let direction = unit(vec![1.0, -2.0, 2.0]);

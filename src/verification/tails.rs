@@ -1,26 +1,27 @@
-//! The tails of a sample in strata, beside which a fitted distribution is drawn.
+//! Tails of a sample in strata, for comparison with a fitted distribution.
 
 use serde::Serialize;
 
 use super::figures::{jackknife, student, totals};
 use sensitol_numeric::power::rescale;
 
-/// Points of a tail.
+/// Greatest number of points of a tail.
 const SHOWN: usize = 40;
-/// The share from which a tail is told.
+/// Share at which a tail begins.
 const FROM: f64 = 0.1;
-/// The share to which it is told: points in the strata of the tails weigh less the farther out they lie.
+/// Share at which a tail ends. Points in the strata of the tails weigh less the farther out they are.
 const TO: f64 = 1e-6;
-/// As many points lie beyond the last: of fewer the share says nothing.
+/// Fewest points at or beyond the last value: a share of fewer is meaningless.
 const FEWEST: usize = 4;
 
-/// The tails of a sample, of every side that has a limit: from 10 % to 1 ppm, or to the share of the last few points, in even steps of its logarithm.
+/// Tails of a sample, on every side that has a limit: from 10 % to 1 ppm, or to the share of the last few points, in even steps of its
+/// logarithm.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Tails {
-    /// Towards the lower limit; empty without one.
+    /// Tail towards the lower limit. Empty if there is none.
     pub below: Vec<TailPoint>,
-    /// Towards the upper limit; empty without one.
+    /// Tail towards the upper limit. Empty if there is none.
     pub above: Vec<TailPoint>,
 }
 
@@ -28,11 +29,11 @@ pub struct Tails {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TailPoint {
-    /// The value.
+    /// Value of the characteristic.
     pub at: f64,
-    /// The share.
+    /// Share of the assemblies at or beyond the value.
     pub share: f64,
-    /// Its estimated error; null where one randomisation has all values, so that none differs from it.
+    /// Estimated error of the share; null if all values are of one randomisation, so that there is no scatter.
     pub error: Option<f64>,
 }
 
@@ -42,12 +43,12 @@ rescale!(TailPoint { at } without { share, error });
 /// A value with its weight and its randomisation.
 pub(super) type Weighed = (f64, f64, usize);
 
-/// The tail of finite values towards one side. `one` is the weight of a point: what no point shows may be as much.
+/// Tail of finite values towards one side. `one` is the weight of a point, which is part of the error.
 pub(super) fn tail(values: &[Weighed], above: bool, (replicates, one): (usize, f64)) -> Vec<TailPoint> {
     let mut whole = vec![0.0; replicates];
     values.iter().for_each(|&(_, weight, replicate)| whole[replicate] += weight);
     let total: f64 = whole.iter().sum();
-    // Values on the other side of the mean are no tail, and need not be put in order.
+    // Values on the other side of the mean are no tail, and need not be sorted.
     let mean = values.iter().map(|(value, weight, _)| weight * value).sum::<f64>() / total;
     let beyond = |value: f64| if above { value >= mean } else { value <= mean };
     let mut ordered: Vec<Weighed> = values.iter().copied().filter(|&(value, ..)| beyond(value)).collect();
@@ -65,6 +66,7 @@ pub(super) fn tail(values: &[Weighed], above: bool, (replicates, one): (usize, f
     for (place, &(value, weight, replicate)) in ordered.iter().enumerate() {
         so_far[replicate] += weight;
         share += weight / total;
+        // A point of the tail includes all values equal to it.
         let last_of_its_value = ordered.get(place + 1).is_none_or(|next| next.0 != value);
         if last_of_its_value && place + 1 >= FEWEST && reached(share, next) {
             at.push(value);
@@ -95,7 +97,7 @@ mod tests {
     use super::*;
     use sensitol_numeric::pearson::Pearson;
 
-    /// Of 100 000 evenly weighted normal quantiles, the share beyond a value is the normal law's to half the weight of a point.
+    /// For 100 000 evenly weighted normal quantiles, the share beyond a value is the normal distribution's to half the weight of a point.
     #[test]
     fn the_tails_of_a_normal_law_are_its_own() {
         const COUNT: usize = 100_000;
@@ -108,7 +110,7 @@ mod tests {
             assert!((found[0].share - FROM).abs() < 2e-5 && (found[SHOWN - 1].share - 4e-5).abs() < 1e-12);
             for point in &found {
                 let exact = if above { law.sf(point.at) } else { law.cdf(point.at) };
-                // A quantile stands in the middle of its point's weight.
+                // A quantile is in the middle of its point's weight.
                 assert!((point.share - exact - 0.5 / COUNT as f64).abs() < 1e-9, "{point:?} for {exact}");
                 assert!(point.error.unwrap() >= 1e-5);
             }
@@ -116,7 +118,7 @@ mod tests {
         }
     }
 
-    /// Half of all values at each of two ends: no share below 10 % is seen.
+    /// Half of all values at each of two ends: there is no share below 10 %.
     #[test]
     fn two_values_have_no_tail() {
         let values: Vec<Weighed> = (0..1000).map(|i| (f64::from(i % 2), 1.0, i as usize % 16)).collect();
@@ -125,7 +127,7 @@ mod tests {
         assert_eq!((found[0].at, found[0].share), (1.0, 0.5));
     }
 
-    /// Without the one randomisation that has values there is no share: their scatter is unknown, not a number that is none.
+    /// Without the only randomisation that has values there is no share: the error is unknown.
     #[test]
     fn values_of_one_randomisation_have_no_error() {
         let values: Vec<Weighed> = (0..1000).map(|i| (f64::from(i), 1.0, 3)).collect();

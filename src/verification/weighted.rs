@@ -1,4 +1,4 @@
-//! A sample in strata that is kept, for shares that are asked for after it was drawn.
+//! Sample in strata that is stored, for shares that are computed after it was drawn.
 
 use super::Verified;
 use super::figures::{jackknife, student, totals};
@@ -8,10 +8,10 @@ use sensitol_numeric::power::{Rescale, Rescaling};
 /// Values with their weights, by randomisation.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct WeightedSample {
-    /// Of every stratum of a randomisation: which, the values, and their weights.
+    /// Index of the randomisation, values, and their weights, for every stratum of every randomisation.
     parts: Vec<(usize, Vec<f64>, Vec<f64>)>,
     replicates: usize,
-    /// The weight of one point: what no point shows may be as much.
+    /// Weight of one point, which is part of the error of a share.
     one: f64,
 }
 
@@ -26,7 +26,7 @@ impl WeightedSample {
         Self { parts: parts.collect(), replicates, one }
     }
 
-    /// The tails below and above, of the sides that are asked for.
+    /// Tails below and above, of the requested sides.
     pub(crate) fn tails(&self, [below, above]: [bool; 2]) -> Tails {
         let of = |(replicate, values, weights): &(usize, Vec<f64>, Vec<f64>)| -> Vec<Weighed> {
             let points = values.iter().zip(weights).filter(|(y, _)| y.is_finite());
@@ -40,7 +40,7 @@ impl WeightedSample {
         Tails { below: towards(below, false), above: towards(above, true) }
     }
 
-    /// The finite values in order, with their weights.
+    /// Finite values in ascending order, with their weights.
     pub(crate) fn sorted(&self) -> Vec<(f64, f64)> {
         let of = |(_, values, weights): &(usize, Vec<f64>, Vec<f64>)| -> Vec<(f64, f64)> {
             values.iter().copied().zip(weights.iter().copied()).filter(|(y, _)| y.is_finite()).collect()
@@ -50,7 +50,7 @@ impl WeightedSample {
         all
     }
 
-    /// The means of functions with values from 0 to 1, over the points that have a value.
+    /// Means of functions with values from 0 to 1, over the points that have a value.
     pub(crate) fn shares<const N: usize>(&self, of: [&dyn Fn(f64) -> f64; N]) -> [Verified; N] {
         let mut sums = vec![vec![0.0; self.replicates]; N + 1];
         for (replicate, values, weights) in &self.parts {
