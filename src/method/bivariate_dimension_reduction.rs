@@ -5,9 +5,9 @@
 //! g_j = f(x_j) - f0,   g_jk = f(x_j, x_k) - f(x_j) - f(x_k) + f0
 //! ```
 //!
-//! All dimensions that are not arguments are at their means. Xu and Rahman (2004), "A generalized dimension-reduction method for
-//! multidimensional integration in stochastic mechanics", International Journal for Numerical Methods in Engineering 61, equation 21 with S
-//! = 2.
+//! All dimensions that are not arguments are at their means. Source: equation 21 with S = 2 of Xu and Rahman (2004), "A generalized
+//! dimension-reduction method for multidimensional integration in stochastic mechanics", International Journal for Numerical Methods in
+//! Engineering 61.
 //!
 //! They integrate powers of the function itself plane by plane (their equation 26). Here all four moments are those of the decomposition,
 //! exact at the nodes of the rules ([`Tables`](sensitol_numeric::moments::Tables)). Third and fourth moments therefore include products of
