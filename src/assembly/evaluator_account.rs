@@ -58,7 +58,6 @@ impl EvaluatorAccount {
         }
     }
 
-    /// True if any process failed.
     pub(crate) fn has_failures(&self) -> bool {
         self.counts.failures() > 0
     }

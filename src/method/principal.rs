@@ -62,7 +62,6 @@ impl Axes {
         })
     }
 
-    /// Returns the number of directions.
     pub(super) fn directions(&self) -> usize {
         self.outward.ncols()
     }

@@ -20,7 +20,6 @@ type Products = BTreeMap<(usize, usize), Mixed>;
 pub(super) struct View {
     pub(super) characteristic: usize,
     pub(super) surrogate: Surrogate,
-    /// Moments of the surrogate.
     pub(super) moments: Moments,
     pub(super) check: Option<SurrogateCheck>,
     /// Variance that each part may hide, by position.
