@@ -78,8 +78,7 @@ pub(super) fn univariate<'p>(problem: &'p Problem, options: &Options) -> Quadrat
     Quadrature::new(problem, options, |distribution| Rule::of(distribution, nodes), nodes, true)
 }
 
-/// Returns the value at the reference, and for every variable the rises above it at the nodes. Returns None without a value at the
-/// reference.
+/// Returns the value at the reference, and for every variable the rises above it at the nodes. Returns None if the reference has no value.
 pub(super) fn tables(
     quadrature: &Quadrature<'_>,
     cuts: &[Vec<Point>],

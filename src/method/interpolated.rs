@@ -65,8 +65,8 @@ fn by_axes(outcome: &Outcome, c: usize, values: &[Moved]) -> Option<Surrogate> {
     Some(Surrogate { centre, parts: parts.into_iter().map(Some).collect(), interactions })
 }
 
-/// Returns the quadratic of least squares over `n` dimensions, or the plane if a quadratic takes too long. Returns None without a value, or
-/// if even the plane takes too long.
+/// Returns the quadratic of least squares over `n` dimensions, or the plane if a quadratic takes too long. Returns None if there is no
+/// value, or if even the plane takes too long.
 fn least_squares(n: usize, values: &[Moved]) -> Option<Surrogate> {
     let quadratic = (n + 1) * (n + 2) / 2;
     let work = |columns: usize| values.len() * columns * values.len().min(columns);

@@ -49,7 +49,7 @@ pub struct Fitted {
     pub parts: Vec<Option<Univariate>>,
     /// Mixed derivatives of the pairs examined, in sigmas; None if a derivative is lost or was not evaluated.
     pub mixed: Vec<Option<Mixed>>,
-    /// Surrogate over the varying dimensions; None without a value at the means, and for a method without surrogate.
+    /// Surrogate over the varying dimensions; None if there is no value at the means, and for a method without surrogate.
     pub surrogate: Option<Surrogate>,
     /// Moments of a method that integrates without a surrogate.
     pub integrated: Option<Integrated>,

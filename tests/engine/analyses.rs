@@ -7,6 +7,7 @@ use sensitol_study::Study;
 use sensitol_testing::densities::{Case, cases};
 use sensitol_testing::{close, data, relative, repository};
 
+/// Returns a dimension with the distribution of a case.
 pub fn dimension(case: &Case) -> Dimension {
     Dimension::distributed("x", case.distribution.mean(), None, case.distribution.clone()).unwrap()
 }

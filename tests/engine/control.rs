@@ -152,8 +152,8 @@ fn the_reduction_is_that_of_the_plain_sample() {
 
 /// Moments of `y = 3 + 2a + b + a^2/2 + ab` of standard normal a and b: variance 4 + 1 + 2/4 + 1 = 6.5.
 ///
-/// The cumulants of the quadratic form with H = [[1/2, 1/2], [1/2, 0]] and b = (2, 1) give the others. The third central moment is 8 tr H^3
-/// + 6 b'H b = 8 (1/2) + 6 (4) = 28. The fourth cumulant is 48 tr H^4 + 48 b'H^2 b = 48 (7/16) + 48 (13/4) = 177.
+/// The cumulants of the quadratic form with H = [[1/2, 1/2], [1/2, 0]] and b = (2, 1) give the others. The third central moment is
+/// 8 tr H^3 + 6 b'H b = 8 (1/2) + 6 (4) = 28. The fourth cumulant is 48 tr H^4 + 48 b'H^2 b = 48 (7/16) + 48 (13/4) = 177.
 #[test]
 fn a_quadratic_of_normals_is_exact() {
     let y = |x: &[f64]| 3.0 + 2.0 * x[0] + x[1] + 0.5 * x[0] * x[0] + x[0] * x[1];

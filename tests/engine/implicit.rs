@@ -355,7 +355,7 @@ fn a_quadratic_by_exact_derivatives_and_by_differences() {
     }
 }
 
-/// By default sensitivities are exact, moments come from differences, and a difference replaces a sensitivity that does not exist.
+/// Sensitivities are exact by default, and moments come from differences. A difference replaces a sensitivity that does not exist.
 #[test]
 fn a_kink_has_a_difference_for_a_sensitivity() {
     let text = "[dimensions]\nx = { nominal = 1, tolerance = 0.3 }\ny = { nominal = 2, tolerance = 0.3 }\nz = { nominal = 1 }\n\

@@ -68,7 +68,7 @@ fn kept() -> (Vec<f64>, f64) {
     (rows, upper)
 }
 
-/// With 195 rows without a reject, up to 1.87 % of the process may be rejected, in every command. No target is proven.
+/// Rows without a reject: if 195 have none, up to 1.87 % of the process may be rejected, in every command. No target is proven.
 #[test]
 fn rows_without_a_reject_meet_no_target_of_a_thousandth() {
     let (rows, upper) = kept();

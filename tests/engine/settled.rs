@@ -89,7 +89,7 @@ fn standard_errors_that_are_told_reach_the_truth() {
     }
 }
 
-/// With a thousand points, mean, sigma and skewness of a light tail have standard errors.
+/// Samples of a thousand points have standard errors of mean, sigma and skewness of a light tail.
 #[test]
 fn a_thousand_points_tell_what_they_know() {
     let [told, wrong] = told(&SimulationOptions::default().with_samples(1000), 15, 3);

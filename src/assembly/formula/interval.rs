@@ -50,6 +50,7 @@ impl Interval {
     }
 
     const EMPTY: Self = Self { lower: f64::NAN, upper: f64::NAN, whole: false };
+    /// Interval of all numbers, with breaks.
     pub(super) const EVERYTHING: Self = Self { lower: f64::NEG_INFINITY, upper: f64::INFINITY, whole: false };
 
     /// Returns the least value.

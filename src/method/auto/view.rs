@@ -162,7 +162,7 @@ fn variances(plan: &DifferencePlan, parts: &[Option<Univariate>]) -> Vec<f64> {
 }
 
 impl View {
-    /// Returns the view of a characteristic, or None without a value at the means or if a part is unknown.
+    /// Returns the view of a characteristic, or None if it has no value at the means or if a part is unknown.
     pub(super) fn of(
         plan: &DifferencePlan,
         known: &KnownAnswers,
@@ -235,7 +235,7 @@ impl View {
         }
     }
 
-    /// Returns the variance of the residuals at the check points, as a share of the variance. Returns None without check points.
+    /// Returns the variance of the residuals at the check points, as a share of the variance. Returns None if there are no check points.
     pub(super) fn left(&self) -> Option<f64> {
         self.check.as_ref().map(|check| self.share(check.variance))
     }
