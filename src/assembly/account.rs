@@ -1,43 +1,43 @@
-//! The description that an assembly function gives of itself, and observations of its answers: the same for every kind of
-//! function.
+//! Description that an external model gives of itself, and observations of its answers.
 
-/// The description that an external model gives of itself when it is ready.
+/// Description that an external model gives of itself when it is ready.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct ModelInfo {
-    /// Its name.
+    /// Name of the model, if it has one.
     pub name: Option<String>,
-    /// Its version.
+    /// Version of the model, if it has one.
     pub version: Option<String>,
-    /// Points that may be under way in it at once.
+    /// Greatest number of points that may be in progress in the model at once.
     pub window: usize,
-    /// Whether its answers have derivatives.
+    /// True if the answers of the model include derivatives.
     pub gradients: bool,
 }
 
 impl ModelInfo {
-    /// A model that takes so many points at once, without name and version.
+    /// Returns the description of a model with this window, without name and version.
     pub fn of_window(window: usize) -> Self {
         Self { window, ..Self::default() }
     }
 }
 
-/// A model answered one point otherwise than before: the nominal point, or one that was asked again to see whether it repeats.
+/// Different answers of a model for the same point: the nominal point, or one that was evaluated again as a check.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NonRepeatable {
-    /// The output.
+    /// Name of the output.
     pub output: String,
-    /// Its first value; None where it had no value.
+    /// First value of the output; None if it had no value.
     pub expected: Option<f64>,
-    /// Its value now.
+    /// Value of the output when the point was evaluated again.
     pub found: Option<f64>,
-    /// How far the output has been seen to vary.
+    /// Greatest observed variation of the output.
     pub spread: f64,
-    /// The points whose answers are not trusted for that.
+    /// Points whose answers are not trusted because of this.
     pub suspects: Vec<Vec<f64>>,
 }
 
 impl NonRepeatable {
-    /// An output that varies by `spread` was `expected` and is now `found`, so that the answers at `suspects` are not trusted.
+    /// Creates the observation that an output was `expected` and is now `found`. It varies by `spread`, and the answers at `suspects` are
+    /// not trusted.
     pub fn new(
         output: impl Into<String>,
         [expected, found]: [Option<f64>; 2],

@@ -1,22 +1,22 @@
-//! Cheap models on all cores: a batch cut into blocks of rows.
+//! Parallel evaluation of cheap models: a batch is cut into blocks of rows.
 
 use super::{Points, Request, Responses, Run};
 use sensitol_numeric::parallel::prelude::*;
 
-/// Rows that one task evaluates: enough to hide the cost of starting it, few enough to stay in the cache.
+/// Rows that one task evaluates: enough to hide the cost of a task, and few enough to stay in the cache.
 pub(crate) const BLOCK: usize = 1024;
 
-/// Points whose values stay in a cache near by: a power of two.
+/// Returns the number of points whose values stay in a near cache, a power of two.
 pub fn near_rows(dimensions: usize) -> usize {
-    /// Two megabytes.
+    /// Number of values in two megabytes.
     const VALUES: usize = 1 << 18;
     1 << (VALUES / dimensions.max(1)).max(128).ilog2()
 }
 
-/// Evaluates `block` on blocks of about a thousand rows, side by side on rayon's current pool.
+/// Evaluates `block` on blocks of about a thousand rows, in parallel on rayon's current pool.
 ///
-/// `block` is given a range of rows of `points` and fills a response of its own, so the answers do not depend on the
-/// number of threads. For functions that are cheap and need no state; a process pool brings its own threads.
+/// `block` receives a range of rows of `points` and fills a response of its own, so that the answers do not depend on the number of
+/// threads. It is for functions that are cheap and need no state. A process pool has threads of its own.
 pub fn in_blocks(
     request: &Request<'_>,
     run: &Run<'_>,
@@ -26,7 +26,7 @@ pub fn in_blocks(
     in_ranges(request.points.rows(), request.outputs.len(), run, out, |range, out| block(request.points, range, out));
 }
 
-/// The same of `rows` points and `outputs` outputs, wherever the points stand.
+/// Evaluates `block` on blocks of `rows` points with `outputs` outputs. The caller holds the points.
 pub fn in_ranges(
     rows: usize,
     outputs: usize,
@@ -43,7 +43,7 @@ pub fn in_ranges(
         (first, answers)
     };
     if rows <= BLOCK {
-        // Rows without an answer are as good as new.
+        // An untouched response of the right shape can be filled as it is.
         if !out.is_untouched() || (out.rows(), out.outputs()) != (rows, outputs) {
             out.reopen(rows, outputs);
         }

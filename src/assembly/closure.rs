@@ -2,15 +2,14 @@
 
 use super::{AssemblyFunction, EvaluationError, Request, Responses, Run, Signature, in_blocks};
 
-/// Points that are put together at once: some cache lines of every column.
+/// Points that are gathered into rows at once: some cache lines of every column.
 const TILE: usize = 32;
 
 type Answer = dyn Fn(&[f64], &mut [f64]) -> Result<(), EvaluationError> + Send + Sync;
 
-/// An assembly function made of a closure, which gets one point and answers with one value per output.
+/// Assembly function made of a closure, which receives one point and returns one value per output.
 ///
-/// Its inputs have no names of their own: they are the problem's dimensions in order. It runs on several points at
-/// once.
+/// The inputs have no names of their own: they are the problem's dimensions in order. Several points are evaluated in parallel.
 ///
 /// ```
 /// use sensitol::{Closure, Dimension, Method, Problem, analyze};
@@ -26,12 +25,12 @@ pub struct Closure {
 }
 
 impl Closure {
-    /// With one output.
+    /// Creates a function with one output.
     pub fn scalar(output: &str, function: impl Fn(&[f64]) -> f64 + Send + Sync + 'static) -> Self {
         Self::new([output], move |x| [function(x)])
     }
 
-    /// With `K` outputs.
+    /// Creates a function with `K` outputs.
     pub fn new<const K: usize>(
         outputs: [&str; K],
         function: impl Fn(&[f64]) -> [f64; K] + Send + Sync + 'static,
@@ -39,7 +38,7 @@ impl Closure {
         Self::fallible(outputs, move |x| Ok(function(x)))
     }
 
-    /// With `K` outputs and points that it refuses.
+    /// Creates a function with `K` outputs that can refuse points.
     ///
     /// ```
     /// use sensitol::assembly::{Closure, EvaluationError};

@@ -1,5 +1,4 @@
-//! The assembly function of a study: a model, formulas, or formulas on top of a model, with values that are found from
-//! closure conditions.
+//! Assembly function of a study: a model, formulas, or formulas on top of a model. Closure conditions may determine further values.
 
 mod driven;
 mod exact;
@@ -20,74 +19,73 @@ use super::{
 use crate::warning::Warning;
 use sensitol_numeric::unit::Unit;
 
-/// Parts of formulas that are looked at to explain the failures of one block of rows: all failures of short formulas, and the first few
-/// of long ones. Explaining a failure costs an evaluation of every part of all formulas, without the
-/// gain of a block.
+/// Number of formula parts that are evaluated to explain the failures in one block of rows. It allows all failures of short formulas, and
+/// the first few of long ones. Explaining a failure evaluates every part of all formulas, without the speed of a block.
 const EXPLAINED: usize = 1 << 17;
 
-/// Where a model's input comes from.
+/// Source of a model's input.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Source {
-    /// The dimension of this index.
+    /// Dimension of this index.
     Dimension(usize),
-    /// Always this value.
+    /// Constant value.
     Fixed(f64),
-    /// The value of the formula of this index, of dimensions, constants and unknowns: the formula drives the model.
+    /// Value of the formula of this index, of dimensions, constants and unknowns: the formula drives the model.
     Formula(usize),
 }
 
-/// Parts that do not fit together.
+/// Reason why parts do not form a composite.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CompositeError {
     /// A formula that cannot be resolved.
     #[error("formula `{name}`: {error}")]
     Formula {
-        /// The formula's name.
+        /// Name of the faulty formula.
         name: String,
-        /// Its place among the formulas, then those of the conditions.
+        /// Index among the formulas, which are followed by those of the conditions.
         index: usize,
-        /// The fault in it.
+        /// Fault in the formula.
         error: FormulaError,
     },
     /// Conditions that determine no state.
     #[error(transparent)]
     Conditions(#[from] ConditionsError),
-    /// A formula that drives the model and needs what the model answers.
+    /// A formula that drives the model and needs its answer.
     #[error("formula `{name}` drives the model and needs its output `{output}`: a cycle")]
     Driven {
-        /// The formula's name.
+        /// Name of the driving formula.
         name: String,
-        /// Its place among the formulas.
+        /// Index among the formulas.
         index: usize,
-        /// The output of the model.
+        /// Name of the output that the formula needs.
         output: String,
     },
 }
 
-/// Dimensions in; formulas of dimensions, constants, the outputs of a model and the unknowns of closure conditions out.
+/// Function from dimensions to formulas of dimensions, constants, outputs of a model and unknowns of closure conditions.
 ///
-/// Only what the asked outputs need is evaluated: a model is asked only for those of its outputs that a formula or
-/// characteristic in question uses, conditions are solved only when something asked depends on an unknown, and a point at
-/// which any of that fails costs just the outputs that use it.
+/// Only the parts that the asked outputs need are evaluated. A model is asked only for outputs that a formula or characteristic in question
+/// uses. Conditions are solved only if an asked output depends on an unknown. A failure at a point concerns only the outputs that use the
+/// failed part.
 pub struct Composite {
     signature: Signature,
-    /// The named formulas, then those of the conditions.
+    /// Named formulas, followed by those of the conditions.
     formulas: Arc<FormulaSet>,
     named: usize,
     model: Option<Inner>,
     assembler: Option<Arc<Assembler>>,
-    /// For every output, the formula, the model's output or the unknown that it is.
+    /// Formula, output of the model or unknown of every output.
     outputs: Vec<Origin>,
 }
 
 struct Inner {
     function: Arc<dyn AssemblyFunction>,
     inputs: Vec<Source>,
-    /// Factors of its inputs, and of its outputs; empty where there are none.
+    /// Factors of the model's inputs and of its outputs; empty if there are none.
     factors: [Vec<f64>; 2],
-    /// A block of each fixed input's value, one after the other.
+    /// Block of each fixed input's value, one after the other.
     fixed: OnceLock<Vec<f64>>,
-    /// Where a costly model that formulas drive was sent for which point, by the bits of what it was sent.
+    /// Points for which a costly driven model received values, by the bits of these values.
     sent: Mutex<HashMap<Vec<u64>, Vec<f64>>>,
 }
 
@@ -98,17 +96,17 @@ enum Origin {
     Unknown(usize),
 }
 
-/// The parts that an output is made of.
+/// Parts that an output is made of.
 #[derive(Debug, Clone, Default)]
 struct Needs {
     dimensions: Vec<usize>,
-    /// Outputs of the model.
+    /// Indices of the outputs of the model.
     answers: Vec<usize>,
     unknowns: bool,
 }
 
 impl Needs {
-    /// Of several outputs together.
+    /// Merges the needs of several outputs.
     fn all(needs: &[Self]) -> Self {
         let mut all = Self::default();
         for needs in needs {
@@ -124,20 +122,20 @@ impl Needs {
     }
 }
 
-/// The parts of a [`Composite`].
+/// Parts of a [`Composite`], before their names are resolved.
 #[derive(Default)]
 pub struct Parts {
-    /// The dimensions, in order.
+    /// Dimensions, in order.
     pub inputs: Vec<Input>,
     /// Names that stand for numbers in formulas.
     pub constants: Vec<(String, f64)>,
-    /// The model, with the source of each of its inputs.
+    /// Model, with the source of each of its inputs.
     pub model: Option<(Arc<dyn AssemblyFunction>, Vec<Source>)>,
-    /// Formulas in any order; each name once.
+    /// Formulas in any order. Each name occurs once.
     pub formulas: Vec<(String, Formula)>,
-    /// The conditions of the assembled state, and the unknowns that they determine.
+    /// Conditions of the assembled state, and the unknowns that they determine.
     pub conditions: Option<Conditions>,
-    /// Names and units of what can be asked: formulas, unknowns, or else outputs of the model.
+    /// Names and units of the outputs: formulas, unknowns, or outputs of the model.
     pub outputs: Vec<(String, Option<String>)>,
 }
 
@@ -145,10 +143,10 @@ impl Composite {
     /// Resolves the formulas' names: first other formulas, then dimensions, constants, unknowns and outputs of the model.
     ///
     /// # Errors
-    /// The first formula that uses an undefined name or needs itself; conditions that cannot determine the unknowns.
+    /// Fails for the first formula that uses an undefined name or needs itself, and for conditions that cannot determine the unknowns.
     ///
     /// # Panics
-    /// When an output is neither a formula nor an unknown nor an output of the model: the caller knows them all.
+    /// Panics if an output is neither a formula nor an unknown nor an output of the model. The caller passes known names only.
     pub fn new(parts: Parts) -> Result<Self, CompositeError> {
         let Parts { inputs, constants, model, mut formulas, conditions, outputs } = parts;
         let named = formulas.len();
@@ -209,7 +207,7 @@ impl Composite {
         Ok(composite)
     }
 
-    /// Where units of formulas and conditions do not go together, as `FormulaSet::units` finds it.
+    /// Returns the parts of formulas and conditions whose units are incompatible, as found by `FormulaSet::units`.
     pub fn units(
         &self,
         unit: &dyn Fn(&str) -> Option<Unit>,
@@ -219,19 +217,19 @@ impl Composite {
         self.formulas.units(unit, role, convert)
     }
 
-    /// The dimensions inside a sine or cosine of a formula, each with its radians per unit.
+    /// Returns the dimensions inside a sine or cosine of a formula, each with its radians per unit.
     pub fn turning(&self) -> Vec<(usize, f64)> {
         let dimensions = self.signature.inputs.len();
         self.formulas.turning().into_iter().filter(|&(variable, _)| variable < dimensions).collect()
     }
 
-    /// With every input of the model multiplied by a factor, and every output; none where there are no factors.
+    /// Multiplies every input and every output of the model by a factor. Empty lists mean no factors.
     pub fn with_factors(mut self, factors: [Vec<f64>; 2]) -> Self {
         self.model.iter_mut().for_each(|model| model.factors.clone_from(&factors));
         self
     }
 
-    /// Which formulas the outputs need, as a flag per formula, and whether they need the unknowns.
+    /// Returns a flag for each formula that the outputs need, and true if they need the unknowns.
     pub fn used(&self) -> (Vec<bool>, bool) {
         let needs = self.all_needs(&self.outputs);
         let driving = if needs.answers.is_empty() { Vec::new() } else { self.driving() };
@@ -250,13 +248,13 @@ impl Composite {
         self.model.as_ref()?.function.signature().output(name)
     }
 
-    /// The dimensions that an output can depend on; None when the model does not say.
+    /// Returns the dimensions that an output can depend on, or None if there is no model to ask.
     fn depends_on(&self, origin: Origin) -> Option<Vec<usize>> {
         let Needs { mut dimensions, answers, .. } = self.needs(origin);
         for answer in answers {
             let model = self.model.as_ref()?;
             let all = || (0..model.inputs.len()).collect();
-            // A black box may depend on every input it has, but on no dimension that is none of its inputs.
+            // A black box may depend on each of its inputs, but on no other dimension.
             let inputs: Vec<usize> = model.function.signature().outputs[answer].depends_on.clone().unwrap_or_else(all);
             inputs.iter().for_each(|&input| dimensions.extend(self.behind(model.inputs[input])));
         }
@@ -265,7 +263,7 @@ impl Composite {
         Some(dimensions)
     }
 
-    /// The needs of an output: what stands in it, and for an unknown all that the conditions depend on.
+    /// Returns the needs of an output. An unknown needs everything that the conditions depend on.
     fn needs(&self, origin: Origin) -> Needs {
         let mut needs = match origin {
             Origin::Formula(formula) => self.split(self.formulas.variables(formula)),
@@ -284,7 +282,7 @@ impl Composite {
         needs
     }
 
-    /// Variables of the formulas as dimensions, outputs of the model, and unknowns.
+    /// Splits variables of the formulas into dimensions, outputs of the model, and unknowns.
     fn split(&self, variables: &[usize]) -> Needs {
         let (dimensions, given) = (self.signature.inputs.len(), self.given());
         let of_model = variables.iter().filter(|&&index| (dimensions..given).contains(&index));
@@ -295,12 +293,12 @@ impl Composite {
         }
     }
 
-    /// How many variables are no unknowns.
+    /// Returns the number of variables that are not unknowns.
     fn given(&self) -> usize {
         self.signature.inputs.len() + self.model.as_ref().map_or(0, |model| model.function.signature().outputs.len())
     }
 
-    /// The needs of all these outputs together.
+    /// Returns the merged needs of these outputs.
     fn all_needs(&self, origins: &[Origin]) -> Needs {
         Needs::all(&origins.iter().map(|&origin| self.needs(origin)).collect::<Vec<_>>())
     }
@@ -309,9 +307,9 @@ impl Composite {
         outputs.iter().map(|&output| self.outputs[output]).collect()
     }
 
-    /// The nominal state of the conditions, with what finding it cost; None when it could not be sought now.
+    /// Returns the nominal state of the conditions and the number of evaluations that it cost, or None if it cannot be sought now.
     ///
-    /// Where conditions use outputs of the model, the first call asks it for the nominal point.
+    /// If conditions use outputs of the model, the first call evaluates the model at the nominal point.
     fn anchor(&self, run: &Run<'_>) -> (Option<Result<Arc<Anchor>, EvaluationError>>, i64) {
         let Some(assembler) = &self.assembler else { return (None, 0) };
         let needed = self.split(assembler.uses()).answers;
@@ -336,10 +334,10 @@ impl Composite {
     }
 }
 
-/// The unknowns in a block of points.
+/// Solved unknowns in a block of points.
 struct SolvedRows {
     columns: Vec<Vec<f64>>,
-    /// For every row, why it has none.
+    /// Failure of every row without a solution.
     errors: Vec<Option<Box<AssemblyFailure>>>,
 }
 
@@ -384,7 +382,7 @@ impl AssemblyFunction for Composite {
         match &self.model {
             Some(model) if !needs.answers.is_empty() => {
                 let info = model.function.prepare(&needs.answers)?;
-                // Of a formula over the answers no derivatives are sent.
+                // A formula over the model's answers has no gradients, because only those of the model itself are passed on.
                 let plain = self.origins(outputs).iter().all(|origin| matches!(origin, Origin::Model(_)));
                 let plain = plain && !self.driving().into_iter().any(|formula| self.drives_by_unknowns(formula));
                 Ok(info.map(|info| ModelInfo { gradients: info.gradients && plain, ..info }))
@@ -402,7 +400,7 @@ impl AssemblyFunction for Composite {
         }
     }
 
-    /// Of formulas of the dimensions alone.
+    /// Returns magnitudes for formulas of the dimensions alone.
     fn magnitudes(&self, outputs: &[usize], point: &[f64]) -> Vec<Option<f64>> {
         let alone = |&output: &usize| {
             let Needs { answers, unknowns, .. } = self.needs(self.outputs[output]);
@@ -431,13 +429,13 @@ impl AssemblyFunction for Composite {
             && !run.tells()
             && self.ask_in_place(model, request.points, &run.quiet(), &needed, out)
         {
-            // The outputs of a built-in model, in its order.
+            // The outputs of a built-in model were answered in its own order.
             return;
         }
         let (anchor, spent) = if unknowns { self.anchor(run) } else { (None, 0) };
         let answers = self.ask_model(request.points, &run.quiet(), &needed);
         let answer = |output: usize| needed.binary_search(&output).expect("the model was asked for it");
-        // Which formulas fill which columns of `out`.
+        // Columns of `out` that formulas fill, and these formulas.
         let (columns, formulas): (Vec<usize>, Vec<usize>) = (origins.iter().enumerate())
             .filter_map(|(column, origin)| match origin {
                 Origin::Formula(formula) => Some((column, *formula)),
@@ -446,7 +444,7 @@ impl AssemblyFunction for Composite {
             .unzip();
         let (dimensions, given) = (self.signature.inputs.len(), self.given());
 
-        // The answers of the model are not lost to a stop: only the model itself is stopped.
+        // A stop must not lose answers of the model: only the model itself is stopped.
         let run = if needed.is_empty() { *run } else { run.unstopped() };
         in_blocks(request, &run, out, |points, rows, out| {
             let known = |index: usize| -> &[f64] {
@@ -469,7 +467,7 @@ impl AssemblyFunction for Composite {
                 None => known(index),
                 Some(unknown) => found.as_ref().map_or(&nothing[..], |found| &found.columns[unknown]),
             };
-            // A missing answer decides the output: then it is that error, or still open.
+            // A missing answer or unknown decides the output: it gets the same error, or stays open.
             let missing = |out: &mut Responses, row: usize, column: usize| -> bool {
                 let lacks = |&&output: &&usize| answers.value(rows.start + row, answer(output)).is_none();
                 if let Some(&output) = needs[column].answers.iter().find(lacks) {
@@ -507,6 +505,7 @@ impl AssemblyFunction for Composite {
                     }
                 }
             }
+            // Only so many failures are explained, because each costs an evaluation of all parts.
             let mut explained = (EXPLAINED / self.formulas.parts().max(1)).max(1);
             self.formulas.evaluate_blocks(&formulas, rows.len(), variable, |position, first, values| {
                 let column = columns[position];

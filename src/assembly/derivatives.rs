@@ -1,31 +1,31 @@
-//! Exact derivatives, of the functions that know them.
+//! Exact derivatives, for functions that have them.
 
 use sensitol_numeric::power::Power;
 
-/// Where derivatives are asked for, and which.
+/// Point and directions of the wanted derivatives.
 #[derive(Debug, Clone, Copy)]
 pub struct Directions<'a> {
-    /// The point.
+    /// Point at which derivatives are wanted.
     pub point: &'a [f64],
-    /// The inputs along which first and second derivatives are wanted.
+    /// Inputs along which first and second derivatives are wanted.
     pub inputs: &'a [usize],
-    /// The pairs of inputs whose mixed second derivative is wanted.
+    /// Pairs of inputs whose mixed second derivative is wanted.
     pub pairs: &'a [(usize, usize)],
 }
 
-/// One output's derivatives at a point; None for those that do not exist there, as at a kink.
+/// Derivatives of one output at a point; None for one that does not exist there, as at a kink.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Derivatives {
-    /// By each input asked.
+    /// First derivative by each input asked.
     pub first: Vec<Option<f64>>,
-    /// Twice by each input asked.
+    /// Second derivative by each input asked.
     pub second: Vec<Option<f64>>,
-    /// By both inputs of each pair asked.
+    /// Mixed derivative by both inputs of each pair asked.
     pub mixed: Vec<Option<f64>>,
 }
 
 impl Derivatives {
-    /// Of the output times a power of two; None for one that a double cannot hold.
+    /// Returns the derivatives of the output times a power of two; None for one that a double cannot hold.
     pub(crate) fn times(mut self, power: Power) -> Self {
         let Self { first, second, mixed } = &mut self;
         for one in first.iter_mut().chain(second).chain(mixed) {
@@ -34,7 +34,7 @@ impl Derivatives {
         self
     }
 
-    /// Per unit of each input that is a power of two, from those per unit of 1.
+    /// Converts derivatives per unit of 1 to derivatives per unit of each input, a power of two.
     pub(crate) fn per(mut self, directions: &Directions<'_>, units: &dyn Fn(usize) -> Power) -> Self {
         let times = |value: &mut Option<f64>, power: Power| *value = value.and_then(|value| power.checked(value));
         for (place, &input) in directions.inputs.iter().enumerate() {

@@ -1,43 +1,43 @@
-//! Why one output has no value at one point.
+//! Errors of one output at one point.
 
 use super::formula::FormulaFailure;
 use sensitol_numeric::names::nearest;
 
-/// Why an assembly function gave no value for one output at one point.
+/// Reason why an assembly function has no value for one output at one point.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EvaluationError {
     /// The function answered with NaN or an infinity.
     #[error("the model returned {value}")]
     NotFinite {
-        /// The value that it returned.
+        /// NaN or infinity that the function returned.
         value: f64,
     },
-    /// A formula has no value there.
+    /// A formula has no value at the point.
     #[error(transparent)]
     Formula(#[from] Box<FormulaFailure>),
-    /// The assembly does not close there, or not on the branch of the nominal state.
+    /// The assembly does not close at the point, or only on another branch than the nominal state.
     #[error(transparent)]
     Assembly(#[from] Box<super::implicit::AssemblyFailure>),
     /// An external program failed.
     #[error(transparent)]
     Process(#[from] Box<super::process_error::ProcessError>),
-    /// The table of answers that were evaluated elsewhere has none for this point.
+    /// A table of answers has none for this point.
     #[error("no answer is given for this point")]
     NotGiven,
-    /// The table of answers that were evaluated elsewhere has none at all for an output.
+    /// A table of answers has no column for an output.
     #[error(transparent)]
     NoColumn(#[from] NoColumn),
-    /// The answer could not be kept, or what is kept could not be read.
+    /// An answer could not be stored in the journal, or a stored one could not be read.
     #[error("{message}")]
     NotKept {
-        /// The fault of the journal.
+        /// Fault of the journal.
         message: String,
     },
-    /// The model said why itself.
+    /// The model refused the point with a reason of its own.
     #[error("{message}")]
     Refused {
-        /// The model's own words.
+        /// Reason in the model's own words.
         message: String,
     },
 }
@@ -47,14 +47,14 @@ pub enum EvaluationError {
 #[error("the points that were evaluated elsewhere have no column `{name}`{}", self.instead())]
 #[non_exhaustive]
 pub struct NoColumn {
-    /// The name of what is wanted.
+    /// Name of the dimension or output.
     pub name: String,
-    /// The most similar column.
+    /// Column with the most similar name, if one is similar.
     pub nearest: Option<String>,
 }
 
 impl NoColumn {
-    /// Of a table with these columns.
+    /// Returns the error for a table with these columns.
     pub(super) fn among<'c>(name: &str, columns: impl Iterator<Item = &'c str>) -> Self {
         let nearest = nearest(name, columns).map(str::to_owned);
         Self { name: name.to_owned(), nearest }

@@ -1,49 +1,49 @@
-//! The account of a model's processes, beside its answers.
+//! Account of a model's processes.
 
 use std::collections::BTreeMap;
 
 use super::process_error::{ProcessError, ProcessFault};
 use crate::summary::EvaluatorSummary;
 
-/// Starts, failures and what they cost, since the model was made.
+/// Starts, failures and their cost, since the model was created.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct EvaluatorAccount {
-    /// Starts, failures and what they cost.
+    /// Counts of starts and failures, with their cost.
     pub counts: EvaluatorSummary,
-    /// The last failure, with the last lines of stderr.
+    /// Last failure, with the last lines of stderr.
     pub last: Option<ProcessError>,
-    /// For every place that answers named: how many points, and the seconds that the program says they took.
+    /// Number of points and seconds (as the program states) for every place that answers named.
     pub places: BTreeMap<String, (u64, f64)>,
-    /// How the model differs from the one whose answers the journal holds; None where it does not.
+    /// Difference between the model and the one whose answers the journal holds; None if there is none.
     pub outdated: Option<OutdatedJournal>,
-    /// Why answers could not be kept, in a line; None where they could. Nothing was evaluated after that.
+    /// Reason in one line why answers could not be stored; None if all were stored. Nothing was evaluated after that.
     pub not_kept: Option<String>,
 }
 
-/// A journal whose answers are those of another model than the one that runs now.
+/// Journal whose answers belong to another model than the one that runs now.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct OutdatedJournal {
-    /// The first output that differs at the nominal dimensions.
+    /// Name of the first output that differs at the nominal dimensions.
     pub output: String,
-    /// Its value in the journal; None where it had none.
+    /// Value in the journal; None if it had none.
     pub expected: Option<f64>,
-    /// Its value now.
+    /// Value of the model that runs now.
     pub found: Option<f64>,
-    /// Answers that were forgotten.
+    /// Number of answers that were discarded.
     pub answers: usize,
 }
 
 impl OutdatedJournal {
-    /// An output that was `expected` and is now `found`, so that so many answers were forgotten.
+    /// Creates the finding that an output was `expected` and is now `found`, so that `answers` answers were discarded.
     pub fn new(output: impl Into<String>, [expected, found]: [Option<f64>; 2], answers: usize) -> Self {
         Self { output: output.into(), expected, found, answers }
     }
 }
 
 impl EvaluatorAccount {
-    /// With that of another model of the same run.
+    /// Adds the account of another model of the same run.
     pub(crate) fn and(mut self, other: Self) -> Self {
         self.counts = self.counts.and(other.counts);
         for (name, (points, seconds)) in other.places {
@@ -58,7 +58,6 @@ impl EvaluatorAccount {
         }
     }
 
-    /// Whether any process failed.
     pub(crate) fn has_failures(&self) -> bool {
         self.counts.failures() > 0
     }
@@ -73,7 +72,7 @@ impl EvaluatorAccount {
         self.last = Some(error.clone());
     }
 
-    /// Counts an answer of a place.
+    /// Counts an answer, with the place and the cost that it states.
     pub fn answered(&mut self, place: Option<&String>, cost_s: Option<f64>) {
         if place.is_some() || cost_s.is_some() {
             let name = place.map_or("", String::as_str);

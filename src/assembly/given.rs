@@ -1,4 +1,4 @@
-//! Answers that were evaluated elsewhere: a table of points and values in place of a program.
+//! Answers that were evaluated elsewhere: a table of points and values that replaces a program.
 
 use std::collections::{HashMap, HashSet};
 use std::sync::{Mutex, PoisonError};
@@ -6,10 +6,10 @@ use std::sync::{Mutex, PoisonError};
 use super::request::bits;
 use super::{AssemblyFunction, EvaluationError, ModelInfo, NoColumn, Request, Responses, Run, Signature};
 
-/// Coordinates are the same when they differ by no more than this part of themselves: a spreadsheet keeps 15 digits.
+/// Relative difference below which coordinates are equal: a spreadsheet keeps 15 digits.
 const SAME: f64 = 1e-12;
 
-/// Named columns of numbers, None where a cell is empty: dimensions and outputs, in any order.
+/// Named columns of numbers for dimensions and outputs, in any order; None for an empty cell.
 #[derive(Debug, Default)]
 pub struct Table {
     columns: Vec<String>,
@@ -17,36 +17,36 @@ pub struct Table {
     asked: Mutex<Asked>,
 }
 
-/// The questions to a table so far.
+/// Points that were looked up in a table so far.
 #[derive(Debug, Default)]
 struct Asked {
-    /// Rows that answered some point.
+    /// Flags of the rows that answered a point.
     used: Vec<bool>,
-    /// Points of the first batch that lacked answers, each once: what was asked after it depends on them.
+    /// Points without an answer in the first batch that had any, each once. Later points depend on these answers.
     missing: Vec<Vec<f64>>,
 }
 
 impl Table {
-    /// Every row has a cell for every column.
+    /// Creates a table. Every row must have a cell for every column.
     pub fn new(columns: Vec<String>, rows: Vec<Vec<Option<f64>>>) -> Self {
         assert!(rows.iter().all(|row| row.len() == columns.len()), "a row has a cell for every column");
         let asked = Mutex::new(Asked { used: vec![false; rows.len()], missing: Vec::new() });
         Self { columns, rows, asked }
     }
 
-    /// That it has no column of this name.
+    /// Returns the error that the table has no column of this name.
     fn lacks(&self, name: &str) -> NoColumn {
         NoColumn::among(name, self.columns.iter().map(String::as_str))
     }
 
-    /// Rows, from 0, that answered no point so far.
+    /// Returns the rows, from 0, that answered no point so far.
     pub fn unused(&self) -> Vec<usize> {
         let asked = self.asked.lock().unwrap_or_else(PoisonError::into_inner);
         (0..self.rows.len()).filter(|&row| !asked.used[row]).collect()
     }
 
-    /// Points that no row answers, each once: those of the first batch in which there are any, as what is asked after it would
-    /// be something else with their answers. Coordinates in the order of the inputs.
+    /// Returns the points that no row answers, each once, with coordinates in the order of the inputs. They belong to the first batch with
+    /// such points, because later batches would change with their answers.
     pub fn missing(&self) -> Vec<Vec<f64>> {
         self.asked.lock().unwrap_or_else(PoisonError::into_inner).missing.clone()
     }
@@ -56,21 +56,21 @@ impl Table {
     }
 }
 
-/// A table as assembly function: what stands in it is known, nothing else is.
+/// Table as an assembly function. Only its rows have values.
 pub struct GivenAnswers {
     signature: Signature,
     table: std::sync::Arc<Table>,
-    /// The table's columns of the dimensions.
+    /// Columns of the table that hold the dimensions.
     inputs: Vec<usize>,
     /// Rows by the exact doubles of their point.
     exact: HashMap<Vec<u64>, usize>,
 }
 
 impl GivenAnswers {
-    /// Of the dimensions and outputs of `signature`.
+    /// Creates the function for the dimensions and outputs of `signature`.
     ///
     /// # Errors
-    /// The first dimension for which there is no column.
+    /// Fails for the first dimension that has no column.
     pub fn new(signature: Signature, table: std::sync::Arc<Table>) -> Result<Self, NoColumn> {
         let column = |input: &super::Input| table.column(&input.name).ok_or_else(|| table.lacks(&input.name));
         let inputs = signature.inputs.iter().map(column).collect::<Result<Vec<usize>, NoColumn>>()?;
@@ -79,7 +79,7 @@ impl GivenAnswers {
                 Some((bits(&inputs.iter().map(|&column| cells[column]).collect::<Option<Vec<_>>>()?), row))
             })
             .collect();
-        // Every point that is asked for is evaluated outside of this program: such a model is never sampled unasked.
+        // The user evaluates every requested point outside of this program, so that such a model is never sampled without a request.
         let signature = Signature { costly: true, cheap: false, ..signature };
         Ok(Self { signature, table, inputs, exact })
     }
@@ -136,7 +136,7 @@ impl AssemblyFunction for GivenAnswers {
             asked.missing = missing;
         }
         drop(asked);
-        // Nothing was evaluated here: what is known was known before, and the rest costs nothing.
+        // Nothing is evaluated here: rows of the table cost nothing, and missing points were not evaluated.
         out.reused(known);
         out.spent(known as i64 - request.points.rows() as i64);
         run.finished(&(0..request.points.rows()).collect::<Vec<_>>(), out);

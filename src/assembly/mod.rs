@@ -1,12 +1,11 @@
-//! The black box: the assembly function, and how it is asked.
+//! Interface of assembly functions, and its implementations.
 //!
-//! With `N` inputs and `K` outputs, an assembly function maps points `x` in `R^N` to `y` in `R^K`. It is asked for a
-//! whole batch of points at once and told which outputs are wanted; it answers with numbers or, per point and output,
-//! with an error. Nothing else is known of it, so a formula, a closed-form model and a CAD system in another process
-//! look the same from here.
+//! An assembly function with `N` inputs and `K` outputs maps points `x` in `R^N` to `y` in `R^K`. It receives a batch of points and the
+//! outputs that are wanted. It returns a number or an error for each point and output. Callers use nothing else, so that a formula, a
+//! closed-form model and a CAD system in another process look the same.
 //!
 //! # A new kind of assembly function
-//! One new file with a type that implements [`AssemblyFunction`].
+//! A new kind is one file with a type that implements [`AssemblyFunction`].
 
 mod account;
 mod blocks;
@@ -52,45 +51,44 @@ pub use switch::{Switch, SwitchKind, Switches};
 use crate::warning::Warning;
 use sensitol_numeric::power::Power;
 
-/// The black box: object-safe, batch first, told what is asked, with an error per point and output.
+/// Interface of an assembly function: object-safe, batches of points, the wanted outputs, and an error per point and output.
 pub trait AssemblyFunction: Send + Sync {
-    /// Names and units of inputs and outputs, and what is known of the function beforehand.
+    /// Returns names and units of inputs and outputs, and facts about the function that are known before any evaluation.
     fn signature(&self) -> &Signature;
 
-    /// Starts whatever must run before the first point, for these outputs, and tells what an external program says of
-    /// itself. A failure here would occur at every point: nothing has been evaluated yet.
+    /// Starts programs that these outputs need, and returns the description that an external program gives of itself. An error here would
+    /// occur at every point, so it is reported before any evaluation.
     ///
     /// # Errors
-    /// When the function cannot be had at all, such as a program that does not exist.
+    /// Fails if the function cannot be used at all, for example because a program does not exist.
     fn prepare(&self, outputs: &[usize]) -> Result<Option<ModelInfo>, EvaluationError> {
         let _ = outputs;
         Ok(None)
     }
 
-    /// Encloses an output over the box of these intervals, one for every input: a certainty, which no evaluation gives. None
-    /// from a black box.
+    /// Returns certain bounds of an output over the box of these intervals, one for every input. No evaluation gives such bounds. Returns
+    /// None for a black box.
     fn bounds(&self, output: usize, region: &[[f64; 2]]) -> Option<Bounds> {
         let _ = (output, region);
         None
     }
 
-    /// The sums of the magnitudes of the terms of `outputs` at a point, in the order asked: an output is rounded by parts of them. None for
-    /// an output of which the function does not know its terms, and where it has no value. This is not an evaluation.
+    /// Returns the sums of the magnitudes of the terms of `outputs` at a point, in the order asked. Rounding errors of an output are parts
+    /// of this sum. Returns None for an output whose terms are unknown, or if it has no value. This is not an evaluation.
     fn magnitudes(&self, outputs: &[usize], point: &[f64]) -> Vec<Option<f64>> {
         let _ = point;
         vec![None; outputs.len()]
     }
 
-    /// Answers `request.points` for `request.outputs` into `out`, whose rows are the points and whose columns are the asked
-    /// outputs in the order asked.
+    /// Evaluates `request.points` for `request.outputs` and writes the answers into `out`. Its rows are the points, and its columns are the
+    /// asked outputs in the order asked.
     ///
-    /// A point that cannot be answered is an error in `out`, not a panic. As rows become final they are told to
-    /// [`Run::finished`]; between rows [`Run::stopped`] says when to return with the rest unanswered, which is no
-    /// error.
+    /// A point without an answer is an error in `out`, not a panic. Rows that are final are reported by [`Run::finished`]. Between rows,
+    /// [`Run::stopped`] returns true if the function must return now. The remaining rows stay unanswered then, which is no error.
     fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses);
 
-    /// [`evaluate`](Self::evaluate) of points whose columns stand apart, `rows` values in each, so that no copy is needed; `false`,
-    /// and nothing done, where it takes no such points, as by default.
+    /// Evaluates points like [`evaluate`](Self::evaluate), but with separate columns of `rows` values each, so that no copy is needed.
+    /// Returns `false` and does nothing if the function does not accept such points, as by default.
     #[doc(hidden)]
     fn evaluate_columns(
         &self,
@@ -104,18 +102,18 @@ pub trait AssemblyFunction: Send + Sync {
         false
     }
 
-    /// Exact derivatives of `outputs` at a point, in the order asked; None for an output of which the function does not
-    /// know them at any point.
+    /// Returns exact derivatives of `outputs` at a point, in the order asked. Returns None for an output without derivatives at any point.
     ///
-    /// This is not an evaluation: a function that would have to evaluate points for it answers None, as it does by default.
+    /// This is not an evaluation: a function that would have to evaluate points returns None, as by default.
     fn derivatives(&self, outputs: &[usize], directions: &Directions<'_>) -> Vec<Option<Derivatives>> {
         let _ = directions;
         vec![None; outputs.len()]
     }
 
-    /// [`derivatives`](Self::derivatives) per unit of `2^exponent` of each input, so that those by inputs of extreme size are of ordinary size.
+    /// Returns [`derivatives`](Self::derivatives) per unit of `2^exponent` of each input, so that those by inputs of extreme size are of
+    /// ordinary size.
     ///
-    /// Shapes: `exponents` has an element for every input. By default the derivatives per unit of 1, multiplied.
+    /// Shapes: `exponents` has an element for every input. By default the derivatives per unit of 1 are multiplied.
     #[doc(hidden)]
     fn derivatives_per(
         &self,
@@ -128,43 +126,44 @@ pub trait AssemblyFunction: Send + Sync {
         self.derivatives(outputs, directions).into_iter().map(per).collect()
     }
 
-    /// The values that an external model is sent at these points, each point once, with the names of its inputs; None where it is
-    /// sent the points themselves. This is not an evaluation.
+    /// Returns the values that an external model receives at these points, each point once, with the names of its inputs. Returns None if
+    /// it receives the points themselves. This is not an evaluation.
     fn sent(&self, points: &Points) -> Option<(Vec<Input>, Points)> {
         let _ = points;
         None
     }
 
-    /// Itself, where formulas drive a costly model: whoever analyses it may fit what the model is sent. None of anything else.
+    /// Returns this function as a composite if formulas drive a costly model, so that a surface can be fitted over the inputs of the model.
+    /// Returns None for anything else.
     fn driven(&self) -> Option<&Composite> {
         None
     }
 
-    /// The places at which an output changes its form; None from a black box.
+    /// Returns the switches of an output, where it changes its form. Returns None for a black box.
     fn switches(&self, output: usize) -> Option<Switches> {
         let _ = output;
         None
     }
 
-    /// How far points are from each of an output's [`switches`](Self::switches), in the order of their list: a margin changes its sign
-    /// where the output changes its form, and is NaN where the switch has no part in the value. None where there are none to tell.
+    /// Returns the margins of points from each of an output's [`switches`](Self::switches), in the order of their list. A margin changes
+    /// its sign where the output changes its form. It is NaN if the switch has no part in the value. Returns None if there are no switches.
     ///
-    /// Shapes: a column for every switch, a value for every point. This is not an evaluation of a costly model: such a one
-    /// answers None.
+    /// Shapes: a column for every switch, a value for every point. This is not an evaluation of a costly model, for which it returns None.
     fn margins(&self, output: usize, points: &Points) -> Option<Vec<Vec<f64>>> {
         let _ = (output, points);
         None
     }
 
-    /// The degree of an output as a polynomial in the inputs that `varying` flags, the others fixed; None where it is not one,
-    /// or that is not known. A certainty, which no evaluation gives.
+    /// Returns the degree of an output as a polynomial in the inputs that `varying` flags, with the others fixed. Returns None if it is not
+    /// a polynomial, or if this is unknown. The degree is certain, which no evaluation can show.
     fn degree(&self, output: usize, varying: &[bool]) -> Option<u32> {
         let _ = (output, varying);
         None
     }
 
-    /// An output as a polynomial in `u`, where the inputs are `centre + scale u`: one with the scale 0 is fixed. None where it is not a
-    /// polynomial of at most the fourth degree, or that is not known. A certainty, which no evaluation gives.
+    /// Returns an output as a polynomial in `u`, with inputs `centre + scale u`. An input with the scale 0 is fixed. Returns None if the
+    /// output is not a polynomial of at most the fourth degree, or if this is unknown. The polynomial is certain, which no evaluation can
+    /// show.
     ///
     /// Shapes: `centre` and `scale` have a value for every input.
     #[doc(hidden)]
@@ -173,12 +172,12 @@ pub trait AssemblyFunction: Send + Sync {
         None
     }
 
-    /// The account of the processes of an external model so far; None for a function without any.
+    /// Returns the account of the processes of an external model so far, or None for a function without processes.
     fn account(&self) -> Option<EvaluatorAccount> {
         None
     }
 
-    /// The function's own warnings about its answers for `outputs`, once some are given.
+    /// Returns the warnings of the function about its answers for `outputs`, after it has given some.
     fn warnings(&self, outputs: &[usize]) -> Vec<Warning> {
         let _ = outputs;
         Vec::new()

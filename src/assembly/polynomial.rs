@@ -1,7 +1,7 @@
-//! Polynomials in the inputs of a formula, term by term, each coefficient with a bound of its rounding error.
+//! Polynomials in the inputs of a formula, term by term. Each coefficient has a bound of its rounding error.
 //!
-//! Every operation adds the roundings of its own to those of its operands (running error analysis, Higham 2002, section 3.3):
-//! with `u` the spacing of doubles,
+//! Every operation adds its own rounding to those of its operands (running error analysis, Higham 2002, section 3.3). With `u` the spacing
+//! of doubles,
 //!
 //! ```text
 //! e(a + b) = e(a) + e(b) + u |a + b|          e(a b) = |a| e(b) + |b| e(a) + e(a) e(b) + u |a b|
@@ -11,26 +11,26 @@ use std::collections::BTreeMap;
 
 use sensitol_numeric::power::Power;
 
-/// The highest degree that is expanded: surfaces hold powers up to this one.
+/// Highest degree that is expanded: surfaces hold powers up to this one.
 pub(crate) const DEGREE: usize = 4;
-/// Terms of a polynomial at the most: all of a quadratic in a thousand inputs.
+/// Greatest number of terms of a polynomial: all of a quadratic in a thousand inputs.
 const TERMS: usize = 1 << 19;
-/// Products of two terms that one multiplication may take: a fraction of a second.
+/// Greatest number of products of two terms in one multiplication, a fraction of a second.
 const PRODUCTS: usize = 1 << 21;
-/// The place of an input that a term does not have.
+/// Marker for an unused place of a monomial.
 const NONE: u32 = u32::MAX;
 
-/// Inputs of a term in ascending order, each as often as its power; [`NONE`] fills the rest.
+/// Inputs of a term in ascending order, each as often as its power. [`NONE`] fills the rest.
 type Monomial = [u32; DEGREE];
 
-/// A coefficient, and a bound of its rounding error.
+/// Coefficient with a bound of its rounding error.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Coefficient {
     pub(crate) value: f64,
     pub(crate) error: f64,
 }
 
-/// A polynomial of at most the fourth degree.
+/// Polynomial of at most the fourth degree.
 #[doc(hidden)]
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Polynomial {
@@ -50,7 +50,7 @@ impl Coefficient {
         Self { value, error: error + f64::EPSILON * value.abs() }
     }
 
-    /// The quotient: the divisor's relative error adds to the dividend's.
+    /// Returns the quotient. The relative error of the divisor adds to that of the dividend.
     fn over(self, other: Self) -> Self {
         let value = self.value / other.value;
         let error = (self.error + value.abs() * other.error) / other.value.abs();
@@ -59,7 +59,7 @@ impl Coefficient {
 }
 
 impl Polynomial {
-    /// A number.
+    /// Returns the polynomial of a constant.
     pub(crate) fn constant(value: f64) -> Self {
         Self::of_coefficient(Coefficient { value, error: 0.0 })
     }
@@ -68,7 +68,7 @@ impl Polynomial {
         Self { terms: BTreeMap::from([([NONE; DEGREE], of)]) }
     }
 
-    /// The input of this index, `centre + scale u`; a number where the scale is 0.
+    /// Returns the input of this index, `centre + scale u`. With the scale 0 it is a constant.
     pub(crate) fn input(index: usize, centre: f64, scale: f64) -> Self {
         let mut polynomial = Self::constant(centre);
         if scale != 0.0 {
@@ -79,7 +79,7 @@ impl Polynomial {
         polynomial
     }
 
-    /// The number that it is; None where it varies.
+    /// Returns the value of a constant polynomial, or None if it varies.
     pub(super) fn as_constant(&self) -> Option<Coefficient> {
         match self.terms.len() {
             0 => Some(Coefficient::default()),
@@ -88,15 +88,15 @@ impl Polynomial {
         }
     }
 
-    /// Every term: its inputs, each as often as its power, and its coefficient.
+    /// Iterates over the terms: the inputs, each as often as its power, and the coefficient.
     pub(crate) fn terms(&self) -> impl Iterator<Item = (&[u32], Coefficient)> {
         let inputs = |monomial: &Monomial| monomial.iter().position(|&input| input == NONE).unwrap_or(DEGREE);
         self.terms.iter().map(move |(monomial, &of)| (&monomial[..inputs(monomial)], of))
     }
 
-    /// Returns the sum with `sign` times another; None with too many terms.
+    /// Returns the sum with `sign` times another. Returns None if it has too many terms.
     pub(super) fn plus(self, other: Self, sign: f64) -> Option<Self> {
-        // The smaller one is added to the larger one, so that a long sum takes a step for every term.
+        // The smaller polynomial is added to the larger one, so that a long sum takes one step for each term.
         let (mut sum, less, [of_sum, of_less]) = match self.terms.len() >= other.terms.len() {
             true => (self, other, [1.0, sign]),
             false => (other, self, [sign, 1.0]),
@@ -110,7 +110,7 @@ impl Polynomial {
         sum.is_small().then_some(sum)
     }
 
-    /// Returns the product; None beyond the highest degree, and with too many terms.
+    /// Returns the product. Returns None beyond the highest degree, or if it has too many terms.
     pub(super) fn times(&self, other: &Self) -> Option<Self> {
         if self.terms.len().saturating_mul(other.terms.len()) > PRODUCTS {
             return None;
@@ -124,7 +124,7 @@ impl Polynomial {
         product.is_small().then_some(product)
     }
 
-    /// Returns every coefficient multiplied by a power of two, which rounds nothing.
+    /// Returns every coefficient multiplied by a power of two, without rounding.
     pub(crate) fn times_power(mut self, power: Power) -> Self {
         for of in self.terms.values_mut() {
             (of.value, of.error) = (power.times(of.value), power.times(of.error));
@@ -141,7 +141,7 @@ impl Polynomial {
     fn add(&mut self, monomial: Monomial, more: Coefficient) {
         let of = self.terms.entry(monomial).or_insert(Coefficient { value: 0.0, error: 0.0 });
         *of = of.plus(more);
-        // A term that cancels to the last bit does not exist.
+        // A term that cancels to the last bit is removed.
         if of.value == 0.0 && of.error == 0.0 {
             self.terms.remove(&monomial);
         }
@@ -152,7 +152,7 @@ impl Polynomial {
     }
 }
 
-/// Inputs of a product of two terms; None beyond the highest degree.
+/// Merges the inputs of two terms. Returns None beyond the highest degree.
 fn merged(first: &Monomial, second: &Monomial) -> Option<Monomial> {
     let mut both = first.iter().chain(second).copied().filter(|&input| input != NONE);
     let mut product = [NONE; DEGREE];
@@ -160,7 +160,7 @@ fn merged(first: &Monomial, second: &Monomial) -> Option<Monomial> {
         let Some(input) = both.next() else { break };
         *place = input;
     }
-    // As many inputs as there are places: they are merely put in order.
+    // The number of inputs is within the degree, so they are only sorted.
     if both.next().is_some() {
         return None;
     }
@@ -185,7 +185,7 @@ mod tests {
         assert_eq!(terms, [(vec![0, 1], 2.0), (vec![0], 6.0), (vec![1], 1.0)]);
     }
 
-    /// A subtrahend with more terms than the minuend keeps its sign.
+    /// A difference keeps its signs if the subtrahend has more terms than the minuend.
     #[test]
     fn a_difference_keeps_its_signs() {
         let many = Polynomial::input(0, 1.0, 2.0).plus(Polynomial::input(1, 0.0, 3.0), 1.0).unwrap();
@@ -202,7 +202,7 @@ mod tests {
         assert_eq!(fourth.times(&a), None);
     }
 
-    /// `(1e8 + 0.1)^2 - 1e16 - 2e7`: 0.01 is left, of which doubles near 1e16 know nothing, and the bound says so.
+    /// The result of `(1e8 + 0.1)^2 - 1e16 - 2e7` is 0.01, which doubles near 1e16 cannot resolve. The error bound covers it.
     #[test]
     fn the_bound_of_rounding_reaches_a_cancellation() {
         let base = Polynomial::input(0, 1e8 + 0.1, 1.0);

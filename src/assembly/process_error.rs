@@ -1,130 +1,130 @@
-//! The faults of an external process.
+//! Errors of an external process.
 
 use std::fmt;
 use std::time::Duration;
 
-/// Why a process gave no value. Each names what was seen, and quotes the last lines that it wrote to stderr.
+/// Reason why a process gave no value, with the last lines that it wrote to stderr.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{fault}{stderr}")]
 pub struct ProcessError {
-    /// The fault.
+    /// Fault of the process.
     pub fault: ProcessFault,
-    /// The last lines of its stderr.
+    /// Last lines that the process wrote to stderr.
     pub stderr: StderrTail,
 }
 
-/// The faults of a process.
+/// Faults of a process.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ProcessFault {
-    /// There is no such program.
+    /// The program does not exist.
     #[error("there is no program `{program}`; it is looked for in {}", place(program, folder))]
     NotFound {
-        /// As the study names it.
+        /// Name of the program in the study.
         program: String,
-        /// The study's folder.
+        /// Folder of the study.
         folder: String,
     },
-    /// The operating system does not run it.
+    /// The operating system cannot start the program.
     #[error("`{program}` cannot be started: {reason}")]
     NotStarted {
-        /// As the study names it.
+        /// Name of the program in the study.
         program: String,
-        /// The operating system's words.
+        /// Reason in the operating system's words.
         reason: String,
     },
-    /// It ended before it was ready.
+    /// The process ended before it was ready.
     #[error("the model ended before it said that it is ready ({exit})")]
     EndedAtStart {
-        /// How it ended.
+        /// Way in which the process ended.
         exit: Exit,
     },
-    /// It did not say in time that it is ready.
+    /// The process did not report in time that it is ready.
     #[error("the model did not say within {} s that it is ready; start_timeout_s allows for more", .after.as_secs_f64())]
     SilentAtStart {
-        /// For how long it was waited for.
+        /// Time limit for the report, after which it was stopped.
         after: Duration,
     },
-    /// It does not serve this study.
+    /// The process does not serve this study.
     #[error("the model does not serve this study: {message}")]
     RefusedStudy {
-        /// Its own words.
+        /// Reason in the model's own words.
         message: String,
     },
-    /// It has a dimension or a characteristic in another unit.
+    /// The process has a dimension or a characteristic in another unit.
     #[error("the model has `{name}` in {own}, and the study in {study}{}: {}", by(*factor), in_own(name, own, *factor))]
     ForeignUnit {
-        /// The dimension or characteristic.
+        /// Name of the dimension or characteristic.
         name: String,
-        /// The unit of the study.
+        /// Unit of the study.
         study: String,
-        /// That of the model.
+        /// Unit of the model.
         own: String,
-        /// The factor on a number of the study; None where the two measure different things.
+        /// Factor on a number of the study; None if the two units measure different quantities.
         factor: Option<f64>,
     },
-    /// Its first line was none of the protocol.
+    /// The first line of the process does not follow the protocol.
     #[error("the model's first line is not a `ready` of this protocol: {line}{}", hint(line))]
     NotReady {
-        /// The line that it wrote.
+        /// First line that the process wrote.
         line: Quoted,
     },
-    /// It ended with points under way.
+    /// The process ended while points were in progress.
     #[error("the model ended while it evaluated this point ({exit})")]
     Crashed {
-        /// How it ended.
+        /// Way in which the process ended.
         exit: Exit,
     },
-    /// It did not answer in time.
+    /// The process did not answer in time.
     #[error("the model did not answer within {} s; timeout_s allows for more", .after.as_secs_f64())]
     TimedOut {
-        /// For how long it was waited for.
+        /// Time limit for an answer, after which it was stopped.
         after: Duration,
     },
-    /// It wrote a line that is not an answer.
+    /// The process wrote a line that is not an answer.
     #[error("the model wrote a line that is not an answer ({reason}): {line}{}", hint(line))]
     Garbage {
-        /// The reason why the line is invalid.
+        /// Reason why the line is invalid.
         reason: String,
-        /// The line that it wrote.
+        /// Line that the process wrote.
         line: Quoted,
     },
-    /// It wrote a line without end.
+    /// The process wrote a line that is too long.
     #[error("the model wrote a line of more than {limit} bytes: {line}")]
     Oversized {
-        /// The longest line that is read.
+        /// Length in bytes of the longest line that is read.
         limit: usize,
-        /// How it began.
+        /// Beginning of the line.
         line: Quoted,
     },
-    /// It answered with another number of values.
+    /// The process answered with a wrong number of values.
     #[error("the model answered with {found} values where {expected} were asked for")]
     WrongLength {
-        /// How many characteristics were asked for.
+        /// Number of characteristics that were asked for.
         expected: usize,
-        /// How many values came.
+        /// Number of values in the answer.
         found: usize,
     },
-    /// It answered with derivatives of another shape.
+    /// The process answered with derivatives of a wrong shape.
     #[error("the model answered with derivatives that are not {rows} rows of {columns}")]
     WrongGradients {
-        /// A row for each characteristic.
+        /// Expected rows, one for each characteristic.
         rows: usize,
-        /// A number for each dimension.
+        /// Expected columns, one for each dimension.
         columns: usize,
     },
-    /// It answered a point that was not asked for.
+    /// The process answered a point that was not asked for.
     #[error("the model answered point {id}, which was not under way")]
     UnknownPoint {
-        /// The point's number.
+        /// Number of the point in the answer.
         id: u64,
     },
-    /// It answered a point for the second time.
+    /// The process answered a point for the second time.
     #[error("the model answered point {id} twice")]
     AnsweredTwice {
-        /// The point's number.
+        /// Number of the point in the answer.
         id: u64,
     },
-    /// It has other values when the point is reached on other ways.
+    /// The process has different values if a point is reached on different ways.
     #[error(
         "the answer depends on the points before it: {} at first, {} by small steps, {} along one dimension after the other",
         value(first),
@@ -132,30 +132,30 @@ pub enum ProcessFault {
         value(third)
     )]
     TwoAnswers {
-        /// As it was first answered.
+        /// First answer for the point.
         first: Option<f64>,
-        /// By small steps from the nominal point.
+        /// Answer after small steps from the nominal point.
         second: Option<f64>,
-        /// Along one dimension after the other.
+        /// Answer after steps along one dimension after the other.
         third: Option<f64>,
     },
-    /// It has no value for one characteristic.
+    /// The process has no value for one characteristic.
     #[error("{message}")]
     NoValue {
-        /// Its own words, or ours where it said nothing.
+        /// Reason in the model's own words, or a general one if it gave none.
         message: String,
     },
 }
 
-/// How a process ended.
+/// Way in which a process ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Exit {
-    /// With this code.
+    /// Exit with this code.
     Code(i32),
-    /// By a signal, or in some other way.
+    /// End by a signal, or in some other way.
     Signal(Option<i32>),
-    /// Not at all: it closed its stdout.
+    /// No end yet, but the process closed its stdout.
     ClosedStdout,
 }
 
@@ -170,14 +170,15 @@ impl fmt::Display for Exit {
     }
 }
 
-/// The beginning of a line from outside of this program, fit to be shown.
+/// Beginning of a line from outside of this program, with control characters replaced.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Quoted(pub String);
 
 impl Quoted {
-    /// As many characters as an error message bears.
+    /// Greatest number of characters, so that an error message stays short.
     const LENGTH: usize = 120;
 
+    /// Quotes the beginning of these bytes. Invalid UTF-8 and control characters are replaced.
     pub fn of(bytes: &[u8]) -> Self {
         let text = String::from_utf8_lossy(&bytes[..bytes.len().min(4 * Self::LENGTH)]);
         let clean = |c: char| if c.is_control() { '\u{fffd}' } else { c };
@@ -191,7 +192,7 @@ impl fmt::Display for Quoted {
     }
 }
 
-/// The last lines of a process's stderr; shown behind the error, if there are any.
+/// Last lines of a process's stderr. They are shown after the error, if there are any.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct StderrTail(pub Vec<String>);
 
@@ -204,12 +205,12 @@ impl fmt::Display for StderrTail {
     }
 }
 
-/// The factor between two units, where there is one.
+/// Describes the factor between two units, if there is one.
 fn by(factor: Option<f64>) -> String {
     factor.map_or(String::new(), |factor| format!(" (factor {factor})"))
 }
 
-/// How the two come together.
+/// Advises how to bring the two units together.
 fn in_own(name: &str, own: &str, factor: Option<f64>) -> String {
     match factor {
         Some(_) => {
@@ -219,7 +220,7 @@ fn in_own(name: &str, own: &str, factor: Option<f64>) -> String {
     }
 }
 
-/// The action to take on a line that was printed for people.
+/// Advises on a line that was printed for people.
 fn hint(line: &Quoted) -> &'static str {
     match line.0.is_empty() || line.0.starts_with('{') {
         true => "",

@@ -1,24 +1,24 @@
-//! A request to an assembly function: points, and which outputs.
+//! Request to an assembly function: points, and the wanted outputs.
 
 pub use sensitol_numeric::points::Points;
 
-/// A batch of points and the outputs wanted there.
+/// Batch of points, and the outputs that are wanted there.
 #[derive(Debug, Clone, Copy)]
 pub struct Request<'a> {
-    /// The points, a column per input of the [`Signature`](super::Signature).
+    /// Points, one column per input of the [`Signature`](super::Signature).
     pub points: &'a Points,
-    /// Indices of the outputs wanted; nothing else need be computed.
+    /// Indices of the wanted outputs. Nothing else has to be computed.
     pub outputs: &'a [usize],
 }
 
 impl<'a> Request<'a> {
-    /// These outputs at these points.
+    /// Creates a request for these outputs at these points.
     pub fn values(points: &'a Points, outputs: &'a [usize]) -> Self {
         Self { points, outputs }
     }
 }
 
-/// A point to be looked up by; 0 has one sign only.
+/// Returns a key to look a point up by. Both signs of 0 give the same key.
 pub(super) fn bits(point: &[f64]) -> Vec<u64> {
     point.iter().map(|x| (x + 0.0).to_bits()).collect()
 }

@@ -1,4 +1,4 @@
-//! The answers of an assembly function.
+//! Answers of an assembly function.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -8,10 +8,10 @@ use super::NonRepeatable;
 use crate::summary::RunSummary;
 use sensitol_numeric::power::Power;
 
-/// Answers of a batch: a column per asked output, and an error wherever there is no value.
+/// Answers of a batch: a column per asked output, and an error for each entry without a value.
 ///
-/// An entry starts open. It is then either a finite value or an error; one that is still open at the end belongs to a
-/// point that was not finished.
+/// An entry starts open. It then becomes either a finite value or an error. An entry that is still open at the end belongs to a point that
+/// was not finished.
 ///
 /// ```
 /// use sensitol::assembly::{EvaluationError, Responses};
@@ -26,25 +26,25 @@ use sensitol_numeric::power::Power;
 pub struct Responses {
     rows: usize,
     outputs: usize,
-    /// NaN where there is no value.
+    /// Values by column, NaN for an entry without a value.
     values: Vec<f64>,
     errors: BTreeMap<(usize, usize), EvaluationError>,
-    /// Evaluations beyond one for each answered row.
+    /// Number of evaluations in addition to one for each answered row.
     extra: i64,
-    /// Rows whose answers were known already.
+    /// Number of rows whose answers were known already.
     reused: usize,
-    /// Points that were sent again.
+    /// Number of points that were sent again.
     retried: usize,
-    /// Where the model answered otherwise than before.
+    /// Points at which the model gave different answers.
     non_repeatable: Vec<NonRepeatable>,
     /// Points of earlier batches whose answers are not trusted any more.
     revoked: Vec<Vec<f64>>,
-    /// Derivatives by every input, where a model sends them.
+    /// Derivatives by every input, if a model sends them.
     gradients: BTreeMap<(usize, usize), Vec<f64>>,
 }
 
 impl Responses {
-    /// For `rows` points and `outputs` asked outputs, all of them open.
+    /// Creates open entries for `rows` points and `outputs` asked outputs.
     pub fn open(rows: usize, outputs: usize) -> Self {
         Self {
             rows,
@@ -60,7 +60,7 @@ impl Responses {
         }
     }
 
-    /// As if new, in the place of what was answered.
+    /// Discards all answers and opens entries of a new shape. The memory is reused.
     pub(crate) fn reopen(&mut self, rows: usize, outputs: usize) {
         let mut values = std::mem::take(&mut self.values);
         values.clear();
@@ -68,7 +68,7 @@ impl Responses {
         *self = Self { rows, outputs, values, ..Self::open(0, 0) };
     }
 
-    /// Whether nothing is answered or noted yet. Answers from the first row on are seen at once.
+    /// True if nothing is answered or noted yet. The check is fast if the first rows are answered.
     pub(crate) fn is_untouched(&self) -> bool {
         self.errors.is_empty()
             && (self.extra, self.reused, self.retried) == (0, 0, 0)
@@ -78,20 +78,20 @@ impl Responses {
             && self.values.iter().fold(true, |all, value| all & value.is_nan())
     }
 
-    /// Number of points.
+    /// Returns the number of points.
     pub fn rows(&self) -> usize {
         self.rows
     }
 
-    /// Number of asked outputs.
+    /// Returns the number of asked outputs.
     pub fn outputs(&self) -> usize {
         self.outputs
     }
 
-    /// Answers one entry; a value that is not finite becomes an error.
+    /// Answers one entry. A value that is not finite becomes an error.
     pub fn set(&mut self, row: usize, output: usize, value: f64) {
         if value.is_finite() {
-            // The last answer counts, after an error too.
+            // The last answer counts, even after an error.
             if !self.errors.is_empty() {
                 self.errors.remove(&(row, output));
             }
@@ -106,12 +106,12 @@ impl Responses {
         self.gradients.insert((row, output), gradient);
     }
 
-    /// The derivatives of one entry by every input, where the model sent them.
+    /// Returns the derivatives of one entry by every input, if the model sent them.
     pub fn gradient(&self, row: usize, output: usize) -> Option<&[f64]> {
         self.gradients.get(&(row, output)).map(Vec::as_slice)
     }
 
-    /// Answers the entries from a row on, as [`set`](Self::set) does one by one.
+    /// Answers entries from a row on, like [`set`](Self::set) one by one.
     pub fn set_rows(&mut self, first: usize, output: usize, values: &[f64]) {
         if self.errors.is_empty() && all_finite(values) {
             let start = output * self.rows + first;
@@ -127,12 +127,12 @@ impl Responses {
         self.errors.insert((row, output), error);
     }
 
-    /// Rows of which something was answered: a row that is open in every output was not sent, or not finished.
+    /// Returns the rows with an answer in some output. A row that is open in every output was not sent, or not finished.
     pub fn answered(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.rows).filter(|&row| (0..self.outputs).any(|output| !self.is_open(row, output)))
     }
 
-    /// The summary of this batch, as one stage that the model took so long for.
+    /// Returns the summary of this batch, as one stage that took the model this long.
     pub(crate) fn summary(&self, in_model: Duration) -> RunSummary {
         RunSummary {
             evaluations: (self.answered().count() as i64 + self.extra).max(0) as u64,
@@ -145,50 +145,51 @@ impl Responses {
         }
     }
 
-    /// The value, where there is one.
+    /// Returns the value, if there is one.
     pub fn value(&self, row: usize, output: usize) -> Option<f64> {
         let value = self.values[output * self.rows + row];
         (!value.is_nan()).then_some(value)
     }
 
-    /// The error, where there is one.
+    /// Returns the error, if there is one.
     pub fn error(&self, row: usize, output: usize) -> Option<&EvaluationError> {
         self.errors.get(&(row, output))
     }
 
-    /// Whether an entry has neither value nor error.
+    /// True if an entry has neither value nor error.
     pub fn is_open(&self, row: usize, output: usize) -> bool {
         self.value(row, output).is_none() && self.error(row, output).is_none()
     }
 
-    /// Adds evaluations beyond one for each answered row: points tried again; fewer than none where answers came without.
+    /// Adds evaluations in addition to one for each answered row, such as second tries. The number is negative for answers without an
+    /// evaluation.
     pub fn spent(&mut self, extra: i64) {
         self.extra += extra;
     }
 
-    /// Notes rows whose answers were known already: they cost no evaluation.
+    /// Counts rows whose answers were known already. They cost no evaluation.
     #[doc(hidden)]
     pub fn reused(&mut self, rows: usize) {
         self.reused += rows;
         self.extra -= rows as i64;
     }
 
-    /// Notes points that were sent again, which [`spent`](Self::spent) counts too.
+    /// Counts points that were sent again. [`spent`](Self::spent) includes them too.
     pub fn retried(&mut self, points: usize) {
         self.retried += points;
     }
 
-    /// Points that were sent again.
+    /// Returns the number of points that were sent again.
     pub fn count_retried(&self) -> usize {
         self.retried
     }
 
-    /// Notes that the model answered a point otherwise than before.
+    /// Notes that the model gave different answers for a point.
     pub fn note_non_repeatable(&mut self, non_repeatable: impl IntoIterator<Item = NonRepeatable>) {
         self.non_repeatable.extend(non_repeatable);
     }
 
-    /// Where the model answered a point otherwise than before.
+    /// Returns the points at which the model gave different answers.
     pub fn non_repeatable(&self) -> &[NonRepeatable] {
         &self.non_repeatable
     }
@@ -198,27 +199,27 @@ impl Responses {
         self.revoked.push(point);
     }
 
-    /// Points of earlier batches whose answers are not trusted any more.
+    /// Returns the points of earlier batches whose answers are not trusted any more.
     pub fn revoked(&self) -> &[Vec<f64>] {
         &self.revoked
     }
 
-    /// Rows whose answers were known already.
+    /// Returns the number of rows whose answers were known already.
     pub fn count_reused(&self) -> usize {
         self.reused
     }
 
-    /// Evaluations beyond one for each answered row.
+    /// Returns the number of evaluations in addition to one for each answered row.
     pub fn extra(&self) -> i64 {
         self.extra
     }
 
-    /// All values of one output, NaN where there is none.
+    /// Returns all values of one output, NaN for each that is missing.
     pub fn column(&self, output: usize) -> &[f64] {
         &self.values[output * self.rows..(output + 1) * self.rows]
     }
 
-    /// Answers one entry as another one was: by its value, its error, or not at all.
+    /// Copies one entry from other responses: its value, its error, or nothing if it is open.
     pub fn pass_on(&mut self, row: usize, output: usize, from: &Responses, from_row: usize, from_output: usize) {
         if let Some(value) = from.value(from_row, from_output) {
             self.set(row, output, value);
@@ -230,12 +231,12 @@ impl Responses {
         }
     }
 
-    /// How many of these rows have an output without a value.
+    /// Returns the number of these rows that have an output without a value.
     pub fn failed_among(&self, rows: &[usize]) -> usize {
         rows.iter().filter(|&&row| (0..self.outputs).any(|output| self.value(row, output).is_none())).count()
     }
 
-    /// Every error with its row and output, in order.
+    /// Iterates over the errors with row and output, in order.
     pub fn errors(&self) -> impl Iterator<Item = (usize, usize, &EvaluationError)> {
         self.errors.iter().map(|(&(row, output), error)| (row, output, error))
     }
@@ -261,7 +262,7 @@ impl Responses {
         of_output.for_each(|(_, gradient)| gradient.iter_mut().for_each(|slope| *slope = power.times(*slope)));
     }
 
-    /// Takes over the answers of the rows from `first` on.
+    /// Copies the answers of a block to the rows from `first` on.
     pub(crate) fn adopt(&mut self, first: usize, block: Responses) {
         for output in 0..self.outputs {
             let start = output * self.rows + first;
@@ -278,10 +279,10 @@ impl Responses {
     }
 }
 
-/// Whether none of them is infinite or NaN.
+/// True if no value is infinite or NaN.
 #[inline(always)]
 pub(crate) fn all_finite(values: &[f64]) -> bool {
-    // 0 times a finite number is 0, and NaN of any other.
+    // 0 times a finite number is 0, and 0 times any other is NaN.
     let (blocks, rest) = values.as_chunks::<8>();
     let mut sums = [0.0; 8];
     for block in blocks {

@@ -1,29 +1,29 @@
-//! The conditions under which a batch is evaluated.
+//! Conditions under which a batch is evaluated.
 
 use super::Responses;
 use crate::summary::StopReason;
 
-/// Called with rows that are final, and the responses that hold them.
+/// Callback for rows that are final, with the responses that hold them.
 type Finished<'a> = dyn Fn(&[usize], &Responses) + Sync + 'a;
 
-/// Called with rows whose answers are not trusted any more.
+/// Callback for rows whose answers are not trusted any more.
 type Withdrawn<'a> = dyn Fn(&[usize]) + Sync + 'a;
 
-/// Says why to stop, and None as long as there is no reason.
+/// Callback that returns the reason to stop, or None while there is none.
 type Stop<'a> = dyn Fn() -> Option<StopReason> + Sync + 'a;
 
-/// Points that a costly model has done with, as they come.
+/// Points that a costly model has finished, as they come.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Progress {
-    /// Points that are answered, by the model or from what is known.
+    /// Points that are answered, by the model or from known answers.
     pub points: usize,
-    /// Those of them with an output that has no value.
+    /// Answered points with an output that has no value.
     pub failed: usize,
-    /// Those of them that were known already.
+    /// Answered points that were known already.
     pub reused: usize,
 }
 
-/// How a batch is to be evaluated: whom to tell of finished rows, and whether to stop.
+/// Conditions under which a batch is evaluated: callbacks for finished rows, and a stop.
 ///
 /// ```
 /// use sensitol::assembly::Run;
@@ -44,12 +44,12 @@ impl<'a> Run<'a> {
         Self::default()
     }
 
-    /// Tells `finished` of rows as they become final.
+    /// Sets the callback for rows that become final.
     pub fn telling(self, finished: &'a Finished<'a>) -> Self {
         Self { finished: Some(finished), ..self }
     }
 
-    /// Stops as soon as `stop` says why; from then on it must go on saying so.
+    /// Stops as soon as `stop` returns a reason. From then on it must keep returning one.
     ///
     /// ```
     /// use sensitol::StopReason;
@@ -61,79 +61,79 @@ impl<'a> Run<'a> {
         Self { stop: Some(stop), ..self }
     }
 
-    /// Gives up at once, with what is under way, when `abandon` says so.
+    /// Stops at once if `abandon` returns true, without waiting for points in progress.
     #[doc(hidden)]
     pub fn abandoning_when(self, abandon: &'a (dyn Fn() -> bool + Sync)) -> Self {
         Self { abandon: Some(abandon), ..self }
     }
 
-    /// Tells `progress` of the points of costly models, which others keep to themselves.
+    /// Sets the callback for the progress of costly models. Cheap models do not report progress.
     pub fn showing(self, progress: &'a (dyn Fn(Progress) + Sync)) -> Self {
         Self { progress: Some(progress), ..self }
     }
 
-    /// Tells `withdrawn` of rows that were final and are not trusted any more; those that are answered again are told anew.
+    /// Sets the callback for rows that were final and are not trusted any more. Rows that are answered again are reported as final again.
     pub fn withdrawing(self, withdrawn: &'a Withdrawn<'a>) -> Self {
         Self { withdrawn: Some(withdrawn), ..self }
     }
 
-    /// The same, without reports: for a part of an answer that is not an answer yet.
+    /// Removes the reports: a part of an answer is not an answer yet.
     pub(crate) fn quiet(self) -> Self {
         Self { finished: None, ..self }
     }
 
-    /// The same, without a stop: for what follows quickly from answers that were paid for.
+    /// Removes the stop, for quick work that follows from costly answers.
     pub(crate) fn unstopped(self) -> Self {
         Self { stop: None, ..self }
     }
 
-    /// Whether anybody is told of finished rows.
+    /// True if finished rows are reported.
     pub(crate) fn tells(&self) -> bool {
         self.finished.is_some()
     }
 
-    /// These rows of `out` are final: values or errors, for every output asked.
+    /// Reports that these rows of `out` are final: values or errors, for every output asked.
     pub fn finished(&self, rows: &[usize], out: &Responses) {
         if let Some(finished) = self.finished {
             finished(rows, out);
         }
     }
 
-    /// These rows, told of as final, are not trusted any more.
+    /// Reports that these rows, which were final, are not trusted any more.
     pub fn withdraw(&self, rows: &[usize]) {
         if let Some(withdrawn) = self.withdrawn {
             withdrawn(rows);
         }
     }
 
-    /// A costly model has done with more points.
+    /// Reports that a costly model has finished more points.
     pub fn progressed(&self, progress: Progress) {
         if let Some(show) = self.progress {
             show(progress);
         }
     }
 
-    /// Whether to return at once: even what is under way is not waited for.
+    /// True if the function must return at once, without waiting for points in progress.
     pub fn abandoned(&self) -> bool {
         self.abandon.is_some_and(|abandon| abandon())
     }
 
-    /// The conditions of a part of the work: told to `finished` rather than to whom this one tells, and stopped by `stop`.
+    /// Returns the conditions of a part of the work, which reports to `finished` and is stopped by `stop`.
     pub fn within<'b>(&'b self, finished: &'b Finished<'b>, stop: &'b Stop<'b>) -> Run<'b> {
         Run { finished: Some(finished), stop: Some(stop), withdrawn: None, ..*self }
     }
 
-    /// Whether to return now, with what is answered so far.
+    /// True if the function must return now, with the answers so far.
     pub fn stopped(&self) -> bool {
         self.stop_reason().is_some()
     }
 
-    /// Why to return now; None as long as there is no reason.
+    /// Returns the reason to return now, or None while there is none.
     pub fn stop_reason(&self) -> Option<StopReason> {
         self.stop.and_then(|stop| stop())
     }
 
-    /// Why what is open was not evaluated: whoever stopped a run without a reason asked for its end.
+    /// Returns the reason why open points were not evaluated. A run that was stopped without a reason was stopped on request.
     pub(crate) fn why_open(&self) -> StopReason {
         self.stop_reason().unwrap_or(if self.abandoned() { StopReason::Interrupted } else { StopReason::Requested })
     }

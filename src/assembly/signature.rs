@@ -1,41 +1,41 @@
-//! The facts about an assembly function that are known before it is evaluated.
+//! Facts about an assembly function that are known before it is evaluated.
 
 /// Names, units and structure of an assembly function.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Signature {
-    /// The inputs, in the order of a point's coordinates.
+    /// Inputs, in the order of a point's coordinates.
     pub inputs: Vec<Input>,
-    /// The outputs that can be asked for.
+    /// Outputs that can be asked for.
     pub outputs: Vec<Output>,
-    /// Whether an evaluation costs so much that answers are worth keeping on disk.
+    /// True if an evaluation is so costly that answers are stored on disk.
     pub costly: bool,
-    /// Whether tens of thousands of evaluations go unnoticed, as with formulas: results are then verified by a sample of the function
-    /// itself. Neither is known of a foreign function, such as a closure.
+    /// True if tens of thousands of evaluations take no noticeable time, as with formulas. Results are then verified by a sample of the
+    /// function itself. A foreign function, such as a closure, is neither costly nor cheap.
     pub cheap: bool,
 }
 
 /// One coordinate of a point.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Input {
-    /// Its name.
+    /// Name of the input.
     pub name: String,
-    /// Its unit, where it has one.
+    /// Unit of the input, if it has one.
     pub unit: Option<String>,
 }
 
 /// One value that can be asked for.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Output {
-    /// Its name.
+    /// Name of the output.
     pub name: String,
-    /// Its unit, where it has one.
+    /// Unit of the output, if it has one.
     pub unit: Option<String>,
-    /// The inputs on which it can depend, ascending; None when that is unknown, as for a black box.
+    /// Inputs on which the output can depend, ascending; None if they are unknown, as for a black box.
     pub depends_on: Option<Vec<usize>>,
 }
 
 impl Signature {
-    /// Inputs and outputs by name alone, with nothing else known.
+    /// Creates a signature from the names of inputs and outputs, without further facts.
     pub fn of_names<I, O>(inputs: I, outputs: O) -> Self
     where
         I: IntoIterator<Item: Into<String>>,
@@ -48,7 +48,7 @@ impl Signature {
         }
     }
 
-    /// Index of the output of this name.
+    /// Returns the index of the output of this name.
     pub(crate) fn output(&self, name: &str) -> Option<usize> {
         self.outputs.iter().position(|output| output.name == name)
     }

@@ -1,4 +1,4 @@
-//! An assembly function in several states at once: each output once in every state.
+//! Assembly function in several states: each output once in every state.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -11,22 +11,22 @@ use super::{
 };
 use crate::warning::Warning;
 
-/// One state: a function, and by how much every input lies elsewhere than in the first state.
+/// State: a function, and the offset of every input from the first state.
 pub(crate) struct State {
     pub(crate) name: String,
     pub(crate) function: Arc<dyn AssemblyFunction>,
     pub(crate) moved: Vec<f64>,
-    /// The outputs that are asked of it.
+    /// Outputs that are asked of the function.
     pub(crate) outputs: Vec<usize>,
-    /// Where a costly function was asked for which point, by the bits of where.
+    /// Points for which a costly function was asked, by the bits of the shifted point.
     asked: Mutex<HashMap<Vec<u64>, Vec<f64>>>,
 }
 
-/// The outputs of every state in turn, named `output [state]`, of the inputs of the first state.
+/// Outputs of every state in turn, named `output [state]`, as functions of the inputs of the first state.
 pub(crate) struct States {
     signature: Signature,
     states: Vec<State>,
-    /// For every output its state, and its place among the outputs of that.
+    /// State of every output, and its index among the outputs of that state.
     places: Vec<(usize, usize)>,
 }
 
@@ -47,12 +47,12 @@ impl States {
         Self { signature, states, places }
     }
 
-    /// The name of an output in a state.
+    /// Returns the name of an output in a state.
     pub(crate) fn name(output: &str, state: &str) -> String {
         format!("{output} [{state}]")
     }
 
-    /// The states that have some of these outputs, each with the places among them and its own outputs.
+    /// Returns the states that have some of these outputs, each with the places among them and its own outputs.
     fn by_state(&self, outputs: &[usize]) -> impl Iterator<Item = (&State, Vec<usize>, Vec<usize>)> {
         let of = |(s, state)| {
             let own = outputs.iter().enumerate().filter(|&(_, &output)| self.places[output].0 == s);
@@ -82,7 +82,7 @@ impl State {
         }
     }
 
-    /// The point for which this one was asked.
+    /// Returns the point of the first state for which this point was asked.
     fn asked_for(&self, point: &[f64]) -> Vec<f64> {
         let asked = self.asked.lock().unwrap_or_else(PoisonError::into_inner);
         asked.get(&bits(point)).cloned().unwrap_or_else(|| point.to_vec())
@@ -96,7 +96,7 @@ impl State {
 }
 
 impl States {
-    /// Derivatives of outputs, each by what `derivatives` has of its state at the point there.
+    /// Returns derivatives of outputs. `derivatives` gives those of a state at its shifted point.
     fn derivatives_of(
         &self,
         outputs: &[usize],
@@ -169,7 +169,7 @@ impl AssemblyFunction for States {
                 }
             }
         }
-        // A point of a costly model is one evaluation in every state; of a cheap one they count as one.
+        // A point of a costly model is one evaluation in every state. The states of a cheap one count as one evaluation.
         if self.signature.costly {
             out.spent(spent - out.answered().count() as i64);
         }

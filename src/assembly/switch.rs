@@ -1,47 +1,47 @@
-//! Where an output changes its form: switches, and how far a point is from each.
+//! Switches of an output, where it changes its form, and the margins of points from them.
 
 use std::ops::Range;
 
-/// The change of an output where the margin of a switch changes its sign.
+/// Change of an output where the margin of a switch changes its sign.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum SwitchKind {
     /// Two slopes meet: `abs`, `min`, `max`.
     Kink,
-    /// Another expression is computed: a comparison. The value is the same on both sides, or it is not.
+    /// Another expression is computed after a comparison. The value may be the same on both sides.
     Branch,
     /// The value jumps: `floor`, `ceil`, `sign`, the cut of `atan2`.
     Jump,
-    /// There is no value beyond: `sqrt`, `ln`, `log10`, a broken power, `asin`, `acos`, a solver that fails.
+    /// The value does not exist beyond: `sqrt`, `ln`, `log10`, a broken power, `asin`, `acos`, a solver that fails.
     Edge,
     /// The value grows without bound on either side: a divisor, `tan`.
     Pole,
 }
 
-/// One place of a definition at which an output changes its form.
+/// Place in a definition at which an output changes its form.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Switch {
-    /// The change there.
+    /// Kind of the change.
     pub kind: SwitchKind,
-    /// The part of the definition that does it, as it is written: `max(a, b)`.
+    /// Part of the definition that causes the change, as it is written: `max(a, b)`.
     pub text: String,
-    /// The formula that this stands in; None where it is not a formula.
+    /// Name of the formula that contains the part; None if it is not in a formula.
     pub formula: Option<String>,
-    /// Where it stands there, in bytes.
+    /// Position of the part in the formula, in bytes.
     pub span: Range<usize>,
 }
 
-/// The switches of an output.
+/// Switches of an output.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Switches {
-    /// Those that are known, in the order of the formulas.
+    /// Known switches, in the order of the formulas.
     pub list: Vec<Switch>,
-    /// Whether there are no others: a part of the output that is a black box may have any.
+    /// True if there are no others. A part of the output that is a black box may have any.
     pub complete: bool,
 }
 
 impl Switch {
-    /// Its name in a report: the text, and the formula where the output has another name.
+    /// Returns the name in a report: the text, and the formula if the output has another name.
     ///
     /// ```
     /// use sensitol::assembly::{Switch, SwitchKind};

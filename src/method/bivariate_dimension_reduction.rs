@@ -5,17 +5,19 @@
 //! g_j = f(x_j) - f0,   g_jk = f(x_j, x_k) - f(x_j) - f(x_k) + f0
 //! ```
 //!
-//! with all dimensions that are not named at their means. Xu and Rahman (2004), "A generalized dimension-reduction method for
-//! multidimensional integration in stochastic mechanics", International Journal for Numerical Methods in Engineering 61, equation
-//! 21 with S = 2. They integrate powers of the function itself plane by plane (their equation 26); here all four moments are those
-//! of the decomposition, exact at the nodes of the rules ([`Tables`](sensitol_numeric::moments::Tables)): third and fourth moments take
-//! products of planes that meet in one or two dimensions too. So everything is exact for functions whose terms have two
-//! dimensions each, as far as the rules are. Joint effects of three dimensions are left out.
+//! All dimensions that are not arguments are at their means. Source: equation 21 with S = 2 of Xu and Rahman (2004), "A generalized
+//! dimension-reduction method for multidimensional integration in stochastic mechanics", International Journal for Numerical Methods in
+//! Engineering 61.
 //!
-//! Correlated inputs go by eigenvectors, as in `dimension-reduction`.
+//! They integrate powers of the function itself plane by plane (their equation 26). Here all four moments are those of the decomposition,
+//! exact at the nodes of the rules ([`Tables`](sensitol_numeric::moments::Tables)). Third and fourth moments therefore include products of
+//! planes that share one or two dimensions. All moments are exact for functions whose terms have two dimensions each, within the exactness
+//! of the rules. Joint effects of three dimensions are left out.
 //!
-//! Evaluations: with n_j nodes of input j beside its mean, `1 + sum_j n_j + sum_{j<k} n_j n_k`; n_j is 4 for symmetric inputs and 5
-//! for others, unless `--nodes` says otherwise. A pair on which no characteristic depends jointly costs nothing.
+//! Correlated inputs are transformed by eigenvectors, as in `dimension-reduction`.
+//!
+//! Evaluations: `1 + sum_j n_j + sum_{j<k} n_j n_k`, with n_j nodes of input j beside its mean. n_j is 4 for symmetric inputs and 5 for
+//! others, unless `--nodes` sets another rule. A pair on which no characteristic depends jointly costs nothing.
 
 use std::sync::Arc;
 
@@ -30,14 +32,14 @@ use sensitol_numeric::moments::Tables;
 
 pub(super) struct BivariateDimensionReduction;
 
-/// Two variables and the points at their nodes, those of the second running fastest.
+/// Two variables and the points at their nodes. The node of the second variable changes fastest.
 struct Plane {
     v: usize,
     w: usize,
     points: Vec<Point>,
 }
 
-/// The points of all axes and planes.
+/// Points of all axes and planes.
 struct Planes<'p> {
     quadrature: Quadrature<'p>,
     cuts: Vec<Vec<Point>>,
@@ -115,11 +117,11 @@ impl BivariateDimensionReduction {
     }
 }
 
-/// The parts of one characteristic.
+/// Decomposition of one characteristic into univariate and bivariate parts, at the nodes.
 struct Decomposed {
     reference: f64,
     own: Vec<Vec<f64>>,
-    /// Of every pair of variables what the two do together.
+    /// Joint parts `g_jk` of every pair of variables on which the characteristic depends.
     pairs: Vec<(usize, usize, Vec<f64>)>,
 }
 
@@ -157,6 +159,7 @@ impl Decomposed {
             own: self.own.clone(),
             pairs: self.pairs.clone(),
         };
+        // Tables are in the order of the variables, the outcome in the order of the dimensions.
         let found = tables.moments();
         let n = quadrature.design.varying().len();
         let mut own = vec![None; n];
@@ -186,13 +189,13 @@ impl Decomposed {
         Integrated { moments: found.moments, own, pairs: joints, left_out, nodes: quadrature.variables.longest() }
     }
 
-    /// The place of a pair of dimensions among those of variables; None where the characteristic does not depend on both.
+    /// Returns the index of the joint part of a pair of dimensions, or None if the characteristic does not depend on both.
     fn place(&self, quadrature: &Quadrature<'_>, (j, k): (usize, usize)) -> Option<usize> {
         let pair = (quadrature.variables.variable(j)?, quadrature.variables.variable(k)?);
         self.pairs.binary_search_by_key(&pair, |&(v, w, _)| (v, w)).ok()
     }
 
-    /// Mixed derivatives from the four corners next to the means, in sigmas.
+    /// Returns mixed derivatives from the four corners next to the means, in sigmas.
     fn mixed(&self, quadrature: &Quadrature<'_>, pairs: &[(usize, usize)]) -> Vec<Option<Mixed>> {
         let at_means = quadrature.reference == Point::Centre;
         let variables = &quadrature.variables.all;

@@ -1,22 +1,23 @@
-//! Model against surrogate at points that no fit has seen.
+//! Comparison of model and surrogate at check points, which no fit has used.
 
 use crate::assembly::EvaluationError;
 use crate::plan::{DifferencePlan, KnownAnswers, Point};
 use sensitol_numeric::moments::Moments;
 use sensitol_numeric::surrogate::{InputShape, Surrogate, Univariate};
 
-/// A difference three sigma out that does not matter: higher powers have that, and the other points see them.
+/// Greatest difference three sigma out, in sigmas, that is ignored: higher powers cause such differences, and the other check points show
+/// them.
 const FAR: f64 = 0.1;
 
-/// Whether the model has no value at a point, rather than an answer that was not given.
+/// True if the model has no value at a point. An answer that was not given does not count.
 pub(super) fn failed(known: &KnownAnswers, point: &Point, characteristic: usize) -> bool {
     known.error(point, characteristic).is_some_and(|error| !matches!(error, EvaluationError::NotGiven))
 }
 
-/// How model and surrogate differ at points of the dimensions' own distribution.
+/// Statistics of the difference between model and surrogate at points of the dimensions' own distribution.
 ///
-/// With `d` the model minus the surrogate and `z` the standardised surrogate, moments of the model are those of the surrogate plus,
-/// to first order in `d`,
+/// Let `d` be the model minus the surrogate and `z` the standardised surrogate. To first order in `d`, the moments of the model are those
+/// of the surrogate plus
 ///
 /// ```text
 /// mean      E d
@@ -25,32 +26,32 @@ pub(super) fn failed(known: &KnownAnswers, point: &Point, characteristic: usize)
 /// kurtosis  E [(4 z^3 - 4 g - 4 k z) d] / sigma          k: kurtosis
 /// ```
 ///
-/// An effect that is left out and has no part in these, as an interaction that was not examined, adds its own variance.
+/// An omitted effect that is uncorrelated with these terms, such as an interaction that was not examined, adds its own variance.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct SurrogateCheck {
-    /// Points with a value.
+    /// Number of points with a value.
     pub points: usize,
-    /// Points without one.
+    /// Number of points at which the model failed.
     pub failed: usize,
     /// Mean of the differences.
     pub mean: f64,
-    /// Their variance.
+    /// Variance of the differences.
     pub variance: f64,
-    /// Mean square of what two mirrored points have in common, about the mean: interactions, even powers.
+    /// Mean square of the even part of the differences at mirrored points, about the mean: interactions and even powers.
     pub even: f64,
-    /// Mean square of what they differ by: odd powers.
+    /// Mean square of the odd part of the differences at mirrored points: odd powers.
     pub odd: f64,
-    /// The largest difference in size.
+    /// Largest absolute difference.
     pub largest: f64,
-    /// The share of the surrogate's own variance that is curved.
+    /// Share of the surrogate's own variance that is curved.
     pub curved: f64,
     /// First-order effects on mean, sigma, skewness and kurtosis, each with its standard error.
     pub effects: [(f64, f64); 4],
 }
 
 impl SurrogateCheck {
-    /// At these pairs of mirrored points; None where none has a value, or the surrogate has none.
+    /// Compares model and surrogate at these pairs of mirrored points. Returns None if no point has a value, or if the surrogate has none.
     pub(super) fn of(
         plan: &DifferencePlan,
         known: &KnownAnswers,
@@ -111,26 +112,26 @@ impl SurrogateCheck {
         })
     }
 
-    /// An effect as far as it can be told from none, and what cannot be told: two thirds of its standard error.
+    /// Size of an effect beyond its standard error, plus two thirds of the standard error for the part that the sample cannot exclude.
     pub(super) fn effect(&self, moment: usize) -> f64 {
         let (value, error) = self.effects[moment];
         (value.abs() - error).max(0.0) + 2.0 / 3.0 * error
     }
 
-    /// The relative error of sigma by what happens three sigma out only, where the surrogate is off by so many: a bend that begins
-    /// two sigma out and comes to 1 sigma at three takes 6 % of the variance along a line, and more across it.
+    /// Relative error of sigma that is caused three sigma out only, if the surrogate is off by `off` sigmas there. A bend that begins two
+    /// sigma out and comes to 1 sigma at three takes 6 % of the variance along a line, and more across it.
     pub(super) fn far_out(off: f64) -> f64 {
         if off > FAR { 0.08 * off.min(1.0) } else { 0.0 }
     }
 
-    /// The relative error of sigma by slopes and curvatures that were not seen: what is odd may go along with the surrogate's lines,
-    /// what is even with its curves, and so many points do not tell.
+    /// Relative error of sigma caused by slopes and curvatures that the check points cannot exclude. Odd residuals may be correlated with
+    /// the surrogate's lines, even ones with its curves, and a few points do not show this.
     pub(super) fn unseen(&self, variance: f64) -> f64 {
         let along = self.odd * (1.0 - self.curved) + self.even * self.curved;
         if variance > 0.0 { (along / variance / self.points as f64).sqrt() } else { 0.0 }
     }
 
-    /// The same, without what cannot be told: for an effect that what is left out has not, unless shown otherwise.
+    /// Size of an effect beyond two standard errors. It serves effects that residuals do not have unless the sample shows them.
     pub(super) fn shown(&self, moment: usize) -> f64 {
         let (value, error) = self.effects[moment];
         (value.abs() - 2.0 * error).max(0.0)

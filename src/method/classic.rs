@@ -1,6 +1,6 @@
 //! `classic`: every second derivative by the published four-point stencil.
 //!
-//! Twice the evaluations of `full`. Its mixed derivatives are free of terms even in both dimensions.
+//! Twice the evaluations of `full`. Terms that are even in both dimensions cancel in its mixed derivatives.
 
 use super::Method;
 use super::ladder::{Examined, Ladder, Order};

@@ -1,69 +1,69 @@
-//! How `auto` came to its result.
+//! Account of the refinement by which `auto` came to its result.
 
 use super::Accuracies;
 use super::check::SurrogateCheck;
 use crate::plan::Point;
 
-/// How a climb ended.
+/// Reason why a refinement by `auto` ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub enum ClimbEnd {
-    /// Every characteristic is known as well as it was wanted, by the estimate.
+    /// The estimated error of every characteristic is as small as wanted.
     Reached,
-    /// The budget does not allow what would be next.
+    /// The budget does not allow the next evaluations.
     Budget,
-    /// Nothing that could be bought is expected to help.
+    /// No further evaluations are expected to help.
     Exhausted,
-    /// It was stopped before any of that.
+    /// The run was stopped before any other end.
     Stopped,
 }
 
-/// How `auto` came to its result.
+/// Account of the refinement by which `auto` came to its result. Lists of values have one entry for each characteristic.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Climbed {
-    /// The relative error of sigma that was wanted.
+    /// Relative error of sigma that was wanted.
     pub accuracy: f64,
-    /// The accuracies to reach of other results.
+    /// Wanted accuracies of the other results.
     pub accuracies: Accuracies,
-    /// Why it ended.
+    /// Reason why the refinement ended.
     pub rest: ClimbEnd,
     /// Positions of varying dimensions with five points.
     pub refined: Vec<usize>,
-    /// Pairs bought for themselves.
+    /// Number of pairs that were evaluated one by one.
     pub direct: usize,
-    /// Probes that moved all dimensions, of one evaluation each or two.
+    /// Number of probes, which move all dimensions at once. A probe takes one evaluation or two.
     pub probes: usize,
-    /// Points that checked.
+    /// Number of check points that were evaluated.
     pub checks: usize,
-    /// Pairs whose interactions the formulas of all characteristics give.
+    /// Number of pairs whose interactions are given by the formulas of all characteristics.
     pub from_formulas: usize,
-    /// Whether every pair was examined.
+    /// True if every pair was examined.
     pub all_pairs: bool,
-    /// For every characteristic what the check says; None where it has no surrogate, or nothing was checked.
+    /// Comparison of model and surrogate for every characteristic; None if it has no surrogate, or if no check point has a value.
     pub checked: Vec<Option<SurrogateCheck>>,
-    /// The scatter of answers next to the means.
+    /// Scatter of answers next to the means, for every characteristic.
     pub noise: Vec<Option<f64>>,
-    /// How many sigmas model and surrogate differ by three sigma out along the steepest line, infinite where the model has no
-    /// value there; None where the tails were not examined.
+    /// Difference of model and surrogate three sigma out along the steepest line, in sigmas; infinite if the model has no value there, None
+    /// if the tails were not examined.
     pub tails: Vec<Option<f64>>,
-    /// The same without what a parabola explains that the points that check have seen.
+    /// Value of `tails` without the part that a parabola explains which the check points have shown.
     pub(crate) beyond: Vec<Option<f64>>,
-    /// The share of the variance that interactions have which the screening did not find, where it was needed.
+    /// Share of the variance of interactions that the screening did not find; None if no screening was needed.
     pub unscreened: Vec<Option<f64>>,
-    /// The points that were looked at there, by characteristic.
+    /// Points far out that `tails` compares, by characteristic.
     pub(crate) far: Vec<(usize, [Point; 2])>,
 }
 
 impl Climbed {
-    /// The relative error of sigma where a surface is off by so many sigmas three sigma out.
+    /// Returns the relative error of sigma if a surface is off by `off` sigmas three sigma out.
     pub(crate) fn far_out(off: f64) -> f64 {
         SurrogateCheck::far_out(off)
     }
 
-    /// The variance that the surrogate of a characteristic does not have, by the check; None where nothing was checked.
+    /// Returns the variance that the surrogate of a characteristic lacks by its check points; None if fewer than two have a value.
     pub(crate) fn unexplained(&self, c: usize) -> Option<f64> {
         self.checked[c].as_ref().filter(|check| check.points > 1).map(|check| check.variance)
     }

@@ -4,24 +4,24 @@ use super::{EvaluationLimit, Method, MethodError, Options};
 use crate::plan::Plan;
 use crate::problem::Problem;
 
-/// Evaluations and stages, if no point fails.
+/// Number of evaluations and stages, if no point fails.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Cost {
-    /// Points that are sent to the model.
+    /// Number of points that are sent to the model.
     pub evaluations: usize,
-    /// Batches in which they are sent.
+    /// Number of batches in which the points are sent.
     pub stages: usize,
 }
 
 impl Cost {
-    /// Of a plan.
+    /// Returns the evaluations and stages of a plan.
     pub(super) fn of(plan: &dyn Plan) -> Self {
         let (evaluations, stages) = plan.cost();
         Self { evaluations, stages }
     }
 
-    /// The same, if the budget allows it, or the limit without one.
+    /// Returns the cost itself if it is within the budget, or within the limit that holds without a budget.
     pub(super) fn within(
         self,
         method: &'static str,
@@ -33,7 +33,7 @@ impl Cost {
     }
 }
 
-/// Refuses more evaluations than a plan may have, before any of its points is made: 1,000,000 without a budget.
+/// Refuses more evaluations than a plan may have, before any of its points is made. Without a budget the limit is 1,000,000.
 pub(super) fn affordable(
     method: &'static str,
     needed: u128,
@@ -55,7 +55,7 @@ pub(super) fn affordable(
     }
 }
 
-/// The derivative method with the most evaluations that so many allow.
+/// Returns the derivative method with the most evaluations within the budget, and their number.
 pub(super) fn fitting(problem: &Problem, budget: usize) -> Option<(Method, usize)> {
     [Method::Full, Method::SixN, Method::SecondOrder]
         .into_iter()

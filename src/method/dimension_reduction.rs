@@ -4,20 +4,22 @@
 //! y ~ sum_j f(mean, .., x_j, .., mean) - (N-1) f(mean) = f0 + sum_j g_j(x_j)
 //! ```
 //!
-//! Univariate dimension reduction, Rahman and Xu (2004), "A univariate dimension-reduction method for multi-dimensional
-//! integration in stochastic mechanics", Probabilistic Engineering Mechanics 19, equations 5 and 13. They integrate raw
-//! moments through a recurrence of binomials; here the cumulants of the parts, which add, come from one-dimensional quadrature of
-//! each part about its own mean, so that nothing cancels. Exact for sums of functions of one dimension each, as far as the rules
-//! are: with m nodes for a fourth power of degree 2m-1. Joint effects of two dimensions are left out.
+//! Univariate dimension reduction: Rahman and Xu (2004), "A univariate dimension-reduction method for multi-dimensional integration in
+//! stochastic mechanics", Probabilistic Engineering Mechanics 19, equations 5 and 13.
 //!
-//! Correlated inputs go by the eigenvectors of their correlation, 2 or 4 points a direction and the centre: Youn, Xi and Wang
-//! (2008), "Eigenvector dimension reduction (EDR) method for sensitivity-free probability analysis", Structural and
-//! Multidisciplinary Optimization 37. They take the eigenvectors of the covariance, which depend on the units of the dimensions,
-//! and put a stepwise moving least-squares curve through the samples; here they are those of the correlation behind the inputs
-//! (Nataf), which know no units, and the samples are the nodes of the rules themselves. Where two eigenvalues are equal, the
-//! directions of the two are not determined by the inputs.
+//! They integrate raw moments through a recurrence of binomials. Here each part is integrated about its own mean by one-dimensional
+//! quadrature, and the cumulants of the parts are added, so that no digits cancel. The result is exact for sums of functions of one
+//! dimension each, within the exactness of the rules: a rule of m nodes integrates the fourth power exactly up to degree 2m-1. Joint
+//! effects of two dimensions are left out.
 //!
-//! Evaluations: m-1 of every symmetric input (m is odd, and the middle node is the mean), m of every other one, and 1.
+//! Correlated inputs are moved along the eigenvectors of their correlation, with 2 or 4 points a direction and the centre: Youn, Xi and
+//! Wang (2008), "Eigenvector dimension reduction (EDR) method for sensitivity-free probability analysis", Structural and Multidisciplinary
+//! Optimization 37. They take the eigenvectors of the covariance, which depend on the units of the dimensions, and put a stepwise moving
+//! least-squares curve through the samples. Here the eigenvectors are those of the correlation of the underlying normal variables (Nataf),
+//! which do not depend on units, and the samples are the nodes of the rules themselves. If two eigenvalues are equal, the inputs do not
+//! determine the directions of the two.
+//!
+//! Evaluations: m-1 for every symmetric input (m is odd, and the middle node is the mean), m for every other one, and 1.
 
 use std::sync::Arc;
 
@@ -31,7 +33,7 @@ use sensitol_numeric::moments::{Interactions, Term, contributions};
 
 pub(super) struct DimensionReduction;
 
-/// Nodes of a rule unless said otherwise.
+/// Number of nodes of a rule if the options give none.
 pub(super) const NODES: usize = 5;
 
 impl Procedure for DimensionReduction {
@@ -70,13 +72,13 @@ impl Procedure for DimensionReduction {
     }
 }
 
-/// The rules and the point between them.
+/// Returns the variables with their rules, and the point between the nodes.
 pub(super) fn univariate<'p>(problem: &'p Problem, options: &Options) -> Quadrature<'p> {
     let nodes = options.nodes.unwrap_or(NODES);
     Quadrature::new(problem, options, |distribution| Rule::of(distribution, nodes), nodes, true)
 }
 
-/// For every variable the rises of a characteristic above the reference at its nodes.
+/// Returns the value at the reference, and for every variable the rises above it at the nodes. Returns None if the reference has no value.
 pub(super) fn tables(
     quadrature: &Quadrature<'_>,
     cuts: &[Vec<Point>],

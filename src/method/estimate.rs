@@ -1,7 +1,7 @@
-//! How far the results of a method may be off, by what it did not see.
+//! Estimated errors of the results of a method, from the effects that it did not examine.
 //!
-//! Every source changes the surrogate as what it stands for might, and the change of the moments is its part in the estimate; parts
-//! of different sources add. A source of unknown size makes the estimate None.
+//! Every source of error changes the surrogate in the way in which the model might differ from it. The change of the moments is the part of
+//! this source in the estimate. Parts of different sources add. A source of unknown size makes the estimate None.
 
 use serde::Serialize;
 
@@ -15,91 +15,93 @@ use sensitol_numeric::moments::{Interactions, Moments, Term, contributions};
 use sensitol_numeric::power::rescale;
 use sensitol_numeric::surrogate::{Inputs, Surrogate, Univariate};
 
-/// Interactions of which the exact derivatives are worth their time.
+/// Greatest number of interactions for which exact derivatives are computed. More of them take too long.
 const EXACT: usize = 2000;
-/// The factor `t` of terms that twist an interaction, and a curvature beside which a slope is none.
+/// Assumed factor `t` of the terms `u_j^2 u_k` that twist an interaction. It lies between 1 and 3.
 const TWIST: f64 = 1.5;
+/// Greatest ratio of curvature to slope that is used. If the product of two ratios exceeds it, both dimensions count as acting by their
+/// squares.
 const BENT: f64 = 0.3;
-/// Interactions of three are estimated up to this part of those of two.
+/// Greatest ratio of the variance of interactions of three dimensions to that of two.
 const MOST: f64 = 0.5;
 
-/// The estimated error of each result, in its own unit; None where nothing is known.
+/// Estimated error of each result, in the unit of the result; None if the error is unknown.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct ErrorEstimate {
-    /// Of the mean.
+    /// Error of the mean.
     pub mean: Option<f64>,
-    /// Of sigma.
+    /// Error of sigma.
     pub sigma: Option<f64>,
-    /// Of the skewness.
+    /// Error of the skewness.
     pub skewness: Option<f64>,
-    /// Of the kurtosis.
+    /// Error of the kurtosis.
     pub kurtosis: Option<f64>,
-    /// Of the share within the limits.
+    /// Error of the share within the limits.
     #[serde(rename = "yield")]
     pub yield_: Option<f64>,
-    /// Its basis.
+    /// Sources that the estimate is made of.
     pub sources: Vec<ErrorSource>,
 }
 
 rescale!(ErrorEstimate { mean, sigma } without { skewness, kurtosis, yield_, sources });
 
-/// The basis of an estimate.
+/// Source of an estimated error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum ErrorSource {
-    /// Model against surrogate at points of the dimensions' distribution.
+    /// Comparison of model and surrogate at points of the dimensions' distribution.
     Checked {
-        /// How many.
+        /// Number of check points with a value.
         points: usize,
     },
-    /// Powers beyond those of the polynomials, from how fast these fall.
+    /// Powers beyond those of the polynomials, extrapolated from the decrease of the known ones.
     Powers {
-        /// Nodes of the axes with the fewest, the mean included.
+        /// Nodes of the axes with the fewest, including the mean.
         nodes: usize,
     },
-    /// Powers beyond the second, from exact derivatives.
+    /// Powers beyond the second, extrapolated from exact derivatives.
     Taylor,
-    /// The effect of curvature that a first-order method leaves out.
+    /// Effect of curvature, which a first-order method leaves out.
     Curvature,
     /// Interactions that were not examined, from exact derivatives.
     ExactPairs {
-        /// How many.
+        /// Number of pairs that were not examined.
         pairs: usize,
     },
-    /// Interactions that were not examined, from those that were.
+    /// Interactions that were not examined, extrapolated from those that were.
     SimilarPairs {
-        /// How many.
+        /// Number of pairs that were not examined.
         pairs: usize,
     },
-    /// Interactions of which nothing is known.
+    /// Interactions of which nothing is known, so that the error is unknown.
     UnknownPairs {
-        /// How many.
+        /// Number of pairs that were not examined.
         pairs: usize,
     },
-    /// Interactions of three and more, from those of two.
+    /// Interactions of three and more dimensions, extrapolated from those of two.
     Triples,
-    /// The scatter of answers.
+    /// Scatter of the answers of a model that is noisy.
     Scatter,
-    /// A derivative that could not be had.
+    /// A derivative without a value, so that the error is unknown.
     Lost,
-    /// A formula that is a polynomial, which the surface holds exactly.
+    /// A formula that is a polynomial, which the surface represents exactly.
     Proven {
-        /// The degree.
+        /// Degree of the polynomial that the formula is.
         degree: u32,
     },
-    /// Standard errors of points of the model.
+    /// Standard errors of a sample of the model.
     Sampled {
-        /// How many.
+        /// Number of points in the sample.
         points: u64,
     },
 }
 
 impl ErrorSource {
-    /// In words.
+    /// Returns the source in words, for reports.
     pub fn words(self) -> String {
         match self {
             Self::Checked { points } => format!("model against surrogate at {points} points of the distribution"),
@@ -119,16 +121,18 @@ impl ErrorSource {
 }
 
 impl ErrorEstimate {
-    /// Its sources, in words.
+    /// Returns all sources in words, for reports.
     pub fn basis(&self) -> String {
         self.sources.iter().map(|source| source.words()).collect::<Vec<_>>().join("; ")
     }
 }
 
-/// The amount that terms `u_j^2 u_k` may add to half the variance: in a product of functions, and in a function of a sum, they
-/// are `t a_j A_jk/b_j` with slopes `b` and curvatures `a` and `t` from 1 to 3, and a slope of `k` by their mean. Where two
-/// dimensions act by their squares, two corners cannot tell `u_j^2 u_k^2` from the product, and all of that is in doubt. And what
-/// `u_j^2 u_k^2`, in such functions `a_j a_k A_jk/(b_j b_k)`, may move the mean by.
+/// Possible contribution of the terms `u_j^2 u_k` to half the variance, and of the terms `u_j^2 u_k^2` to the mean.
+///
+/// In a product of functions, and in a function of a sum, the coefficient of `u_j^2 u_k` is `t a_j A_jk/b_j`, with slopes `b`, curvatures
+/// `a` and `t` from 1 to 3. The mean of this term is a slope of dimension `k`. The coefficient of `u_j^2 u_k^2` in such functions is `a_j
+/// a_k A_jk/(b_j b_k)`. If two dimensions act by their squares, two corners do not separate `u_j^2 u_k^2` from the product, and the whole
+/// product is in doubt.
 fn twists(parts: &[Univariate], products: &[(usize, usize, f64)]) -> [f64; 2] {
     let [slopes, curvatures]: [Vec<f64>; 2] =
         [0, 1].map(|i| parts.iter().map(|part| part.coefficients()[i].abs()).collect());
@@ -143,7 +147,7 @@ fn twists(parts: &[Univariate], products: &[(usize, usize, f64)]) -> [f64; 2] {
     products.iter().map(term).fold([0.0; 2], |sum, more| [sum[0] + more[0], sum[1] + more[1]])
 }
 
-/// Parts of the errors of mean, sigma, skewness and kurtosis.
+/// Contributions to the errors of mean, sigma, skewness and kurtosis.
 type Errors = [f64; 4];
 
 fn figures(moments: &Moments) -> Errors {
@@ -159,14 +163,14 @@ fn add(sum: &mut Errors, more: Errors) {
     sum.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
 }
 
-/// Estimates for the moments of a characteristic, as the method gives them; None where it has none.
+/// Estimates the errors of the moments of a characteristic. Returns None if the method gives no estimate, or if there is no surrogate.
 pub fn estimate(problem: &Problem, outcome: &Outcome, c: usize, moments: &Moments) -> Option<ErrorEstimate> {
     if !matches!(outcome.basis, Basis::Exact | Basis::Differences) {
         return None;
     }
     let surrogate = outcome.fitted[c].surrogate.as_ref()?;
     let mut of = Estimate { problem, outcome, c, surrogate, errors: [0.0; 4], known: [true; 4], sources: Vec::new() };
-    // Moments of correlated inputs may be samples of the surface.
+    // Moments of correlated inputs may be sampled from the surface, so that a proof of the surface does not make them exact.
     match outcome.fitted[c].proof.filter(|_| outcome.plan.inputs().correlation().is_none()) {
         Some(proof) => of.proven(proof, moments),
         None => of.unproven(moments),
@@ -194,7 +198,7 @@ struct Estimate<'a> {
 }
 
 impl Estimate<'_> {
-    /// Adds the errors of a surface that is not known to be the function.
+    /// Adds the errors of a surface that may differ from the function.
     fn unproven(&mut self, moments: &Moments) {
         let outcome = self.outcome;
         let checked = outcome.climbed.as_ref().and_then(|climbed| Some((climbed, climbed.checked[self.c].as_ref()?)));
@@ -210,19 +214,19 @@ impl Estimate<'_> {
         }
     }
 
-    /// Adds the roundings of a surface that is the function itself.
+    /// Adds the rounding errors of a surface that is the function itself.
     fn proven(&mut self, SurfaceProof { degree, mean, sigma }: SurfaceProof, moments: &Moments) {
         let part = if moments.sigma() > 0.0 { sigma / moments.sigma() } else { 0.0 };
         add(&mut self.errors, [mean, sigma, 4.0 * part, 8.0 * part]);
         self.sources.push(ErrorSource::Proven { degree });
     }
 
-    /// The parts as they are known, of a first-order method too.
+    /// Returns the univariate parts of all varying dimensions, with curvatures even if the method is of first order.
     fn parts(&self) -> Option<Vec<Univariate>> {
         self.outcome.plan.varying().iter().map(|&d| self.outcome.fitted[self.c].parts[d]).collect()
     }
 
-    /// The amount that powers beyond the polynomials may add; None where a part is not even a parabola.
+    /// Returns the possible contribution of powers beyond the polynomials. Returns None if a part is not even a parabola.
     fn hidden(&self, moments: &Moments) -> Option<Errors> {
         let plan = &self.outcome.plan;
         let parts = self.parts()?;
@@ -245,7 +249,8 @@ impl Estimate<'_> {
         });
         let other: Vec<Term<'_>> = other.collect();
         let interactions = &self.surrogate.interactions;
-        // The moments of a surface of independent inputs are known already, but for their mean, of which nothing is asked here.
+        // The moments of a surface of independent inputs are known already, except that `errors[0]` is replaced below, so that the mean is
+        // not needed.
         let own = self.outcome.order == Order::Second
             && self.outcome.fitted[self.c].integrated.is_none()
             && self.outcome.climbed.is_none()
@@ -253,7 +258,7 @@ impl Estimate<'_> {
             && self.surrogate.parts.iter().copied().eq(parts.iter().copied().map(Some));
         let known = if own { *moments } else { contributions(0.0, &known, interactions).moments };
         let mut errors = apart(&contributions(0.0, &other, interactions).moments, &known);
-        // Signs are a guess: what cancels need not.
+        // The signs of the hidden terms are guesses, so terms that cancel here may add in the model.
         let sigma = moments.sigma();
         let variance: f64 = values.iter().map(|hidden| hidden.variance).sum();
         errors[0] = values.iter().map(|hidden| hidden.mean.abs()).sum();
@@ -263,7 +268,7 @@ impl Estimate<'_> {
         Some(errors)
     }
 
-    /// Of a surrogate that was compared with the model: what was not seen there is not there.
+    /// Adds the errors of a surrogate that was compared with the model. The residuals at the check points bound the hidden powers.
     fn checked(&mut self, climbed: &Climbed, check: &SurrogateCheck, hidden: Errors, moments: &Moments) {
         let sigma = moments.sigma();
         let left = if sigma > 0.0 { check.variance / (sigma * sigma) } else { 0.0 };
@@ -280,7 +285,8 @@ impl Estimate<'_> {
         );
         let [far, beyond] =
             [&climbed.tails, &climbed.beyond].map(|tails| tails[self.c].map_or(0.0, SurrogateCheck::far_out));
-        // Sigma has a parabola in what is left at the checks; the others depend on how it lies to the slopes.
+        // The parabola that explains residuals at the check points is in sigma already (`left`). The other moments depend on its position
+        // relative to the slopes, so they get the whole difference.
         add(&mut self.errors, [far * sigma, beyond * sigma, 6.0 * far, 20.0 * far]);
         self.sources.push(ErrorSource::Checked { points: check.points });
         self.powers();
@@ -330,7 +336,7 @@ impl Estimate<'_> {
         if left > 0 {
             share += self.unexamined(left, (&curved(), &independent), variance, &mut products);
         }
-        // Those that are taken to be like others twist as these do.
+        // Interactions that are extrapolated from others twist as these do.
         let seen: f64 = products.iter().map(|(.., value)| value * value).sum::<f64>() / variance;
         let times = if seen > 0.0 { (share / seen).max(1.0) } else { 1.0 };
         let known: Vec<Univariate> = parts.iter().flatten().copied().collect();
@@ -350,7 +356,7 @@ impl Estimate<'_> {
         }
     }
 
-    /// The pairs that were examined, in order: those whose interaction was estimated are not among them.
+    /// Returns the pairs that were examined, in order. Pairs whose interaction was estimated do not count.
     fn examined_pairs(&self) -> Vec<(usize, usize)> {
         let mixed = &self.outcome.fitted[self.c].mixed;
         let own = self.outcome.pairs.iter().zip(mixed.iter().copied().chain(std::iter::repeat(None)));
@@ -363,7 +369,7 @@ impl Estimate<'_> {
         examined
     }
 
-    /// The products of the surface that were examined.
+    /// Returns the products of the surface that were examined.
     fn examined_products(&self) -> Vec<(usize, usize, f64)> {
         let mut products = self.surrogate.interactions.pairs();
         if self.outcome.fitted[self.c].screened > 0 {
@@ -373,12 +379,12 @@ impl Estimate<'_> {
         products
     }
 
-    /// How many pairs that matter to the characteristic were not examined.
+    /// Returns the number of pairs that matter to the characteristic and were not examined.
     fn left_pairs(&self) -> usize {
         self.outcome.plan.pairs_of(self.c).saturating_sub(self.examined_pairs().len())
     }
 
-    /// These pairs.
+    /// Iterates over the pairs that `left_pairs` counts.
     fn each_left_pair(&self) -> impl Iterator<Item = (usize, usize)> {
         let n = self.outcome.plan.varying().len();
         let examined = self.examined_pairs();
@@ -386,7 +392,7 @@ impl Estimate<'_> {
         all.filter(move |&(j, k)| self.outcome.plan.joint(self.c, j, k) && examined.binary_search(&(j, k)).is_err())
     }
 
-    /// Adds what interactions that were not examined may do; the share of the variance that they are taken to have.
+    /// Adds the possible effect of interactions that were not examined. Returns the share of the variance that they are assumed to have.
     fn unexamined(
         &mut self,
         pairs: usize,
@@ -419,7 +425,8 @@ impl Estimate<'_> {
         share
     }
 
-    /// The pairs that were not examined, so many, with their interactions in sigmas, as the assembly function knows them.
+    /// Returns the pairs that were not examined, with their interactions in sigmas from exact derivatives. Returns None if there are too
+    /// many, or if the assembly function has no such derivatives.
     fn exact_pairs(&self, pairs: usize) -> Option<Vec<(usize, usize, f64)>> {
         let plan = &self.outcome.plan;
         if pairs > EXACT {
@@ -442,7 +449,8 @@ impl Estimate<'_> {
         left.iter().zip(&derivatives.mixed).map(scaled).collect()
     }
 
-    /// The share of interactions that are to the shares of their dimensions as those examined are.
+    /// Extrapolates the share of the variance of the interactions that were not examined. They are assumed to have the ratio to the shares
+    /// of their dimensions that the examined ones have. Returns None if no examined pair has an expected share.
     fn similar_pairs(&self, variance: f64) -> Option<f64> {
         let plan = &self.outcome.plan;
         let own: Vec<f64> = (self.parts()?.iter().zip(plan.inputs().shapes()))
@@ -458,7 +466,7 @@ impl Estimate<'_> {
         Some(found / seen * expected(&mut self.each_left_pair()))
     }
 
-    /// One rounding of a value in every difference.
+    /// Adds one rounding of a value in every difference.
     fn rounding(&mut self, moments: &Moments) {
         let one = f64::EPSILON * self.surrogate.centre.abs() * (self.surrogate.parts.len() as f64 + 1.0).sqrt();
         let part = if moments.sigma() > 0.0 { one / moments.sigma() } else { 0.0 };

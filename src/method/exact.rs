@@ -1,4 +1,4 @@
-//! Exact derivatives in the place of differences.
+//! Exact derivatives that replace differences.
 
 use std::collections::HashMap;
 
@@ -9,33 +9,33 @@ use crate::problem::Problem;
 use sensitol_numeric::power::{Power, Wide};
 use sensitol_numeric::surrogate::Univariate;
 
-/// One characteristic's derivatives at the means, as the assembly function knows them; None where there is none.
+/// Exact derivatives of one characteristic at the means; None for a derivative that does not exist.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct ExactDerivatives {
-    /// By every dimension of the problem, in order; None too for those that were not asked for.
+    /// First derivatives by every dimension of the problem, in order; None also for dimensions that were not asked for.
     pub first: Vec<Option<f64>>,
-    /// Twice by every dimension.
+    /// Second derivatives by every dimension of the problem, in order.
     pub second: Vec<Option<f64>>,
-    /// By both dimensions of every pair examined.
+    /// Mixed derivatives of every pair that was examined.
     pub mixed: Vec<Option<f64>>,
-    /// The unit of every dimension, a power of two, by which the derivatives are; 1 for a dimension of ordinary size.
+    /// Unit of every dimension in which the derivatives are taken, a power of two; 1 for a dimension of ordinary size.
     pub(crate) units: Vec<Power>,
 }
 
-/// The units by which exact derivatives are taken.
+/// Returns the units of all dimensions in which exact derivatives are taken.
 pub(super) fn units(plan: &dyn Plan) -> Vec<Power> {
     (0..plan.centre().len()).map(|d| Power::of(plan.axis(d).scale)).collect()
 }
 
-/// The exact derivatives of all characteristics in these units.
+/// Returns the exact derivatives of all characteristics in these units.
 fn derivatives(problem: &Problem, directions: &Directions<'_>, units: &[Power]) -> Vec<Option<Derivatives>> {
     let exponents: Vec<i32> = units.iter().map(|unit| unit.exponent()).collect();
     problem.function().derivatives_per(problem.outputs(), directions, &exponents)
 }
 
 impl ExactDerivatives {
-    /// Of every characteristic; None for those of which the function does not know them.
+    /// Returns the exact derivatives of every characteristic; None for one whose function has no derivatives.
     pub(super) fn of(problem: &Problem, plan: &dyn Plan) -> Vec<Option<Self>> {
         let (inputs, point, units) = (plan.moved(), plan.centre(), units(plan));
         let directions = Directions { point: &point, inputs: &inputs, pairs: &[] };
@@ -51,8 +51,8 @@ impl ExactDerivatives {
         derivatives(problem, &directions, &units).into_iter().map(|derivatives| derivatives.map(known)).collect()
     }
 
-    /// Those that a report shows beside what was evaluated, with the mixed ones of these pairs of positions; none where only
-    /// differences are wanted.
+    /// Returns the exact derivatives that a report shows beside evaluated ones, with the mixed derivatives of these pairs of positions.
+    /// Returns None for every characteristic if only differences are wanted.
     pub(super) fn beside(
         problem: &Problem,
         plan: &dyn Plan,
@@ -67,7 +67,7 @@ impl ExactDerivatives {
         all
     }
 
-    /// Adds the mixed ones of these pairs of positions.
+    /// Adds the mixed derivatives of these pairs of positions.
     pub(super) fn add_pairs(all: &mut [Option<Self>], problem: &Problem, plan: &dyn Plan, pairs: &[(usize, usize)]) {
         let dimensions: Vec<(usize, usize)> =
             pairs.iter().map(|&(j, k)| (plan.varying()[j], plan.varying()[k])).collect();
@@ -80,7 +80,7 @@ impl ExactDerivatives {
         }
     }
 
-    /// The pairs of positions that the problem knows to interact, in order.
+    /// Returns the pairs of positions that the problem lists as interacting, in order.
     pub(super) fn known_pairs(problem: &Problem, plan: &DifferencePlan, options: &Options) -> Vec<(usize, usize)> {
         if options.derivatives == Some(DerivativeSource::Difference) {
             return Vec::new();
@@ -101,7 +101,7 @@ impl ExactDerivatives {
         pairs
     }
 
-    /// The mixed derivatives of these pairs, in sigmas, for every characteristic whose function knows them.
+    /// Returns the mixed derivatives of these pairs in sigmas, for every characteristic whose function has derivatives.
     pub(super) fn mixed_of(
         problem: &Problem,
         plan: &DifferencePlan,
@@ -117,7 +117,7 @@ impl ExactDerivatives {
         all.iter().map(|exact| exact.as_ref().map_or_else(Vec::new, of)).collect()
     }
 
-    /// One dimension's own part, in sigmas: a parabola, a straight line where the curvature does not exist.
+    /// Returns the univariate part of one dimension, in sigmas: a parabola, or a straight line if the curvature does not exist.
     pub(super) fn part(&self, plan: &DifferencePlan, dimension: usize) -> Option<Univariate> {
         let scale = self.units[dimension].inverse().times(plan.axis(dimension).scale);
         let slope = scale * self.first[dimension]?;
@@ -127,7 +127,7 @@ impl ExactDerivatives {
         })
     }
 
-    /// The mixed derivatives in sigmas.
+    /// Returns the mixed derivatives of these pairs, in sigmas.
     pub(super) fn mixed(&self, plan: &DifferencePlan, pairs: &[(usize, usize)]) -> Vec<Option<Mixed>> {
         let in_sigmas = |(&(j, k), value): (&(usize, usize), &Option<f64>)| {
             let scale = |position: usize| {
@@ -139,23 +139,23 @@ impl ExactDerivatives {
         pairs.iter().zip(&self.mixed).map(in_sigmas).collect()
     }
 
-    /// The first derivative by a dimension, per unit of 1; None where there is none.
+    /// Returns the first derivative by a dimension, per unit of 1, or None if it does not exist.
     pub(crate) fn slope(&self, dimension: usize) -> Option<Wide> {
         Some(Wide::of(self.first[dimension]?).times_power(self.units[dimension].inverse()))
     }
 
-    /// The second derivative by a dimension, per unit of 1; None where there is none.
+    /// Returns the second derivative by a dimension, per unit of 1, or None if it does not exist.
     pub(crate) fn curvature(&self, dimension: usize) -> Option<Wide> {
         Some(Wide::of(self.second[dimension]?).times_power(self.units[dimension].inverse().squared()))
     }
 
-    /// The mixed derivative of a pair by its place, of these two dimensions, per unit of 1; None where there is none.
+    /// Returns the mixed derivative of the pair at this place, of these two dimensions, per unit of 1, or None if it does not exist.
     pub(crate) fn interaction(&self, place: usize, [j, k]: [usize; 2]) -> Option<Wide> {
         let unit = self.units[j].and(self.units[k]);
         Some(Wide::of(self.mixed[place]?).times_power(unit.inverse()))
     }
 
-    /// Why this characteristic's moments cannot be had from exact derivatives.
+    /// Returns an error that names the first derivative that is missing for the moments of this characteristic, or None if none is missing.
     pub(super) fn lacking(
         &self,
         problem: &Problem,
@@ -178,7 +178,7 @@ impl ExactDerivatives {
     }
 }
 
-/// Whether every characteristic's derivatives are known to the function at all, before anything is evaluated.
+/// Checks before any evaluation that the function has derivatives of every characteristic.
 pub(super) fn known(problem: &Problem, plan: &DifferencePlan) -> Result<(), MethodError> {
     let directions = Directions { point: &plan.centre(), inputs: &[], pairs: &[] };
     let derivatives = problem.function().derivatives(problem.outputs(), &directions);
@@ -190,7 +190,7 @@ pub(super) fn known(problem: &Problem, plan: &DifferencePlan) -> Result<(), Meth
     }
 }
 
-/// Whether an option fits the source of the derivatives: without differences there are no steps.
+/// Refuses an option of differences if the derivatives are exact, because there are no steps then.
 pub(super) fn fits(source: Option<DerivativeSource>, option: &'static str, given: bool) -> Result<(), MethodError> {
     if source == Some(DerivativeSource::Exact) && given {
         return Err(MethodError::NoDifferences { option });

@@ -1,7 +1,7 @@
 //! `full`: every second derivative.
 //!
-//! Parabolas as in `second-order`, and every mixed derivative by two evaluations: half of what the published stencil
-//! takes, since both dimensions up and both down suffice beside the axes.
+//! Parabolas as in `second-order`, and every mixed derivative by two evaluations. The published stencil takes four, but both dimensions up
+//! and both down are enough, because the values on the axes are known.
 
 use super::Method;
 use super::ladder::{Examined, Ladder, Order};

@@ -1,12 +1,12 @@
-//! Derivatives that an external model sends with its answers, in the place of further evaluations.
+//! Derivatives that an external model sends with its answers, which save further evaluations.
 //!
-//! `rss` needs the slopes at the means: one evaluation, and one more that checks them. `full` needs no corners, as the mixed second derivative
-//! of dimensions j and k is the difference of the slope by k over the two nodes of j, and the other way round: of both the mean is taken. Its
-//! 2N + 1 points are those of `second-order` without derivatives. `second-order` itself takes one node an axis, N + 1 points: value and slope at
-//! the means and at the node determine a cubic (Hermite's interpolation).
+//! `rss` needs the slopes at the means: one evaluation, and one more that checks them. `full` needs no corners. The mixed second derivative
+//! of dimensions j and k is the difference of the slope by k over the two nodes of j, and vice versa. The mean of both is taken. The 2N + 1
+//! points of `full` are then those of `second-order` without derivatives. `second-order` itself takes one node an axis, N + 1 points: value
+//! and slope at the means and at the node determine a cubic (Hermite's interpolation).
 //!
-//! No derivative is taken on trust. Between two points a difference of values is the mean of the slopes times the step, but for a part of
-//! third order, so that each axis checks the derivatives by its dimension without an evaluation.
+//! All derivatives are checked. Between two points the difference of the values is the mean of the slopes times the step, except for a term
+//! of third order. Each axis therefore checks the derivatives by its dimension without further evaluations.
 
 use super::exact::ExactDerivatives;
 use super::{MethodError, Options};
@@ -17,36 +17,37 @@ use crate::problem::Problem;
 use sensitol_numeric::power::Power;
 use sensitol_numeric::surrogate::{DerivativeOrigin, Univariate};
 
-/// Derivatives that differ from a difference by more than this part of the change are wrong: third derivatives of a function that a
-/// parabola describes make less.
+/// Greatest difference between derivatives and difference quotients, as part of the change. Derivatives beyond it are wrong: third
+/// derivatives of a function that a parabola describes cause less.
 const APART: f64 = 0.1;
-/// Changes below this part of the largest one along any axis are not checked: rounding and noise.
+/// Changes below this part of the largest one along any axis are not checked: rounding and noise dominate them.
 const SMALL: f64 = 1e-3;
-/// The same at the point beside the means: so near, third derivatives make a thousandth of that of the axes.
+/// Greatest difference at the check point beside the means, as part of the change. So near to the means, third derivatives cause a
+/// thousandth of their effect on the axes.
 const NEAR: f64 = 3e-3;
-/// How far off the means, in sigmas, the point is that checks the slopes there.
+/// Distance of the check point from the means, in sigmas. It checks the slopes at the means.
 const STEP: f64 = 0.1;
 
-/// A node in sigmas, and the derivatives there; None where the model sent none.
+/// Node in sigmas, and the derivatives there; None if the model sent none.
 type Place<'e> = (f64, Option<&'e Vec<f64>>);
 
-/// Whether what a model sends serves what was asked for.
+/// True if derivatives from the model can replace evaluations with these options.
 pub(super) fn serve(options: &Options) -> bool {
     options.derivatives.is_none() && options.step.is_none() && !options.all_sensitivities
 }
 
-/// The mixed derivatives of a characteristic for these pairs of positions, in sigmas; None where a gradient is missing.
+/// Returns the mixed derivatives of a characteristic for these pairs of positions, in sigmas; None if a gradient is missing.
 pub(super) fn mixed(
     plan: &DifferencePlan,
     evaluated: &Evaluated,
     c: usize,
     pairs: &[(usize, usize)],
 ) -> Vec<Option<Mixed>> {
-    // For every position the gradients at its nodes, with their places.
+    // For every position: its nodes in sigmas, and the gradients there.
     let ends: Vec<Vec<Place<'_>>> = (plan.varying().iter())
         .map(|&d| nodes(plan, d).into_iter().map(|(point, u)| (u, evaluated.gradients.get(&(point, c)))).collect())
         .collect();
-    // The slope by the dimension at position k, in sigmas, over the nodes of the one at position j.
+    // Change of the slope by the dimension at position k, in sigmas, over the nodes of the dimension at position j.
     let half = |j: usize, k: usize| {
         let of = plan.varying()[k];
         let [(below, left), (above, right)] = ends[j][..] else { return None };
@@ -61,9 +62,10 @@ pub(super) fn mixed(
     pairs.iter().map(both).collect()
 }
 
-/// The part of a characteristic by one dimension that has one node, in sigmas: with the rise `r` at the node `u`, the slope `a` at the means
-/// and `b` at the node it is `a u + c u^2 + d u^3` with `c = (3 r/u - 2 a - b)/u` and `d = (a + b - 2 r/u)/u^2`. None where a value or a
-/// slope is missing. Accuracy: exact for polynomials up to the third degree.
+/// Returns the univariate part of a dimension with one node, in sigmas, or None if a value or a slope is missing.
+///
+/// With the rise `r` at the node `u`, the slope `a` at the means and `b` at the node, the part is `a u + c u^2 + d u^3` with `c = (3 r/u -
+/// 2 a - b)/u` and `d = (a + b - 2 r/u)/u^2`. Accuracy: exact for polynomials up to the third degree.
 pub(super) fn part(plan: &DifferencePlan, evaluated: &Evaluated, c: usize, d: usize) -> Option<Univariate> {
     if !plan.depends(c, d) {
         return Some(Univariate::of_coefficients(&[0.0, 0.0]));
@@ -77,13 +79,13 @@ pub(super) fn part(plan: &DifferencePlan, evaluated: &Evaluated, c: usize, d: us
         let chord = (evaluated.known.value(&point, c)? - centre) / axis.nodes[node as usize].u;
         Some((axis.nodes[node as usize].u, chord, slope(&point)?))
     };
-    // Where the model has no value at the node, one of its replacements has.
+    // If the model has no value at the node, one of the replacements of the node may have one.
     let (u, chord, b) = axis.slots.first()?.iter().find_map(at)?;
     let part = Univariate::of_coefficients(&[a, (3.0 * chord - 2.0 * a - b) / u, (a + b - 2.0 * chord) / (u * u)]);
     Some(part.with_origin(DerivativeOrigin::Evaluated))
 }
 
-/// The nodes of an axis with their places in sigmas, from below; replacements of nodes without a value are not among them.
+/// Returns the nodes of an axis with their places in sigmas, in ascending order. Replacements of nodes without a value are omitted.
 fn nodes(plan: &DifferencePlan, d: usize) -> Vec<(Point, f64)> {
     let axis = plan.axis(d);
     let node = |slot: &Vec<u32>| {
@@ -95,7 +97,7 @@ fn nodes(plan: &DifferencePlan, d: usize) -> Vec<(Point, f64)> {
     nodes
 }
 
-/// Holds the derivatives by every dimension against the differences along its axis.
+/// Compares the derivatives by every dimension with the differences along its axis.
 pub(super) fn checked(problem: &Problem, plan: &DifferencePlan, evaluated: &Evaluated) -> Result<(), MethodError> {
     for c in 0..problem.characteristics().len() {
         let Some(centre) = evaluated.known.value(&Point::Centre, c) else { continue };
@@ -121,7 +123,7 @@ pub(super) fn checked(problem: &Problem, plan: &DifferencePlan, evaluated: &Eval
     Ok(())
 }
 
-/// The slopes at the means that the model sent, once a further evaluation has checked them.
+/// Returns the slopes at the means that the model sent, after a further evaluation has checked them.
 pub(super) fn slopes(
     problem: &Problem,
     plan: &DifferencePlan,
@@ -131,7 +133,7 @@ pub(super) fn slopes(
     let centre = plan.centre();
     let mut point = centre.clone();
     for (position, &d) in plan.varying().iter().enumerate() {
-        // Signs in turns, so that equal errors of two derivatives do not cancel.
+        // Alternating signs of different size, so that equal errors of two derivatives do not cancel.
         point[d] += if position % 2 == 0 { STEP } else { -0.7 * STEP } * plan.axis(d).scale;
     }
     let mut out = Responses::open(1, problem.outputs().len());

@@ -1,18 +1,18 @@
-//! The surface through the points of a method that integrates, so that check points can judge it.
+//! Surface through the points of a method that integrates, for comparison with check points.
 //!
-//! A method that integrates has no surface of its own: its figures follow from values at nodes. Check points are compared with this one
-//! instead, and the error of a figure has the difference to the moments of this surface in it.
+//! A method that integrates has no surface of its own: its figures follow from values at nodes. Check points are compared with this surface
+//! instead. The error of a figure therefore includes the difference to the moments of this surface.
 //!
-//! Where each dimension is moved by itself, its part is the polynomial through these points, and two dimensions have the product that fits
-//! the points which move both:
+//! If each dimension is moved by itself, its part is the polynomial through these points. The product of two dimensions is the one that
+//! fits the points which move both:
 //!
 //! ```text
 //! A_jk = sum (y - f0 - g_j - g_k) u_j u_k / sum (u_j u_k)^2
 //! ```
 //!
-//! Correlated dimensions move along the eigenvectors of their correlation. Then it is the quadratic of least squares and, of all of these, the
-//! one with the smallest coefficients (Penrose 1956), over the columns `1, u_j, u_j^2, sqrt(2) u_j u_k`. The size of these coefficients does
-//! not change when the axes turn, so that every direction which is moved gets its own parabola.
+//! Correlated dimensions move along the eigenvectors of their correlation. The surface is then the quadratic of least squares over the
+//! columns `1, u_j, u_j^2, sqrt(2) u_j u_k`. If several quadratics fit equally well, it is the one with the smallest coefficients (Penrose
+//! 1956). The size of these coefficients does not change when the axes turn, so that every direction that is moved gets its own parabola.
 
 use std::collections::BTreeMap;
 
@@ -22,15 +22,15 @@ use super::Outcome;
 use sensitol_numeric::moments::Interactions;
 use sensitol_numeric::surrogate::{DerivativeOrigin, Surrogate, Univariate};
 
-/// A singular value below this part of the largest is a direction in which no point lies.
+/// A singular value below this part of the largest belongs to a direction without points.
 const SINGULAR: f64 = 1e-9;
-/// Multiplications that a decomposition may take: about a second. Beyond them the surface is linear.
+/// Greatest number of multiplications of a decomposition, about a second. Beyond it the surface is linear.
 const WORK: usize = 1_000_000_000;
 
-/// Positions that a point moves, in sigmas, and the value there.
+/// Positions that a point moves, in sigmas, and the value at the point.
 type Moved = (Vec<(usize, f64)>, f64);
 
-/// The surface of a characteristic; None where the method does not integrate, or its points determine no surface.
+/// Returns the surface of a characteristic. Returns None if the method does not integrate, or if its points determine no surface.
 pub(crate) fn interpolated(outcome: &Outcome, c: usize) -> Option<Surrogate> {
     outcome.fitted[c].integrated.as_ref()?;
     let (plan, known) = (&outcome.plan, &outcome.evaluated.known);
@@ -46,7 +46,7 @@ pub(crate) fn interpolated(outcome: &Outcome, c: usize) -> Option<Surrogate> {
     by_axes(outcome, c, &values).or_else(|| least_squares(plan.varying().len(), &values))
 }
 
-/// None where some dimension is not moved by itself.
+/// Returns the surface from points on axes and planes, or None if a dimension is not moved by itself.
 fn by_axes(outcome: &Outcome, c: usize, values: &[Moved]) -> Option<Surrogate> {
     let fitted = &outcome.fitted[c];
     let centre = fitted.centre?;
@@ -65,7 +65,8 @@ fn by_axes(outcome: &Outcome, c: usize, values: &[Moved]) -> Option<Surrogate> {
     Some(Surrogate { centre, parts: parts.into_iter().map(Some).collect(), interactions })
 }
 
-/// The quadratic over `n` dimensions, or the plane where a quadratic takes too long; None without a value.
+/// Returns the quadratic of least squares over `n` dimensions, or the plane if a quadratic takes too long. Returns None if there is no
+/// value, or if even the plane takes too long.
 fn least_squares(n: usize, values: &[Moved]) -> Option<Surrogate> {
     let quadratic = (n + 1) * (n + 2) / 2;
     let work = |columns: usize| values.len() * columns * values.len().min(columns);
@@ -75,6 +76,7 @@ fn least_squares(n: usize, values: &[Moved]) -> Option<Surrogate> {
         return None;
     }
     let pairs: Vec<(usize, usize)> = (0..n).flat_map(|j| (j + 1..n).map(move |k| (j, k))).collect();
+    // One row per point: constant, slopes, squares, products.
     let mut rows = Mat::<f64>::zeros(values.len(), columns);
     for (row, (at, _)) in values.iter().enumerate() {
         let mut u = vec![0.0; n];
@@ -88,12 +90,14 @@ fn least_squares(n: usize, values: &[Moved]) -> Option<Surrogate> {
             }
         }
     }
+    // The fit takes values relative to the first point, in units of the largest rise, so that neither a large mean nor the unit matters.
     let base = values.first()?.1;
     let largest = values.iter().map(|(_, value)| (value - base).abs()).fold(0.0, f64::max);
     let decomposed = rows.thin_svd().ok()?;
     let (left, s, right) = (decomposed.U(), decomposed.S().column_vector(), decomposed.V());
     let mut found = vec![0.0; columns];
     if largest > 0.0 {
+        // Pseudo-inverse: directions without points get the coefficient 0.
         for k in (0..s.nrows()).filter(|&k| s[k] > SINGULAR * s[0]) {
             let along = values.iter().enumerate().map(|(row, (_, value))| left[(row, k)] * ((value - base) / largest));
             let along = largest * along.sum::<f64>() / s[k];

@@ -1,4 +1,4 @@
-//! The common part of the derivative methods: a difference plan, evaluated and fitted.
+//! Common part of the derivative methods: a difference plan, evaluated and fitted.
 
 use std::sync::Arc;
 
@@ -15,16 +15,16 @@ use sensitol_numeric::moments::Interactions;
 use sensitol_numeric::names::nearest;
 use sensitol_numeric::surrogate::{Surrogate, Univariate};
 
-/// The derivatives of every characteristic that the assembly function knows.
+/// Exact derivatives of every characteristic; None for one without derivatives.
 type KnownDerivatives = Vec<Option<ExactDerivatives>>;
 
-/// Parts and mixed derivatives that come from elsewhere.
+/// Univariate parts and mixed derivatives that replace those of the plan, if given.
 type Elsewhere = (Option<Vec<Option<Univariate>>>, Option<Vec<Option<Mixed>>>);
 
-/// A derivative method: what it evaluates, and what it uses of that.
+/// Derivative method: its points, and the order of the derivatives that it uses.
 pub(super) struct Ladder {
     pub(super) method: Method,
-    /// The method that it stands for: itself, but for `auto`.
+    /// Method that the outcome names as the one that was run.
     pub(super) runs: Method,
     pub(super) about: &'static str,
     pub(super) count: &'static str,
@@ -33,12 +33,12 @@ pub(super) struct Ladder {
     pub(super) order: Order,
 }
 
-/// Which interactions a method examines.
+/// Interactions that a method examines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Examined {
     None,
     All(Stencil),
-    /// As many as there are dimensions, chosen and evaluated as the options say.
+    /// One pair per dimension, chosen and evaluated as the options say.
     Chosen,
 }
 
@@ -101,14 +101,14 @@ impl Procedure for Ladder {
 }
 
 impl Ladder {
-    /// Whether it needs fewer evaluations of a model that sends derivatives.
+    /// True if the method needs fewer evaluations of a model that sends derivatives.
     fn can_use_gradients(&self, options: &Options) -> bool {
         let all = matches!(self.interactions, Examined::All(_)) && self.spread == Spread::Pair;
         let slopes = matches!(self.method, Method::Rss | Method::SecondOrder);
         self.method == self.runs && (all || slopes) && gradients::serve(options)
     }
 
-    /// The plan and its cost for a model that sends derivatives.
+    /// Returns the plan and its cost for a model that sends derivatives.
     fn by_gradients(&self, problem: &Problem) -> (DifferencePlan, Cost) {
         let spread = match (self.order, self.method) {
             (Order::First, _) => Spread::Bare,
@@ -119,12 +119,12 @@ impl Ladder {
             Layout { spread, pairs: PairChoice::None, stencil: Stencil::TwoPoint, step: None, fixed_too: false };
         let plan = DifferencePlan::new(problem.dimensions(), problem.correlation(), problem.dependence(), layout);
         let cost = Cost::of(&plan);
-        // Slopes at the means alone are checked by a point beside them.
+        // A point beside the means checks the slopes at the means, because there is no other point.
         let checks = usize::from(self.order == Order::First);
         (plan, Cost { evaluations: cost.evaluations + checks, ..cost })
     }
 
-    /// By the derivatives that the model sends; `whole` is the plan without them.
+    /// Runs the method with the derivatives that the model sends. `whole` is the plan without them.
     fn run_by_gradients(
         &self,
         problem: &Problem,
@@ -141,7 +141,7 @@ impl Ladder {
         let fitted: Vec<Fitted> = if first {
             let slopes = gradients::slopes(problem, &plan, &mut evaluated, run)?;
             let fit = |(c, slopes)| self.fit(&plan, &evaluated, c, &pairs, slopes, true);
-            // Derivatives of a model are answers of it.
+            // Derivatives that a model sends are answers of the model.
             slopes.into_iter().enumerate().map(fit).map(Fitted::evaluated).collect()
         } else {
             gradients::checked(problem, &plan, &evaluated)?;
@@ -160,13 +160,13 @@ impl Ladder {
         Ok(outcome.with_proofs(problem, &polynomials))
     }
 
-    /// The plan that it would follow.
+    /// Returns the difference plan that the method follows.
     pub(super) fn differences(&self, problem: &Problem, options: &Options) -> Result<DifferencePlan, MethodError> {
         let layout = self.checked(problem, options)?;
         Ok(DifferencePlan::new(problem.dimensions(), problem.correlation(), problem.dependence(), layout))
     }
 
-    /// The points that it would evaluate, once the options are found to mean something to it.
+    /// Returns the layout of the points, once the options are checked.
     fn checked(&self, problem: &Problem, options: &Options) -> Result<Layout, MethodError> {
         if let Some(step) = options.step.filter(|step| !(step.is_finite() && *step > 0.0)) {
             return Err(MethodError::BadStep { step });
@@ -188,7 +188,7 @@ impl Ladder {
         match (self.interactions, &options.pairs, options.stencil) {
             (Examined::Chosen, pairs, stencil) => {
                 let pairs = pairs.as_ref().map_or(Ok(PairChoice::Strongest), |pairs| choice(problem, pairs))?;
-                // The published scheme spends the same 6N+1: two nodes on an axis, four on a pair.
+                // The published scheme takes 6N+1 evaluations too: two nodes on an axis, four on a pair.
                 let stencil = stencil.unwrap_or(Stencil::TwoPoint);
                 let spread = if stencil == Stencil::FourPoint { Spread::Pair } else { self.spread };
                 Ok((spread, pairs, stencil))
@@ -200,7 +200,7 @@ impl Ladder {
         }
     }
 
-    /// The pairs that are examined, and the exact derivatives of every characteristic as far as they are wanted.
+    /// Returns the pairs that are examined, and the exact derivatives of every characteristic if they are wanted.
     fn derivatives(
         &self,
         problem: &Problem,
@@ -236,7 +236,7 @@ impl Ladder {
         Ok((pairs, all))
     }
 
-    /// Mixed derivatives by differences; of pairs that are known to interact and were not evaluated, the exact ones.
+    /// Returns mixed derivatives by differences. Pairs that are known to interact and were not evaluated have exact ones.
     fn differences_of(
         &self,
         plan: &DifferencePlan,
@@ -249,7 +249,7 @@ impl Ladder {
         let mut mixed = plan.mixed(known, c, &pairs[..evaluated.min(pairs.len())]);
         if pairs.len() > mixed.len() {
             let exact = exact.filter(|exact| exact.mixed.len() == pairs.len()).map(|exact| exact.mixed(plan, pairs));
-            // A pair that is known to interact elsewhere, and was not looked at here.
+            // The pair is known to interact in another characteristic and was not examined in this one.
             let nothing = Some(Mixed::screened(0.0));
             let rest = (mixed.len()..pairs.len()).map(|index| exact.as_ref().and_then(|all| all[index]).or(nothing));
             mixed.extend(rest.collect::<Vec<_>>());
@@ -269,7 +269,7 @@ impl Ladder {
         self.fitted(plan, evaluated, c, pairs, (derivatives, exact), (None, None))
     }
 
-    /// The same, with parts and mixed derivatives from elsewhere where there are some.
+    /// Fits one characteristic. `parts` and `mixed` replace the derivatives of the plan if they are given.
     fn fitted(
         &self,
         plan: &DifferencePlan,
@@ -304,7 +304,7 @@ impl Ladder {
     }
 }
 
-/// The pairs as indices of dimensions that vary.
+/// Resolves the names of pairs to indices of varying dimensions.
 fn choice(problem: &Problem, pairs: &Pairs) -> Result<PairChoice, MethodError> {
     let Pairs::Listed(listed) = pairs else {
         return Ok(if *pairs == Pairs::Adjacent { PairChoice::Adjacent } else { PairChoice::Strongest });

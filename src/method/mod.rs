@@ -1,8 +1,9 @@
-//! The methods: what each evaluates and what it makes of it, a file each, and their registry.
+//! The methods and their registry. Each method has a file of its own: the points that it evaluates, and the figures that it derives from
+//! them.
 //!
 //! # A new method
-//! One new file with a type that implements `Procedure`, one variant of [`Method`] and one line in `ALL`; `plan`,
-//! `compare` and the documentation of the command line iterate the registry.
+//! A new method is one file with a type that implements `Procedure`, one variant of [`Method`] and one line in `ALL`. `plan`, `compare` and
+//! the documentation of the command line iterate the registry.
 
 mod auto;
 mod bivariate_dimension_reduction;
@@ -59,153 +60,153 @@ use crate::evaluation::{Restoration, Restore};
 use crate::warning::{Advice, Figure};
 use sensitol_numeric::power::Power;
 
-/// Why a method cannot be run on a problem as asked.
+/// Reason why a method cannot be run on a problem with the given options.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MethodError {
-    /// The plan needs more evaluations than allowed.
+    /// The plan needs more evaluations than the budget allows.
     #[error("{method} needs {needed} evaluations, more than the budget of {budget}{}", instead(.fitting))]
     OverBudget {
-        /// The method's name.
+        /// Name of the method that was asked for.
         method: &'static str,
-        /// How many it needs.
+        /// Number of evaluations that the method needs.
         needed: usize,
-        /// How many are allowed.
+        /// Greatest number of evaluations that the budget allows.
         budget: usize,
-        /// The best method that fits the budget, and what it needs.
+        /// Method with the most evaluations within the budget, and their number; None if no method fits.
         fitting: Option<(Method, usize)>,
     },
-    /// The model cannot be used at all; nothing was evaluated.
+    /// The model cannot be used at all. Nothing was evaluated.
     #[error("{error}")]
     Model {
-        /// Why not.
+        /// Error of the model when it was prepared.
         error: EvaluationError,
     },
-    /// Inputs that vary together as a whole, where the method integrates over each by itself.
+    /// Inputs that vary together as a whole, while the method integrates over each input by itself.
     #[error("{method} integrates over one input after the other, and {} vary together as a whole: use full or auto", dimensions.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", "))]
     JointInputs {
-        /// The method's name.
+        /// Name of the method that was asked for.
         method: &'static str,
-        /// The dimensions of the first block.
+        /// Names of the dimensions of the first block.
         dimensions: Vec<String>,
     },
     /// An option that the method does not have.
     #[error("{method} has no choice of {option}; only {only} has one")]
     OptionDoesNotApply {
-        /// The method's name.
+        /// Name of the method that was asked for.
         method: &'static str,
-        /// The option.
+        /// Name of the option that was given.
         option: &'static str,
-        /// The methods that have it.
+        /// Names of the methods that have this option.
         only: &'static str,
     },
-    /// Exact derivatives of something that is known by its values only.
+    /// Exact derivatives were asked for, but the characteristic is known by its values only.
     #[error("`{characteristic}` has no exact derivatives: it depends on a model that returns values only")]
     DerivativesUnknown {
-        /// The characteristic.
+        /// Name of the characteristic without derivatives.
         characteristic: String,
     },
-    /// A model that declares derivatives and sends none.
+    /// A model that declares gradients sends none.
     #[error("the model says that it sends gradients, and its answers have none of `{characteristic}`")]
     NoGradient {
-        /// The characteristic.
+        /// Name of the characteristic without a gradient.
         characteristic: String,
     },
-    /// Derivatives that a model sends and its own values refute.
+    /// Values of the model contradict the derivatives that it sends.
     #[error(
         "the gradients of `{characteristic}`{} that the model sends are wrong: by them it changes by {by_gradient}, by its values by {by_values}",
         along(dimension)
     )]
     GradientsDisagree {
-        /// The characteristic.
+        /// Name of the characteristic with the wrong derivative.
         characteristic: String,
-        /// The dimension along which it was checked; None where all were moved at once.
+        /// Dimension along which the derivative was checked; None if all dimensions were moved at once.
         dimension: Option<String>,
-        /// The change between two points by the derivatives.
+        /// Change between two points, computed from the derivatives.
         by_gradient: f64,
-        /// The change of the values.
+        /// Change between the same two points, computed from the values.
         by_values: f64,
     },
     /// A derivative that does not exist at the means.
     #[error("`{characteristic}` has no derivative by {} at the means: a kink, a jump or the edge of its domain", dimensions.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(" and "))]
     NoDerivative {
-        /// The characteristic.
+        /// Name of the characteristic without this derivative.
         characteristic: String,
-        /// The dimension, or the two of a mixed derivative.
+        /// The dimension, or the two dimensions of a mixed derivative.
         dimensions: Vec<String>,
     },
-    /// An option of differences, where derivatives are exact.
+    /// An option of difference quotients was given together with exact derivatives.
     #[error("a choice of {option} means nothing with exact derivatives: nothing is evaluated beside the means")]
     NoDifferences {
-        /// The option.
+        /// Name of the option that was given.
         option: &'static str,
     },
-    /// A pair names something that is not a dimension.
+    /// A pair contains a name that is not a dimension.
     #[error("pair `{a}:{b}`: there is no dimension `{unknown}`{}", nearest.as_ref().map(|name| format!("; did you mean `{name}`?")).unwrap_or_default())]
     UnknownPair {
-        /// The first of the pair.
+        /// First name of the pair, as given.
         a: String,
-        /// The second of the pair.
+        /// Second name of the pair, as given.
         b: String,
-        /// The one that is not a dimension.
+        /// Name in the pair that is not a dimension.
         unknown: String,
-        /// The most similar dimension.
+        /// Dimension with the most similar name, if one is similar.
         nearest: Option<String>,
     },
     /// A pair that has no interaction to examine.
     #[error("pair `{a}:{b}`: {}", if a == b { "a dimension does not interact with itself".to_owned() } else { format!("`{still}` does not vary, or no characteristic depends on it") })]
     IdlePair {
-        /// The first of the pair.
+        /// First name of the pair, as given.
         a: String,
-        /// The second of the pair.
+        /// Second name of the pair, as given.
         b: String,
-        /// The one that does not vary.
+        /// Dimension of the pair that does not vary, or on which no characteristic depends.
         still: String,
     },
-    /// More evaluations than a limit allows.
+    /// The method needs more evaluations than a limit allows.
     #[error("{method} needs {} evaluations for {dimensions} varying dimensions, {limit}{}", count(*.needed), instead(.fitting))]
     TooMany {
-        /// The method's name.
+        /// Name of the method that was asked for.
         method: &'static str,
-        /// How many dimensions vary.
+        /// Number of dimensions that vary in the problem.
         dimensions: usize,
-        /// How many evaluations it needs, `u128::MAX` where there are more than that.
+        /// Number of evaluations that the method needs; `u128::MAX` if the number exceeds that.
         needed: u128,
-        /// Which limit.
+        /// Limit that the number of evaluations exceeds.
         limit: EvaluationLimit,
-        /// The derivative method to use instead, and what it needs.
+        /// Derivative method to use instead, and its number of evaluations; None if none fits.
         fitting: Option<(Method, usize)>,
     },
-    /// More dimensions than the method can fit a surface to.
+    /// More dimensions vary than the method can fit a surface to.
     #[error("{method} fits at most {most} varying dimensions, and {dimensions} vary{}", instead(.fitting))]
     TooManyDimensions {
-        /// The method's name.
+        /// Name of the method that was asked for.
         method: &'static str,
-        /// How many dimensions vary.
+        /// Number of dimensions that vary in the problem.
         dimensions: usize,
-        /// How many may.
+        /// Greatest number of varying dimensions that the method allows.
         most: usize,
-        /// The derivative method to use instead, and what it needs.
+        /// Derivative method to use instead, and its number of evaluations; None if none fits.
         fitting: Option<(Method, usize)>,
     },
-    /// A number of nodes of which there is no rule.
+    /// A number of nodes for which there is no quadrature rule.
     #[error("a quadrature rule has 3, 5 or 7 nodes, not {nodes}")]
     BadNodes {
-        /// The number given.
+        /// Number of nodes that was given.
         nodes: usize,
     },
     /// An accuracy that is not a positive number.
     #[error("{}, a number above 0, not {accuracy}", accuracy_of(*figure))]
     BadAccuracy {
-        /// Of what.
+        /// Figure whose accuracy was given.
         figure: Figure,
-        /// The accuracy given.
+        /// Accuracy that was given (not positive, or not finite).
         accuracy: f64,
     },
     /// A step that is not a positive number.
     #[error("the step must be a number of sigmas above 0, not {step}")]
     BadStep {
-        /// The step given.
+        /// Step in sigmas that was given (not positive, or not finite).
         step: f64,
     },
 }
@@ -224,7 +225,7 @@ impl MethodError {
         }
     }
 
-    /// The actions to take.
+    /// Returns the actions that let the analysis run.
     pub fn advice(&self) -> Vec<Advice> {
         match self {
             Self::OverBudget { fitting, .. } => {
@@ -247,7 +248,7 @@ impl MethodError {
         }
     }
 
-    /// How many evaluations it would have taken, where that is why it cannot be run.
+    /// Returns the number of evaluations that the method needs; None if the error is not about this number.
     pub fn needed(&self) -> Option<u64> {
         match self {
             Self::OverBudget { needed, .. } => u64::try_from(*needed).ok(),
@@ -257,18 +258,17 @@ impl MethodError {
     }
 }
 
-/// The most evaluations that a method may ask for.
+/// Greatest number of evaluations that a method may ask for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum EvaluationLimit {
-    /// 1,000,000, unless a budget is given.
+    /// 1,000,000 evaluations, the limit if no budget is given.
     WithoutBudget,
-    /// 100,000,000, whatever the budget: the points of a plan are listed in memory.
+    /// 100,000,000 evaluations, the limit with any budget: the points of a plan are listed in memory.
     Listed,
 }
 
 impl EvaluationLimit {
-    /// The number.
     pub(crate) fn most(self) -> usize {
         match self {
             Self::WithoutBudget => 1_000_000,
@@ -286,7 +286,7 @@ impl std::fmt::Display for EvaluationLimit {
     }
 }
 
-/// The methods that have a choice of nodes.
+/// Names of the methods whose number of nodes can be chosen, as error messages list them.
 const NODES: &str = "dimension-reduction, univariate or bivariate,";
 
 fn along(dimension: &Option<String>) -> String {

@@ -1,12 +1,12 @@
-//! Fitting on the narrower side: where many dimensions drive few inputs of a model, the surface is fitted over these inputs.
+//! Fits over the inputs of a model if many dimensions drive few inputs.
 //!
-//! With formulas `z(x)` a characteristic is `y(x) = F(z(x))`. Where N dimensions drive m < N inputs, the method runs over `z`, whose moments
-//! follow from the formulas, and its surface `q(z)` stands for the model: `q(z(x))` is made of formulas, and the same method over `x` then
-//! costs no evaluation. `full` takes `m^2 + m + 1` points in the place of `N^2 + N + 1`.
+//! With formulas `z(x)` a characteristic is `y(x) = F(z(x))`. If N dimensions drive m < N inputs, the method runs over `z`, whose moments
+//! follow from the formulas. The surface `q(z)` then replaces the model: `q(z(x))` consists of formulas, so that the same method over `x`
+//! costs no evaluation. `full` takes `m^2 + m + 1` points instead of `N^2 + N + 1`.
 //!
-//! Where two inputs are nearly alike (a correlation beyond 0.95), the surface is fitted along the principal axes of all of them.
+//! If two inputs have a correlation beyond 0.95, the surface is fitted along the principal axes of all inputs.
 //!
-//! Check points, and whatever else looks at the result, ask the model itself.
+//! Check points and all later evaluations use the model itself.
 
 use std::sync::Arc;
 
@@ -24,25 +24,26 @@ use sensitol_numeric::power::{Rescale, Rescaling};
 use sensitol_numeric::sampling::{Draws, Portion, Sampler, Summary};
 use sensitol_numeric::surrogate::Surrogate;
 
-/// Points at which the formulas that drive the model are evaluated, to know how its inputs vary.
+/// Number of points at which the formulas that drive the model are evaluated, for the distribution of its inputs.
 const POINTS: usize = 1 << 13;
-/// A nominal value so near to the mean, in sigmas, is where the surface is centred.
+/// Greatest distance between nominal value and mean, in sigmas, at which the surface is centred at the nominal value.
 const NEAR: f64 = 0.01;
 
-/// The problem over the inputs of the model.
+/// Problem over the inputs of the model.
 pub struct Narrow<'p> {
     composite: &'p Composite,
-    /// Its characteristics are the outputs of the model that are needed.
+    /// The problem whose dimensions are the inputs, and whose characteristics are the needed outputs of the model.
     pub problem: Problem,
     needed: Vec<usize>,
-    /// The axes along which it is fitted, where inputs vary nearly alike.
+    /// Axes along which the surface is fitted, if inputs are nearly proportional.
     axes: Option<Arc<Axes>>,
-    /// How many inputs of the model vary, or along how many axes, and how many dimensions.
+    /// Number of inputs of the model that vary, or of axes.
     pub inputs: usize,
+    /// Number of dimensions that vary.
     pub dimensions: usize,
 }
 
-/// The outcome of a method over the inputs of the model, of which the surfaces and the cost are read.
+/// Outcome of a method over the inputs of the model. Only surfaces and cost are used.
 struct OverInputs(Outcome);
 
 impl Restore for OverInputs {
@@ -53,19 +54,20 @@ impl Restore for OverInputs {
     }
 }
 
-/// A surface over the inputs, or none.
+/// Result of a fit over the inputs.
 pub enum Narrowed {
+    /// Outcome over the dimensions, with the surface in place of the model.
     Fitted(Box<Outcome>),
-    /// Nothing but evaluations.
+    /// Evaluations alone, because an output has no surface or a point has no value.
     Spent(Box<Evaluated>),
 }
 
 impl<'p> Narrow<'p> {
-    /// None where no model is driven, its inputs are no fewer than the dimensions, or the options want something of the
-    /// dimensions themselves.
+    /// Returns the problem over the inputs of the model. Returns None if no model is driven, if its inputs are no fewer than the
+    /// dimensions, or if an option concerns the dimensions themselves.
     pub fn of(problem: &'p Problem, options: &Options) -> Option<Self> {
         let composite = problem.function().driven()?;
-        // Of a model that costs nothing `auto` samples what it does not find in few points.
+        // If the model is cheap, `auto` samples it where few points are not enough.
         let samples = options.method == Method::Auto && !problem.function().signature().costly;
         let suits =
             !samples && matches!(options.method, Method::SecondOrder | Method::SixN | Method::Full | Method::Auto);
@@ -116,12 +118,12 @@ impl<'p> Narrow<'p> {
         Some(Self { composite, problem: narrow, needed, axes, inputs: varying, dimensions })
     }
 
-    /// Runs the method over the inputs of the model, and again over the dimensions with the surface in the place of the model.
+    /// Runs the method over the inputs of the model, and again over the dimensions with the surface in place of the model.
     ///
-    /// Not where an output of the model has no surface, or no value at some point: the method over the dimensions then says at which of
-    /// them, and what this one has spent is counted there.
+    /// Returns the evaluations alone if an output of the model has no surface, or no value at some point. The method over the dimensions
+    /// then reports the failed point, and includes these evaluations in its count.
     pub(crate) fn run(&self, problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Narrowed, MethodError> {
-        // Outputs of the model may be of extreme size where the characteristics are not.
+        // Outputs of the model may be of extreme size even if the characteristics are not.
         let over_inputs = at_any_size(&self.problem, run, |problem, run| {
             options.method.procedure().run(problem, options, run).map(OverInputs)
         });
@@ -147,7 +149,7 @@ impl<'p> Narrow<'p> {
             surrogates,
         };
         let about = problem.with_undivided(Arc::new(self.composite.about(Arc::new(surface))));
-        // Nothing that is evaluated now costs anything.
+        // The surface replaces the model from here on, so that evaluations cost nothing.
         let method = if options.method == Method::Auto { Method::Full } else { options.method };
         let free = Options { method, budget: None, ..options.clone() };
         let mut outcome = method.procedure().run(&about, &free, &Run::to_the_end())?;
@@ -159,14 +161,14 @@ impl<'p> Narrow<'p> {
     }
 }
 
-/// An input of the model by its nominal value and the moments of its values.
+/// Returns an input of the model, with a distribution that has the moments of these values.
 fn input(name: &str, nominal: f64, values: &[f64]) -> Option<Dimension> {
     let summary = Summary::of(values);
     let (mean, sigma) = (summary.mean(), summary.sigma());
     if sigma <= STILL * mean.abs() || sigma == 0.0 {
         return Dimension::fixed(name, nominal).ok();
     }
-    // The middle of the surface is a choice: one point is centre and nominal then.
+    // The centre of the surface can be chosen. At the nominal value one point serves as centre and as nominal.
     let mean = if (mean - nominal).abs() < NEAR * sigma { nominal } else { mean };
     let moments = summary.standardised()?;
     let fitted =
@@ -178,7 +180,7 @@ fn input(name: &str, nominal: f64, values: &[f64]) -> Option<Dimension> {
     Dimension::distributed(name, nominal, None, law).ok()
 }
 
-/// A function that belongs to another one too.
+/// Shared function, so that a problem can own it.
 struct Passed(Arc<dyn AssemblyFunction>);
 
 impl AssemblyFunction for Passed {
@@ -199,14 +201,14 @@ impl AssemblyFunction for Passed {
     }
 }
 
-/// Surfaces in the place of a model.
+/// Surfaces that replace a model.
 struct Surface {
     signature: Signature,
-    /// The outputs of the model that have one.
+    /// Outputs of the model that have a surface.
     outputs: Vec<usize>,
-    /// The axes of its inputs along which it was fitted.
+    /// Axes of the inputs along which the surfaces were fitted.
     axes: Option<Arc<Axes>>,
-    /// The inputs that vary, with mean and sigma.
+    /// Inputs that vary, with mean and sigma.
     varying: Vec<(usize, f64, f64)>,
     surrogates: Vec<Surrogate>,
 }

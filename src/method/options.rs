@@ -9,7 +9,7 @@ use crate::plan::Stencil;
 use crate::warning::Figure;
 use sensitol_numeric::names::UnknownName;
 
-/// How a problem is to be analysed.
+/// Options of an analysis: method, accuracy, budget and verification.
 ///
 /// ```
 /// use sensitol::{Method, Options};
@@ -18,106 +18,106 @@ use sensitol_numeric::names::UnknownName;
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
-    /// The method.
+    /// Method that is run.
     pub method: Method,
-    /// The relative error of sigma that is wanted; for `auto`.
+    /// Wanted relative error of sigma, for `auto`; None for `ACCURACY`.
     pub accuracy: Option<f64>,
-    /// The accuracies to reach of the other results; for `auto`.
+    /// Wanted accuracies of the other results, for `auto`.
     pub accuracies: Accuracies,
-    /// The most evaluations that may be spent.
+    /// Budget: greatest number of evaluations; None for no budget.
     pub budget: Option<usize>,
-    /// A step in sigmas in place of the matched nodes.
+    /// Step in sigmas that replaces the matched nodes; None to use the matched nodes.
     pub step: Option<f64>,
-    /// Which pairs `six-n` examines; the strongest unless said otherwise.
+    /// Pairs that `six-n` examines; None for the strongest.
     pub pairs: Option<Pairs>,
-    /// How `six-n` evaluates a mixed derivative; by two points unless said otherwise.
+    /// Stencil of a mixed derivative in `six-n`; None for two points.
     pub stencil: Option<Stencil>,
-    /// How many nodes the quadrature rule of an input has: 3, 5 or 7, and 5 unless said otherwise; for
-    /// `dimension-reduction` and `bivariate-dimension-reduction`.
+    /// Number of nodes of the quadrature rule of an input: 3, 5 or 7; None for 5. For `dimension-reduction` and
+    /// `bivariate-dimension-reduction`.
     pub nodes: Option<usize>,
-    /// Whether dimensions without tolerance get a sensitivity too, at two evaluations each.
+    /// True if dimensions without tolerance get a sensitivity too, at two evaluations each.
     pub all_sensitivities: bool,
-    /// Whether the true extremes in the box of the tolerance bands are searched, at further evaluations.
+    /// True if the true extremes in the box of the tolerance bands are searched, at further evaluations.
     pub extremes: bool,
-    /// The seed of what draws random numbers: [`SEED`](Self::SEED) unless given.
+    /// Seed of the random numbers; None for [`SEED`](Self::SEED).
     pub seed: Option<u64>,
-    /// Where derivatives come from. Unless said otherwise the reported sensitivities are exact where the assembly function
-    /// knows its derivatives, and moments come from differences at nodes that suit each distribution.
+    /// Source of the derivatives. If None, the reported sensitivities are exact if the assembly function returns derivatives, and the
+    /// moments come from differences at nodes that suit each distribution.
     pub derivatives: Option<DerivativeSource>,
-    /// Whether the result is verified by the model itself: a cheap model is sampled unless this is 0, a
-    /// costly one evaluated at no more check points than this, 18 at most. Unless said otherwise [`Options::VERIFY`] where the function
-    /// says that it is cheap or costly ([`Signature`](crate::assembly::Signature)), and 0 where it says neither, as a closure.
+    /// Greatest number of check points of the model that verify the result; 0 for no verification. A cheap model is sampled instead, unless
+    /// this is 0. A costly model is evaluated at no more than 18 check points. If None, [`Options::VERIFY`] for a function that declares
+    /// itself cheap or costly ([`Signature`](crate::assembly::Signature)), and 0 for one that declares neither, such as a closure.
     pub verify: Option<usize>,
-    /// The share of assemblies that must keep the limits of all characteristics at once.
+    /// Share of assemblies that must keep the limits of all characteristics at once.
     pub target_joint_yield: Option<f64>,
-    /// The share that coverage intervals hold, from 0.5 to below 1; without it there are none.
+    /// Share of assemblies that a coverage interval holds, from 0.5 to below 1; None for no coverage intervals.
     pub coverage: Option<f64>,
-    /// Whether the densities of surface laws are tabulated, for those who draw them.
+    /// True if the densities of surface distributions are tabulated, for drawings.
     pub densities: bool,
-    /// Whether figures of a cheap model take the place of those of a surface that it refutes, as `auto` has it.
+    /// True if figures of a cheap model replace those of a surface that the model refutes, as in `auto`.
     pub model_figures: bool,
 }
 
-/// The errors that are wanted beside that of sigma, absolute; None where nothing is.
+/// Wanted absolute errors of results other than sigma; None if no accuracy is wanted.
 ///
-/// They are reached by the same means: the wanted error of sigma is tightened until these estimates are small enough too.
+/// `auto` reaches them by tightening the wanted error of sigma until the estimates of these errors are small enough too.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Accuracies {
-    /// Of the skewness.
+    /// Wanted absolute error of the skewness.
     pub skewness: Option<f64>,
-    /// Of the kurtosis.
+    /// Wanted absolute error of the kurtosis.
     pub kurtosis: Option<f64>,
-    /// Of the yield, as a share.
+    /// Wanted absolute error of the yield, as a share.
     pub yield_: Option<f64>,
 }
 
 impl Accuracies {
-    /// With this absolute error of the skewness.
+    /// Sets the wanted absolute error of the skewness.
     #[must_use]
     pub fn with_skewness(mut self, error: f64) -> Self {
         self.skewness = Some(error);
         self
     }
 
-    /// With this absolute error of the kurtosis.
+    /// Sets the wanted absolute error of the kurtosis.
     #[must_use]
     pub fn with_kurtosis(mut self, error: f64) -> Self {
         self.kurtosis = Some(error);
         self
     }
 
-    /// With this absolute error of the yield, as a share.
+    /// Sets the wanted absolute error of the yield, as a share.
     #[must_use]
     pub fn with_yield(mut self, error: f64) -> Self {
         self.yield_ = Some(error);
         self
     }
 
-    /// Whether any is wanted.
+    /// True if the accuracy of any of these figures is wanted.
     pub(crate) fn any(&self) -> bool {
         self.wanted().iter().any(|(_, wanted)| wanted.is_some())
     }
 
-    /// Each with its figure.
+    /// Returns each figure with its wanted error.
     pub(crate) fn wanted(&self) -> [(Figure, Option<f64>); 3] {
         [(Figure::Skewness, self.skewness), (Figure::Kurtosis, self.kurtosis), (Figure::Yield, self.yield_)]
     }
 }
 
-/// Where derivatives come from.
+/// Source of the derivatives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DerivativeSource {
-    /// Exact at the means, for sensitivities and moments alike: nothing is evaluated beside the means.
+    /// Exact at the means, for sensitivities and moments alike. Nothing is evaluated beside the means.
     Exact,
     /// Differences of evaluated points, for sensitivities and moments alike.
     Difference,
 }
 
 impl DerivativeSource {
-    /// The names of the sources.
+    /// Names of the sources in study files and on the command line.
     pub const NAMES: [&str; 2] = ["exact", "difference"];
 
-    /// Its name in study files and on the command line.
+    /// Returns the name in study files and on the command line.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Exact => "exact",
@@ -140,24 +140,24 @@ impl FromStr for DerivativeSource {
     }
 }
 
-/// Which interactions are examined.
+/// Choice of the interactions that are examined.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Pairs {
-    /// Those with the largest product of univariate variance shares.
+    /// Pairs with the largest product of univariate variance shares.
     Strongest,
     /// Neighbours in the order of the dimensions.
     Adjacent,
-    /// These, by the names of their dimensions.
+    /// Listed pairs, by the names of their dimensions.
     Listed(Vec<(String, String)>),
 }
 
 impl Pairs {
-    /// The choices that have a name.
+    /// Names of the choices; listed pairs have no name.
     pub const NAMES: [&str; 2] = ["strongest", "adjacent"];
 }
 
-/// The choices that have a name; pairs are given by the names of their dimensions.
+/// Parses a choice that has a name. Listed pairs are given by the names of their dimensions instead.
 impl FromStr for Pairs {
     type Err = UnknownName;
 
@@ -171,109 +171,109 @@ impl FromStr for Pairs {
 }
 
 impl Options {
-    /// Check points of a costly model where [`verify`](Self::verify) does not say; a cheap one is sampled.
+    /// Check points of a costly model if [`verify`](Self::verify) is None. A cheap model is sampled instead.
     pub const VERIFY: usize = 12;
 
-    /// How a result of such a function is verified: 0 for not at all.
+    /// Returns the number of check points for a function with this signature; 0 for no verification.
     pub fn verification(&self, of: &crate::assembly::Signature) -> usize {
         self.verify.unwrap_or(if of.cheap || of.costly { Self::VERIFY } else { 0 })
     }
 
-    /// The seed where none is given: the same study gives the same numbers.
+    /// Seed if none is given, so that the same study gives the same numbers.
     pub const SEED: u64 = 1;
 
-    /// With this relative error of sigma as the aim of `auto`.
+    /// Sets the relative error of sigma that `auto` aims at.
     #[must_use]
     pub fn with_accuracy(mut self, error: f64) -> Self {
         self.accuracy = Some(error);
         self
     }
 
-    /// With these errors of the other results as the aim of `auto`.
+    /// Sets the errors of the other results that `auto` aims at.
     #[must_use]
     pub fn with_accuracies(mut self, errors: Accuracies) -> Self {
         self.accuracies = errors;
         self
     }
 
-    /// With at most so many evaluations.
+    /// Sets the greatest number of evaluations.
     #[must_use]
     pub fn with_budget(mut self, evaluations: usize) -> Self {
         self.budget = Some(evaluations);
         self
     }
 
-    /// With this step in sigmas in place of the matched nodes.
+    /// Sets a step in sigmas that replaces the matched nodes.
     #[must_use]
     pub fn with_step(mut self, sigmas: f64) -> Self {
         self.step = Some(sigmas);
         self
     }
 
-    /// With these pairs examined by `six-n`.
+    /// Sets the pairs that `six-n` examines.
     #[must_use]
     pub fn with_pairs(mut self, pairs: Pairs) -> Self {
         self.pairs = Some(pairs);
         self
     }
 
-    /// With mixed derivatives of `six-n` evaluated so.
+    /// Sets the stencil of the mixed derivatives of `six-n`.
     #[must_use]
     pub fn with_stencil(mut self, stencil: Stencil) -> Self {
         self.stencil = Some(stencil);
         self
     }
 
-    /// With so many nodes in the quadrature rule of an input: 3, 5 or 7.
+    /// Sets the number of nodes in the quadrature rule of an input: 3, 5 or 7.
     #[must_use]
     pub fn with_nodes(mut self, nodes: usize) -> Self {
         self.nodes = Some(nodes);
         self
     }
 
-    /// With a sensitivity for dimensions without tolerance, or without one.
+    /// Adds or omits a sensitivity for dimensions without tolerance.
     #[must_use]
     pub fn with_all_sensitivities(mut self, all: bool) -> Self {
         self.all_sensitivities = all;
         self
     }
 
-    /// With a search of the true extremes in the box of the tolerance bands, or without one.
+    /// Enables or disables the search of the true extremes in the box of the tolerance bands.
     #[must_use]
     pub fn with_extremes(mut self, search: bool) -> Self {
         self.extremes = search;
         self
     }
 
-    /// With this seed of what draws random numbers.
+    /// Sets the seed of the random numbers.
     #[must_use]
     pub fn with_seed(mut self, seed: u64) -> Self {
         self.seed = Some(seed);
         self
     }
 
-    /// With derivatives from this source.
+    /// Sets the source of the derivatives.
     #[must_use]
     pub fn with_derivatives(mut self, source: DerivativeSource) -> Self {
         self.derivatives = Some(source);
         self
     }
 
-    /// With the intervals that hold this share of assemblies, from 0.5 to below 1.
+    /// Requests coverage intervals that hold this share of assemblies, from 0.5 to below 1.
     #[must_use]
     pub fn with_coverage(mut self, share: f64) -> Self {
         self.coverage = Some(share);
         self
     }
 
-    /// With a table of the density of every surface law, or without one.
+    /// Enables or disables a table of the density of every surface distribution.
     #[must_use]
     pub fn with_densities(mut self, tabulated: bool) -> Self {
         self.densities = tabulated;
         self
     }
 
-    /// Verified by the model itself at so many points; 0 for not at all.
+    /// Sets the number of model points that verify the result; 0 for no verification.
     #[must_use]
     pub fn with_verify(mut self, points: usize) -> Self {
         self.verify = Some(points);

@@ -1,18 +1,18 @@
-//! Which derivatives a method uses, and where its moments come from.
+//! Order of the derivatives that a method uses, and basis of its moments.
 
 use sensitol_numeric::surrogate::Univariate;
 
-/// How much of the derivatives a method makes use of.
+/// Highest order of the derivatives that a method uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Order {
-    /// Slopes only.
+    /// First derivatives (slopes) only.
     First,
-    /// Curvatures and interactions too.
+    /// Second derivatives (curvatures and interactions) too.
     Second,
 }
 
 impl Order {
-    /// Returns as much of a part as is made use of.
+    /// Returns the terms of a univariate part that this order uses.
     pub(super) fn used(self, part: Univariate) -> Univariate {
         match self {
             Self::First => Univariate::of_coefficients(&[part.slope()]).with_origin(part.origin()),
@@ -21,16 +21,16 @@ impl Order {
     }
 }
 
-/// The basis of the moments.
+/// Basis of the moments.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Basis {
-    /// A surrogate of exact derivatives.
+    /// Surrogate of exact derivatives.
     Exact,
-    /// A surrogate of differences.
+    /// Surrogate of difference quotients.
     Differences,
-    /// A surrogate fitted by least squares.
+    /// Surrogate fitted by least squares.
     LeastSquares,
     /// Quadrature of the values themselves, without a surrogate.
     Quadrature,

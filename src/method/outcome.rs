@@ -1,4 +1,4 @@
-//! The outcome of a method.
+//! Outcome of a method.
 
 use serde::Serialize;
 
@@ -11,73 +11,73 @@ use sensitol_numeric::moments::Moments;
 use sensitol_numeric::power::rescale;
 use sensitol_numeric::surrogate::{DerivativeOrigin, Surrogate, Univariate};
 
-/// The outcome of a method.
+/// Outcome of a method: evaluations, surrogates and moments.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Outcome {
-    /// The method that was asked for.
+    /// Method that was asked for.
     pub asked: Method,
-    /// The method that was run.
+    /// Method that was run.
     pub method: Method,
-    /// The basis of the moments.
+    /// Basis of the moments.
     pub basis: Basis,
-    /// Its plan.
+    /// Plan that was evaluated.
     pub plan: Arc<dyn Plan>,
-    /// Its evaluations.
+    /// Evaluations of the plan.
     pub evaluated: Evaluated,
-    /// How much of it the surrogates use.
+    /// Order of the derivatives that the surrogates use.
     pub order: Order,
-    /// For every characteristic what is known of it.
+    /// Fit of every characteristic.
     pub fitted: Vec<Fitted>,
-    /// The pairs that were examined, as positions among the varying dimensions.
+    /// Pairs that were examined, as positions among the varying dimensions.
     pub pairs: Vec<(usize, usize)>,
-    /// How `auto` came to its result; None for any other method.
+    /// Account of the refinement by `auto`; None for any other method.
     pub climbed: Option<Climbed>,
 }
 
-/// The fit of one characteristic.
+/// Fit of one characteristic.
 #[derive(Debug, Clone, Default)]
 #[non_exhaustive]
 pub struct Fitted {
-    /// Its value at the nominal dimensions.
+    /// Value at the nominal dimensions.
     pub nominal: Option<f64>,
-    /// Its value with every dimension at its mean.
+    /// Value with every dimension at its mean.
     pub centre: Option<f64>,
-    /// The derivatives at the means as the assembly function knows them; None where it does not, or was not asked.
+    /// Exact derivatives at the means; None if the assembly function has none, or was not asked for them.
     pub exact: Option<ExactDerivatives>,
-    /// Every dimension's own part, in the problem's order; None where it is unknown or was not asked for.
+    /// Univariate part of every dimension, in the problem's order; None if it is unknown or was not asked for.
     pub parts: Vec<Option<Univariate>>,
-    /// The mixed derivatives of the pairs examined, in sigma units; None where lost or not differentiated.
+    /// Mixed derivatives of the pairs examined, in sigmas; None if a derivative is lost or was not evaluated.
     pub mixed: Vec<Option<Mixed>>,
-    /// The surrogate over the varying dimensions; None without a value at the means, and where a method has none.
+    /// Surrogate over the varying dimensions; None if there is no value at the means, and for a method without surrogate.
     pub surrogate: Option<Surrogate>,
-    /// The moments of a method that integrates without a surrogate.
+    /// Moments of a method that integrates without a surrogate.
     pub integrated: Option<Integrated>,
-    /// Why a method that is not a difference plan has no moments.
+    /// Reason why a method that is not a difference plan has no moments.
     pub lacking: Option<Lacking>,
-    /// How far a surrogate of least squares misses the values that it was fitted to.
+    /// Residuals of a surrogate fitted by least squares, at the points of the fit.
     pub residual: Option<Residual>,
-    /// The number of pairs whose mixed derivative was differentiated or evaluated.
+    /// Number of pairs whose mixed derivative was differentiated or evaluated.
     pub known_pairs: usize,
-    /// The number of products of the surrogate that are estimates.
+    /// Number of products of the surrogate that are estimates.
     pub screened: usize,
-    /// The proof that the surrogate is the function; None where there is none.
+    /// Proof that the surrogate is the function; None if there is none.
     pub proof: Option<SurfaceProof>,
 }
 
-/// Knowledge about a surface that is the function itself.
+/// Proof that a surface is the function itself, with its rounding errors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SurfaceProof {
-    /// The degree of the polynomial.
+    /// Degree of the polynomial that the function is.
     pub degree: u32,
-    /// One rounding of every operation, in the mean.
+    /// Rounding error of the mean: one rounding of every operation.
     pub mean: f64,
-    /// The same in sigma, beside that of sigma itself.
+    /// Rounding error of sigma from the terms of the surface, in addition to the rounding of sigma itself.
     pub sigma: f64,
 }
 
 impl Fitted {
-    /// Returns the fit with its parts as answers of a model.
+    /// Marks the parts of the fit as evaluated by the model.
     pub(super) fn evaluated(mut self) -> Self {
         let parts = self.surrogate.iter_mut().flat_map(|surrogate| &mut surrogate.parts).chain(&mut self.parts);
         parts.for_each(|part| *part = part.map(|part| part.with_origin(DerivativeOrigin::Evaluated)));
@@ -85,81 +85,80 @@ impl Fitted {
     }
 }
 
-/// Moments that were integrated from values, and what they are made of.
+/// Moments that were integrated from values, with the effects of dimensions and pairs.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Integrated {
-    /// The moments.
+    /// Moments of the characteristic.
     pub moments: Moments,
-    /// For every varying dimension what it does by itself; None for one that is correlated.
+    /// Effect of every varying dimension by itself; None for one that is correlated.
     pub own: Vec<Option<MainEffect>>,
-    /// For every pair examined what the two do together; None where one of them is correlated.
+    /// Joint effect of every examined pair; None if one of its dimensions is correlated.
     pub pairs: Vec<Option<InteractionEffect>>,
-    /// The share of the variance that no contribution accounts for.
+    /// Share of the variance that no contribution accounts for.
     pub left_out: Option<f64>,
-    /// Nodes of the longest rule.
+    /// Number of nodes of the longest rule.
     pub nodes: usize,
 }
 
-/// The effect of one dimension by itself.
+/// Effect of one dimension by itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct MainEffect {
     /// Share of the variance that the best straight line explains.
     pub linear: f64,
-    /// Share that the rest of its own part adds.
+    /// Share of the variance that the rest of the univariate part adds.
     pub curvature: f64,
-    /// How far its own part moves the mean; None where that is not known apart from what others do.
+    /// Shift of the mean by the univariate part; None if it cannot be separated from the effects of other dimensions.
     pub mean_shift: Option<f64>,
 }
 
-/// The joint effect of two dimensions, beyond the effects of each by itself.
+/// Joint effect of two dimensions, beyond the effects of each by itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct InteractionEffect {
     /// Share of the variance.
     pub share: f64,
-    /// How far it moves the mean; None where that is not known apart from what others do.
+    /// Shift of the mean by the joint effect; None if it cannot be separated from other effects.
     pub mean_shift: Option<f64>,
 }
 
-/// Why there are no moments.
+/// Reason why there are no moments.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Lacking {
     /// Points of a quadrature have no value.
     Points {
-        /// How many.
+        /// Number of points without a value.
         lost: usize,
-        /// Of how many.
+        /// Number of all points of the quadrature.
         of: usize,
     },
-    /// Too few points are left to fit the surface.
+    /// Too few points have a value for a fit of the surface.
     NotEstimable {
-        /// How many are left.
+        /// Number of points with a value.
         left: usize,
-        /// How many coefficients there are.
+        /// Number of coefficients of the surface.
         coefficients: usize,
     },
 }
 
-/// How far a surrogate misses the values that it was fitted to.
+/// Residuals of a surrogate at the points that it was fitted to.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Residual {
-    /// `sqrt(sum of squares / (points - coefficients))`, in the characteristic's unit; None where there are no more points
-    /// than coefficients.
+    /// `sqrt(sum of squares / (points - coefficients))`, in the characteristic's unit; None if there are no more points than coefficients.
     #[serde(rename = "residual_standard_error")]
     pub standard_error: Option<f64>,
-    /// The standard error of the mean from that; None where it is unknown or inputs are correlated.
+    /// Standard error of the mean that follows from the residuals; None if it is unknown or inputs are correlated.
     #[serde(rename = "mean_standard_error")]
     pub mean: Option<f64>,
-    /// The same of sigma.
+    /// Standard error of sigma that follows from the residuals; None if it is unknown or inputs are correlated.
     #[serde(rename = "sigma_standard_error")]
     pub sigma: Option<f64>,
-    /// Points that were fitted.
+    /// Number of points of the fit.
     pub points: usize,
-    /// Coefficients.
+    /// Number of coefficients of the fit.
     pub coefficients: usize,
 }
 

@@ -1,6 +1,6 @@
-//! The surface of a formula that is a polynomial: its own terms, so that no derivative is evaluated or estimated.
+//! Surface of a formula that is a polynomial. It consists of the terms of the formula, so that no derivative is evaluated or estimated.
 //!
-//! A surface holds powers of one dimension up to the fourth, and products of two. A formula without other terms is its own
+//! A surface holds powers of one dimension up to the fourth, and products of two dimensions. A formula without other terms is its own
 //! surface, and has the moments of that surface.
 
 use std::collections::BTreeMap;
@@ -12,22 +12,22 @@ use sensitol_numeric::distribution::StandardMoments;
 use sensitol_numeric::moments::Interactions;
 use sensitol_numeric::surrogate::{InputShape, Surrogate, Univariate};
 
-/// The terms of one characteristic's formula, over the varying dimensions in sigmas.
+/// Terms of one characteristic's formula, over the varying dimensions in sigmas.
 #[derive(Debug, Clone)]
 pub(super) struct PolynomialSurface {
-    /// For every varying dimension its own powers.
+    /// Powers of every varying dimension by itself.
     pub(super) parts: Vec<Univariate>,
-    /// The products that are not 0.
+    /// Products of two dimensions, without those that are 0.
     pub(super) products: BTreeMap<(usize, usize), Mixed>,
-    /// The highest degree of its terms.
+    /// Highest degree of the terms.
     pub(super) degree: u32,
-    /// Bounds of what rounding of the coefficients does to mean and sigma.
+    /// Bounds of the errors of mean and sigma from rounding of the coefficients.
     pub(super) rounding: [f64; 2],
 }
 
 impl PolynomialSurface {
-    /// The surfaces of all characteristics. None for a formula that is not known to be a polynomial, for one with terms that no
-    /// surface holds, and where differences are asked for.
+    /// Returns the surfaces of all characteristics. Returns None for a formula that is not known to be a polynomial, for one with terms
+    /// that no surface holds, and if differences are asked for.
     pub(super) fn all(problem: &Problem, plan: &dyn Plan, options: &Options) -> Vec<Option<Self>> {
         if options.derivatives == Some(DerivativeSource::Difference) {
             return vec![None; problem.characteristics().len()];
@@ -44,12 +44,12 @@ impl PolynomialSurface {
         problem.outputs().iter().map(surface).collect()
     }
 
-    /// The mixed derivative of two positions.
+    /// Returns the mixed derivative of two positions.
     pub(super) fn mixed(&self, pair: (usize, usize)) -> Mixed {
         self.products.get(&pair).copied().unwrap_or(Mixed::exact(0.0))
     }
 
-    /// Puts its own coefficients in the place of those that points have determined already, so that only their roundings change.
+    /// Replaces the coefficients that points have determined already by exact ones, so that they change by rounding only.
     pub(super) fn replace(&self, fitted: &mut Fitted, plan: &dyn Plan, order: Order, pairs: &[(usize, usize)]) {
         for (own, &d) in self.parts.iter().zip(plan.varying()) {
             // A polynomial through as many nodes as its degree is the part itself.
@@ -70,7 +70,7 @@ impl PolynomialSurface {
         }
     }
 
-    /// Whether a surface has all of its terms, and no other.
+    /// True if a surface has all of these terms, and no other.
     pub(super) fn is(&self, surface: &Surrogate) -> bool {
         let same = |(own, part): (&Univariate, &Option<Univariate>)| {
             part.is_some_and(|part| part.coefficients() == own.coefficients())
@@ -80,7 +80,7 @@ impl PolynomialSurface {
     }
 }
 
-/// The terms of a formula as they are collected.
+/// Terms of a formula, while they are collected.
 struct Terms<'a> {
     varying: &'a [usize],
     shapes: &'a [InputShape],
@@ -96,11 +96,11 @@ impl<'a> Terms<'a> {
         Self { varying, shapes, coefficients, products: BTreeMap::new(), degree: 0, rounding: [0.0; 2] }
     }
 
-    /// Adds a term; None for one that no surface holds.
+    /// Adds a term. Returns None if no surface can hold it.
     fn add(&mut self, inputs: &[u32], value: f64, error: f64) -> Option<()> {
         let position = |input: &u32| self.varying.binary_search(&(*input as usize)).ok();
         let positions: Vec<usize> = inputs.iter().map(position).collect::<Option<_>>()?;
-        // A coefficient within its own rounding is left out, with as much as it may be.
+        // A coefficient smaller than its own rounding error is left out. The error then includes its size.
         let (value, error) = if value.abs() <= error { (0.0, error + value.abs()) } else { (value, error) };
         if error > 0.0 {
             let powers = positions.chunk_by(|a, b| a == b).map(|of| (of[0], of.len()));
@@ -127,14 +127,14 @@ impl<'a> Terms<'a> {
 
     fn finished(self) -> PolynomialSurface {
         let Self { coefficients, products, degree, rounding, .. } = self;
-        // A line is a parabola without curvature.
+        // A straight line is stored as a parabola with curvature 0.
         let known = |of: &[f64]| of.iter().rposition(|of| *of != 0.0).map_or(0, |place| place + 1).max(2);
         let part = |of: &[f64; Univariate::DEGREE]| Univariate::of_coefficients(&of[..known(of)]);
         PolynomialSurface { parts: coefficients.iter().map(part).collect(), products, degree, rounding }
     }
 }
 
-/// `E u^power` and `E u^(2 power)` of a standardised input.
+/// Returns `E u^power` and `E u^(2 power)` of a standardised input.
 fn of_power(moments: &StandardMoments, power: usize) -> [f64; 2] {
     let raw = moments.raw();
     [raw[power], raw[2 * power]]

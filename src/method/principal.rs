@@ -1,7 +1,8 @@
-//! Principal axes of what drives a model: where its inputs vary nearly alike, a surface over them has its corners where no part is.
+//! Principal axes of the inputs of a model. If two inputs are nearly proportional, the corners of a surface over them lie far from all
+//! parts.
 //!
-//! The inputs `z` of means `m` and standard deviations `s` have the correlation `R = V D V'`. Over `w = V' S^-1 (z - m)`, which are
-//! uncorrelated, the surface takes the same count of points, or fewer: a direction without variance is none.
+//! Inputs `z` with means `m` and standard deviations `s` have the correlation `R = V D V'`. The coordinates `w = V' S^-1 (z - m)` are
+//! uncorrelated. A surface over them takes the same number of points, or fewer: directions without variance are omitted.
 
 use std::sync::Arc;
 
@@ -12,24 +13,24 @@ use crate::assembly::{
 };
 use sensitol_numeric::sampling::{Joint, Summary};
 
-/// A correlation above this leaves the corners of a pair where no part is.
+/// Correlation above which the corners of a pair lie far from all parts.
 const ALIKE: f64 = 0.95;
 /// An input whose sigma is below this part of its mean does not vary.
 pub(super) const STILL: f64 = 1e-12;
-/// An eigenvalue of a correlation matrix of `m` inputs below `m` times this is rounding of 0.
+/// An eigenvalue of a correlation matrix of `m` inputs below `m` times this is a rounding of 0.
 pub(super) const ZERO: f64 = 1e-12;
 
-/// The directions in which inputs vary together.
+/// Directions in which inputs vary together.
 pub(super) struct Axes {
     centre: Vec<f64>,
-    /// `z - centre` of `w`, a row for each input.
+    /// Matrix from `w` to `z - centre`, one row for each input.
     outward: Mat<f64>,
-    /// `w` of `z - centre`, a row for each direction.
+    /// Matrix from `z - centre` to `w`, one row for each direction.
     inward: Mat<f64>,
 }
 
 impl Axes {
-    /// Of inputs at some points, about the place `centre`; None where no two of them vary nearly alike.
+    /// Returns the axes of inputs at these points, about `centre`. Returns None if no two inputs are nearly proportional.
     pub(super) fn of(sent: &Points, centre: &[f64]) -> Option<Self> {
         let m = sent.dimensions();
         let sigma: Vec<f64> = (0..m).map(|j| Summary::of(sent.column(j)).sigma()).collect();
@@ -46,7 +47,7 @@ impl Axes {
         let mut order: Vec<usize> = (0..moving.len()).filter(|&k| values[k] > ZERO * moving.len() as f64).collect();
         order.sort_by(|&a, &b| values[b].total_cmp(&values[a]).then(a.cmp(&b)));
         let place = |input: usize| moving.iter().position(|&of| of == input);
-        // An input that does not vary is in no direction.
+        // An input that does not vary has no component in any direction.
         let entry = |input: usize, direction: usize| place(input).map_or(0.0, |j| vectors[(j, order[direction])]);
         Some(Self {
             centre: centre.to_vec(),
@@ -61,12 +62,11 @@ impl Axes {
         })
     }
 
-    /// How many directions there are.
     pub(super) fn directions(&self) -> usize {
         self.outward.ncols()
     }
 
-    /// Inputs as coordinates along the axes.
+    /// Converts inputs to coordinates along the axes.
     pub(super) fn inward(&self, sent: &Points) -> Points {
         let rows: Vec<Vec<f64>> = (0..sent.rows())
             .map(|row| {
@@ -78,7 +78,7 @@ impl Axes {
         Points::from_rows(&rows)
     }
 
-    /// Coordinates along the axes as inputs.
+    /// Converts coordinates along the axes to inputs.
     fn outward(&self, points: &Points) -> Points {
         let rows: Vec<Vec<f64>> = (0..points.rows())
             .map(|row| {
@@ -91,7 +91,7 @@ impl Axes {
     }
 }
 
-/// The correlation of two columns.
+/// Returns the correlation of two columns.
 fn together(a: &[f64], b: &[f64]) -> f64 {
     let rows: Vec<[f64; 2]> = a.iter().zip(b).map(|(a, b)| [*a, *b]).collect();
     let joint = Joint::of(&rows);
@@ -99,7 +99,7 @@ fn together(a: &[f64], b: &[f64]) -> f64 {
     ab / (aa.sqrt() * bb.sqrt())
 }
 
-/// A model as function of the principal axes of its inputs.
+/// Model as a function of the principal axes of its inputs.
 pub(super) struct Turned {
     model: Arc<dyn AssemblyFunction>,
     pub(super) axes: Arc<Axes>,
@@ -107,7 +107,7 @@ pub(super) struct Turned {
 }
 
 impl Turned {
-    /// With these names of the axes.
+    /// Wraps the model as a function of the axes, which get these names.
     pub(super) fn new(model: Arc<dyn AssemblyFunction>, axes: Arc<Axes>, names: &[String]) -> Self {
         let inputs = names.iter().map(|name| Input { name: name.clone(), unit: None }).collect();
         // Every axis moves every input.
@@ -148,7 +148,7 @@ impl AssemblyFunction for Turned {
 mod tests {
     use super::*;
 
-    /// Two inputs that vary alike, one that does not vary, and one by itself: there and back.
+    /// Two inputs that vary alike, one fixed input and one independent input are recovered from their axes.
     #[test]
     fn axes_lead_there_and_back() {
         let z = |i: usize| {
@@ -160,7 +160,8 @@ mod tests {
         assert_eq!(axes.directions(), 3);
         let back = axes.outward(&axes.inward(&sent));
         for j in 0..4 {
-            // The eigenvectors are orthogonal to rounding; the smallest direction is divided by nothing.
+            // The eigenvectors are orthogonal up to rounding, and nothing is divided by an eigenvalue, so that the smallest direction is as
+            // accurate.
             sent.column(j).iter().zip(back.column(j)).for_each(|(a, b)| assert!((a - b).abs() < 1e-12, "{a} {b}"));
         }
         let alone = Points::from_rows(&(0..1001).map(|i| vec![z(i)[0], z(i)[3]]).collect::<Vec<_>>());

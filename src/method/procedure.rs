@@ -1,4 +1,4 @@
-//! The procedure of a method.
+//! Interface that every method implements.
 
 use std::sync::Arc;
 
@@ -7,60 +7,60 @@ use crate::assembly::Run;
 use crate::plan::Plan;
 use crate::problem::Problem;
 
-/// The procedure of a method.
+/// Interface of a method: its options, cost, plan and evaluation.
 pub trait Procedure: Sync {
-    /// Its place in the enumeration.
+    /// Returns the enumeration variant of this method.
     fn method(&self) -> Method;
 
-    /// Its name in study files and on the command line.
+    /// Returns the name in study files and on the command line.
     fn name(&self) -> &'static str {
         self.method().name()
     }
 
-    /// Its description, in one line.
+    /// Returns a description of one line.
     fn about(&self) -> &'static str;
 
-    /// How many evaluations it takes for N dimensions, as a formula.
+    /// Returns a formula for the number of evaluations for N dimensions.
     fn count(&self) -> &'static str;
 
-    /// Whether the options mean something to it.
+    /// Checks that the method accepts the options.
     ///
     /// # Errors
-    /// When one does not, or names something that the problem does not have.
+    /// Fails if the method does not have an option, or if an option names something that is not in the problem.
     fn check(&self, problem: &Problem, options: &Options) -> Result<(), MethodError> {
         self.plan(problem, options).map(drop)
     }
 
-    /// Its cost, or why it cannot be run.
+    /// Returns the cost, or the reason why the method cannot be run.
     ///
     /// # Errors
-    /// As [`Procedure::plan`], and when it needs more evaluations than the budget allows.
+    /// Fails like [`Procedure::plan`], and if the method needs more evaluations than the budget allows.
     fn fits(&self, problem: &Problem, options: &Options) -> Result<Cost, MethodError> {
         let plan = self.plan(problem, options)?;
         Cost::of(&*plan).within(self.name(), problem, options)
     }
 
-    /// The evaluations of a model that sends derivatives with its answers; None where these save none.
+    /// Returns the number of evaluations of a model that sends derivatives with its answers; None if derivatives save none.
     fn with_gradients(&self, problem: &Problem, options: &Options) -> Option<usize> {
         let _ = (problem, options);
         None
     }
 
-    /// The fewest and the most evaluations of a method that chooses as it goes; None for one whose plan says how many.
+    /// Returns the fewest and the most evaluations of a method that chooses points as it goes; None if its plan fixes the number.
     fn range(&self, problem: &Problem, options: &Options) -> Option<[usize; 2]> {
         let _ = (problem, options);
         None
     }
 
-    /// The plan that it would follow, whatever the budget.
+    /// Returns the plan of the method for these options. The budget is ignored.
     ///
     /// # Errors
-    /// As [`Procedure::check`], and when there are more points than could ever be evaluated.
+    /// Fails like [`Procedure::check`], and if there are more points than could ever be evaluated.
     fn plan(&self, problem: &Problem, options: &Options) -> Result<Arc<dyn Plan>, MethodError>;
 
     /// Evaluates the problem.
     ///
     /// # Errors
-    /// As [`Procedure::fits`]; nothing is evaluated then.
+    /// Fails like [`Procedure::fits`]. Nothing is evaluated then.
     fn run(&self, problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Outcome, MethodError>;
 }

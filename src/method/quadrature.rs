@@ -1,15 +1,14 @@
-//! The common part of the methods that integrate values instead of derivatives: independent inputs, their rules, and their
-//! points.
+//! Common part of the methods that integrate values instead of derivatives: independent variables, their rules, and their points.
 //!
-//! An input of its own is one variable, with a quadrature rule of its own distribution. Correlated inputs are functions of
-//! normal variables `z` (Nataf), and these go by the eigenvectors of their correlation `R = V D V'`, group by group:
+//! An independent input is one variable, with a quadrature rule of its own distribution. Correlated inputs are functions of normal
+//! variables `z` (Nataf). These are transformed by the eigenvectors of their correlation `R = V D V'`, group by group:
 //!
 //! ```text
 //! x_j = T_j(z_j),   z = V sqrt(D) w,   w independent standard normal, with a Gauss-Hermite rule each
 //! ```
 //!
-//! A direction of eigenvalue 0 does not vary. All variables at 0 is the point from which cuts are taken: the means, but the
-//! median of a correlated input that is skewed.
+//! Directions with the eigenvalue 0 are omitted. Cuts start from the point at which all variables are 0. This point is the means, except
+//! that a skewed correlated input is at its median.
 
 use std::sync::Arc;
 
@@ -28,13 +27,13 @@ use sensitol_numeric::correlation::Correlation;
 use sensitol_numeric::distribution::{Distribution, Normal, Rule, StandardMoments, behind_normal};
 use sensitol_numeric::surrogate::Univariate;
 
-/// A median as near to the mean as this part of sigma is the mean.
+/// Distance of a median from the mean, in sigmas, below which both count as equal.
 const SAME: f64 = 1e-9;
-/// Derivatives are taken from nodes at least so far from the mean: chords of a shorter step drown in noise. The innermost nodes of a normal
-/// input stand at 0.62 with six nodes and at 0.54 with eight; those of a skewed one may stand anywhere.
+/// Smallest distance of a node from the mean, in sigmas, from which derivatives are taken: noise dominates the chords of shorter steps. The
+/// innermost nodes of a normal input lie at 0.62 with six nodes and at 0.54 with eight. Those of a skewed input may lie anywhere.
 const NEAREST: f64 = 0.35;
 
-/// An independent standardised variable.
+/// Independent standardised variable with its quadrature rule.
 #[derive(Debug, Clone)]
 pub(super) struct Variable {
     pub(super) rule: Rule,
@@ -42,25 +41,25 @@ pub(super) struct Variable {
     moves: Moves,
 }
 
-/// The dimensions that a variable moves.
+/// Dimensions that a variable moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Moves {
-    /// The dimension at this position among the varying ones.
+    /// Dimension at this position among the varying ones.
     One(usize),
-    /// The members of a group, along this one of its directions.
+    /// Members of a group, along one of the directions of the group.
     Along { group: usize, direction: usize },
 }
 
-/// Dimensions that vary together.
+/// Dimensions that are linked by correlations.
 #[derive(Debug, Clone)]
 struct Group {
     /// Positions among the varying dimensions.
     members: Vec<usize>,
-    /// A row a member, a column a variable.
+    /// Matrix `V sqrt(D)`: one row for each member, one column for each variable.
     directions: Mat<f64>,
 }
 
-/// All variables of a problem.
+/// All variables of a problem, with the groups that they move.
 #[derive(Debug, Clone)]
 pub(super) struct Variables<'p> {
     problem: &'p Problem,
@@ -70,7 +69,8 @@ pub(super) struct Variables<'p> {
 }
 
 impl<'p> Variables<'p> {
-    /// With these rules, the first for inputs of their own and the other for the directions of correlated ones.
+    /// Returns the variables of a problem. An independent input has the rule `rule`, a direction of correlated inputs a Gauss-Hermite rule
+    /// of `nodes` nodes.
     pub(super) fn of(
         problem: &'p Problem,
         plan: &dyn Plan,
@@ -89,7 +89,7 @@ impl<'p> Variables<'p> {
                     let moments = distribution.standard_moments();
                     all.push(Variable { rule: rule(distribution), moments, moves: Moves::One(position) });
                 }
-                // A group stands where its first member does.
+                // The directions of a group are listed at the place of its first member.
                 Some(group) if groups[group].members[0] == position => {
                     let along = |direction| Variable {
                         rule: Rule::of(&normal, nodes),
@@ -104,7 +104,7 @@ impl<'p> Variables<'p> {
         Self { problem, varying, groups, all }
     }
 
-    /// The dimension that a variable is, by its position; None for a direction of several.
+    /// Returns the position of the dimension that a variable stands for, or None if the variable moves a group.
     pub(super) fn position(&self, variable: usize) -> Option<usize> {
         match self.all[variable].moves {
             Moves::One(position) => Some(position),
@@ -112,12 +112,12 @@ impl<'p> Variables<'p> {
         }
     }
 
-    /// The variable that the dimension at this position is; None where it is correlated.
+    /// Returns the variable that stands for the dimension at this position, or None if the dimension is correlated.
     pub(super) fn variable(&self, position: usize) -> Option<usize> {
         self.all.iter().position(|variable| variable.moves == Moves::One(position))
     }
 
-    /// Whether a characteristic can depend on a variable.
+    /// True if a characteristic can depend on a variable.
     pub(super) fn depends(&self, plan: &dyn Plan, characteristic: usize, variable: usize) -> bool {
         let on = |position: usize| plan.depends(characteristic, self.varying[position]);
         match self.all[variable].moves {
@@ -126,17 +126,17 @@ impl<'p> Variables<'p> {
         }
     }
 
-    /// Nodes of the longest rule.
+    /// Returns the number of nodes of the longest rule.
     pub(super) fn longest(&self) -> usize {
         self.all.iter().map(|variable| variable.rule.nodes.len()).max().unwrap_or(0)
     }
 
-    /// Nodes beside the reference.
+    /// Returns the number of nodes of a variable beside the reference.
     pub(super) fn nodes_elsewhere(&self, variable: usize) -> usize {
         self.all[variable].rule.nodes.iter().filter(|&&u| u != 0.0).count()
     }
 
-    /// The dimensions that are not at their means where these variables are at these nodes and all others at 0.
+    /// Returns the dimensions that are not at their means if these variables are at these nodes and all others at 0, with their values.
     pub(super) fn values(&self, at: &[(usize, usize)]) -> Vec<(usize, f64)> {
         let mut values = Vec::with_capacity(at.len());
         let mut z: Vec<Vec<f64>> = self.groups.iter().map(|group| vec![0.0; group.members.len()]).collect();
@@ -160,7 +160,7 @@ impl<'p> Variables<'p> {
         values
     }
 
-    /// The value of a correlated dimension whose normal variable is `z`.
+    /// Returns the value of a correlated dimension whose normal variable is `z`.
     fn behind(&self, position: usize, z: f64) -> (usize, f64) {
         let d = self.varying[position];
         let dimension = &self.problem.dimensions()[d];
@@ -175,7 +175,7 @@ impl<'p> Variables<'p> {
     }
 }
 
-/// Those that are linked by a correlation that is not 0, and the directions of each group, the one of the largest variance first.
+/// Returns the groups of inputs that are linked by correlations other than 0. The directions of a group are ordered by descending variance.
 fn groups(correlation: &Correlation) -> Vec<Group> {
     let (members, normal) = (correlation.members(), correlation.normal());
     let mut left: Vec<usize> = (0..members.len()).collect();
@@ -200,13 +200,13 @@ fn groups(correlation: &Correlation) -> Vec<Group> {
     groups
 }
 
-/// `V sqrt(D)` of `R = V D V'`, without the directions that do not vary.
+/// Returns `V sqrt(D)` of `R = V D V'`, without the directions that do not vary.
 fn directions(correlation: &Mat<f64>) -> Mat<f64> {
     let m = correlation.nrows();
     let eigen = correlation.self_adjoint_eigen(Side::Lower).expect("the eigenvalues of a correlation matrix");
     let mut order: Vec<usize> = (0..m).filter(|&k| eigen.S()[k] > ZERO * m as f64).collect();
     order.sort_by(|&a, &b| eigen.S()[b].total_cmp(&eigen.S()[a]).then(a.cmp(&b)));
-    // An eigenvector has no sign: its largest component is positive.
+    // An eigenvector has no sign of its own: its largest component is made positive.
     let sign = |k: usize| {
         let largest = (0..m).max_by(|&i, &j| eigen.U()[(i, k)].abs().total_cmp(&eigen.U()[(j, k)].abs()));
         largest.map_or(1.0, |i| eigen.U()[(i, k)].signum())
@@ -217,7 +217,7 @@ fn directions(correlation: &Mat<f64>) -> Mat<f64> {
     })
 }
 
-/// Checks the options of a method that integrates: no step, no stencil, no pairs; and no blocks of inputs.
+/// Checks the problem and the options of a method that integrates: no step, no stencil, no pairs, and no blocks of inputs.
 pub(super) fn check(
     method: &'static str,
     problem: &Problem,
@@ -251,20 +251,20 @@ pub(super) fn check_options(method: &'static str, options: &Options, nodes: bool
     }
 }
 
-/// The results of one characteristic: its moments, or why there are none, and the mixed derivatives of the pairs examined.
+/// Results of one characteristic: its moments, or the reason why there are none, and the mixed derivatives of the pairs examined.
 pub(super) type IntegratedParts = (Result<Integrated, Lacking>, Vec<Option<Mixed>>);
 
-/// A design over the variables of a problem.
+/// Design over the variables of a problem.
 #[derive(Debug, Clone)]
 pub(super) struct Quadrature<'p> {
     pub(super) variables: Variables<'p>,
     pub(super) design: Design,
-    /// All variables at 0.
+    /// Point at which all variables are 0.
     pub(super) reference: Point,
 }
 
 impl<'p> Quadrature<'p> {
-    /// Without points of its own, but for the reference if it is wanted.
+    /// Returns a design without points, except for the reference if it is wanted.
     pub(super) fn new(
         problem: &'p Problem,
         options: &Options,
@@ -293,26 +293,26 @@ impl<'p> Quadrature<'p> {
         Self { variables, design, reference }
     }
 
-    /// The point at which these variables are at these nodes; it is evaluated.
+    /// Adds the point at which these variables are at these nodes to the design, and returns it.
     pub(super) fn want(&mut self, at: &[(usize, usize)], purpose: Purpose) -> Point {
         let point = self.design.point(&self.variables.values(at));
         self.design.want(point.clone(), purpose);
         point
     }
 
-    /// The node at which a variable that is one dimension stands; None at its mean.
+    /// Returns the node of the dimension that a variable stands for, or None if it is at the mean.
     pub(super) fn node(&mut self, variable: usize, node: usize) -> Option<AtNode> {
         self.design.point(&self.variables.values(&[(variable, node)])).at().first().copied()
     }
 
-    /// Cuts along every variable: for each the points at its nodes.
+    /// Adds the points of the cuts along every variable. Returns for each variable the points at its nodes.
     pub(super) fn cuts(&mut self) -> Vec<Vec<Point>> {
         let nodes: Vec<usize> = self.variables.all.iter().map(|variable| variable.rule.nodes.len()).collect();
         let cut = |(v, nodes): (usize, usize)| (0..nodes).map(|node| self.want(&[(v, node)], Purpose::Cut)).collect();
         nodes.into_iter().enumerate().map(cut).collect()
     }
 
-    /// Evaluates the design, if the budget allows.
+    /// Evaluates the design if the budget allows it.
     pub(super) fn evaluated(
         &self,
         method: &'static str,
@@ -325,13 +325,12 @@ impl<'p> Quadrature<'p> {
         Ok(evaluate(problem, &self.design, run))
     }
 
-    /// Values of a characteristic at these points above one at another; None for each that is lost.
+    /// Returns the values of a characteristic at these points minus `above`; None for each value that is lost.
     pub(super) fn rises(known: &KnownAnswers, c: usize, points: &[Point], above: f64) -> Vec<Option<f64>> {
         points.iter().map(|point| Some(known.value(point, c)? - above)).collect()
     }
 
-    /// The outcome, with derivatives wherever they are known: exact ones, or those of polynomials through the nodes next to
-    /// the means.
+    /// Builds the outcome. Its derivatives are exact ones if they are known, or those of polynomials through the nodes next to the means.
     pub(super) fn outcome(
         self,
         method: Method,
@@ -370,12 +369,12 @@ impl<'p> Quadrature<'p> {
             pairs,
             climbed: None,
         };
-        // Values at nodes stay what they are, whatever the formula says of itself.
+        // Moments are integrated from values at nodes, so that a polynomial of the formula does not replace anything.
         outcome.with_proofs(problem, &vec![None; problem.characteristics().len()])
     }
 }
 
-/// The polynomial through the steps next to the mean, four of them at most; None where there are none, or none was had.
+/// Returns the polynomial through the values at the nodes next to the mean, four of them at most. Returns None if no such node has a value.
 fn part(design: &Design, known: &KnownAnswers, c: usize, d: usize, at_means: bool) -> Option<Univariate> {
     if !design.depends(c, d) {
         return Some(Univariate::of_coefficients(&[0.0, 0.0]));
@@ -394,7 +393,7 @@ fn part(design: &Design, known: &KnownAnswers, c: usize, d: usize, at_means: boo
     Univariate::through(&samples)
 }
 
-/// Where the two nodes next to the mean are, one on either side; None where a side has none.
+/// Returns the indices of the two nodes next to the mean, one on either side; None for a side without a node.
 pub(super) fn next_to_the_mean(rule: &Rule) -> [Option<usize>; 2] {
     let nearest = |right: bool| {
         let away = |&i: &usize| rule.nodes[i].abs() >= NEAREST && (rule.nodes[i] > 0.0) == right;
@@ -403,7 +402,7 @@ pub(super) fn next_to_the_mean(rule: &Rule) -> [Option<usize>; 2] {
     [nearest(false), nearest(true)]
 }
 
-/// How many of these are lost, if any is.
+/// Fails with the number of lost values if any value is lost.
 pub(super) fn complete(values: impl IntoIterator<Item = bool>) -> Result<(), Lacking> {
     let (mut lost, mut of) = (0, 0);
     for known in values {

@@ -1,9 +1,9 @@
-//! All methods.
+//! Registry of all methods.
 
 use super::{Cost, Method, MethodError, Narrow, Options, Procedure};
 use crate::problem::Problem;
 
-/// Every method, in the order in which they are listed.
+/// Every method, in the order of listings.
 pub static ALL: &[&dyn Procedure] = &[
     &super::auto::AUTO,
     &super::rss::RSS,
@@ -18,23 +18,23 @@ pub static ALL: &[&dyn Procedure] = &[
     &super::response_surface::ResponseSurface,
 ];
 
-/// The procedure of a method.
+/// Returns the procedure of a method.
 pub fn procedure(method: Method) -> &'static dyn Procedure {
     *ALL.iter().find(|procedure| procedure.method() == method).expect("every method is registered")
 }
 
 impl Method {
-    /// Its procedure.
+    /// Returns the procedure of this method.
     pub fn procedure(self) -> &'static dyn Procedure {
         procedure(self)
     }
 }
 
 impl Options {
-    /// The cost of an analysis of the problem, or why it cannot be run; nothing is evaluated.
+    /// Returns the cost of an analysis of the problem, or the reason why it cannot be run. Nothing is evaluated.
     ///
     /// # Errors
-    /// When the options do not fit the problem, and when the method needs more evaluations than the budget allows.
+    /// Fails if the options do not fit the problem, or if the method needs more evaluations than the budget allows.
     pub fn cost(&self, problem: &Problem) -> Result<Cost, MethodError> {
         let narrow = Narrow::of(problem, self);
         self.method.procedure().fits(narrow.as_ref().map_or(problem, |narrow| &narrow.problem), self)

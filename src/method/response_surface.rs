@@ -4,23 +4,25 @@
 //! y ~ c + sum_j b_j u_j + sum_j a_j u_j^2 + sum_{j<k} A_jk u_j u_k          u_j = (x_j - mean_j)/sigma_j
 //! ```
 //!
-//! Box and Wilson (1951), "On the experimental attainment of optimum conditions", Journal of the Royal Statistical Society B 13.
-//! The design has the means, two axial points of every dimension and the corners of a factorial. The axial points are the pair of
-//! nodes that matches a dimension's moments to the fourth (of a normal one +-sqrt 3), and the corners have every dimension at
-//! 1/sqrt 3 of these (a normal one at +-1): about as far out in N dimensions as most assemblies are. `--step K` puts the axial
-//! points at K sigma.
+//! Box and Wilson (1951), "On the experimental attainment of optimum conditions", Journal of the Royal Statistical Society B 13. The design
+//! has the means, two axial points of every dimension and the corners of a factorial.
 //!
-//! The factorial has resolution V ([`corners`]): no interaction is mistaken for another, nor for a slope. Smaller designs that
-//! confound interactions with slopes (Hartley 1959) leave a quadratic estimable too, but a cubic term of one dimension would then
-//! show as an interaction of two others.
+//! The axial points are the pair of nodes that matches a dimension's moments to the fourth (for a normal dimension +-sqrt 3). The corners
+//! have every dimension at 1/sqrt 3 of these (for a normal dimension +-1), which is about as far out in N dimensions as most assemblies
+//! are. `--step K` puts the axial points at K sigma.
 //!
-//! The surface is fitted in sigmas, by a QR decomposition with column pivoting. Its moments are exact, as those of the derivative
-//! methods, whatever the distributions, and sampled where correlated inputs are not normal. The part of the values that it misses
-//! is the residual standard error, from as many degrees of freedom as there are more points than coefficients; the errors of mean
-//! and sigma that follow from it take the misses for random, which those of a smooth function are not: it is a scale, and no
-//! bound. A point that is lost is left out of the fit, and there is none where the rest do not determine it.
+//! The factorial has resolution V ([`corners`]): no interaction is confounded with another, or with a slope. Smaller designs that confound
+//! interactions with slopes (Hartley 1959) can estimate a quadratic too. A cubic term of one dimension would then appear as an interaction
+//! of two others.
 //!
-//! Evaluations: `2^r + 2N + 1`; r is N up to four dimensions, and then 4, 5, 6 for N of 5, 6, 7 and 8, 7 up to 11, 8 up to 17.
+//! The surface is fitted in sigmas, by a QR decomposition with column pivoting. Its moments are exact for all distributions, like those of
+//! the derivative methods. They are sampled if correlated inputs are not normal.
+//!
+//! The residual standard error has as many degrees of freedom as there are points in excess of coefficients. The errors of mean and sigma
+//! that follow from it assume random residuals. The residuals of a smooth function are not random, so that these errors are a scale and no
+//! bound. A point that is lost is left out of the fit. There is no fit if the remaining points do not determine it.
+//!
+//! Evaluations: `2^r + 2N + 1`. r is N up to four dimensions, then 4, 5, 6 for N of 5, 6, 7 and 8, 7 up to 11, 8 up to 17.
 
 use std::sync::Arc;
 
@@ -41,9 +43,9 @@ use sensitol_numeric::surrogate::{DerivativeOrigin, Surrogate, Univariate};
 
 pub(super) struct ResponseSurface;
 
-/// Dimensions of which a surface is fitted: 1431 coefficients take some seconds.
+/// Greatest number of dimensions of a surface: 1431 coefficients take some seconds.
 const MOST: usize = 52;
-/// A pivot below this part of the largest says that a coefficient is not determined.
+/// A pivot below this part of the largest belongs to a coefficient that the points do not determine.
 const SINGULAR: f64 = 1e-10;
 
 impl Procedure for ResponseSurface {
@@ -82,7 +84,7 @@ impl Procedure for ResponseSurface {
         let polynomials = PolynomialSurface::all(problem, &design, options);
         let fit = |(c, exact): (usize, Option<ExactDerivatives>)| {
             let mut fitted = Fitted { exact, ..fitted(&design, &places, &evaluated.known, c, &pairs) };
-            // Least squares find a quadratic, and mix up the terms of anything else.
+            // Least squares determine a quadratic exactly, but mix up the terms of a polynomial of higher degree.
             let quadratic = polynomials[c].as_ref().filter(|terms| terms.degree <= 2);
             quadratic.into_iter().for_each(|terms| terms.replace(&mut fitted, &design, order, &pairs));
             fitted
@@ -95,7 +97,7 @@ impl Procedure for ResponseSurface {
 }
 
 impl ResponseSurface {
-    /// The design, and its points that the surface is fitted to.
+    /// Returns the design, and the points that the surface is fitted to.
     fn design(&self, problem: &Problem, options: &Options) -> Result<(Design, Vec<Point>), MethodError> {
         self.check(problem, options)?;
         let (dimensions, correlation) = (problem.dimensions(), problem.correlation());
@@ -134,7 +136,7 @@ impl ResponseSurface {
     }
 }
 
-/// One characteristic's surface.
+/// Fits the surface of one characteristic.
 fn fitted(design: &Design, points: &[Point], known: &KnownAnswers, c: usize, pairs: &[(usize, usize)]) -> Fitted {
     let varying = design.varying();
     let dimensions = design.centre().len();
@@ -145,7 +147,7 @@ fn fitted(design: &Design, points: &[Point], known: &KnownAnswers, c: usize, pai
     let nominal = known.value(design.nominal(), c);
     let centre = known.value(&Point::Centre, c);
     let found = Fitted { nominal, centre, ..Fitted::default() };
-    // Without tolerance: differences, as in every other method.
+    // Dimensions without tolerance have differences, as in every other method.
     let fixed = |d: usize| {
         let samples = design.axis(d).slots.iter().filter_map(|slot| {
             let node = slot[0];
@@ -160,6 +162,7 @@ fn fitted(design: &Design, points: &[Point], known: &KnownAnswers, c: usize, pai
         (true, Err(_)) => fixed(d),
     };
     let mut parts: Vec<Option<Univariate>> = (0..dimensions).map(own_part).collect();
+    // Without a solution the report states the number of points that are left.
     let Some(solution) = solve(design, &values, &mine, &products, coefficients) else {
         let lacking = Some(Lacking::NotEstimable { left: values.len(), coefficients });
         return Fitted { parts, mixed: vec![None; pairs.len()], lacking, ..found };
@@ -182,6 +185,7 @@ fn fitted(design: &Design, points: &[Point], known: &KnownAnswers, c: usize, pai
             products.iter().zip(of_products).map(|(&(j, k), &value)| (j, k, value)).filter(|pair| pair.2 != 0.0),
         ),
     };
+    // The formula for standard errors holds for independent inputs only.
     let [mean, sigma] = match design.inputs().correlation() {
         None => uncertain(design, &solution, &mine),
         Some(_) => [None; 2],
@@ -190,9 +194,10 @@ fn fitted(design: &Design, points: &[Point], known: &KnownAnswers, c: usize, pai
     Fitted { mixed: mixed.collect(), parts, surrogate: Some(surrogate), residual: Some(residual), ..found }
 }
 
-/// Standard errors of mean and sigma of independent inputs: `s sqrt(g'(X'X)^-1 g)` with the gradient `g` by the coefficients of
-/// `mean = c + sum_j a_j` and `var = sum_j b_j^2 + 2 a_j b_j s_j + a_j^2 (f_j - 1) + sum_{j<k} A_jk^2`, skewness `s_j` and kurtosis
-/// `f_j`.
+/// Returns standard errors of mean and sigma of independent inputs: `s sqrt(g'(X'X)^-1 g)` with the gradient `g` by the coefficients.
+///
+/// The moments are `mean = c + sum_j a_j` and `var = sum_j b_j^2 + 2 a_j b_j s_j + a_j^2 (f_j - 1) + sum_{j<k} A_jk^2`, with skewness `s_j`
+/// and kurtosis `f_j`.
 fn uncertain(design: &Design, solution: &Solution, mine: &[usize]) -> [Option<f64>; 2] {
     let coefficients = &solution.coefficients;
     let products = 1 + 2 * mine.len();
@@ -217,15 +222,15 @@ fn uncertain(design: &Design, solution: &Solution, mine: &[usize]) -> [Option<f6
     [of(&of_mean), of(&of_variance).filter(|_| sigma > 0.0).map(|error| error / (2.0 * sigma))]
 }
 
-/// Coefficients in the order constant, slope and curvature of every dimension, products.
+/// Coefficients in this order: constant, slope and curvature of every dimension, products.
 struct Solution {
     coefficients: Vec<f64>,
     residual: Option<f64>,
-    /// None where all values are the same.
+    /// Factor of the decomposition; None if all values are the same.
     factor: Option<Factor>,
 }
 
-/// `X = Q R` with the columns of `X` divided by their lengths and in this order.
+/// Factor of `X = Q R`, with the columns of `X` divided by their lengths and permuted to this order.
 struct Factor {
     r: Mat<f64>,
     order: Vec<usize>,
@@ -233,7 +238,7 @@ struct Factor {
 }
 
 impl Factor {
-    /// `sqrt(g'(X'X)^-1 g) = |R'^-1 g|`
+    /// Returns `sqrt(g'(X'X)^-1 g) = |R'^-1 g|`.
     fn spread(&self, gradient: &[f64]) -> f64 {
         let mut solved: Vec<f64> = Vec::with_capacity(gradient.len());
         for (i, &k) in self.order.iter().enumerate() {
@@ -244,7 +249,7 @@ impl Factor {
     }
 }
 
-/// None where the points do not determine the coefficients.
+/// Solves for the coefficients. Returns None if the points do not determine them.
 fn solve(
     design: &Design,
     values: &[(&Point, f64)],
@@ -271,7 +276,7 @@ fn solve(
             rows[(row, 1 + 2 * mine.len() + place)] = u[j] * u[k];
         }
     }
-    // Every column of length 1, so that pivots tell what is determined, and the values about one of them.
+    // Columns of length 1, so that a small pivot shows a coefficient that is not determined. Values are relative to the first.
     let lengths: Vec<f64> = (0..coefficients).map(|k| rows.col(k).norm_l2()).collect();
     if lengths.contains(&0.0) {
         return None;

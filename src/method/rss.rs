@@ -1,10 +1,10 @@
 //! `rss`: root of the sum of squares, first order.
 //!
-//! Slopes by central differences over the moment-optimal pair of nodes. The reported RSS is
-//! `sqrt(sum of (slope x half band)^2)`; the moments are those of the straight-line model, exact for any inputs. The
-//! curvatures come with the same evaluations, are not used, and give a warning where they should have been. With exact
-//! derivatives, on an assembly of closure conditions, this is the direct linearisation method (DLM): Chase, Gao, Magleby
-//! (1995).
+//! Slopes are central differences over the moment-optimal pair of nodes. The reported RSS is `sqrt(sum of (slope x half band)^2)`. The
+//! moments are those of the straight-line model, exact for any inputs.
+//!
+//! The same evaluations give the curvatures. The method does not use them, but warns if they matter. With exact derivatives, on an assembly
+//! of closure conditions, this is the direct linearisation method (DLM): Chase, Gao, Magleby (1995).
 
 use super::Method;
 use super::ladder::{Examined, Ladder, Order};

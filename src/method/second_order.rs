@@ -1,7 +1,7 @@
 //! `second-order`: slopes and curvatures, no interactions.
 //!
-//! A parabola per dimension through the centre and its moment-optimal pair of nodes, which together integrate up to
-//! the fourth degree (fifth for symmetric inputs). The contribution of interactions to sigma stays unknown.
+//! One parabola per dimension through the centre and its moment-optimal pair of nodes. The nodes integrate polynomials up to the fourth
+//! degree (fifth for symmetric inputs). The contribution of interactions to sigma stays unknown.
 
 use super::Method;
 use super::ladder::{Examined, Ladder, Order};

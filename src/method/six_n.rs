@@ -1,8 +1,8 @@
 //! `six-n`: five-point axes and the strongest interactions.
 //!
-//! 4N+1 evaluations make a quartic per dimension; then the N pairs with the largest product of univariate variance
-//! shares get a mixed derivative by two evaluations each. With `--stencil four-point` the same 6N+1 go where the papers
-//! put them: 2N+1 for parabolas and N mixed derivatives of four evaluations, which are all pairs at N = 3 only.
+//! 4N+1 evaluations determine a quartic per dimension. The N pairs with the largest product of univariate variance shares then get a mixed
+//! derivative by two evaluations each. With `--stencil four-point` the 6N+1 evaluations are distributed as in the papers: 2N+1 for
+//! parabolas, and N mixed derivatives of four evaluations, which are all pairs at N = 3 only.
 
 use super::Method;
 use super::ladder::{Examined, Ladder, Order};

@@ -1,7 +1,7 @@
-//! The proof that a surface is the function itself.
+//! Proof that a surface is the function itself.
 //!
-//! A formula tells its degree as a polynomial, or all of its terms. A surface that has every derivative of such a formula is the
-//! formula, unless one of them is an estimate: [`DerivativeOrigin::Screened`](sensitol_numeric::surrogate::DerivativeOrigin).
+//! A formula has a degree as a polynomial, or a list of all its terms. A surface that has every derivative of such a formula is the
+//! formula, unless a derivative is an estimate: [`DerivativeOrigin::Screened`](sensitol_numeric::surrogate::DerivativeOrigin).
 
 use super::polynomial_surface::PolynomialSurface;
 use super::{Fitted, Order, Outcome, SurfaceProof};
@@ -9,8 +9,8 @@ use crate::problem::Problem;
 use sensitol_numeric::surrogate::{InputShape, Univariate};
 
 impl Outcome {
-    /// Adds to every characteristic what is proven of its surface, and how many of its interactions are known; `polynomials` are the
-    /// terms of its formulas.
+    /// Adds to every characteristic the proof of its surface, if there is one, and the number of known interactions. `polynomials` holds
+    /// the terms of the formulas.
     pub(super) fn with_proofs(mut self, problem: &Problem, polynomials: &[Option<PolynomialSurface>]) -> Self {
         let varying: Vec<bool> = problem.dimensions().iter().map(|dimension| dimension.sigma() > 0.0).collect();
         for (c, polynomial) in polynomials.iter().enumerate() {
@@ -19,7 +19,8 @@ impl Outcome {
                 None => problem.function().degree(problem.outputs()[c], &varying),
             };
             let all = self.plan.pairs_of(c);
-            // A linear function has no interactions, and `auto` takes those of a formula, whatever points look at.
+            // A linear function has no interactions. `auto` takes the interactions of a polynomial from the formula, even if no point shows
+            // them.
             let from_formula =
                 degree.is_some_and(|degree| degree < 2) || polynomial.is_some() && self.climbed.is_some();
             self.fitted[c].known_pairs = if from_formula { all } else { self.known_pairs(c) };
@@ -31,7 +32,8 @@ impl Outcome {
         self
     }
 
-    /// Pairs of a characteristic whose mixed derivative was differentiated or evaluated, or whose effect was integrated.
+    /// Returns the number of pairs of a characteristic whose mixed derivative was differentiated or evaluated, or whose effect was
+    /// integrated.
     fn known_pairs(&self, c: usize) -> usize {
         let fitted = &self.fitted[c];
         let known = |index: usize| match &fitted.integrated {
@@ -56,9 +58,9 @@ impl Outcome {
         let shapes = plan.inputs().shapes();
         let integrated = |((part, shape), &d): ((&Univariate, &InputShape), &usize)| {
             let distribution = problem.dimensions()[d].distribution();
-            // The fourth moment has the fourth power of the part.
+            // The fourth moment contains the fourth power of the part.
             let power = 4 * part.highest_power();
-            // A parabola has its moments from those of the dimension, without a rule.
+            // The moments of a parabola follow from those of the dimension, without a rule.
             part.highest_power() <= 2 || distribution.is_some_and(|law| shape.integrates(law, power))
         };
         if !parts.iter().zip(shapes).zip(plan.varying()).all(integrated) {
@@ -70,7 +72,7 @@ impl Outcome {
             let finite = mean.is_finite() && sigma.is_finite();
             return (finite && polynomial.is(surface)).then_some(SurfaceProof { degree, mean: rounding + mean, sigma });
         }
-        // Without its terms a formula of the second degree is what differences say, one rounding each.
+        // If only the degree is known, differences determine a polynomial up to the second degree, with one rounding each.
         let whole = match degree {
             0 | 1 => true,
             2 => self.order == Order::Second && fitted.known_pairs == plan.pairs_of(c) && self.are_parabolas(c, fitted),
@@ -80,7 +82,7 @@ impl Outcome {
         (whole && known).then_some(SurfaceProof { degree, mean: rounding, sigma: rounding })
     }
 
-    /// Whether every part of a characteristic has a curvature.
+    /// True if every part of a characteristic has a curvature.
     fn are_parabolas(&self, c: usize, fitted: &Fitted) -> bool {
         let bent = |&d: &usize| fitted.parts[d].is_some_and(|part| part.degree() >= 2);
         self.plan.varying().iter().filter(|&&d| self.plan.depends(c, d)).all(bent)

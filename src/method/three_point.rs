@@ -1,20 +1,22 @@
 //! `three-point`: the full product of three-point rules.
 //!
-//! Every input has three levels and weights that match its moments 1 to 4, one of them the mean
-//! ([`Rule::three_point`](sensitol_numeric::distribution::Rule::three_point)); the function is evaluated at all `3^N` combinations, and every
-//! expectation is the weighted sum over them. Seo and Kwak (2002), "Efficient statistical tolerance analysis for general distributions
-//! using three-point information", International Journal of Production Research 40. They form raw moments from the sums and central
-//! ones from these, which costs the digits of mean/sigma; here the second to fourth moments are sums of powers of the deviation from
-//! the estimated mean, compensated. An input whose matched level would lie outside its support has a three-point Gauss rule instead.
+//! Every input has three levels and weights that match its moments 1 to 4. One of the levels is the mean
+//! ([`Rule::three_point`](sensitol_numeric::distribution::Rule::three_point)). The function is evaluated at all `3^N` combinations, and
+//! every expectation is the weighted sum over them. Seo and Kwak (2002), "Efficient statistical tolerance analysis for general
+//! distributions using three-point information", International Journal of Production Research 40.
 //!
-//! Exact where the rules are: means of polynomials up to degree 4 in every dimension (5 where the input is symmetric), whatever
-//! the products; a fourth moment is, where the function is linear in each dimension. Of curved functions mean and sigma are good
-//! and skewness and kurtosis are not: a warning says so.
+//! They form raw moments from the sums and central moments from these, which costs the digits of mean/sigma. Here the second to fourth
+//! moments are compensated sums of powers of the deviation from the estimated mean. An input whose matched level would lie outside its
+//! support has a three-point Gauss rule instead.
 //!
-//! Shares of the variance come from the same values: of conditional means at the levels of one dimension and of two. Joint
-//! effects of three and more dimensions are left out. Correlated inputs go by eigenvectors, as in `dimension-reduction`.
+//! Exactness follows from the rules. Means are exact for polynomials up to degree 4 in every dimension (5 for a symmetric input), with any
+//! products. Fourth moments are exact for functions that are linear in each dimension. For curved functions mean and sigma are good, but
+//! skewness and kurtosis are not: a warning states this.
 //!
-//! Evaluations: 3 to the power of N, and 1 where the nominal is not among them.
+//! Shares of the variance come from the same values, as conditional means at the levels of one dimension and of two. Joint effects of three
+//! and more dimensions are left out. Correlated inputs are transformed by eigenvectors, as in `dimension-reduction`.
+//!
+//! Evaluations: 3 to the power of N, and 1 if the nominal is not among them.
 
 use std::sync::Arc;
 
@@ -32,7 +34,7 @@ use sensitol_numeric::parallel::prelude::*;
 
 pub(super) struct ThreePoint;
 
-/// Levels of an input.
+/// Number of levels of an input.
 const LEVELS: usize = 3;
 
 impl Procedure for ThreePoint {
@@ -55,7 +57,7 @@ impl Procedure for ThreePoint {
     fn fits(&self, problem: &Problem, options: &Options) -> Result<Cost, MethodError> {
         self.check(problem, options)?;
         let (mut quadrature, grid) = self.grid(problem, options)?;
-        // Over the budget for certain, before a million points are named.
+        // First a lower bound of the cost, so that an unaffordable grid is refused before a million points are listed.
         Cost { evaluations: grid.len(), stages: 1 }.within(self.name(), problem, options)?;
         Cost { evaluations: grid.cost(&mut quadrature), stages: 1 }.within(self.name(), problem, options)
     }
@@ -85,7 +87,7 @@ impl Procedure for ThreePoint {
 }
 
 impl ThreePoint {
-    /// Refused where there are too many combinations, before any is named.
+    /// Returns the grid, or an error if it has too many combinations. No point is listed before this check.
     fn grid<'p>(&self, problem: &'p Problem, options: &Options) -> Result<(Quadrature<'p>, Grid), MethodError> {
         let quadrature = Quadrature::new(problem, options, Rule::three_point, LEVELS, false);
         let levels: Vec<usize> = quadrature.variables.all.iter().map(|variable| variable.rule.nodes.len()).collect();
@@ -95,7 +97,7 @@ impl ThreePoint {
     }
 }
 
-/// All combinations of levels, those of the last variable running fastest.
+/// All combinations of levels. The level of the last variable changes fastest.
 struct Grid {
     levels: Vec<usize>,
 }
@@ -105,7 +107,7 @@ impl Grid {
         self.levels.iter().product()
     }
 
-    /// From one level of a variable to the next.
+    /// Returns the distance in the grid from one level of a variable to the next.
     fn stride(&self, variable: usize) -> usize {
         self.levels[variable + 1..].iter().product()
     }
@@ -114,7 +116,8 @@ impl Grid {
         place / stride % self.levels[variable]
     }
 
-    /// The node of every level of every variable, None inside at a mean; None where a variable moves several dimensions.
+    /// Returns the node of every level of every variable, with None for a level at the mean. Returns None if a variable moves several
+    /// dimensions.
     fn nodes(&self, quadrature: &mut Quadrature<'_>) -> Option<Vec<Vec<Option<AtNode>>>> {
         let variable = |(v, &levels): (usize, &usize)| {
             quadrature.variables.position(v)?;
@@ -123,13 +126,13 @@ impl Grid {
         self.levels.iter().enumerate().map(variable).collect()
     }
 
-    /// How many points the design has with all combinations.
+    /// Returns the number of points of the design together with all combinations.
     fn cost(&self, quadrature: &mut Quadrature<'_>) -> usize {
         let Some(nodes) = self.nodes(quadrature) else {
             self.points(quadrature);
             return quadrature.design.cost().0;
         };
-        // All combinations are different. Of the points that the design begins with only the nominal one can be among them.
+        // All combinations are different. Only the nominal point of the initial design can be among them.
         let nominal = quadrature.design.nominal().at();
         let of_variable = |v: usize| {
             let d = quadrature.variables.position(v).map(|position| quadrature.design.varying()[position]);
@@ -166,7 +169,7 @@ impl Grid {
         Ok(values.into_iter().flatten().collect())
     }
 
-    /// The probability of every combination.
+    /// Returns the probability of every combination.
     fn weights(&self, rules: &[&Rule]) -> Vec<f64> {
         rules.iter().fold(vec![1.0], |weights, rule| {
             weights.iter().flat_map(|weight| rule.weights.iter().map(move |own| weight * own)).collect()
@@ -179,7 +182,7 @@ fn integrated(quadrature: &Quadrature<'_>, grid: &Grid, values: &[f64], pairs: &
     let weights = grid.weights(&rules);
     let n = quadrature.design.varying().len();
     let mean = |f: &dyn Fn(f64) -> f64| exact(values.iter().zip(&weights).map(|(&value, weight)| weight * f(value)));
-    // About some value first, so that the mean keeps the digits of the deviations.
+    // Deviations from the first value, so that the mean keeps their digits.
     let first = values[0];
     let middle = first + mean(&|value| value - first);
     let largest = values.iter().map(|value| (value - middle).abs()).fold(0.0, f64::max);
@@ -198,6 +201,7 @@ fn integrated(quadrature: &Quadrature<'_>, grid: &Grid, values: &[f64], pairs: &
             nodes: LEVELS,
         };
     }
+    // Deviations are divided by the largest, so that their squares neither overflow nor underflow.
     let sigma = largest * mean(&|value| ((value - middle) / largest).powi(2)).sqrt();
     let [skewness, kurtosis] = [3, 4].map(|order| mean(&|value| ((value - middle) / sigma).powi(order)));
     let deviations: Vec<f64> = values.iter().map(|value| (value - middle) / sigma).collect();
@@ -224,6 +228,7 @@ fn integrated(quadrature: &Quadrature<'_>, grid: &Grid, values: &[f64], pairs: &
         .collect();
     let own: Vec<Option<MainEffect>> = own.into_iter().map(|own| Some(own?.0)).collect();
     let shares = own.iter().map(|own| Some(own.as_ref()?.linear + own.as_ref()?.curvature));
+    // The remainder is known only if no input is correlated.
     let known: Option<Vec<f64>> = shares.chain(joints.iter().map(|joint| Some(joint.as_ref()?.share))).collect();
     Integrated {
         moments: Moments::new(middle, sigma, skewness, kurtosis - 3.0),
@@ -234,7 +239,7 @@ fn integrated(quadrature: &Quadrature<'_>, grid: &Grid, values: &[f64], pairs: &
     }
 }
 
-/// Conditional means, in sigmas.
+/// Conditional means of the characteristic, in sigmas.
 struct ConditionalMeans<'g> {
     grid: &'g Grid,
     deviations: &'g [f64],
@@ -243,7 +248,7 @@ struct ConditionalMeans<'g> {
 }
 
 impl ConditionalMeans<'_> {
-    /// At every level of a variable.
+    /// Returns the conditional mean at every level of a variable.
     fn one(&self, v: usize) -> Vec<f64> {
         let stride = self.grid.stride(v);
         let mut sums = vec![0.0; self.grid.levels[v]];
@@ -253,7 +258,7 @@ impl ConditionalMeans<'_> {
         sums.iter().zip(&self.rules[v].weights).map(|(sum, weight)| sum / weight).collect()
     }
 
-    /// The variance of what two variables do together, beyond what each does by itself.
+    /// Returns the variance of the joint effect of two variables, beyond the effect of each by itself.
     fn two(&self, [v, w]: [usize; 2], of_v: &[f64], of_w: &[f64]) -> f64 {
         let strides = [self.grid.stride(v), self.grid.stride(w)];
         let columns = self.grid.levels[w];

@@ -1,7 +1,7 @@
 //! `worst-case`: sum of absolute values, first order.
 //!
-//! The evaluations and moments of `rss`; the result that counts is the interval that no assembly of a linear model can
-//! leave: `sum of |slope| x band`, each dimension at the end of its band that hurts.
+//! Evaluations and moments are those of `rss`. The result is the interval that no assembly of a linear model can leave: `sum of |slope| x
+//! band`, with each dimension at the unfavourable end of its band.
 
 use super::Method;
 use super::ladder::{Examined, Ladder, Order};

@@ -1,4 +1,4 @@
-//! Every method on the public test functions: evaluations, true error, and whether `auto` and the estimates keep their word.
+//! All methods on the public test functions: evaluations, true errors, and tests of `auto` and of the error estimates. The document
 //! `docs/accuracy.md` is written from the same numbers.
 
 use std::fmt::Write as _;
@@ -12,12 +12,12 @@ use sensitol_study::Study;
 use super::coverage::{COLUMNS, checked, covered};
 use sensitol_testing::{data, repository, says};
 
-/// The accuracies to reach with `auto`.
+/// Wanted accuracies of sigma for `auto`.
 const ACCURACIES: [f64; 3] = [0.05, 0.01, 0.001];
-/// References are known to that, relative to sigma, or better: their own stated errors are below 1e-7.
+/// Greatest error of the references, relative to sigma. The errors that they state are below 1e-7.
 const FLOOR: f64 = 1e-7;
 
-/// One function.
+/// Test function with the results of all methods.
 struct Row {
     name: String,
     n: usize,
@@ -25,16 +25,16 @@ struct Row {
     runs: Vec<Ran>,
 }
 
-/// One method on it.
+/// Result of one method on one function.
 struct Ran {
     evaluations: usize,
-    /// Relative error of sigma.
+    /// Relative error of sigma against the reference.
     error: f64,
-    /// As the method estimates it.
+    /// Relative error of sigma as estimated by the method.
     estimate: Option<f64>,
-    /// Points of the model in the place of a surrogate.
+    /// True if points of the model replaced the surrogate.
     sampled: bool,
-    /// Errors of mean, sigma, skewness and kurtosis, the first two in sigmas, and their estimates.
+    /// Errors of mean, sigma, skewness and kurtosis with their estimates. The first two are in sigmas.
     figures: [(f64, Option<f64>); 4],
 }
 
@@ -62,12 +62,12 @@ fn contenders() -> Vec<(String, Options)> {
         let options = Options::from(Method::Auto).with_accuracy(accuracy);
         contenders.push((format!("`auto` {} %", 100.0 * accuracy), options));
     }
-    // The methods' own figures and estimates; those of a verification are tested in `trust`.
+    // Figures and estimates are those of the methods themselves. Those of a verification are tested in `trust`.
     contenders.iter_mut().for_each(|(_, options)| options.verify = Some(0));
     contenders
 }
 
-/// All of them, once for all tests.
+/// Returns the results on all functions, computed once for all tests.
 fn rows() -> &'static [Row] {
     static ROWS: OnceLock<Vec<Row>> = OnceLock::new();
     ROWS.get_or_init(|| {
@@ -106,12 +106,12 @@ fn rows() -> &'static [Row] {
     })
 }
 
-/// `auto` at its three accuracies.
+/// Returns the results of `auto` at its three accuracies.
 fn auto(row: &Row) -> &[Ran] {
     &row.runs[row.runs.len() - ACCURACIES.len()..]
 }
 
-/// Counts those of which it holds, and all.
+/// Returns the number of items for which a property holds, and of all items.
 fn count<T>(of: impl IntoIterator<Item = T>, holds: impl Fn(&T) -> bool) -> (usize, usize) {
     of.into_iter().fold((0, 0), |(held, all), one| (held + usize::from(holds(&one)), all + 1))
 }
@@ -135,21 +135,21 @@ fn there_are_enough_functions() {
     assert_eq!(rows().iter().map(|row| row.n).max(), Some(200));
 }
 
-/// Of smooth functions at least 95 % are known as well as it was wanted.
+/// At least 95 % of the smooth functions reach the wanted accuracy.
 #[test]
 fn auto_keeps_what_it_promises() {
     let (kept, all) = count(wanted(), |(wanted, ran)| ran.within(*wanted));
     assert!(100 * kept >= 95 * all, "{kept} of {all}");
 }
 
-/// Three times the estimated error covers the true one in at least 95 % of all cases, kinks included.
+/// Three times the estimated error covers the true one in at least 95 % of all cases, including kinks.
 #[test]
 fn the_estimates_of_auto_can_be_believed() {
     let (covered, all) = count(rows().iter().flat_map(auto), |ran| ran.covered() == Some(true));
     assert!(100 * covered >= 95 * all, "{covered} of {all}");
 }
 
-/// Smooth formulas of which a surface says all there is to say warn of nothing, verified as everybody's are.
+/// Smooth formulas that a surface describes completely cause no warning, with the usual verification.
 #[test]
 fn clean_functions_warn_of_nothing() {
     let clean = [
@@ -183,7 +183,7 @@ fn clean_functions_warn_of_nothing() {
     assert!(warned.is_empty(), "{warned:#?}");
 }
 
-/// A smooth function that a surrogate follows costs little more than every second derivative, and 16.
+/// A smooth function that a surrogate follows costs little more than all second derivatives, and 16 evaluations.
 #[test]
 fn auto_does_not_waste_evaluations() {
     for row in smooth() {
@@ -209,7 +209,7 @@ fn auto_is_quick_with_what_is_linear_and_what_is_sparse() {
     }
 }
 
-/// `docs/accuracy.md`, to the last character.
+/// Compares `docs/accuracy.md` with the measured numbers, to the last character.
 #[test]
 fn the_document_shows_what_was_measured() {
     let path = repository("docs/accuracy.md");
@@ -290,7 +290,7 @@ fn summary(text: &mut String) {
     }
 }
 
-/// All figures: of these functions without verification, and of those of `trust.jsonl` at check points.
+/// Writes the table of all figures: of these functions without verification, and of those of `trust.jsonl` at check points.
 fn figures(text: &mut String) {
     *text += "\n## All five figures\n\nThe median error of each figure where functions are smooth, mean and sigma in sigmas, without any \
               verification; in brackets how many\nerrors are within three estimates, kinks included. A yield has no reference here; it has one \
@@ -300,7 +300,7 @@ fn figures(text: &mut String) {
         for figure in 0..4 {
             let mut errors: Vec<f64> = smooth().map(|row| row.runs[index].figures[figure].0).collect();
             errors.sort_by(f64::total_cmp);
-            // References are known to 1e-7 of sigma, and higher moments to some times that.
+            // References are accurate to 1e-7 of sigma, and to some multiples of that for higher moments.
             let floor = FLOOR * [1.0, 1.0, 10.0, 100.0][figure];
             let known = rows().iter().filter_map(|row| {
                 let (error, estimate) = row.runs[index].figures[figure];
@@ -332,14 +332,14 @@ fn figures(text: &mut String) {
     *text += "\n## Sigma\n";
 }
 
-/// The errors of a contender where functions are smooth.
+/// Returns the median and the largest error of a contender on smooth functions.
 fn median_and_largest(contender: usize) -> [String; 2] {
     let mut errors: Vec<f64> = smooth().map(|row| row.runs[contender].error).collect();
     errors.sort_by(f64::total_cmp);
     [errors[errors.len() / 2], errors[errors.len() - 1]].map(digit)
 }
 
-/// The how-to pages quote these tables.
+/// Checks that the how-to pages quote these tables.
 #[test]
 fn the_how_to_pages_quote_what_was_measured() {
     const CHOOSE: &str = "docs/how-to/choose-a-method.md";
@@ -410,13 +410,13 @@ fn the_how_to_pages_quote_what_was_measured() {
     );
 }
 
-/// An error to its first digit; what is below the reference's own error as that.
+/// Formats an error to its first digit. An error below that of the reference is shown as the latter.
 fn digit(error: f64) -> String {
     if error < FLOOR { "<1e-7".to_owned() } else { format!("{error:.0e}") }
 }
 
-/// Functions for tuning constants judge nothing: the functions by which the errors of all methods are judged have other names,
-/// and other inputs where the formula is the same.
+/// Functions that tune constants are not used for tests. The functions that measure the errors of all methods have other names, and other
+/// inputs if the formula is the same.
 #[test]
 fn functions_that_tune_are_not_those_that_test() {
     let bare = |text: &str| text.chars().filter(|c| !c.is_whitespace()).collect::<String>();

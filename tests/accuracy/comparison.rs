@@ -1,5 +1,5 @@
-//! The methods of the second-order paper, one beside the other on its three examples: `docs/method-comparison.md`, and the same
-//! figures from code of other people.
+//! Methods of the second-order paper on its three examples, side by side: `docs/method-comparison.md`, and the same figures from
+//! independent code.
 
 use std::fmt::Write;
 
@@ -13,10 +13,10 @@ const PAGE: &str = "docs/method-comparison.md";
 
 enum Ours {
     Method(Options),
-    /// The vector loops of the same assembly, with exact derivatives.
+    /// Vector loops of the same assembly, with exact derivatives.
     Loops,
     Points(Sampler, u64),
-    /// The part of the surface of `full` that the paper's equations 7 to 14 keep, with 2N^2 + 1 evaluations.
+    /// Part of the surface of `full` that the paper's equations 7 to 14 keep, with 2N^2 + 1 evaluations.
     Printed,
 }
 
@@ -57,7 +57,7 @@ fn sampled(problem: &Problem, options: &SimulationOptions) -> [f64; 4] {
     [one.mean, one.sigma, one.skewness, one.kurtosis].map(|estimate| estimate.unwrap().value)
 }
 
-/// The moments of second order where the third and fourth raw moment keep first-order terms alone.
+/// Returns the moments of second order, with first-order terms alone in the third and fourth raw moment.
 fn printed(problem: &Problem) -> (u64, [f64; 4]) {
     let found = analyze(problem, &Options::from(Method::Classic).with_verify(0)).unwrap();
     let one = &found.characteristics[0];
@@ -115,11 +115,11 @@ fn table(problem: &Problem, loops: Option<&Problem>, reference: [f64; 4]) -> Str
     table
 }
 
-/// To the second digit of its error, and to no more than so many decimals.
+/// Formats a value to the second digit of its error, with at most `most` decimals.
 fn figure(value: f64, error: f64, most: usize) -> String {
     let decimals = if error > 0.0 { (1.0 - error.log10().floor()).clamp(0.0, most as f64) as usize } else { most };
     let text = format!("{value:.decimals$}");
-    // A mean of -1e-17 is one of 0.
+    // A mean of -1e-17 is shown as 0.
     if text.trim_start_matches(['-', '0', '.']).is_empty() { text.trim_start_matches('-').to_owned() } else { text }
 }
 
@@ -127,7 +127,7 @@ fn moments(value: &Value) -> [f64; 4] {
     ["mean", "sigma", "skewness", "kurtosis"].map(|key| value[key].as_f64().unwrap())
 }
 
-/// The reference of a case, by tensor quadrature.
+/// Returns the reference of a case, by tensor quadrature.
 fn reference(case: &str) -> [f64; 4] {
     let listed = data("method-comparison.json")["computed"][case].as_object().unwrap().clone();
     moments(listed.iter().find(|(key, _)| key.starts_with("reference: tensor")).unwrap().1)
@@ -146,14 +146,14 @@ fn the_comparison_of_methods_is_measured() {
     }
     for output in ["gap", "flush1", "flush2"] {
         let problem = problem("spot-weld/study.toml", output);
-        // The model itself at 100 000 points, with the surface of `full` as control variate.
+        // The reference is the model at 100 000 points, with the surface of `full` as control variate.
         let control = SimulationOptions::default().with_samples(100_000).with_control(Method::Full.into());
         let truth = sampled(&problem, &control);
         generated(PAGE, &format!("gun-{output}"), &table(&problem, None, truth));
     }
 }
 
-/// The same figures by other code: derivatives at the point to 1e-7 there, nodes at sqrt 3 sigma and factorials to 1e-8.
+/// Independent code gives the same figures: with derivatives at the point to 1e-7, with nodes at sqrt 3 sigma and factorials to 1e-8.
 #[test]
 fn methods_are_those_of_the_comparison() {
     let all = data("method-comparison.json")["computed"].clone();
@@ -177,7 +177,7 @@ fn methods_are_those_of_the_comparison() {
             let sigma = expected[1];
             assert!((found[0] - expected[0]).abs() < 2e-6 * sigma, "{case} {key}: {found:?} {expected:?}");
             assert!((found[1] / sigma - 1.0).abs() < 2e-6, "{case} {key}: {found:?} {expected:?}");
-            // Shapes follow from second derivatives, of which steps of 0.01 sigma know five digits.
+            // Shapes depend on second derivatives, which steps of 0.01 sigma give to five digits.
             assert!((found[2] - expected[2]).abs() < 2e-5, "{case} {key}: {found:?} {expected:?}");
             assert!((found[3] - expected[3]).abs() < 1e-4, "{case} {key}: {found:?} {expected:?}");
         }
@@ -200,7 +200,7 @@ fn dimension_reduction_goes_by_eigenvectors() {
         analysed(&study.problem, &Options::from(Method::DimensionReduction).with_verify(0)).unwrap();
     let expected = moments(&data("method-comparison.json")["correlated_blocks"]);
     assert_eq!(evaluations, 33);
-    // Univariate parts along eigenvectors leave the interactions between them out: of independent inputs 9e-5 of sigma.
+    // Univariate parts along eigenvectors leave out the interactions between them: 9e-5 of sigma for independent inputs.
     assert!((found[0] - expected[0]).abs() < 1e-5 * expected[1], "{found:?} {expected:?}");
     assert!((found[1] / expected[1] - 1.0).abs() < 2e-4, "{found:?} {expected:?}");
 }

@@ -1,5 +1,5 @@
-//! Whether three estimates reach the truth, for every method and each of its figures, on the functions of `tests/data/trust.jsonl`,
-//! on which nothing is tuned. `docs/accuracy.md` shows the same numbers.
+//! Coverage of the error estimates: three times the estimate should reach the true error, for every method and each of its figures. The
+//! functions are those of `tests/data/trust.jsonl`, on which nothing is tuned. `docs/accuracy.md` shows the same numbers.
 
 use std::sync::OnceLock;
 
@@ -10,27 +10,27 @@ use sensitol::{Method, Options, analyze};
 use super::trust::{Truth, truths, verified};
 use sensitol_testing::costly;
 
-/// The figures with columns of their own: mean, sigma, skewness, kurtosis and the yield within the limits of the tails.
+/// Figures with columns of their own: mean, sigma, skewness, kurtosis and the yield within the limits of the tails.
 pub(super) const COLUMNS: [&str; 5] = ["mean", "sigma", "skewness", "kurtosis", "yield"];
 
-/// One figure of one method on one function.
+/// Figure of one method on one function.
 pub(super) struct Case {
     pub(super) method: Method,
     pub(super) figure: usize,
     name: String,
-    /// None where the error is said to be unknown.
+    /// Comparison of error and estimate; None if the error is unknown.
     judged: Option<Known>,
 }
 
 #[derive(Clone, Copy)]
 struct Known {
-    /// How many times the estimate allows the error: at most 1 where it is covered.
+    /// Ratio of the error to the allowed one, which is at most 1 for a covered error.
     excess: f64,
-    /// The estimate by the error, where that is large enough to be told from the reference's own.
+    /// Ratio of the estimate to the error; None if the error is too small beside that of the reference.
     ratio: Option<f64>,
 }
 
-/// Figures with the errors that are printed beside them; None where there is no figure.
+/// Returns the figures with their printed errors; None for a figure that does not exist.
 fn figures(one: &CharacteristicAnalysis) -> [Option<(f64, Option<f64>)>; 5] {
     let estimate = one.error_estimate.as_ref();
     let moments = one.moments;
@@ -60,7 +60,7 @@ fn cases_of(truth: &Truth, method: Method, found: &CharacteristicAnalysis) -> Ve
     figures(found).into_iter().enumerate().filter_map(case).collect()
 }
 
-/// Every method on every second function, by turns, as a model that costs something: its errors are those of 12 to 18 check points.
+/// Returns the cases of every method on every second function, in turns, as a costly model. The errors are those of 12 to 18 check points.
 pub(super) fn checked() -> &'static [Case] {
     static CASES: OnceLock<Vec<Case>> = OnceLock::new();
     CASES.get_or_init(|| {
@@ -80,7 +80,7 @@ pub(super) fn checked() -> &'static [Case] {
     })
 }
 
-/// Those that an estimate covers, all with an estimate, and the median of estimate by error.
+/// Returns the number of covered errors, the number of all with an estimate, and the median ratio of estimate to error.
 pub(super) fn covered<'a>(cases: impl Iterator<Item = &'a Case>) -> (usize, usize, Option<f64>) {
     let known: Vec<Known> = cases.filter_map(|case| case.judged).collect();
     let mut ratios: Vec<f64> = known.iter().filter_map(|known| known.ratio).collect();
@@ -97,7 +97,7 @@ fn missed<'a>(cases: impl Iterator<Item = &'a Case>) -> Vec<String> {
     cases.filter_map(too_small).collect()
 }
 
-/// Each figure of all methods together, at check points. The design measured 98.3 % and asks for 97 %.
+/// Each figure is covered at check points, over all methods. The design measured 98.3 % and requires 97 %.
 #[test]
 fn every_figure_is_covered_at_check_points() {
     for (figure, name) in COLUMNS.iter().enumerate() {
@@ -107,7 +107,8 @@ fn every_figure_is_covered_at_check_points() {
     }
 }
 
-/// All figures of each method, at check points: of some 150 figures, where 97 % are right, less than 94 % are right once in 50 times.
+/// All figures of each method are covered at check points. If 97 % of some 150 figures are covered, less than 94 % are observed once in 50
+/// times.
 #[test]
 fn every_method_is_covered_at_check_points() {
     for method in Method::ALL {
@@ -117,7 +118,8 @@ fn every_method_is_covered_at_check_points() {
     }
 }
 
-/// A cheap model is sampled: every figure of every method is covered, 65 functions by turns, and `auto` on every second one.
+/// A cheap model is sampled: every figure of every method is covered. The methods take turns on 65 functions, and `auto` runs on every
+/// second one.
 #[test]
 fn every_method_is_covered_by_a_sample() {
     let truths = truths();
@@ -137,11 +139,11 @@ fn every_method_is_covered_by_a_sample() {
     assert!(all >= 300 && missed(cases.iter()).is_empty(), "of {all}: {:#?}", missed(cases.iter()));
 }
 
-/// `auto` without any verification: where it samples the model by itself, errors reach the truth in each figure, by two seeds in turn.
+/// Samples that `auto` draws without verification cover each figure, with two seeds in turn.
 #[test]
 fn the_samples_of_auto_cover_every_figure() {
     let truths = truths();
-    // A coarse accuracy ends after few points, where errors are hardest to know.
+    // A coarse accuracy ends after few points, whose errors are the hardest to estimate.
     let runs = [(1, 0.02), (2, 0.05)];
     let each: Vec<(&Truth, (u64, f64))> =
         truths.iter().enumerate().map(|(index, truth)| (truth, runs[index % runs.len()])).collect();

@@ -1,4 +1,4 @@
-//! Error estimates against right values: on these functions nothing is tuned.
+//! Error estimates against right values, on functions that no constant is tuned with.
 
 mod accuracy;
 mod comparison;

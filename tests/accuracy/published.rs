@@ -1,4 +1,4 @@
-//! The published cases, to the digits that the design states, and the same cases against quadrature.
+//! Published cases: to the digits of the design, and against quadrature.
 
 use sensitol::assembly::{Points, Request, Responses, Run};
 
@@ -24,11 +24,11 @@ fn engine_balance_nominal_values_and_rss() {
     let analysis = run("engine-balance/study.toml", Method::Rss);
     assert_eq!(analysis.run.evaluations, 21);
     let [force, moment] = &analysis.characteristics[..] else { panic!("two characteristics") };
-    // 12556.9361 and 941.77020: four and five decimals.
+    // The values 12556.9361 and 941.77020 have four and five decimals.
     close(force.nominal.unwrap(), 12556.9361, 5e-5, 1e-4 / 12556.9361);
     assert!((force.nominal.unwrap() - 12556.9361).abs() < 5e-5);
     assert!((moment.nominal.unwrap() - 941.77020).abs() < 5e-6);
-    // Table 7, to 5 digits.
+    // Table 7 has 5 digits.
     relative(force.rss.unwrap(), 24.1068, 2e-5);
     relative(moment.rss.unwrap(), 2.61086, 2e-5);
     // Linear worst case: F ±31.136, M ±4.219.
@@ -37,7 +37,7 @@ fn engine_balance_nominal_values_and_rss() {
     assert!((half(moment) - 4.219).abs() < 5e-4);
 }
 
-/// Table 6 to 6 digits; angles 0.
+/// Sensitivities of table 6 have 6 digits; those of the angles are 0.
 #[test]
 fn engine_balance_sensitivities() {
     for options in [Options::from(Method::SixN), Options::from(Method::SecondOrder), Options::from(Method::Full)] {
@@ -55,13 +55,13 @@ fn engine_balance_sensitivities() {
         relative(first(moment, "a"), 18_835.405_96, 1e-6);
         assert_eq!(first(force, "a"), 0.0);
         for angle in ["t", "phi1", "phi2", "phi3", "phi4"] {
-            // Rounding of 12557 over a step of 0.003.
+            // The tolerance is the rounding of 12557 over a step of 0.003.
             assert!(first(force, angle).abs() < 1e-8 && first(moment, angle).abs() < 1e-8);
         }
     }
 }
 
-/// Within 1e-4 of sigma in the mean and 2e-3 of sigma, for `full` and `six-n`; Monte Carlo with 1e5 points could not tell.
+/// `full` and `six-n` agree within 1e-4 of sigma in the mean and 2e-3 of sigma. Monte Carlo with 1e5 points could not resolve this.
 #[test]
 fn engine_balance_moments() {
     let truth = data("engine-balance.json");
@@ -79,7 +79,7 @@ fn engine_balance_moments() {
             }
         }
     }
-    // Figures of the design for the narrow case: Monte Carlo 12556.513(6), 8.0436(40); 941.7395(6), 0.87092(44).
+    // Values of the design for the narrow case by Monte Carlo: 12556.513(6), 8.0436(40); 941.7395(6), 0.87092(44).
     let full = run("engine-balance/study.toml", Method::Full);
     let moments = |c: usize| full.characteristics[c].moments.unwrap();
     assert!((moments(0).mean() - 12556.513).abs() < 3.0 * 0.006);
@@ -88,7 +88,7 @@ fn engine_balance_moments() {
     assert!((moments(1).sigma() - 0.87092).abs() < 3.0 * 0.00044);
 }
 
-/// The angles matter through their curvature alone: they move the mean of the force by -0.42 N.
+/// The angles act through their curvature alone: they move the mean of the force by -0.42 N.
 #[test]
 fn engine_balance_angles_move_the_mean() {
     let analysis = run("engine-balance/study.toml", Method::Full);
@@ -99,7 +99,7 @@ fn engine_balance_angles_move_the_mean() {
     assert!((shift + 0.42).abs() < 0.005, "{shift}");
 }
 
-/// The published worst case of F, 12514 .. 12598, cannot be reached: these are the extremes over all 1024 corners of the box.
+/// The published worst case of F, 12514 .. 12598, is never reached: these are the extremes over all 1024 corners of the box.
 #[test]
 fn engine_balance_worst_case_and_the_corners() {
     let problem = study("engine-balance/study.toml").problem;
@@ -120,7 +120,7 @@ fn engine_balance_worst_case_and_the_corners() {
             assert!((found - expected).abs() < 5e-4, "{found} {expected}");
         }
     }
-    // The linear worst case ends above at the same place, and below where the angles' curvature is left out.
+    // The upper end of the linear worst case is the same. The lower one omits the curvature of the angles.
     let [low, high] = run("engine-balance/study.toml", Method::WorstCase).characteristics[0].worst_case.unwrap();
     assert!((high - 12588.100).abs() < 0.05 && low > 12518.209);
 }
@@ -128,7 +128,7 @@ fn engine_balance_worst_case_and_the_corners() {
 #[test]
 fn stacked_blocks_derivatives() {
     let truth = data("stacked-blocks.json");
-    // Derivatives want small steps: at 0.01 sigma the truncation error is 1e-9, rounding 1e-10 and, for the second, 1e-6.
+    // Derivatives need small steps: at 0.01 sigma the truncation error is 1e-9, and rounding 1e-10, or 1e-6 for the second derivative.
     let analysis = run("stacked-blocks/study.toml", Options::from(Method::Full).with_step(0.01));
     let found = &analysis.characteristics[0];
     assert!((found.nominal.unwrap() - 5.9973920).abs() < 5e-8);
@@ -178,7 +178,7 @@ fn stacked_blocks_moments() {
     }
 }
 
-/// Sigma 0.376 and the shares of Table 5; the published skewness and kurtosis cannot belong to a quadratic at all.
+/// Published are sigma 0.376 and the shares of Table 5. The published skewness and kurtosis cannot belong to a quadratic.
 #[test]
 fn quick_return_published() {
     let analysis = run("quick-return-published/study.toml", Method::SecondOrder);
@@ -186,11 +186,11 @@ fn quick_return_published() {
     let moments = found.moments.unwrap();
     assert_eq!((analysis.run.evaluations, analysis.varying), (41, 20));
     assert!((found.nominal.unwrap() - 175.4642).abs() < 1e-9);
-    // The tolerances are recovered from rounded shares: 0.6 % of sigma.
+    // The tolerances are recovered from rounded shares, with an error of 0.6 % of sigma.
     relative(moments.sigma(), 0.376, 0.006);
     close(moments.skewness().unwrap(), 0.0, 1e-9, 1.0);
     close(moments.kurtosis().unwrap(), 3.0, 1e-9, 1.0);
-    // Shares in percent, of tolerances that were rounded to two digits.
+    // Shares are in percent, from tolerances that were rounded to two digits.
     for (dimension, published) in [
         ("D5@Sketch1@Crank", 31.454),
         ("D3@Sketch5@ground", 16.555),

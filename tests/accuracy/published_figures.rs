@@ -1,4 +1,4 @@
-//! Figures that the papers draw and do not print, against computations of other people: `tests/data/*.info.json` says whose.
+//! Figures that the papers draw without printing numbers, against independent computations: `tests/data/*.info.json` names their authors.
 
 use serde_json::Value;
 
@@ -8,7 +8,7 @@ use sensitol_models::Model;
 use sensitol_study::Study;
 use sensitol_testing::{data, repository};
 
-/// A built-in model with some of its inputs set.
+/// Built-in model with some of its inputs set.
 struct At {
     model: &'static Model,
     point: Vec<f64>,
@@ -36,7 +36,7 @@ impl At {
         out.value(0, 0).unwrap_or_else(|| panic!("{:?}", out.error(0, 0)))
     }
 
-    /// Both sides have ten digits; what is subtracted to get there has some more than the result.
+    /// Checks an output to ten digits. Both sides have these digits relative to `scale`, which includes terms that cancel.
     #[track_caller]
     fn is(&self, output: &str, expected: f64, scale: f64) {
         let found = self.value(output);
@@ -48,7 +48,7 @@ fn numbers(value: &Value) -> Vec<Option<f64>> {
     value.as_array().unwrap().iter().map(Value::as_f64).collect()
 }
 
-/// Every variant of the rod at every speed.
+/// Returns every variant of the rod at every speed.
 fn rods() -> Vec<(At, Value)> {
     let all = data("rod-figures.json");
     let mut rods = Vec::new();
@@ -70,13 +70,13 @@ fn rod_over_the_crank_angle() {
         let angles: Vec<f64> = numbers(&figures["angles_deg"]).into_iter().flatten().collect();
         for (output, key) in [("F_axial", "F_axial_small_end_N"), ("F_axial_big", "F_axial_big_end_N")] {
             for (&angle, expected) in angles.iter().zip(numbers(&figures[key])) {
-                // Differences of forces of 1e4 N.
+                // Forces are differences of forces of 1e4 N.
                 rod.with(&[("theta", angle)]).is(output, expected.unwrap(), 1e4);
             }
         }
         for (cut, heights) in figures["H_mm_by_cut"].as_object().unwrap() {
             for (&angle, expected) in angles.iter().zip(numbers(heights)) {
-                // Where the stress hardly depends on the height, the height has a digit or two less than the stress.
+                // If the stress hardly depends on the height, the height has one or two digits less than the stress.
                 rod.with(&[("theta", angle), ("cut", cut.parse().unwrap())]).is("H_theta", expected.unwrap(), 100.0);
             }
         }
@@ -86,7 +86,7 @@ fn rod_over_the_crank_angle() {
         {
             let [expected, at] = peak(key)[..] else { panic!("{key}") };
             rod.is(value, expected, 1.0);
-            // The angle of a maximum is known to the root of what its value is known to.
+            // The error of the angle of a maximum is the root of that of its value.
             assert!(angle.is_none_or(|angle| (rod.value(angle) - at).abs() < 1e-4), "{key}");
         }
         rod.is("F_tens", peak("tension_small_end")[0], 1.0);
@@ -96,7 +96,8 @@ fn rod_over_the_crank_angle() {
     }
 }
 
-/// Figures 21 to 24: height, critical angle, mass and buckling over the thickness of the flanges, to where the flanges alone carry.
+/// Figures 21 to 24: height, critical angle, mass and buckling over the thickness of the flanges, up to the thickness at which the flanges
+/// alone carry.
 #[test]
 fn rod_over_the_thickness() {
     for (rod, figures) in rods() {
@@ -112,7 +113,7 @@ fn rod_over_the_thickness() {
             }
             rod.is("m_shank_req", number(&row["m_shank_root_g"]), 100.0);
             let buckling = &row["buckling"]["F_big_end_L_eyes"];
-            // The cubic's one root far below the flanges: every height is stable.
+            // The only root of the cubic lies far below the flanges: every height is stable.
             rod.is("H_buckling_zz", number(&buckling["H_zz_mm"]).max(0.0), 100.0);
             rod.is("H_buckling_yy", number(&buckling["H_yy_mm"]), 1000.0);
         }
@@ -138,8 +139,8 @@ fn shares_of_the_rod_in_its_forces() {
     }
 }
 
-/// The largest axial force of the rod alone is least where tension and compression are alike. The expected values are those of a scan of 20 001
-/// angles and mass centres in steps of 0.01 mm, with d'Alembert's forces written out: near a maximum the scan is off by some 1e-8.
+/// The largest axial force of the rod alone is least if tension and compression are equal. The expected values come from a scan of 20 001
+/// angles and mass centres in steps of 0.01 mm, with d'Alembert's forces written out. Near a maximum the scan has an error of some 1e-8.
 #[test]
 fn the_mass_centre_that_is_best_for_the_axial_force() {
     for (radius, centre, expected) in [(41.0, 107.34, 17.085435580853222), (82.0, 102.45, 224.55940713451471)] {
@@ -151,7 +152,8 @@ fn the_mass_centre_that_is_best_for_the_axial_force() {
     }
 }
 
-/// Beyond the height that the flanges alone carry it stays smooth until it jumps: a height in every row, no failure.
+/// Beyond the height that the flanges alone carry, the required height stays smooth until it jumps. Every row has a height, without
+/// failures.
 #[test]
 fn required_heights_fall_with_the_thickness() {
     for radius in [41.0, 82.0] {
@@ -161,10 +163,10 @@ fn required_heights_fall_with_the_thickness() {
         assert!(heights.windows(2).all(|pair| pair[1] <= pair[0]), "{heights:?}");
         assert_eq!(heights[60], 0.0);
     }
-    // The same search over the strokes that 3000 rpm takes its loads from; it failed from 4.46 mm on.
+    // The same search over the strokes that determine the loads at 3000 rpm, which failed from 4.46 mm on.
     let rod = At::of("connecting-rod", &[("t", 5.0)]);
     rod.is("H_req_3000", 2.142416408, 100.0);
-    // Against the flanges alone, 2 t.
+    // The height of the flanges alone is 2 t.
     rod.is("H_margin", 32.0 - 10.0, 100.0);
 }
 
@@ -177,7 +179,7 @@ fn flywheel_over_the_crank_angle() {
     let pairs = |angles: &Value, values: &Value| series(angles).into_iter().zip(series(values)).collect::<Vec<_>>();
     let gas = &figures["fig4_pressure"];
     for (angle, bar) in pairs(&gas["crank_angle_deg"], &gas["pressure_bar"]) {
-        // The cycle closes with a step of 0.05 bar, from exhaust to suction: 360 degrees are the begin of the next.
+        // The cycle closes with a step of 0.05 bar, from exhaust to suction: 360 degrees belong to the next cycle.
         if angle < 360.0 {
             wheel.with(&[("theta", angle)]).is("pressure", 1e5 * bar, 1e5);
         }
@@ -241,8 +243,8 @@ fn flywheel_over_its_parameters() {
     }
 }
 
-/// Both readings of the crank angles and all three cases. `full` leaves third derivatives out: of their effect 1e-5 of sigma in
-/// the mean, and in case 1, where the angles' squares have the larger part of the variance, 1e-3 in the shape.
+/// Both readings of the crank angles are tested in all three cases. `full` omits third derivatives: their effect is 1e-5 of sigma in the
+/// mean. In case 1, in which the squared angles have the larger part of the variance, it is 1e-3 in the shape.
 #[test]
 fn engine_under_both_readings() {
     let all = &data("engine-case1.json")["computed"];
@@ -270,7 +272,7 @@ fn engine_under_both_readings() {
     }
 }
 
-/// A required height below that of the flanges is told, and one above is not.
+/// A required height below that of the flanges causes a warning, and one above does not.
 #[test]
 fn overlapping_flanges_are_told() {
     let rod = |t: f64| {

@@ -1,4 +1,4 @@
-//! Whether the intervals of rare events hold the truth, where a surrogate does not know of the rejects.
+//! Coverage of the intervals of rare events, with a surrogate that has no rejects.
 
 use rayon::prelude::*;
 use sensitol::distribution::{Gamma, Probability};
@@ -6,13 +6,13 @@ use sensitol::rare::{Beyond, RareOptions, rare};
 use sensitol::{Characteristic, Closure, Problem, SpecLimits};
 use sensitol_testing::{data, standard};
 
-/// The probability that a hundred normal variables lie farther from the means than this.
+/// Returns the probability that a hundred normal variables lie farther from the means than this.
 fn beyond_a_sphere(radius: f64) -> f64 {
     let squares = Gamma::new(0.0, 100.0, 200f64.sqrt()).unwrap();
     squares.sf(radius * radius)
 }
 
-/// A published problem or another function of `n` standard normal variables, whose reject is a value below 0.
+/// Published problem or another function of `n` standard normal variables, whose reject is a value below 0.
 struct Case {
     name: &'static str,
     n: usize,
@@ -24,7 +24,7 @@ fn lognormal(mean: f64, sigma: f64, z: f64) -> f64 {
     (mean.ln() - 0.5 * square + square.sqrt() * z).exp()
 }
 
-/// The problems of tests/data/rare-events.json.
+/// Problems of tests/data/rare-events.json.
 const CASES: [Case; 14] = [
     Case {
         name: "four-branches",
@@ -92,7 +92,7 @@ impl Case {
         data("rare-events.json")[self.name]["probability"].as_f64().unwrap()
     }
 
-    /// How many of 40 seeds have an interval that holds the truth, and the root of the mean square of their relative errors.
+    /// Returns the number of 40 seeds whose interval contains the true value, and the root mean square of their relative errors.
     fn held(&self, samples: u64, until: Option<f64>) -> (usize, f64) {
         let (problem, truth) = (self.problem(), self.truth());
         let (mut held, mut square) = (0, 0.0);
@@ -110,8 +110,8 @@ impl Case {
     }
 }
 
-/// Of 40 intervals of 95 % at least 35 hold the truth but for 1 time in 20; those here are to be wider where they are unsure of themselves,
-/// so that it is 37. A root mean square above a quarter would say that the rejects were not found.
+/// At least 35 of 40 intervals with 95 % contain the true value, except in 1 of 20 tests. The intervals here should be wider if they are
+/// uncertain, so that 37 are required. A root mean square above a quarter would show that the rejects were not found.
 #[test]
 fn intervals_hold_where_the_surrogate_does_not_know() {
     let mut poor = Vec::new();
@@ -125,7 +125,7 @@ fn intervals_hold_where_the_surrogate_does_not_know() {
     assert!(poor.is_empty(), "{poor:?}");
 }
 
-/// A stop when a standard error is small is a stop when it is too small, unless an independent stage confirms it.
+/// A run that stops at a small standard error favours standard errors that are too small, unless an independent stage confirms it.
 #[test]
 fn a_lucky_standard_error_is_no_reason_to_stop() {
     let case = CASES.iter().find(|case| case.name == "rp33").unwrap();
@@ -133,8 +133,8 @@ fn a_lucky_standard_error_is_no_reason_to_stop() {
     assert!(held >= 37, "{held} {error}");
 }
 
-/// In a hundred variables rejects lie all around the means, and no place is of use: importance sampling falls back to plain points, and is not
-/// worse than a plain sample of as many evaluations. The surrogate is the function in the first case, and misses it in the others.
+/// In a hundred variables rejects lie all around the means, and no single place is useful. Importance sampling falls back to plain points,
+/// and is not worse than a plain sample with as many evaluations. The surrogate is the function in the first case, and wrong in the others.
 #[test]
 fn a_hundred_variables_are_no_worse_than_plain_points() {
     const RADIUS: f64 = 12.435_6;
@@ -160,12 +160,13 @@ fn a_hundred_variables_are_no_worse_than_plain_points() {
         let square =
             |above: &Beyond| (above.probability.map_or(0.0, |probability| probability.value) - truth).powi(2) / 20.0;
         let error = found.iter().map(|(_, above)| square(above)).sum::<f64>().sqrt();
-        // The root mean square of 20 runs is uncertain by 1/sqrt(40), a sixth: two of that, and the evaluations that looked for places.
+        // The root mean square of 20 runs is uncertain by 1/sqrt(40), a sixth. The limit allows two of that, and the evaluations of the
+        // search for places.
         let plain = (truth / evaluations).sqrt();
         assert!(error < 1.45 * plain, "{name}: {error} where a plain sample has {plain}");
         let held = found.iter().filter(|(_, above)| above.interval[0] <= truth && truth <= above.interval[1]).count();
         assert!(held >= 18, "{name}: {held} of 20");
-        // An interval that tells more than nothing.
+        // The interval is narrow enough to be useful.
         assert!(found.iter().all(|(_, above)| above.interval[1] < 20.0 / evaluations), "{name}");
     }
 }

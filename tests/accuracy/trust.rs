@@ -1,5 +1,5 @@
-//! Whether three estimates reach the truth: every figure that is printed on functions with kinks, jumps, edges, seldom sides,
-//! heavy tails and correlation. `docs/accuracy.md` tells of the same numbers.
+//! Coverage of the error estimates: three times the estimate should reach the true error of every printed figure. The functions have kinks,
+//! jumps, edges, rare events, heavy tails and correlation. `docs/accuracy.md` shows the same numbers.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -19,12 +19,13 @@ use sensitol_study::Study;
 use sensitol_testing::{costly, counted, repository};
 use serde_json::{Value, json};
 
-/// The smallest differences that can be felt, beyond which an error is one: of mean and sigma in sigmas, skewness, kurtosis, a
-/// share of the tails, a central share. The thresholds of the design by which the references were made.
+/// Smallest relevant errors of mean and sigma (in sigmas), skewness, kurtosis, a share of the tails, and a central share. The references
+/// were computed for these thresholds of the design.
 const FELT: [f64; 6] = [1e-4, 1e-4, 1e-3, 0.01, 2e-6, 1e-4];
+/// Names of the figures in the reference; `mid` is a central share.
 const FIGURES: [&str; 6] = ["mean", "sigma", "skewness", "kurtosis", "yield", "mid"];
 
-/// A function with what is known of it.
+/// Test function with its reference values.
 pub(super) struct Truth {
     pub(super) name: String,
     pub(super) study: Study,
@@ -60,13 +61,13 @@ fn truth(entry: &Value) -> Truth {
 }
 
 impl Truth {
-    /// How many times the estimate allows the error, for every figure: at most 1 where it is covered.
+    /// Returns the ratio of the error to the allowed one, which is at most 1 for a covered error.
     pub(super) fn excess(&self, figure: usize, found: Verified) -> f64 {
         let felt = FELT[figure] * if figure < 2 { self.figures[1].0 } else { 1.0 };
         (self.off(figure, found.value) - felt).max(0.0) / (3.0 * found.error + 3.0 * self.figures[figure].1)
     }
 
-    /// How far a figure is off.
+    /// Returns the absolute error of a figure.
     pub(super) fn off(&self, figure: usize, value: f64) -> f64 {
         (value - self.figures[figure].0).abs()
     }
@@ -77,14 +78,14 @@ fn figures(found: &[SampledFigures]) -> [Option<Verified>; 6] {
     [one.mean, one.sigma, one.skewness, one.kurtosis, one.yield_, middle.yield_]
 }
 
-/// A cheap model is sampled: all 390 figures are covered, and the errors are small enough to be of use.
+/// A cheap model is sampled: all 390 figures are covered, and the errors are small enough to be useful.
 #[test]
 fn a_sample_of_a_cheap_model_covers_every_figure() {
     let truths = truths();
     let of = |truth: &Truth| {
         let found = verify_by_sampling(&truth.study.problem, 1);
         let lost = (found[0].valid.value - truth.valid).abs();
-        // The reference's own share is known to five digits at the least.
+        // The reference of this share has five digits at least.
         assert!(lost <= 3.0 * found[0].valid.error + 1e-5, "{}: {:?} for {}", truth.name, found[0].valid, truth.valid);
         let figures = figures(&found).map(|figure| figure.unwrap_or_else(|| panic!("{}: no figure", truth.name)));
         (figures[1].error / figures[1].value, figures)
@@ -109,8 +110,8 @@ fn a_sample_of_a_cheap_model_covers_every_figure() {
     assert!(errors[errors.len() / 2] < 1e-3, "sigma is known to {} of it", errors[errors.len() / 2]);
 }
 
-/// A costly model is checked: surfaces of three methods at 12 to 18 points, two seeds each. The design measured 98.3 % of 3584
-/// figures, and counts functions with a switch that so few points cannot meet.
+/// A costly model is checked: surfaces of three methods at 12 to 18 points, two seeds each. The design measured 98.3 % of 3584 figures,
+/// including functions with a switch that so few points cannot find.
 #[test]
 fn a_dozen_points_cover_the_figures_of_a_surface() {
     let truths = truths();
@@ -161,8 +162,8 @@ fn a_dozen_points_cover_the_figures_of_a_surface() {
     );
 }
 
-/// Switches that 65 536 plain points meet once or never are found by their margins, with their probability: those of the atan2's cut
-/// 4.2 sigma off, a step at 3.9 and a contact at 3.8 sigma, by the normal law.
+/// Switches that 65 536 plain points cross once or never are found by their margins, with their probability by the normal distribution: the
+/// cut of atan2 4.2 sigma off, a step at 3.9 and a contact at 3.8 sigma.
 #[test]
 fn seldom_switches_are_found_and_named() {
     let expected = [
@@ -179,13 +180,13 @@ fn seldom_switches_are_found_and_named() {
         let switches = found.switches.as_ref().unwrap();
         let [switch] = &switches[..] else { panic!("{name}: {switches:?}") };
         assert_eq!((switch.switch.name("y of it").as_str(), switch.crossing), (text, crossing), "{name}");
-        // 4096 points in the half-space of a seldom side; 2048 plain ones of one that is not.
+        // The share comes from 4096 points in the half-space of a rare side, or from 2048 plain ones for a side that is not rare.
         let tolerance = if probability < 0.004 { 0.02 } else { 0.2 };
         assert!((switch.probability / probability - 1.0).abs() < tolerance, "{name}: {}", switch.probability);
     }
 }
 
-/// A smooth function has no switch, and one that is never reached does not count: nothing to warn of.
+/// A smooth function has no switch, and one that is never crossed causes no warning.
 #[test]
 fn smooth_formulas_have_no_switches() {
     let smooth = [
@@ -208,7 +209,7 @@ fn smooth_formulas_have_no_switches() {
     }
 }
 
-/// A divisor that changes its sign within reach has no moments; one whose square divides does not even change it.
+/// A function has no moments if a divisor changes its sign within reach. A squared divisor does not even change its sign.
 #[test]
 fn a_divisor_through_zero_is_a_pole() {
     for formula in ["a/b", "1/(b*b)", "b^-2 + a", "tan(b + a/10)"] {
@@ -223,7 +224,7 @@ fn a_divisor_through_zero_is_a_pole() {
     }
 }
 
-/// The numbers are those of problem and seed alone.
+/// The numbers depend on problem and seed alone.
 #[test]
 fn samples_and_checks_do_not_depend_on_the_number_of_threads() {
     let truths = truths();
@@ -235,7 +236,7 @@ fn samples_and_checks_do_not_depend_on_the_number_of_threads() {
     assert_eq!(with(1), with(3));
 }
 
-/// Estimates are in the unit of their figure: a characteristic a thousand times as large has errors a thousand times as large.
+/// Estimates have the unit of their figure: a characteristic a thousand times as large has errors a thousand times as large.
 #[test]
 fn estimates_scale_with_the_unit() {
     let of = |factor: f64| {
@@ -286,7 +287,7 @@ fn shares_of_the_variance_have_their_closed_forms() {
         for ((_, found), expected) in found.iter().zip(&expected) {
             for (found, expected) in found.iter().zip(expected) {
                 let off = (found.value - expected).abs();
-                // The design's largest error of 312 shares was 0.026; 1e-9 for one that is nothing.
+                // The design's largest error of 312 shares was 0.026. The tolerance is 1e-9 for a share of 0.
                 assert!(off <= 3.0 * found.error + 1e-9 && off < 0.026, "{found:?} for {expected}");
             }
         }
@@ -302,7 +303,7 @@ fn study(dimensions: Value, formula: &str) -> Study {
     Study::from_json(&study.to_string(), "test").unwrap()
 }
 
-/// Every figure of a method has an error that reaches the truth, whatever its surface is worth.
+/// Every figure of every method has an error estimate that covers the true error, even if its surface is useless.
 #[test]
 fn three_estimates_of_any_method_reach_the_truth() {
     let names =
@@ -326,8 +327,8 @@ fn three_estimates_of_any_method_reach_the_truth() {
     });
 }
 
-/// `full` on an angle through a full turn is 22 % off and said so by its estimate before: the model contradicts it, and `auto` takes the
-/// model's figure.
+/// `full` on an angle through a full turn has an error of 22 %, which its own estimate states. The model contradicts the figure, and `auto`
+/// takes the model's figure.
 #[test]
 fn a_figure_that_the_model_contradicts_is_named_or_replaced() {
     let truths = truths();
@@ -337,11 +338,11 @@ fn a_figure_that_the_model_contradicts_is_named_or_replaced() {
     let auto = analyze(&truth.study.problem, &verified(Method::Auto, 18)).unwrap();
     assert!(auto.warnings.iter().all(|warning| warning.code() != "figure-off"), "{:?}", auto.warnings);
     let sigma = auto.characteristics[0].moments.unwrap().sigma();
-    // The sample's own error: a thousandth.
+    // The error of the sample itself is a thousandth.
     assert!((sigma / truth.figures[1].0 - 1.0).abs() < 3e-3, "{sigma}");
 }
 
-/// Only a formula's own degree proves a surface: then errors are roundings, and nothing is sampled.
+/// Only the degree of a formula proves a surface. The errors are then roundings, and nothing is sampled.
 #[test]
 fn a_polynomial_that_the_surface_holds_is_exact() {
     let dimensions = json!({ "a": { "nominal": 10, "sigma": 0.1 }, "b": { "nominal": 5, "tolerance": 0.2, "distribution": "uniform" } });
@@ -372,7 +373,7 @@ fn a_polynomial_that_the_surface_holds_is_exact() {
     }
 }
 
-/// A costly model gets 12 to 18 evaluations more, none where verification is off, and no more than its budget.
+/// A costly model gets 12 to 18 further evaluations, none if verification is off, and no more than its budget.
 #[test]
 fn checks_cost_at_most_eighteen_evaluations() {
     let study = study(
@@ -405,9 +406,10 @@ fn checks_cost_at_most_eighteen_evaluations() {
     assert!(budget.run.evaluations <= 20);
 }
 
-/// Methods that integrate have no surface, and check points judge the one through their points: errors reach the truth, and are small where
-/// the method is right. With `r` the correlation of two standard normal inputs `a + b + a b` has mean `r` and variance
-/// `2 + 2 r + 1 + r^2` (Isserlis 1918).
+/// Methods that integrate have no surface, so that check points judge the one through their points. Errors cover the true ones, and are
+/// small if the method is right.
+///
+/// With `r` the correlation of two standard normal inputs, `a + b + a b` has mean `r` and variance `2 + 2 r + 1 + r^2` (Isserlis 1918).
 #[test]
 fn methods_that_integrate_are_verified_at_check_points() {
     let dimensions = json!({ "a": { "nominal": 0, "sigma": 1 }, "b": { "nominal": 0, "sigma": 1 } });
@@ -431,7 +433,8 @@ fn methods_that_integrate_are_verified_at_check_points() {
             let name = method.name();
             assert!(3.0 * of_mean >= off_mean, "{name} {r}: {of_mean} for {off_mean}");
             assert!(3.0 * of_sigma >= off_sigma, "{name} {r}: {of_sigma} for {off_sigma}");
-            // Along eigenvectors `a b` is a difference of squares, so that cuts see all of it: the floor of a dozen points is 0.004 sigma.
+            // Along eigenvectors `a b` is a difference of squares, so that cuts show all of it: the smallest error of a dozen points is
+            // 0.004 sigma.
             let blind = method == cuts && r == 0.0;
             assert_eq!(of_sigma > 0.01 * sigma, blind, "{name} {r}: {of_sigma}");
             assert!(estimate.skewness.is_some() && estimate.kurtosis.is_some(), "{name} {r}");
@@ -439,7 +442,7 @@ fn methods_that_integrate_are_verified_at_check_points() {
     }
 }
 
-/// A formula's switch is in the warnings, with its probability.
+/// The switch of a formula causes a warning with its probability.
 #[test]
 fn a_seldom_switch_is_warned_of() {
     let truths = truths();
@@ -449,7 +452,7 @@ fn a_seldom_switch_is_warned_of() {
     assert!(warning.contains("`atan2(q, p)`") && warning.contains("13 ppm"), "{warning}");
 }
 
-/// The answers of a formula next to the means do not scatter, where it has a kink or a root there.
+/// The answers of a formula next to the means do not scatter, even at a kink or a root.
 #[test]
 fn an_exact_formula_does_not_scatter() {
     let dimensions = || json!({ "a": { "nominal": 0, "sigma": 0.1 }, "b": { "nominal": 0, "sigma": 0.2 } });
@@ -460,7 +463,7 @@ fn an_exact_formula_does_not_scatter() {
     }
 }
 
-/// A sample ends with the time that a run has: the method's figures stay, without a verification and without a verdict.
+/// A sample ends with the time limit of a run. The method's figures remain, without verification and without a verdict.
 #[test]
 fn a_sample_ends_with_the_time() {
     let asked = Arc::new(AtomicUsize::new(0));
@@ -475,7 +478,7 @@ fn a_sample_ends_with_the_time() {
         .with_target_yield(0.5)
         .unwrap();
     let problem = Problem::new(dimensions, function).unwrap().asking([wanted]).unwrap();
-    // One thread: it is at one part of 2048 points when the time is over, and a whole sample has 42 000.
+    // With one thread it is at one part of 2048 points when the time is over, and a whole sample has 42 000.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     let analyzed = |most: usize| {
         asked.store(0, Ordering::Relaxed);
@@ -496,12 +499,12 @@ fn a_sample_ends_with_the_time() {
     assert!(found.characteristics[0].requirements().iter().all(|judged| judged.verdict == Verdict::Met));
 }
 
-/// A budget counts every evaluation of a cheap model, those of its verification included; one that does not reach for a sample reaches for
-/// check points.
+/// A budget counts every evaluation of a cheap model, including those of its verification. If it is too small for a sample, check points
+/// are used.
 #[test]
 fn a_budget_holds_what_verifies_a_cheap_model() {
     let dimensions = json!({ "a": { "nominal": 1.0, "tolerance": 0.3 }, "b": { "nominal": 2.0, "tolerance": 0.6 } });
-    // A surface that leaves variance open, so that shares are asked for where they can be paid.
+    // The surface leaves variance unexplained, so that shares are computed if the budget allows it.
     let study = study(dimensions, "a*b + 0.4*sin(9*a)*b");
     for (budget, kind) in [
         (40, VerificationKind::Checks),

@@ -14,7 +14,7 @@ use sensitol::{
 use sensitol_study::Study;
 use sensitol_testing::{relative, repository};
 
-/// Linear characteristics of normal dimensions about 0 with these half bands.
+/// Returns a problem of linear characteristics of normal dimensions about 0 with these half-widths.
 fn linear<const K: usize>(slopes: [Vec<f64>; K], bands: &[f64], limits: [[f64; 2]; K]) -> Problem {
     let dimensions = bands.iter().enumerate().map(|(d, &t)| Dimension::normal(format!("x{d}"), 0.0, t).unwrap());
     let names: [String; K] = std::array::from_fn(|k| format!("y{k}"));
@@ -32,12 +32,12 @@ fn free(d: usize, curve: Curve, min: f64, max: f64) -> Priced {
     Priced::new(vec![d], vec![Offer::between(curve, min, max).unwrap()]).unwrap()
 }
 
-/// Closures say nothing of their degree: without a sample of them the surface of a linear one is exact, and so is its yield.
+/// Options without a sample. Closures have no degree, but the surface of a linear one is exact, and so is its yield.
 fn options(method: Method) -> AllocationOptions {
     AllocationOptions::default().with_analysis(Options::from(method).with_verify(0))
 }
 
-/// Tolerances at the border of what is allowed are met where the errors are nothing, and inconclusive otherwise; never missed.
+/// True if a requirement is not missed. Tolerances at the limit are met if errors are negligible, and inconclusive otherwise.
 fn kept(one: &Kept) -> bool {
     one.after.is_some_and(|after| after.verdict != Verdict::Missed)
 }
@@ -67,7 +67,7 @@ fn shaft_and_housing(requirement: Requirement) -> (Problem, AllocationTask) {
     (problem, AllocationTask::new(priced, vec![Some(requirement)]))
 }
 
-/// Published: Chase, Greenwood, Loosli, Hauglund (1990), as the project's notes on methods give it, tolerances to 1e-6, costs to 1e-3.
+/// The optima are from Chase, Greenwood, Loosli, Hauglund (1990), as in the project's notes on methods: tolerances to 1e-6, costs to 1e-3.
 #[test]
 fn the_shaft_and_the_housing_have_their_published_optima() {
     for (requirement, tolerances, cost) in [
@@ -77,7 +77,7 @@ fn the_shaft_and_the_housing_have_their_published_optima() {
         let (problem, task) = shaft_and_housing(requirement);
         let found = allocate(&problem, &task, &options(Method::Rss)).unwrap();
         assert_eq!(found.status, Status::Optimal, "{found:#?}");
-        // The printed digits and half of the last.
+        // The tolerance is half of the last printed digit.
         for (d, expected) in [(1, tolerances[0]), (3, tolerances[1]), (4, tolerances[2]), (5, tolerances[1])] {
             assert!((tolerance(&found, d) - expected).abs() < 0.51e-6, "{} {expected}", tolerance(&found, d));
         }
@@ -87,7 +87,8 @@ fn the_shaft_and_the_housing_have_their_published_optima() {
     }
 }
 
-/// Costs a + b/T^k with one k and one requirement: T_g in proportion to (b_g/p_g)^(1/(k+q)), computed here by itself.
+/// Closed form with costs a + b/T^k, one k and one requirement: T_g is proportional to (b_g/p_g)^(1/(k+q)), which is computed here
+/// independently.
 #[test]
 fn random_problems_with_a_closed_form_have_it() {
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(11);
@@ -134,13 +135,13 @@ fn slopes_and_limits(rng: &mut Xoshiro256PlusPlus, bands: &[f64]) -> ([Vec<f64>;
     (slopes, limits)
 }
 
-/// The data that [`convex`] makes of the same random numbers.
+/// Returns the data that [`convex`] makes of the same random numbers.
 fn data(rng: &mut Xoshiro256PlusPlus, n: usize) -> ([Vec<f64>; 3], [[f64; 2]; 3]) {
     let bands = bands(rng, n);
     slopes_and_limits(rng, &bands)
 }
 
-/// A random convex problem of N dimensions and up to three characteristics; costs of every kind, requirements of every kind.
+/// Returns a random convex problem of N dimensions and up to three characteristics, with costs and requirements of every kind.
 fn convex(rng: &mut Xoshiro256PlusPlus, n: usize) -> (Problem, AllocationTask) {
     let bands = bands(rng, n);
     let (slopes, limits) = slopes_and_limits(rng, &bands);
@@ -172,8 +173,10 @@ fn convex(rng: &mut Xoshiro256PlusPlus, n: usize) -> (Problem, AllocationTask) {
     (problem, AllocationTask::new(priced, requirements))
 }
 
-/// How far tolerances are from Lagrange's condition, by formulas of this test alone: the slope of the cost by `ln T` of every dimension
-/// within its bounds is a sum, with factors that are not negative, of the slopes of those requirements that are just kept.
+/// Returns the residual of Lagrange's condition, by independent formulas of this test.
+///
+/// The condition: the slope of the cost by `ln T`, for every dimension within its bounds, is a sum of the slopes of the binding
+/// requirements with factors that are not negative.
 fn independent_residual(task: &AllocationTask, slopes: &[Vec<f64>], limits: &[[f64; 2]], t: &[f64]) -> f64 {
     let normal = statrs::distribution::Normal::new(0.0, 1.0).unwrap();
     let cdf = |x: f64| statrs::distribution::ContinuousCDF::cdf(&normal, x);
@@ -184,7 +187,7 @@ fn independent_residual(task: &AllocationTask, slopes: &[Vec<f64>], limits: &[[f
         let (reach, room) = (parts.iter().sum::<f64>(), upper.min(-lower));
         let rss = parts.iter().map(|part| part * part).sum::<f64>().sqrt();
         let (sigma, squares) = (rss / 3.0, parts.iter().map(|part| part * part).collect());
-        // At most 1 where it is kept.
+        // The value is at most 1 if the requirement is met.
         let (value, column) = match *requirement {
             Requirement::WorstCase => (reach / room, parts),
             Requirement::Rss => (rss / room, squares),
@@ -192,7 +195,7 @@ fn independent_residual(task: &AllocationTask, slopes: &[Vec<f64>], limits: &[[f
             Requirement::Sigma(most) => (sigma / most, squares),
             Requirement::Yield(least) => ((cdf(lower / sigma) + cdf(-upper / sigma)) / (1.0 - least), squares),
         };
-        // statrs knows the tails to 1e-10.
+        // The tails of statrs are accurate to 1e-10.
         assert!(value <= 1.0 + 1e-6, "{requirement:?} is exceeded: {value}");
         if value > 1.0 - 1e-6 {
             let largest = column.iter().copied().fold(0.0, f64::max);
@@ -205,7 +208,7 @@ fn independent_residual(task: &AllocationTask, slopes: &[Vec<f64>], limits: &[[f
             t[d] > offer.min * (1.0 + 1e-9) && t[d] < offer.max * (1.0 - 1e-9)
         })
         .collect();
-    // The slope of the cost by a difference of its own.
+    // The slope of the cost is an independent difference.
     let slope = |d: usize| {
         let curve = &task.priced[d].offers[0].curve;
         let h: f64 = 1e-4;
@@ -214,7 +217,7 @@ fn independent_residual(task: &AllocationTask, slopes: &[Vec<f64>], limits: &[[f
     };
     let scale = (0..t.len()).map(|d| slope(d).abs()).fold(0.0, f64::max);
     let right: Vec<f64> = inside.iter().map(|&d| -slope(d) / scale).collect();
-    // Least squares by the normal equations, a little regular where two requirements ask for the same.
+    // Least squares by the normal equations, slightly regularised for two equal requirements.
     let k = columns.len();
     let mut matrix =
         faer::Mat::<f64>::from_fn(k, k, |a, b| inside.iter().map(|&d| columns[a][d] * columns[b][d]).sum());
@@ -225,7 +228,7 @@ fn independent_residual(task: &AllocationTask, slopes: &[Vec<f64>], limits: &[[f
     inside.iter().zip(&right).map(row).fold(0.0, f64::max)
 }
 
-/// By formulas of its own, on problems of which the test knows everything.
+/// Lagrange's condition holds by independent formulas, on problems whose data the test has.
 #[test]
 fn lagranges_condition_is_kept_by_other_formulas_too() {
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(8);
@@ -237,7 +240,7 @@ fn lagranges_condition_is_kept_by_other_formulas_too() {
         let found = allocate(&problem, &task, &options(Method::Rss)).unwrap();
         let t: Vec<f64> = found.tolerances.iter().map(|one| one.after).collect();
         let residual = independent_residual(&task, &slopes, &limits, &t);
-        // The differences of the cost are good to 1e-10; nearly parallel requirements leave a little more.
+        // The differences of the cost are accurate to 1e-10. Nearly parallel requirements leave a slightly larger residual.
         assert!(residual < 1e-7, "case {case}: {residual:e}");
     }
 }
@@ -261,8 +264,8 @@ fn a_thousand_random_convex_problems_keep_the_conditions_of_an_optimum() {
     assert!(worst < 1e-8, "case {case}: {worst:e}");
 }
 
-/// Random lists of processes: up to ten dimensions, up to four processes each, up to three linear requirements; every choice looked at by
-/// a recursion that knows nothing but sums.
+/// Random lists of processes: up to ten dimensions, up to four processes each, up to three linear requirements. A recursion over sums
+/// examines every choice.
 #[test]
 fn processes_are_chosen_as_every_choice_looked_at_would() {
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(3);
@@ -330,12 +333,13 @@ fn processes_are_chosen_as_every_choice_looked_at_would() {
             }
         }
     }
-    // The cases are no foregone conclusions, and the bounds bound something: all choices together are some ten million.
+    // The cases are not trivial, and the bounds exclude choices: all choices together are some ten million.
     assert!((50..450).contains(&infeasible), "{infeasible} of 500 have no solution");
     assert!(nodes < 100_000, "{nodes} nodes");
 }
 
-/// The tightest tolerances that there are do not keep it, by formulas of the test: recognised, named, with the best attainable.
+/// If the tightest tolerances do not meet a requirement, by formulas of the test, it is recognised and named, with the best attainable
+/// value.
 #[test]
 fn what_cannot_be_kept_is_recognised_and_named() {
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(17);
@@ -348,7 +352,7 @@ fn what_cannot_be_kept_is_recognised_and_named() {
         let (worst, rss) = (parts.clone().sum::<f64>(), parts.map(|part| part * part).sum::<f64>().sqrt());
         let (requirement, least) =
             if case % 2 == 0 { (Requirement::WorstCase, worst) } else { (Requirement::Rss, rss) };
-        // A hair too much, and a hair less than that.
+        // Slightly more than possible, and slightly less.
         for (limit, possible) in [(least * (1.0 - 1e-6), false), (least * (1.0 + 1e-6), true)] {
             let problem = linear([slopes.clone()], &bands, [[-limit, 2.0 * limit]]);
             let priced = (0..n).map(|d| free(d, Curve::reciprocal(0.0, 1.0).unwrap(), min[d], 1.0)).collect();
@@ -388,7 +392,7 @@ fn example(path: &str) -> (Study, AllocationTask, AllocationOptions) {
     (study, task, options)
 }
 
-/// The optimum of curved models, simulated: the yield lies within the interval of its sample about the target.
+/// The optimum of curved models is simulated. The yield lies within the interval of its sample about the target.
 #[test]
 fn the_optimum_of_a_curved_model_holds_when_it_is_simulated() {
     let (study, task, options) = example("engine-balance/allocate.toml");
@@ -396,8 +400,8 @@ fn the_optimum_of_a_curved_model_holds_when_it_is_simulated() {
     assert_eq!(found.status, Status::LocalOptimum, "{:?} {:?}", found.proof, found.requirements);
     assert!(found.confirmed && found.cost_after < found.cost_before);
     assert!(found.proof.residual.unwrap() < 1e-7, "{:?}", found.proof);
-    // Nothing was re-used of the method beside derivatives at the optimum: a fresh sample of the model itself, whose interval is a ten
-    // thousandth wide.
+    // Only derivatives at the optimum come from the method. The sample is a new one of the model itself, with an interval of one
+    // ten-thousandth.
     let sample = SimulationOptions::default().with_samples(4_000_000);
     let simulated = simulate(&found.problem, &sample).unwrap();
     let mut binding = 0;
@@ -407,8 +411,8 @@ fn the_optimum_of_a_curved_model_holds_when_it_is_simulated() {
         assert!(after >= required);
         let [low, high] = one.yield_.unwrap().interval;
         assert!(after > low && after < high, "{:?} {:?}", of, one.yield_);
-        // The uncertainty of the yield is kept beside it: the greatest of some rounds, in which a few of 41,984 points of the model, of
-        // 2.4e-5 each, lie on one side of a limit or the other.
+        // The requirement includes the uncertainty of the yield. This is the greatest of some rounds, in which a few of 41,984 points of
+        // the model (2.4e-5 each) lie on one side of a limit or the other.
         let [least, _] = of.after.unwrap().interval.unwrap();
         binding += usize::from(least < required + 1e-4);
     }
@@ -429,14 +433,14 @@ fn a_limit_costs_what_its_price_says() {
     let found = cost(0.3);
     relative(found.cost_after.unwrap(), 2.0 / 0.3, 1e-10);
     let [price] = &found.prices[..] else { panic!("{:?}", found.prices) };
-    // The room's slope is a difference of steps of 1e-5.
+    // The slope of the limit is a difference with steps of 1e-5.
     relative(price.upper.unwrap(), 2.0 / 0.09, 1e-8);
     assert_eq!((price.lower, price.both, price.sigma), (None, price.upper, None));
     let slope = (cost(0.3).cost_after.unwrap() - cost(0.3 + 1e-6).cost_after.unwrap()) / 1e-6;
     relative(slope, price.upper.unwrap(), 1e-4);
 }
 
-/// Two limits at the same distance: either alone saves nothing.
+/// Two limits at the same distance bind together, so that widening one of them alone saves nothing.
 #[test]
 fn limits_that_bind_together_have_one_price() {
     let problem = linear([vec![1.0]], &[0.1], [[-0.3, 0.3]]);
@@ -450,14 +454,14 @@ fn limits_that_bind_together_have_one_price() {
     assert_eq!((price.lower, price.upper), (None, None));
 }
 
-/// The middle of a band stays where it is, and with it the mean: b - a with b of -0.1/+0.3.
+/// The middle of a band stays where it is, and so does the mean: b - a with b of -0.1/+0.3.
 #[test]
 fn the_middle_of_an_asymmetric_band_stays() {
     let dimensions =
         [Dimension::normal("a", 10.0, 0.1).unwrap(), Dimension::normal_between("b", 20.0, [-0.1, 0.3]).unwrap()];
     let gap = Characteristic::new("gap").with_limits(SpecLimits::new(Some(9.0), Some(10.25)).unwrap());
     let problem = Problem::new(dimensions, Closure::scalar("gap", |x| x[1] - x[0])).unwrap().asking([gap]).unwrap();
-    // Only b is free; the worst case above is 10 + 0.1 + 0.1 + T, so that T = 0.05, of +0.05/+0.15.
+    // Only b is free. The worst case above is 10 + 0.1 + 0.1 + T, so that T = 0.05, or +0.05/+0.15.
     let task = AllocationTask::new(
         vec![free(1, Curve::reciprocal(0.0, 1.0).unwrap(), 0.01, 1.0)],
         vec![Some(Requirement::WorstCase)],
@@ -471,13 +475,13 @@ fn the_middle_of_an_asymmetric_band_stays() {
     // Cpk 1: mean 10.1 and 3 sigma sqrt(0.1^2 + T^2) reach 10.25 together.
     let task = AllocationTask::new(task.priced, vec![Some(Requirement::Cpk(1.0))]);
     let found = allocate(&problem, &task, &options(Method::SecondOrder)).unwrap();
-    // The margin that is left after derivatives were taken anew.
+    // The tolerance is the margin that is left after derivatives were computed anew.
     relative(tolerance(&found, 1), 0.0125f64.sqrt(), 1e-6);
     assert_eq!(found.status, Status::Optimal, "{:?}", found.proof);
 }
 
-/// A bearing's play with one-sided bands, as drawings have them. The optimum by hand: mean 0.145, sigma so that 0.27 % lie outside
-/// 0 and 0.4 (0.052116839 by mpmath), and 0.05/S^3 = 0.2/H^3 by Lagrange.
+/// Play of a bearing with one-sided bands, as on drawings. The optimum by hand: mean 0.145, sigma so that 0.27 % lie outside 0 and 0.4
+/// (0.052116839 by mpmath), and 0.05/S^3 = 0.2/H^3 by Lagrange.
 #[test]
 fn one_sided_bands_are_allocated() {
     let text = "[dimensions]\nhousing = { nominal = 50.0, tolerance = [0.05, 0.15] }\nb1 = { nominal = 15, tolerance = [-0.12, 0] }\n\
@@ -493,7 +497,7 @@ fn one_sided_bands_are_allocated() {
     assert!((mean - 0.145).abs() < 1e-12);
 }
 
-/// a - b of correlated dimensions: var = sa^2 + sb^2 - 2 rho sa sb.
+/// Correlation enters the requirement: the difference a - b has var = sa^2 + sb^2 - 2 rho sa sb.
 #[test]
 fn correlation_has_its_part_in_the_requirement() {
     let dimensions = [Dimension::normal("a", 10.0, 0.3).unwrap(), Dimension::normal("b", 5.0, 0.3).unwrap()];
@@ -508,16 +512,17 @@ fn correlation_has_its_part_in_the_requirement() {
             vec![Some(requirement)],
         );
         let found = allocate(&problem, &task, &options(Method::SecondOrder)).unwrap();
-        // A sum of squares with products is convex where its matrix is positive, as a correlation's is.
+        // A sum of squares with products is convex if its matrix is positive definite, like a correlation matrix.
         assert_eq!(found.status, Status::Optimal, "{:?}", found.proof);
         let [a, b] = [0, 1].map(|d| tolerance(&found, d));
-        // By symmetry both are alike: 2 T^2 (1 - 0.6) = 0.01.
+        // By symmetry both are equal: 2 T^2 (1 - 0.6) = 0.01.
         relative(a, b, 1e-6);
         relative(a, (0.01f64 / 0.8).sqrt(), 1e-6);
     }
 }
 
-/// Uniform dimensions with a lognormal one: the shape of the sum changes with the tolerances, and that of the lognormal one with its own.
+/// Uniform dimensions with a lognormal one: the shape of the sum changes with the tolerances, and that of the lognormal dimension with its
+/// own tolerance.
 #[test]
 fn shapes_that_change_are_followed() {
     let lognormal = sensitol::distribution::Lognormal::new(0.0, 1.0, 0.1).unwrap();
@@ -535,7 +540,7 @@ fn shapes_that_change_are_followed() {
     let sample = SimulationOptions::default().with_samples(1_000_000);
     let simulated = simulate(&found.problem, &sample).unwrap();
     let [low, high] = simulated.characteristics[0].yield_.unwrap().interval;
-    // Four moments do not say everything of a sum of uniforms: a tenth of what is rejected.
+    // Four moments do not determine the tail of a sum of uniforms: the error is a tenth of the rejects.
     assert!(low - 5e-4 < 0.995 && 0.995 < high + 5e-4, "{low} {high}");
 }
 
@@ -544,7 +549,7 @@ fn a_choice_of_processes_for_a_curved_model_is_what_every_choice_says() {
     let (study, task, options) = example("stacked-blocks/allocate.toml");
     let found = allocate(&study.problem, &task, &options).unwrap();
     assert!(matches!(found.status, Status::Optimal), "{:?}", found.proof);
-    // Every one of the 486 choices by its own full analysis.
+    // The full analysis of each of the 486 choices.
     let mut best = f64::INFINITY;
     let counts: Vec<usize> = task.priced.iter().map(|group| group.offers.len()).collect();
     for choice in 0..counts.iter().product::<usize>() {
@@ -570,7 +575,7 @@ fn a_choice_of_processes_for_a_curved_model_is_what_every_choice_says() {
     relative(found.cost_after.unwrap(), best, 1e-12);
 }
 
-/// b - a, limits off the middle: the yield is greatest with the mean in the middle, whatever moves it.
+/// The difference b - a has limits off the middle. The yield is greatest with the mean in the middle, whichever dimension moves it.
 #[test]
 fn nominal_values_move_to_the_middle_of_the_limits() {
     let dimensions = || [Dimension::normal("a", 10.0, 0.1).unwrap(), Dimension::normal("b", 30.0, 0.2).unwrap()];
@@ -585,23 +590,23 @@ fn nominal_values_move_to_the_middle_of_the_limits() {
     };
     let found = recentred(&problem(|x| x[1] - x[0]), &["b"]);
     assert_eq!((found.status, found.moved.len()), (Status::Optimal, 1));
-    // Flat at the top: the place of the least is known to a thousandth of sigma, here 0.07.
+    // The maximum is flat, so that its place is accurate to a thousandth of sigma, here 0.07.
     assert!((found.moved[0].after - 31.0).abs() < 1e-4, "{:?}", found.moved);
     let found = recentred(&problem(|x| x[1] - x[0]), &["a", "b"]);
-    // Each in proportion to its sigma squared: the shortest way in sigmas.
+    // Each moves in proportion to its sigma squared, which is the shortest way in sigmas.
     assert!(
         (found.moved[0].after - 9.8).abs() < 1e-3 && (found.moved[1].after - 30.8).abs() < 1e-3,
         "{:?}",
         found.moved
     );
-    // Far away along a curve: 21 = x1 - 1000/x0^2 at x0 with 20 + ... found by several rounds of derivatives.
+    // The target is far away along a curve: 21 = x1 - 1000/x0^2 at x0 with 20 + ..., found by several rounds of derivatives.
     let found = recentred(&problem(|x| x[1] - 1000.0 / (x[0] * x[0])), &["a"]);
     let expected = (1000.0f64 / 9.0).sqrt();
     assert!((found.moved[0].after - expected).abs() < 5e-3, "{:?} {expected}", found.moved);
     assert!(found.rounds > 1);
 }
 
-/// Together with the allocation: from an off-centre start to the cost that a centred one has.
+/// Recentring together with allocation reaches the cost of a centred start from an off-centre one.
 #[test]
 fn recentring_and_allocating_go_together() {
     let problem = |nominal: f64| {
@@ -617,12 +622,12 @@ fn recentring_and_allocating_go_together() {
     let together = options(Method::SecondOrder).with_recentre(vec!["b".into()]);
     let found = allocate(&problem(30.7), &task, &together).unwrap();
     let centred = allocate(&problem(31.0), &task, &options(Method::SecondOrder)).unwrap();
-    // A yield is not convex in nominal value and tolerances together.
+    // A yield is not convex in nominal values and tolerances together.
     assert_eq!(found.status, Status::LocalOptimum, "{:?}", found.proof);
     relative(found.cost_after.unwrap(), centred.cost_after.unwrap(), 1e-5);
 }
 
-/// Rss: linear in the factor, so that the loosest scaling is the ratio of room to reach.
+/// RSS is linear in the factor, so that the loosest scaling is the ratio of the limits to the RSS.
 #[test]
 fn the_loosest_scaling_is_the_room_that_is_left() {
     let (problem, task) = shaft_and_housing(Requirement::Rss);
@@ -661,7 +666,7 @@ fn allocations_do_not_depend_on_the_number_of_threads() {
     assert_eq!(on(1), on(3));
 }
 
-/// Of independent characteristics the joint yield is the product.
+/// Joint yield of independent characteristics, which is the product of their yields.
 #[test]
 fn the_joint_yield_is_that_of_all_limits_at_once() {
     let problem = linear([vec![1.0, 0.0], vec![0.0, 1.0]], &[0.3, 0.3], [[-0.2, 0.2], [-0.15, 9.0]]);
@@ -695,7 +700,7 @@ fn a_budget_that_does_not_reach_is_said() {
     let found = allocate(&study.problem, &task, &options.clone().with_analysis(analysis)).unwrap();
     assert!(!found.confirmed && found.run.evaluations == 111 && found.cost_after.is_some());
     assert_eq!(found.status, Status::AlmostOptimal);
-    // Nobody asked the model there: no figure of the old tolerances stands in the place of those that are not known.
+    // The model was not evaluated there. Unknown figures are not replaced by those of the old tolerances.
     assert!(found.after.is_none() && found.loosest_after.is_none() && found.joint[1].is_none());
     assert!(found.requirements.iter().all(|one| one.after.is_none()));
     let group = &found.tolerances[0];
@@ -705,11 +710,11 @@ fn a_budget_that_does_not_reach_is_said() {
     assert!(error.to_string().contains("111 evaluations"), "{error}");
 }
 
-/// A model that ends where the tolerances would like to go: shorter steps from where it has values.
+/// A model that fails at the wanted tolerances is approached in shorter steps from tolerances at which it has values.
 #[test]
 fn a_model_that_fails_farther_out_is_approached_in_steps() {
     let dimensions = [Dimension::normal("a", 1.0, 0.1).unwrap(), Dimension::normal("b", 1.0, 0.1).unwrap()];
-    // Even the nodes that stand in for failed ones, at a quarter of sqrt 3 sigma, lie outside for tolerances above 0.7.
+    // Even the nodes that replace failed ones, at a quarter of sqrt 3 sigma, lie outside for tolerances above 0.7.
     let root = sensitol_testing::refusing(|x| x[1] + 0.01 * x[0], |x| (x[0] - 1.0).abs() > 0.1);
     let y = Characteristic::new("y").with_limits(SpecLimits::new(Some(0.9), Some(1.12)).unwrap());
     let problem = Problem::new(dimensions, root).unwrap().asking([y]).unwrap();
@@ -723,10 +728,10 @@ fn a_model_that_fails_farther_out_is_approached_in_steps() {
     assert!(kept(&found.requirements[0]) && found.confirmed);
 }
 
-/// Extrapolations from derivatives at wide tolerances to tight ones are evaluated before anything is called impossible.
+/// Extrapolations from derivatives at wide tolerances to tight ones are evaluated before a requirement is called impossible.
 #[test]
 fn nothing_is_called_impossible_by_extrapolation() {
-    // Flat near the middle and steep beyond: seen from half bands of 1 its sigma at 0.1 seems larger than it is.
+    // The function is flat near the middle and steep beyond. Extrapolated from half-widths of 1, its sigma at 0.1 seems larger than it is.
     let steep = |x: &[f64]| x[0].powi(3) + 0.001 * x[0];
     let y = Characteristic::new("y").with_limits(SpecLimits::new(Some(-0.002), Some(0.002)).unwrap());
     let dimensions = [Dimension::normal("a", 0.0, 1.0).unwrap()];

@@ -1,5 +1,5 @@
-//! Costs in every form, losses, joint yields and rounded tolerances, against optima found without the engine: `tests/data/allocation.json`, and
-//! scans of closed forms here.
+//! Costs in every form, losses, joint yields and rounded tolerances, against optima found without the engine: `tests/data/allocation.json`,
+//! and scans of closed forms here.
 
 use sensitol::allocation::{Allocation, AllocationOptions, AllocationTask, Curve, Offer, Priced, Status, allocate};
 use sensitol::{
@@ -10,6 +10,7 @@ use sensitol_study::{Externals, StudyText};
 use serde_json::Value;
 use statrs::distribution::{Continuous, ContinuousCDF, Normal};
 
+/// Returns a problem of the reference file by its name.
 pub fn problem(name: &str) -> Value {
     sensitol_testing::problem("allocation.json", name)
 }
@@ -29,19 +30,19 @@ fn band(found: &Allocation, name: &str) -> f64 {
     all.iter().find(|dimension| dimension.name() == name).unwrap().half_band()
 }
 
-/// How the analysis of the allocated study sees it.
+/// Returns the analysis of the allocated study.
 fn analysed(text: &str, found: &Allocation) -> Analysis {
     let options: Options = study(text).options;
     analyze(&found.problem, &options).unwrap()
 }
 
-/// Quality loss, cost formulas: the optimum to 1e-6, of which the oracles know 1e-8.
+/// Compares an allocation with quality loss and cost formulas with the optimum to 1e-6. The oracles are accurate to 1e-8.
 fn as_the_oracle(name: &str, status: Status) -> Allocation {
     let of = problem(name);
     let found = allocated(of["study"].as_str().unwrap());
     let (cost, expected) = (found.cost_after.unwrap(), of["optimum"]["cost"].as_f64().unwrap());
     assert!((cost / expected - 1.0).abs() < 1e-6, "{name}: {cost} for {expected}");
-    // Costs are flat about an optimum: tolerances are known to the root of what the cost is.
+    // Costs are flat about an optimum: the error of tolerances is the root of that of the cost.
     for (dimension, expected) in of["optimum"]["tolerances"].as_object().unwrap() {
         let (t, expected) = (band(&found, dimension), expected.as_f64().unwrap());
         assert!((t / expected - 1.0).abs() < 1e-3, "{name}, {dimension}: {t} for {expected}");
@@ -53,14 +54,15 @@ fn as_the_oracle(name: &str, status: Status) -> Allocation {
 #[test]
 fn a_quality_loss_alone_chooses_tolerances() {
     let found = as_the_oracle("quality-loss", Status::Optimal);
-    // k times the variance, for the mean is on target.
+    // The loss is k times the variance, because the mean is on target.
     let [a, b, c] = ["a", "b", "c"].map(|name| band(&found, name) / 3.0);
     let expected = 40.0 * (a * a + b * b + 4.0 * c * c);
     assert!((found.loss[1].unwrap() / expected - 1.0).abs() < 1e-9, "{:?} for {expected}", found.loss);
     assert!(found.loss[0].unwrap() < found.loss[1].unwrap());
 }
 
-/// One normal dimension within limits at ±0.1: b/T + p 2 Phi(-0.3/T), scanned. The cost is flat, and the scan has steps of 1e-5.
+/// One normal dimension within limits at ±0.1 has the cost b/T + p 2 Phi(-0.3/T), which is scanned. The cost is flat, and the scan has
+/// steps of 1e-5.
 #[test]
 fn scrap_chooses_a_tolerance() {
     let text = "[dimensions]\na = { nominal = 0.0, tolerance = 0.05 }\n\
@@ -74,11 +76,11 @@ fn scrap_chooses_a_tolerance() {
     let found_cost = found.cost_after.unwrap();
     assert!((found_cost / best - 1.0).abs() < 1e-8, "{found_cost} for {best}");
     assert!((cost(band(&found, "a")) / found_cost - 1.0).abs() < 1e-9);
-    // Several optima are possible, and nothing proves this one.
+    // Several optima are possible, and none is proven.
     assert_eq!(found.status, Status::LocalOptimum);
 }
 
-/// Two equal uniform dimensions: rejects are `(2 T - 0.3)^2/(4 T^2)`, which no four moments tell.
+/// Rejects of two equal uniform dimensions are `(2 T - 0.3)^2/(4 T^2)`, which four moments do not determine.
 #[test]
 fn scrap_follows_the_law_of_the_surface() {
     let text = "[dimensions]\na = { nominal = 10.0, tolerance = 0.16, distribution = \"uniform\" }\n\
@@ -92,11 +94,12 @@ fn scrap_follows_the_law_of_the_surface() {
     let cost = |t: f64| 0.1 / t + 5.0 * rejects(t);
     let best = (10_000..60_000).map(|step| cost(f64::from(step) * 1e-5)).fold(f64::INFINITY, f64::min);
     let found_cost = found.cost_after.unwrap();
-    // The search ends in short steps, at a residual of 1e-5, and does not call that optimal.
+    // The search ends in short steps, at a residual of 1e-5, which does not count as optimal.
     assert!((found_cost / best - 1.0).abs() < 1e-4, "{found_cost} for {best}");
 }
 
-/// The rejects of two correlated gaps are those of a bivariate normal law, by the oracle's Gauss nodes. The written study is judged alike.
+/// Rejects of two correlated gaps are those of a bivariate normal distribution, by the oracle's Gauss nodes. The written study has the same
+/// verdict.
 #[test]
 fn a_joint_yield_is_required_of_all_characteristics() {
     let found = as_the_oracle("both-gaps", Status::LocalOptimum);
@@ -107,16 +110,18 @@ fn a_joint_yield_is_required_of_all_characteristics() {
     assert!((after.value.unwrap() - 0.9973).abs() < 1e-9, "{after:?}");
     let again = analysed(of["study"].as_str().unwrap(), &found).joint_requirement.unwrap();
     assert_eq!((again.verdict, again.value), (Verdict::Met, after.value));
-    // Too much for the bounds, which says so of both.
+    // The requirement exceeds the bounds, and the message names both.
     let text = of["study"].as_str().unwrap().replace("min = 0.005", "min = 0.2");
     let found = allocated(&text);
     assert_eq!(found.status, Status::NoFeasiblePointFound, "{:?}", found.cost_after);
     assert!(found.attainable.unwrap().joint);
 }
 
-/// Three gaps with eight dimensions in common and one each: given what they share they are independent, so that the joint yield is one integral
-/// (Simpson, 1e-9). By symmetry an optimum has two tolerances, and is scanned. What breaks several limits is counted by points: twice their error of some
-/// 1e-5 of all assemblies, a hundredth of what may be rejected, costs less than a thousandth, and the scan is as coarse.
+/// Three gaps with eight common dimensions and one of their own each. Given the common ones they are independent, so that the joint yield
+/// is one integral (Simpson, 1e-9). By symmetry an optimum has two tolerances, and is scanned.
+///
+/// Rejects beyond several limits are counted by points. Twice their error of some 1e-5 of all assemblies, a hundredth of the permitted
+/// rejects, costs less than a thousandth. The scan is as coarse.
 #[test]
 fn a_joint_yield_of_gaps_that_vary_together_comes_to_rest() {
     const LIMIT: f64 = 0.28;
@@ -169,7 +174,7 @@ fn a_joint_yield_of_gaps_that_vary_together_comes_to_rest() {
     let bands: Vec<f64> = shared.iter().chain(&own).map(|name| band(&found, name)).collect();
     let [of_shared, of_own] = [&bands[..8], &bands[8..]].map(|of| of.iter().sum::<f64>() / of.len() as f64);
     assert_eq!(found.status, Status::LocalOptimum, "{:?}", found.proof);
-    // From the loosest tolerances too, where each gap rejects most and the sum of all is more than 1.
+    // The loosest tolerances are a start too. There each gap rejects most, and the sum of all is more than 1.
     assert_eq!(found.proof.reached, found.proof.starts, "{:?}", found.proof);
     assert!(bands[..8].iter().all(|t| (t / of_shared - 1.0).abs() < 1e-3), "{bands:?}");
     assert!(joint(of_shared, of_own) >= LEAST, "{}", joint(of_shared, of_own));
@@ -183,7 +188,8 @@ fn costs_are_formulas_of_the_tolerance() {
     as_the_oracle("formula-costs", Status::Optimal);
 }
 
-/// Points of b/T are b/T, so that the optimum is that of the model; corners move it by no more than a thousandth of a piece.
+/// Points of the curve b/T form the table, so that the optimum is that of the curve. Corners of the table move it by no more than a
+/// thousandth of a piece.
 #[test]
 fn costs_are_tables() {
     let text = |a: &str, b: &str| {
@@ -199,17 +205,17 @@ fn costs_are_tables() {
     let costs = [&by_model, &by_table].map(|found| found.cost_after.unwrap());
     assert!((costs[0] / costs[1] - 1.0).abs() < 1e-9, "{costs:?}");
     assert_eq!((by_model.status, by_table.status), (Status::Optimal, Status::Optimal));
-    // Dearer in the middle than a line in 1/T: not convex, told, and not called optimal.
+    // The cost in the middle exceeds a line in 1/T: it is not convex, which is reported, and the result is not called optimal.
     let bent = "table = [[0.01, 2.0], [0.05, 1.9], [0.2, 0.1]]";
     let found = allocated(&text(bent, model));
     assert_ne!(found.status, Status::Optimal);
     assert!(found.warnings.iter().any(|warning| warning.code() == "cost-not-convex"), "{:?}", found.warnings);
-    // Beyond the table nothing is known of the cost.
+    // Beyond the table the cost is unknown.
     let found = allocated(&text("table = [[0.001, 3.0], [0.04, 2.0]]", model));
     assert_eq!((found.cost_before, found.tolerances[0].cost_before), (None, None));
 }
 
-/// Grades of the size in place of a list that spells them out: the same optimum of 125, and half bands are half of ISO 286-1.
+/// Standard grades instead of a list with the same tolerances: the same optimum of 125, and half-widths are half of ISO 286-1.
 #[test]
 fn standard_grades_are_processes() {
     let of = problem("grades-of-size");
@@ -226,11 +232,11 @@ fn standard_grades_are_processes() {
         assert_eq!(one.process.as_deref(), optimum["grades"][name].as_str(), "{name}");
     }
     assert_eq!(found.status, Status::Optimal);
-    // Free tolerances are cheaper.
+    // Free tolerances have a lower cost.
     assert!(found.cost_unrounded.unwrap() < found.cost_after.unwrap());
 }
 
-/// The cost of rounding: the optimum of free tolerances is known in closed form.
+/// Cost of rounding: the optimum of free tolerances has a closed form.
 #[test]
 fn rounding_to_steps_has_a_cost() {
     let of = problem("step-of-5");
@@ -239,7 +245,7 @@ fn rounding_to_steps_has_a_cost() {
     assert!((found.cost_unrounded.unwrap() / free - 1.0).abs() < 1e-9, "{:?} for {free}", found.cost_unrounded);
 }
 
-/// The price of a bound is what solving with the bound moved saves; central differences of 1e-4 of the bound leave 1e-7.
+/// The price of a bound is the saving of an optimum with the bound moved. Central differences of 1e-4 of the bound have an error of 1e-7.
 #[test]
 fn a_bound_has_a_price() {
     let text = |max: f64, min: f64| {
@@ -264,8 +270,8 @@ fn a_bound_has_a_price() {
     assert!((below.unwrap() / saved - 1.0).abs() < 1e-5, "{below:?} for {saved}");
 }
 
-/// Sums of squares with correlation are a norm of the tolerances: convex, so that the answer is proven. With a correlation of 0.6 Lagrange's
-/// condition has equal tolerances for equal costs: `T = 3 s/sqrt(2 (1 - 0.6))` of a difference.
+/// Sums of squares with correlation are a norm of the tolerances, which is convex, so that the optimum is proven. With a correlation of
+/// 0.6, Lagrange's condition gives equal tolerances for equal costs: `T = 3 s/sqrt(2 (1 - 0.6))` for a difference.
 #[test]
 fn correlated_sums_of_squares_are_proven() {
     let text = "[dimensions]\na = { nominal = 20.0, tolerance = 0.05 }\nb = { nominal = 12.0, tolerance = 0.05 }\n\
@@ -281,7 +287,7 @@ fn correlated_sums_of_squares_are_proven() {
     assert_eq!(found.status, Status::Optimal, "{:?}", found.proof);
 }
 
-/// Every slip in a cost or a loss is one error that names the key and says what to write.
+/// Every mistake in a cost or a loss is one error that names the key and the correct form.
 #[test]
 fn wrong_costs_and_losses_are_refused() {
     let text = |cost: &str, loss: &str| {
@@ -318,7 +324,8 @@ fn wrong_costs_and_losses_are_refused() {
     assert!(Study::from_toml(&text(good, "gap = { scrap = 3.0 }"), "study.toml").is_ok());
 }
 
-/// Processes of a machine pay its set-up once: by all 2^3 choices of two processes for three dimensions, with the set-ups of what each uses.
+/// Processes of a machine pay its set-up once: compared with all 2^3 choices of two processes for three dimensions, with the set-ups of the
+/// machines used.
 #[test]
 fn machines_are_set_up_once() {
     let text = |grinder: f64, lathe: f64| {
@@ -373,7 +380,7 @@ fn machines_are_set_up_once() {
     }
 }
 
-/// The same tolerances cold and hot, as configurations of one study: the optimum of the oracle, which has them as two characteristics.
+/// One set of tolerances for a cold and a hot configuration of one study: the optimum of the oracle, which has them as two characteristics.
 #[test]
 fn configurations_are_kept_by_the_same_tolerances() {
     let of = problem("two-temperatures");
@@ -407,7 +414,7 @@ fn configurations_are_kept_by_the_same_tolerances() {
     for (name, expected) in of["optimum"]["tolerances"].as_object().unwrap() {
         assert!((band(&found, name) / expected.as_f64().unwrap() - 1.0).abs() < 1e-7, "{name}");
     }
-    // The tolerances that are written are kept in every configuration by itself.
+    // The written tolerances meet the requirements in every configuration by itself.
     let written = study.rewritten(&found.problem).unwrap().text;
     for name in ["cold", "hot"] {
         let externals = Externals::default().with_configuration(name);
@@ -420,7 +427,8 @@ fn configurations_are_kept_by_the_same_tolerances() {
     assert!(refused.contains("the tolerance of `bore` is another one in `hot`"), "{refused}");
 }
 
-/// A front for every kind of requirement: its costs rise, and the closed form of a sum of squares has `c/part` for a part of the room.
+/// A front exists for every kind of requirement, with increasing costs. For a sum of squares the closed form is `c/part` for a part of the
+/// limits.
 #[test]
 fn a_front_is_of_any_requirement() {
     for (require, target) in
@@ -449,8 +457,8 @@ fn a_front_is_of_any_requirement() {
     }
 }
 
-/// A bump between the places that a surface is fitted to takes more than the room: points within the bands find it. The bump is 0.2 high, the
-/// limit 0.1 away, so that twice the room is taken, less what points miss of its top.
+/// A bump between the nodes of the surface exceeds the limits, which points within the bands find. The bump is 0.2 high and the limit 0.1
+/// away, so that twice the limit is used, except for the part of its top that no point meets.
 #[test]
 fn points_within_the_bands_refute_a_worst_case() {
     let bump = |x: f64| (0.2 - 20.0 * (x - 0.085).abs()).max(0.0);
@@ -470,7 +478,7 @@ fn points_within_the_bands_refute_a_worst_case() {
     assert!(found.warnings.iter().any(|warning| warning.code() == "confirmation-misses"), "{:?}", found.warnings);
 }
 
-/// A jump between the places that a surface is fitted to and the tail: 3.6 % of the assemblies lie beyond 1.8 sigma, and are rejected for it.
+/// A jump between the nodes of the surface and the tail: 3.6 % of the assemblies lie beyond 1.8 sigma, and are rejected for it.
 #[test]
 fn a_sample_refutes_a_joint_yield() {
     let function = Closure::new(["y", "z"], |x: &[f64]| [x[0], x[1] + if x[0] > 0.018 { 100.0 } else { 0.0 }]);
@@ -489,7 +497,7 @@ fn a_sample_refutes_a_joint_yield() {
     let joint = found.joint_requirement.unwrap();
     let sampled = joint.sampled.unwrap();
     assert_eq!(sampled.verdict, Verdict::Missed, "{joint:?}");
-    // Beyond 1.8 sigma: 0.0359. Five standard errors of 20 000 points are 0.0066.
+    // The share beyond 1.8 sigma is 0.0359. Five standard errors of 20 000 points are 0.0066.
     assert!((sampled.value.unwrap() - (1.0 - 0.0359)).abs() < 0.0066, "{sampled:?}");
     assert!(found.warnings.iter().any(|warning| warning.code() == "joint-confirmation-misses"), "{:?}", found.warnings);
 }

@@ -1,5 +1,5 @@
-//! Lists under additive rows: the least cost of generated problems is that of HiGHS (`tests/data/allocation-lists.json`), and of small ones that
-//! of every choice.
+//! Lists under additive rows. The least cost of generated problems is that of HiGHS (`tests/data/allocation-lists.json`), and that of small
+//! ones is found over every choice.
 
 use sensitol::allocation::knapsack::cheapest;
 use sensitol::allocation::lists::ListOption;
@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::generated_lists::{Numbers, lists};
 use sensitol_testing::repository;
 
-/// Costs to 1e-9: HiGHS keeps rows to that.
+/// Costs agree to 1e-9, the accuracy to which HiGHS keeps rows.
 #[test]
 fn least_costs_are_those_of_highs() {
     let text = std::fs::read_to_string(repository("tests/data/allocation-lists.json")).unwrap();
@@ -31,7 +31,7 @@ fn least_costs_are_those_of_highs() {
     }
 }
 
-/// Every choice of small problems, some of which none keeps.
+/// Every choice of small problems, some of which are infeasible.
 #[test]
 fn least_costs_are_those_of_all_choices() {
     let mut numbers = Numbers(77);
@@ -43,7 +43,7 @@ fn least_costs_are_those_of_all_choices() {
                 let options = 1 + (4.0 * numbers.next()) as usize;
                 (0..options)
                     .map(|place| {
-                        // Few values, so that options and sums are equal to others.
+                        // Few different values, so that some options and sums are equal.
                         let mut few = |most: f64| (most * numbers.next()).floor() / most;
                         let uses = (0..rows).map(|_| 2.6 * few(8.0) / count as f64).collect();
                         ListOption { cost: few(6.0), uses, place }
@@ -74,7 +74,7 @@ fn least_costs_are_those_of_all_choices() {
     assert!((10..250).contains(&impossible), "{impossible}");
 }
 
-/// A search that is stopped says how far it is from proven.
+/// A search that is stopped reports a bound of its distance from the optimum.
 #[test]
 fn a_stopped_search_has_a_bound() {
     let text = std::fs::read_to_string(repository("tests/data/allocation-lists.json")).unwrap();

@@ -1,10 +1,10 @@
-//! Processes that say how their parts lie: the choice against every choice, each written as a study of its own and analysed.
+//! Processes with a distribution of their own: the choice is compared with every choice, each written as a study of its own and analysed.
 
 use sensitol::allocation::{Allocation, AllocationOptions, Status, allocate};
 use sensitol::{Verdict, analyze};
 use sensitol_study::Study;
 
-/// Name, half band, cost, and what it says of how its parts lie.
+/// Name, half-width, cost, and keys for the distribution of its parts.
 type Process = (&'static str, f64, f64, &'static str);
 
 const DIMENSIONS: [(&str, f64, [Process; 3]); 3] = [
@@ -32,7 +32,7 @@ const DIMENSIONS: [(&str, f64, [Process; 3]); 3] = [
         [
             ("lap", 0.02, 7.0, "cp = 1.0, drift = 0.004"),
             ("bore", 0.06, 3.5, "cp = 2.0"),
-            // Looser and dearer: it holds the middle better than the one above.
+            // Looser and more expensive, but with a mean nearer to the middle than the one above.
             ("ream", 0.07, 4.0625, "cp = 2.5"),
         ],
     ),
@@ -42,7 +42,7 @@ fn characteristic(formula: &str, rest: &str) -> String {
     format!("[characteristics]\ngap = {{ formula = \"{formula}\", {rest} }}\n")
 }
 
-/// A dimension that is uniform by itself: what the processes say takes the place of that.
+/// Returns a study of dimensions that are uniform by themselves. The processes replace this distribution.
 fn study(formula: &str, rest: &str) -> Study {
     let mut text = String::from("[dimensions]\n");
     for (name, nominal, _) in DIMENSIONS {
@@ -59,14 +59,14 @@ fn study(formula: &str, rest: &str) -> Study {
     Study::from_toml(&text, "study.toml").unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
-/// Whether a study keeps what is required of its characteristic, by an analysis of its own.
+/// True if a study meets the requirements of its characteristic, by an analysis of its own.
 fn keeps(study: &Study) -> bool {
     let found = analyze(&study.problem, &study.options).unwrap();
     found.characteristics[0].requirements().iter().all(|one| one.verdict == Verdict::Met)
 }
 
-/// The least cost of a choice that keeps what is required, and its processes: the 27 are written and analysed from the cheapest on. No two
-/// of them cost the same.
+/// Returns the least cost of a choice that meets the requirements, and its processes. The 27 choices are written and analysed from the
+/// cheapest on. No two of them have the same cost.
 fn cheapest(formula: &str, rest: &str) -> Option<(f64, Vec<&'static str>)> {
     let choice = |code: usize| -> (f64, Vec<Process>) {
         let picks = [code % 3, code / 3 % 3, code / 9];
@@ -99,22 +99,22 @@ fn processes(found: &Allocation) -> Vec<String> {
     found.tolerances.iter().map(|one| one.process.clone().unwrap_or_default()).collect()
 }
 
-/// Costs are sums of sixteenths, so that equal is equal.
+/// Costs are sums of sixteenths, so that equal costs are equal doubles.
 #[test]
 fn the_choice_is_the_cheapest_of_all() {
     let limits = "lower = 0.86, upper = 1.14";
     let sum = "a - b - c";
     for (formula, rest, word) in [
-        // Variances add up: a knapsack.
+        // Variances add up: a knapsack problem.
         (sum, "require = { sigma = 0.03 }".to_owned(), Some(Status::Optimal)),
-        // Bands add up, whatever lies within them.
+        // Bands add up for every distribution within them.
         (sum, format!("{limits}, require = \"worst-case\""), Some(Status::Optimal)),
         (sum, format!("{limits}, require = \"rss\""), Some(Status::Optimal)),
-        // Means move, and shapes differ.
+        // Means move, and distributions differ.
         (sum, format!("{limits}, require = {{ cpk = 1.5 }}"), Some(Status::Optimal)),
         (sum, format!("{limits}, require = {{ yield = 0.9995 }}"), Some(Status::Optimal)),
         (sum, "lower = 0.88, upper = 1.10, require = { yield = 0.99 }".to_owned(), Some(Status::Optimal)),
-        // The surface at the tolerances before is not that at those found.
+        // The surface changes with the tolerances.
         ("a*b/6 - c - 6", format!("{limits}, require = {{ cpk = 1.0 }}"), None),
         ("a*b/6 - c - 6", format!("{limits}, require = {{ yield = 0.999 }}"), None),
     ] {
@@ -124,9 +124,9 @@ fn the_choice_is_the_cheapest_of_all() {
         assert_eq!(found.cost_after, Some(cost), "{formula}, {rest}: {:?} for {names:?}", processes(&found));
         assert_eq!(processes(&found), names, "{formula}, {rest}");
         assert!(word.is_none_or(|word| found.status == word), "{formula}, {rest}: {:?}", found.status);
-        // Some tolerance is not the tightest: else the case would say nothing.
+        // At least one tolerance is not the tightest, or the case would be trivial.
         assert!(names != ["grind", "mill", "lap"], "{formula}, {rest}");
-        // The study as it is written keeps it too, and says what the process says.
+        // The written study meets the requirement too, and contains the distribution of the process.
         let written = study.rewritten(&found.problem).unwrap().text;
         let again = Study::from_toml(&written, "study.toml").unwrap();
         assert!(keeps(&again), "{formula}, {rest}:\n{written}");
@@ -137,15 +137,15 @@ fn the_choice_is_the_cheapest_of_all() {
         let wanted: Vec<[f64; 3]> =
             found.problem.dimensions().iter().map(|one| [one.mean(), one.sigma(), one.half_band()]).collect();
         for (a, b) in of(&again).iter().flatten().zip(wanted.iter().flatten()) {
-            // Tolerances of two digits are written as they are.
+            // Tolerances of two digits are written without rounding.
             assert!((a - b).abs() < 1e-12 * b.abs().max(1.0), "{a} for {b}:\n{written}");
         }
-        // Once more from there: the same choice.
+        // A second allocation from there makes the same choice.
         assert_eq!(processes(&self::found(&again)), names, "{formula}, {rest}, again");
     }
 }
 
-/// What no choice keeps is said to be so, as an exact surface and all choices prove it.
+/// A requirement that no choice meets is reported as infeasible, as proven by an exact surface and by all choices.
 #[test]
 fn what_no_choice_keeps_is_infeasible() {
     let rest = "require = { sigma = 0.008 }";
@@ -153,12 +153,12 @@ fn what_no_choice_keeps_is_infeasible() {
     assert_eq!(found(&study("a - b - c", rest)).status, Status::Infeasible);
 }
 
-/// Many lists under a sum of variances: the same least cost as a dynamic program over the variances in whole units, which is exact for
+/// Many lists under a sum of variances have the least cost of a dynamic program over the variances in whole units. It is exact for
 /// tolerances whose variances are whole.
 #[test]
 fn many_lists_are_a_knapsack() {
     let n = 14;
-    // Variances of options in whole units of 1e-6, with half bands of any width.
+    // Variances of options in whole units of 1e-6, with half-widths of any size.
     let option = |d: usize, i: usize| {
         let variance = ((i + 1) * (i + 1) * 7 + (d * 5 + i * 3) % 11) as f64;
         let cost = 60.0 / (1.0 + i as f64) + ((d * 7 + i) % 5) as f64;
@@ -178,7 +178,7 @@ fn many_lists_are_a_knapsack() {
         };
         costs += &format!("x{d} = {{ processes = [{}] }}\n", (0..4).map(of).collect::<Vec<_>>().join(", "));
     }
-    // A millionth beside the whole number keeps rounding out of it.
+    // A millionth above the whole number excludes effects of rounding.
     let sigma = 1e-3 * (most as f64 + 1e-3).sqrt();
     text += &format!("[characteristics]\ny = {{ formula = \"{formula}\", require = {{ sigma = {sigma} }} }}\n{costs}");
     let study = Study::from_toml(&text, "study.toml").unwrap_or_else(|error| panic!("{error}"));
@@ -199,11 +199,11 @@ fn many_lists_are_a_knapsack() {
     let expected = least.into_iter().fold(f64::INFINITY, f64::min);
     let found = found(&study);
     assert_eq!(found.status, Status::Optimal, "{:?}", found.proof);
-    // Sums of fourteen costs in another order.
+    // Both sides are sums of fourteen costs in different order.
     assert!((found.cost_after.unwrap() - expected).abs() < 1e-9, "{:?} for {expected}", found.cost_after);
 }
 
-/// A line of `[processes]` may say it in one place for all lists.
+/// A line of `[processes]` can describe a process once for all lists.
 #[test]
 fn a_process_may_be_named() {
     let text = |own: &str| {
@@ -223,7 +223,7 @@ fn a_process_may_be_named() {
     assert!(written.contains("a = { nominal = 1, tolerance = 0.1, process = \"turning\" }"), "{written}");
 }
 
-/// What cannot be is said with its place, and what to write instead.
+/// Every fault is reported with its place and the correct form.
 #[test]
 fn faults_are_told_at_their_place() {
     let text = |dimension: &str, processes: &str| {

@@ -1,4 +1,4 @@
-//! Allocations that are not convex: searches that begin anywhere end at the optimum, of several at the cheapest. The optima of
+//! Allocations that are not convex: searches from any start reach the optimum, and several reach the cheapest one. The optima of
 //! `tests/data/allocation-optima.json` come from exact moments without the engine.
 
 use sensitol::allocation::{Allocation, AllocationOptions, Status, allocate};
@@ -6,13 +6,14 @@ use sensitol::{Method, Options, Verdict};
 use sensitol_study::Study;
 use serde_json::Value;
 
+/// Returns a problem of the reference file by its name.
 pub fn problem(name: &str) -> Value {
     sensitol_testing::problem("allocation-optima.json", name)
 }
 
 fn allocated(of: &Value) -> Allocation {
     let study = Study::from_toml(of["study"].as_str().unwrap(), "study.toml").unwrap();
-    // Every interaction is examined: what is not known of one would be added to what is required.
+    // Every interaction is examined, because the uncertainty of others would be added to the requirement.
     let options = AllocationOptions::default().with_analysis(Options::from(Method::Full));
     let found = allocate(&study.problem, &study.allocation_task(), &options).unwrap();
     assert!(
@@ -23,14 +24,14 @@ fn allocated(of: &Value) -> Allocation {
     found
 }
 
-/// By what part the cost lies above the optimum.
+/// Returns the relative difference of the cost to the optimum.
 fn gap(found: &Allocation, of: &Value) -> f64 {
     found.cost_after.unwrap() / of["cost"].as_f64().unwrap() - 1.0
 }
 
-/// Curvature moves the mean away from the limit, so that wide tolerances help: sums of powers lead nowhere there, and without sequential quadratic
-/// programming the cheapest that was found costs 8 to 17 times as much. It ends at the optimum from every start. Tolerances are kept on the good side
-/// by 1e-9, and the oracle's own searches end at 1e-10.
+/// Curvature moves the mean away from the limit, so that wide tolerances help. Sums of powers fail there: without sequential quadratic
+/// programming, the cheapest result costs 8 to 17 times as much. It reaches the optimum from every start. Tolerances stay within limits by
+/// 1e-9, and the oracle's own searches end at 1e-10.
 #[test]
 fn curvature_that_helps_is_followed_to_the_optimum() {
     for name in ["curved-4", "curved-4-between", "curved-6-between"] {
@@ -43,9 +44,10 @@ fn curvature_that_helps_is_followed_to_the_optimum() {
     }
 }
 
-/// Every stack has two optima: its parts tight, or so wide that the mean gives room; which is cheaper differs. Of the eight combinations of three stacks the
-/// nine starts end at four, none of them the cheapest. The best place of the particle swarm is the tenth start and ends there: without it the cost is 18 %
-/// higher. The oracle scans every stack by itself.
+/// Every stack has two optima: tight parts, or parts so wide that the mean moves away from the limit. Either may be cheaper.
+///
+/// The nine starts reach four of the eight combinations of three stacks, none of them the cheapest. The best place of the particle swarm is
+/// the tenth start and reaches it: without it the cost is 18 % higher. The oracle scans every stack by itself.
 #[test]
 fn a_swarm_finds_where_no_other_start_ends() {
     let of = problem("three-stacks");

@@ -1,4 +1,4 @@
-//! Allocation against optima that were found without the engine: `tests/data/allocation.json`, with how beside each.
+//! Allocation against optima that were found without the engine: `tests/data/allocation.json`, which describes the method of each.
 
 use sensitol::Verdict;
 use sensitol::allocation::{Allocation, AllocationOptions, AllocationSolver, CostBasis, Goal, Status, allocate};
@@ -6,6 +6,7 @@ use sensitol_study::Study;
 use serde_json::Value;
 use statrs::distribution::{Continuous, ContinuousCDF, Normal};
 
+/// Returns a problem of the reference file by its name.
 pub fn problem(name: &str) -> Value {
     sensitol_testing::problem("allocation.json", name)
 }
@@ -28,11 +29,11 @@ fn all_met(found: &Allocation) -> bool {
     found.requirements.iter().all(|one| one.after.unwrap().verdict == Verdict::Met)
 }
 
-/// Results that are called optimal are optimal: costs to 1e-8, which is what the oracles know of theirs. Tolerances are kept on the good side by 1e-9, and
-/// that is all that the costs of yields are off here; those of the others by 1e-12.
+/// Results that are called optimal are optimal: costs agree to 1e-8, the accuracy of the oracles. Tolerances stay within limits by 1e-9.
+/// This is the whole error of the costs of yields here; those of the others have errors of 1e-12.
 ///
-/// Linear worst cases, sums of squares and lists are proven, and tolerances that are all at their loosest; the others are the best of several
-/// starts, and called that.
+/// Linear worst cases, sums of squares, lists, and tolerances that are all at their loosest are proven. Other results are the best of
+/// several starts, and are reported as such.
 #[test]
 fn what_is_called_optimal_is() {
     const PROVEN: [&str; 5] = ["squares-help", "two-temperatures", "twins", "list-12x4", "grades-of-size"];
@@ -57,8 +58,8 @@ fn what_is_called_optimal_is() {
     assert_eq!(allocated(&problem("too-tight")).status, Status::Infeasible);
 }
 
-/// A corner that lies on a limit to the last digit is not beyond it: 0.023 + 0.026 + 0.011 is all of the 0.06 that are there, and in doubles
-/// 60.023 - 24.974 - 7.989 is more than 27.06.
+/// A corner that lies on a limit to the last digit is not beyond it. The sum 0.023 + 0.026 + 0.011 is all of the permitted 0.06, and in
+/// doubles 60.023 - 24.974 - 7.989 is more than 27.06.
 #[test]
 fn a_corner_on_the_limit_refutes_nothing() {
     let of = problem("grades-of-size");
@@ -71,7 +72,7 @@ fn a_corner_on_the_limit_refutes_nothing() {
     assert!(found.warnings.is_empty(), "{:?}", found.warnings);
 }
 
-/// The solver of each answer is named: nominal values and tolerances at once are argmin's.
+/// The solver of each result is named: argmin's for nominal values and tolerances at once.
 #[test]
 fn the_solver_is_named() {
     use AllocationSolver::{AugmentedLagrangian, BranchAndBound, DualNewton, Separable};
@@ -85,8 +86,8 @@ fn the_solver_is_named() {
     }
 }
 
-/// A tilt about 0 has no slope there and moves the play by its curvature alone: at both of its ends, where `1 - cos` is greatest, and in its
-/// middle. The extremes are those of the closed form.
+/// A tilt about 0 has no slope there and moves the play by its curvature alone: at both of its ends, where `1 - cos` is greatest, and in
+/// its middle. The extremes are those of the closed form.
 #[test]
 fn a_tilt_without_a_slope_keeps_the_worst_case() {
     let found = allocated(&problem("lever-turning"));
@@ -96,8 +97,8 @@ fn a_tilt_without_a_slope_keeps_the_worst_case() {
     assert!(least >= 0.02 - 1e-6 && greatest <= 0.3 + 1e-6, "{least} {greatest}");
 }
 
-/// At the means of two offsets the distance is a kink, which no parabola describes: the corners of the formula itself lead to the optimum, which
-/// is that of the closed form to 1e-6, and keep the true worst case. It is not proven to be one: corners may change with the tolerances.
+/// At the means of two offsets the distance has a kink, which no parabola describes. The corners of the formula itself lead to the optimum
+/// of the closed form, to 1e-6, and keep the true worst case. The optimum is not proven: corners may change with the tolerances.
 #[test]
 fn a_kink_at_the_means_keeps_the_worst_case() {
     let of = problem("pin-about-centre");
@@ -111,8 +112,9 @@ fn a_kink_at_the_means_keeps_the_worst_case() {
     assert!(all_met(&found), "{:?}", found.requirements);
 }
 
-/// The smaller of two gaps: a parabola through a kink gives another sigma and other slopes than the model has. With samples of the model
-/// the cost comes within 0.2 % of the optimum: sigma is required of the upper end of its interval, 1e-3 of it, and slopes are known to 1e-3.
+/// The smaller of two gaps: a parabola through a kink has another sigma and other slopes than the model. With samples of the model the cost
+/// comes within 0.2 % of the optimum. Sigma is required of the upper end of its interval, 1e-3 of it, and slopes are accurate to 1e-3.
+///
 /// The true sigma is that of C. E. Clark, Operations Research 9 (1961).
 #[test]
 fn a_kink_is_allocated_by_the_model() {
@@ -125,11 +127,11 @@ fn a_kink_is_allocated_by_the_model() {
     let sigma = of_smaller([0.5, 0.55], [a * a + w * w, b * b + w * w], w * w);
     assert!(sigma <= 0.03 && sigma > 0.03 * 0.998, "{sigma}");
     assert!(all_met(&found), "{:?}", found.requirements);
-    // Slopes from samples prove nothing within rounding.
+    // Slopes from samples are too inaccurate for a proof.
     assert_eq!(found.status, Status::AlmostOptimal);
 }
 
-/// Sigma of the smaller of two correlated normal variables.
+/// Returns sigma of the smaller of two correlated normal variables.
 fn of_smaller(means: [f64; 2], variances: [f64; 2], covariance: f64) -> f64 {
     let normal = Normal::new(0.0, 1.0).unwrap();
     let a = (variances[0] + variances[1] - 2.0 * covariance).sqrt();
@@ -141,8 +143,8 @@ fn of_smaller(means: [f64; 2], variances: [f64; 2], covariance: f64) -> f64 {
     (second - first * first).sqrt()
 }
 
-/// Nominal value and tolerances are one problem: the shoulder gives the gap room that costs it most. Both Cpk rows are convex in both, so that
-/// the answer is proven; the oracle's own search ends at 1e-7.
+/// Nominal value and tolerances are one problem: the shoulder moves to widen the limits where the gap costs most. Both Cpk rows are convex
+/// in both, so that the optimum is proven. The oracle's own search ends at 1e-7.
 #[test]
 fn nominal_values_move_together_with_tolerances() {
     let of = problem("move-the-shoulder");
@@ -155,8 +157,8 @@ fn nominal_values_move_together_with_tolerances() {
     assert!(all_met(&found), "{:?}", found.requirements);
 }
 
-/// Bounds of a nominal value hold, and cost what room they leave: with the shoulder at 15.02 at the most, tolerances are those of a study that
-/// has it there.
+/// Bounds of a nominal value are kept, and their cost is that of the smaller limits. With the shoulder at 15.02 at the most, tolerances are
+/// those of a study that has it there.
 #[test]
 fn a_bound_of_a_nominal_value_holds() {
     let of = problem("move-the-shoulder");
@@ -173,8 +175,8 @@ fn a_bound_of_a_nominal_value_holds() {
     assert!((costs[0] / costs[1] - 1.0).abs() < 1e-6, "{costs:?}");
 }
 
-/// Two limits of the same sum hold the cost up alike: to widen one of them alone saves nothing, to narrow it costs `10 c`, for the cost is
-/// homogeneous of degree -1 in the room. Two steps of 1e-4 leave 1e-7 of the price.
+/// Two limits of the same sum determine the cost together: to widen one of them alone saves nothing, and to narrow it costs `10 c`, because
+/// the cost is homogeneous of degree -1 in the limits. Two steps of 1e-4 have an error of 1e-7 of the price.
 #[test]
 fn a_price_of_one_of_two_twins_has_two_sides() {
     let of = problem("twins");
@@ -187,8 +189,8 @@ fn a_price_of_one_of_two_twins_has_two_sides() {
     }
 }
 
-/// Without costs every tolerance has one by the tolerance unit of its size, with Lagrange's solution in closed form; and the same grade
-/// everywhere has one factor. The search of the factor ends at 1e-9.
+/// Without costs, every tolerance gets one from the tolerance unit of its size, with Lagrange's solution in closed form. The same grade for
+/// all has one factor, whose search ends at 1e-9.
 #[test]
 fn without_costs_the_size_says_what_is_hard_to_hold() {
     let of = problem("no-costs");
@@ -205,7 +207,7 @@ fn without_costs_the_size_says_what_is_hard_to_hold() {
         assert_eq!((found.status, found.cost_basis), (Status::Optimal, basis));
         assert!(all_met(&found), "{:?}", found.requirements);
     }
-    // The same effect: slopes of this sum are 1 and -1, so that all tolerances are 0.15 by the root of 3.
+    // Equal effects: the slopes of this sum are 1 and -1, so that all tolerances are 0.15 divided by the root of 3.
     let task = study.allocation_task().relative(&study.problem, CostBasis::EqualShares);
     let found = allocate(&study.problem, &task, &options).unwrap();
     for name in ["a", "b", "c"] {
@@ -213,7 +215,7 @@ fn without_costs_the_size_says_what_is_hard_to_hold() {
     }
 }
 
-/// A hole H and a shaft h keep the end at the nominal size, so that the play begins at 0 whatever the tolerances are.
+/// A hole H and a shaft h keep the end at the nominal size, so that the play begins at 0 for all tolerances.
 #[test]
 fn a_held_end_of_a_band_stays() {
     let of = problem("shaft-keeps-zero");
@@ -231,7 +233,7 @@ fn a_held_end_of_a_band_stays() {
     assert!(all_met(&found), "{:?}", found.requirements);
 }
 
-/// The same by fits: the end that the letter gives stays.
+/// Fits keep the end that their letter determines.
 #[test]
 fn a_fit_stays_one_sided() {
     let text = |rss: &str| {
@@ -249,20 +251,21 @@ fn a_fit_stays_one_sided() {
         let [hole, shaft] = [0, 1].map(|d| found.problem.dimensions()[d].tolerance().unwrap());
         assert_eq!((hole[0], shaft[1]), (0.0, -0.020), "ISO 286: H has EI = 0, f at 25 mm es = -20 um");
         let [a, b] = [0.5 * hole[1], 0.5 * (shaft[1] - shaft[0])];
-        // Widths w of cost by the half band: play from 0.02 to 0.02 + w1 + w2, or its middle and the root of the squares of half widths.
+        // Bands with widths w, and costs by the half-width: play from 0.02 to 0.02 + w1 + w2, or its middle and the root of the squared
+        // half-widths.
         let used = match require {
             "rss" => 0.02 + a + b + a.hypot(b),
             _ => 0.02 + 2.0 * (a + b),
         };
         assert!(used <= 0.05 + 1e-9 && used > 0.05 - 1e-6, "{require}: {used}");
-        // At the optimum the slopes of the cost are as those of what is used: b_j/T_j^2 over (1 + T_j/R), or over 2.
+        // At the optimum the slopes of the cost are proportional to those of the used limits: b_j/T_j^2 over (1 + T_j/R), or over 2.
         let slope = |t: f64| if require == "rss" { 1.0 + t / a.hypot(b) } else { 2.0 };
         let ratio = (0.02 / (a * a) / slope(a)) / (0.05 / (b * b) / slope(b));
         assert!((ratio - 1.0).abs() < 1e-4, "{require}: {ratio}");
     }
 }
 
-/// Tolerances in whole steps: the cheapest of all 64,000, by the oracle's enumeration.
+/// Tolerances in whole steps have the least cost of all 64,000 choices, by the oracle's enumeration.
 #[test]
 fn steps_are_chosen_from_all_multiples() {
     let of = problem("step-of-5");
@@ -274,8 +277,8 @@ fn steps_are_chosen_from_all_multiples() {
     assert_eq!(found.status, Status::Optimal, "{:?}", found.proof);
 }
 
-/// The fewest rejects, and the highest Cpk, for a cost: tolerances in proportion to the third roots of the factors, in closed form. A level is a
-/// root to 1e-10 of the cost; of the rejects the double next to a yield of 1 leaves 2e-8.
+/// For the fewest rejects, and the highest Cpk, at a given cost, tolerances are proportional to the third roots of the factors, in closed
+/// form. The level is accurate to 1e-10 of the cost. For rejects the spacing of doubles next to a yield of 1 causes an error of 2e-8.
 #[test]
 fn the_best_for_a_cost_is_found() {
     let of = problem("best-for-a-budget");
@@ -299,8 +302,8 @@ fn the_best_for_a_cost_is_found() {
     assert!(refused.contains("the loosest tolerances within their bounds cost 0.08"), "{refused}");
 }
 
-/// A Cpk is sought where the nominal values are best: with the gap's nominal value 0.3 off the middle of its limits, which both dimensions may
-/// move, the tolerances of the oracle's third roots are the best there too.
+/// The highest Cpk is sought at the best nominal values. The gap's nominal value is 0.3 off the middle of its limits, and both dimensions
+/// may move it. The tolerances of the oracle's third roots are the best there too.
 #[test]
 fn nominal_values_move_for_the_best_of_a_cost() {
     let of = problem("best-for-a-budget");
@@ -309,16 +312,16 @@ fn nominal_values_move_for_the_best_of_a_cost() {
     let options = AllocationOptions::default().with_analysis(study.options.clone()).with_recentre(vec!["a".to_owned()]);
     let task = study.allocation_task().towards(Goal::MostCpk { cost_limit: 2.5 });
     let found = allocate(&study.problem, &task, &options).unwrap();
-    // At rest within 1e-3 sigmas of a, a hundredth of its tolerance.
+    // The search stops within 1e-3 sigmas of a, a hundredth of its tolerance.
     assert!((found.moved[0].after - 20.0).abs() < 3e-4, "{:?}", found.moved);
     let sigma = of["optimum"]["sigma"].as_f64().unwrap();
     let cpk = found.after.as_ref().unwrap().characteristics[0].capability.unwrap().cpk.unwrap();
     assert!((cpk / (0.1 / (3.0 * sigma)) - 1.0).abs() < 1e-2, "{cpk}");
-    // Of a level that is sought a limit has no price.
+    // If the level itself is optimised, limits have no price.
     assert!(found.prices.is_empty(), "{:?}", found.prices);
 }
 
-/// Proportions that keep a requirement however loose are no failure, and fixed proportions have no prices of limits.
+/// Proportions that meet a requirement at any size are no failure, and fixed proportions have no prices of limits.
 #[test]
 fn proportions_keep_what_nothing_breaks() {
     let of = problem("no-costs");
@@ -334,7 +337,7 @@ fn proportions_keep_what_nothing_breaks() {
     }
 }
 
-/// Bounds that hold nothing are refused before anything is evaluated.
+/// Invalid bounds of nominal values are refused before any evaluation.
 #[test]
 fn wrong_bounds_of_nominal_values_are_refused() {
     let of = problem("move-the-shoulder");

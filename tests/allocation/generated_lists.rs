@@ -1,13 +1,13 @@
-//! Lists under additive rows from seeds, as `tests/data/generators/allocation_lists.py` makes them.
+//! Lists under additive rows from seeds, generated like those of `tests/data/generators/allocation_lists.py`.
 
 use sensitol::allocation::lists::ListOption;
 use serde_json::Value;
 
-/// S. Vigna's splitmix64 as numbers in [0, 1), as `generators/allocation_lists.py` has it.
+/// Generator of numbers in [0, 1) by S. Vigna's splitmix64, like that of `generators/allocation_lists.py`.
 pub struct Numbers(pub u64);
 
 impl Numbers {
-    /// The next one.
+    /// Returns the next number in [0, 1).
     pub fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
@@ -17,7 +17,7 @@ impl Numbers {
     }
 }
 
-/// The problem of a seed: the same arithmetic, in the same order.
+/// Returns the problem of a seed, by the same arithmetic in the same order.
 pub fn lists(of: &Value) -> Vec<Vec<ListOption>> {
     let number = |key: &str| of[key].as_u64().unwrap();
     let (count, options, rows) = (number("lists"), number("options"), number("rows") as usize);

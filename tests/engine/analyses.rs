@@ -7,6 +7,7 @@ use sensitol_study::Study;
 use sensitol_testing::densities::{Case, cases};
 use sensitol_testing::{close, data, relative, repository};
 
+/// Returns a dimension with the distribution of a case.
 pub fn dimension(case: &Case) -> Dimension {
     Dimension::distributed("x", case.distribution.mean(), None, case.distribution.clone()).unwrap()
 }
@@ -25,7 +26,7 @@ fn analysed(case: &Case, method: Method, f: impl Fn(f64) -> f64 + Send + Sync + 
     [moments.mean(), moments.sigma(), moments.skewness().unwrap(), moments.kurtosis().unwrap()]
 }
 
-/// A quadratic has exact moments, whatever the distribution and wherever its nodes had to go.
+/// A quadratic has exact moments for every distribution and every position of the nodes.
 #[test]
 fn quadratics_are_exact() {
     for case in cases() {
@@ -38,7 +39,7 @@ fn quadratics_are_exact() {
         for method in [Method::SecondOrder, Method::Full] {
             let found = analysed(&case, method, y);
             for (found, expected) in found.into_iter().zip(expected) {
-                // Differences over a node's distance; the integrator is good to 1e-12 of the eighth moment.
+                // Differences divide by a node's distance. The integrator is accurate to 1e-12 of the eighth moment.
                 assert!((found / expected - 1.0).abs() < 1e-9, "{}: {found} for {expected}", case.distribution.name());
             }
         }
@@ -69,7 +70,7 @@ fn a_product_of_two_inputs_is_exact() {
     }
 }
 
-/// No node outside the support; the third moment is kept by pairs that had to move one; five points never move.
+/// No node lies outside the support. Pairs with a shifted node keep the third moment, and five points never move.
 #[test]
 fn nodes_stay_within_the_support() {
     for case in cases() {
@@ -92,12 +93,12 @@ fn nodes_stay_within_the_support() {
     }
 }
 
-/// Steep functions of inputs with tails: five points against the parabola, by errors of mean and sigma.
+/// Five points have smaller errors of mean and sigma than the parabola, for steep functions of inputs with tails.
 #[test]
 fn five_points_beat_the_parabola_on_tails() {
     for case in cases().into_iter().filter(|case| case.distribution.standard_moments().excess > 1.0) {
         let (mean, sigma) = (case.distribution.mean(), case.distribution.sigma());
-        // Steep where most of the values are, flat along the tail.
+        // The function is steep where most of the values are, and flat along the tail.
         let towards = case.distribution.standard_moments().skewness.signum();
         let y = move |x: f64| (-0.5 * towards * (x - mean) / sigma).exp();
         let truth = integrated(&case, y);
@@ -115,7 +116,7 @@ fn five_points_beat_the_parabola_on_tails() {
     }
 }
 
-/// A long tail is worth a warning where the model is curved along it, and only there.
+/// A long tail causes a warning if the model is curved along it, and only then.
 #[test]
 fn long_tails_are_warned_of_where_they_matter() {
     let codes = |line: &str, method: Method, f: fn(f64) -> f64| {
@@ -141,7 +142,7 @@ fn two_suppliers_have_these_moments() {
     let study = Study::read(&repository("examples/two-suppliers/study.toml")).unwrap();
     let moments = analyze(&study.problem, &Method::Full.into()).unwrap().characteristics[0].moments.unwrap();
     let expected = |key: &str| truth[key].as_f64().unwrap();
-    // The scatter of the depth shrinks with the cosine of the tilt, by 4e-6 of it: a term of third order.
+    // The cosine of the tilt reduces the scatter of the depth by 4e-6 of it, a term of third order.
     relative(moments.mean(), expected("mean"), 1e-9);
     relative(moments.sigma(), expected("sigma"), 4e-6);
     close(moments.skewness().unwrap(), expected("skewness"), 4e-6, 1.0);

@@ -1,4 +1,4 @@
-//! Analysis: what is unknown stays unknown, and doubtful results carry their warning.
+//! Analyses: unknown figures stay unknown, and doubtful results carry a warning.
 
 use sensitol::{Characteristic, Closure, Dimension, Method, Options, Problem, ProblemError, SpecLimits, analyze};
 use sensitol_testing::{close, normals, relative, standard};
@@ -17,7 +17,7 @@ fn rss_says_where_it_does_not_hold() {
     assert!(codes(&curved, Method::Full).is_empty());
 }
 
-/// First order knows no curvature: null, not 0.
+/// The curvature of a first-order method is null, not 0.
 #[test]
 fn first_order_knows_no_curvature() {
     let problem = Problem::new(standard(2), Closure::scalar("y", |x| x[0] + x[1] + 0.3 * x[0] * x[0])).unwrap();
@@ -37,7 +37,7 @@ fn a_characteristic_that_reacts_to_nothing_is_a_warning() {
     assert_eq!((moments.sigma(), moments.skewness(), moments.kurtosis()), (0.0, None, None));
 }
 
-/// A value of 1e12 that moves by 1e-3: one rounding error is a tenth of that.
+/// One rounding error of a value of 1e12 is a tenth of its change of 1e-3, and causes a warning.
 #[test]
 fn rounding_beside_sigma_is_a_warning() {
     let problem = Problem::new(standard(1), Closure::scalar("y", |x| 1e12 + 1e-3 * x[0])).unwrap();
@@ -59,7 +59,7 @@ fn pairs_that_were_not_examined_are_counted() {
     assert_eq!(message(Method::Rss), None, "first order does not claim to");
 }
 
-/// The worst case of an asymmetric band goes to its own ends; RSS to half its width.
+/// The worst case of an asymmetric band uses its own ends, and RSS half of its width.
 #[test]
 fn asymmetric_bands_have_asymmetric_worst_cases() {
     let dimensions = [
@@ -137,7 +137,7 @@ fn impossible_dimensions_and_limits_are_refused() {
     assert!(Characteristic::new("y").with_target_yield(1.0).is_err());
 }
 
-/// A minimum distance ends at contact: the model answers 0 where parts overlap.
+/// A minimum distance has a kink at contact, because the model returns 0 if parts overlap. The kink is found.
 #[test]
 fn a_distance_that_ends_at_contact_is_found_out() {
     let gap = |least: f64| {
@@ -148,7 +148,7 @@ fn a_distance_that_ends_at_contact_is_found_out() {
     assert_eq!((atoms(0.0), atoms(f64::NEG_INFINITY)), (1, 0));
 }
 
-/// A program that settles in a mirrored assembly: the warning names what changed, and points in doubt.
+/// A program that changes to a mirrored assembly causes a warning with the changed output and the doubtful points.
 #[test]
 fn a_program_that_flips_is_warned_of() {
     let script = sensitol_testing::repository("tests/children/child.py").display().to_string();
@@ -157,7 +157,7 @@ fn a_program_that_flips_is_warned_of() {
          b = {{ nominal = 2, tolerance = 0.3 }}\n[characteristics]\nsum = {{}}\n"
     );
     let study = sensitol_study::Study::from_toml(&study, "flip.toml").unwrap();
-    // Twelve sigma off: a = 13, where it flips.
+    // The nodes are twelve sigma off, at a = 13, where the program flips.
     let options = Options::from(Method::SecondOrder).with_step(12.0);
     let analysis = analyze(&study.problem, &options).unwrap();
     let flip = analysis.warnings.iter().find(|warning| warning.code() == "branch-flip");

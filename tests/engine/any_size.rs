@@ -1,9 +1,11 @@
-//! Results in another unit are the same results: outputs and inputs times a power of two, or of ten, from 1e-290 to 1e290.
+//! Results do not depend on the unit: outputs and inputs are multiplied by powers of two, or of ten, from 1e-290 to 1e290.
 //!
-//! Every number of a report has a unit `y^n x^m`. Two runs in units of 8 and 32, which are of ordinary size, tell the exponents of each number.
-//! At every other size the number must be that of an ordinary size times the units to these exponents, to the last bit: a power of ten is a number
-//! from 1 to 2 times a power of two, and a run in units of that number has the same roundings. From one such number to another roundings differ, and with
-//! them what is made of roundings, as some estimates of errors. The figures themselves agree to 1e-9.
+//! Every number of a report has a unit `y^n x^m`. Two runs in units of 8 and 32, which are of ordinary size, give the exponents of each
+//! number. At every other size the number must be that of an ordinary size times the units to these exponents, to the last bit.
+//!
+//! A power of ten is a number from 1 to 2 times a power of two, and a run in units of that number has the same roundings. Roundings differ
+//! between such numbers, and so do quantities that consist of roundings, such as some estimates of errors. The figures themselves agree to
+//! 1e-9.
 
 use std::collections::HashSet;
 use std::sync::{Arc, Mutex};
@@ -25,7 +27,7 @@ use serde_json::Value;
 
 use sensitol_testing::parse;
 
-/// The units of outputs and inputs.
+/// Units of outputs and inputs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Units {
     y: f64,
@@ -35,18 +37,18 @@ struct Units {
 impl Units {
     const ONE: Self = Self { y: 1.0, x: 1.0 };
 
-    /// Two powers of a base.
+    /// Returns two powers of a base as units.
     fn powers(base: f64, [y, x]: [i32; 2]) -> Self {
-        // Powers of ten as a reader of decimal numbers has them.
+        // Powers of ten are parsed, so that they are rounded like decimal numbers in a file.
         let of = |power: i32| if base == 10.0 { format!("1e{power}").parse().unwrap() } else { base.powi(power) };
         Self { y: of(y), x: of(x) }
     }
 }
 
-/// A study in units: the problem, and its name.
+/// Problem as a function of the units, with its name.
 type Study = (&'static str, fn(Units) -> Problem);
 
-/// A bearing that is bent, a formula.
+/// Two formulas, a curved one and a straight one.
 fn formula(Units { y, x }: Units) -> Problem {
     let text = format!(
         "[dimensions]\n\
@@ -69,7 +71,7 @@ fn formula(Units { y, x }: Units) -> Problem {
     parse(&text).unwrap().problem
 }
 
-/// The larger of two, a formula with a kink that no surface follows.
+/// The larger of two dimensions, a formula with a kink that no surface follows.
 fn kink(Units { y, x }: Units) -> Problem {
     let text = format!(
         "[dimensions]\n\
@@ -87,7 +89,7 @@ fn limited(name: &str, lower: Option<f64>, upper: Option<f64>) -> Characteristic
     Characteristic::new(name).with_limits(SpecLimits::new(lower, upper).unwrap())
 }
 
-/// A function of Rust, with a dimension that does not vary.
+/// Rust closure, with a dimension that does not vary.
 fn closure(Units { y, x }: Units) -> Problem {
     let dimensions = [
         Dimension::normal("a", 2.0 * x, 0.3 * x).unwrap(),
@@ -105,7 +107,7 @@ fn closure(Units { y, x }: Units) -> Problem {
     Problem::new(dimensions, function).unwrap().asking(asked).unwrap()
 }
 
-/// Dimensions that vary together, one of them not normal.
+/// Dimensions that vary together, one of which is not normal.
 fn correlated(Units { y, x }: Units) -> Problem {
     let text = format!(
         "[dimensions]\n\
@@ -129,7 +131,7 @@ fn correlated(Units { y, x }: Units) -> Problem {
     parse(&text).unwrap().problem
 }
 
-/// Measured values and play on either side, whose sums are a staircase.
+/// Measured values and play on either side, whose sums are a step function.
 fn discrete(Units { y, x }: Units) -> Problem {
     use sensitol::distribution::{Measured, TwoValues};
     let measured: Vec<f64> = [9.9, 10.0, 10.0, 10.1, 10.15, 9.95, 10.05, 10.0].map(|value| value * x).to_vec();
@@ -146,9 +148,9 @@ fn discrete(Units { y, x }: Units) -> Problem {
     Problem::new(dimensions, function).unwrap().asking([limited("gap", Some(6.8 * y), Some(7.27 * y))]).unwrap()
 }
 
-/// The number `value * unit^exponents`, exact where the units are powers of two.
+/// Returns `value * unit^exponents`, which is exact if the units are powers of two.
 fn in_units(value: f64, units: Units, [n, m]: [i32; 2]) -> f64 {
-    // One factor at a time, the greater exponents of opposite sign beside each other.
+    // Factors are multiplied one at a time, large and small ones in turn, so that no product overflows.
     let mut factors = Vec::new();
     for (unit, exponent) in [(units.y, n), (units.x, m)] {
         factors.extend(std::iter::repeat_n(
@@ -159,24 +161,24 @@ fn in_units(value: f64, units: Units, [n, m]: [i32; 2]) -> f64 {
     factors.sort_by(f64::total_cmp);
     let mut product = value;
     while !factors.is_empty() {
-        // What brings the product nearest to 1 comes first.
+        // The factor that brings the product nearest to 1 comes next.
         let next = if product.abs() > 1.0 { 0 } else { factors.len() - 1 };
         product *= factors.remove(next);
     }
     product
 }
 
-/// The units from 1 to 2 that differ from these by powers of two, and these powers.
+/// Splits units into units from 1 to 2 and powers of two.
 fn ordinary(Units { y, x }: Units) -> (Units, Units) {
     let power = |unit: f64| 2f64.powi(unit.log2().floor() as i32);
     let powers = Units { y: power(y), x: power(x) };
     (Units { y: y / powers.y, x: x / powers.x }, powers)
 }
 
-/// What does not depend on units, and changes from run to run.
+/// Keys of numbers that do not depend on units, and change from run to run.
 const TIMES: [&str; 6] = ["wall_s", "in_model_s", "engine_s", "evaluation_s", "lost_s", "projected_s"];
 
-/// Numbers by their places, in order; null as NaN.
+/// Collects the numbers of a result with their paths, in order; null as NaN.
 fn numbers(value: &Value, path: &str, out: &mut Vec<(String, f64)>) {
     match value {
         Value::Object(all) => {
@@ -200,7 +202,8 @@ fn numbers_of(value: &Value) -> Vec<(String, f64)> {
     all
 }
 
-/// The exponent of a unit of 2^k in a number, by its values in the unit of 1 and in this one; None of what is rounding, which has none.
+/// Returns the exponent of a unit of 2^k in a number, from its values in the unit of 1 and in this one. Returns None for a rounding error,
+/// which has no unit.
 fn exponent(one: f64, other: f64, k: i32, near_enough: f64) -> Option<i32> {
     let near = |n: &i32| (one * 2f64.powi(n * k) / other - 1.0).abs() < near_enough;
     match one == other || one.is_nan() && other.is_nan() {
@@ -209,7 +212,7 @@ fn exponent(one: f64, other: f64, k: i32, near_enough: f64) -> Option<i32> {
     }
 }
 
-/// Figures that do not hang on roundings: a sum of what was computed decides nothing in them.
+/// True for figures that do not depend on single roundings.
 fn is_figure(path: &str) -> bool {
     let (before, key) = path.rsplit_once('.').unwrap_or(("", path));
     let moments = ["mean", "sigma", "skewness", "kurtosis", "yield", "ppm_below", "ppm_above", "rss", "middle", "cpk"];
@@ -219,10 +222,10 @@ fn is_figure(path: &str) -> bool {
     (moments.contains(&key) || places) && !estimated
 }
 
-/// Results of a job by units as JSON.
+/// Job that returns its results as JSON for some units.
 type Job<'j> = &'j (dyn Fn(Units) -> Value + Sync);
 
-/// The sizes at which a job is run: the ends, and some between them; of a job that takes long four.
+/// Returns the sizes at which a job is run: the ends, and some between them. A job that takes long is run at four.
 fn sizes(base: f64, long: bool) -> Vec<Units> {
     let most = if base == 2.0 { 963 } else { 290 };
     let mut all: Vec<[i32; 2]> = vec![[most, -most], [-most, most], [25, 0], [0, -30]];
@@ -237,7 +240,7 @@ fn sizes(base: f64, long: bool) -> Vec<Units> {
     all.into_iter().map(|powers| Units::powers(base, powers)).collect()
 }
 
-/// Takes out the warning that figures have no place among doubles, of analyses within the results too: whether it was there.
+/// Removes the warning that figures exceed the range of doubles, also from analyses within the results. Returns true if it was there.
 fn take_word(value: &mut Value) -> bool {
     match value {
         Value::Object(all) => {
@@ -255,13 +258,13 @@ fn take_word(value: &mut Value) -> bool {
     }
 }
 
-/// Holds a job to its results in the unit of 1.
+/// Checks that a job has the results of the unit of 1 in every unit.
 #[track_caller]
 fn the_same_in_every_unit(name: &str, job: Job<'_>) {
     the_same_within(Within::USUAL, name, job);
 }
 
-/// The first place that one of two results has and the other has not.
+/// Returns the first path that is in only one of two results.
 fn other_place<'n>(a: &'n [(String, f64)], b: &'n [(String, f64)]) -> Option<&'n str> {
     let lacks = |of: &'n [(String, f64)], in_: &'n [(String, f64)]| {
         let places: std::collections::HashSet<&str> = in_.iter().map(|(path, _)| path.as_str()).collect();
@@ -270,14 +273,14 @@ fn other_place<'n>(a: &'n [(String, f64)], b: &'n [(String, f64)]) -> Option<&'n
     lacks(a, b).or_else(|| lacks(b, a))
 }
 
-/// How near numbers must be to each other, as a part of them.
+/// Greatest relative differences of numbers.
 #[derive(Clone, Copy)]
 struct Within {
-    /// Where all roundings are the same.
+    /// Difference if all roundings are the same.
     numbers: f64,
-    /// Where roundings differ; infinite where these decide which points are drawn.
+    /// Difference if roundings differ; infinite if these decide which points are drawn.
     figures: f64,
-    /// Whether the job takes long, so that it is run at few sizes.
+    /// True if the job takes long, so that it is run at few sizes.
     long: bool,
 }
 
@@ -285,7 +288,7 @@ impl Within {
     const USUAL: Self = Self { numbers: 1e-12, figures: 1e-9, long: false };
 }
 
-/// The same to a part of every number.
+/// Checks that a job has the results of the unit of 1 in every unit, within these differences.
 #[track_caller]
 fn the_same_within(Within { numbers: near_enough, figures, long }: Within, name: &str, job: Job<'_>) {
     let one = numbers_of(&job(Units::ONE));
@@ -314,24 +317,25 @@ fn the_same_within(Within { numbers: near_enough, figures, long }: Within, name:
             faults.push(format!("{path} in {units:?} is not at an ordinary size, or there only"));
             continue;
         }
-        // Where roundings have led to other results, as another warning, the figures of the unit of 1 stand at other places.
+        // If roundings have led to other results, such as another warning, the paths do not correspond to those of the unit of 1.
         let alike = other_place(&reference, &one).is_none();
         for (i, ((path, found), (_, reference))) in found.iter().zip(&reference).enumerate() {
             let Some(exponents) = exponents.get(i).copied().flatten().filter(|_| alike) else { continue };
             let one = one[i].1;
-            // What is 0 has no unit, and with other roundings it is rounding. A bin belongs to one of two sides by its last digit.
+            // A number that is 0 has no unit, and with other roundings it is a rounding error. The last digit decides in which of two bins
+            // a value lies.
             let rounding = one == 0.0 && base != 2.0;
             if rounding || near_enough > 1e-12 && path.contains(".histogram.") {
                 continue;
             }
             let expected = in_units(*reference, powers, exponents);
             let right = if reference.is_nan() || found.is_nan() {
-                // Unknown in every unit, or beyond doubles, and that is said.
+                // The number is unknown in every unit, or beyond doubles, which a warning states.
                 let beyond = !(expected.abs() > 1e-305 && expected.abs() < 1e305);
                 let said = said || path.contains(".rounding");
                 reference.is_nan() && found.is_nan() || beyond && *reference != 0.0 && said
             } else {
-                // Bounds of interval arithmetic are rounded outwards, the farther the smaller they are.
+                // Bounds of interval arithmetic are rounded outwards, and further for smaller bounds.
                 let back = in_units(*found, powers, exponents.map(|n| -n));
                 *found == expected || (back - reference).abs() <= near_enough * reference.abs().max(1e-3)
             };
@@ -429,10 +433,10 @@ fn comparisons_and_sweeps_are_the_same_in_every_unit() {
     the_same_within(Within { long: true, ..Within::USUAL }, "sweep", &job);
 }
 
-/// Tolerances are sought by their logarithms, which round in another way in every unit.
+/// Differences of allocations. Tolerances are sought by their logarithms, which are rounded differently in every unit.
 const SOUGHT: Within = Within { numbers: 1e-7, figures: 1e-7, long: false };
 
-/// Costs by tolerances in their unit, and what is required in the characteristics'.
+/// Allocates with costs by tolerances in their unit, and requirements in the characteristics' unit.
 fn allocated(units: Units, requirement: Requirement, loss: bool) -> Value {
     let Units { y, x } = units;
     let cost = |d: usize, b: f64| {
@@ -453,7 +457,7 @@ fn allocations_are_the_same_in_every_unit() {
     the_same_within(SOUGHT, "allocation by worst case", &|units| allocated(units, Requirement::WorstCase, false));
 }
 
-/// The cost of a deviation is per square of the unit: where that has no double, the allocation is refused with a word.
+/// The cost of a deviation is per square of the unit. If a double cannot hold it, the allocation is refused with an explanation.
 #[test]
 fn a_loss_has_its_place_among_doubles() {
     let near = |units: Units| allocated(units, Requirement::Yield(0.99), true);
@@ -468,7 +472,7 @@ fn a_loss_has_its_place_among_doubles() {
     assert!(refused.contains("`power`") && refused.contains("double-precision"), "{refused}");
 }
 
-/// The share that keeps the limits of all characteristics at once, and its verdict.
+/// The joint yield and its verdict are the same in every unit.
 #[test]
 fn a_joint_yield_is_the_same_in_every_unit() {
     let mut options = Options::from(Method::Full);
@@ -476,7 +480,7 @@ fn a_joint_yield_is_the_same_in_every_unit() {
     analysed("joint yield", formula, &options);
 }
 
-/// Of y = a + b^2 with standard normal a and b, times 1e-200 and times 1e200: closed forms.
+/// Every command has the figures of closed forms for y = a + b^2 with standard normal a and b, times 1e-200 and times 1e200.
 #[test]
 fn every_command_has_the_figures_of_closed_forms_at_every_size() {
     let truth = sensitol_testing::data("any-size.json");
@@ -491,7 +495,7 @@ fn every_command_has_the_figures_of_closed_forms_at_every_size() {
             sensitol_testing::relative(moments.sigma(), truth("sigma") * scale, 1e-12);
             sensitol_testing::relative(moments.skewness().unwrap(), truth("skewness"), 1e-10);
             sensitol_testing::relative(moments.kurtosis().unwrap(), truth("kurtosis"), 1e-10);
-            // Three of the errors that are printed beside them reach the truth.
+            // Three times the printed error reaches the right value.
             let error = found.error_estimate.as_ref().unwrap().yield_.unwrap();
             assert!((1e6 * rejected - truth("ppm_above")).abs() <= 3e6 * error && error < 2e-3, "{rejected} {error}");
         }
@@ -509,7 +513,7 @@ fn every_command_has_the_figures_of_closed_forms_at_every_size() {
     }
 }
 
-/// A model whose evaluations cost something, times a size. It keeps the points that it was asked.
+/// Costly model times a size. It stores the points at which it was evaluated.
 struct Costly {
     signature: Signature,
     size: f64,
@@ -538,7 +542,7 @@ impl AssemblyFunction for Costly {
     }
 }
 
-/// The problem of a costly model: its inputs themselves, or six dimensions that drive them.
+/// Problem of a costly model, with its inputs themselves or six dimensions that drive them.
 fn costly(size: f64, driven: bool) -> (Problem, Arc<Mutex<Vec<Vec<u64>>>>) {
     let (model, asked) = Costly::new(size);
     let characteristic = |name: &str| [limited(name, Some(5.5 * size), None)];
@@ -563,8 +567,8 @@ fn costly(size: f64, driven: bool) -> (Problem, Arc<Mutex<Vec<Vec<u64>>>>) {
     (Problem::new(dimensions, Composite::new(parts).unwrap()).unwrap().asking(characteristic("z")).unwrap(), asked)
 }
 
-/// The answers by which the size of an output is found are those of the run: a costly model is asked no point twice, and as many as at an ordinary
-/// size.
+/// Finding the size of an output costs no evaluations of its own. A costly model is evaluated at no point twice, and as often as at an
+/// ordinary size.
 #[test]
 fn a_costly_model_of_extreme_size_is_asked_no_more() {
     for driven in [false, true] {
@@ -589,7 +593,7 @@ fn a_costly_model_of_extreme_size_is_asked_no_more() {
                 )
             };
             let one = run(1.0);
-            // Powers of two: to the last bit.
+            // At powers of two the results agree to the last bit.
             for size in [2f64.powi(700), 2f64.powi(-900)] {
                 assert_eq!(run(size), one, "{method} {size:e} {driven}");
             }

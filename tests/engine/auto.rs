@@ -1,4 +1,4 @@
-//! `auto`: counts, budgets, determinism, warnings, and what happens at extremes.
+//! `auto`: counts, budgets, determinism, warnings, and extreme cases.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
@@ -15,8 +15,7 @@ use sensitol::{
 use sensitol_study::Study;
 use sensitol_testing::{Asked, close, normals, refusing, relative, repository, standard};
 
-/// The search itself, and the sample that it draws where it does not trust its surface: without the verification, which takes
-/// points of its own.
+/// Options for the refinement and the sample that replaces an untrusted surface, without the verification, which takes points of its own.
 fn auto(accuracy: f64) -> Options {
     Options::from(Method::Auto).with_accuracy(accuracy).with_verify(0)
 }
@@ -41,7 +40,7 @@ fn estimate(analysis: &Analysis) -> f64 {
     analysis.characteristics[0].error_estimate.as_ref().unwrap().sigma.unwrap()
 }
 
-/// Every point arrives once; a linear study ends within 2N + 1 + 24, and nothing is spent on what does not vary.
+/// Every point is evaluated once. A linear study ends within 2N + 1 + 24 evaluations, and none of them varies a fixed dimension.
 #[test]
 fn what_is_linear_is_soon_known() {
     for n in [1, 2, 3, 7, 25] {
@@ -59,7 +58,7 @@ fn what_is_linear_is_soon_known() {
     }
 }
 
-/// The seed is of what draws samples, and of nothing where a surface is enough; the number of threads is of nothing.
+/// The seed changes samples only, and nothing if a surface is enough. The number of threads changes nothing.
 #[test]
 fn the_same_study_gives_the_same_numbers() {
     let f = |x: &[f64]| (0.3 * x[0]).exp() * (1.0 + 0.2 * x[1]) + x[2] * x[2] * 0.1 + x[3] - x[4] * x[0] * 0.05;
@@ -74,9 +73,11 @@ fn the_same_study_gives_the_same_numbers() {
     assert_eq!(fine.characteristics, alone.characteristics);
 }
 
-/// `y = a + b + c + d + ab/10` of standard normals: variance 4.01, third central moment 3 (2/10) and fourth cumulant
-/// 12 (2/100) + 3 (2/10^4), by those of a quadratic form with H = [[0, 1/10], [1/10, 0]] and b = (1, 1): 3 b'Hb + tr H^3 and
-/// 12 b'H^2 b + 3 tr H^4. One percent of sigma does without the interaction; a skewness does not.
+/// Other accuracies are reached too. `y = a + b + c + d + ab/10` of standard normals has the variance 4.01, the third central moment 3
+/// (2/10) and the fourth cumulant 12 (2/100) + 3 (2/10^4).
+///
+/// These are 3 b'Hb + tr H^3 and 12 b'H^2 b + 3 tr H^4 of a quadratic form with H = [[0, 1/10], [1/10, 0]] and b = (1, 1). One percent of
+/// sigma is reached without the interaction, but a skewness is not.
 #[test]
 fn other_accuracies_are_reached_too() {
     let f = |x: &[f64]| x[0] + x[1] + x[2] + x[3] + 0.1 * x[0] * x[1];
@@ -94,7 +95,7 @@ fn other_accuracies_are_reached_too() {
         relative(found(&analysis).skewness().unwrap(), skewness, 1e-9);
         relative(found(&analysis).kurtosis().unwrap(), kurtosis, 1e-9);
         assert!(codes(&analysis).is_empty(), "{:?}", analysis.warnings);
-        // Too few evaluations for it: that is said, by the figure's name.
+        // Too few evaluations for an accuracy cause a warning with the figure's name.
         let short = of(standard(4), f, &options.with_budget(of_sigma.run.evaluations as usize));
         let said = short.warnings.iter().find(|warning| warning.code() == "under-resolved").unwrap().message();
         let name = if accuracies.skewness.is_some() { "skewness" } else { "kurtosis" };
@@ -103,8 +104,8 @@ fn other_accuracies_are_reached_too() {
     }
 }
 
-/// The share of a yield: two standard errors of a sample suffice where derivatives do not, and a characteristic without limits
-/// asks for nothing.
+/// A yield reaches the wanted accuracy. Two standard errors of a sample are enough if derivatives are not. A characteristic without limits
+/// has no such accuracy.
 #[test]
 fn a_yield_is_known_as_well_as_wanted() {
     let accuracies = Accuracies::default().with_yield(1e-3);
@@ -115,7 +116,7 @@ fn a_yield_is_known_as_well_as_wanted() {
     let analysis = analyze(&problem, &options).unwrap();
     let one = &analysis.characteristics[0];
     assert!(one.error_estimate.as_ref().unwrap().yield_.unwrap() <= 1e-3);
-    // a + b (1 + a/10) + c + d <= 4, a normal distribution for every a, integrated over a by the trapezoidal rule, which converges faster than any power here.
+    // For every a, the sum a + b (1 + a/10) + c + d <= 4 is normal. The trapezoidal rule over a converges faster than any power here.
     let normal = |z: f64| 0.5 * libm::erfc(-z / 2f64.sqrt());
     let share: f64 = (-900..=900)
         .map(|i| f64::from(i) * 0.01)
@@ -130,8 +131,8 @@ fn a_yield_is_known_as_well_as_wanted() {
     assert_eq!(without.run.evaluations, of(standard(4), f, &auto(0.05)).run.evaluations);
 }
 
-/// A uniform dimension beside a normal one: four moments are right, and the Pearson law's tail is not. The share is the mean of
-/// normal ones over the uniform dimension, by midpoints.
+/// For a uniform dimension beside a normal one, the four moments are right, but the tail of the Pearson fit is not. The share is the mean
+/// of normal ones over the uniform dimension, by midpoints.
 #[test]
 fn tails_that_the_law_misses_are_told_of() {
     let dimensions = || vec![Dimension::normal("a", 0.0, 0.1).unwrap(), Dimension::uniform("b", 0.0, 0.06).unwrap()];
@@ -152,21 +153,22 @@ fn tails_that_the_law_misses_are_told_of() {
         let (fit, rejected) = (one.pearson.unwrap().rejected().unwrap(), one.capability.unwrap().rejected().unwrap());
         assert!(fit < most * exact, "{fit} {exact}");
         assert_eq!(codes(&found), ["pearson-differs"]);
-        // The surface is the model: their difference is 0 at every point. Midpoints 0.36 sigma/1000 apart are off by 3e-8 of the share.
+        // The surface is the model: their difference is 0 at every point. Midpoints 0.36 sigma/1000 apart cause an error of 3e-8 of the
+        // share.
         assert!((rejected - exact).abs() < 1e-6 * exact, "{rejected} {exact}");
-        // No point disagrees: what is left is the weight of one of 32 768.
+        // No point disagrees, so that the error is the weight of one of 32 768 points.
         let error = one.error_estimate.as_ref().unwrap().yield_.unwrap();
         assert!(error < 1.1 / 32_768.0, "{error}");
         assert_eq!(one.yield_source, Some(YieldSource::Samples));
     }
-    // In the middle of the distribution the two are near each other, and what is left is still more than the error.
+    // In the middle of the distribution the two are near each other, but still differ by more than the error.
     let found = of(-0.05);
     let one = &found.characteristics[0];
     let (fit, rejected) = (one.pearson.unwrap().rejected().unwrap(), one.capability.unwrap().rejected().unwrap());
     assert!((fit / rejected - 1.0).abs() < 0.1 && (rejected / below(-0.05) - 1.0).abs() < 1e-6, "{fit} {rejected}");
 }
 
-/// A target is met or missed, and inconclusive only where points have no value.
+/// A verdict is met or missed, and inconclusive only if points have no value.
 #[test]
 fn verdicts_that_are_in_doubt_are_not_given() {
     let verdict = |f: fn(&[f64]) -> f64, lower: f64, target: f64, method: Method| {
@@ -176,13 +178,13 @@ fn verdicts_that_are_in_doubt_are_not_given() {
         let problem = Problem::new(dimensions, Closure::scalar("y", f)).unwrap().asking([limited]).unwrap();
         analyze(&problem, &method.into()).unwrap().characteristics[0].met()
     };
-    // 0.287 % lie below -0.175, and the law says less than 0.2 % (the test above).
+    // 0.287 % lie below -0.175. The Pearson fit gives less than 0.2 % (see the test above).
     let straight = |x: &[f64]| x[0] - 2.0 * x[1];
     for (target, met) in [(0.99, Some(true)), (0.998, Some(false)), (0.9999, Some(false))] {
         assert_eq!(verdict(straight, -0.175, target, Method::Auto), met, "{target}");
     }
     assert_eq!(verdict(straight, -0.05, 0.9999, Method::Auto), Some(false), "a fifth is rejected by both");
-    // No value where b is below -0.03, a quarter of all: what the others keep is not what all keep.
+    // A quarter of all assemblies has no value, because b is below -0.03. The yield of the others is not that of all.
     let failing = |x: &[f64]| if x[1] < -0.03 { f64::NAN } else { x[0] - 2.0 * x[1] };
     assert_eq!(verdict(failing, -0.5, 0.95, Method::Full), None);
     assert_eq!(verdict(failing, 0.5, 0.95, Method::Full), Some(false), "missed all the same");
@@ -202,7 +204,8 @@ fn accuracies_are_positive() {
     }
 }
 
-/// Where the model was evaluated, in the dimension's unit: at the matched nodes of a normal distribution, or where it answered.
+/// Reported steps are the points of evaluation in the dimension's unit: the matched nodes of a normal distribution, or the points with a
+/// value.
 #[test]
 fn realised_steps_are_reported() {
     let dimensions = vec![Dimension::normal("a", 10.0, 0.3).unwrap(), Dimension::normal("b", 0.0, 3.0).unwrap()];
@@ -214,7 +217,7 @@ fn realised_steps_are_reported() {
     assert!((b[0] + 3f64.sqrt()).abs() < 1e-12 && b[1] > 0.0 && b[1] <= 1.0, "{b:?}");
 }
 
-/// A budget is kept, and what it left out is said.
+/// A budget is kept, and a warning names the omitted evaluations.
 #[test]
 fn a_budget_is_kept() {
     let f = |x: &[f64]| (0..9).map(|j| x[j] + 0.3 * x[j] * x[j + 1]).sum::<f64>() + x[9];
@@ -232,13 +235,13 @@ fn a_budget_is_kept() {
         }
     }
     assert!(errors[5] < 1e-12, "{errors:?}");
-    // Without a check nothing is known of interactions: the error of the variance is what they have.
+    // Without check points nothing is known of interactions: the error of the variance is their variance.
     relative(errors[0], 1.0 - (10.0f64 / 10.81).sqrt(), 1e-6);
     let too_few = analyze(&Problem::new(standard(10), Closure::scalar("y", f)).unwrap(), &auto(0.1).with_budget(20));
     assert!(too_few.unwrap_err().to_string().contains("needs 21 evaluations, more than the budget of 20"));
 }
 
-/// All characteristics share every point, and one that is linear does not mind the others.
+/// All characteristics share every point, and a linear one is not affected by the others.
 #[test]
 fn characteristics_share_points() {
     let function = Closure::fallible(["line", "product"], |x: &[f64]| {
@@ -249,7 +252,8 @@ fn characteristics_share_points() {
     relative(analysis.characteristics[1].moments.unwrap().sigma(), (1.0 + 1.0 + 0.25f64).sqrt(), 1e-12);
 }
 
-/// Sigma where values scatter: 1e-6 to 1e-2 of sigma, by a scatter that is a function of the point.
+/// Answers scatter by 1e-6 to 1e-2 of sigma, as a function of the point. The scatter is noticed, and sigma is off by no more than it
+/// causes.
 #[test]
 fn scatter_is_noticed_and_spoils_no_more_than_it_must() {
     let scatter = |x: &[f64]| {
@@ -267,14 +271,14 @@ fn scatter_is_noticed_and_spoils_no_more_than_it_must() {
         let exact = (8.0 + 0.04 + 8.0 * noise * noise).sqrt();
         let error = (sigma(&analysis) / exact - 1.0).abs();
         assert!(error <= 0.01 && error <= 3.0 * estimate(&analysis) / exact, "{noise}: {error}");
-        // In between it depends on the two points that listen.
+        // In between, the result depends on the two points that measure the scatter.
         if !(1e-5..5e-4).contains(&noise) {
             assert_eq!(codes(&analysis).contains(&"scatter"), noise > 5e-4, "{noise}: {:?}", codes(&analysis));
         }
     }
 }
 
-/// Points that stand in for a surface are drawn by the seed that was given: another one gives other figures, the same one the same.
+/// The sample that replaces a surface depends on the given seed: another seed gives other figures, the same one the same.
 #[test]
 fn the_seed_reaches_points_that_stand_in_for_a_surface() {
     let f = |x: &[f64]| (x[0] - x[1]).min(x[2] - x[3]);
@@ -285,7 +289,7 @@ fn the_seed_reaches_points_that_stand_in_for_a_surface() {
     assert_eq!(one.characteristics, again.characteristics);
 }
 
-/// Two gaps of one size: the kink is named, the model is sampled, and a long simulation agrees.
+/// The model is the smaller of two equal gaps. The kink is named, the model is sampled, and a long simulation agrees.
 #[test]
 fn a_kink_is_named_and_sampled() {
     let f = |x: &[f64]| (x[0] - x[1]).min(x[2] - x[3]);
@@ -298,11 +302,11 @@ fn a_kink_is_named_and_sampled() {
     let reference = simulate(&problem(), &SimulationOptions::default().with_samples(400_000)).unwrap();
     let truth = reference.characteristics[0].sigma.unwrap();
     let error = sampled.standard_errors[1].unwrap().hypot(truth.standard_error.unwrap());
-    // Four standard errors: one in ten thousand.
+    // The tolerance of four standard errors is exceeded once in ten thousand cases.
     assert!((sigma(&analysis) - truth.value).abs() < 4.0 * error);
 }
 
-/// A kink at the mean looks like curvature, by symmetric points; a jump like a slope.
+/// Symmetric points do not distinguish a kink at the mean from curvature, or a jump from a slope. Both are found nevertheless.
 #[test]
 fn kinks_and_jumps_are_told_from_curves() {
     let kink = of(standard(2), |x| x[0].abs() + x[1], &auto(0.01));
@@ -313,7 +317,7 @@ fn kinks_and_jumps_are_told_from_curves() {
     assert!(!codes(&smooth).contains(&"kink"), "{:?}", codes(&smooth));
 }
 
-/// An arc cosine and a root whose domain ends within two sigma: no panic, no silence.
+/// An arc cosine and a root whose domain ends within two sigma cause warnings, and no panic.
 #[test]
 fn domain_edges_are_not_passed_in_silence() {
     let edge = |x: &[f64]| x[0] + x[1] > 2.0;
@@ -322,13 +326,13 @@ fn domain_edges_are_not_passed_in_silence() {
     let found = codes(&analysis);
     assert!(found.contains(&"domain-edge") || found.contains(&"failed-points"), "{found:?}");
     assert!(analysis.run.failed > 0);
-    // Where the edge lies beyond every axis point, only points that move several dimensions meet it.
+    // If the edge lies beyond every axis point, only points that move several dimensions cross it.
     let far = refusing(|x| x.iter().sum(), |x| x.iter().map(|x| x * x).sum::<f64>() > 8.0);
     let analysis = analyze(&Problem::new(standard(6), far).unwrap(), &auto(0.01)).unwrap();
     assert!(codes(&analysis).contains(&"domain-edge-within"), "{:?}", codes(&analysis));
 }
 
-/// Scales of dimensions from 1e-12 to 1e12, a nominal of 1e10 sigma, and one that dominates.
+/// Results do not depend on scales: dimensions from 1e-12 to 1e12, a nominal value of 1e10 sigma, and one dominant dimension.
 #[test]
 fn scales_do_not_matter() {
     let scales = [1e-12, 1e-6, 1.0, 1e6, 1e12];
@@ -347,7 +351,7 @@ fn scales_do_not_matter() {
     assert_eq!(dominated.run.evaluations, 9 + 16);
 }
 
-/// A thousand dimensions of a formula without interactions take two points each, and sixteen.
+/// A formula of a thousand dimensions without interactions takes two points for each, and sixteen more.
 #[test]
 fn a_thousand_dimensions() {
     let analysis =
@@ -357,7 +361,7 @@ fn a_thousand_dimensions() {
     relative(sigma(&analysis), exact.sqrt(), 1e-10);
 }
 
-/// A function that saturates is smooth, and no polynomial follows it: the model is sampled. A flat function has nothing to say.
+/// A function that saturates is smooth, but no polynomial follows it, so that the model is sampled. A constant function causes no warning.
 #[test]
 fn saturation_and_nothing_at_all() {
     let tanh = of(standard(2), |x| (2.0 * x[0]).tanh() + (2.0 * x[1]).tanh(), &auto(0.01));
@@ -386,7 +390,7 @@ fn exponential_inputs_stay_within_their_support() {
     assert!(error <= 3.0 * estimate(&analysis) / exact, "{error} and {}", estimate(&analysis) / exact);
 }
 
-/// Estimates of the other methods: what they did not see.
+/// Other methods estimate the errors of effects that they did not examine.
 #[test]
 fn other_methods_say_what_they_did_not_see() {
     let f = |x: &[f64]| x[0] + x[1] + 0.3 * x[0] * x[1] + 0.1 * x[2] * x[2] + x[2];
@@ -396,7 +400,7 @@ fn other_methods_say_what_they_did_not_see() {
     assert_eq!((second.sigma, second.kurtosis), (None, None), "nothing is known of interactions");
     assert!(second.mean.is_some() && second.basis().contains("nothing is known of 3 interactions"));
     let rss = estimate(Method::Rss);
-    // Curvature moves the mean by 0.1, and rss does not see it.
+    // Curvature moves the mean by 0.1, which rss does not include.
     assert!(rss.mean.unwrap() >= 0.1 && rss.basis().contains("curvature"));
     let full = estimate(Method::Full);
     assert!(full.sigma.is_some() && full.basis().contains("extrapolated"), "{}", full.basis());
@@ -414,7 +418,7 @@ fn an_accuracy_is_a_positive_number() {
     }
 }
 
-/// Points of one set are the same for everybody; no coordinate is out of its distribution.
+/// Check points are the same for every study, and no coordinate lies outside of its distribution.
 #[test]
 fn points_that_check_are_of_the_distribution() {
     let asked = Asked::default();
@@ -425,7 +429,7 @@ fn points_that_check_are_of_the_distribution() {
     assert!(points.iter().flatten().all(|x| x.abs() <= 1.0));
 }
 
-/// The end of a climb is reported with its cause: a budget, or the caller.
+/// The reason why a refinement ended is reported: a budget, or the caller.
 #[test]
 fn the_account_says_what_ended_it() {
     let problem = || {
@@ -449,7 +453,7 @@ fn the_account_says_what_ended_it() {
     assert!(!whole.contains("budget") && !whole.contains("interrupted"), "{whole}");
 }
 
-/// Where no regression follows the model, the sample goes on from the points of the strides: 1024 in all, none of them twice.
+/// If no regression follows the model, the points of its batches are part of the sample: 1024 points in all, none of them twice.
 #[test]
 fn a_sample_goes_on_from_the_strides() {
     let seen: Arc<Mutex<HashMap<Vec<u64>, usize>>> = Arc::default();
@@ -465,12 +469,12 @@ fn a_sample_goes_on_from_the_strides() {
     assert_eq!(found.characteristics[0].model_sampled.as_ref().unwrap().samples, 1024);
     assert_eq!(found.run.evaluations as usize, calls);
     assert_eq!(calls, seen.len(), "points that were evaluated twice");
-    // The plan before it has all second derivatives, and check points.
+    // The plan before the sample has all second derivatives, and check points.
     assert!((1024..1024 + 80).contains(&calls), "{calls}");
 }
 
-/// A ratio that its surface does not follow to 1 %: a sparse regression over the points of a few strides does. By the sample alone it took
-/// 1024 points and more. The errors of such regressions are tested on other functions, in `coverage`.
+/// A surface does not follow this ratio to 1 %, but a sparse regression over a few batches of points does. The sample alone took 1024
+/// points and more. The errors of such regressions are tested on other functions, in `coverage`.
 #[test]
 fn strides_end_where_a_regression_follows() {
     let engine = Study::read(&repository("examples/engine-balance/study.toml")).unwrap().problem;
@@ -482,12 +486,12 @@ fn strides_end_where_a_regression_follows() {
         let found = analyze(&engine, &auto(accuracy)).unwrap();
         let (evaluations, off) = (found.run.evaluations, (sigma(&found) - truth.value).abs());
         assert!(evaluations < 1024 / 4, "{accuracy}: {evaluations}");
-        // The accuracy to reach, and three errors of the sample.
+        // The tolerance is the wanted accuracy and three errors of the sample.
         assert!(off < accuracy * truth.value + 3.0 * truth.standard_error.unwrap(), "{accuracy}: {off}");
     }
 }
 
-/// A finer error takes no fewer evaluations than a coarser one: it is reached through the same errors.
+/// A finer accuracy takes no fewer evaluations than a coarser one, because it is reached through the same steps.
 #[test]
 fn a_finer_error_never_takes_fewer_evaluations() {
     let functions: [fn(&[f64]) -> f64; 4] = [

@@ -1,5 +1,5 @@
-//! The cost of `auto` by itself, without verification: evaluations, true and estimated error of sigma at 1 % and 0.1 %, on
-//! examples and on functions that tests of costs are spoken of with.
+//! Cost of `auto` alone, without verification: evaluations, true and estimated error of sigma at 1 % and 0.1 %. The functions are examples
+//! and those of other tests of costs.
 //!
 //! `cargo test --test engine auto_cost -- --ignored --nocapture` prints it.
 
@@ -43,7 +43,7 @@ fn cases() -> Vec<(String, Problem)> {
     cases
 }
 
-/// Evaluations that 1 % of sigma may take, and 0.1 % three times as many. No case takes fewer for the finer of the two.
+/// Greatest number of evaluations for 1 % of sigma; 0.1 % may take three times as many. No case takes fewer for the finer accuracy.
 const GOALS: [(&str, u64); 6] = [
     ("engine-balance F", 60),
     ("engine-balance M", 60),
@@ -79,7 +79,7 @@ fn a_product_of_twenty_has_the_moments_of_its_factors() {
     let moments = found.characteristics[0].moments.unwrap();
     let grown = 0.2f64.exp();
     let (sigma, skewness) = (((grown - 1.0) * grown).sqrt(), (grown + 2.0) * (grown - 1.0).sqrt());
-    // A regression of the logarithm has twenty coefficients that are known to roundings.
+    // A regression of the logarithm has twenty coefficients, which are exact up to roundings.
     assert!((moments.sigma() - sigma).abs() < 1e-10 * sigma, "{} for {sigma}", moments.sigma());
     assert!((moments.skewness().unwrap() - skewness).abs() < 1e-9, "{:?} for {skewness}", moments.skewness());
     assert!(found.run.evaluations <= 300, "{}", found.run.evaluations);

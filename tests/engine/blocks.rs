@@ -1,4 +1,4 @@
-//! Blocks: dimensions that vary together as a whole, by rows of measured parts or within a zone.
+//! Blocks: dimensions with one joint distribution, by rows of measured parts or within a zone.
 
 use std::f64::consts::PI;
 
@@ -23,13 +23,13 @@ fn analysed(text: &str, files: &[(&str, &str)]) -> Analysis {
     analyze(&study(text, files).problem, &Method::Full.into()).unwrap()
 }
 
-/// Mean, sigma, skewness and kurtosis of the first characteristic.
+/// Returns mean, sigma, skewness and kurtosis of the first characteristic.
 fn moments(text: &str, files: &[(&str, &str)]) -> [f64; 4] {
     let moments = analysed(text, files).characteristics[0].moments.unwrap();
     [moments.mean(), moments.sigma(), moments.skewness().unwrap(), moments.kurtosis().unwrap()]
 }
 
-/// Of weighted values.
+/// Returns mean, sigma, skewness and kurtosis of values with weights.
 fn of_values(values: &[(f64, f64)]) -> [f64; 4] {
     let over = |f: &dyn Fn(f64) -> f64| values.iter().map(|&(weight, y)| weight * f(y)).sum::<f64>();
     let mean = over(&|y| y);
@@ -51,8 +51,8 @@ fn zone(law: &str, formula: &str, more: &str) -> String {
     format!("[dimensions]\n{more}{ZONE}law = \"{law}\"\n[characteristics]\nz = {{ formula = \"{formula}\" }}\n")
 }
 
-/// `E[x^a y^b]` of a law that turns into itself, with `radial` the mean of `r^(a + b)`: the mean of `cos^a sin^b`, for even powers a
-/// product of odd numbers.
+/// Returns `E[x^a y^b]` of a rotationally symmetric distribution, with `radial` the mean of `r^(a + b)`. The factor is the mean of `cos^a
+/// sin^b`, a product of odd numbers for even powers.
 fn turned(a: u32, b: u32, radial: f64) -> f64 {
     let odd = |n: u32| (1..n).step_by(2).map(f64::from).product::<f64>();
     let even = |n: u32| (2..=n).step_by(2).map(f64::from).product::<f64>();
@@ -66,7 +66,7 @@ fn a_line_through_a_disc() {
     let case = case("disc-linear");
     let (a, b, radius) = (3.0, 4.0, 0.2);
     let [mean, sigma, skewness, kurtosis] = moments(&zone("disc", "3*x + 4*y", ""), &[]);
-    // Roundings of 36 places.
+    // The tolerance covers roundings of numbers of 36.
     close(mean, 0.0, 1e-15, 1.0);
     relative(sigma, f64::hypot(a, b) * radius / 2.0, 1e-12);
     close(skewness, 0.0, 1e-12, 1.0);
@@ -78,7 +78,7 @@ fn a_line_through_a_disc() {
     relative(kurtosis, turned(4, 4, 0.2) / turned(2, 2, 1.0 / 3.0).powi(2), 1e-12);
 }
 
-/// The rim, and the diamond of offset and tilt that share a zone.
+/// Moments of a rim, and of a diamond: offset and tilt that share a zone.
 #[test]
 fn rim_and_diamond() {
     let [_, sigma, _, kurtosis] = moments(&zone("rim", "3*x + 4*y", ""), &[]);
@@ -101,7 +101,7 @@ fn rim_and_diamond() {
     relative(moments(&text("t"), &[])[1].powi(2), exact("variances", 1), 1e-12);
     let product = shared["exact"]["E offset^2 tilt^2"].as_f64().unwrap();
     relative(moments(&text("d*t"), &[])[1].powi(2), product, 1e-11);
-    // The greatest offset 30 beside the middle: no point has both ends at once.
+    // The greatest offset is 30 beside the middle: no point has both extremes at once.
     let worst = analysed(&text("d + 30*t"), &[]).characteristics[0].worst_case.unwrap();
     relative(worst[1], shared["exact"]["greatest offset 30 from the middle"].as_f64().unwrap(), 1e-12);
 }
@@ -138,7 +138,7 @@ fn lot() -> (String, Vec<[f64; 3]>) {
 
 const ROWS: &str = "a = { measured = \"lot.csv\", column = \"a\" }\nb = { measured = \"lot.csv\", column = \"b\" }\n";
 
-/// A surface over rows alone has the moments of its values at the rows; beside a uniform input those of the rows by a Gauss rule, which
+/// A surface over rows alone has the moments of its values at the rows. Beside a uniform input a Gauss rule averages those of the rows, and
 /// integrates the fourth power of a cubic exactly.
 #[test]
 fn moments_of_rows_are_exact() {
@@ -147,12 +147,12 @@ fn moments_of_rows_are_exact() {
     let weight = 1.0 / rows.len() as f64;
     let alone = format!("[dimensions]\n{ROWS}[characteristics]\ny = {{ formula = \"a*b - 3*a^2\" }}\n");
     let values: Vec<(f64, f64)> = rows.iter().map(|[a, b, _]| (weight, a * b - 3.0 * a * a)).collect();
-    // Second derivatives of exact ones: the roundings of squares near 300 beside a sigma of 12.
+    // The surface has second derivatives of exact first ones: the roundings are those of squares near 300 beside a sigma of 12.
     same(moments(&alone, &files), of_values(&values), 1e-8);
     let beside = format!(
         "[dimensions]\n{ROWS}u = {{ nominal = 2, tolerance = 0.5, distribution = \"uniform\" }}\n[characteristics]\ny = {{ formula = \"a*u - b*u + a - b\" }}\n"
     );
-    // Five nodes of Gauss and Legendre.
+    // Five nodes of Gauss-Legendre quadrature.
     let node = |inner: f64| (5.0 + inner * 2.0 * (10f64 / 7.0).sqrt()).sqrt() / 3.0;
     let share = |inner: f64| (322.0 + inner * 13.0 * 70f64.sqrt()) / 1800.0;
     let rule = [(0.0, 64.0 / 225.0), (node(-1.0), share(1.0)), (node(1.0), share(-1.0))];
@@ -171,7 +171,7 @@ fn moments_of_rows_are_exact() {
     same(moments(&beside, &files), of_values(&values), 1e-8);
 }
 
-/// Shares are covariances with the whole and sum to 1; the correlation of the report is that of the rows.
+/// Shares are covariances with the sum and add up to 1. The reported correlation is that of the rows.
 #[test]
 fn shares_of_rows_sum_to_one() {
     let (csv, rows) = lot();
@@ -196,7 +196,7 @@ fn shares_of_rows_sum_to_one() {
     relative(study.problem.correlation().unwrap().of(0, 1), expected, 1e-12);
 }
 
-/// The model at points of the block: a sample of Sobol' points, and of random ones, has the exact moments within four of its standard errors.
+/// Samples of the model at Sobol' points and at random ones have the exact moments within four of their standard errors.
 #[test]
 fn samples_follow_the_block() {
     let (csv, _) = lot();
@@ -216,7 +216,7 @@ fn samples_follow_the_block() {
             let found = &found.characteristics[0];
             for (found, exact) in [found.mean, found.sigma, found.skewness, found.kurtosis].into_iter().zip(exact) {
                 let found = found.unwrap();
-                // Sigma is that of a sample, with n - 1: Sobol' points are surer than that.
+                // Sigma is that of a sample, with n - 1, a difference that Sobol' points resolve.
                 let error = found.standard_error.unwrap() + exact.abs() / f64::from(1 << 18);
                 assert!((found.value - exact).abs() <= 4.0 * error + 1e-9, "{text}: {found:?} for {exact}");
             }
@@ -228,7 +228,7 @@ fn samples_follow_the_block() {
 #[test]
 fn the_yield_of_a_line_through_a_disc() {
     let text = zone("disc", "3*x + 4*y", "").replace("4*y\"", "4*y\", upper = 0.8");
-    // 0.8 of the 1 that the line reaches.
+    // The limit lies at 0.8 of the greatest value 1.
     let angle = 0.8f64.acos();
     let beyond = (angle - angle.sin() * angle.cos()) / PI;
     let found = &analysed(&text, &[]).characteristics[0];
@@ -238,7 +238,7 @@ fn the_yield_of_a_line_through_a_disc() {
     assert!(above.error < 1e-6, "{above:?}");
 }
 
-/// Limits that some rows break: the surface law counts rows, and the model too.
+/// Limits that some rows exceed: the surface distribution counts rows, and so does a sample of the model.
 #[test]
 fn the_yield_of_rows_is_their_share() {
     let (csv, rows) = lot();
@@ -250,7 +250,7 @@ fn the_yield_of_rows_is_their_share() {
     assert!(expected > 0.0 && expected < 1.0);
 }
 
-/// Rows are drawn anew as a whole: the interval of a difference is that of its own values, by the normal approximation to a tenth or so.
+/// Rows are drawn as a whole: the interval of a difference is that of its own values, by the normal approximation to a tenth or so.
 #[test]
 fn rows_are_drawn_anew_as_a_whole() {
     let (csv, rows) = lot();
@@ -259,11 +259,11 @@ fn rows_are_drawn_anew_as_a_whole() {
     let [_, sigma, ..] = of_values(&rows.iter().map(|[a, b, _]| (1.0 / rows.len() as f64, a - b)).collect::<Vec<_>>());
     let interval = found.sampling.as_ref().unwrap().mean.unwrap();
     let expected = 2.0 * 1.96 * sigma / (rows.len() as f64).sqrt();
-    // The ends of a percentile interval of 1000 resamples are known to a tenth of its width.
+    // The ends of a percentile interval of 1000 resamples are accurate to a tenth of its width.
     relative(interval[1] - interval[0], expected, 0.15);
 }
 
-/// A position that is spread evenly over its zone is a disc, and so is the block written out.
+/// An evenly distributed position is a disc, as is the block that is written out.
 #[test]
 fn an_even_position_is_a_disc() {
     let position = "[dimensions]\nh = { nominal = [0, 0], position = 0.4, distribution = \"uniform\" }\n[characteristics]\nz = { formula = \"3*h_x + 4*h_y + h_x*h_y\" }\n";
@@ -275,7 +275,7 @@ fn an_even_position_is_a_disc() {
     relative(worst[1], 1.0, 1e-12);
 }
 
-/// Blocks beside each other that share no product are independent: their cumulants add. Discs that interact are pooled.
+/// Blocks that share no product are independent, so that their cumulants add. Discs that interact are pooled.
 #[test]
 fn several_blocks() {
     let two = |law: &str, formula: &str| {
@@ -283,7 +283,7 @@ fn several_blocks() {
             "[dimensions]\np = {{ nominal = 0, tolerance = 1 }}\nq = {{ nominal = 0, tolerance = 1 }}\n{ZONE}law = \"{law}\"\n[[joint]]\nof = [\"p\", \"q\"]\nlaw = \"{law}\"\n[characteristics]\nz = {{ formula = \"{formula}\" }}\n"
         )
     };
-    // Fourth cumulants of two discs: -1 each in units of the variance squared.
+    // Fourth cumulants of two discs: -1 each, in units of the variance squared.
     let [_, sigma, _, kurtosis] = moments(&two("disc", "5*x + q"), &[]);
     relative(sigma, (0.25f64 + 0.25).sqrt(), 1e-12);
     relative(kurtosis, 3.0 - 0.5, 1e-12);
@@ -293,7 +293,7 @@ fn several_blocks() {
     relative(kurtosis, (3.0 / 8.0 / 9.0) / 0.125f64.powi(2), 1e-11);
 }
 
-/// Methods that integrate over one input after the other say that they cannot.
+/// Methods that integrate over one input after the other refuse blocks.
 #[test]
 fn methods_of_single_inputs_refuse_blocks() {
     let problem = study(&zone("disc", "x + y", ""), &[]).problem;
@@ -303,7 +303,7 @@ fn methods_of_single_inputs_refuse_blocks() {
     }
     for method in [Method::Auto, Method::SecondOrder, Method::SixN, Method::ResponseSurface] {
         let sigma = analyze(&problem, &method.into()).unwrap().characteristics[0].moments.unwrap().sigma();
-        // Least squares leave more roundings than differences.
+        // Least squares have larger rounding errors than differences.
         relative(sigma, 0.1 * 2f64.sqrt(), 1e-9);
     }
 }
@@ -342,7 +342,7 @@ fn wrong_blocks_are_said() {
     assert!(found.contains("`a` is not measured in \"lot.csv\""), "{found}");
 }
 
-/// A block by its file gives the dimensions their columns.
+/// A block that names a file gives the dimensions their columns.
 #[test]
 fn a_block_names_its_file() {
     let (csv, _) = lot();
@@ -352,7 +352,7 @@ fn a_block_names_its_file() {
     assert_eq!(moments(short, &files), moments(&long, &files));
 }
 
-/// A uniform angle over full turns inside a sine or cosine; not half a turn, not a normal one, not elsewhere.
+/// A uniform angle over a full turn inside a sine or cosine causes a warning. Half a turn, a normal angle, and an angle elsewhere do not.
 #[test]
 fn an_angle_over_a_full_turn_is_warned_of() {
     let warned = |units: &str, dir: &str, formula: &str| {

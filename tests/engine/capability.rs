@@ -21,7 +21,7 @@ fn of(moments: Moments, limits: SpecLimits) -> Capability {
     Capability::of(&Law::fit(&moments).unwrap(), moments.mean(), moments.sigma(), limits)
 }
 
-/// Of a normal every index is known; its tails from tables (Abramowitz and Stegun 1964, table 26.2: Q(3), Q(4.5)).
+/// Every index of a normal distribution is known. Tails are from tables (Abramowitz and Stegun 1964, table 26.2: Q(3), Q(4.5)).
 #[test]
 fn a_normal_has_the_indices_of_the_textbook() {
     let normal = Moments::new(10.0, 2.0, 0.0, 0.0);
@@ -33,7 +33,7 @@ fn a_normal_has_the_indices_of_the_textbook() {
     relative(both.cp_percentile.unwrap(), 1.25, 1e-12);
     relative(both.cpk_percentile.unwrap(), 1.0, 1e-12);
     relative(TAIL, 1.349_898_031_630_1e-3, 1e-12);
-    // One limit: no width, and nothing beyond a limit that does not exist.
+    // With one limit there is no width, and no reject beyond the missing limit.
     let lower = of(normal, limits(Some(4.0), None));
     assert_eq!((lower.above, lower.cp, lower.cp_percentile), (None, None, None));
     relative(lower.cpk.unwrap(), 1.0, 1e-12);
@@ -42,7 +42,7 @@ fn a_normal_has_the_indices_of_the_textbook() {
     assert_eq!((none.yield_(), none.cpk, none.sigma_level()), (None, None, None));
 }
 
-/// The exponential by hand: median log 2, quantiles -log p.
+/// Indices of the exponential distribution by hand: median log 2, quantiles -log p.
 #[test]
 fn percentile_indices_follow_the_shape() {
     let exponential = Moments::new(1.0, 1.0, 2.0, 6.0);
@@ -52,11 +52,11 @@ fn percentile_indices_follow_the_shape() {
     relative(found.above.unwrap(), (-9.0f64).exp(), 1e-12);
     relative(found.cp_percentile.unwrap(), 9.0 / (high - low), 1e-12);
     relative(found.cpk_percentile.unwrap(), (middle / (middle - low)).min((9.0 - middle) / (high - middle)), 1e-12);
-    // The normal form sees only mean and sigma.
+    // The indices of the normal form depend on mean and sigma only.
     relative(found.cpk.unwrap(), 1.0 / 3.0, 1e-12);
 }
 
-/// Sigma 0: one value, on the limit or beside it.
+/// A characteristic with sigma 0 has one value, on the limit or beside it.
 #[test]
 fn what_does_not_vary_is_a_point() {
     for (value, expected) in [(5.0, 1.0), (7.0, 1.0), (6.0, 1.0), (4.9, 0.0), (7.1, 0.0)] {
@@ -67,7 +67,7 @@ fn what_does_not_vary_is_a_point() {
     assert_eq!(Law::fit(&Moments::constant(5.0)).unwrap().quantile(0.01), 5.0);
 }
 
-/// Two values, 50 % each, are a law with two values and no member of the Pearson system.
+/// A dimension with two values of 50 % each has a distribution, but not one of the Pearson system.
 #[test]
 fn two_values_have_no_pearson_law() {
     let study = "[dimensions]\nx = { nominal = 10, moments = [0.01, 0, 1e-4, 0, 1e-6, 0, 1e-8] }\n\
@@ -80,7 +80,7 @@ fn two_values_have_no_pearson_law() {
     assert_eq!((found.capability, found.met()), (None, None));
     let warning = analysis.warnings.iter().find(|warning| warning.code() == "infeasible-moments").unwrap();
     assert!(warning.message().contains("two values") && warning.characteristic() == Some("y"), "{}", warning.message());
-    // With a little of a normal dimension besides it nearly has.
+    // A small normal dimension makes it nearly a member.
     let mixed = Study::from_toml(
         "[dimensions]\nx = { nominal = 10, moments = [0.01, 0, 1e-4, 0, 1e-6, 0, 1e-8] }\nz = { nominal = 0, tolerance = 0.03 }\n\
          [characteristics]\ny = { formula = \"2*x + z\", lower = 19.9 }",
@@ -91,8 +91,8 @@ fn two_values_have_no_pearson_law() {
     assert!(analysis.characteristics[0].capability.is_some());
 }
 
-/// The rejects beyond the quantiles of one in ten thousand, by ten million assemblies of the model itself: 1000 beyond each,
-/// with a standard error of 3 %, where 20 % are allowed.
+/// Share of rejects beyond the quantiles of one in ten thousand, from ten million assemblies of the model: 1000 beyond each, with a
+/// standard error of 3 %. A difference of 20 % is allowed.
 #[test]
 fn yields_are_those_of_monte_carlo() {
     for (path, name) in [("engine-balance/study.toml", "F"), ("stacked-blocks/study.toml", "gap")] {
@@ -129,7 +129,7 @@ fn yields_are_those_of_monte_carlo() {
 }
 
 proptest! {
-    /// Other units change no share and no index; looking at it in a mirror exchanges the two sides.
+    /// Other units change no share and no index. A mirror image exchanges the two sides.
     #[test]
     fn units_and_mirrors_do_not_matter(
         skewness in -1.5..1.5f64, above in 0.2..6.0f64, lower in -5.0..-0.5f64, upper in 0.5..5.0f64, power in -9..9i32, mean in -2.0..2.0f64,
@@ -142,7 +142,7 @@ proptest! {
         let mirrored = of(Moments::new(0.0, 1.0, -skewness, excess), limits(Some(-upper), Some(-lower)));
         let same = |a: Option<f64>, b: Option<f64>| {
             let (a, b) = (a.unwrap(), b.unwrap());
-            // Next to an end of the support a share hangs on the last digits of its place.
+            // Next to an end of the support a share depends on the last digits of its place.
             (a - b).abs() <= 1e-9 * a.abs().max(1e-3)
         };
         prop_assert!(same(one.below, scaled.below) && same(one.above, scaled.above));
@@ -152,7 +152,7 @@ proptest! {
     }
 }
 
-/// A study's characteristic, its law and a Pearson law of the same moments are one.
+/// The distributions of a study's characteristic and of a Pearson fit with the same moments are the same.
 #[test]
 fn an_analysis_carries_the_law_of_its_moments() {
     let product = Problem::new(normals(&[3.0, 2.0], &[0.3, 0.6]), Closure::scalar("y", |x| x[0] * x[1])).unwrap();

@@ -1,4 +1,4 @@
-//! The surrogate as control variate: the same truth, with smaller standard errors that hold what they promise.
+//! Surrogate as control variate: estimates are right, with smaller standard errors that cover the deviations.
 
 use sensitol::assembly::Run;
 use sensitol::correlation::Pair;
@@ -14,7 +14,7 @@ use super::simulation;
 use sensitol_testing::{Asked, refusing, relative, repository, standard};
 
 const SEEDS: u64 = 200;
-/// As in `simulation`: 95.4 % if errors are normal, and 200 runs leave 1.5 %.
+/// Number of covered runs of 200, as in `simulation`: 95.4 % if errors are normal, with a standard deviation of 1.5 %.
 const COVERED: std::ops::RangeInclusive<usize> = 180..=199;
 
 fn options(samples: u64, sampler: Sampler, seed: u64) -> SimulationOptions {
@@ -30,11 +30,11 @@ fn plain(problem: &Problem, samples: u64, seed: u64) -> Simulation {
     simulate(problem, &SimulationOptions::default().with_samples(samples).with_seed(seed)).unwrap()
 }
 
-/// Mean, sigma, skewness, kurtosis, yield.
+/// True values of mean, sigma, skewness, kurtosis and yield.
 type Truth = [f64; 5];
 
-/// In how many of the runs each moment lies within two standard errors, and the yield, where there are limits, in its
-/// interval. Runs that tell no standard error of a moment, because few points decide it, are left out, and the others scaled to as many.
+/// Returns the number of runs in which each moment lies within two standard errors, and the yield in its interval if there are limits. Runs
+/// without a standard error, because few points decide a moment, are left out, and the others are scaled to as many.
 fn covered(problem: &Problem, truth: Truth, samples: u64, sampler: Sampler) -> Vec<usize> {
     let limited = problem.characteristics()[0].limits().exist();
     let mut hits = vec![0; if limited { 5 } else { 4 }];
@@ -53,7 +53,7 @@ fn covered(problem: &Problem, truth: Truth, samples: u64, sampler: Sampler) -> V
             hits[4] += usize::from(low <= truth[4] && truth[4] <= high);
         }
     }
-    // Mean and sigma are told by every run of these functions.
+    // Every run of these functions has a standard error of mean and sigma.
     assert_eq!(told[..2], [SEEDS as usize; 2]);
     hits.iter().zip(told).map(|(hits, told): (&usize, usize)| hits * SEEDS as usize / told.max(1)).collect()
 }
@@ -63,7 +63,7 @@ fn holds(hits: &[usize]) {
     assert!(hits.iter().all(|hits| COVERED.contains(hits)), "{hits:?} of {SEEDS}");
 }
 
-/// Two lognormal factors: a lognormal of this log-sd, whose truth is in every textbook.
+/// Product of two lognormal factors: a lognormal distribution with this log-sd, whose moments are known.
 fn lognormal(s: f64) -> (Problem, Truth) {
     let e = (s * s).exp();
     let product = Closure::scalar("y", move |x| (0.6 * s * x[0]).exp() * (0.8 * s * x[1]).exp());
@@ -80,14 +80,14 @@ fn lognormal(s: f64) -> (Problem, Truth) {
     (problem.unwrap(), truth)
 }
 
-/// Engine balance with a limit, as plain simulation is tested with it.
+/// Engine balance with a limit, as in the tests of plain simulation.
 fn engine() -> (Problem, Truth) {
     let (problem, [mean, sigma, skewness, kurtosis, _, share]) = simulation::engine();
     (problem, [mean, sigma, skewness, kurtosis, share])
 }
 
-/// The lognormal's kurtosis is decided by sixth powers, which shorter samples do not know enough of: of a log-sd of 0.15 two
-/// standard errors of it hold 88 % at 20 000 random points. Its yield needs no more than these.
+/// Sixth powers decide the kurtosis of the lognormal distribution, which shorter samples do not estimate well: with a log-sd of 0.15, two
+/// standard errors cover 88 % at 20 000 random points. This many points are enough for its yield.
 #[test]
 fn random_standard_errors_cover_the_truth() {
     let (problem, truth) = engine();
@@ -104,13 +104,14 @@ fn quasi_random_standard_errors_cover_the_truth() {
     holds(&covered(&problem, truth, 16_384, Sampler::Sobol));
     let (problem, truth) = lognormal(0.15);
     holds(&covered(&problem, truth, 16_384, Sampler::Sobol)[4..]);
-    // 16 replicates that are none too normal: 600 seeds hold the kurtosis in 91 %, and of a log-sd of 0.15 in 90 %.
+    // The 16 replicates are not quite normal: of 600 seeds, the kurtosis is covered in 91 %, and with a log-sd of 0.15 in 90 %.
     let (problem, truth) = lognormal(0.1);
     let unlimited = problem.asking([Characteristic::new("y")]).unwrap();
     holds(&covered(&unlimited, truth, 262_144, Sampler::Sobol));
 }
 
-/// The plain standard error of sigma by the controlled one, at the same number of evaluations, of every characteristic.
+/// Returns the ratio of the plain standard error of sigma to the controlled one, at the same number of evaluations, for every
+/// characteristic.
 fn gains(problem: &Problem, samples: u64) -> Vec<f64> {
     let with = controlled(problem, samples, Sampler::Random, 7);
     assert_eq!(with.run.evaluations, samples + with.surrogate_evaluations.unwrap());
@@ -127,14 +128,14 @@ fn standard_errors_shrink_by_what_the_surrogate_explains() {
         let gains = gains(&study.problem, 20_000);
         assert!(gains.iter().all(|&gain| gain >= 300.0), "{example}: {gains:.0?}");
     }
-    // A kurtosis of 4.64.
+    // A distribution with a kurtosis of 4.64.
     let (bent, truth) = lognormal(0.3);
     assert!(truth[3] > 4.0);
     let gains = gains(&bent, 20_000);
     assert!(gains[0] >= 3.0, "{gains:?}");
 }
 
-/// The reported reduction is that of the same points.
+/// The reported reduction is the one at the same points.
 #[test]
 fn the_reduction_is_that_of_the_plain_sample() {
     let (problem, _) = lognormal(0.3);
@@ -149,9 +150,10 @@ fn the_reduction_is_that_of_the_plain_sample() {
     assert_eq!((with.quantiles, &with.histogram, with.range), (without.quantiles, &without.histogram, without.range));
 }
 
-/// `y = 3 + 2a + b + a^2/2 + ab` of standard normal a and b: variance 4 + 1 + 2/4 + 1 = 6.5; third central moment by the
-/// quadratic form's cumulants with H = [[1/2, 1/2], [1/2, 0]] and b = (2, 1): 8 tr H^3 + 6 b'H b = 8 (1/2) + 6 (4) = 28; the
-/// fourth cumulant 48 tr H^4 + 48 b'H^2 b = 48 (7/16) + 48 (13/4) = 177.
+/// Moments of `y = 3 + 2a + b + a^2/2 + ab` of standard normal a and b: variance 4 + 1 + 2/4 + 1 = 6.5.
+///
+/// The cumulants of the quadratic form with H = [[1/2, 1/2], [1/2, 0]] and b = (2, 1) give the others. The third central moment is
+/// 8 tr H^3 + 6 b'H b = 8 (1/2) + 6 (4) = 28. The fourth cumulant is 48 tr H^4 + 48 b'H^2 b = 48 (7/16) + 48 (13/4) = 177.
 #[test]
 fn a_quadratic_of_normals_is_exact() {
     let y = |x: &[f64]| 3.0 + 2.0 * x[0] + x[1] + 0.5 * x[0] * x[0] + x[0] * x[1];
@@ -161,14 +163,14 @@ fn a_quadratic_of_normals_is_exact() {
         let truth = [3.5, 6.5f64.sqrt(), 28.0 / 6.5f64.powf(1.5), 3.0 + 177.0 / 6.5f64.powi(2)];
         for (estimate, truth) in [found.mean, found.sigma, found.skewness, found.kurtosis].into_iter().zip(truth) {
             let Estimate { value, standard_error } = estimate.unwrap();
-            // Some roundings of numbers near 1, times fourth powers of at most some hundred.
+            // The tolerance covers some roundings of numbers near 1, times fourth powers of a few hundred.
             relative(value, truth, 1e-12);
             assert!(standard_error.unwrap() <= 1e-12, "{standard_error:?}");
         }
     }
 }
 
-/// A scale of 1e100 and one of 1e-100 change no digit but the unit: powers are those of the surrogate's sigma.
+/// Scales of 1e100 and 1e-100 change no digit, because powers are taken in units of the surrogate's sigma.
 #[test]
 fn no_scale_overflows() {
     let of = |scale: f64| {
@@ -180,14 +182,14 @@ fn no_scale_overflows() {
     let (sigma, kurtosis) = of(1.0);
     for scale in [1e100, 1e-100] {
         let (scaled, shape) = of(scale);
-        // Roundings of the decimal scale.
+        // The decimal scale itself is rounded.
         relative(scaled.value / scale, sigma.value, 1e-12);
         relative(scaled.standard_error.unwrap() / scale, sigma.standard_error.unwrap(), 1e-9);
         relative(shape.value, kurtosis.value, 1e-12);
     }
 }
 
-/// Nothing is assumed of the surrogate: with slopes only, the truth is still covered.
+/// No property of the surrogate is assumed: with slopes only, intervals still cover the true values.
 #[test]
 fn a_poor_surrogate_costs_accuracy_and_not_truth() {
     let (problem, truth) = lognormal(0.15);
@@ -197,13 +199,13 @@ fn a_poor_surrogate_costs_accuracy_and_not_truth() {
     assert_eq!((one.control.unwrap().method, found.surrogate_evaluations), (Method::Rss, Some(5)));
     for (estimate, truth) in [one.mean, one.sigma, one.skewness, one.kurtosis].into_iter().zip(truth) {
         let Estimate { value, standard_error } = estimate.unwrap();
-        // Four standard errors: 1 in 16 000.
+        // The tolerance of four standard errors is exceeded in 1 of 16 000 cases.
         assert!((value - truth).abs() <= 4.0 * standard_error.unwrap(), "{value} for {truth}");
     }
 }
 
-/// Correlated normal inputs of a quadratic have exact moments; of correlated inputs of other laws the surrogate's moments
-/// are sampled themselves, and their standard errors are in those that are reported.
+/// Correlated normal inputs of a quadratic have exact moments. With other correlated distributions the surrogate's moments are sampled, and
+/// the reported standard errors include theirs.
 #[test]
 fn correlated_inputs_are_controlled_too() {
     let pair = |a: &str, b: &str| [Pair { between: [a.to_owned(), b.to_owned()], value: 0.6 }];
@@ -229,8 +231,8 @@ fn correlated_inputs_are_controlled_too() {
         // Two independent estimates agree within four standard errors.
         assert!((with.value - without.value).abs() <= 4.0 * error, "{with:?} {without:?}");
     }
-    // The surrogate's own sample does not grow with that of the model: where it is the less certain of the two, the plain sample is
-    // taken, with the tenth that the choice is worth. Of the same points, so that only rounding is between them.
+    // The surrogate's own sample does not grow with that of the model. If it has the larger error of the two, the plain sample is used,
+    // with one tenth added for the choice. Both use the same points, so that they differ by rounding only.
     let more = controlled(&problem, 2_000_000, Sampler::Random, 3).characteristics.remove(0);
     let same = plain(&problem, 2_000_000, 3).characteristics.remove(0);
     for (with, without) in [(more.mean, same.mean), (more.sigma, same.sigma), (more.kurtosis, same.kurtosis)] {
@@ -261,7 +263,7 @@ fn the_number_of_threads_changes_nothing() {
     }
 }
 
-/// Shares on both sides, their sum, and an interval within 0 and 1 that is narrower than the plain one.
+/// Rejects on both sides, their sum, and an interval within 0 and 1 that is narrower than the plain one.
 #[test]
 fn the_yield_is_controlled() {
     let limits = SpecLimits::new(Some(0.8), Some(1.3)).unwrap();
@@ -272,20 +274,20 @@ fn the_yield_is_controlled() {
     let share = with.yield_.unwrap();
     let tail = |z: f64| 0.5 * libm::erfc(z / 2f64.sqrt());
     let truth = [tail(-0.8f64.ln() / 0.15), tail(1.3f64.ln() / 0.15)];
-    // Four standard errors of the surrogate's own share, of 655 360 points, and of disagreements as seldom as 1 in 200.
+    // The tolerance is four standard errors of the surrogate's own share, of 655 360 points, with disagreements as rare as 1 in 200.
     relative(with.below.unwrap(), truth[0], 0.04);
     relative(with.above.unwrap(), truth[1], 0.08);
     relative(share.value, 1.0 - with.below.unwrap() - with.above.unwrap(), 1e-12);
     let width = |[low, high]: [f64; 2]| high - low;
     assert!(width(share.interval) < 0.6 * width(without.yield_.unwrap().interval), "{share:?}");
-    // Nothing rejected is not nothing to reject.
+    // A sample without rejects still leaves an interval above 0.
     let wide = SpecLimits::new(Some(0.0), Some(100.0)).unwrap();
     let problem = problem.asking([Characteristic::new("y").with_limits(wide)]).unwrap();
     let [low, high] = controlled(&problem, 20_000, Sampler::Random, 1).characteristics[0].yield_.unwrap().interval;
     assert!((0.999..1.0).contains(&low) && high == 1.0, "{low} {high}");
 }
 
-/// Every evaluation is counted, and every point is asked for: those of the surrogate, and those of the sample.
+/// Every evaluation is counted, and every point of the surrogate and of the sample is evaluated.
 #[test]
 fn every_evaluation_is_counted() {
     let asked = Asked::default();
@@ -297,7 +299,7 @@ fn every_evaluation_is_counted() {
     assert_eq!(plain(&problem, 1000, 1).surrogate_evaluations, None);
 }
 
-/// Points without a value are left out of both, counted, and bound the yield.
+/// Points without a value are left out of both estimates, counted, and included in the interval of the yield.
 #[test]
 fn failed_points_are_left_out_of_both() {
     let limits = SpecLimits::new(Some(-1.0), None).unwrap();
@@ -311,8 +313,8 @@ fn failed_points_are_left_out_of_both() {
     relative(share.bounds[1] - share.bounds[0], one.failed as f64 / 50_000.0, 1e-9);
 }
 
-/// A normal variable cut off at 1.5: `mean = -r`, `variance = 1 - 1.5 r - r^2` with `r = phi(1.5)/Phi(1.5)`. The surrogate is that of all
-/// assemblies: what it says of the ones without a value must not count.
+/// A normal variable truncated at 1.5 has `mean = -r`, `variance = 1 - 1.5 r - r^2` with `r = phi(1.5)/Phi(1.5)`. The surrogate describes
+/// all assemblies. Its values for points without a value of the model must not count.
 #[test]
 fn points_without_a_value_bias_nothing() {
     let problem = Problem::new(standard(1), refusing(|x| x[0], |x| x[0] > 1.5)).unwrap();
@@ -323,7 +325,7 @@ fn points_without_a_value_bias_nothing() {
         let one = controlled(&problem, 1 << 16, sampler, 3).characteristics.remove(0);
         for (found, exact) in [(one.mean.unwrap(), mean), (one.sigma.unwrap(), sigma)] {
             let error = found.standard_error.unwrap();
-            // Four standard errors, of a sixtieth of the bias of 0.139, or the test would see nothing.
+            // The tolerance is four standard errors, a sixtieth of the bias of 0.139, so that the test would detect the bias.
             assert!(
                 (found.value - exact).abs() < 4.0 * error && error < 0.139 / 60.0,
                 "{found:?} for {exact}, {sampler:?}"
@@ -332,7 +334,7 @@ fn points_without_a_value_bias_nothing() {
     }
 }
 
-/// A surrogate that is wrong costs at most the tenth that the choice is worth: the plain sample is there too. Of random points; the
+/// A wrong surrogate costs at most the tenth for the choice, because the plain sample is an alternative. The points are random, because the
 /// scatter of 16 replicates of Sobol' points is itself uncertain by a fifth.
 #[test]
 fn a_bad_surrogate_costs_a_tenth() {
@@ -351,7 +353,7 @@ fn a_bad_surrogate_costs_a_tenth() {
             for (with, without) in
                 [(with.mean, without.mean), (with.sigma, without.sigma), (with.kurtosis, without.kurtosis)]
             {
-                // A plain sample that has not settled has no standard error to hold against the other.
+                // An unsettled plain sample has no standard error to compare with.
                 let Some(without) = without.unwrap().standard_error else { continue };
                 let with = with.unwrap().standard_error.unwrap();
                 assert!(with <= 1.1 * without * (1.0 + 1e-12), "{name}: {with} beside {without}");
@@ -379,7 +381,7 @@ fn without_a_surrogate_it_is_refused() {
     assert!(matches!(error, SimulationError::Method(MethodError::OverBudget { needed: 7, .. })), "{error}");
 }
 
-/// Stopped before the surrogate is known, nothing is known.
+/// If the run is stopped before the surrogate is known, no figure is known.
 #[test]
 fn it_stops_when_told_to() {
     let (problem, _) = lognormal(0.15);

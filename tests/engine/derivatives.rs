@@ -1,5 +1,4 @@
-//! Exact derivatives of formulas: against differences with 100 digits, closed forms at difficult places, and where there
-//! is none.
+//! Exact derivatives of formulas: against differences with 100 digits, closed forms at difficult points, and points without a derivative.
 
 use proptest::prelude::*;
 use sensitol::assembly::formula::Formula;
@@ -20,14 +19,14 @@ fn unit(d: usize) -> [f64; 3] {
     [0, 1, 2].map(|e| if e == d { 1.0 } else { 0.0 })
 }
 
-/// First and second derivative along x0.
+/// Returns the first and second derivative along x0.
 fn of_first(text: &str, x: [f64; 3]) -> (Option<f64>, Option<f64>) {
     let jet = along(&set(text), x, unit(0), unit(0));
     (jet.first(0), jet.second())
 }
 
-/// Every function, written and random formulas. The factor by which a formula amplifies the rounding of its parts holds for its
-/// derivatives too: errors count against the largest derivative of that order, or the value (1e-14 seen).
+/// All functions, in written and random formulas. The factor by which a formula amplifies the rounding of its parts holds for its
+/// derivatives too. Errors are relative to the largest derivative of that order, or to the value (at most 1e-14 was found).
 #[test]
 fn derivatives_are_exact() {
     let cases = data("formula-derivatives.json");
@@ -94,13 +93,13 @@ fn where_there_is_none() {
         ("0*abs(x0 - 1) + x0", 1.0),
     ] {
         assert_eq!(of_first(text, [x0, 0.5, 0.0]), (None, None), "{text}");
-        // Along another dimension, on which it does not depend there, it stands still.
+        // The formula does not depend on the other dimension there, so that the derivative along it is 0.
         let other = along(&set(&format!("1*({text})")), [x0, 0.5, 0.0], unit(2), unit(2));
         if other.value().is_finite() {
             assert_eq!((other.first(0), other.second()), (Some(0.0), Some(0.0)), "{text}");
         }
     }
-    // A slope without curvature.
+    // The slope exists, but the curvature does not.
     assert_eq!(of_first("x0*abs(x0)", [0.0; 3]).1, None);
     assert_eq!(of_first("if(x0 < 1, x0, x0 + (x0 - 1)^2)", [1.0, 0.0, 0.0]), (Some(1.0), None));
     assert_eq!(of_first("min(x0, x0 + (x0 - 1)^2)", [1.0, 0.0, 0.0]), (Some(1.0), None));
@@ -141,7 +140,7 @@ fn where_there_is_one_all_the_same() {
     }
 }
 
-/// Smooth pieces that any nesting keeps smooth but at kinks, and moderate in size.
+/// Smooth pieces of moderate size, whose nesting is smooth except at kinks.
 fn texts() -> impl Strategy<Value = String> {
     let leaf = prop_oneof![(0..3usize).prop_map(|d| format!("x{d}")), (0.1..3.0f64).prop_map(|c| format!("{c:.3}"))];
     leaf.prop_recursive(5, 40, 3, |inner| {
@@ -163,8 +162,8 @@ fn texts() -> impl Strategy<Value = String> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(500))]
 
-    /// The value is the batch's to the last bit; the derivatives are bilinear in the directions; and they are those of
-    /// the value along a line, as a Taylor polynomial shows whose error falls with the third power of the step.
+    /// The value is that of the batch to the last bit, and the derivatives are bilinear in the directions. They are also those of the value
+    /// along a line: the error of the Taylor polynomial falls with the third power of the step.
     #[test]
     fn jets_are_taylor_polynomials(text in texts(), x in prop::array::uniform3(-2.0..2.0f64), u in prop::array::uniform3(-1.0..1.0f64)) {
         let set = set(&text);
@@ -186,7 +185,7 @@ proptest! {
             prop_assert!((slope - first).abs() < 1e-9 * size && (curvature - second).abs() < 1e-8 * size, "{text} at {x:?}");
         }
 
-        // Where a kink lies within the step, or the third derivative is huge, the test says nothing.
+        // If a kink lies within the step, or the third derivative is huge, the comparison is skipped.
         let miss = |h: f64| value([0, 1, 2].map(|d| x[d] + h * u[d])) - jet.value() - h * first - 0.5 * h * h * second;
         let (h, third) = (1e-4, 1e4 * size);
         if [miss(h), miss(-h)].iter().any(|miss| miss.abs() > third * h.powi(3) + 1e-13 * size) {

@@ -1,4 +1,4 @@
-//! Values with probabilities of their own, and limits on which they lie: counted with whole numbers.
+//! Discrete distributions, with limits that equal possible values: counted with whole numbers.
 
 use std::sync::Arc;
 
@@ -17,18 +17,19 @@ use sensitol_study::StudyText;
 
 use sensitol_testing::{Asked, data, relative, repository};
 
-/// A study whose values are whole hundredths.
+/// Study whose values are whole hundredths.
 struct GridStudy {
-    /// The values of every dimension, each with the same probability.
+    /// Values of every dimension, each with the same probability.
     values: Vec<Vec<i64>>,
-    /// Two values that stand about the nominal one, in place of a measured list.
+    /// True for a dimension with two values about the nominal one, instead of a measured list.
     two: Vec<bool>,
-    /// For every characteristic its coefficients and its limits.
+    /// Coefficients and limits of every characteristic.
     characteristics: Vec<(Vec<i64>, i64, i64)>,
 }
 
 impl GridStudy {
-    /// Two to six dimensions of two values or some measured ones, and two or three sums of them whose limits are values that occur.
+    /// Draws two to six dimensions with two values or some measured ones, and two or three sums of them. The limits are possible values of
+    /// the sums.
     fn drawn(random: &mut Xoshiro256PlusPlus) -> Self {
         let n = random.random_range(2..=6usize);
         let two: Vec<bool> = (0..n).map(|_| random.random()).collect();
@@ -40,7 +41,7 @@ impl GridStudy {
                     let half = random.random_range(1..30i64);
                     return vec![middle - half, middle + half];
                 }
-                // Five values at least, of which two differ.
+                // Five values at least, two of which differ.
                 let count = random.random_range(3..6);
                 let others = (0..count).map(|_| middle + random.random_range(-4..=4i64));
                 [middle - 5, middle + 3].into_iter().chain(others).collect()
@@ -74,7 +75,7 @@ impl GridStudy {
         }
     }
 
-    /// The yield of every characteristic, and that of all together.
+    /// Returns the yield of every characteristic, and the joint yield.
     fn counted(&self) -> (Vec<f64>, f64) {
         let (mut all, mut kept, mut together) = (0u64, vec![0u64; self.characteristics.len()], 0u64);
         self.combinations(|at| {
@@ -92,7 +93,7 @@ impl GridStudy {
         (kept.into_iter().map(share).collect(), share(together))
     }
 
-    /// The study with its file of measured values, as decimal numbers.
+    /// Returns the study with its file of measured values, as decimal numbers.
     fn read(&self) -> Study {
         let mut text = "[dimensions]\n".to_owned();
         let mut csv: Vec<Vec<String>> = vec![Vec::new(); self.values.iter().map(Vec::len).max().unwrap() + 1];
@@ -123,18 +124,18 @@ impl GridStudy {
     }
 }
 
-/// A whole number of hundredths as people write it.
+/// Formats a whole number of hundredths as a decimal number.
 fn decimal(hundredths: i64) -> String {
     let sign = if hundredths < 0 { "-" } else { "" };
     format!("{sign}{}.{:02}", hundredths.abs() / 100, hundredths.abs() % 100)
 }
 
-/// The joint yield lies between what its parts allow: at most the least of them, and at least all of them less what they lack.
+/// Checks the bounds of the joint yield: at most the least yield, and at least 1 minus the sum of all rejects.
 #[track_caller]
 fn consistent(joint: f64, yields: &[f64]) {
     let least = yields.iter().copied().fold(1.0, f64::min);
     let all = yields.iter().sum::<f64>() - (yields.len() - 1) as f64;
-    // Roundings of numbers near 1.
+    // The tolerance covers roundings of numbers near 1.
     assert!(joint <= least + 1e-12 && joint >= all - 1e-12, "{joint} of {yields:?}");
 }
 
@@ -142,8 +143,8 @@ fn yields(found: &Analysis) -> Vec<f64> {
     found.characteristics.iter().map(|one| one.capability.unwrap().yield_().unwrap()).collect()
 }
 
-/// Values on a grid with limits on it: a value on a limit keeps it, in the yields and in the joint yield, by every method and by samples.
-/// Counted with whole numbers over all combinations.
+/// A value on a limit keeps it, in the yields and in the joint yield, by every method and by samples. The expected yields are counted with
+/// whole numbers over all combinations.
 #[test]
 fn values_on_a_limit_are_counted_as_whole_numbers_count_them() {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(48);
@@ -165,18 +166,18 @@ fn values_on_a_limit_are_counted_as_whole_numbers_count_them() {
         let found = simulate(&problem, &SimulationOptions::default().with_samples(4000)).unwrap();
         let sampled = found.characteristics.iter().map(|one| one.yield_.unwrap()).chain(found.joint);
         for (found, exact) in sampled.zip(exact.iter().chain([&joint])) {
-            // Six standard errors: 2e-9 of so many shares.
+            // Six standard errors are exceeded by 2e-9 of the shares.
             let error = (exact * (1.0 - exact) / 4000.0).sqrt();
             assert!((found.value - exact).abs() <= 6.0 * error, "{index}: {found:?} for {exact}");
         }
         apart += usize::from(joint > 0.0 && exact.iter().all(|own| *own < 1.0));
     }
-    // Most of them have a joint yield that is not trivial.
+    // Most cases have a joint yield that differs from the single yields.
     assert!(apart > 25, "{apart}");
 }
 
-/// The larger of two sums has a kink: its yields come from points of the model, and so does the joint yield where a surface is not trusted.
-/// Whatever it comes from, three errors reach the count.
+/// The larger of two sums has a kink, so that its yields come from points of the model. The joint yield does too if a surface is not
+/// trusted. From every source, three errors reach the counted yield.
 #[test]
 fn kinks_of_values_on_a_grid_are_counted_by_points() {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(9);
@@ -229,8 +230,8 @@ fn kinks_of_values_on_a_grid_are_counted_by_points() {
     }
 }
 
-/// The difference of two large parts is rounded by parts of them: 100.01 - 100 is 5e-15 above 0.01, which is 25 units in its last place. The
-/// unit says that a black box adds parts in it.
+/// The difference of two large parts has rounding errors in proportion to the parts: 100.01 - 100 is 5e-15 above 0.01, which is 25 units in
+/// its last place. The unit in the signature states that a black box adds parts in it.
 #[test]
 fn a_difference_of_large_values_is_on_its_limit() {
     let text = "[dimensions]\na = { nominal = 100.005, tolerance = 0.005, distribution = \"two-point\" }\n\
@@ -246,7 +247,7 @@ fn a_difference_of_large_values_is_on_its_limit() {
     let function = Closure::scalar("gap", |x| x[0] - x[1]);
     let closure = Problem::new([part("a", 100.005), part("b", 99.995)], function).unwrap().asking([gap]).unwrap();
     for problem in [formula, closure] {
-        // 0.02, 0.01 twice, and 0.
+        // The values are 0.02, 0.01 twice, and 0.
         let found = analyze(&problem, &Method::Full.into()).unwrap();
         let capability = found.characteristics[0].capability.unwrap();
         assert_eq!(
@@ -260,7 +261,7 @@ fn a_difference_of_large_values_is_on_its_limit() {
     }
 }
 
-/// A sum of three tenths that does not vary is on its limit of 0.3, and a sum that is 0 on one of 0.
+/// A constant sum of three tenths is on its limit of 0.3, and a sum that is 0 on one of 0.
 #[test]
 fn a_constant_on_its_limit_keeps_it() {
     let text = "[dimensions]\na = { nominal = 0.1 }\nb = { nominal = 0.2 }\nx = { nominal = 1, tolerance = 0.1 }\n\
@@ -281,13 +282,13 @@ fn law(parts: &[&[f64]], inputs: &[Arc<dyn Distribution>]) -> SurfaceLaw {
     SurfaceLaw::of(&Surrogate { centre: 0.0, parts, interactions }, inputs, None, &LawOptions::default()).unwrap()
 }
 
-/// Forty two-point inputs have 2^40 combinations and 41 sums: binomial probabilities. Where a limit is one of the sums, it is kept.
+/// Forty two-point inputs have 2^40 combinations, but 41 sums with binomial probabilities. A sum that equals a limit keeps it.
 #[test]
 fn many_combinations_on_a_grid_are_a_short_list() {
     const N: usize = 40;
     let two: Arc<dyn Distribution> = Arc::new(TwoValues::new(-1.0, 1.0).unwrap());
     let law = law(&[&[0.1][..]; N], &vec![two; N]);
-    // By the recurrence of Pascal, exact in doubles up to 2^53.
+    // Pascal's recurrence, which is exact in doubles up to 2^53.
     let mut row = vec![1.0f64];
     for _ in 0..N {
         row = (0..=row.len()).map(|k| row.get(k).unwrap_or(&0.0) + if k > 0 { row[k - 1] } else { 0.0 }).collect();
@@ -302,8 +303,8 @@ fn many_combinations_on_a_grid_are_a_short_list() {
     }
 }
 
-/// Half of all parts are at one of two values, the other half are normal: beyond either value lies a quarter of the normal tail's double, and
-/// the value itself keeps the limit. With a second such part, the sums of both.
+/// Half of all parts have one of two values, the other half are normal. Beyond either value lies a quarter of twice the normal tail, and
+/// the value itself keeps the limit. A second such part gives sums of both kinds.
 #[test]
 fn values_beside_a_density_keep_their_limits() {
     let part = |distribution: Arc<dyn Distribution>| Part { name: String::new(), weight: 1.0, distribution };
@@ -312,7 +313,7 @@ fn values_beside_a_density_keep_their_limits() {
         part(Arc::new(Normal::new(0.0, 1.0).unwrap())),
     ])
     .unwrap();
-    // Mean 0 and variance 1: coefficients are the values themselves.
+    // The mean is 0 and the variance 1, so that the coefficients are the values themselves.
     let mixed: Arc<dyn Distribution> = Arc::new(mixed);
     let normal = Normal::new(0.0, 1.0).unwrap();
     let tail = |x: f64| normal.probability().unwrap().sf(x);
@@ -327,7 +328,7 @@ fn values_beside_a_density_keep_their_limits() {
     close(&one, LawTail::Lower, -1.0, 0.5 * tail(1.0));
     close(&one, LawTail::Upper, -1.0, 0.25 + 0.5 * tail(-1.0));
     let both = law(&[&[1.0], &[1.0]], &[Arc::clone(&mixed), mixed]);
-    // Two values, a value and a normal part, two normal parts; 2 itself and 0 have sixteenths.
+    // Two values, one value and a normal part, or two normal parts. The sums 2 and 0 have probabilities in sixteenths.
     let sums = |limit: f64, beyond: f64| {
         beyond / 16.0 + 0.25 * (tail(limit - 1.0) + tail(limit + 1.0)) + 0.25 * tail(limit / 2f64.sqrt())
     };
@@ -337,7 +338,7 @@ fn values_beside_a_density_keep_their_limits() {
     close(&both, LawTail::Lower, 0.0, sums(0.0, 1.0));
 }
 
-/// The figures of `tests/data/discrete.json`: counted, or in closed form.
+/// Returns the study and the figures of a case in `tests/data/discrete.json`: counted, or in closed form.
 fn case(name: &str) -> (Study, serde_json::Value) {
     let study = Study::read(&repository(&format!("tests/data/discrete/{name}.toml"))).unwrap();
     (study, data("discrete.json")[name].clone())
@@ -370,7 +371,7 @@ fn measured_hundredths_are_counted_pair_by_pair() {
     }
 }
 
-/// Two values are two nodes: through both of them a parabola is the function, whatever it is.
+/// A dimension with two values has two nodes. The parabola through both of them is exact for every function.
 #[test]
 fn two_values_are_evaluated_at_both() {
     let (study, exact) = case("two-point-exact");
@@ -385,7 +386,8 @@ fn two_values_are_evaluated_at_both() {
     }
 }
 
-/// A pin that lies on one side of its hole or the other: the float is the radial play, here 0.1 up or down, and the function exp(20 x) of it.
+/// A pin that touches one side of its hole or the other: the float is the radial play, here 0.1 up or down, and the function exp(20 x) of
+/// it.
 #[test]
 fn a_float_in_contact_is_evaluated_on_both_sides() {
     let text = "[dimensions]\nhole = { nominal = 10.2 }\npin = { nominal = 10 }\n\
@@ -399,7 +401,7 @@ fn a_float_in_contact_is_evaluated_on_both_sides() {
     }
 }
 
-/// Every point of these methods has values that occur, or the mean: of few measured values, of mixtures of two values, and of two values.
+/// Every point of these methods has possible values or the mean: for few measured values, for mixtures of two values, and for two values.
 #[test]
 fn dimensions_of_few_values_are_evaluated_at_them() {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(5);
@@ -424,7 +426,7 @@ fn dimensions_of_few_values_are_evaluated_at_them() {
     for (index, law) in laws.iter().enumerate() {
         let occur: Vec<f64> = law.probability().unwrap().atoms().into_iter().map(|(x, _)| x).collect();
         let mut methods = vec![Method::SecondOrder, Method::Full, Method::SixN, Method::ResponseSurface];
-        // Rules with as many nodes as there are values have these.
+        // Rules with as many nodes as there are values have the values as nodes.
         methods.extend((occur.len() <= 3).then_some(Method::ThreePoint));
         methods.extend((occur.len() <= 5).then_some(Method::DimensionReduction));
         for method in methods {
@@ -445,7 +447,7 @@ fn dimensions_of_few_values_are_evaluated_at_them() {
                 });
                 let moments = found.characteristics[0].moments.unwrap();
                 relative(moments.mean(), mean + 1.0, 1e-12);
-                // Differences of numbers near 10: their rounding.
+                // The tolerance covers the rounding of differences of numbers near 10.
                 relative(moments.variance(), square - mean * mean + (0.1f64 / 3.0).powi(2), 1e-10);
             }
         }

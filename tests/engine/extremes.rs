@@ -1,4 +1,4 @@
-//! The true worst case: searched extremes against exhaustive enumeration, closed forms and random points.
+//! True worst case: searched extremes against exhaustive enumeration, closed forms and random points.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -19,7 +19,7 @@ fn searched(problem: &Problem, method: Method) -> Analysis {
     analyze(problem, &Options::from(method).with_extremes(true)).unwrap()
 }
 
-/// The extremes of a closure with one output.
+/// Returns the extremes of a closure with one output.
 fn of(
     dimensions: Vec<Dimension>,
     function: impl Fn(&[f64]) -> f64 + Send + Sync + 'static,
@@ -37,8 +37,8 @@ fn places(extremes: &Extremes) -> [Vec<Place>; 2] {
     [&extremes.least, &extremes.greatest].map(|extreme| extreme.at.iter().map(|at| at.place).collect())
 }
 
-/// Every method begins elsewhere; the extremes are the same. Their values: the project's own figures for this study, and
-/// no vertex or random point lies beyond them.
+/// The extremes do not depend on the method, although each starts the search elsewhere. The expected values are the project's own figures
+/// for this study, and no vertex or random point lies beyond them.
 #[test]
 fn the_engine_has_its_true_extremes() {
     let study = Study::read(&repository("examples/engine-balance/study.toml")).unwrap();
@@ -52,7 +52,7 @@ fn the_engine_has_its_true_extremes() {
         let analysis = searched(&study.problem, method);
         let found: Vec<[f64; 2]> =
             analysis.characteristics.iter().map(|one| ends(one.extremes.as_ref().unwrap())).collect();
-        // Published with three decimals.
+        // The published values have three decimals.
         for (found, published) in found.iter().zip([[12518.209, 12588.100], [936.988, 945.996]]) {
             for (found, published) in found.iter().zip(published) {
                 assert!((found - published).abs() <= 0.0005, "{method:?}: {found} and {published}");
@@ -66,7 +66,7 @@ fn the_engine_has_its_true_extremes() {
     insta::assert_snapshot!("extremes-engine-counts", counts.join("\n"));
 }
 
-/// The two vertices and two points that put the surrogate to the test, whatever N is.
+/// Two vertices and two points that test the surrogate are enough, for any number of dimensions.
 #[test]
 fn a_linear_characteristic_takes_four_evaluations() {
     for n in [2, 3, 10, 200] {
@@ -80,7 +80,7 @@ fn a_linear_characteristic_takes_four_evaluations() {
         let one = &analysis.characteristics[0];
         let found = one.extremes.as_ref().unwrap();
         let reach: f64 = 3.0 * (0..n).map(|j| slope(j).abs()).sum::<f64>();
-        // Sums of n terms: a rounding error or so each.
+        // The tolerance allows about one rounding error for each of n terms.
         for (found, exact) in ends(found).into_iter().zip([5.0 - reach, 5.0 + reach]) {
             relative(found, exact, 4e-16 * n as f64);
         }
@@ -96,7 +96,7 @@ fn a_linear_characteristic_takes_four_evaluations() {
 fn one_dimension_is_enough() {
     let linear = of(normals(&[10.0], &[0.3]), |x| 2.0 * x[0], Method::SecondOrder);
     assert_eq!((ends(&linear), linear.evaluations), ([19.4, 20.6], 3));
-    // Its vertex lies within, at 10.1: an interior least value, and the far end.
+    // The vertex lies inside, at 10.1: the least value is interior, and the greatest is at the far end.
     let parabola = of(normals(&[10.0], &[0.3]), |x| (x[0] - 10.1).powi(2), Method::SecondOrder);
     // Near its vertex a parabola is as flat as the square of a rounding error of 10.
     close(parabola.least.value, 0.0, 1e-13, 1.0);
@@ -105,7 +105,7 @@ fn one_dimension_is_enough() {
     close(parabola.least.at[0].x, 10.1, 1e-7, 1.0);
 }
 
-/// Interior extremes: at the nominal, in a product of waves, and of a valley that runs across the axes.
+/// Interior extremes: at the nominal, in a product of waves, and in a valley across the axes.
 #[test]
 fn extremes_within_the_box_are_found() {
     let at_nominal = of(normals(&[10.0, 3.0], &[0.3, 0.1]), |x| (x[0] - 10.0).powi(2) + x[1], Method::Full);
@@ -117,19 +117,19 @@ fn extremes_within_the_box_are_found() {
     for method in [Method::SecondOrder, Method::Full] {
         let waves = of(normals(&[0.4, -0.5], &[2.4, 2.5]), |x| x[0].cos() * x[1].cos(), method);
         let least = [2.8f64, 3.0].map(f64::cos).into_iter().fold(f64::INFINITY, f64::min);
-        // The search ends where a gain is below 1e-10 of the range.
+        // The search ends if a gain is below 1e-10 of the range.
         close(waves.greatest.value, 1.0, 1e-9, 1.0);
         close(waves.least.value, least, 1e-9, 1.0);
     }
 
-    // A quadratic form with a strong product: least at its centre, far from every axis' own minimum.
+    // A quadratic form with a strong product is least at its centre, far from the minimum along every axis.
     let valley = |x: &[f64]| (x[0] - 0.5).powi(2) + (x[1] + 0.7).powi(2) + 1.8 * (x[0] - 0.5) * (x[1] + 0.7);
     for method in [Method::SecondOrder, Method::SixN] {
         close(of(standard(2), valley, method).least.value, 0.0, 1e-8 * 40.0, 1.0);
     }
 }
 
-/// Kinks: a piecewise linear function has its extremes at vertices or at the kink, which two straight lines find.
+/// A piecewise linear function has its extremes at vertices or at the kink, which two straight lines locate.
 #[test]
 fn extremes_at_kinks_are_found() {
     for method in [Method::Rss, Method::SecondOrder, Method::SixN] {
@@ -138,26 +138,26 @@ fn extremes_at_kinks_are_found() {
         close(v.greatest.value, 0.37, 1e-12, 1.0);
         let either = of(standard(3), |x| x[0].max(x[1]) - x[2].min(0.5), method);
         assert_eq!(ends(&either), [-3.5, 6.0], "{method:?}");
-        // Least where two kinks meet within the box, at (0.2, -1).
+        // The minimum is where two kinks meet within the box, at (0.2, -1).
         let valley = of(standard(2), |x| (x[0] - 0.2).abs() + 2.0 * (x[1] + 1.0).abs(), method);
         close(valley.least.value, 0.0, 1e-12, 1.0);
         close(valley.greatest.value, 3.2 + 8.0, 1e-12, 1.0);
     }
 }
 
-/// Products whose factors have no slope of their own: no derivative that `second-order` takes sees them.
+/// Products whose factors have no slope of their own: all derivatives of `second-order` are 0.
 #[test]
 fn what_no_derivative_sees_is_found() {
     for pairs in [1, 3, 20] {
         let product = move |x: &[f64]| x.chunks(2).map(|pair| pair[0] * pair[1]).sum::<f64>();
         let found = of(standard(2 * pairs), product, Method::SecondOrder);
         assert_eq!(ends(&found), [-9.0 * pairs as f64, 9.0 * pairs as f64]);
-        // All pairs at once, not one after the other: a few rounds of either side.
+        // All pairs are found at once, not one after the other: a few rounds for either side.
         assert!(found.evaluations <= 40 * pairs + 60, "{pairs}: {}", found.evaluations);
     }
 }
 
-/// 200 dimensions, curved and with interactions: the counts are kept, so that a search that becomes dearer is seen.
+/// 200 dimensions, curved and with interactions. A snapshot of the counts shows when a search becomes more expensive.
 #[test]
 fn two_hundred_dimensions_stay_affordable() {
     let sum = |x: &[f64], factor: f64| x.iter().enumerate().map(|(j, x)| (1.0 + j as f64 * factor) * x).sum::<f64>();
@@ -183,7 +183,7 @@ fn two_hundred_dimensions_stay_affordable() {
     insta::assert_snapshot!("extremes-two-hundred-counts", counts.join("\n"));
 }
 
-/// A model that fails in part of the box: what it can do is found, and said.
+/// Extremes of a model that fails in part of the box are found among the points with a value, and a warning is given.
 #[test]
 fn vertices_that_fail_are_left_out() {
     // Defined within a circle: the extremes of a + b there are at (1, 1) sqrt(8)/sqrt(2) = +-4, on its rim.
@@ -201,7 +201,7 @@ fn vertices_that_fail_are_left_out() {
     assert_eq!(analysis.characteristics[0].extremes, None);
 }
 
-/// Two characteristics share their points, and dimensions on which one cannot depend stay where they are.
+/// Two characteristics share their points, and dimensions on which a characteristic cannot depend are not moved.
 #[test]
 fn points_are_shared_and_idle_dimensions_left_alone() {
     let study = "[dimensions]\na = { nominal = 1, tolerance = [0.1, 0.3] }\nb = { nominal = 2, sigma = 0.1 }\n\
@@ -218,11 +218,11 @@ fn points_are_shared_and_idle_dimensions_left_alone() {
     let names = |index: usize| found[index].least.at.iter().map(|at| at.dimension.as_str()).collect::<Vec<_>>();
     assert_eq!((names(0), names(2)), (vec!["a", "b"], vec!["c"]));
     assert_eq!((found[0].evaluations, found[1].evaluations, found[2].evaluations), (4, 4, 3));
-    // 2N+1 for the method, one for the nominal off the means; four that two share, and three.
+    // 2N+1 evaluations for the method, one for the nominal off the means, four that both share, and three.
     assert_eq!(analysis.run.evaluations, 7 + 1 + 4 + 3);
 }
 
-/// The rest of the budget is what the search may spend; what it has found by then is reported.
+/// The search may spend the rest of the budget, and reports the best values found by then.
 #[test]
 fn the_budget_holds() {
     let function = |x: &[f64]| x.iter().map(|x| x.sin()).product::<f64>();
@@ -239,7 +239,7 @@ fn the_budget_holds() {
     }
 }
 
-/// Stopped in the middle of the search: nothing more is evaluated, and what is known is reported.
+/// A stop in the middle of the search ends all evaluations, and the extremes so far are reported.
 #[test]
 fn a_stop_is_heeded() {
     let count = Arc::new(AtomicUsize::new(0));
@@ -258,7 +258,7 @@ fn a_stop_is_heeded() {
     assert!(analysis.characteristics[0].moments.is_some());
 }
 
-/// Without the option nothing is searched.
+/// Without the option there is no search.
 #[test]
 fn nothing_is_searched_unless_asked() {
     let problem = Problem::new(standard(2), Closure::scalar("y", |x| x[0] * x[1])).unwrap();
@@ -273,16 +273,15 @@ fn of_formula(dimensions: &str, formula: &str, method: Method) -> Extremes {
     searched(&study.problem, method).characteristics.remove(0).extremes.unwrap()
 }
 
-/// A proof rests on interval arithmetic alone: it names bounds that lie no farther beyond the extremes than a part in 10^9 of
-/// their range.
+/// A proof depends on interval arithmetic alone. Its bounds lie beyond the extremes by no more than 1e-9 of their range.
 #[test]
 fn extremes_of_formulas_are_proven() {
     let abc = "a = { nominal = 10, tolerance = 0.3 }\nb = { nominal = 2, tolerance = 0.1 }\nc = { nominal = -1, tolerance = [-0.1, 0.5] }";
     let cases: &[(&str, [f64; 2])] = &[
         ("a - 2*b + c", [9.7 - 4.2 - 1.1, 10.3 - 3.8 - 0.5]),
-        // Interior: 0 at a = 10.1, and (10.1 - 9.7)^2 at the far end.
+        // An interior extreme: 0 at a = 10.1, and (10.1 - 9.7)^2 at the far end.
         ("(a - 10.1)^2", [0.0, 0.16]),
-        // Along a line: 0 wherever a = 5 b.
+        // Extremes along a line: 0 wherever a = 5 b.
         ("(a - 5*b)^2", [0.0, 0.64]),
         ("sin(a)*cos(b)", [0.0; 2]),
         ("abs(a - 10.07) + max(b, 2.05)", [2.05, 0.37 + 2.1]),
@@ -307,7 +306,7 @@ fn extremes_of_formulas_are_proven() {
     }
 }
 
-/// A linear characteristic by formulas: the linear worst case, in four evaluations and a few boxes.
+/// A linear characteristic by formulas has the linear worst case, with four evaluations and a few boxes.
 #[test]
 fn linear_formulas_equal_the_linear_worst_case() {
     let study = Study::read(&repository("examples/quick-return-published/study.toml")).unwrap();
@@ -315,7 +314,7 @@ fn linear_formulas_equal_the_linear_worst_case() {
     for one in &analysis.characteristics {
         let found = one.extremes.as_ref().unwrap();
         assert!(found.proven() && found.evaluations == 4);
-        // Two calls and the middle, for either side.
+        // Two calls and the middle, for each side.
         assert_eq!(found.proof.as_ref().unwrap().boxes, 6);
         for (found, linear) in ends(found).into_iter().zip(one.worst_case.unwrap()) {
             relative(found, linear, 1e-13);
@@ -335,7 +334,7 @@ fn thermal_clearance_has_its_extremes() {
         let one = &analysis.characteristics[0];
         let found = one.extremes.as_ref().unwrap();
         assert!(found.proven(), "{method:?}");
-        // Differences of lengths of 120: their rounding errors.
+        // The tolerance covers rounding errors of differences of lengths of 120.
         close(found.least.value, least, 1e-13, 1.0);
         close(found.greatest.value, greatest, 1e-13, 1.0);
         let linear = one.worst_case.unwrap();
@@ -343,11 +342,10 @@ fn thermal_clearance_has_its_extremes() {
     }
 }
 
-/// A search by moves along coordinates ends in a valley beside the deepest one; the proof comes upon the deeper, and the search
-/// goes on from there.
+/// A search along coordinates ends in a valley beside the deepest one. The proof finds the deeper one, and the search continues from there.
 #[test]
 fn a_proof_mends_a_search() {
-    // Waves of which the deepest within -3 .. 3 is at -2.6, far from where any slope at 0 leads.
+    // The deepest wave within -3 .. 3 is at -2.6, far from where the slope at 0 leads.
     let waves = "cos(3*a + 1.6) + 0.1*a + 0.02*(a + b)^2";
     let exact = |x: [f64; 2]| (3.0 * x[0] + 1.6).cos() + 0.1 * x[0] + 0.02 * (x[0] + x[1]).powi(2);
     let grid = |count: usize| (0..=count).map(move |i| -3.0 + 6.0 * i as f64 / count as f64);
@@ -355,13 +353,13 @@ fn a_proof_mends_a_search() {
     for method in [Method::Rss, Method::SecondOrder, Method::Full] {
         let found = of_formula("a = { nominal = 0, tolerance = 3 }\nb = { nominal = 0, tolerance = 3 }", waves, method);
         assert!(found.proven() && found.least.value <= sampled, "{found:?} and {sampled}");
-        // The grid is as near as its steps: slope and curvature below 10 over 0.0015.
+        // The grid is accurate to its steps: slope and curvature below 10 over 0.0015.
         close(found.least.value, sampled, 1e-4, 1.0);
     }
 }
 
-/// The engine written as formulas. Its least values are vertices and proven; the greatest lie along a line, which no number of
-/// boxes covers: the bounds say how far off they can be.
+/// The engine as formulas. Its least values are vertices and proven. The greatest lie along a line that no number of boxes covers. The
+/// bounds state their greatest error.
 #[test]
 fn bounds_are_named_where_a_proof_does_not_end() {
     let angles: String = (1..=4)
@@ -381,22 +379,22 @@ fn bounds_are_named_where_a_proof_does_not_end() {
     assert!(!found.proven());
     close(proof.bounds[0], found.least.value, 1e-11, 1.0);
     assert!(proof.bounds[1] > found.greatest.value && proof.bounds[1] < found.greatest.value + 1e-3);
-    // All shafts at their place: 4 R/L, R at its upper end.
+    // All shafts are at their place: 4 R/L, with R at its upper end.
     close(found.greatest.value, 4.0 * 0.04254 / 0.1345, 1e-9, 1.0);
 }
 
-/// Where the formula has no value in part of the box, the others are enclosed.
+/// A formula without a value in part of the box: the other values are enclosed.
 #[test]
 fn a_proof_leaves_out_what_has_no_value() {
     let found = of_formula("a = { nominal = 1, tolerance = 1.5 }", "2 - sqrt(a)", Method::SecondOrder);
     let proof = found.proof.as_ref().unwrap();
     assert!(found.failed > 0);
     relative(found.least.value, 2.0 - 2.5f64.sqrt(), 1e-12);
-    // The greatest value, 2 at the very edge of the domain, is approached only.
+    // The greatest value, 2 at the very edge of the domain, is only approached.
     assert!(found.greatest.value > 1.9 && proof.bounds[1] >= found.greatest.value && proof.bounds[1] <= 2.0 + 1e-12);
 }
 
-/// Three sigma below the mean of an exponential distribution is nothing: it begins at its origin.
+/// Three sigma below the mean lies outside of an exponential distribution, which begins at its origin.
 #[test]
 fn extremes_stay_within_the_support() {
     let text = "[dimensions]\nx = { nominal = 1, distribution = \"exponential\" }\ny = { nominal = 5, tolerance = 0.1 }\n\
@@ -409,8 +407,8 @@ fn extremes_stay_within_the_support() {
     assert_eq!((found.failed, found.proven()), (0, true));
 }
 
-/// Coordinates of a position keep their circle: `3 x + 4 y` reaches 5 radii, not 7, and `x^2 - y^2 + x` what a walk round the
-/// edge finds.
+/// Coordinates of a position stay within their circle: `3 x + 4 y` reaches 5 radii, not 7, and `x^2 - y^2 + x` the extremes of a scan along
+/// the edge.
 #[test]
 fn positions_keep_their_circle() {
     let hole = || ["x", "y"].map(|name| Dimension::normal(name, 0.0, 0.1).unwrap().within_zone("hole")).to_vec();
@@ -425,7 +423,7 @@ fn positions_keep_their_circle() {
     let [least, greatest] =
         [values.iter().copied().fold(f64::INFINITY, f64::min), values.into_iter().fold(f64::MIN, f64::max)];
     let [low, high] = ends(&found);
-    // The steps of the walk leave 1e-11.
+    // The steps of the scan cause errors of 1e-11.
     close(low, least, 1e-6, 0.0);
     close(high, greatest, 1e-6, 0.0);
     for extreme in [&found.least, &found.greatest] {
@@ -433,10 +431,10 @@ fn positions_keep_their_circle() {
     }
 }
 
-/// The function of a zone's two coordinates and of one dimension more.
+/// Function of a zone's two coordinates and of one more dimension.
 type Planar = fn(f64, f64, f64) -> f64;
 
-/// Formulas with extremes on the edge of a zone and within it, of which every one rises or falls with `a`.
+/// Formulas with extremes on the edge of a zone and inside it. Each is monotonic in `a`.
 const PLANAR: [(&str, Planar); 6] = [
     ("a + x + y", |a, x, y| a + x + y),
     ("a + x - 0.4*y + x*y", |a, x, y| a + x - 0.4 * y + x * y),
@@ -446,7 +444,7 @@ const PLANAR: [(&str, Planar); 6] = [
     ("a + hypot(x + 0.1, y)", |a, x, y| a + (x + 0.1).hypot(y)),
 ];
 
-/// Points of a zone of half widths 0.2 and 0.3, as near to each other as 1e-4 along its edge.
+/// Points of a zone with half-widths 0.2 and 0.3, at distances of 1e-4 along its edge.
 fn zone(law: &str) -> Vec<[f64; 2]> {
     let turn = |angle: f64, radius: f64| [0.2 * radius * angle.cos(), 0.3 * radius * angle.sin()];
     let angles = |count: usize| (0..count).map(move |k| std::f64::consts::TAU * k as f64 / count as f64);
@@ -469,8 +467,8 @@ fn zone(law: &str) -> Vec<[f64; 2]> {
     }
 }
 
-/// Coordinates that share a zone stay within it, in a proof too: no point of it lies beyond the proven ends, and some lie next to them. Within a disc
-/// the samples are 1e-3 apart, where a value at rest is off by the square of that.
+/// Coordinates that share a zone stay within it, also in a proof: no point lies beyond the proven ends, and some lie next to them. Within a
+/// disc the samples are 1e-3 apart, which causes an error of the square of that at a stationary value.
 #[test]
 fn a_proof_over_a_zone_is_that_of_its_points() {
     for law in ["disc", "rim", "diamond"] {
@@ -504,7 +502,8 @@ fn a_proof_over_a_zone_is_that_of_its_points() {
     }
 }
 
-/// Columns of one file without tolerances of their own are the rows that were measured; with a drawing's tolerance every value of the band can be.
+/// Columns of one file without tolerances of their own have the measured rows as worst case. With a tolerance on the drawing every value of
+/// the band is possible.
 #[test]
 fn measured_rows_are_the_worst_case_of_their_columns() {
     let folder = tempfile::tempdir().unwrap();
@@ -548,7 +547,7 @@ fn measured_rows_are_the_worst_case_of_their_columns() {
     close(high, 1.1 + 0.4, 1e-9, 1.0);
 }
 
-/// A worst case that is required holds over the zone: the cheapest tolerances use all of the room, by the closed form of a disc.
+/// A required worst case holds over the zone: the cheapest tolerances use all of the limits, by the closed form of a disc.
 #[test]
 fn a_required_worst_case_is_that_of_the_zone() {
     use sensitol::allocation::{AllocationOptions, Status, allocate};
@@ -563,7 +562,7 @@ fn a_required_worst_case_is_that_of_the_zone() {
         all.iter().find(|dimension| dimension.name() == name).unwrap().half_band()
     };
     let (a, r) = (half("a"), half("h_x"));
-    // Greatest where both coordinates are r/sqrt 2.
+    // The value is greatest if both coordinates are r/sqrt 2.
     let greatest = 1.0 + a + 2f64.sqrt() * r + 0.25 * r * r;
     assert!(greatest <= 1.2 + 1e-6 && greatest > 1.2 - 1e-3, "{greatest}");
     assert!(!matches!(found.status, Status::Optimal | Status::NoFeasiblePointFound), "{:?}", found.status);

@@ -1,4 +1,4 @@
-//! Formulas: against a tree evaluator of the tests' own, errors with their places, laziness, and batches.
+//! Formulas: against a tree evaluator of the tests' own, errors with positions, laziness, and batches.
 
 use proptest::prelude::*;
 use sensitol::assembly::formula::{FailureReason, Formula, FormulaError, FormulaFault};
@@ -6,7 +6,7 @@ use sensitol::assembly::formula::{FailureReason, Formula, FormulaError, FormulaF
 use sensitol::assembly::formula::set::{FormulaSet, Meaning};
 use sensitol_testing::close;
 
-/// The value of one formula of `x0`, `x1`, `x2` at one point.
+/// Returns the value of one formula of `x0`, `x1`, `x2` at one point.
 fn value(text: &str, x: [f64; 3]) -> f64 {
     let set = set(&[("y", text)]);
     let columns = x.map(|x| [x]);
@@ -65,7 +65,7 @@ fn precedence_and_constants() {
     assert_eq!(value("x0*x1 - `x2`", [3.0, 4.0, 5.0]), 7.0);
 }
 
-/// A formula as a tree, its text with every parenthesis, and its value by Rust's own operators, one row at a time.
+/// Formula as a tree, with its text in full parentheses, and its value by Rust's own operators, one row at a time.
 #[derive(Debug, Clone)]
 enum Tree {
     Number(f64),
@@ -103,7 +103,7 @@ impl Tree {
                     "abs" => a.abs(),
                     "sqrt" => a.sqrt(),
                     "floor" => a.floor(),
-                    // Another last digit than Rust's, by the tests of `elementary`: what is looked at here is the evaluator.
+                    // The last digit differs from Rust's (see the tests of `elementary`), but this test concerns the evaluator only.
                     _ => value(&format!("{name}(x0)"), [a, 0.0, 0.0]),
                 }
             }
@@ -158,7 +158,7 @@ fn same(a: f64, b: f64) -> bool {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(500))]
 
-    /// To the last bit, on a batch that ends within a block, with both branches of every `if` taken by some rows.
+    /// Values agree to the last bit, on a batch that ends within a block, with both branches of every `if` taken by some rows.
     #[test]
     fn batches_equal_the_tree(trees in prop::collection::vec(trees(), 1..4), seed in 0..1000u32) {
         let texts: Vec<(String, String)> =
@@ -179,7 +179,7 @@ proptest! {
         prop_assert!(wrong.is_empty(), "{wrong:?} in {texts:?}");
     }
 
-    /// A formula without value is explained, one with a value is not.
+    /// A formula without a value is explained, and one with a value is not.
     #[test]
     fn what_fails_is_explained(tree in trees()) {
         let text = tree.text();
@@ -192,7 +192,7 @@ proptest! {
         }
     }
 
-    /// Any text is read or refused, never a panic, and a refusal has a place within the text.
+    /// Any text is parsed or refused without a panic, and the position of a refusal lies within the text.
     #[test]
     fn any_text_is_read_or_refused(text in "[a-z0-9+*/^()<>=!`., -]{0,40}|\\PC{0,40}") {
         if let Err(error) = Formula::parse(&text) {
@@ -215,7 +215,7 @@ fn powers() {
     assert_eq!(value("x0^x1", [2.0, 10.0, 0.0]), 1024.0);
 }
 
-/// NaN never passes for a result where IEEE 754 would let it vanish.
+/// NaN is never lost, although IEEE 754 would drop it in some operations.
 #[test]
 fn nan_never_vanishes() {
     for text in [
@@ -245,7 +245,7 @@ fn only_the_branch_taken_can_fail() {
     assert_eq!(&failure.text[failure.span], "acos(x0)");
 }
 
-/// The part that fails, in the formula where it stands, with its argument.
+/// A failure names the part that fails, its formula and its argument.
 #[test]
 fn failures_name_their_cause() {
     let set = set(&[
@@ -267,7 +267,7 @@ fn failures_name_their_cause() {
     assert_eq!(explain(5).reason, FailureReason::NotFinite { value: f64::INFINITY });
 }
 
-/// Every fault with the text at its place.
+/// Every fault has the position of its text.
 #[test]
 fn faults_have_their_place() {
     for (text, place, message) in [
@@ -314,7 +314,7 @@ fn undefined_names_and_cycles_have_their_place() {
     assert_eq!(error.to_string(), "`y` needs its own value: y -> y");
 }
 
-/// Deep nesting is refused; long sums and chains are read, evaluated and explained in little stack.
+/// Deep nesting is refused. Long sums and chains are parsed, evaluated and explained with little stack.
 #[test]
 fn size_is_no_danger() {
     let deep = |depth: usize| format!("{}x0{}", "(".repeat(depth), ")".repeat(depth));
@@ -324,7 +324,7 @@ fn size_is_no_danger() {
     assert!(matches!(Formula::parse(&powers).unwrap_err().fault, FormulaFault::TooDeep { .. }));
     let sum = vec!["x0"; 100_000].join(" + ");
     assert_eq!(value(&sum, [1.0, 0.0, 0.0]), 100_000.0);
-    // A thousand formulas, each an `if` within the next one's branch.
+    // A thousand formulas, each an `if` in a branch of the next one.
     let names: Vec<String> = (0..1000).map(|i| format!("f{i}")).collect();
     let texts: Vec<String> = (0..1000)
         .map(|i| if i == 0 { "x0".into() } else { format!("if(x1 > {i}, f{}, sqrt(x1 - {i}))", i - 1) })
@@ -336,7 +336,7 @@ fn size_is_no_danger() {
     assert!(set.explain(999, |_| 3.0).is_some());
 }
 
-/// Only what the asked formulas need counts as theirs.
+/// Formulas that are not asked for do not count as dependencies.
 #[test]
 fn dependence_is_known() {
     let set = set(&[("y", "a1 + x0"), ("a1", "2*x1"), ("z", "x2"), ("never", "if(1 < 2, x0, x1)")]);

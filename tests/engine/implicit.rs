@@ -1,5 +1,5 @@
-//! Implicit assemblies: against explicit formulas and closed forms, at their limits, and where they are written wrongly;
-//! and analyses by exact derivatives.
+//! Implicit assemblies: against explicit formulas and closed forms, at their limits, and with faulty definitions. Analyses use exact
+//! derivatives.
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -25,7 +25,7 @@ fn evaluated(problem: &Problem, points: &Points) -> Responses {
     out
 }
 
-/// The first characteristic at one point.
+/// Returns the value of the first characteristic at one point.
 fn value(problem: &Problem, x: &[f64]) -> Result<f64, EvaluationError> {
     let out = evaluated(problem, &Points::from_rows(&[x]));
     out.value(0, 0).ok_or_else(|| out.error(0, 0).expect("a value or an error").clone())
@@ -41,7 +41,7 @@ fn centre(problem: &Problem) -> Vec<f64> {
     problem.dimensions().iter().map(|dimension| dimension.nominal()).collect()
 }
 
-/// Points within three times the tolerances.
+/// Returns random points within three times the tolerances.
 fn random_points(problem: &Problem, rows: usize) -> Vec<Vec<f64>> {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(5);
     let mut row = || {
@@ -51,14 +51,14 @@ fn random_points(problem: &Problem, rows: usize) -> Vec<Vec<f64>> {
     (0..rows).map(|_| row()).collect()
 }
 
-/// A point of one problem for another one that has some of its dimensions, in another order.
+/// Converts a point of one problem to another one that has some of its dimensions, in another order.
 fn translated(from: &Problem, to: &Problem, x: &[f64]) -> Vec<f64> {
     let of = |name: &str| from.dimensions().iter().position(|dimension| dimension.name() == name);
     let dimension = |d: &sensitol::Dimension| of(d.name()).map_or(d.nominal(), |index| x[index]);
     to.dimensions().iter().map(dimension).collect()
 }
 
-/// Rounding of a hundred millimetres is 1e-14; the conditions amplify it a few times.
+/// Tolerance of results: the rounding of a hundred millimetres is 1e-14, and the conditions amplify it a few times.
 const ROUNDING: f64 = 1e-12;
 
 #[test]
@@ -97,7 +97,7 @@ fn a_four_bar_linkage_equals_its_closed_form() {
     }
 }
 
-/// `x = r cos(theta) + sqrt(l^2 - (e + r sin(theta))^2)`, all round and far from the start values.
+/// The closed form is `x = r cos(theta) + sqrt(l^2 - (e + r sin(theta))^2)`, over the full turn and far from the start values.
 #[test]
 fn a_slider_crank_equals_its_closed_form() {
     let problem = study(SLIDER).problem;
@@ -131,7 +131,7 @@ const SLIDER: &str = r#"
     x = { upper = 200 }
 "#;
 
-/// The direct linearisation method: its sensitivities are differences' limit, and the explicit formula's own.
+/// Sensitivities of the direct linearisation method are the limit of differences, and those of the explicit formula.
 #[test]
 fn sensitivities_are_exact() {
     let problem = example("stacked-blocks-loops/study.toml");
@@ -143,7 +143,7 @@ fn sensitivities_are_exact() {
             value(&problem, &x.iter().enumerate().map(|(e, x)| x + if e == d { u } else { 0.0 }).collect::<Vec<_>>())
                 .unwrap()
         };
-        // Richardson: errors of h^4 f'''''/20 and of rounding, 1e-14/h.
+        // Richardson extrapolation, with errors of h^4 f'''''/20 and of rounding, 1e-14/h.
         let slope = |h: f64| (at(h) - at(-h)) / (2.0 * h);
         let difference = (4.0 * slope(5e-4) - slope(1e-3)) / 3.0;
         close(derivatives.first[d].unwrap(), difference, 1e-8, 1.0);
@@ -152,7 +152,7 @@ fn sensitivities_are_exact() {
             close(derivatives.second[d].unwrap(), second, ROUNDING, 1.0);
         }
     }
-    // The study file's word for it.
+    // The same result from the study file.
     let text = std::fs::read_to_string(repository("examples/stacked-blocks-loops/study.toml")).unwrap();
     let options = study(&text.replace("method = \"rss\"", "method = \"rss\"\nderivatives = \"exact\"")).options;
     let linear = Options::from(Method::Rss).with_derivatives(DerivativeSource::Exact);
@@ -166,7 +166,7 @@ fn sensitivities_are_exact() {
     close(gap.moments.unwrap().sigma(), expected / 3.0, 1e-13, 0.0);
 }
 
-/// The same bits whatever the threads and the order of the points, and none of them depends on its neighbours.
+/// Results have the same bits for any number of threads and any order of the points. None depends on its neighbours.
 #[test]
 fn points_do_not_know_of_each_other() {
     let problem = example("four-bar/study.toml");
@@ -185,7 +185,7 @@ fn points_do_not_know_of_each_other() {
     assert_eq!(once[17], value(&problem, &rows[2999 - 17]).unwrap().to_bits());
 }
 
-/// `u^3 - 3u = x` has three branches for -2 < x < 2; the one through u = -2 at x = -2 .. ends at x = 2, u = -1.
+/// Solutions of `u^3 - 3u = x`, which has three branches for -2 < x < 2. The branch through u = -2 at x = -2 .. ends at x = 2, u = -1.
 fn cubic(start: f64, characteristic: &str) -> Problem {
     let text = format!(
         "[dimensions]\nx = {{ nominal = 0, tolerance = 0.1 }}\n[unknowns]\nu = {start}\n[equations]\n\
@@ -205,7 +205,7 @@ fn a_branch_is_followed_to_its_end() {
         close(value(&lower, &[x]).unwrap(), u, 1e-14 + 1e-15 / (3.0 * u * u - 3.0), 1.0);
     }
     close(value(&lower, &[-52.0]).unwrap(), -4.0, 1e-14, 0.0);
-    // Beyond the fold nothing is near,
+    // No solution is near beyond the fold.
     let error = value(&lower, &[2.5]).unwrap_err();
     let EvaluationError::Assembly(failure) = &error else { panic!("{error}") };
     let AssemblyFailure::Open { nominal: false, followed: Some(followed), residual, .. } = &**failure else {
@@ -213,7 +213,7 @@ fn a_branch_is_followed_to_its_end() {
     };
     close(*followed, 0.8, 1e-3, 0.0);
     close(*residual, -0.5, 1e-6, 0.0);
-    // and only another branch farther away.
+    // Only another branch exists farther away.
     let error = value(&lower, &[20.0]).unwrap_err();
     let EvaluationError::Assembly(failure) = &error else { panic!("{error}") };
     let AssemblyFailure::OtherBranch { unknown, found, followed, .. } = &**failure else { panic!("{error}") };
@@ -245,7 +245,7 @@ fn a_point_without_state_names_what_is_worst() {
     assert!(bound.contains("equation `sum` is off by") && bound.contains("`v` stands at its bound 3"), "{bound}");
 }
 
-/// Before anything is evaluated, and by how much.
+/// A loop that does not close is reported before any evaluation, with its residual.
 #[test]
 fn a_loop_that_does_not_close_says_by_how_much() {
     let text = std::fs::read_to_string(repository("examples/four-bar/study.toml")).unwrap();
@@ -255,7 +255,7 @@ fn a_loop_that_does_not_close_says_by_how_much() {
     };
     let EvaluationError::Assembly(failure) = &error else { panic!("{error}") };
     let AssemblyFailure::Open { nominal: true, worst, residual, start, .. } = &**failure else { panic!("{error}") };
-    // Crank at 60 degrees: the two other bars reach 200 of the sqrt(280^2 + 34.64^2) to the far pin.
+    // With the crank at 60 degrees the two other bars reach 200 of the sqrt(280^2 + 34.64^2) to the far pin.
     assert_eq!(worst, "loop `linkage` along x");
     close(residual.abs(), (280.0f64.hypot(34.641016) - 200.0) * 280.0 / 280.0f64.hypot(34.641016), 0.02, 0.0);
     let begun = 20.0 + 120.0 * 0.4f64.cos() - 80.0 * 1.5f64.cos() - 300.0;
@@ -265,14 +265,14 @@ fn a_loop_that_does_not_close_says_by_how_much() {
             .to_string()
             .starts_with("the assembly does not close at the nominal dimensions: loop `linkage` along x is off by")
     );
-    // A characteristic that needs none of it is no worse for it.
+    // A characteristic that does not depend on the loop is still evaluated.
     let unneeded =
         study(&(text.replace("nominal = 100.0", "nominal = 300.0") + "sum = { formula = \"crank + ground\" }\n"));
     let sum = unneeded.problem.only(&["sum"]).unwrap();
     assert_eq!(analyze(&sum, &Method::Rss.into()).unwrap().characteristics[0].nominal, Some(340.0));
 }
 
-/// A crank near its dead centre, driven by the slider.
+/// A crank near its dead centre, driven by the slider, causes a warning.
 #[test]
 fn a_nearly_singular_position_warns() {
     let warned = |x: f64| {
@@ -305,7 +305,7 @@ fn a_singular_nominal_position_is_an_error() {
     );
 }
 
-/// Conditions on the output of a model, at one evaluation more for the nominal state.
+/// Conditions depend on the output of a model, which takes one more evaluation for the nominal state.
 #[test]
 fn conditions_use_outputs_of_a_model() {
     let text = "[model]\nbuiltin = \"engine-balance\"\n[dimensions]\nL = { tolerance = 0.0001 }\n[unknowns]\nu = 100\n[equations]\n\
@@ -324,7 +324,7 @@ fn with(method: Method, derivatives: DerivativeSource) -> Options {
     Options::from(method).with_derivatives(derivatives)
 }
 
-/// A quadratic has its derivatives everywhere: by one evaluation as by a full stencil.
+/// All derivatives of a quadratic exist: exact ones by one evaluation agree with a full stencil.
 #[test]
 fn a_quadratic_by_exact_derivatives_and_by_differences() {
     let text = "[dimensions]\nx = { nominal = 2, tolerance = 0.3 }\ny = { nominal = 1, tolerance = [0, 0.6] }\nz = { nominal = -1, tolerance = 0.3 }\n\
@@ -355,7 +355,7 @@ fn a_quadratic_by_exact_derivatives_and_by_differences() {
     }
 }
 
-/// Unless told otherwise: exact sensitivities, moments of differences, and differences where nothing else exists.
+/// Sensitivities are exact by default, and moments come from differences. A difference replaces a sensitivity that does not exist.
 #[test]
 fn a_kink_has_a_difference_for_a_sensitivity() {
     let text = "[dimensions]\nx = { nominal = 1, tolerance = 0.3 }\ny = { nominal = 2, tolerance = 0.3 }\nz = { nominal = 1 }\n\

@@ -1,4 +1,4 @@
-//! Interval arithmetic: what formulas have over a box is never outside their enclosure.
+//! Interval arithmetic: bounds contain every value of a formula over a box.
 
 use proptest::prelude::*;
 use sensitol::assembly::formula::Formula;
@@ -19,7 +19,7 @@ fn value(set: &FormulaSet, x: [f64; 3]) -> f64 {
     y
 }
 
-/// Formulas of three variables, every function and operator among them.
+/// Formulas of three variables with every function and operator.
 fn formulas() -> impl Strategy<Value = String> {
     let number = prop_oneof![
         Just("0".to_owned()),
@@ -50,7 +50,7 @@ fn formulas() -> impl Strategy<Value = String> {
     })
 }
 
-/// A box: middles, and half widths of which some are 0.
+/// Boxes as middles and half-widths, some of which are 0.
 fn boxes() -> impl Strategy<Value = [[f64; 2]; 3]> {
     let half = prop_oneof![Just(0.0), 1e-9..1e-3, 1e-3..1.0, 1.0..4.0];
     let band =
@@ -65,8 +65,8 @@ fn within(interval: Interval, value: f64) -> bool {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 4000, ..ProptestConfig::default() })]
 
-    /// Random formulas at random points, the corners of the box among them. Derivatives: those of jets, which are exact up to
-    /// rounding: 1e-9 of their size, and 1e-12 where terms cancel.
+    /// Random formulas at random points and at the corners of the box. Exact derivatives by jets have rounding errors of 1e-9 of their
+    /// size, and 1e-12 if terms cancel.
     #[test]
     fn values_and_slopes_are_enclosed(text in formulas(), region in boxes(), parts in prop::collection::vec([0.0..=1.0, 0.0..=1.0, 0.0..=1.0], 12)) {
         let set = set(&text);
@@ -78,7 +78,7 @@ proptest! {
             if y.is_finite() {
                 prop_assert!(within(bounds.value, y), "{text} is {y} at {x:?}, outside {:?}", bounds.value);
             } else {
-                // A result with no value somewhere is not said to be whole; one that is too large for a double is not a break.
+                // A result without a value somewhere is not whole. One that is too large for a double has no break.
                 prop_assert!(y.is_infinite() || !bounds.value.is_whole(), "{text} has no value at {x:?}");
             }
             if !bounds.value.is_whole() {
@@ -105,7 +105,7 @@ fn ends(text: &str, a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [value.lower(), value.upper()]
 }
 
-/// Enclosures of single operations are as narrow as they can be: exact up to the last digits.
+/// Bounds of single operations are as narrow as possible, up to the last digits.
 #[test]
 fn single_operations_are_tight() {
     use std::f64::consts::PI;
@@ -120,7 +120,7 @@ fn single_operations_are_tight() {
         ("a/b", [1.0, 2.0], [-1.0, 4.0], [f64::NEG_INFINITY, f64::INFINITY]),
         ("a*a", [-1.0, 2.0], [0.0; 2], [0.0, 4.0]),
         ("a^4", [-2.0, 1.0], [0.0; 2], [0.0, 16.0]),
-        // Multiplied out: the dependency of the factors is lost.
+        // Multiplied out, the dependency of the factors is lost.
         ("a^3", [-2.0, 1.0], [0.0; 2], [-8.0, 4.0]),
         ("a^5.0", [-2.0, -1.0], [0.0; 2], [-32.0, -1.0]),
         ("a^(-2)", [-2.0, -0.5], [0.0; 2], [0.25, 4.0]),
@@ -152,7 +152,7 @@ fn single_operations_are_tight() {
     ];
     for &(text, a, b, expected) in cases {
         for (found, expected) in ends(text, a, b).into_iter().zip(expected) {
-            // Eight units in the last place: a library function and its widening, twice.
+            // The tolerance is eight units in the last place: a library function and its widening, twice.
             let near = found == expected || (found - expected).abs() <= 8.0 * f64::EPSILON * expected.abs().max(1e-300);
             // Near a multiple of pi the place itself is rounded.
             let near = near || text == "sin(a)" && (found - expected).abs() <= 1e-13;
@@ -161,7 +161,7 @@ fn single_operations_are_tight() {
     }
 }
 
-/// Rounding is outward: sums, products, quotients and roots of numbers that are no exact doubles.
+/// Rounding is outward for sums, products, quotients and roots of numbers that are not exact doubles.
 #[test]
 fn rounding_is_outward() {
     for text in ["a + b", "a*b", "a/b", "sqrt(a)", "a*a"] {
@@ -171,7 +171,7 @@ fn rounding_is_outward() {
     for (text, exact) in [("a + b", 0.75), ("a*b", 0.125), ("b/a", 2.0), ("sqrt(a)", 0.5), ("a - a", 0.0)] {
         assert_eq!(ends(text, [0.25; 2], [0.5; 2]), [exact; 2], "{text}");
     }
-    // A value below the least double is enclosed all the same.
+    // A value below the least double is enclosed too.
     let [lower, upper] = ends("exp(a)", [-800.0; 2], [0.0; 2]);
     assert!(lower == 0.0 && upper > 0.0);
     let [lower, upper] = ends("a*a*a*a", [-1e-100; 2], [0.0; 2]);
@@ -183,7 +183,7 @@ fn what_has_no_value_anywhere_is_empty() {
     for text in ["sqrt(a)", "ln(a)", "a^0.5", "asin(a)", "min(sqrt(a), 1)", "if(sqrt(a) < 1, 1, 2)"] {
         assert!(set(text).bounds(0, &[[-3.0, -2.0], [0.0; 2], [0.0; 2]]).value.is_empty(), "{text}");
     }
-    // In part of the box: the rest is enclosed, and known to be a part.
+    // The formula has a value in part of the box only: this part is enclosed and marked as not whole.
     let half = set("sqrt(a)").bounds(0, &[[-3.0, 4.0], [0.0; 2], [0.0; 2]]).value;
     assert_eq!((half.lower(), half.upper(), half.is_whole()), (0.0, 2.0, false));
 }

@@ -1,4 +1,4 @@
-//! Quantiles, densities and counts of the law of a surface, as an analysis reports them.
+//! Quantiles, densities and counts of the surface distribution, as in an analysis.
 
 use std::sync::Arc;
 
@@ -30,7 +30,7 @@ fn normal(sigma: f64) -> Law {
     Arc::new(Normal::new(0.0, sigma).unwrap())
 }
 
-/// A problem of these inputs without limits.
+/// Returns a problem of these inputs without limits.
 fn problem(laws: &[Law], function: impl Fn(&[f64]) -> f64 + Send + Sync + 'static) -> Problem {
     let dimension =
         |(d, law): (usize, &Law)| Dimension::distributed(format!("x{d}"), law.mean(), None, Arc::clone(law)).unwrap();
@@ -58,12 +58,12 @@ fn quantiles_without_limits_are_those_of_the_surface() {
         let end: f64 = halves.iter().sum();
         let (_, p) = QUANTILES[0];
         let exact = -end + (p * volume).powf(1.0 / n as f64);
-        // Where the power ends: no input has reached its other end.
+        // The power holds while no input has reached its other end.
         assert!(exact + end < 2.0 * 0.7);
         let sigma = found.moments.unwrap().sigma();
         for (figure, exact) in [(quantiles[0], exact), (quantiles[3], 0.0), (quantiles[6], -exact)] {
             let off = (figure.value - exact).abs();
-            // Sought to 1e-7 sigma.
+            // Quantiles are sought to 1e-7 sigma.
             assert!(
                 off <= figure.error.max(2e-7 * sigma) && figure.error < 1e-6 * sigma,
                 "{halves:?}: {figure:?} for {exact}"
@@ -73,7 +73,7 @@ fn quantiles_without_limits_are_those_of_the_surface() {
     }
 }
 
-/// A surface of every branch: sums, a form, a tree, two inputs, a cycle, a cycle beside a wide normal input.
+/// Returns a surface for every branch of the computation: sums, a form, a tree, two inputs, a cycle, a cycle beside a wide normal input.
 fn surfaces() -> Vec<(Branch, Problem)> {
     let cycle =
         |x: &[f64]| x[0] + 0.8 * x[1] + 0.1 * x[1] * x[1] + x[2] + 0.3 * (x[0] * x[1] - x[1] * x[2] + x[0] * x[2]);
@@ -89,7 +89,7 @@ fn surfaces() -> Vec<(Branch, Problem)> {
             problem(&[uniform(1.0), triangular(1.0), uniform(0.8), normal(1.0)], move |x| cycle(x) + x[3]),
         ),
     ];
-    // With limits, wide ones: without them the quantiles of a tree are those of points.
+    // Wide limits: without limits the quantiles of a tree come from points.
     let limits = SpecLimits::new(Some(-50.0), Some(50.0)).unwrap();
     let limited = |(branch, problem): (Branch, Problem)| {
         (branch, problem.asking([Characteristic::new("y").with_limits(limits)]).unwrap())
@@ -97,7 +97,8 @@ fn surfaces() -> Vec<(Branch, Problem)> {
     all.into_iter().map(limited).collect()
 }
 
-/// Quantiles that are sought together against the law's own search, which takes other contours, more panels, and a tilt for each.
+/// Quantiles that are sought together agree with the distribution's own search, which takes other contours, more panels, and a tilt for
+/// each.
 #[test]
 fn quantiles_sought_together_are_those_sought_alone() {
     for (branch, problem) in surfaces() {
@@ -117,7 +118,8 @@ fn quantiles_sought_together_are_those_sought_alone() {
     }
 }
 
-/// Products of inputs that are not normal, as a tree, without limits: quantiles of points, within their errors of those of the contour.
+/// Quantiles of a tree (products of inputs that are not normal) without limits come from points. They agree with those of the contour
+/// within their errors.
 #[test]
 fn quantiles_of_a_tree_without_limits_are_those_of_its_law() {
     let laws = [uniform(1.0), triangular(1.0), normal(0.4), uniform(0.7), triangular(0.5)];
@@ -133,12 +135,12 @@ fn quantiles_of_a_tree_without_limits_are_those_of_its_law() {
     for (figure, (tail, p)) in found.quantiles.unwrap().iter().zip(QUANTILES) {
         let exact = law.quantile(tail, p);
         assert!((figure.value - exact.value).abs() <= figure.error + exact.error, "{tail:?} {p}: {figure:?} {exact:?}");
-        // 2^12 points with one direction integrated.
+        // Points: 2^12, with one direction integrated.
         assert!(figure.error < 2e-2 * law.sigma(), "{tail:?} {p}: {figure:?}");
     }
 }
 
-/// The indices by percentiles are those of the surface's quantiles, and limits change none of these.
+/// Indices by percentiles use the surface's quantiles, and limits do not change them.
 #[test]
 fn percentiles_follow_the_surface() {
     let laws = [triangular(0.9), triangular(0.2)];
@@ -156,10 +158,10 @@ fn percentiles_follow_the_surface() {
     assert_eq!(limited.yield_source, Some(YieldSource::SurfaceLaw));
 }
 
-/// Of a cycle the density by points, against differences of a distribution function by tensor panels with the normal input last.
+/// The density of a cycle by points agrees with differences of a distribution function by tensor panels, with the normal input last.
 #[test]
 fn a_sampled_density_is_within_its_error() {
-    // y = z0 + 0.8 z1 + 0.5 z2 + b (z0 z1 + z1 z2 + z0 z2): given the uniform z0 and z1 a line of the normal z2.
+    // y = z0 + 0.8 z1 + 0.5 z2 + b (z0 z1 + z1 z2 + z0 z2) is a line in the normal z2 for given uniform z0 and z1.
     for b in [0.05, 0.1] {
         let pairs = [(0, 1, b), (1, 2, b), (0, 2, b)];
         let parts = [1.0, 0.8, 0.5].map(|slope| Some(Univariate::of_coefficients(&[slope]))).to_vec();
@@ -171,7 +173,7 @@ fn a_sampled_density_is_within_its_error() {
         let cdf = |y: f64| -> f64 {
             let at = |u: f64, v: f64| {
                 let (line, slope) = (u + 0.8 * v + b * u * v, 0.5 + b * (u + v));
-                // The normal input is below this, or above it where the slope is negative.
+                // The normal input lies below this value, or above it if the slope is negative.
                 let z = (y - line) / slope * slope.signum();
                 0.5 * libm::erfc(-z / 2f64.sqrt())
             };
@@ -186,14 +188,15 @@ fn a_sampled_density_is_within_its_error() {
             let exact =
                 (8.0 * (cdf(y + step) - cdf(y - step)) - (cdf(y + 2.0 * step) - cdf(y - 2.0 * step))) / (12.0 * step);
             let found = law.density(y);
-            // The stated error leaves one in a hundred beyond; differences are good to 1e-9.
+            // The stated error is exceeded in one of a hundred cases. Differences are accurate to 1e-9.
             assert!((found.value - exact).abs() <= 1.2 * found.error + 1e-8, "{b} {k}: {found:?} for {exact}");
             assert!(found.error < 0.03 * exact + 1e-3 / law.sigma(), "{b} {k}: {found:?} for {exact}");
         }
     }
 }
 
-/// The table that pages draw: of sampled laws too, with errors, and it holds all of the probability but what lies beyond its ends.
+/// Tables of the density for drawings exist for sampled distributions too, with errors. Each covers the whole probability except for that
+/// beyond its ends.
 #[test]
 fn densities_of_every_branch_are_drawn() {
     for (branch, problem) in surfaces() {
@@ -202,14 +205,15 @@ fn densities_of_every_branch_are_drawn() {
         let table = found.density.unwrap_or_else(|| panic!("{branch:?} has a density"));
         let area: f64 = table.windows(2).map(|two| 0.5 * (two[1][0] - two[0][0]) * (two[0][1] + two[1][1])).sum();
         let error: f64 = table.windows(2).map(|two| 0.5 * (two[1][0] - two[0][0]) * (two[0][2] + two[1][2])).sum();
-        // Trapezia over corners, and over the logarithmic peak of a form of two normal inputs; 1e-4 beyond the ends.
+        // The errors come from trapezia over corners, and over the logarithmic peak of a form of two normal inputs; 1e-4 lies beyond the
+        // ends.
         assert!((area - 1.0).abs() < 4e-3 + error && error < 0.02, "{branch:?}: {area} ± {error}");
         assert!(table.iter().all(|[_, density, error]| *density >= 0.0 && *error >= 0.0));
     }
 }
 
 fn values(seed: u64, count: usize) -> Vec<f64> {
-    // A linear congruence: any values do.
+    // Pseudo-random values by a linear congruential generator.
     let mut state = seed;
     let mut next = || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -218,8 +222,8 @@ fn values(seed: u64, count: usize) -> Vec<f64> {
     (0..count).map(|_| next() + next() * next()).collect()
 }
 
-/// Three lists of 110 values are 1.3 million sums, which are counted at points: within the stated error of all sums, at every
-/// limit and quantile of five such surfaces.
+/// Three lists of 110 values have 1.3 million sums, which are counted at points. The counts agree with all sums within the stated error, at
+/// every limit and quantile of five such surfaces.
 #[test]
 fn counted_shares_are_within_their_errors() {
     for seed in 1..6 {
@@ -242,7 +246,7 @@ fn counted_shares_are_within_their_errors() {
             let (exact_below, exact_above) = (share_below(lower + 1e-9), 1.0 - share_below(upper - 1e-9));
             assert!((below.value - exact_below).abs() <= below.error, "{p}: {below:?} for {exact_below}");
             assert!((above.value - exact_above).abs() <= above.error, "{p}: {above:?} for {exact_above}");
-            // Not more than it must be: three standard errors of as many points, and five points.
+            // The error is not larger than necessary: three standard errors of as many points, and five points.
             assert!(below.error < 3.2 * (p / 65_536.0f64).sqrt() + 8.0 / 65_536.0, "{p}: {below:?}");
             for (figure, (tail, p)) in law.quantiles.unwrap().iter().zip(QUANTILES) {
                 let rank = (1.331e6 * p) as usize;
@@ -253,7 +257,7 @@ fn counted_shares_are_within_their_errors() {
     }
 }
 
-/// Many values beside an input with a density wide enough are no long sum: the law is exact, a mean of normal distributions.
+/// Many values beside an input with a density that is wide enough have an exact distribution, a mean of normal distributions.
 #[test]
 fn many_values_beside_a_density_are_exact() {
     let list = values(3, 400);
@@ -269,7 +273,7 @@ fn many_values_beside_a_density_are_exact() {
     assert!((found.value - exact).abs() <= found.error + 1e-12 * exact && found.error < 1e-8, "{found:?} for {exact}");
 }
 
-/// Two lists of 300 values have 90 000 sums: a step function by the list of them.
+/// Two lists of 300 values have 90 000 sums: the distribution is a step function.
 #[test]
 fn two_lists_are_a_step_function() {
     let lists = [values(5, 300), values(6, 300)];

@@ -1,5 +1,5 @@
-//! Studies without a slope at their means: products and fourth powers are all that they have. Shares and quantiles beside quadrature and closed
-//! forms.
+//! Studies without a slope at their means, which have products and fourth powers only. Shares and quantiles are compared with quadrature
+//! and closed forms.
 
 use sensitol::analysis::{Analysis, CharacteristicAnalysis};
 use sensitol::distribution::{Distribution, Normal};
@@ -10,7 +10,7 @@ use serde_json::json;
 /// Sigma of the angles.
 const ANGLE: f64 = 0.02;
 
-/// The analysis of a formula of normal angles `a`, `b`, `c` and a normal length `d` of this sigma.
+/// Returns the analysis of a formula of normal angles `a`, `b`, `c` and a normal length `d` of this sigma.
 fn analyzed(formula: &str, lower: f64, length: Option<f64>) -> Analysis {
     let mut dimensions = json!({});
     for (name, used) in [("a", "a"), ("b", "b)"), ("c", "+ c)")] {
@@ -29,8 +29,8 @@ fn analyzed(formula: &str, lower: f64, length: Option<f64>) -> Analysis {
     analyze(&study.problem, &options).unwrap()
 }
 
-/// The probability of `y + d` below a limit, over a grid of angles. The trapezoidal rule converges faster than any power of its step, as soon as
-/// that resolves the length.
+/// Returns the probability of `y + d` below a limit, over a grid of angles. The trapezoidal rule converges faster than any power of its
+/// step, once the step resolves the length.
 fn below(limit: f64, angles: usize, length: f64, y: impl Fn([f64; 3]) -> f64) -> f64 {
     let step = if angles == 2 { 0.0125 } else { 0.05 };
     let reach = (7.0 / step) as i32;
@@ -53,7 +53,7 @@ fn below(limit: f64, angles: usize, length: f64, y: impl Fn([f64; 3]) -> f64) ->
     sum
 }
 
-/// The share below the limit is right within three of its errors, and the law has passed its tests.
+/// Checks that the share below the limit is right within three of its errors, and that the surface distribution has passed its tests.
 fn agrees(analysis: &Analysis, right: f64) {
     let one: &CharacteristicAnalysis = &analysis.characteristics[0];
     let (below, error) = (one.capability.unwrap().below.unwrap(), one.error_estimate.as_ref().unwrap().yield_.unwrap());
@@ -65,7 +65,7 @@ fn agrees(analysis: &Analysis, right: f64) {
     assert!(quantiles.is_sorted(), "{quantiles:?}");
 }
 
-/// The count is 28 249 ppm, as the quadrature of the study's author has it.
+/// The count is 28 249 ppm, as in the quadrature of the study's author.
 #[test]
 fn an_arm_of_two_links_has_the_rejects_of_a_quadrature() {
     let analysis = analyzed("300*(cos(a) - 1) + 200*(cos(a + b) - 1) + d", -0.6, Some(0.01));

@@ -1,4 +1,4 @@
-//! Yields that rest on measured rows: what a sample proves of the process that it comes from.
+//! Yields that depend on measured rows: the confidence that a sample gives about its process.
 
 use std::sync::Arc;
 
@@ -28,7 +28,7 @@ fn law(of: impl Distribution + 'static) -> Law {
     Arc::new(of)
 }
 
-/// Values of a law, the same for a seed.
+/// Returns values of a distribution, which depend on the seed only.
 fn drawn(of: &Law, n: usize, seed: u64) -> Vec<f64> {
     let mut values = vec![0.0; n];
     of.probability().unwrap().fill(&mut Xoshiro256PlusPlus::seed_from_u64(seed), &mut values);
@@ -39,14 +39,14 @@ fn measured(name: &str, values: &[f64]) -> Dimension {
     Dimension::distributed(name, 0.0, None, law(Measured::new(values).unwrap())).unwrap()
 }
 
-/// The sum of its dimensions, with an upper limit and a target yield.
+/// Returns the problem of the sum of its dimensions, with an upper limit and a target yield.
 fn sum(dimensions: Vec<Dimension>, upper: f64, target: f64) -> Problem {
     let limits = SpecLimits::new(None, Some(upper)).unwrap();
     let asked = Characteristic::new("y").with_limits(limits).with_target_yield(target).unwrap();
     Problem::new(dimensions, Closure::scalar("y", |x| x.iter().sum())).unwrap().asking([asked]).unwrap()
 }
 
-/// Of a problem whose formula proves the surface: `x + z` as a study, where `x` are these values.
+/// Returns a study of `x + z`, where `x` has these values and the formula proves the surface.
 fn study(values: &[f64], assumed: &str, upper: f64, target: f64) -> Study {
     let folder = tempfile::tempdir().unwrap();
     let rows: Vec<String> = values.iter().map(|value| format!("{value}")).collect();
@@ -60,7 +60,7 @@ fn study(values: &[f64], assumed: &str, upper: f64, target: f64) -> Study {
     Study::read(&path).unwrap()
 }
 
-/// 195 rows of a normal process that keep a limit which 5071 ppm of the process do not.
+/// Returns 195 rows of a normal process that all keep a limit, and the limit, which 5071 ppm of the process exceed.
 fn kept() -> (Vec<f64>, f64) {
     let process = law(Normal::new(0.0, 1.0).unwrap());
     let upper = process.probability().unwrap().upper_quantile(5071e-6);
@@ -68,7 +68,7 @@ fn kept() -> (Vec<f64>, f64) {
     (rows, upper)
 }
 
-/// 195 rows without a reject leave 1.87 % of the process open, in every command, and prove nothing.
+/// Rows without a reject: if 195 have none, up to 1.87 % of the process may be rejected, in every command. No target is proven.
 #[test]
 fn rows_without_a_reject_meet_no_target_of_a_thousandth() {
     let (rows, upper) = kept();
@@ -88,7 +88,7 @@ fn rows_without_a_reject_meet_no_target_of_a_thousandth() {
             options.control = control;
             let found = simulate(&study.problem, &options).unwrap();
             let one = &found.characteristics[0];
-            // The points and the rows are independent errors.
+            // The errors of points and rows are independent.
             let [low, _] = one.yield_interval().unwrap();
             let points = 1.0 - one.yield_.unwrap().interval[0];
             close(1.0 - low, most.hypot(points), 1e-9, 0.0);
@@ -107,7 +107,7 @@ fn rows_without_a_reject_meet_no_target_of_a_thousandth() {
     assert!(compared.ran.iter().all(|ran| ran.verdicts[0] != Some(Verdict::Met)), "{:?}", compared.ran);
 }
 
-/// Of several samples the smallest rules, and a formula beside them that proves its surface proves no yield.
+/// The smallest of several samples decides. A formula that proves its surface proves no yield beside them.
 #[test]
 fn the_smallest_sample_rules() {
     let (rows, upper) = kept();
@@ -118,13 +118,13 @@ fn the_smallest_sample_rules() {
     let [low, _] = one.yield_interval().unwrap();
     close(1.0 - low, 1.0 - 0.025_f64.powf(1.0 / 195.0), 0.01, 0.0);
     assert_eq!(one.verdict(), Some(Verdict::Inconclusive));
-    // As many rows as the target asks for meet it: ln(0.025)/ln(0.999) = 3688.
+    // The target is met by as many rows as it requires: ln(0.025)/ln(0.999) = 3688.
     let enough = drawn(&law(Triangular::new(-1.0, 0.0, 1.0).unwrap()), 3700, 5);
     let found = analyze(&sum(vec![measured("x", &enough)], 1.5, 0.999), &Method::Full.into()).unwrap();
     assert_eq!(found.characteristics[0].verdict(), Some(Verdict::Met));
 }
 
-/// A measured dimension that hardly matters leaves hardly anything open, and the verdict is that of the others.
+/// A measured dimension with a small effect adds a small error, and the verdict is that of the others.
 #[test]
 fn a_small_share_leaves_little_open() {
     let rows = drawn(&law(Normal::new(0.0, 0.05).unwrap()), 60, 1);
@@ -135,7 +135,7 @@ fn a_small_share_leaves_little_open() {
     assert_eq!(one.verdict(), Some(Verdict::Met));
 }
 
-/// Counts of one sample have the exact interval of a count.
+/// A count of rejects in one sample has the exact interval of a count.
 #[test]
 fn rejects_among_rows_are_a_count() {
     let (mut rows, upper) = kept();
@@ -148,21 +148,21 @@ fn rejects_among_rows_are_a_count() {
     close(most, high, 1e-9, 0.0);
 }
 
-/// A lot of a process, beside an assumed normal dimension or alone.
+/// Lot of a process, with an assumed normal dimension or alone.
 struct Lot {
     process: Law,
     n: usize,
     /// Sigma of the assumed dimension; 0 for none.
     assumed: f64,
-    /// The share of the process that is rejected.
+    /// Share of the process that is rejected.
     rejected: f64,
-    /// Whether a smooth law is fitted to the values.
+    /// True if a smooth distribution is fitted to the values.
     smooth: bool,
 }
 
 impl Lot {
-    /// The limit that so many exceed: the mean reject probability over 20 000 quantiles of the process, halved until a double has no
-    /// more digits.
+    /// Returns the limit that this share exceeds: the mean reject probability over 20 000 quantiles of the process, bisected to the last
+    /// digit.
     fn upper(&self) -> f64 {
         let probability = self.process.probability().unwrap();
         let at = |i: i32| probability.quantile((f64::from(i) + 0.5) / 20_000.0);
@@ -182,8 +182,8 @@ impl Lot {
         high
     }
 
-    /// Of these lots, how many intervals of analysis and of simulation hold the truth, and how many verdicts are wrongly met: the target
-    /// lies just above the truth.
+    /// Returns for these lots how many intervals of analysis and of simulation contain the true yield, and how many verdicts are wrongly
+    /// met. The target lies just above the true yield.
     fn held(&self, lots: u64) -> [[usize; 2]; 2] {
         let (upper, target) = (self.upper(), 1.0 - 0.98 * self.rejected);
         let one = |seed: u64| {
@@ -209,7 +209,7 @@ impl Lot {
             ])
         };
         let found: Vec<[[bool; 2]; 2]> = (0..lots).into_par_iter().filter_map(one).collect();
-        // A fit that does not exist is an error of the study, and no result.
+        // A fit that does not exist is an error of the study, and gives no result.
         assert!(10 * found.len() >= 7 * lots as usize, "{} of {lots}", found.len());
         let missing = lots as usize - found.len();
         let count = |of: usize, which: usize| found.iter().filter(|one| one[of][which]).count();
@@ -217,7 +217,7 @@ impl Lot {
     }
 }
 
-/// Whatever the process is like, 95 % intervals hold its yield in 93 % of the lots or more, and no more verdicts are wrongly met.
+/// For every process, 95 % intervals contain its yield in 93 % of the lots or more, and no more verdicts are wrongly met.
 #[test]
 fn intervals_of_lots_hold_the_yield_of_the_process() {
     const LOTS: u64 = 40;
@@ -251,7 +251,7 @@ fn intervals_of_lots_hold_the_yield_of_the_process() {
         for of in 0..2 {
             held[of] += found[of][0];
             wrong[of] += found[of][1];
-            // By itself three lots in 40 are more than 7 %: six would be more than chance.
+            // Three of 40 lots are more than 7 % already. Six would be more than chance.
             assert!(found[of][0] >= 34 && found[of][1] <= 6, "{} of {}: {found:?}", lot.process.name(), lot.n);
         }
     }
@@ -261,7 +261,7 @@ fn intervals_of_lots_hold_the_yield_of_the_process() {
     }
 }
 
-/// Cpk and sigma are judged by what the rows leave open, and joint yields too.
+/// Cpk, sigma and joint yields include the uncertainty of the rows in their verdicts.
 #[test]
 fn every_requirement_knows_the_size_of_the_sample() {
     let rows = drawn(&law(Normal::new(0.0, 1.0).unwrap()), 50, 3);
@@ -277,7 +277,7 @@ fn every_requirement_knows_the_size_of_the_sample() {
         [analysed[0].verdict, simulated[0].verdict]
     };
     let sigma = values.sigma().hypot(0.1);
-    // A sigma of 50 rows is known to a tenth: 2 of 1/sqrt(100).
+    // The standard error of sigma from 50 rows is a tenth of it, 1/sqrt(100), so that 2 % are not decided.
     assert_eq!(judged(Requirement::Sigma(1.02 * sigma)), [Verdict::Inconclusive; 2]);
     assert_eq!(judged(Requirement::Sigma(1.5 * sigma)), [Verdict::Met; 2]);
     assert_eq!(judged(Requirement::Sigma(0.6 * sigma)), [Verdict::Missed; 2]);
@@ -298,7 +298,7 @@ fn every_requirement_knows_the_size_of_the_sample() {
     assert_eq!(simulate(&problem, &options).unwrap().joint_requirement.unwrap().verdict, Verdict::Inconclusive);
 }
 
-/// Rows of a block, and values that vary together with others by a matrix.
+/// Rows of a block, and values that are correlated with others by a matrix, are counted too.
 #[test]
 fn blocks_and_correlated_samples_are_counted_too() {
     let folder = tempfile::tempdir().unwrap();
@@ -318,7 +318,7 @@ fn blocks_and_correlated_samples_are_counted_too() {
     let one = simulate(&study.problem, &SimulationOptions::default()).unwrap().characteristics.remove(0);
     close(1.0 - one.yield_interval().unwrap()[0], most, 0.01, 0.0);
     let sampling = one.sampling.unwrap();
-    // Sigma of 195 rows is known to 2/sqrt(390), a tenth.
+    // Sigma of 195 rows is accurate to 2/sqrt(390), a tenth.
     let [low, high] = sampling.sigma.unwrap();
     assert!((1.15..1.35).contains(&(high / low)), "{low} {high}");
 
@@ -336,7 +336,7 @@ fn blocks_and_correlated_samples_are_counted_too() {
     assert!(analysed[1].interval.is_none() && analysed[0].interval.is_some(), "unknown is not zero: {analysed:?}");
 }
 
-/// The example with twelve columns of sixty rows: limits far out leave what sixty rows leave.
+/// In the example with twelve columns of sixty rows, distant limits leave the uncertainty of sixty rows.
 #[test]
 fn an_example_of_measured_parts_proves_nothing() {
     let study = Study::read(&repository("examples/compression-clearance/measured.toml")).unwrap();

@@ -1,4 +1,4 @@
-//! Methods: exact on what they are exact for, invariant under what should not matter, right options only.
+//! Methods: exactness, invariances, and the options of each.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ fn analysis(dimensions: Vec<Dimension>, method: Method, f: impl Fn(&[f64]) -> f6
     analyze(&Problem::new(dimensions, Closure::scalar("y", f)).unwrap(), &method.into()).unwrap()
 }
 
-/// Dimensions of every kind of distribution there is.
+/// Dimensions with every kind of distribution.
 fn mixed() -> Vec<Dimension> {
     let skewed = CentralMoments::new(-2.0, [0.04, 0.016, 0.0144, 0.01408, 0.01696, 0.0237312, 0.03797248]).unwrap();
     vec![
@@ -32,7 +32,7 @@ fn shape(dimension: &Dimension) -> StandardMoments {
     dimension.distribution().unwrap().standard_moments()
 }
 
-/// Every method is exact for a linear function: sigma, skewness, kurtosis from the inputs' own cumulants.
+/// Every method is exact for a linear function: sigma, skewness and kurtosis follow from the cumulants of the inputs.
 #[test]
 fn linear_functions_are_exact() {
     let slopes = [2.0, -7.0, 0.5, 1e-3];
@@ -61,7 +61,7 @@ fn linear_functions_are_exact() {
     }
 }
 
-/// `full` and `classic` are exact for any quadratic, `six-n` for one with its pairs; derivatives come out as they are.
+/// `full` and `classic` are exact for any quadratic, `six-n` for one with its pairs. Derivatives are exact too.
 #[test]
 fn quadratics_are_exact() {
     let f = |x: &[f64]| 1.0 + x[0] - 2.0 * x[1] + 0.3 * x[0] * x[0] + 0.7 * x[1] * x[2] - 0.2 * x[0] * x[3] + x[3];
@@ -95,7 +95,8 @@ fn five_points_are_exact_for_quartics() {
     close(found.sensitivities[0].second.unwrap(), 0.0, 1e-12, 1.0);
 }
 
-/// The same of a uniform input and one that is known by its moments alone; both against the moments of `x^3` over (-1, 1).
+/// Five points are exact for a uniform input and one that is known by its moments alone. Both are compared with the moments of `x^3` over
+/// (-1, 1).
 #[test]
 fn five_points_of_other_inputs() {
     let (variance, fourth) = (1.0 / 7.0, 1.0 / 13.0);
@@ -105,14 +106,14 @@ fn five_points_of_other_inputs() {
     let found = cubic(uniform);
     relative(found.variance(), variance, 1e-12);
     relative(found.kurtosis().unwrap(), fourth / (variance * variance), 1e-12);
-    // Eight moments give the variance of a cubic exactly, and its fourth moment, of degree twelve, by a rule of degree 8.
+    // Eight moments give the variance of a cubic exactly, but its fourth moment, of degree twelve, by a rule of degree 8.
     let moments = CentralMoments::new(0.0, [1.0 / 3.0, 0.0, 0.2, 0.0, 1.0 / 7.0, 0.0, 1.0 / 9.0]).unwrap();
     let found = cubic(Dimension::distributed("m", 0.0, None, Arc::new(moments)).unwrap());
     relative(found.variance(), variance, 1e-12);
     relative(found.kurtosis().unwrap(), fourth / (variance * variance), 0.06);
 }
 
-/// A bend of which nothing is linear, for the properties below.
+/// Curved function without a linear direction, for the properties below.
 fn bent(x: &[f64]) -> f64 {
     (x[0] * x[1]).sin() + (0.3 * x[2]).exp() * x[3] - (1.0 + x[1] * x[1] + x[3] * x[3]).sqrt()
 }
@@ -120,7 +121,7 @@ fn bent(x: &[f64]) -> f64 {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 
-    /// Measuring an input or the output in other units changes nothing but the units.
+    /// Other units of an input or the output change nothing but the units.
     #[test]
     fn units_do_not_matter(powers in prop::array::uniform4(-12..13i32), out in -12..13i32, which in 0..4usize) {
         let means = [0.4, -0.3, 0.2, 0.6];
@@ -145,14 +146,14 @@ proptest! {
         }
     }
 
-    /// The order of the dimensions does not matter, nor does the sign of the output or of an input.
+    /// Results do not depend on the order of the dimensions, or on the sign of the output or of an input.
     #[test]
     fn order_and_signs_do_not_matter(rotation in 0..4usize, minus: bool, flip in prop::array::uniform4(any::<bool>()), which in 0..4usize) {
         let means = [0.4, -0.3, 0.2, 0.6];
         let tolerances = [0.3, 0.2, 0.4, 0.1];
         let method = SECOND_ORDER[which];
-        // Both up and both down is another pair of corners when one of the two is counted the other way round: with the
-        // two-point stencil all turn or none.
+        // A change of one sign turns the pair of corners both up and both down into another pair. With the two-point stencil all signs
+        // change, or none.
         let alone = matches!(method, Method::SecondOrder | Method::Classic);
         let sign = |d: usize| if flip[if alone { d } else { 0 }] { -1.0 } else { 1.0 };
         let one = analysis(normals(&means, &tolerances), method, bent);
@@ -178,7 +179,7 @@ proptest! {
         }
     }
 
-    /// Shares sum to 1 whatever the inputs.
+    /// Shares sum to 1 for all inputs.
     #[test]
     fn shares_sum_to_one(which in 0..4usize, a in -2.0..2.0f64, b in -2.0..2.0f64) {
         let analysis = analysis(mixed(), SECOND_ORDER[which], move |x| {
@@ -191,7 +192,7 @@ proptest! {
     }
 }
 
-/// A dimension of zero tolerance changes nothing, to the last bit.
+/// A dimension with zero tolerance changes no bit of the result.
 #[test]
 fn zero_tolerance_changes_nothing() {
     for method in SECOND_ORDER {
@@ -205,10 +206,10 @@ fn zero_tolerance_changes_nothing() {
     }
 }
 
-/// The strongest pairs are those of the largest variances, zero slopes or not.
+/// The strongest pairs have the largest variances, even if slopes are zero.
 #[test]
 fn six_n_picks_the_strongest_pairs() {
-    // x4 and x5 have no slope but much curvature; x0 has the largest slope.
+    // x4 and x5 have large curvature but no slope. x0 has the largest slope.
     let f = |x: &[f64]| 3.0 * x[0] + 0.1 * (x[1] + x[2] + x[3]) + 2.0 * x[4] * x[4] + x[5] * x[5] + 0.5 * x[4] * x[5];
     let found = analysis(standard(6), Method::SixN, f).characteristics.remove(0);
     assert_eq!(found.interactions.len(), 6);

@@ -1,4 +1,4 @@
-//! Plans: exact counts, every point once, realised steps, and what happens when points fail.
+//! Plans: exact counts, every point once, realised steps, and failed points.
 
 use sensitol::distribution::{CentralMoments, Normal, Uniform};
 
@@ -8,7 +8,7 @@ use sensitol::plan::{Nodes, Spread};
 use sensitol::{Analysis, Closure, Dimension, Method, Options, Problem, RunSummary, StopReason, analyze};
 use sensitol_testing::{Asked, close, normals, refusing, relative, standard};
 
-/// Evaluations of a black box of `n` dimensions, each of them seen to arrive and to arrive once.
+/// Returns the number of evaluations of a black box with `n` dimensions, and checks that each point is evaluated once.
 fn count(n: usize, options: &Options) -> usize {
     let asked = Asked::default();
     let problem = Problem::new(standard(n), asked.watching(|x| x.iter().sum())).unwrap();
@@ -26,11 +26,11 @@ fn counts_are_exact() {
         for method in [Method::Rss, Method::WorstCase, Method::SecondOrder] {
             assert_eq!(count(n, &method.into()), 2 * n + 1);
         }
-        // Twelve points check, two listen, two look far out.
+        // Twelve check points, two points that measure the scatter, and two far out.
         assert_eq!(count(n, &Method::Auto.into()), 2 * n + 17);
         assert_eq!(count(n, &Method::Full.into()), n * n + n + 1);
         assert_eq!(count(n, &Method::Classic.into()), 2 * n * n + 1);
-        // Below three dimensions there are fewer than N pairs.
+        // With fewer than three dimensions there are fewer than N pairs.
         let pairs = n.min(n * (n - 1) / 2);
         let six_n = Options::from(Method::SixN);
         assert_eq!(count(n, &six_n), 4 * n + 1 + 2 * pairs);
@@ -74,7 +74,7 @@ fn an_asymmetric_band_costs_one_evaluation_more() {
     relative(found.moments.unwrap().mean(), 50.5, 1e-14);
 }
 
-/// A nominal value that happens to be a node is not evaluated twice.
+/// A nominal value that is also a node is not evaluated twice.
 #[test]
 fn a_point_of_two_purposes_is_evaluated_once() {
     // The mean lies one sigma above the nominal value, and the step is one sigma.
@@ -104,7 +104,7 @@ fn what_does_not_vary_costs_nothing() {
     assert_eq!(fixed.linear_share, Some(0.0));
 }
 
-/// Nominal over sigma of 1e10: the step asked for is not the step taken, and the derivative is right all the same.
+/// The nominal value is 1e10 sigma, so that the realised step differs from the wanted one. The derivative is right nevertheless.
 #[test]
 fn differences_are_divided_by_the_realised_step() {
     for mean in [1e3, 1e6, 1e10, 1e13] {
@@ -123,7 +123,7 @@ fn a_tolerance_that_vanishes_beside_the_nominal_is_refused() {
     assert!(error.to_string().contains("too small beside the mean"), "{error}");
 }
 
-/// Matched nodes integrate what they promise: with the mean, degree 4 and, for symmetric inputs, 5.
+/// Matched nodes, together with the mean, integrate degree 4, and for symmetric inputs degree 5.
 #[test]
 fn pair_nodes_are_matched_to_the_moments() {
     let nodes = |distribution: &dyn sensitol::distribution::Distribution| Nodes::matched(distribution, Spread::Pair).u;
@@ -133,14 +133,14 @@ fn pair_nodes_are_matched_to_the_moments() {
     close(uniform[1], 1.8f64.sqrt(), 1e-15, 0.0);
     let skewed = CentralMoments::new(0.0, [1.0, 2.0, 9.0, 44.0, 265.0, 1854.0, 14833.0]).unwrap();
     let [a, b]: [f64; 2] = nodes(&skewed).try_into().unwrap();
-    // Weights of the three-point rule with nodes a, 0, b and mean 0, variance 1.
+    // Weights of the three-point rule with nodes a, 0, b, mean 0 and variance 1.
     let (wa, wb) = (1.0 / (a * (a - b)), 1.0 / (b * (b - a)));
     for (order, expected) in [(1, 0.0), (2, 1.0), (3, 2.0), (4, 9.0)] {
         close(wa * a.powi(order) + wb * b.powi(order), expected, 1e-14, 1.0);
     }
 }
 
-/// Five points of a distribution known by its moments; few atoms fall back to the pair.
+/// A distribution known by its moments has five points. One with few values has the pair instead.
 #[test]
 fn five_points_fall_back_where_there_are_none() {
     let two = CentralMoments::new(0.0, [1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0]).unwrap();
@@ -164,7 +164,7 @@ fn steps_can_be_set() {
     assert_eq!(along(1), [-0.5, -0.25, 0.25, 0.5]);
 }
 
-/// One stage holds all that can be known beforehand: the strongest pairs alone have to wait.
+/// One stage has all points that are known in advance. Only the strongest pairs are evaluated later.
 #[test]
 fn stages_are_as_few_as_can_be() {
     let problem = Problem::new(standard(6), Closure::scalar("y", |x| x.iter().product())).unwrap();
@@ -178,7 +178,7 @@ fn stages_are_as_few_as_can_be() {
     }
 }
 
-/// Of a function with known structure, nothing is evaluated that no characteristic can depend on.
+/// Points that no characteristic depends on are not evaluated, if the structure of the function is known.
 #[test]
 fn pairs_that_no_characteristic_shares_are_not_evaluated() {
     let study = sensitol_study::Study::from_toml(
@@ -208,7 +208,7 @@ fn warnings(analysis: &Analysis, code: &str) -> usize {
     analysis.warnings.iter().filter(|warning| warning.code() == code).count()
 }
 
-/// A node at which the model fails is replaced by one half as far, and the derivative is as exact as before.
+/// A node at which the model fails is replaced by one at half the distance, and the derivative is as exact as before.
 #[test]
 fn a_failed_node_is_replaced_by_a_nearer_one() {
     let function = |x: &[f64]| 3.0 * x[0] + 0.5 * x[0] * x[0] + x[1];
@@ -223,7 +223,7 @@ fn a_failed_node_is_replaced_by_a_nearer_one() {
     assert_eq!(warnings(&analysis, "lost-derivative"), 0);
 }
 
-/// A side that fails however near costs the curvature alone; both sides cost the moments.
+/// If a side fails at every distance, the curvature is lost. If both sides fail, the moments are lost.
 #[test]
 fn a_failed_side_costs_the_curvature_and_both_the_moments() {
     let function = |x: &[f64]| 3.0 * x[0] + x[1] * x[1];
@@ -256,7 +256,7 @@ fn a_failed_corner_leaves_a_one_sided_interaction() {
     let found = &analysis.characteristics[0];
     let pair = found.interactions.get(0).unwrap();
     assert_eq!((pair.mixed, pair.share, found.left_out_share), (None, None, None));
-    // Of four corners two remain.
+    // Two of four corners have a value.
     let analysis = analyze(&both, &Method::Classic.into()).unwrap();
     relative(analysis.characteristics[0].interactions.get(0).unwrap().mixed.unwrap(), 1.0, 1e-14);
 }
@@ -271,7 +271,7 @@ fn a_failed_centre_leaves_nothing() {
     assert_eq!(warnings(&analysis, "failed-points"), 1);
 }
 
-/// One characteristic that fails does not disturb another one of the same points.
+/// A characteristic that fails does not affect another one at the same points.
 #[test]
 fn characteristics_fail_alone() {
     let function = |x: &[f64]| Ok([x[0] + x[1], (1.0 - x[0]).sqrt()]);

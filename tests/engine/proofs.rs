@@ -1,7 +1,7 @@
-//! What is called exact is exact: random polynomials beside an expansion of their own, for every method.
+//! Proofs: figures that are called exact are exact. Random polynomials are compared with an independent expansion, for every method.
 //!
-//! The expansion knows nothing of the engine: a polynomial in standardised inputs is multiplied by itself, term by term in twice the
-//! precision of doubles, and every power of an input has its moment in closed form.
+//! The expansion does not use the engine. A polynomial in standardised inputs is multiplied by itself, term by term in twice the precision
+//! of doubles, and every power of an input has its moment in closed form.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 
 use sensitol_testing::data;
 
-/// A number in twice the precision of a double (Dekker 1971).
+/// Number in twice the precision of a double (Dekker 1971).
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Double(f64, f64);
 
@@ -27,7 +27,7 @@ impl Double {
         Self(value, 0.0)
     }
 
-    /// `a/b` of two doubles.
+    /// Returns `a/b` of two doubles in twice their precision.
     fn ratio(a: f64, b: f64) -> Self {
         let quotient = a / b;
         Self(quotient, (-quotient).mul_add(b, a) / b)
@@ -71,12 +71,12 @@ enum Shape {
 }
 
 const SHAPES: [Shape; 5] = [Shape::Normal, Shape::Uniform, Shape::Triangular, Shape::Exponential, Shape::TwoPoint];
-/// The fourth power of a quartic.
+/// Highest power of an input: the fourth power of a quartic.
 const HIGHEST: usize = 16;
 
 impl Shape {
-    /// `E u^k`: normal `(k-1)!!`; uniform `3^(k/2)/(k+1)`; symmetric triangular `6^(k/2) 2/((k+1)(k+2))`; exponential the number of
-    /// permutations of k without a fixed point; two points 1.
+    /// Returns the moments `E u^k`: normal `(k-1)!!`; uniform `3^(k/2)/(k+1)`; symmetric triangular `6^(k/2) 2/((k+1)(k+2))`; exponential
+    /// the number of permutations of k without a fixed point; two points 1.
     fn moments(self) -> Vec<Double> {
         let even = |k: usize, value: Double| if k.is_multiple_of(2) { value } else { Double::ZERO };
         let half = |base: f64, k: usize| Double::of(base).power(k / 2);
@@ -97,7 +97,8 @@ impl Shape {
         (0..=HIGHEST).map(moment).collect()
     }
 
-    /// The half band, or the mean of an exponential one, by sigma: `T/3`, `T/sqrt 3`, `T/sqrt 6`, the mean itself, `T`.
+    /// Returns sigma from the half-width, or from the mean of an exponential distribution: `T/3`, `T/sqrt 3`, `T/sqrt 6`, the mean itself,
+    /// `T`.
     fn sigma(self, tolerance: f64) -> Double {
         let root = |square: f64| {
             let value = square.sqrt();
@@ -130,7 +131,7 @@ impl Shape {
     }
 }
 
-/// Powers of all inputs, and a coefficient for each.
+/// Powers of all inputs, with a coefficient for each.
 type Terms = BTreeMap<Vec<u8>, Double>;
 
 fn add(terms: &mut Terms, powers: Vec<u8>, more: Double) {
@@ -148,7 +149,7 @@ fn product(a: &Terms, b: &Terms) -> Terms {
     all
 }
 
-/// A polynomial in standardised inputs, with their moments.
+/// Polynomial in standardised inputs, with their moments.
 #[derive(Debug, Clone)]
 struct Expansion {
     terms: Terms,
@@ -165,7 +166,7 @@ impl Expansion {
         self.terms.iter().map(|(powers, of)| of.times(self.mean_of(powers))).fold(Double::ZERO, Double::plus)
     }
 
-    /// `E[a b]` with another one over the same inputs.
+    /// Returns `E[a b]` of two polynomials over the same inputs.
     fn mean_of_product(&self, other: &Terms) -> Double {
         let mut sum = Double::ZERO;
         for (first, x) in &self.terms {
@@ -177,7 +178,7 @@ impl Expansion {
         sum
     }
 
-    /// About its mean.
+    /// Returns the polynomial minus its mean.
     fn centred(&self) -> Self {
         let mut terms = self.terms.clone();
         let mean = self.mean();
@@ -185,7 +186,7 @@ impl Expansion {
         Self { terms, ..self.clone() }
     }
 
-    /// The variance of its conditional mean given these inputs.
+    /// Returns the variance of the conditional mean given these inputs.
     fn variance_given(&self, given: &dyn Fn(usize) -> bool) -> f64 {
         let mut terms = Terms::new();
         for (powers, of) in &self.terms {
@@ -233,7 +234,7 @@ impl Expansion {
     }
 }
 
-/// The figures of an expansion.
+/// Figures of an expansion.
 #[derive(Debug)]
 struct Truth {
     mean: f64,
@@ -246,17 +247,17 @@ struct Truth {
     pairs: BTreeMap<(usize, usize), f64>,
 }
 
-/// A random study of one formula, and its expansion.
+/// Random study of one formula, with its expansion.
 struct Case {
     study: Study,
     text: String,
     expansion: Expansion,
     degree: usize,
-    /// Whether it has powers of one input and products of two alone, as surfaces do.
+    /// True if all terms are powers of one input or products of two, so that a surface can hold them.
     is_surface: bool,
 }
 
-/// Sparse, dense, and such as a surface holds.
+/// Kinds of polynomials: sparse, dense, and such as a surface can hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Kind {
     Sparse,
@@ -321,7 +322,7 @@ impl Case {
             (0..n).map(|input| (format!("x{input}"), shapes[input].entry(means[input], tolerances[input]))).collect();
         let study = json!({ "dimensions": dimensions, "characteristics": { "y": { "formula": text } } });
         let study = Study::from_json(&study.to_string(), "study").unwrap_or_else(|error| panic!("{text}: {error}"));
-        // Every input as its mean and its sigma times a standardised one.
+        // Replaces every input by its mean and its sigma times a standardised one.
         let standard = |input: usize| {
             let mut line = vec![0; n];
             let mean = Terms::from([(line.clone(), Double::of(means[input]))]);
@@ -339,17 +340,17 @@ impl Case {
             one.into_iter().for_each(|(powers, of)| add(&mut terms, powers, of));
         }
         let moments = shapes.iter().map(|shape| shape.moments()).collect();
-        // About other means a product of three may have become one of two, never the other way round.
+        // About other means a product of three may become one of two, but not vice versa.
         let is_surface =
             terms.iter().all(|(powers, of)| holds(powers) || of.value() == 0.0 || powers.iter().all(|of| *of == 0));
         Self { study, text, expansion: Expansion { terms, moments }, degree, is_surface }
     }
 }
 
-/// The largest difference that is called none.
+/// Largest relative difference of equal figures.
 const SAME: f64 = 1e-12;
 
-/// Compares all figures of a characteristic that is called exact; where one is off, its name and both values.
+/// Compares all figures of a characteristic that is called exact. Returns the name and both values of a wrong one.
 fn wrong(found: &CharacteristicAnalysis, truth: &Truth) -> Option<String> {
     let moments = found.moments.unwrap();
     let mut figures = vec![
@@ -397,7 +398,7 @@ fn is_exact(found: &CharacteristicAnalysis) -> bool {
     found.verification.as_ref().is_some_and(|of| matches!(of.kind, VerificationKind::Exact { .. }))
 }
 
-/// Analyses with a budget that pays a dozen check points and no sample: what is not proven need not be known well here.
+/// Budget of the analyses. It allows a dozen check points and no sample, because figures that are not proven need no accuracy here.
 const BUDGET: usize = 700;
 
 #[test]
@@ -434,7 +435,7 @@ fn whatever_is_called_exact_is_exact() {
             for source in sources(method) {
                 let mut options = Options::from(method).with_budget(BUDGET);
                 options.derivatives = source;
-                // A method that needs more points, or has no choice of derivatives.
+                // Fails for a method that needs more points, or has no choice of derivatives.
                 let Ok(found) = analyze(&case.study.problem, &options) else { continue };
                 let found = &found.characteristics[0];
                 if !is_exact(found) {
@@ -451,7 +452,7 @@ fn whatever_is_called_exact_is_exact() {
     let found: Vec<_> = cases.par_iter().map(of).collect();
     let faults: Vec<&String> = found.iter().flat_map(|(_, _, faults)| faults).collect();
     assert!(faults.is_empty(), "{} figures are not exact: {faults:#?}", faults.len());
-    // A formula that a surface holds is exact by default, and nothing else is by any method.
+    // A formula that a surface can hold is exact by default. No method is exact for any other one.
     for (case, called, _) in &found {
         let by_default = called.contains(&(Method::Auto, None));
         assert_eq!(by_default, case.is_surface, "degree {}: {}", case.degree, case.text);
@@ -466,7 +467,7 @@ fn whatever_is_called_exact_is_exact() {
     }
 }
 
-/// The default method of a hundred and fifty random quadratics: all of them are exact.
+/// The default method is exact for all of a hundred and fifty random quadratics.
 #[test]
 fn quadratics_are_exact_by_default() {
     let of = |seed: u64| {
@@ -489,7 +490,7 @@ fn studied(dimensions: &Value, formula: &str, limits: [Option<f64>; 2]) -> Study
     Study::from_json(&study.to_string(), "study").unwrap_or_else(|error| panic!("{formula}: {error}"))
 }
 
-/// The cases of tests/data/proofs.json: name, study and figures.
+/// Returns the cases of tests/data/proofs.json: name, study and figures.
 fn cases() -> Vec<(String, Study, Value)> {
     let of = |case: &Value| {
         let limits = ["lower", "upper"].map(|limit| case[limit].as_f64());
@@ -499,7 +500,7 @@ fn cases() -> Vec<(String, Study, Value)> {
     data("proofs.json").as_array().unwrap().iter().map(of).collect()
 }
 
-/// Interactions that a screening finds, and that are not there: by default the formula knows better, for nothing.
+/// Screening finds interactions that do not exist. By default the interactions come from the formula, without evaluations.
 #[test]
 fn quadratics_are_known_from_their_formulas() {
     for (name, study, truth) in cases() {
@@ -534,7 +535,7 @@ fn quadratics_are_known_from_their_formulas() {
     }
 }
 
-/// An estimate is listed as one, counts as not examined, and proves nothing: of the same functions by differences, and as black boxes.
+/// An estimate is reported as one, counts as not examined, and proves nothing: for the same functions by differences, and as black boxes.
 #[test]
 fn an_estimate_stays_an_estimate() {
     let mut screened = 0;
@@ -557,7 +558,7 @@ fn an_estimate_stays_an_estimate() {
     assert!(screened > 0, "no case is screened any more");
 }
 
-/// What rounding does to coefficients that cancel is in the error: `x^2 + y` as the rest of numbers near a million.
+/// The error includes the rounding of coefficients that cancel: `x^2 + y` as the remainder of numbers near a million.
 #[test]
 fn rounding_of_coefficients_is_in_the_error() {
     let dimensions = json!({ "x": { "nominal": 0.0, "sigma": 1.0 }, "y": { "nominal": 0.0, "sigma": 1.0 } });
@@ -571,7 +572,7 @@ fn rounding_of_coefficients_is_in_the_error() {
             let found = analyze(&study.problem, &method.into()).unwrap().characteristics.remove(0);
             assert!(is_exact(&found), "{} {formula}", method.name());
             let (moments, estimate) = (found.moments.unwrap(), found.error_estimate.unwrap());
-            // Variance 2 of the square, and 1.
+            // The variance is 2 for the square, plus 1.
             let off = [(moments.mean() - mean).abs(), (moments.sigma() - 3f64.sqrt()).abs()];
             let errors = [estimate.mean.unwrap(), estimate.sigma.unwrap()];
             for (off, error) in off.into_iter().zip(errors) {
@@ -581,7 +582,7 @@ fn rounding_of_coefficients_is_in_the_error() {
     }
 }
 
-/// A budget that pays fewer points than a sample takes by itself pays a smaller sample: the error falls as the root of the points.
+/// A budget below the cost of the default sample gives a smaller sample, whose error grows with the root of the ratio.
 #[test]
 fn a_budget_makes_the_sample_of_a_formula_smaller() {
     let dimensions = json!({
@@ -600,7 +601,7 @@ fn a_budget_makes_the_sample_of_a_formula_smaller() {
     };
     let whole = error(None);
     for (budget, part) in [(60_000, 1.0), (40_000, 2.0), (20_000, 4.0), (15_000, 8.0)] {
-        // Errors go by the root of the points in the core, and are known to a quarter from so few randomisations.
+        // Errors fall with the root of the points in the core, and so few randomisations measure them to a quarter.
         let found = error(Some(budget));
         assert!(found <= 3.0 * f64::sqrt(part) * whole, "{budget}: {found} for {whole}");
     }

@@ -1,4 +1,4 @@
-//! Dimension reduction and three-point products: exact where they claim it, brute-force sums elsewhere, points that are lost.
+//! Dimension reduction and three-point products: exact cases, brute-force sums for other cases, and lost points.
 
 use std::sync::Arc;
 
@@ -45,7 +45,7 @@ fn pair(a: &str, b: &str, value: f64) -> Pair {
     Pair { between: [a.to_owned(), b.to_owned()], value }
 }
 
-/// Against mean and the cumulants 2 to 4.
+/// Compares moments with the mean and the cumulants 2 to 4.
 #[track_caller]
 fn cumulants(found: Moments, [mean, variance, third, fourth]: [f64; 4], tolerance: f64) {
     close(found.mean(), mean, tolerance, variance.sqrt());
@@ -54,8 +54,8 @@ fn cumulants(found: Moments, [mean, variance, third, fourth]: [f64; 4], toleranc
     close(found.excess().unwrap(), fourth / variance.powi(2), tolerance, 1.0);
 }
 
-/// Moments 1 to 5 with three nodes, 1 to 8 with five and seven, 1 to 4 of the three-point rule: against the moments that each
-/// distribution knows in closed form. 1e-11: some units in the last place of the rule, times the power.
+/// Rules have moments 1 to 5 with three nodes, 1 to 8 with five and seven, and the three-point rule 1 to 4. The expected moments are the
+/// closed forms of each distribution. The tolerance 1e-11 is some units in the last place of the rule, times the power.
 #[test]
 fn rules_have_the_moments_of_their_distributions() {
     let parts = vec![
@@ -71,7 +71,7 @@ fn rules_have_the_moments_of_their_distributions() {
         Arc::new(Mixture::new(parts).unwrap()),
         Arc::new(Measured::new(&[9.98, 10.00, 10.00, 10.01, 10.03, 10.07, 9.9, 9.97]).unwrap()),
         Arc::new(Measured::new(&[1.0, 2.0, 2.0]).unwrap()),
-        // Of an exponential distribution.
+        // Moments of an exponential distribution.
         Arc::new(CentralMoments::new(10.0, [1.0, 2.0, 9.0, 44.0, 265.0, 1854.0, 14833.0]).unwrap()),
     ];
     for law in laws {
@@ -101,8 +101,8 @@ fn rules_have_the_moments_of_their_distributions() {
     assert_eq!([3, 5, 7].map(|m| nodes(&known, m)), [3, 5, 5], "eight moments make a rule of five nodes at most");
 }
 
-/// A sum of a squared normal, a uniform and an exponential input: cumulants add. Of the fourth power of a square, of degree 8,
-/// the rule of five nodes is exact.
+/// Cumulants of a squared normal, a uniform and an exponential input add. The rule of five nodes is exact for the fourth power of a square,
+/// of degree 8.
 #[test]
 fn sums_are_exact() {
     let half = 0.7f64;
@@ -133,7 +133,7 @@ fn sums_are_exact() {
     }
 }
 
-/// Shares sum to 1, with what is left out where that is known.
+/// Shares sum to 1, together with the part that is left out if that is known.
 #[test]
 fn shares_sum_to_one() {
     for method in QUADRATURES {
@@ -147,7 +147,7 @@ fn shares_sum_to_one() {
     }
 }
 
-/// Functions of whose terms each has two dimensions, in closed form: forms of normals by their eigenvalues.
+/// Functions whose terms have two dimensions each, in closed form: forms of normals by their eigenvalues.
 #[test]
 fn products_of_two_are_exact() {
     let bivariate = |n: usize, f: fn(&[f64]) -> f64| {
@@ -155,13 +155,13 @@ fn products_of_two_are_exact() {
     };
     // A triangle: eigenvalues 1, -1/2, -1/2.
     cumulants(bivariate(3, |x| x[0] * x[1] + x[1] * x[2] + x[0] * x[2]), [0.0, 3.0, 6.0, 54.0], 1e-13);
-    // Two that do not meet.
+    // Two products without a common dimension.
     cumulants(bivariate(4, |x| x[0] * x[1] + x[2] * x[3]), [0.0, 2.0, 0.0, 12.0], 1e-13);
-    // A cycle of four: (x0 + x2)(x1 + x3).
+    // A cycle of four dimensions: (x0 + x2)(x1 + x3).
     cumulants(bivariate(4, |x| x[0] * x[1] + x[1] * x[2] + x[2] * x[3] + x[3] * x[0]), [0.0, 4.0, 0.0, 96.0], 1e-13);
-    // With lines and parabolas: (x0 + x1)^2 + x1 with variance 2 and covariance 1, chi-square about a line.
+    // Lines and parabolas: (x0 + x1)^2 is twice a chi-square variable of one degree.
     cumulants(bivariate(2, |x| (x[0] + x[1]).powi(2)), [2.0, 8.0, 64.0, 768.0], 1e-12);
-    // No normals: a product of independent inputs has products of raw moments.
+    // Inputs that are not normal: a product of independent inputs has products of raw moments.
     let dimensions = vec![of("e", Exponential::new(0.0, 2.0).unwrap()), Dimension::uniform("u", 1.0, 1.0).unwrap()];
     let raw = [1.0, 2.0, 8.0, 48.0, 384.0].iter().zip([1.0, 1.0, 4.0 / 3.0, 2.0, 16.0 / 5.0]).map(|(e, u)| e * u);
     let raw: Vec<f64> = raw.collect();
@@ -173,13 +173,13 @@ fn products_of_two_are_exact() {
         cumulants(moments(&found), [mean, variance, third, fourth - 3.0 * variance * variance], 1e-12);
         let one = &found.characteristics[0];
         close(one.interactions.get(0).unwrap().mixed.unwrap(), 1.0, 1e-12, 1.0);
-        // Variances 4 and 1/3, and both together; the curvatures are none.
+        // Variances 4 and 1/3, and a joint part. The curvatures are 0.
         close(one.interactions.get(0).unwrap().share.unwrap(), 4.0 / 3.0 / variance, 1e-12, 1.0);
         assert_eq!(one.left_out_share, Some(0.0));
     }
 }
 
-/// Four inputs of four kinds and a function of everything, against sums over whole grids in 60 digits.
+/// A general function of four inputs of four kinds, against sums over whole grids in 60 digits.
 #[test]
 fn reductions_are_those_of_brute_force() {
     let truth = data("dimension-reduction.json");
@@ -217,7 +217,7 @@ fn reductions_are_those_of_brute_force() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
 
-    /// Random tables with random probabilities, some pairs without any: against the enumeration of every combination.
+    /// Random tables with random probabilities, some pairs without any, against the enumeration of every combination.
     #[test]
     fn tables_are_summed_as_enumerated(
         numbers in prop::collection::vec(-1.0..1.0f64, 120),
@@ -257,7 +257,7 @@ proptest! {
         let middle = mean(&|y| y);
         let sigma = mean(&|y| (y - middle).powi(2)).sqrt();
         let found = tables.moments();
-        // Sums of a hundred roundings; the offset costs the digits that it has beside 1.
+        // The tolerance covers sums of a hundred roundings. The offset costs as many digits as it has beside 1.
         close(found.moments.mean(), offset + middle, 1e-14, 1e2);
         relative(found.moments.sigma(), sigma, 1e-12);
         close(found.moments.skewness().unwrap(), mean(&|y| ((y - middle) / sigma).powi(3)), 1e-11, 1.0);
@@ -268,8 +268,7 @@ proptest! {
     }
 }
 
-/// A function of which no deviation of one input meets another's, and one that mixes all three: what a product of three levels is
-/// exact for.
+/// Functions for which a product of three levels is exact: one without interactions, and one that mixes all three dimensions.
 #[test]
 fn three_levels_are_exact_where_they_claim_it() {
     let found =
@@ -285,12 +284,13 @@ fn three_levels_are_exact_where_they_claim_it() {
     let third = raw[2] - 3.0 * raw[1] * mean + 2.0 * mean.powi(3);
     let fourth = raw[3] - 4.0 * raw[2] * mean + 6.0 * raw[1] * mean * mean - 3.0 * mean.powi(4);
     cumulants(found, [mean, variance, third, fourth - 3.0 * variance * variance], 1e-12);
-    // At a mean of 1e6 sigmas a raw fourth moment would have no digit left; 1e-9: the function itself has ten.
+    // At a mean of 1e6 sigmas a raw fourth moment would have no digit left. The tolerance is 1e-9, because the function itself has ten
+    // digits.
     let far = analysis(standard(2), &Method::ThreePoint.into(), |x| 1e6 + x[0] * x[1]);
     cumulants(moments(&far), [1e6, 1.0, 0.0, 6.0], 1e-9);
 }
 
-/// Skewness and kurtosis of a parabola take powers beyond a rule of three nodes: it says so, and one of five is exact.
+/// Skewness and kurtosis of a parabola need powers beyond a rule of three nodes, which causes a warning. A rule of five is exact.
 #[test]
 fn shallow_rules_are_named() {
     let of = |options: &Options| analysis(standard(2), options, |x| x[0] + 0.2 * x[0] * x[0] + x[1]);
@@ -298,7 +298,7 @@ fn shallow_rules_are_named() {
     let shallow = [with_nodes(Method::DimensionReduction, 3), Method::ThreePoint.into()];
     assert!(shallow.iter().all(warns));
     assert!(!warns(&Method::DimensionReduction.into()));
-    // b^2 (1 + 1) + 2 a^2; 6 a b^2 + 8 a^3.
+    // Variance b^2 (1 + 1) + 2 a^2, third moment 6 a b^2 + 8 a^3.
     let expected = (6.0 * 0.2 + 8.0 * 0.008) / 2.08f64.powf(1.5);
     relative(moments(&of(&Method::DimensionReduction.into())).skewness().unwrap(), expected, 1e-12);
     assert!((moments(&of(&shallow[1])).skewness().unwrap() - expected).abs() > 1e-3, "the warning is needed");
@@ -306,7 +306,7 @@ fn shallow_rules_are_named() {
     assert!(straight.warnings.iter().all(|warning| warning.code() != "shallow-rules"));
 }
 
-/// Along the eigenvectors of correlated normals: a line, and a parabola along one of them.
+/// Correlated normals are integrated along their eigenvectors: a line, and a parabola along one of them.
 #[test]
 fn correlated_inputs_go_by_eigenvectors() {
     let problem = |f: fn(&[f64]) -> f64| {
@@ -328,16 +328,16 @@ fn correlated_inputs_go_by_eigenvectors() {
         close(one.sensitivities[2].linear_share.unwrap(), 1.0 / expected[1], 1e-12, 1.0);
         assert_eq!(one.left_out_share, None);
     }
-    // A product of the two: r, 1 + r^2, 6 r + 2 r^3, 6 (1 + 6 r^2 + r^4).
+    // Cumulants of a product of the two: r, 1 + r^2, 6 r + 2 r^3, 6 (1 + 6 r^2 + r^4).
     let r = 0.6f64;
     let product = found(|x| (x[0] - 5.0) * (x[1] + 2.0), &Method::BivariateDimensionReduction.into());
     let expected = [r, 1.0 + r * r, 6.0 * r + 2.0 * r.powi(3), 6.0 * (1.0 + 6.0 * r * r + r.powi(4))];
     cumulants(moments(&product), expected, 1e-12);
-    // Three levels: mean and sigma, a polynomial of degree 4.
+    // Three levels give mean and sigma, a polynomial of degree 4.
     let levels = moments(&found(|x| (x[0] - 5.0) * (x[1] + 2.0), &Method::ThreePoint.into()));
     close(levels.mean(), r, 1e-12, 1.0);
     relative(levels.variance(), 1.0 + r * r, 1e-12);
-    // 2N+1 and 4N+1, and nothing for a direction that does not vary.
+    // The counts are 2N+1 and 4N+1, and nothing for a direction that does not vary.
     assert_eq!([3, 5].map(|m| found(|x| x[0], &with_nodes(Method::DimensionReduction, m)).run.evaluations), [7, 13]);
     let tied = Problem::new(standard(2), Closure::scalar("y", |x| x[0] + x[1])).unwrap();
     let tied = tied.correlated(&[pair("x0", "x1", 1.0)]).unwrap();
@@ -346,7 +346,7 @@ fn correlated_inputs_go_by_eigenvectors() {
     cumulants(moments(&tied), [0.0, 4.0, 0.0, 0.0], 1e-12);
 }
 
-/// The units of correlated dimensions do not matter, as those of a covariance would.
+/// The units of correlated dimensions do not matter, in contrast to eigenvectors of a covariance.
 #[test]
 fn eigenvectors_know_no_units() {
     let found = |unit: f64, method: Method| {
@@ -364,8 +364,8 @@ fn eigenvectors_know_no_units() {
     }
 }
 
-/// Lognormal inputs whose logarithms are added: normal, whatever their correlation. The coefficient of the normal variables behind
-/// is known in closed form, `ln(1 + r sqrt((e^(s^2) - 1)(e^(t^2) - 1)))/(s t)`.
+/// A sum of logarithms of lognormal inputs is normal for every correlation. The correlation of the underlying normal variables has the
+/// closed form `ln(1 + r sqrt((e^(s^2) - 1)(e^(t^2) - 1)))/(s t)`.
 #[test]
 fn correlated_lognormals_have_normal_logarithms() {
     let (s, t, r) = (0.3f64, 0.5f64, 0.4f64);
@@ -380,15 +380,15 @@ fn correlated_lognormals_have_normal_logarithms() {
     let behind = (1.0 + r * ((s * s).exp_m1() * (t * t).exp_m1()).sqrt()).ln() / (s * t);
     let variance = s * s + 4.0 * t * t + 4.0 * behind * s * t;
     let found = analyze(&problem, &Method::DimensionReduction.into()).unwrap();
-    // Quantiles are good to 1e-14, the coefficient behind to 1e-12.
+    // Quantiles are accurate to 1e-14, the correlation of the normal variables to 1e-12.
     cumulants(moments(&found), [0.0, variance, 0.0, 0.0], 1e-10);
-    // The reference is at the medians, and the means are evaluated as the nominal point only.
+    // The reference is at the medians, and the means are evaluated only as the nominal point.
     assert_eq!(found.run.evaluations, asked.distinct() as u64);
     assert!(asked.points().iter().any(|x| (x[0] - 1.0).abs() < 1e-12 && (x[1] - 1.0).abs() < 1e-12), "the medians");
     assert_eq!(found.characteristics[0].sensitivities[0].first, None, "no derivative at the means was had");
 }
 
-/// Evaluations, each seen to arrive once: of symmetric inputs, and of others.
+/// The number of evaluations is as stated, and each point is evaluated once: with symmetric inputs, and with others.
 #[test]
 fn counts_are_stated() {
     let count = |dimensions: Vec<Dimension>, options: &Options| {
@@ -416,10 +416,10 @@ fn counts_are_stated() {
             );
         }
         assert_eq!(count(standard(n), &Method::ThreePoint.into()), 3usize.pow(n as u32));
-        // Without the mean among its levels the nominal is one more.
+        // If the mean is not among its levels, the nominal point is one more.
         assert_eq!(count(skewed(n), &Method::ThreePoint.into()), 3usize.pow(n as u32) + 1);
     }
-    // A nominal at a level, and one beside it; steps of a dimension that does not vary.
+    // A nominal value at a level, and one beside it. A dimension that does not vary has steps too.
     let normal = Normal::new(0.0, 1.0).unwrap();
     let level = Rule::three_point(&normal).nodes[2];
     let with_nominal = |nominal: f64| {
@@ -434,7 +434,7 @@ fn counts_are_stated() {
     assert_eq!(count(still, &three.clone().with_all_sensitivities(true)), 11);
 }
 
-/// A lost point: the moments are unknown, the report says which and why, and the rest stays.
+/// If a point is lost, the moments are unknown and the report names the point and the reason. All other results remain.
 #[test]
 fn a_lost_point_is_not_made_up() {
     for method in QUADRATURES {
@@ -459,7 +459,7 @@ fn a_lost_point_is_not_made_up() {
     );
 }
 
-/// A value that the options do not allow is one error, before anything is evaluated.
+/// A value that the options do not allow is one error, before any evaluation.
 #[test]
 fn wrong_wishes_are_refused() {
     let asked = Asked::default();
@@ -492,7 +492,7 @@ fn wrong_wishes_are_refused() {
     assert!(asked.points().is_empty(), "something was evaluated");
 }
 
-/// Where nothing varies there is nothing to integrate.
+/// Without varying dimensions the distribution is one value.
 #[test]
 fn zero_tolerance_everywhere() {
     for method in QUADRATURES.into_iter().chain([Method::ResponseSurface]) {
@@ -500,14 +500,14 @@ fn zero_tolerance_everywhere() {
         let found = analysis(still, &method.into(), |x| x[0] * x[1]);
         assert_eq!((found.run.evaluations, found.varying), (1, 0));
         assert_eq!(moments(&found), Moments::constant(6.0));
-        // One of zero tolerance changes nothing, to the last bit.
+        // A dimension with zero tolerance changes no bit of the result.
         let f = |x: &[f64]| (x[0] * x[1]).sin() + x[1].exp();
         let two = analysis(normals(&[0.4, -0.3], &[0.3, 0.2]), &method.into(), f);
         let three = analysis(normals(&[0.4, -0.3, 7.0], &[0.3, 0.2, 0.0]), &method.into(), f);
         assert_eq!((moments(&two), two.run.evaluations), (moments(&three), three.run.evaluations));
         let constant = analysis(standard(2), &method.into(), |_| 0.1);
         assert_eq!(moments(&constant), Moments::constant(0.1));
-        // A dimension without tolerance gets its sensitivity where it is asked for.
+        // A dimension without tolerance gets a sensitivity if one is asked for.
         let options = Options::from(method).with_all_sensitivities(true);
         let asked = analysis(normals(&[0.4, -0.3, 7.0], &[0.3, 0.2, 0.0]), &options, |x| x[0] + x[1] + 3.0 * x[2]);
         assert_eq!(asked.run.evaluations, three.run.evaluations + 2);
@@ -515,7 +515,7 @@ fn zero_tolerance_everywhere() {
     }
 }
 
-/// The same bits for any number of threads.
+/// Results have the same bits for any number of threads.
 #[test]
 fn threads_do_not_matter() {
     for method in QUADRATURES.into_iter().chain([Method::ResponseSurface]) {

@@ -1,4 +1,4 @@
-//! Response surfaces: designs that tell everything apart, quadratics exactly, what a surface misses, and points that are lost.
+//! Response surfaces: designs without confounding, exact quadratics, residuals, and lost points.
 
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -15,7 +15,8 @@ fn analysis(dimensions: Vec<Dimension>, f: impl Fn(&[f64]) -> f64 + Send + Sync 
     analyze(&Problem::new(dimensions, Closure::scalar("y", f)).unwrap(), &Method::ResponseSurface.into()).unwrap()
 }
 
-/// Resolution V: the columns of all slopes and products of two are orthogonal to each other and to the constant, by counting.
+/// The designs have resolution V: the columns of all slopes and products of two are orthogonal to each other and to the constant, by
+/// counting.
 #[test]
 fn corners_tell_slopes_and_products_apart() {
     for n in 1..=20 {
@@ -25,7 +26,7 @@ fn corners_tell_slopes_and_products_apart() {
         let mut columns: Vec<Vec<i64>> = vec![vec![1; rows]];
         for j in 0..n {
             columns.push(corners.iter().map(|row| sign(row, j)).collect());
-            // A product of two dimensions is a constant where there are no more corners than that.
+            // With no more corners than that, a product of two dimensions is a constant.
             for k in j + 1..n {
                 columns.push(corners.iter().map(|row| sign(row, j) * sign(row, k)).collect());
             }
@@ -38,7 +39,7 @@ fn corners_tell_slopes_and_products_apart() {
         let different: HashSet<&Vec<bool>> = corners.iter().collect();
         assert_eq!(different.len(), rows);
     }
-    // As few as there can be: the largest number of columns of 4 to 8 signs (Draper and Lin 1990, table 1).
+    // No smaller design exists: the largest number of columns with 4 to 8 signs (Draper and Lin 1990, table 1).
     assert_eq!([5, 6, 8, 11, 17].map(|n| corners(n).len()), [16, 32, 64, 128, 256]);
     assert_eq!([9, 12, 18].map(|n| corners(n).len()), [128, 256, 512]);
 }
@@ -57,7 +58,7 @@ fn counts_are_stated() {
     }
 }
 
-/// Quadratics of inputs of several kinds: derivatives as they are, moments as `full` has them, nothing missed.
+/// Quadratics of inputs of several kinds have exact derivatives, the moments of `full`, and no residuals.
 #[test]
 fn quadratics_are_exact() {
     let dimensions = || {
@@ -79,7 +80,7 @@ fn quadratics_are_exact() {
     let full = analyze(&problem, &Method::Full.into()).unwrap();
     let (one, other) = (&found.characteristics[0], &full.characteristics[0]);
     let (a, b) = (one.moments.unwrap(), other.moments.unwrap());
-    // Two solutions of the same equations in doubles: ten times the rounding of a QR of 27 rows.
+    // Two solutions of the same equations in doubles differ by ten times the rounding of a QR of 27 rows.
     relative(a.mean(), b.mean(), 1e-13);
     relative(a.sigma(), b.sigma(), 1e-12);
     close(a.skewness().unwrap(), b.skewness().unwrap(), 1e-11, 1.0);
@@ -106,26 +107,28 @@ fn quadratics_are_exact() {
     assert!(found.warnings.iter().all(|warning| warning.code() != "poor-fit"));
 }
 
-/// A cubic term of one normal dimension: by hand, from the normal equations. With x = -1, 1 (corners, each twice) and 0 (the other
-/// axis and the centre) and +-sqrt 3, the slope of x^3 is (4 + 2 x 9)/(4 + 2 x 3) = 2.2; the rest is what the residual is made of.
+/// A cubic term of one normal dimension, from the normal equations by hand. The values are x = -1, 1 (corners, each twice), 0 (the other
+/// axis and the centre) and +-sqrt 3.
+///
+/// The slope of x^3 is (4 + 2 x 9)/(4 + 2 x 3) = 2.2. The remainder is the residual.
 #[test]
 fn a_cubic_shows_in_the_residual() {
     let found = analysis(standard(2), |x| x[0].powi(3) + 5.0 * x[1]);
     let one = &found.characteristics[0];
     close(one.sensitivities[0].first.unwrap(), 2.2, 1e-12, 1.0);
     let missed = 4.0 * (1.0f64 - 2.2).powi(2) + 2.0 * (27f64.sqrt() - 2.2 * 3f64.sqrt()).powi(2);
-    // Nine points, six coefficients.
+    // The design has nine points, the surface six coefficients.
     let residual = one.residual.unwrap();
     let error = (missed / 3.0).sqrt();
     relative(residual.standard_error.unwrap(), error, 1e-12);
-    // Of c + a_0 + a_1, whose normal matrix is [9 10 10; 10 22 4; 10 4 22], and of the two slopes, of variance s^2/10 each.
+    // Variance of c + a_0 + a_1, whose normal matrix is [9 10 10; 10 22 4; 10 4 22], and of the two slopes, s^2/10 each.
     relative(residual.mean.unwrap(), error * (2.0f64 / 17.0).sqrt(), 1e-12);
     relative(residual.sigma.unwrap(), error / 10f64.sqrt(), 1e-12);
     let warning = found.warnings.iter().find(|warning| warning.code() == "poor-fit").unwrap();
     assert!(warning.message().contains("32.7 % of sigma"), "{}", warning.message());
 }
 
-/// Correlated normals: the surface knows nothing of it, its moments do.
+/// The surface does not depend on the correlation of normal inputs, but its moments do.
 #[test]
 fn correlated_normals_are_exact() {
     let r = 0.6f64;
@@ -138,7 +141,7 @@ fn correlated_normals_are_exact() {
     relative(moments.skewness().unwrap(), (6.0 * r + 2.0 * r.powi(3)) / (1.0 + r * r).powf(1.5), 1e-12);
 }
 
-/// A lost corner is left out; where the rest do not determine the surface there is none, and the report says so.
+/// A lost corner is left out. If the remaining points do not determine the surface, there is none, and the report states this.
 #[test]
 fn lost_points_are_left_out_or_end_it() {
     let f = |x: &[f64]| 1.0 + x[0] + x[1] * x[2] + 0.5 * x[2] * x[2];
@@ -150,7 +153,7 @@ fn lost_points_are_left_out_or_end_it() {
     assert_eq!(found.run.failed, 1);
     assert!(found.warnings.iter().any(|warning| warning.code() == "failed-points"));
 
-    // Half the design is just enough, and says nothing of what it misses.
+    // Half of the design is just enough, so that there are no residuals.
     let half = refusing(f, |x| x[1] > 0.0);
     let found = analyze(&Problem::new(standard(3), half).unwrap(), &Method::ResponseSurface.into()).unwrap();
     relative(found.characteristics[0].moments.unwrap().variance(), 1.0 + 1.0 + 0.5, 1e-11);

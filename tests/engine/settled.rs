@@ -1,4 +1,4 @@
-//! Moments of samples that few points decide: standard errors that are told reach the truth, and the others are left out with a word.
+//! Moments of samples that few points decide: reported standard errors cover the deviations, and the others are left out with a warning.
 
 use std::sync::OnceLock;
 
@@ -9,7 +9,7 @@ use sensitol_study::Study;
 
 use sensitol_testing::{data, repository, standard};
 
-/// A function whose moments have closed forms; none of a moment that is infinite.
+/// Function whose moments have closed forms; None for an infinite moment.
 struct Case {
     name: String,
     light: bool,
@@ -34,7 +34,7 @@ fn moments(one: &SimulatedCharacteristic) -> [Option<Estimate>; 4] {
     [one.mean, one.sigma, one.skewness, one.kurtosis]
 }
 
-/// The moments that a warning names.
+/// Returns the names of the moments in the warning of unsettled moments.
 fn unsettled(found: &Simulation) -> Vec<&'static str> {
     let figures = |warning: &Warning| match warning {
         Warning::UnsettledMoments { figures, .. } => Some(figures.clone()),
@@ -43,8 +43,8 @@ fn unsettled(found: &Simulation) -> Vec<&'static str> {
     found.warnings.iter().filter_map(figures).flatten().collect()
 }
 
-/// How many standard errors are told, and how many of them do not reach the truth by three of them, over all functions and seeds. What is left
-/// out is warned of, and a light tail loses nothing but where it may.
+/// Returns the number of reported standard errors, and the number of those by three of which the deviation is not covered, over all
+/// functions and seeds. Checks that a warning names each one that is left out. A light tail loses only moments from `light_keeps` on.
 fn told(options: &SimulationOptions, seeds: u64, light_keeps: usize) -> [usize; 2] {
     let runs: Vec<(&Case, u64)> = cases().iter().flat_map(|case| (0..seeds).map(move |seed| (case, seed))).collect();
     let of = |&(case, seed): &(&Case, u64)| {
@@ -60,7 +60,7 @@ fn told(options: &SimulationOptions, seeds: u64, light_keeps: usize) -> [usize; 
                 continue;
             };
             told += 1;
-            // Rounding of sums of 10^5 terms is some 1e-13 of sigma.
+            // The rounding of sums of 10^5 terms is some 1e-13 of sigma.
             let scale = all[1].unwrap().value;
             wrong += usize::from(case.truth[i].is_none_or(|truth| (value - truth).abs() > 3.0 * error + 1e-12 * scale));
         }
@@ -70,7 +70,7 @@ fn told(options: &SimulationOptions, seeds: u64, light_keeps: usize) -> [usize; 
     each.iter().fold([0; 2], |[told, wrong], one| [told + one[0], wrong + one[1]])
 }
 
-/// 97 % of the standard errors that are told reach the truth, whichever way points are drawn, and a light tail keeps all of them.
+/// Reported standard errors cover 97 % of the deviations for all samplers, and a light tail keeps all of them.
 #[test]
 fn standard_errors_that_are_told_reach_the_truth() {
     let random = SimulationOptions::default().with_samples(20_000);
@@ -84,19 +84,19 @@ fn standard_errors_that_are_told_reach_the_truth() {
     ] {
         let [told, wrong] = told(options, seeds, 4);
         assert!(100 * wrong <= 3 * told, "{what}: {wrong} of {told}");
-        // Of 19 functions with four moments each more than half are told.
+        // More than half of the standard errors of 19 functions with four moments each are reported.
         assert!(told > 38 * seeds as usize, "{what}: {told}");
     }
 }
 
-/// The same of a thousand points, where mean, sigma and skewness of a light tail are told.
+/// Samples of a thousand points have standard errors of mean, sigma and skewness of a light tail.
 #[test]
 fn a_thousand_points_tell_what_they_know() {
     let [told, wrong] = told(&SimulationOptions::default().with_samples(1000), 15, 3);
     assert!(100 * wrong <= 3 * told, "{wrong} of {told}");
 }
 
-/// The case by which this was found: skewness and kurtosis of a lognormal characteristic.
+/// The case that revealed the problem: skewness and kurtosis of a lognormal characteristic.
 #[test]
 fn a_lognormal_characteristic_is_told_as_far_as_it_is_known() {
     let study = Study::read(&repository("tests/data/heavy-tail.toml")).unwrap();
@@ -114,7 +114,7 @@ fn a_lognormal_characteristic_is_told_as_far_as_it_is_known() {
             assert!(standard_error.is_none_or(|error| off <= 3.0 * error), "{name}: {value} {standard_error:?}");
         }
     }
-    // A standard error that is wanted of sigma is one that reaches it.
+    // A sample that continues until sigma has this standard error reaches it.
     let found = simulate(&study.problem, &plain.with_until(0.01).with_samples(1 << 22)).unwrap();
     let sigma = found.characteristics[0].sigma.unwrap();
     let error = sigma.standard_error.unwrap();
@@ -129,15 +129,15 @@ fn jump(at: f64, size: f64) -> Problem {
     Study::from_toml(&text, "study.toml").unwrap().problem
 }
 
-/// Mean and sigma of `a + b + s [a > t]`: `s p`, and `sqrt(2 + s^2 p (1 - p) + 2 s phi(t))`.
+/// Returns mean and sigma of `a + b + s [a > t]`: `s p`, and `sqrt(2 + s^2 p (1 - p) + 2 s phi(t))`.
 fn truth(at: f64, size: f64) -> [f64; 2] {
     let p = 0.5 * libm::erfc(at / std::f64::consts::SQRT_2);
     let density = libm::exp(-0.5 * at * at) / (2.0 * std::f64::consts::PI).sqrt();
     [size * p, (2.0 + size * size * p * (1.0 - p) + 2.0 * size * density).sqrt()]
 }
 
-/// A jump that the sample does not meet, and that the formula tells: no standard error stands beside what it decides, with a surrogate that
-/// agrees at every point or without.
+/// A jump that the formula has, but no point of the sample shows: moments that it decides have no standard error. This holds with a
+/// surrogate that agrees at every point, and without.
 #[test]
 fn a_jump_that_is_told_is_not_overlooked() {
     let plain = SimulationOptions::default();
@@ -159,8 +159,8 @@ fn a_jump_that_is_told_is_not_overlooked() {
     }
 }
 
-/// A surrogate that a jump refutes is never worse than none: its standard errors are at most those of the plain sample, a tenth more for the
-/// choice.
+/// A surrogate that a jump refutes is never worse than none: its standard errors are at most those of the plain sample plus one tenth for
+/// the choice.
 #[test]
 fn a_control_is_never_worse_than_none() {
     for (at, size) in [(1.0, 20.0), (2.5, 5.0), (3.0, 100.0)] {
@@ -175,7 +175,7 @@ fn a_control_is_never_worse_than_none() {
     }
 }
 
-/// Switches are told in a simulation as in an analysis; a function without any has none.
+/// Switches are reported in a simulation as in an analysis. A function without switches has none.
 #[test]
 fn switches_are_told() {
     let study = |formula: &str| {
@@ -190,9 +190,9 @@ fn switches_are_told() {
     };
     assert_eq!(codes("max(a, b - 3)"), ["switch"]);
     assert_eq!(codes("a + b^2"), [""; 0]);
-    // Six sigmas from 0, too seldom for a warning of its own: the moments that the pole decides have no standard error.
+    // Six sigmas from 0, the pole is too rare for a warning of its own. The moments that it decides have no standard error.
     assert_eq!(codes("a/b"), ["unsettled-moments"]);
-    // A costly model tells nothing, and nothing is asked of it.
+    // A costly model has no switches and is not evaluated for them.
     let problem = Problem::new(standard(2), Closure::scalar("y", |x| x[0].max(x[1]))).unwrap();
     let found = simulate(&problem, &SimulationOptions::default().with_samples(2000)).unwrap();
     assert!(found.warnings.is_empty() && found.run.evaluations == 2000);

@@ -1,4 +1,4 @@
-//! Simulation: its standard errors hold what they promise, and nothing is lost.
+//! Simulation: standard errors cover the deviations, and no point is lost.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -12,7 +12,8 @@ use sensitol_study::Study;
 use sensitol_testing::{data, normals, refusing, relative, repository, standard};
 
 const SEEDS: u64 = 200;
-/// The truth must lie within two standard errors in 90 to 99 % of runs (95.4 % if they are normal; 200 runs leave 1.5 %).
+/// Number of runs in which the true value lies within two standard errors: 90 to 99 % (95.4 % if they are normal, with a standard deviation
+/// of 1.5 % for 200 runs).
 const COVERED: std::ops::RangeInclusive<usize> = 180..=199;
 
 fn run(problem: &Problem, samples: u64, sampler: Sampler, seed: u64) -> Simulation {
@@ -20,11 +21,11 @@ fn run(problem: &Problem, samples: u64, sampler: Sampler, seed: u64) -> Simulati
         .unwrap()
 }
 
-/// The true values of a characteristic: mean, sigma, skewness, kurtosis, the 0.00135 quantile, the yield.
+/// True values of a characteristic: mean, sigma, skewness, kurtosis, the 0.00135 quantile, the yield.
 pub type Truth = [f64; 6];
 
-/// In how many of the runs each truth lies within two standard errors, or the interval. Runs that tell no standard error of a figure, because
-/// few points decide it, are left out, and the others scaled to as many.
+/// Returns the number of runs in which each true value lies within two standard errors, or in the interval. Runs without a standard error,
+/// because few points decide a figure, are left out, and the others are scaled to as many.
 fn covered(problem: &Problem, truth: Truth, samples: u64, sampler: Sampler) -> [usize; 6] {
     let (mut hits, mut told) = ([0; 6], [0; 6]);
     for seed in 0..SEEDS {
@@ -40,13 +41,13 @@ fn covered(problem: &Problem, truth: Truth, samples: u64, sampler: Sampler) -> [
         told[5] += 1;
         hits[5] += usize::from(low <= truth[5] && truth[5] <= high);
     }
-    // Mean and sigma are told by every run of these functions.
+    // Every run of these functions has a standard error of mean and sigma.
     assert_eq!(told[..2], [SEEDS as usize; 2]);
     std::array::from_fn(|index| hits[index] * SEEDS as usize / told[index].max(1))
 }
 
-/// Two lognormal factors of log-sd 0.09 and 0.12: a lognormal of log-sd 0.15, whose truth is in every textbook. Of longer
-/// tails a sample of this size does not know the kurtosis's own uncertainty: at 0.25 two standard errors of it hold 86 %.
+/// Product of two lognormal factors with log-sd 0.09 and 0.12: a lognormal distribution with log-sd 0.15, whose moments are known. With a
+/// longer tail, a sample of this size does not estimate the error of the kurtosis: at 0.25 two standard errors cover 86 %.
 fn lognormal() -> (Problem, Truth) {
     let s: f64 = 0.15;
     let e = (s * s).exp();
@@ -65,8 +66,8 @@ fn lognormal() -> (Problem, Truth) {
     (problem.unwrap(), truth)
 }
 
-/// Engine balance: moments by quadrature (tests/data), quantile and yield of so nearly normal a law by the series of
-/// Cornish and Fisher and of Edgeworth with them; what they leave out is of the order of the squared skewness, 4e-7.
+/// Engine balance, with moments by quadrature (tests/data). Quantile and yield of this nearly normal distribution follow from the series of
+/// Cornish and Fisher and of Edgeworth. Their error is of the order of the squared skewness, 4e-7.
 pub fn engine() -> (Problem, Truth) {
     let study = Study::read(&repository("examples/engine-balance/study.toml")).unwrap();
     let exact = &data("engine-balance.json")["table-3"]["F"];
@@ -93,15 +94,15 @@ fn random_standard_errors_cover_the_truth() {
 
 #[test]
 fn quasi_random_standard_errors_cover_the_truth() {
-    // The lognormal's kurtosis wants more points before its replicates say how uncertain it is.
+    // The kurtosis of the lognormal distribution needs more points before its replicates estimate the error well.
     for ((problem, truth), samples) in [(engine(), 65_536), (lognormal(), 262_144)] {
         let hits = covered(&problem, truth, samples, Sampler::Sobol);
         assert!(hits.iter().all(|hits| COVERED.contains(hits)), "{hits:?} of {SEEDS}");
     }
 }
 
-/// Root mean square error over 20 seeds, from 2^10 to 2^16 points: at least n^-0.9 for the mean and n^-0.85 for sigma, where
-/// random points have n^-0.5.
+/// Root mean square errors over 20 seeds, from 2^10 to 2^16 points, fall at least like n^-0.9 for the mean and n^-0.85 for sigma. Random
+/// points have n^-0.5.
 #[test]
 fn quasi_random_errors_fall_faster() {
     let (problem, truth) = engine();
@@ -142,13 +143,13 @@ fn every_point_is_counted() {
     );
     let histogram = odd.characteristics[0].histogram.as_ref().unwrap();
     assert_eq!(histogram.counts.iter().sum::<u64>(), 12_345);
-    // 16 replicates of a power of two, at least as many as asked.
+    // The number of points is 16 replicates of a power of two, at least as many as asked.
     assert_eq!(run(&problem, 12_345, Sampler::Sobol, 1).samples, 16 * 1024);
     assert_eq!(run(&problem, 2, Sampler::Random, 1).samples, 2);
     assert_eq!(run(&problem, 2, Sampler::Sobol, 1).samples, 16);
 }
 
-/// A point without a value is counted, named, and bounds the yield.
+/// A point without a value is counted and reported, and widens the interval of the yield.
 #[test]
 fn failed_points_bound_the_yield() {
     let limits = SpecLimits::new(Some(-1.0), None).unwrap();
@@ -163,7 +164,7 @@ fn failed_points_bound_the_yield() {
     let rejected = 50_000.0 * one.below.unwrap() * one.samples as f64 / 50_000.0;
     relative(share.bounds[1], 1.0 - rejected / 50_000.0, 1e-12);
     relative(share.bounds[0], 1.0 - (rejected + one.failed as f64) / 50_000.0, 1e-12);
-    // Phi(1) - Phi(-1) of Phi(1): four standard errors.
+    // The share is Phi(1) - Phi(-1) of Phi(1), within four standard errors.
     relative(share.value, 0.682_689_492 / 0.841_344_746, 4.0 * 0.0019);
 }
 
@@ -177,23 +178,24 @@ fn nothing_known_is_none() {
     let still = Problem::new(standard(1), Closure::scalar("y", |_| 4.0)).unwrap();
     let one = run(&still, 1000, Sampler::Random, 1).characteristics.remove(0);
     assert_eq!((one.mean.unwrap().value, one.sigma.unwrap().value, one.skewness, one.kurtosis), (4.0, 0.0, None, None));
-    // Ten points say nothing of the 0.00135 quantile, and two thousand nothing of its uncertainty.
+    // Ten points do not determine the 0.00135 quantile, and two thousand do not determine its error.
     let (problem, _) = lognormal();
     let quantile = |samples| run(&problem, samples, Sampler::Random, 1).characteristics[0].quantiles[0];
     assert!(quantile(10).is_none());
     assert_eq!(quantile(2000).unwrap().standard_error, None);
 }
 
-/// Quantiles where sigma says nothing of the bulk: a rare part far away, and a tail of a hundred sigmas' width.
+/// Quantiles of distributions whose sigma does not describe most of the values: a rare part far away, and a tail of a hundred sigmas'
+/// width.
 #[test]
 fn quantiles_do_not_mind_long_tails() {
-    // One in a thousand lies a thousand away; the others are normal with sigma 0.01.
+    // One in a thousand values lies a thousand away. The others are normal with sigma 0.01.
     let far = Closure::scalar("y", |x| if x[1] > 3.090_232_306 { 1000.0 } else { 10.0 + 0.01 * x[0] });
     let problem = Problem::new(standard(2), far).unwrap();
     let found = run(&problem, 1_000_000, Sampler::Random, 1).characteristics.remove(0);
     for (index, z) in [(2, -1.643_8), (3, 0.001_253), (4, 1.648_2)] {
         let quantile = found.quantiles[index].unwrap();
-        // Of 0.999 of the normal below; the standard error is about 0.01 sigma/100.
+        // The quantile is that of 0.999 of a normal distribution. The standard error is about 0.01 sigma/100.
         let expected = 10.0 + 0.01 * z;
         assert!(
             (quantile.value - expected).abs() <= 4.0 * quantile.standard_error.unwrap() + 1e-6,
@@ -216,7 +218,7 @@ fn quantiles_do_not_mind_long_tails() {
     assert!(found.quantiles.iter().all(|quantile| quantile.unwrap().value == 10.0));
 }
 
-/// A handful of points has estimates, but nothing says how good they are.
+/// A handful of points has estimates, but no standard errors.
 #[test]
 fn a_handful_has_no_standard_errors() {
     let (problem, _) = lognormal();
@@ -241,7 +243,7 @@ fn it_goes_on_until_it_is_sure() {
     let options = SimulationOptions::default().with_samples(1 << 40).with_until_yield(0.001);
     let share = simulate(&problem, &options).unwrap().characteristics[0].yield_.unwrap();
     assert!(0.5 * (share.interval[1] - share.interval[0]) <= 0.001);
-    // An accuracy for which the points do not suffice is reported.
+    // An accuracy for which the points are not enough is reported.
     let options = SimulationOptions::default().with_until(1e-9);
     let short = simulate(&problem, &options).unwrap();
     assert_eq!((short.reached, short.samples), (Some(false), 100_000));
@@ -277,7 +279,7 @@ fn absurd_wishes_are_refused() {
     assert!(matches!(asked(default().with_until_yield(f64::NAN)), SimulationError::Wanted { .. }));
 }
 
-/// Dimensions that no characteristic depends on, and characteristics that were not asked, change nothing.
+/// Dimensions that no characteristic depends on, and characteristics that were not asked for, change nothing.
 #[test]
 fn what_is_not_asked_changes_nothing() {
     let of = |text: &str| {

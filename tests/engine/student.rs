@@ -1,11 +1,11 @@
-//! Student's distribution with few degrees of freedom, whose moments end somewhere, against 40 digits.
+//! Student's distribution with few degrees of freedom, whose higher moments are infinite, against 40 digits.
 
 use sensitol::distribution::{Distribution, Student};
 use sensitol::{Method, analyze};
 use sensitol_study::Study;
 use sensitol_testing::{close, data, relative};
 
-/// Probabilities to 1e-12, quantiles to 1e-12 sigma or of their own, as every distribution; moments that are infinite are NaN.
+/// Probabilities are accurate to 1e-12, quantiles to 1e-12 sigma or of their own size, as for every distribution. Infinite moments are NaN.
 #[test]
 fn tails_and_moments_at_any_degrees() {
     for case in data("student.json").as_array().unwrap() {
@@ -17,7 +17,7 @@ fn tails_and_moments_at_any_degrees() {
         for (found, even) in [3.0 + found.excess, found.m6, found.m8].into_iter().zip(case["even"].as_array().unwrap())
         {
             match even.as_f64() {
-                // The distance of the degrees from an order has the rounding of the degrees.
+                // The distance of the degrees from an order is rounded like the degrees.
                 Some(even) => relative(found, even, 1e-12),
                 None => assert!(found.is_nan(), "{degrees}"),
             }
@@ -36,7 +36,7 @@ fn tails_and_moments_at_any_degrees() {
         }
         for row in case["quantiles"].as_array().unwrap() {
             let [p, u] = [0, 1].map(|i| row[i].as_f64().unwrap());
-            // Near the median a probability says 1e-16 of the whole.
+            // Near the median a probability is accurate to 1e-16 of the whole.
             close(law.upper_quantile(p), u, 2e-12, u.max(1e-3));
             close(law.quantile(p), -u, 2e-12, u.max(1e-3));
         }
@@ -55,14 +55,14 @@ fn analysed(degrees: f64, formula: &str, method: Method) -> sensitol::Characteri
     analyze(&study.problem, &method.into()).unwrap().characteristics.remove(0)
 }
 
-/// Cumulants of independent inputs add: what exists is exact, what does not is unknown, never 0.
+/// Cumulants of independent inputs add. Existing moments are exact, and the others are unknown, never 0.
 #[test]
 fn sums_have_the_moments_that_exist() {
     for method in [Method::Rss, Method::SecondOrder, Method::Full, Method::Auto, Method::DimensionReduction] {
         for degrees in [2.5, 3.0, 4.0, 5.0, 8.0, 30.0] {
             let moments = analysed(degrees, "a + b", method).moments.unwrap();
             let about = format!("{method:?} {degrees}");
-            // The sum of 0.09 and 0.16; differences of values of 3 have 1e-15 of them.
+            // Variance: the sum of 0.09 and 0.16. Differences of values of 3 have errors of 1e-15 of them.
             relative(moments.mean(), 3.0, 1e-13);
             relative(moments.sigma(), 0.5, 1e-12);
             assert_eq!(moments.skewness().is_some(), degrees > 3.0, "{about}");
@@ -74,7 +74,7 @@ fn sums_have_the_moments_that_exist() {
     }
 }
 
-/// Without a kurtosis no distribution has the moments; the tail is known by the surface all the same.
+/// Without a kurtosis there is no Pearson fit, but the tail follows from the surface.
 #[test]
 fn yields_do_not_need_moments() {
     let student = Student::new(1.0, 0.3, 3.0).unwrap();
@@ -85,7 +85,7 @@ fn yields_do_not_need_moments() {
         let study = Study::from_toml(text, "student.toml").unwrap();
         let found = analyze(&study.problem, &method.into()).unwrap();
         let one = &found.characteristics[0];
-        // One input alone is integrated to the digits of its distribution function.
+        // A single input is integrated to the digits of its distribution function.
         close(one.capability.unwrap().yield_().unwrap(), expected, 1e-9, 1.0);
         assert!(one.pearson.is_none(), "{method:?}");
         let of = |warning: &sensitol::warning::Warning| warning.code() == "infinite-moment";
@@ -95,12 +95,12 @@ fn yields_do_not_need_moments() {
     }
 }
 
-/// Beside a normal input by one integral, beside two by counting: with long tails no transform is inverted.
+/// A Student input beside one normal input is integrated, and beside two it is counted: with long tails no transform is inverted.
 #[test]
 fn sums_keep_their_tails() {
     let student = Student::new(1.0, 0.3, 5.0).unwrap();
     let law = student.probability().unwrap();
-    // The trapezoidal rule converges faster than any power against a normal density.
+    // The trapezoidal rule converges faster than any power for a normal density.
     let beside = |sigma: f64, y: f64| {
         let at = |i: i32| {
             let z = f64::from(i) / 64.0;
@@ -118,13 +118,13 @@ fn sums_keep_their_tails() {
         let one = analyze(&study.problem, &Method::Full.into()).unwrap().characteristics.remove(0);
         1.0 - one.surface_law.as_ref().unwrap().above.unwrap().value
     };
-    // Panels and roots: 1e-9 with an input that has no moments beyond the fourth.
+    // Panels and roots are accurate to 1e-9 with an input that has no moments beyond the fourth.
     close(found("a + b"), beside(0.3, 2.0), 1e-9, 1.0);
-    // The same sum of three, counted: at 65 536 points some 1e-3 of a share of 0.95 at the most.
+    // A sum of three is counted at 65 536 points, to some 1e-3 of a share of 0.95 at the most.
     close(found("a + b + c"), beside(0.5, 2.0), 1e-3, 1.0);
 }
 
-/// The variance of a square is a fourth moment, its kurtosis an eighth.
+/// The variance of a square needs a fourth moment, its kurtosis an eighth.
 #[test]
 fn curvature_needs_more_moments_than_a_line() {
     for method in [Method::SecondOrder, Method::Full] {

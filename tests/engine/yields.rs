@@ -1,4 +1,4 @@
-//! The source of a yield, and that it is the share within the limits.
+//! Source of a yield, and its agreement with the share within the limits.
 
 use sensitol::analysis::YieldSource;
 
@@ -20,14 +20,14 @@ fn only(text: &str, verify: Option<usize>) -> CharacteristicAnalysis {
     analyze(&study.problem, &options).unwrap().characteristics.remove(0)
 }
 
-/// Two triangular parts of ± 0.2 and ± 0.9 within ± 0.452: the Pearson distribution with their exact moments keeps 74.83 %.
+/// Two triangular parts of ± 0.2 and ± 0.9 within ± 0.452. The Pearson fit with their exact moments keeps 74.83 %.
 #[test]
 fn triangles_keep_what_they_keep() {
     let text = "[dimensions]\na = { nominal = 0, tolerance = 0.2, distribution = \"triangular\" }\n\
                 b = { nominal = 0, tolerance = 0.9, distribution = \"triangular\" }\n\
                 [characteristics]\ny = { formula = \"a + b\", lower = -0.452, upper = 0.452 }\n";
-    // P(y > 0.452) is the mean over a of (0.9 - 0.452 + a)^2/(2 0.9^2), as 0.452 - a stays between 0 and 0.9: with a density that is a
-    // line on either side of 0 a cubic, which Simpson's rule integrates exactly.
+    // P(y > 0.452) is the mean over a of (0.9 - 0.452 + a)^2/(2 0.9^2), as 0.452 - a stays between 0 and 0.9. The density of a is a line on
+    // either side of 0. The product is a cubic, which Simpson's rule integrates exactly.
     let tail = |a: f64| (0.2 - a.abs()) / 0.04 * (0.448 + a).powi(2) / (2.0 * 0.81);
     let simpson = |from: f64, to: f64| (to - from) / 6.0 * (tail(from) + 4.0 * tail(0.5 * (from + to)) + tail(to));
     let exact = 1.0 - 2.0 * (simpson(-0.2, 0.0) + simpson(0.0, 0.2));
@@ -47,7 +47,7 @@ fn triangles_keep_what_they_keep() {
     }
 }
 
-/// Bounded parts whose worst case keeps the limits keep them all: no assembly is left to be rejected.
+/// If the worst case of bounded parts keeps the limits, all assemblies keep them.
 #[test]
 fn a_worst_case_within_the_limits_is_a_proof() {
     let text = "[dimensions]\na = { nominal = 1, tolerance = 0.1, distribution = \"uniform\" }\n\
@@ -58,7 +58,8 @@ fn a_worst_case_within_the_limits_is_a_proof() {
     assert_eq!((found.capability.unwrap().rejected(), found.met()), (Some(0.0), Some(true)));
 }
 
-/// A formula that is no polynomial is sampled, with the surface's law as control; of a kinked one the sample is the yield.
+/// A formula that is not a polynomial is sampled, with the surface distribution as control variate. With a kink the sample alone gives the
+/// yield.
 #[test]
 fn a_cheap_model_is_asked_itself() {
     let of = |formula: &str, limits: &str| {
@@ -69,7 +70,7 @@ fn a_cheap_model_is_asked_itself() {
         only(&text, None)
     };
     let normal = |z: f64| 0.5 * libm::erfc(-z / 2f64.sqrt());
-    // exp(a/10) <= exp(0.2): a <= 2. max(a, b) <= 2: both are.
+    // exp(a/10) <= exp(0.2) holds if a <= 2, and max(a, b) <= 2 if both are.
     for (formula, limits, exact) in [
         ("exp(a/10) + 0*b", format!("upper = {}", 0.2f64.exp()), normal(2.0)),
         ("max(a, b)", "upper = 2".to_owned(), normal(2.0).powi(2)),
@@ -82,7 +83,7 @@ fn a_cheap_model_is_asked_itself() {
     }
 }
 
-/// A dimension that is known by its moments has no law, and neither has the surface.
+/// A dimension that is known by its moments has no distribution, and neither has the surface.
 #[test]
 fn moments_alone_leave_the_pearson_fit() {
     let text = "[dimensions]\na = { nominal = 10, moments = [0.01, 0, 3e-4, 0, 1.5e-5, 0, 1.05e-6] }\n\
@@ -92,7 +93,7 @@ fn moments_alone_leave_the_pearson_fit() {
     assert_eq!(found.capability.unwrap().above, found.pearson.unwrap().above);
 }
 
-/// Characteristics without a common dimension are independent: all limits are kept with the product of their yields.
+/// Characteristics without a common dimension are independent: the joint yield is the product of their yields.
 #[test]
 fn the_joint_yield_of_independent_characteristics_is_their_product() {
     let text = "[dimensions]\na = { nominal = 0, tolerance = 3 }\nb = { nominal = 0, tolerance = 3, distribution = \"uniform\" }\n\
@@ -102,7 +103,7 @@ fn the_joint_yield_of_independent_characteristics_is_their_product() {
     let product: f64 = found.characteristics.iter().map(|one| one.capability.unwrap().yield_().unwrap()).product();
     let joint = found.joint.unwrap();
     assert!((joint.value - product).abs() <= 3.0 * joint.error && joint.error < 1e-2, "{joint:?} {product}");
-    // A single characteristic has none.
+    // A single characteristic has no joint yield.
     let text = text.replace("x = { formula = \"a\", upper = 1 }\n", "");
     let one = self::study(&text);
     assert_eq!(analyze(&one.problem, &one.options).unwrap().joint, None);

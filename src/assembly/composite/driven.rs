@@ -1,4 +1,4 @@
-//! The inputs that a model is sent: dimensions, fixed values, and formulas that drive its inputs.
+//! Inputs that a model receives: dimensions, fixed values, and formulas that drive it.
 //!
 //! With dimensions `x` and formulas `z(x)` a characteristic is `y(x) = F(z(x))`. By the chain rule `dy/dx = F_z z_x`, where `z_x` is exact.
 
@@ -13,16 +13,16 @@ use crate::assembly::{
     AssemblyFunction, EvaluationError, Input, NonRepeatable, Points, Request, Responses, Run, Signature,
 };
 
-/// The values that a model is sent at some points.
+/// Values that a model receives at some points.
 pub(super) struct Sent {
-    /// A column for every input of the model, NaN where a formula has no value.
+    /// Column for every input of the model, NaN if a formula has no value.
     pub(super) columns: Points,
-    /// Why nothing is sent for a row; empty where no formula can fail.
+    /// Error of every row that is not sent; empty if no formula can fail.
     errors: Vec<Option<EvaluationError>>,
 }
 
 impl Composite {
-    /// The formulas that drive the model, each once.
+    /// Returns the formulas that drive the model, each once.
     pub(super) fn driving(&self) -> Vec<usize> {
         let mut driving: Vec<usize> = self.model.iter().flat_map(Inner::driving).collect();
         driving.sort_unstable();
@@ -30,12 +30,12 @@ impl Composite {
         driving
     }
 
-    /// Whether a formula needs the unknowns.
+    /// True if a formula needs the unknowns.
     pub(super) fn drives_by_unknowns(&self, formula: usize) -> bool {
         self.split(self.formulas.variables(formula)).unknowns
     }
 
-    /// The formulas that drive the model do not need its answers.
+    /// Checks that the formulas that drive the model do not need its answers.
     pub(super) fn drives_without_circle(&self, names: &[String]) -> Result<(), CompositeError> {
         for index in self.driving() {
             let mut needs = self.split(self.formulas.variables(index));
@@ -50,7 +50,7 @@ impl Composite {
         Ok(())
     }
 
-    /// The dimensions on which an input of the model depends.
+    /// Returns the dimensions on which an input of the model depends.
     pub(super) fn behind(&self, source: Source) -> Vec<usize> {
         match source {
             Source::Dimension(dimension) => vec![dimension],
@@ -59,7 +59,7 @@ impl Composite {
         }
     }
 
-    /// The values that the model is sent at these points.
+    /// Returns the values that the model receives at these points.
     pub(super) fn sent(&self, points: &Points, run: &Run<'_>) -> Sent {
         let rows = points.rows();
         let driving = self.driving();
@@ -84,7 +84,7 @@ impl Composite {
         Sent { columns, errors }
     }
 
-    /// The formulas that drive the model, a column each; `errors` says why a row has no value.
+    /// Evaluates the formulas that drive the model, one column each. `errors` receives the failure of each row without a value.
     fn driven(
         &self,
         driving: &[usize],
@@ -128,19 +128,19 @@ impl Composite {
         values
     }
 
-    /// The model that formulas drive, and those of its outputs that these outputs need.
+    /// Returns the model that formulas drive, and its outputs that these outputs need.
     pub(crate) fn inner(&self, outputs: &[usize]) -> Option<(Arc<dyn AssemblyFunction>, Vec<usize>)> {
         let needed = self.all_needs(&self.origins(outputs)).answers;
         Some((Arc::clone(&self.model.as_ref()?.function), needed))
     }
 
-    /// The values that the model would be sent at these points; None where a formula has no value at one of them.
+    /// Returns the values that the model would receive at these points, or None if a formula has no value at one of them.
     pub(crate) fn drivers(&self, points: &Points) -> Option<Points> {
         let Sent { columns, errors } = self.sent(points, &Run::to_the_end());
         errors.iter().all(Option::is_none).then_some(columns)
     }
 
-    /// The same formulas about another model with the same inputs and outputs, which is evaluated in no time.
+    /// Replaces the model by another one with the same inputs and outputs, which costs no time. The formulas stay.
     pub(crate) fn about(&self, function: Arc<dyn AssemblyFunction>) -> Self {
         let inner = |model: &Inner| Inner {
             function,
@@ -159,9 +159,9 @@ impl Composite {
         }
     }
 
-    /// Names of what the model is sent, and this at some points; None where it is sent the points themselves.
+    /// Returns the names of the model's inputs and its values at these points, or None if it receives the points themselves.
     pub(super) fn model_points(&self, points: &Points) -> Option<(Vec<Input>, Points)> {
-        // A built-in model is sent nothing outside.
+        // A built-in model is part of this program, so nothing is sent.
         let model = self.model.as_ref().filter(|_| self.signature.costly)?;
         let same = |(index, source): (usize, &Source)| *source == Source::Dimension(index);
         if model.inputs.len() == points.dimensions() && model.inputs.iter().enumerate().all(same) {
@@ -175,7 +175,7 @@ impl Composite {
         Some((model.function.signature().inputs.clone(), Points::from_rows(&kept)))
     }
 
-    /// Asks the model for these of its outputs, in the units of the study.
+    /// Evaluates these outputs of the model, in the units of the study.
     pub(super) fn ask_model(&self, points: &Points, run: &Run<'_>, needed: &[usize]) -> Responses {
         let mut answers = self.ask_as_it_is(points, run, needed);
         let factors = self.model.as_ref().map_or(&[][..], |model| &model.factors[1]);
@@ -187,7 +187,7 @@ impl Composite {
         answers
     }
 
-    /// Asks the model for these of its outputs, in its own units.
+    /// Evaluates these outputs of the model, in its own units.
     fn ask_as_it_is(&self, points: &Points, run: &Run<'_>, needed: &[usize]) -> Responses {
         let rows = points.rows();
         let mut answers = Responses::open(rows, needed.len());
@@ -202,7 +202,7 @@ impl Composite {
             return answers;
         }
         errors.resize(rows, None);
-        // Points that send the same numbers are one evaluation.
+        // Points with the same inputs of the model are one evaluation.
         let mut place: HashMap<Vec<u64>, usize> = HashMap::new();
         let (mut distinct, mut rows_of): (Vec<Vec<f64>>, Vec<Option<usize>>) = (Vec::new(), Vec::with_capacity(rows));
         for (row, error) in errors.iter().enumerate() {
@@ -228,6 +228,7 @@ impl Composite {
                 }
             }
         }
+        // Counts evaluations of the model, not rows: rows that share a point, and rows without inputs, cost nothing.
         let unsent = answers.answered().count() as i64 - found.answered().count() as i64;
         answers.spent(found.extra() + found.count_reused() as i64 - unsent);
         answers.reused(found.count_reused());
@@ -240,7 +241,8 @@ impl Composite {
         answers
     }
 
-    /// Asks a model that takes columns as they stand, where no formula drives it and no unit differs; false where that is not so.
+    /// Evaluates a model that accepts separate columns, without a copy. Returns false if the model is costly, if formulas drive it, or if a
+    /// unit differs.
     pub(super) fn ask_in_place(
         &self,
         model: &Inner,
@@ -270,7 +272,7 @@ impl Composite {
         model.function.evaluate_columns(rows, &columns, needed, run, answers)
     }
 
-    /// Passes the derivatives of the model's own outputs on, by the dimensions that its inputs are or depend on.
+    /// Passes the derivatives of the model's own outputs on, by the dimensions that its inputs depend on.
     pub(super) fn pass_gradients(
         &self,
         points: &Points,
@@ -307,7 +309,7 @@ impl Composite {
         }
     }
 
-    /// The slopes of these formulas along every dimension, NaN where there is none.
+    /// Returns the slopes of these formulas along every dimension, NaN if a slope does not exist.
     fn slopes_of(&self, formulas: &[usize], points: &Points, row: usize) -> Vec<Vec<f64>> {
         let dimensions = self.signature.inputs.len();
         let mut slopes = vec![vec![0.0; dimensions]; formulas.len()];
@@ -327,7 +329,7 @@ impl Composite {
 }
 
 impl Inner {
-    /// A column of so many rows for every fixed input, one after the other.
+    /// Returns a column of `rows` values for every fixed input, one after the other.
     fn fixed(&self, rows: usize) -> Vec<f64> {
         let values = self.inputs.iter().filter_map(|source| match source {
             Source::Fixed(value) => Some(*value),
@@ -336,7 +338,7 @@ impl Inner {
         values.flat_map(|value| std::iter::repeat_n(value, rows)).collect()
     }
 
-    /// The formulas that drive it.
+    /// Returns the formulas that drive the model.
     fn driving(&self) -> impl Iterator<Item = usize> + '_ {
         self.inputs.iter().filter_map(|source| match source {
             Source::Formula(formula) => Some(*formula),
@@ -344,7 +346,7 @@ impl Inner {
         })
     }
 
-    /// Keeps for which points these are sent: what the model says of a point is then said of the dimensions.
+    /// Stores the points for which these values are sent, so that remarks of the model about them can be stated in dimensions.
     fn remember(&self, distinct: &[Vec<f64>], rows_of: &[Option<usize>], points: &Points) {
         let mut sent = self.sent.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         for (row, from) in rows_of.iter().enumerate() {
@@ -354,7 +356,7 @@ impl Inner {
         }
     }
 
-    /// The point for which this was sent.
+    /// Returns the point for which these values were sent.
     fn sent_for(&self, point: &[f64]) -> Vec<f64> {
         let sent = self.sent.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         sent.get(&bits(point)).cloned().unwrap_or_else(|| point.to_vec())

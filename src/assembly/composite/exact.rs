@@ -1,4 +1,4 @@
-//! Exact derivatives of what is made of formulas and unknowns alone.
+//! Exact derivatives of outputs that depend on formulas and unknowns alone.
 
 use super::{Composite, Needs, Origin};
 use crate::assembly::formula::Jet;
@@ -7,25 +7,24 @@ use crate::assembly::{Derivatives, Directions, Run};
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::power::Power;
 
-/// So many pairs are worth a tape of the formula.
+/// Number of pairs from which a tape of the formula is faster than a jet for each pair.
 const TOGETHER: usize = 64;
 
 impl Composite {
-    /// For every output its derivatives; None for one that depends on the model.
+    /// Returns the derivatives of every output, or None for one that depends on the model.
     ///
-    /// Cost: for `P` pairs and `N` inputs about ten evaluations of the formulas for each of `N + P` directions, and as many
-    /// solutions of linear systems where there are unknowns; for each of `2 N` directions where `P` is 64 or more and the output is a
-    /// formula of the inputs alone.
+    /// With `exponents` the derivatives are per unit of `2^exponent` of each input, as in
+    /// [`derivatives_per`](crate::AssemblyFunction::derivatives_per).
     ///
-    /// With `exponents` per unit of `2^exponent` of each input, as
-    /// [`derivatives_per`](crate::AssemblyFunction::derivatives_per) has them.
+    /// Cost: for `P` pairs and `N` inputs about ten evaluations of the formulas for each of `N + P` directions. With unknowns, as many
+    /// linear systems are solved. If `P` is 64 or more and the output is a formula of the inputs alone, it is `2 N` directions.
     pub(super) fn exact(
         &self,
         outputs: &[usize],
         directions: &Directions<'_>,
         exponents: Option<&[i32]>,
     ) -> Vec<Option<Derivatives>> {
-        // A number moves by one unit of its input.
+        // An input moves by one unit along its direction.
         let unit = |input: usize| exponents.map_or(1.0, |all| Power::of_exponent(all[input]).times(1.0));
         let origins = self.origins(outputs);
         let needs: Vec<Needs> = origins.iter().map(|&origin| self.needs(origin)).collect();
@@ -40,6 +39,7 @@ impl Composite {
         let determined = |needs: &Needs| !needs.unknowns || tangent.is_some();
         let known: Vec<usize> = (0..origins.len()).filter(|&k| explicit(&needs[k]) && determined(&needs[k])).collect();
         let asked: Vec<Origin> = known.iter().map(|&k| origins[k]).collect();
+        // Pure derivatives need one jet for each input, mixed ones a jet for each pair, unless a tape gives all pairs at once.
         let along = |u: usize, v: usize| self.jets(&asked, &given, tangent.as_ref(), [(u, unit(u)), (v, unit(v))]);
         let pure: Vec<Vec<Jet>> = directions.inputs.par_iter().map(|&d| along(d, d)).collect();
         let together: Vec<Option<Vec<f64>>> =
@@ -49,7 +49,7 @@ impl Composite {
         let each = |&(j, k): &(usize, usize)| self.jets(&open, &given, tangent.as_ref(), [(j, unit(j)), (k, unit(k))]);
         let mixed: Vec<Vec<Jet>> =
             if open.is_empty() { Vec::new() } else { directions.pairs.par_iter().map(each).collect() };
-        // Formulas know that there is none where the unknowns have none.
+        // If the unknowns have no derivatives, the formulas have none either. That is known, in contrast to an output of the model.
         let none = |needs: &Needs| {
             explicit(needs).then(|| Derivatives {
                 first: vec![None; directions.inputs.len()],
@@ -76,7 +76,7 @@ impl Composite {
         derivatives
     }
 
-    /// All mixed derivatives of a formula of dimensions alone, where there are many and nothing stands in the way.
+    /// Returns all mixed derivatives of a formula of dimensions alone, or None if there are few pairs or if a derivative may not exist.
     fn mixed_together(
         &self,
         origin: Origin,
@@ -94,7 +94,7 @@ impl Composite {
         }
     }
 
-    /// These outputs along two dimensions, each with how far it moves.
+    /// Evaluates these outputs along two dimensions, each with the amount by which it moves.
     fn jets(
         &self,
         asked: &[Origin],

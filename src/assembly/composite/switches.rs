@@ -1,16 +1,16 @@
-//! Where the outputs of a composition change their form, and their degree.
+//! Switches and degree of the outputs of a composite.
 
 use super::{Composite, Origin, SolvedRows, Source};
 use crate::assembly::{Points, Polynomial, Run, Switch, SwitchKind, Switches};
 use sensitol_numeric::parallel::prelude::*;
 
-/// Rows whose unknowns one task finds.
+/// Rows whose unknowns one task solves.
 const ROWS: usize = 128;
-/// The margin of a solver: it has found the state, or has not.
+/// Margins of a solver: no state found, state found.
 const SOLVED: [f64; 2] = [-1.0, 1.0];
 
 impl Composite {
-    /// The formulas on which an output depends directly: itself, and the conditions where it needs the unknowns.
+    /// Returns the formulas whose switches an output has: its own, those that drive the model, and the conditions if it needs the unknowns.
     fn switching(&self, origin: Origin) -> Vec<usize> {
         let own = match origin {
             Origin::Formula(formula) => vec![formula],
@@ -98,7 +98,7 @@ impl Composite {
         Some(margins)
     }
 
-    /// An output as a polynomial, where it is a formula of dimensions alone.
+    /// Returns an output as a polynomial if it is a formula of dimensions alone.
     pub(super) fn polynomial_of(&self, output: usize, centre: &[f64], scale: &[f64]) -> Option<Polynomial> {
         let dimensions = self.signature.inputs.len();
         let Origin::Formula(formula) = self.outputs[output] else { return None };

@@ -1,25 +1,25 @@
-//! A program on columns.
+//! Programs on columns of numbers.
 
 use super::functions::{Binary, Unary, select};
 use super::program::{Branch, Operand, Program, Step};
 use sensitol_numeric::elementary::{self, Elementary, Work, on_this_processor};
 
-/// Rows that go through the program together: few enough that all registers stay in the nearest cache.
+/// Number of rows that pass through the program together, so few that all registers stay in the nearest cache.
 pub(super) const LANES: usize = 256;
 
-/// Runs a program on blocks of at most [`LANES`] rows.
+/// Evaluator of a program on blocks of at most [`LANES`] rows.
 ///
-/// A value that is the same in all rows of a block is computed once: at the points of a difference plan most variables stand at their means.
+/// A value that is equal in all rows of a block is computed once: at the points of a difference plan most variables are at their means.
 pub(super) struct Machine<'a> {
     program: &'a Program,
     registers: Vec<Vec<f64>>,
-    /// For every register its one number, where all rows of this block have the same.
+    /// Value of every register that is equal in all rows of this block; None if it varies.
     same: Vec<Option<f64>>,
-    /// The same of every variable up to the last that the program uses.
+    /// Value of every variable that is equal in all rows, up to the last variable that the program uses.
     variables: Vec<Option<f64>>,
 }
 
-/// One operand's values: a column, or the same number everywhere.
+/// Values of one operand: a column, or one number for all rows.
 #[derive(Clone, Copy)]
 enum Values<'a> {
     Same(f64),
@@ -37,7 +37,7 @@ impl<'a> Machine<'a> {
         }
     }
 
-    /// Evaluates `rows` rows, whose variables are the slices that `variable` returns, and hands out every result.
+    /// Evaluates `rows` rows, whose variables are the slices that `variable` returns, and passes every column of results to `result`.
     pub(super) fn run<'v>(
         &mut self,
         rows: usize,
@@ -93,7 +93,7 @@ impl<'a> Machine<'a> {
         }
     }
 
-    /// A branch that no row takes is not computed.
+    /// Evaluates an `if`. A branch that no row takes is not computed.
     fn branch<'v>(
         &mut self,
         condition: Operand,
@@ -134,8 +134,8 @@ impl<'a> Machine<'a> {
         });
     }
 
-    /// Takes a register out while the others are read: no operation writes to one of its own operands. An operation whose result is the
-    /// same in all rows returns it and writes nothing.
+    /// Writes a register while the others are read. No operation writes to one of its own operands. If the result is equal in all rows, the
+    /// operation returns it and writes nothing.
     fn write_register(&mut self, to: usize, operation: impl FnOnce(&Self, &mut [f64]) -> Option<f64>) {
         let mut out = std::mem::take(&mut self.registers[to]);
         self.same[to] = operation(self, &mut out);
@@ -143,10 +143,10 @@ impl<'a> Machine<'a> {
     }
 }
 
-/// The number that all of these are, to the bit; None where they differ.
+/// Returns the number that all of these values are, to the bit. Returns None if they differ.
 fn the_same(values: &[f64]) -> Option<f64> {
     let (first, last) = (values.first()?, values.last()?);
-    // Most columns that vary are told by their ends.
+    // In most columns that vary, the ends differ already.
     let ends = first.to_bits() == last.to_bits();
     (ends && on_this_processor(AllLike { values, bits: first.to_bits() })).then_some(*first)
 }
@@ -174,7 +174,8 @@ impl Values<'_> {
     }
 }
 
-/// A loop per function, so that the compiler sees each one alone. A result that is the same in all rows is returned instead.
+/// Applies a function, with a separate loop for each one, so that the compiler can optimise it. A result that is equal in all rows is
+/// returned instead.
 fn unary(function: Unary, a: Values<'_>, out: &mut [f64]) -> Option<f64> {
     let a = match a {
         Values::Same(x) => return Some(function.apply(x)),
@@ -195,7 +196,7 @@ fn unary(function: Unary, a: Values<'_>, out: &mut [f64]) -> Option<f64> {
     None
 }
 
-/// The same of two operands.
+/// Applies a function of two operands like `unary`.
 fn binary(function: Binary, a: Values<'_>, b: Values<'_>, out: &mut [f64]) -> Option<f64> {
     if let (Values::Same(x), Values::Same(y)) = (a, b) {
         return Some(function.apply(x, y));
@@ -255,8 +256,7 @@ impl<F: Fn(f64, f64) -> f64> Work for Zip<'_, F> {
 mod tests {
     use crate::assembly::formula::{Formula, FormulaSet, Meaning};
 
-    /// Blocks in which some variables stand still beside single rows, in which all do: the same bits, since a value belongs to its
-    /// arguments alone.
+    /// Values do not depend on the block: blocks in which some variables are constant give the same bits as single rows.
     #[test]
     fn what_is_the_same_in_a_block_is_what_it_is_row_by_row() {
         const ROWS: usize = 600;
@@ -269,7 +269,7 @@ mod tests {
             "b^2 - b",
         ];
         let names = ["a", "b", "c", "d"];
-        // One that varies everywhere, one that never does, one that does in the second block alone, one in a single row.
+        // One variable varies everywhere, one never, one in the second block only, one in a single row.
         let column = |of: fn(usize) -> f64| (0..ROWS).map(of).collect::<Vec<f64>>();
         let columns = [
             column(|row| 1.0 + 0.001 * row as f64),

@@ -1,18 +1,18 @@
-//! Sums without the terms that they add and subtract again.
+//! Removal of terms that a sum adds and subtracts again.
 //!
-//! Interval arithmetic takes the two `s` of `(a + s) - (b + s)` for different numbers: bounds of a pitch between two places that share a
-//! datum shift would hold the shift twice. Only what rounding leaves as it is happens here: terms with factors that are powers of two.
+//! Interval arithmetic treats the two `s` of `(a + s) - (b + s)` as different numbers. Bounds of a pitch between two places that share a
+//! datum shift would include the shift twice. Only terms whose factors are powers of two are removed, so that rounding does not change.
 
 use std::collections::BTreeMap;
 
 use super::functions::{Binary, Unary};
 use super::graph::{Graph, GraphNode, NodeId};
 
-/// The graph of `root` without what cancels; None where nothing does.
+/// Returns the graph of `root` without the terms that cancel, or None if no term cancels.
 pub(super) fn cancelled(graph: &Graph, root: NodeId) -> Option<(Graph, NodeId)> {
     let (needed, total) = (graph.needed([root]), total(graph));
     let nodes = || (0..graph.nodes().len()).filter(|&id| needed[id]).map(|id| (id as NodeId, graph.nodes()[id]));
-    // The sums that are not terms of another one.
+    // Sums that are not terms of another sum.
     let mut whole = vec![false; graph.nodes().len()];
     whole[root as usize] = true;
     for (id, node) in nodes().filter(|&(id, _)| terms(graph, id).is_none()) {
@@ -39,11 +39,11 @@ pub(super) fn cancelled(graph: &Graph, root: NodeId) -> Option<(Graph, NodeId)> 
     any.then_some((clean, places[root as usize]))
 }
 
-/// The terms of a node that is a sum, or a term times a power of two; None of any other.
+/// Returns the terms of a sum, or of a term times a power of two. Returns None for any other node.
 fn terms(graph: &Graph, id: NodeId) -> Option<Vec<(NodeId, f64)>> {
     let power = |node: NodeId| {
         let value = graph.constant_value(node)?;
-        // Mantissa 0: doubling and halving round nothing.
+        // The mantissa is 0 for powers of two, which multiply without rounding.
         (value.is_normal() && value.to_bits() << 12 == 0).then_some(value)
     };
     match graph.nodes()[id as usize] {
@@ -58,14 +58,14 @@ fn terms(graph: &Graph, id: NodeId) -> Option<Vec<(NodeId, f64)>> {
     }
 }
 
-/// The terms that are left of a sum, with their factors; None where nothing cancels, and where a factor would be rounded.
+/// Returns the remaining terms of a sum, with their factors. Returns None if no term cancels, or if a factor would be rounded.
 fn collected(graph: &Graph, sum: NodeId, total: &[bool]) -> Option<Vec<(NodeId, f64)>> {
-    // Of the greatest index first: all uses of a node come before it.
+    // The greatest index comes first, so that all uses of a node come before it.
     let mut open = BTreeMap::from([(sum, 1.0)]);
     let (mut left, mut any) = (Vec::new(), false);
     while let Some((id, factor)) = open.pop_last() {
         if factor == 0.0 {
-            // A term without a value leaves its sum without one.
+            // A term may have no value at some point. Its sum has none there either, so the term must stay.
             if !total[id as usize] {
                 return None;
             }
@@ -80,7 +80,7 @@ fn collected(graph: &Graph, sum: NodeId, total: &[bool]) -> Option<Vec<(NodeId, 
             let more: f64 = factor * times;
             let before = open.get(&term).copied().unwrap_or(0.0);
             let after = before + more;
-            // The sum of two doubles is exact if either is what the other leaves of it.
+            // The sum of two doubles is exact if each is recovered from it by subtracting the other.
             if !more.is_normal() || after - before != more || after - more != before {
                 return None;
             }
@@ -90,7 +90,7 @@ fn collected(graph: &Graph, sum: NodeId, total: &[bool]) -> Option<Vec<(NodeId, 
     any.then_some(left)
 }
 
-/// A sum of these terms, the earliest first.
+/// Adds a sum of these terms to the graph, the earliest term first.
 fn add(graph: &mut Graph, terms: &[(NodeId, f64)]) -> NodeId {
     let mut sum = None;
     for &(term, factor) in terms.iter().rev() {
@@ -111,7 +111,7 @@ fn add(graph: &mut Graph, terms: &[(NodeId, f64)]) -> NodeId {
     sum.unwrap_or_else(|| graph.constant(0.0))
 }
 
-/// The nodes that have a value wherever their variables have one.
+/// Returns a flag for each node that has a value wherever its variables have one.
 fn total(graph: &Graph) -> Vec<bool> {
     let mut total: Vec<bool> = Vec::with_capacity(graph.nodes().len());
     for &node in graph.nodes() {

@@ -1,38 +1,38 @@
-//! The faults of a formula: as it is written, and at one point.
+//! Errors of a formula: in its text, and at one point.
 
 use std::ops::Range;
 
 use super::name::is_plain;
 use sensitol_numeric::names::shortened_to;
 
-/// A formula that cannot be read, and where.
+/// Fault in the text of a formula, with its position.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{fault}")]
 pub struct FormulaError {
     /// Byte range in the formula's text.
     pub span: Range<usize>,
-    /// The fault there.
+    /// Fault in this range.
     pub fault: FormulaFault,
 }
 
-/// The faults of a formula's text.
+/// Faults of a formula's text.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FormulaFault {
-    /// Nothing stands there.
+    /// The text is empty.
     #[error("the formula is empty")]
     Empty,
     /// A character that means nothing in a formula.
     #[error("`{found}` means nothing in a formula")]
     UnexpectedCharacter {
-        /// The character or operator.
+        /// Character or operator that was found.
         found: String,
-        /// The text to write instead, where that is known.
+        /// Text to write instead, if there is one.
         instead: Option<&'static str>,
     },
-    /// A number that no double holds.
+    /// A number that no double can hold.
     #[error("`{text}` is not a number that fits a double")]
     BadNumber {
-        /// As written.
+        /// Number as it was written.
         text: String,
     },
     /// A backquoted name without its second backquote.
@@ -41,16 +41,16 @@ pub enum FormulaFault {
     /// A unit without its second bracket.
     #[error("this `[` is never closed")]
     UnclosedUnit,
-    /// A unit that nothing is known of.
+    /// A unit that does not exist.
     #[error("there is no unit `{text}`")]
     UnknownUnit {
-        /// As written.
+        /// Unit as it was written.
         text: String,
     },
-    /// A parenthesis without its partner.
+    /// An opening parenthesis without its closing one.
     #[error("this `(` is never closed")]
     UnclosedParenthesis,
-    /// A parenthesis without its partner.
+    /// A closing parenthesis without its opening one.
     #[error("this `)` closes nothing")]
     UnopenedParenthesis,
     /// A comma outside the arguments of a function.
@@ -59,66 +59,66 @@ pub enum FormulaFault {
     /// An operand is missing.
     #[error("a number, a name or `(` is missing before {before}")]
     MissingOperand {
-        /// The text that stands there instead.
+        /// Text in the place of the operand.
         before: String,
     },
-    /// Two operands stand side by side.
+    /// Two operands without an operator between them.
     #[error("an operator is missing before {before}")]
     MissingOperator {
-        /// The text that stands there instead.
+        /// Text in the place of the operator.
         before: String,
     },
-    /// `a < b < c`
+    /// A chain of comparisons such as `a < b < c`.
     #[error("comparisons cannot be chained")]
     ChainedComparison,
-    /// A call of something that is not a function.
+    /// A call of a name that is not a function.
     #[error("there is no function `{name}`")]
     UnknownFunction {
-        /// As written.
+        /// Name as it was written.
         name: String,
-        /// The most similar function.
+        /// Function with the most similar name, if one is similar.
         nearest: Option<String>,
     },
     /// A function name without parentheses.
     #[error("`{name}` is a function and needs its arguments in parentheses")]
     BareFunction {
-        /// The function.
+        /// Name of the function.
         name: String,
     },
     /// A wrong number of arguments.
     #[error("`{name}` takes {expected} argument(s), not {found}")]
     WrongArity {
-        /// The function.
+        /// Name of the function.
         name: String,
-        /// How many it takes, in words.
+        /// Number of arguments that it takes, in words.
         expected: &'static str,
-        /// How many stand there.
+        /// Number of arguments that were found.
         found: usize,
     },
-    /// More nested than is read.
+    /// A formula with too many nested levels.
     #[error("the formula is nested deeper than {limit} levels")]
     TooDeep {
-        /// The deepest that is read.
+        /// Greatest number of nested levels that is read.
         limit: usize,
     },
-    /// A name that has to stand in backquotes.
+    /// A name that must be in backquotes.
     #[error("{name} is one name, and reads as several here")]
     NeedsBackquotes {
-        /// The name.
+        /// Name without backquotes.
         name: String,
     },
-    /// A name that nothing bears.
+    /// A name that is not defined.
     #[error("nothing is named `{name}`")]
     UndefinedName {
-        /// As written.
+        /// Name as it was written.
         name: String,
-        /// The most similar name.
+        /// Defined name that is most similar, if one is similar.
         nearest: Option<String>,
     },
     /// A formula that needs its own value.
     #[error("`{}` needs its own value: {}", .path[0], path_words(.path))]
     Cycle {
-        /// The names along the way, the first not repeated at the end.
+        /// Names in the cycle, without the first one again at the end.
         path: Vec<String>,
     },
 }
@@ -130,7 +130,7 @@ fn path_words(path: &[String]) -> String {
 }
 
 impl FormulaFault {
-    /// The text to write instead, where that can be said.
+    /// Returns the text to write instead, if there is one.
     pub fn help(&self) -> Option<String> {
         let nearest = |nearest: &Option<String>| nearest.as_ref().map(|name| format!("did you mean `{name}`?"));
         match self {
@@ -165,51 +165,51 @@ impl FormulaFault {
     }
 }
 
-/// Characters of a part of a formula that a message shows.
+/// Greatest number of characters of a formula's part in a message.
 const SHOWN: usize = 80;
 
-/// A formula that has no value at one point.
+/// Failure of a formula that has no value at one point.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("`{}` in formula `{name}`: {reason}", shortened_to(&.text[.span.clone()], SHOWN))]
 #[non_exhaustive]
 pub struct FormulaFailure {
-    /// The name of the formula or characteristic.
+    /// Name of the formula or characteristic.
     pub name: String,
-    /// Its text.
+    /// Text of the formula.
     pub text: String,
-    /// The part of it that has no value.
+    /// Range of the part that has no value.
     pub span: Range<usize>,
-    /// Why.
+    /// Reason why this part has no value.
     pub reason: FailureReason,
 }
 
-/// Why a part of a formula has no value.
+/// Reason why a part of a formula has no value.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FailureReason {
     /// The argument of a function lies outside its domain.
     #[error("{rule}, but is {argument}")]
     Domain {
-        /// The argument.
+        /// Value of the argument.
         argument: f64,
-        /// Where the function has a value.
+        /// Rule for arguments at which the function has a value.
         rule: &'static str,
     },
     /// A division by 0.
     #[error("division by 0")]
     DivisionByZero,
-    /// A power that is not real, or infinite.
+    /// A power that is infinite or not real.
     #[error("{base} ^ {exponent} is not a finite real number")]
     Power {
-        /// The base.
+        /// Value of the base.
         base: f64,
-        /// The exponent.
+        /// Value of the exponent.
         exponent: f64,
     },
-    /// A result beyond the largest double, or an operand that was none.
+    /// A result beyond the largest double, or an operand that is not finite.
     #[error("the result {value} is not finite")]
     NotFinite {
-        /// The result.
+        /// Result, which is infinite or NaN.
         value: f64,
     },
 }

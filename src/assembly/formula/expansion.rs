@@ -1,4 +1,4 @@
-//! Formulas as polynomials, term by term.
+//! Expansion of formulas into polynomials, term by term.
 
 use super::functions::{Binary, Unary};
 use super::graph::{GraphNode, NodeId};
@@ -6,8 +6,8 @@ use super::set::FormulaSet;
 use crate::assembly::polynomial::{Coefficient, DEGREE, Polynomial};
 
 impl FormulaSet {
-    /// A formula as a polynomial in its variables, of which `variable` gives the polynomials. None where it is not one
-    /// ([`degree`](Self::degree)), beyond the fourth degree, and with too many terms.
+    /// Returns a formula as a polynomial in its variables, whose polynomials `variable` gives. Returns None if it is not a polynomial
+    /// ([`degree`](Self::degree)), beyond the fourth degree, or if it has too many terms.
     ///
     /// Cost: one pass over the operations, and the products of terms.
     pub(crate) fn polynomial(
@@ -18,7 +18,7 @@ impl FormulaSet {
         let root = self.roots[formula];
         let nodes = &self.graph.nodes()[..=root as usize];
         let needed = self.graph.needed([root]);
-        // The last operation that uses a node takes its terms, so that sums grow in place.
+        // The last operation that uses a node takes its terms without a copy, so that sums grow in place.
         let mut uses = vec![0u32; nodes.len()];
         let operands = nodes.iter().enumerate().filter(|(id, _)| needed[*id]).flat_map(|(_, node)| node.operands());
         operands.for_each(|operand| uses[operand as usize] += 1);
@@ -79,13 +79,13 @@ fn binary(function: Binary, a: Polynomial, b: Polynomial) -> Option<Polynomial> 
     }
 }
 
-/// A whole power up to the highest degree.
+/// Returns a whole power up to the highest degree.
 fn power(base: &Polynomial, exponent: f64) -> Option<Polynomial> {
     let whole = (0..=DEGREE).find(|&whole| whole as f64 == exponent)?;
     (0..whole).try_fold(Polynomial::constant(1.0), |product, _| product.times(base))
 }
 
-/// A function of a number, with as much error as the number's own makes, and a rounding.
+/// Returns a function of a number. The error combines that of the number and one rounding.
 fn applied(of: Coefficient, function: &dyn Fn(f64) -> f64) -> Polynomial {
     let value = function(of.value);
     let off = [of.value - of.error, of.value + of.error].map(|at| (function(at) - value).abs());
@@ -98,7 +98,7 @@ mod tests {
     use super::*;
     use crate::assembly::formula::{Formula, Meaning};
 
-    /// The terms of a formula in `x ~ 2 + 3 u0` and `y ~ -1 + 0.5 u1`, with `k` = 4 fixed.
+    /// Returns the terms of a formula in `x ~ 2 + 3 u0` and `y ~ -1 + 0.5 u1`, with `k` = 4 fixed.
     fn terms(text: &str) -> Option<Vec<(Vec<u32>, f64)>> {
         let formula = Formula::parse(text).unwrap();
         let names = [("x", Meaning::Variable(0)), ("y", Meaning::Variable(1)), ("k", Meaning::Variable(2))];
@@ -110,7 +110,7 @@ mod tests {
         Some(terms.map(|(inputs, of)| (inputs.to_vec(), of.value)).collect())
     }
 
-    /// By hand: `x y = -2 + u0 - 3 u0 + ...` with the means 2 and -1.
+    /// Expected terms were computed by hand: `x y = -2 + u0 - 3 u0 + ...` with the means 2 and -1.
     #[test]
     fn expansions_by_hand() {
         let product = vec![(vec![0, 1], 1.5), (vec![0], -3.0), (vec![1], 1.0), (vec![], -2.0)];

@@ -1,8 +1,8 @@
-//! The functions and operators that formulas know, on numbers.
+//! Functions and operators of formulas, on numbers.
 
 use sensitol_numeric::elementary::{self, Elementary};
 
-/// A function or operator of one argument.
+/// Function or operator of one argument.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Unary {
     /// `-x`
@@ -43,7 +43,7 @@ pub(crate) enum Unary {
     Sign,
 }
 
-/// A function or operator of two arguments.
+/// Function or operator of two arguments.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Binary {
     /// `x + y`
@@ -78,12 +78,12 @@ pub(crate) enum Binary {
     Hypot,
 }
 
-/// The function that a name in front of a parenthesis stands for.
+/// Function that a name in front of a parenthesis stands for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Callable {
     Unary(Unary),
     Binary(Binary),
-    /// Any number of arguments from two on, taken two by two.
+    /// Function of two or more arguments, applied to two at a time.
     Fold(Binary),
     If,
 }
@@ -122,7 +122,7 @@ impl Callable {
         Self::ALL.iter().map(|&(name, _)| name)
     }
 
-    /// Fewest and, unless there is no such number, most arguments.
+    /// Returns the fewest and the most arguments; None if there is no upper limit.
     pub(super) fn arity(self) -> (usize, Option<usize>) {
         match self {
             Self::Unary(_) => (1, Some(1)),
@@ -133,11 +133,11 @@ impl Callable {
     }
 }
 
-/// The constants of formulas.
+/// Named constants of formulas.
 pub(super) const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), ("deg", std::f64::consts::PI / 180.0)];
 
 impl Unary {
-    /// The function on one number.
+    /// Applies the function to one number.
     #[inline]
     pub(crate) fn apply(self, x: f64) -> f64 {
         match self {
@@ -163,8 +163,8 @@ impl Unary {
         }
     }
 
-    /// The condition that its argument must fulfil for it to have a value; None for a function that has one everywhere or fails
-    /// by being too large only.
+    /// Returns the condition on the argument for a value to exist. Returns None for a function that has a value everywhere or fails by
+    /// overflow only.
     pub(super) fn domain(self) -> Option<&'static str> {
         match self {
             Self::Asin | Self::Acos => Some("the argument must lie in -1 .. 1"),
@@ -176,8 +176,8 @@ impl Unary {
 }
 
 impl Binary {
-    /// The function on two numbers. NaN in is always NaN out: where IEEE 754 lets it vanish (`NaN ^ 0`, a comparison,
-    /// `min`), a domain error would pass for a result.
+    /// Applies the function to two numbers. An argument that is NaN always gives NaN. IEEE 754 drops it in some cases (`NaN ^ 0`,
+    /// comparisons, `min`), and a domain error would then pass for a result.
     #[inline]
     pub(crate) fn apply(self, x: f64, y: f64) -> f64 {
         let truth = |is: bool| if x.is_nan() || y.is_nan() { f64::NAN } else { f64::from(u8::from(is)) };
@@ -202,7 +202,7 @@ impl Binary {
     }
 }
 
-/// `if(condition, x, y)` on numbers.
+/// Evaluates `if(condition, x, y)` on numbers.
 #[inline]
 pub(super) fn select(condition: f64, x: f64, y: f64) -> f64 {
     if condition.is_nan() {

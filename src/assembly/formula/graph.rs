@@ -1,17 +1,17 @@
-//! All formulas as one graph in which nothing is computed twice.
+//! Graph of all formulas, in which nothing is computed twice.
 
 use std::collections::HashMap;
 
 use super::functions::{Binary, Unary};
 
-/// Index of a node; operands have smaller indices than what uses them.
+/// Index of a node. Operands have smaller indices than the operations that use them.
 pub(super) type NodeId = u32;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum GraphNode {
-    /// The bits of a number.
+    /// Constant, by the bits of its value.
     Constant(u64),
-    /// A column that the formulas are given.
+    /// Column that the formulas receive.
     Variable(usize),
     Unary(Unary, NodeId),
     Binary(Binary, NodeId, NodeId),
@@ -30,8 +30,8 @@ impl GraphNode {
     }
 }
 
-/// Nodes that are told apart by what they compute; parts without variables are folded as they are added, so that the
-/// branch of an `if` that can never be taken does not exist.
+/// Graph of operations. Equal operations share a node. Parts without variables are evaluated when they are added, so that a branch of an
+/// `if` that can never be taken does not exist.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Graph {
     nodes: Vec<GraphNode>,
@@ -80,7 +80,7 @@ impl Graph {
         }
     }
 
-    /// Small whole powers as products: faster, and at least as exact as the general power.
+    /// Replaces small whole powers by products, which are faster and at least as exact as the general power.
     fn power(&mut self, base: NodeId, exponent: f64) -> NodeId {
         let product = |graph: &mut Self, a, b| graph.add(GraphNode::Binary(Binary::Multiply, a, b));
         match exponent {
@@ -119,7 +119,7 @@ impl Graph {
         }
     }
 
-    /// The nodes that `roots` need, themselves included, as a flag per node.
+    /// Returns a flag for each node that `roots` need, including the roots.
     pub(super) fn needed(&self, roots: impl IntoIterator<Item = NodeId>) -> Vec<bool> {
         let mut needed = vec![false; self.nodes.len()];
         for root in roots {
@@ -135,7 +135,7 @@ impl Graph {
         needed
     }
 
-    /// The variables that `root` needs, ascending.
+    /// Returns the variables that `root` needs, ascending.
     pub(super) fn variables(&self, root: NodeId) -> Vec<usize> {
         let needed = self.needed([root]);
         let mut variables: Vec<usize> = (self.nodes.iter().zip(needed))

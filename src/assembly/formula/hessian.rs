@@ -1,4 +1,4 @@
-//! All mixed derivatives of a formula at once: a pass for every variable in place of one for every pair.
+//! All mixed derivatives of a formula at once, by one pass for each variable instead of one for each pair.
 
 use super::functions::{Binary, Unary};
 use super::graph::{GraphNode, NodeId};
@@ -7,44 +7,44 @@ use super::scalar::{Scalar, Verdict};
 use super::set::FormulaSet;
 use sensitol_numeric::parallel::prelude::*;
 
-/// Variables whose passes run side by side.
+/// Number of variables whose passes run together.
 const LANES: usize = 8;
 
-/// One operation that moves, with its derivatives by its operands.
+/// Operation that depends on a variable, with its derivatives by its operands.
 struct Local {
-    /// Places of the operands among the operations; the second is the first again where there is one alone.
+    /// Places of the operands among the operations. With one operand, both places are the same.
     of: [usize; 2],
     first: [f64; 2],
-    /// Twice by the first, by both, twice by the second.
+    /// Second derivatives: by the first operand, mixed, by the second operand.
     second: [f64; 3],
 }
 
-/// The operations of a formula at one point, in the order in which they are computed.
+/// Operations of a formula at one point, in the order of computation.
 struct Tape {
-    /// None for a variable.
+    /// Operations that depend on a variable; None for the variable itself.
     operations: Vec<Option<Local>>,
-    /// The place of every variable.
+    /// Variables with their places.
     variables: Vec<(usize, usize)>,
-    /// How the result changes with each of them.
+    /// Derivative of the result by every operation.
     adjoints: Vec<f64>,
 }
 
-/// The value of a node, and its place on the tape.
+/// Value of a node, with its place on the tape.
 #[derive(Clone, Copy)]
 struct NodeJet {
     jet: Jet,
-    /// None where its value cannot change with a variable.
+    /// Place on the tape; None if the value cannot change with a variable.
     place: Option<usize>,
 }
 
 impl FormulaSet {
-    /// The mixed derivatives of a formula by these pairs of variables at a point, a value for every variable.
+    /// Returns the mixed derivatives of a formula by these pairs of variables at a point, which has a value for every variable.
     ///
-    /// Forward along one variable, backward from the result: the derivatives of a slope by all variables (Griewank and Walther
-    /// 2008, section 5.4). None where the formula has a kink, a jump or the edge of a domain at this very point, or a number that is
-    /// not finite: [`jets`](Self::jets) tell which derivatives there are.
+    /// A forward pass along one variable and a backward pass from the result give the derivatives of a slope by all variables (Griewank and
+    /// Walther 2008, section 5.4). Returns None if the formula has a kink, a jump or the edge of a domain at this very point, or a number
+    /// that is not finite. [`jets`](Self::jets) then show which derivatives exist.
     ///
-    /// Cost: `n` variables of a formula of `m` operations take about `12 n m` products, whatever the number of pairs.
+    /// Cost: `n` variables of a formula of `m` operations take about `12 n m` products, for any number of pairs.
     pub(crate) fn mixed(&self, formula: usize, at: &[f64], pairs: &[(usize, usize)]) -> Option<Vec<f64>> {
         let tape = Tape::of(self, self.roots[formula], at)?;
         let mut places = vec![None; at.len()];
@@ -81,7 +81,7 @@ impl Tape {
         let needed = set.graph.needed([root]);
         let mut known = vec![NodeJet { jet: Jet::constant(f64::NAN), place: None }; nodes.len()];
         let mut tape = Self { operations: Vec::new(), variables: Vec::new(), adjoints: Vec::new() };
-        // The values first: they tell which branches count.
+        // Values come first, because they decide which branches count.
         let mut values = vec![f64::NAN; nodes.len()];
         for (id, node) in nodes.iter().enumerate().filter(|(id, _)| needed[*id]) {
             let value = |id: NodeId| values[id as usize];
@@ -115,7 +115,7 @@ impl Tape {
                         Verdict::Fails => of(otherwise),
                         Verdict::Undefined | Verdict::Open => return None,
                     };
-                    // The branch stands for the `if`.
+                    // The taken branch replaces the `if`.
                     known[id] = taken;
                     continue;
                 }
@@ -132,6 +132,7 @@ impl Tape {
         if let Some(place) = known[root as usize].place {
             tape.adjoints[place] = 1.0;
         }
+        // Backward pass: derivative of the result by every operation.
         for place in (0..tape.operations.len()).rev() {
             if let Some(local) = &tape.operations[place] {
                 let adjoint = tape.adjoints[place];
@@ -143,7 +144,7 @@ impl Tape {
         tape.adjoints.iter().all(|adjoint| adjoint.is_finite()).then_some(tape)
     }
 
-    /// How the derivative by every operation changes along each of these variables.
+    /// Returns the change of the derivative by every operation along each of these variables.
     fn changes(&self, along: &[usize]) -> Vec<[f64; LANES]> {
         let mut moves = vec![[0.0; LANES]; self.operations.len()];
         for (lane, &place) in along.iter().enumerate() {
@@ -155,6 +156,7 @@ impl Tape {
                 moves[place] = std::array::from_fn(|lane| first[0] * a[lane] + first[1] * b[lane]);
             }
         }
+        // Backward pass: the adjoints change by the changes of all later operations, and by the second derivatives.
         let mut changes = vec![[0.0; LANES]; self.operations.len()];
         for (place, local) in self.operations.iter().enumerate().rev() {
             if let Some(Local { of: [a, b], first, second: [aa, ab, bb] }) = local {
@@ -171,7 +173,7 @@ impl Tape {
     }
 }
 
-/// The nodes on which the result depends here: of an `if` the condition and one branch.
+/// Returns a flag for each node on which the result depends at this point: the condition and one branch of an `if`.
 fn taken(nodes: &[GraphNode], root: NodeId, values: &[f64]) -> Vec<bool> {
     let mut taken = vec![false; nodes.len()];
     taken[root as usize] = true;
@@ -190,10 +192,10 @@ fn taken(nodes: &[GraphNode], root: NodeId, values: &[f64]) -> Vec<bool> {
     taken
 }
 
-/// The result of an operation, and its derivatives where it moves.
+/// Result of an operation, with its derivatives if it depends on a variable.
 type Operation = (Jet, Option<Option<Local>>);
 
-/// None where a derivative does not exist.
+/// Evaluates a function of one operand. Returns None if a derivative does not exist.
 fn unary(function: Unary, a: NodeJet) -> Option<Operation> {
     let value = a.jet.value();
     let Some(place) = a.place else { return Some((Jet::constant(function.apply(value)), None)) };
@@ -240,8 +242,8 @@ mod tests {
         FormulaSet::new(vec![("result".to_owned(), formula)], meanings).expect("known names")
     }
 
-    /// By hand: of `x y^2 z^3` at (2, 3, 5) the derivatives by xy, xz, yz and twice by y are 2 y z^3 = 750, 3 y^2 z^2 = 675,
-    /// 6 x y z^2 = 900 and 2 x z^3 = 500.
+    /// Derivatives by hand: those of `x y^2 z^3` at (2, 3, 5) by xy, xz, yz and twice by y are 2 y z^3 = 750, 3 y^2 z^2 = 675, 6 x y z^2 =
+    /// 900 and 2 x z^3 = 500.
     #[test]
     fn products_by_hand() {
         let set = set("x*y^2*z^3", &["x", "y", "z"]);
@@ -249,8 +251,8 @@ mod tests {
         assert_eq!(found, Some(vec![750.0, 675.0, 900.0, 500.0]));
     }
 
-    /// Every function, a branch, a tie that does not count, and a variable that is not there, beside numbers that carry their
-    /// derivatives along one pair: another way to the same chain rule, apart by roundings of a few dozen operations.
+    /// Compares with jets, which apply the chain rule in another way. The formulas cover every function, a branch, a tie that does not
+    /// count, and an absent variable. Differences are roundings of a few dozen operations.
     #[test]
     fn all_functions_agree_with_jets() {
         let names = ["a", "b", "c", "d", "e"];
@@ -275,7 +277,7 @@ mod tests {
         }
     }
 
-    /// Where a derivative may not exist nothing is said, and jets are asked.
+    /// If a derivative may not exist, the result is None, and jets decide.
     #[test]
     fn kinks_and_edges_say_nothing() {
         for text in ["abs(x) + y", "min(x, y)", "sqrt(x)*y", "if(x, 1, y)", "floor(x)*y", "x/0", "if(x < y, x, y*x)"] {

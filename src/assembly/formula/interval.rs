@@ -1,4 +1,4 @@
-//! Intervals: every value that a formula can have over a box, with certainty.
+//! Interval arithmetic: certain bounds of a formula over a box.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -6,29 +6,30 @@ use super::functions::{Binary, Unary};
 use super::scalar::{Scalar, Verdict};
 use sensitol_numeric::power::Power;
 
-/// All values from `lower` to `upper`, both included; NaN where there is none.
+/// Interval of all values from `lower` to `upper`, both included; NaN for the empty interval.
 ///
-/// The result of an operation encloses its value for every choice of its operands, rounding included: sums, products,
-/// quotients and roots are rounded outward by their exact errors, and what a mathematical library computes is widened by
-/// four units in the last place, more than any in use is off. Where an operation has a value for some operands only, the
-/// others are left out, as a point without value is.
+/// The result of an operation encloses its value for every choice of its operands, including rounding. Sums, products, quotients and roots
+/// are rounded outward by their exact errors. Values of a mathematical library are widened by four units in the last place, which exceeds
+/// the error of every function in use. If an operation has a value for some operands only, the others are left out, like a point without
+/// value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {
     lower: f64,
     upper: f64,
-    /// Whether the operation, and all before it, are defined and continuous for every choice of their operands.
+    /// True if the operation, and all before it, are defined and continuous for every choice of their operands.
     whole: bool,
 }
 
-/// The error that a function of `libm` may have, in units in the last place: at 15,000 arguments each it was 1.84 at most, of `tanh`.
+/// Error in units in the last place that is allowed for a function of `libm`. At 15,000 arguments for each function it was 1.84 at most,
+/// for `tanh`.
 const LIBRARY: usize = 4;
-/// An angle as large as this has lost its place on the circle.
+/// Size of an angle from which its place on the circle is not used any more.
 const LOST: f64 = 1e8;
-/// Below this the error of a product is not a double any more.
+/// Size of a product below which its error is not representable as a double.
 const TINY: f64 = 1e-280;
 
 impl Interval {
-    /// From one number to another.
+    /// Creates the interval from one number to another.
     ///
     /// ```
     /// use sensitol::assembly::formula::interval::Interval;
@@ -42,31 +43,32 @@ impl Interval {
     fn point(value: f64) -> Self {
         match value {
             _ if value.is_nan() => Self::EMPTY,
-            // The result of an operation on an infinity depends on how it came about.
+            // An operation on an infinity depends on the origin of the infinity.
             _ if value.is_infinite() => Self::EVERYTHING,
             _ => Self::between(value, value),
         }
     }
 
     const EMPTY: Self = Self { lower: f64::NAN, upper: f64::NAN, whole: false };
+    /// Interval of all numbers, with breaks.
     pub(super) const EVERYTHING: Self = Self { lower: f64::NEG_INFINITY, upper: f64::INFINITY, whole: false };
 
-    /// The least value.
+    /// Returns the least value.
     pub fn lower(&self) -> f64 {
         self.lower
     }
 
-    /// The greatest value.
+    /// Returns the greatest value.
     pub fn upper(&self) -> f64 {
         self.upper
     }
 
-    /// Whether there is no value at all.
+    /// True if the interval is empty.
     pub fn is_empty(&self) -> bool {
         self.lower.is_nan()
     }
 
-    /// Whether the value exists and is continuous for every choice of the operands that led to it.
+    /// True if the value exists and is continuous for every choice of the operands that led to it.
     pub fn is_whole(&self) -> bool {
         self.whole
     }
@@ -79,25 +81,25 @@ impl Interval {
         self.lower == self.upper
     }
 
-    /// The same values with a break among them.
+    /// Returns the same values, marked as not continuous.
     fn broken(self) -> Self {
         Self { whole: false, ..self }
     }
 
-    /// No more whole than these are, and not beyond what a double can be.
+    /// Returns the interval, marked as not whole if an operand is not whole or an end is infinite.
     fn after(self, operands: &[&Self]) -> Self {
         let finite = self.lower.is_finite() && self.upper.is_finite();
         Self { whole: self.whole && finite && operands.iter().all(|operand| operand.whole), ..self }
     }
 
-    /// The values of both.
+    /// Returns the smallest interval that contains both.
     pub(super) fn hull(&self, other: &Self) -> Self {
-        // `min` and `max` pass over NaN.
+        // `min` and `max` ignore NaN.
         let (lower, upper) = (self.lower.min(other.lower), self.upper.max(other.upper));
         Self { lower, upper, whole: self.whole && other.whole }
     }
 
-    /// The intersection of both.
+    /// Returns the intersection with the interval from `lower` to `upper`.
     fn within(&self, lower: f64, upper: f64) -> Self {
         if self.is_empty() || self.lower > upper || self.upper < lower {
             return Self::EMPTY;
@@ -106,12 +108,13 @@ impl Interval {
         Self { lower: self.lower.max(lower), upper: self.upper.min(upper), whole }
     }
 
-    /// Of an increasing function that a library computes.
+    /// Applies an increasing function of a library.
     fn rising(&self, function: impl Fn(f64) -> f64) -> Self {
         Self { lower: down(function(self.lower)), upper: up(function(self.upper)), whole: true }.after(&[self])
     }
 
-    /// Times a power of two: exact, and one step outwards where an end loses digits among the least doubles, or leaves the greatest.
+    /// Multiplies by a power of two. The result is exact, except for a step outward if an end loses digits among the least doubles, or
+    /// exceeds the greatest.
     pub(crate) fn times(&self, power: Power) -> Self {
         let end = |end: f64, outwards: fn(f64) -> f64| match power.times(end) {
             product if power.inverse().times(product) == end => product,
@@ -153,7 +156,7 @@ impl Interval {
             return Self::EMPTY;
         }
         if other.contains(0.0) {
-            // An infinity of either sign: 0 has two.
+            // The quotient is an infinity of either sign, because 0 has two signs.
             return Self::EVERYTHING;
         }
         let ends = [
@@ -167,7 +170,7 @@ impl Interval {
         Self { lower, upper, whole: true }.after(&[self, other])
     }
 
-    /// `1/x` for `x` above 0, of which 0 itself may be the lower end.
+    /// Returns `1/x` for `x` above 0. The lower end may be 0 itself.
     pub(super) fn reciprocal(&self) -> Self {
         let upper = if self.lower > 0.0 { -quotient_down(-1.0, self.lower) } else { f64::INFINITY };
         let lower = if self.upper > 0.0 { quotient_down(1.0, self.upper) } else { 0.0 };
@@ -197,7 +200,7 @@ impl Interval {
         Self { lower: root_down(x.lower), upper, whole: x.whole }
     }
 
-    /// `cos`, whose greatest values lie at the whole turns.
+    /// Returns `cos`, whose greatest values are at whole turns.
     pub(super) fn cos(&self) -> Self {
         if self.is_empty() {
             return Self::EMPTY;
@@ -235,7 +238,7 @@ impl Interval {
         self.rising(libm::tan)
     }
 
-    /// Whether it holds `place` plus a whole number of periods; or may hold it, within rounding.
+    /// True if the interval contains `place` plus a whole number of periods, or may contain it within rounding.
     fn passes(&self, place: f64, period: f64) -> bool {
         let turns = |x: f64| (x - place) / period;
         let [from, to] = [self.lower, self.upper].map(turns);
@@ -251,7 +254,7 @@ impl Interval {
         if exponent.is_point() && n.is_finite() && n == n.trunc() {
             return self.whole_power(n).after(&[self, exponent]);
         }
-        // Whole exponents within the interval have values of negative numbers too, and an infinity has some of its own.
+        // Whole exponents within the interval have values for negative bases too. An infinite base is not bounded here.
         if self.lower == f64::NEG_INFINITY || self.lower < 0.0 && !(exponent.is_point() && n.is_finite()) {
             return Self::EVERYTHING;
         }
@@ -259,7 +262,7 @@ impl Interval {
         if x.is_empty() {
             return Self::EMPTY;
         }
-        // Monotonic in both arguments where the base is above 0.
+        // The power is monotonic in both arguments if the base is above 0.
         let ends = [
             (x.lower, exponent.lower),
             (x.lower, exponent.upper),
@@ -271,7 +274,7 @@ impl Interval {
             if x.contains(1.0) || exponent.contains(0.0) { [1.0, 1.0] } else { [f64::INFINITY, f64::NEG_INFINITY] };
         let lower = values.iter().fold(one[0], |least, value| least.min(*value));
         let upper = values.iter().fold(one[1], |most, value| most.max(*value));
-        // 0 to what is not above 0 is infinite or a jump.
+        // 0 to a power that is not above 0 is infinite or a jump.
         let whole = x.whole && (x.lower > 0.0 || exponent.lower > 0.0);
         Self { lower: down(lower).max(0.0), upper: up(not_lost(upper, x.upper)), whole }.after(&[exponent])
     }
@@ -304,7 +307,7 @@ impl Interval {
             return Self::EMPTY;
         }
         if y.contains(0.0) && x.lower <= 0.0 {
-            // The cut, or the point about which the angle turns.
+            // The interval includes the cut, or the origin.
             return Self::between(down(-PI), up(PI)).broken();
         }
         let ends = [(y.lower, x.lower), (y.lower, x.upper), (y.upper, x.lower), (y.upper, x.upper)];
@@ -327,7 +330,7 @@ impl Interval {
         .after(&[self, other])
     }
 
-    /// 1 where it is certain, 0 where it is certainly not, and both otherwise.
+    /// Returns 1 if a comparison is certainly true, 0 if it is certainly false, and both otherwise.
     fn truth(&self, other: &Self, always: bool, never: bool) -> Self {
         if self.is_empty() || other.is_empty() {
             return Self::EMPTY;
@@ -362,7 +365,7 @@ impl Scalar for Interval {
             }
             Unary::Ln | Unary::Log10 => {
                 let log = if function == Unary::Ln { libm::log } else { libm::log10 };
-                // The logarithm of 0 is an infinity, of which something else may be made.
+                // The logarithm of 0 is an infinity, which later operations may use.
                 Self { whole: x.whole && x.lower > 0.0, ..x.within(0.0, f64::INFINITY).rising(log) }
             }
             Unary::Sin => x.sin(),
@@ -431,7 +434,7 @@ impl Scalar for Interval {
 }
 
 impl Interval {
-    /// Nothing where there was nothing: `max` and `min` pass over NaN.
+    /// Returns the empty interval for an empty operand, because `max` and `min` ignore NaN.
     fn or_empty(self, operand: &Self) -> Self {
         if operand.is_empty() { Self::EMPTY } else { self }
     }
@@ -441,12 +444,12 @@ fn apart(a: &Interval, b: &Interval) -> bool {
     a.upper < b.lower || b.upper < a.lower
 }
 
-/// A library's value, widened downward; its 0 is exact, since no other argument is mapped there.
+/// Widens a library's value downward. The value 0 is exact, because no other argument gives it.
 fn down(value: f64) -> f64 {
     if value == 0.0 { value } else { (0..LIBRARY).fold(value, |value, _| value.next_down()) }
 }
 
-/// A value that has become 0 because it was too small still has the sign of `like`.
+/// Restores the sign of `like` in a value that underflowed to 0.
 fn not_lost(value: f64, like: f64) -> f64 {
     if value == 0.0 && like != 0.0 { f64::from_bits(1).copysign(like) } else { value }
 }
@@ -455,23 +458,23 @@ fn up(value: f64) -> f64 {
     -down(-value)
 }
 
-/// The greatest double that is no more than `a + b`.
+/// Returns the greatest double that is not above `a + b`.
 fn sum_down(a: f64, b: f64) -> f64 {
     let sum = a + b;
     if sum.is_nan() && !a.is_nan() && !b.is_nan() {
         return f64::NEG_INFINITY;
     }
     if !sum.is_finite() {
-        // Infinite operands are exact; a finite sum that overflows upward is at least the greatest double.
+        // Infinite operands are exact. A finite sum that overflows upward is at least the greatest double.
         return if a.is_finite() && b.is_finite() && sum > 0.0 { f64::MAX } else { sum };
     }
-    // Knuth's two-sum: the exact error of the addition.
+    // Knuth's two-sum gives the exact error of the addition.
     let of_b = sum - a;
     let error = (a - (sum - of_b)) + (b - of_b);
     if error < 0.0 || error.is_nan() { sum.next_down() } else { sum }
 }
 
-/// The greatest double that is no more than `a b`, or one less; 0 times an infinite end is 0.
+/// Returns the greatest double that is not above `a b`, or one less. 0 times an infinite end is 0.
 fn product_down(a: f64, b: f64) -> f64 {
     if a == 0.0 || b == 0.0 {
         return 0.0;
@@ -483,7 +486,7 @@ fn product_down(a: f64, b: f64) -> f64 {
     if product.abs() < TINY || a.mul_add(b, -product) < 0.0 { product.next_down() } else { product }
 }
 
-/// The greatest double that is no more than `a / b`, or one less, for `b` other than 0.
+/// Returns the greatest double that is not above `a / b`, or one less, for `b` other than 0.
 fn quotient_down(a: f64, b: f64) -> f64 {
     if a == 0.0 {
         return 0.0;
@@ -495,7 +498,7 @@ fn quotient_down(a: f64, b: f64) -> f64 {
     if !quotient.is_finite() {
         return if a.is_finite() && quotient > 0.0 { f64::MAX } else { quotient };
     }
-    // a - q b has the sign of b times that of the error.
+    // The sign of a - q b is that of b times that of the error.
     let rest = quotient.mul_add(-b, a);
     let below = if b > 0.0 { rest < 0.0 } else { rest > 0.0 };
     if below || quotient.abs() < TINY || a.abs() < TINY { quotient.next_down() } else { quotient }

@@ -1,14 +1,14 @@
-//! Exact derivatives: numbers that carry how they change along two directions.
+//! Exact derivatives: numbers that carry their derivatives along two directions.
 
 use super::functions::{Binary, Unary};
 use super::scalar::{Scalar, Verdict};
 
-/// A value with its first derivatives along two directions `u` and `v` and the second derivative `D_u D_v`: for `u = v`
-/// the pure one, for two unit vectors the mixed one. Nothing is lost to differences.
+/// Value with its first derivatives along two directions `u` and `v`, and the second derivative `D_u D_v`. For `u = v` this is the pure
+/// one, for two unit vectors the mixed one. No digits are lost, as they would be in differences.
 ///
-/// A derivative that does not exist is NaN and stays so: at the edge of a domain (`sqrt` at 0), at a kink (`abs` at 0,
-/// `min` of equals), at a jump (`floor`, the cut of `atan2`), beyond an infinity. A value that is the same on both sides to the
-/// second order, such as both branches of an `if` at its limit, has a derivative all the same.
+/// A derivative that does not exist is NaN and stays NaN: at the edge of a domain (`sqrt` at 0), at a kink (`abs` at 0, `min` of equals),
+/// at a jump (`floor`, the cut of `atan2`), and beyond an infinity. If a value agrees on both sides to the second order, such as both
+/// branches of an `if` at its limit, the derivative exists.
 ///
 /// ```
 /// use sensitol::assembly::formula::Formula;
@@ -27,46 +27,46 @@ use super::scalar::{Scalar, Verdict};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Jet {
     value: f64,
-    /// Along `u` and along `v`.
+    /// First derivatives along `u` and along `v`.
     first: [f64; 2],
-    /// `D_u D_v`.
+    /// Second derivative `D_u D_v`.
     second: f64,
-    /// Whether the value can change along the directions: what stands still has no kink.
+    /// True if the value can change along the directions. A constant has no kink.
     moves: bool,
 }
 
-/// The branches of an `if` meet when they agree to this part of themselves: rounding in either.
+/// Relative difference below which the branches of an `if` are equal. It allows for rounding in both.
 const MEET: f64 = 1e-12;
-/// Whole numbers from here on have no neighbours that are whole.
+/// Smallest number from which all doubles are even (2^53).
 const WHOLE: f64 = 9_007_199_254_740_992.0;
 
 impl Jet {
-    /// A variable that moves by these amounts along the two directions.
+    /// Creates a variable that moves by these amounts along the two directions.
     pub fn variable(value: f64, first: [f64; 2]) -> Self {
         Self { value, first, second: 0.0, moves: first != [0.0; 2] }
     }
 
-    /// A value with known derivatives, such as the solution of an equation.
+    /// Creates a value with known derivatives, such as the solution of an equation.
     pub fn known(value: f64, first: [f64; 2], second: f64) -> Self {
         Self::moving(value, first, second)
     }
 
-    /// The value itself, NaN or infinite where there is none.
+    /// Returns the value, which is NaN or infinite if it does not exist.
     pub fn value(&self) -> f64 {
         self.value
     }
 
-    /// The first derivative along the first (0) or second (1) direction, where it exists.
+    /// Returns the first derivative along the first (0) or second (1) direction, if it exists.
     pub fn first(&self, direction: usize) -> Option<f64> {
         Some(self.first[direction]).filter(|first| self.value.is_finite() && first.is_finite())
     }
 
-    /// The second derivative, once along each direction, where it exists.
+    /// Returns the second derivative, once along each direction, if it exists.
     pub fn second(&self) -> Option<f64> {
         Some(self.second).filter(|second| self.value.is_finite() && second.is_finite())
     }
 
-    /// Whether the value can change along the directions.
+    /// True if the value can change along the directions.
     pub(super) fn moves(&self) -> bool {
         self.moves
     }
@@ -88,7 +88,7 @@ impl Jet {
         Self { value, first: [f64::NAN; 2], second: f64::NAN, moves: true }
     }
 
-    /// `f(self)` from `f`, `f'` and `f''` at the value.
+    /// Returns `f(self)` from `f`, `f'` and `f''` at the value.
     fn through(&self, value: f64, slope: f64, curvature: f64) -> Self {
         let [u, v] = self.first;
         Self::moving(value, self.first.map(|first| slope * first), slope * self.second + curvature * u * v)
@@ -106,7 +106,7 @@ impl Jet {
         Self::moving(value, first, a.second * b.value + cross + a.value * b.second)
     }
 
-    /// From `q b = a`, so that no square overflows.
+    /// Differentiates `q b = a`, so that no square overflows.
     fn divide(&self, other: &Self, value: f64) -> Self {
         let (a, b) = (self, other);
         let first = [0, 1].map(|d| (a.first[d] - value * b.first[d]) / b.value);
@@ -129,7 +129,8 @@ impl Jet {
         let (x, c) = (self.value, exponent.value);
         if !exponent.moves {
             let whole = c == c.trunc();
-            // A root has no value on the other side of 0; and a sign is not known where whole numbers are all even.
+            // A root has no value on the other side of 0. The sign of the power is unknown for exponents so large that all doubles are
+            // even.
             return match c {
                 0.0 => Self::still(value),
                 1.0 => Self { value, ..*self },
@@ -143,7 +144,7 @@ impl Jet {
             let z = exponent.multiply(&logarithm, c * libm::log(x));
             return z.through(value, value, value);
         }
-        // 0 to whatever is above 0; anything else has no value beside the whole exponents.
+        // 0 to any power above 0 is constant. Any other base that is not positive has no value beside the whole exponents.
         if x == 0.0 && !self.moves && c > 0.0 { Self::still(value) } else { Self::broken(value) }
     }
 
@@ -155,7 +156,7 @@ impl Jet {
         Self::moving(value, [0, 1].map(|d| cos * a.first[d] + sin * b.first[d]), second)
     }
 
-    /// The angle of the point whose ordinate is `self`.
+    /// Returns the angle of the point with the ordinate `self`.
     fn atan2(&self, abscissa: &Self, value: f64) -> Self {
         let (y, x) = (self, abscissa);
         if y.value == 0.0 && x.value < 0.0 && y.moves {
@@ -169,7 +170,7 @@ impl Jet {
         Self::moving(value, first, (cos * y.second - sin * x.second - cross) / radius)
     }
 
-    /// One of two that are equal: its derivatives, where the other has the same.
+    /// Returns one of two equal values, with the derivatives that both have in common.
     fn tie(&self, other: &Self, value: f64) -> Self {
         if self.first == other.first && self.second == other.second {
             return Self { value, ..*self };
@@ -244,13 +245,13 @@ impl Scalar for Jet {
             Binary::Min | Binary::Max if tied => a.tie(b, y),
             Binary::Min | Binary::Max if y == a.value => *a,
             Binary::Min | Binary::Max => *b,
-            // A comparison of equals that move comes out otherwise next door.
+            // A comparison of equal values that move has another result next to this point.
             _ if tied => Self::broken(y),
             _ => Self::still(y),
         }
     }
 
-    /// A condition that may come out otherwise next door is open.
+    /// Returns the verdict. A condition that may have another result next to this point is open.
     fn verdict(&self) -> Verdict {
         match self.value.verdict() {
             Verdict::Undefined => Verdict::Undefined,
@@ -260,7 +261,7 @@ impl Scalar for Jet {
         }
     }
 
-    /// The branch that is taken here, with as many derivatives as it shares with the other one.
+    /// Returns the branch that is taken here, with the derivatives that it shares with the other one.
     fn join(condition: &Self, then: Self, otherwise: Self) -> Self {
         let (taken, other) = if condition.value != 0.0 { (then, otherwise) } else { (otherwise, then) };
         let meet = |a: f64, b: f64| (a - b).abs() <= MEET * a.abs().max(b.abs());

@@ -5,24 +5,24 @@ use std::ops::Range;
 use super::error::{FormulaError, FormulaFault};
 use super::name::plain_length;
 
-/// One token.
+/// Token of a formula.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Token {
     Number(f64),
-    /// The flag says that it stood in backquotes, where it is never a function or constant.
+    /// Name, and true if it was in backquotes. A quoted name is never a function or constant.
     Name(String, bool),
     Operator(&'static str),
     Open,
     Close,
     Comma,
-    /// The text in brackets after a number.
+    /// Text in brackets after a number.
     Unit(String),
 }
 
-/// Longest first, so that `<=` is not read as `<`.
+/// Operators, longest first, so that `<=` is not read as `<`.
 const OPERATORS: [&str; 11] = ["<=", ">=", "==", "!=", "<", ">", "+", "-", "*", "/", "^"];
 
-/// Spellings from other languages, and the ones that formulas use instead.
+/// Spellings from other languages, with advice on the spelling in formulas.
 const HABITS: [(&str, &str); 12] = [
     ("**", "powers are written with `^`"),
     ("&&", "write `if(a, b, 0)` for a and b"),
@@ -38,7 +38,7 @@ const HABITS: [(&str, &str); 12] = [
     (".", "functions have no prefix: write `sin(x)`, not `math.sin(x)`"),
 ];
 
-/// All tokens with their byte ranges.
+/// Returns all tokens with their byte ranges.
 pub(super) fn tokens(text: &str) -> Result<Vec<(Token, Range<usize>)>, FormulaError> {
     let mut tokens = Vec::new();
     let mut start = 0;
@@ -78,7 +78,7 @@ pub(super) fn tokens(text: &str) -> Result<Vec<(Token, Range<usize>)>, FormulaEr
     }
 }
 
-/// The token that a text begins with and its length in bytes: a number that no double holds is an error. None where there is none.
+/// Returns the first token of a text and its length in bytes, or None if there is none. A number that no double can hold is an error.
 fn token(rest: &str) -> Option<(usize, Result<Token, String>)> {
     if let Some(length) = number(rest) {
         let text = &rest[..length];
@@ -104,7 +104,7 @@ fn token(rest: &str) -> Option<(usize, Result<Token, String>)> {
     Some((1, Ok(token)))
 }
 
-/// The length of the number that a text begins with, such as `2`, `2.`, `.5` or `1.5e-3`; the `e` of `2e` belongs to what follows.
+/// Returns the length of the number that a text begins with, such as `2`, `2.`, `.5` or `1.5e-3`. The `e` of `2e` is not part of it.
 fn number(text: &str) -> Option<usize> {
     let digits = |text: &str| text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len());
     let whole = digits(text);

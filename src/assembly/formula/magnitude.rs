@@ -1,18 +1,19 @@
-//! Magnitudes of the terms of a formula: what its rounding errors are parts of.
+//! Magnitudes of the terms of a formula, which rounding errors are proportional to.
 //!
 //! ```text
 //! terms(x) = |x|          terms(f(a, b)) = |df/da| terms(a) + |df/db| terms(b), |f(a, b)| at the least
 //! ```
 //!
-//! Errors of `n` operations are at most `n epsilon` times that, to first order: 200.01 of `100.01 - 100`, whose value is 0.01. Source: N. J.
-//! Higham, Accuracy and Stability of Numerical Algorithms (2002), section 3.3, running error analysis.
+//! Errors of `n` operations are at most `n epsilon` times the magnitude, to first order. For example, `100.01 - 100` has the magnitude
+//! 200.01 and the value 0.01. Source: N. J. Higham, Accuracy and Stability of Numerical Algorithms (2002), section 3.3, running error
+//! analysis.
 
 use super::functions::{Binary, Unary};
 use super::jet::Jet;
 use super::scalar::{Scalar, Verdict};
 use super::set::FormulaSet;
 
-/// A value with the sum of the magnitudes of its terms.
+/// Value with the sum of the magnitudes of its terms.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Magnitude {
     value: f64,
@@ -24,7 +25,7 @@ impl Magnitude {
         Self { value, terms: value.abs() }
     }
 
-    /// A derivative that does not exist, at a kink or a jump, counts as 1.
+    /// Returns the magnitude of an operand in the result. A derivative that does not exist, at a kink or a jump, counts as 1.
     fn through(&self, jet: &Jet, direction: usize) -> f64 {
         jet.first(direction).map_or(1.0, f64::abs) * self.terms
     }
@@ -56,9 +57,9 @@ impl Scalar for Magnitude {
 }
 
 impl FormulaSet {
-    /// The sums of the magnitudes of the terms of some formulas at one point, NaN or infinite where a formula has no value.
+    /// Returns the sums of the magnitudes of the terms of some formulas at one point. They are NaN or infinite if a formula has no value.
     ///
-    /// Cost: about what twenty evaluations take.
+    /// Cost: about twenty evaluations.
     pub(crate) fn magnitudes(&self, formulas: &[usize], variable: impl Fn(usize) -> f64) -> Vec<f64> {
         let of = |index: usize| Magnitude::of(variable(index));
         let found = self.evaluate_scalar(formulas, of).into_iter();
@@ -85,7 +86,7 @@ mod tests {
         assert_eq!(terms("(a + 1000) - 1000", [0.5, 0.0]), 2000.5);
     }
 
-    /// A product has the terms of both factors, a root half of those of its argument and its own size.
+    /// A product has the terms of both factors. A root has half of those of its argument, but at least its own size.
     #[test]
     fn terms_go_through_functions_by_their_slopes() {
         assert_eq!(terms("a*b", [3.0, 4.0]), 24.0);

@@ -1,9 +1,9 @@
-//! The margins of switches, ready to run.
+//! Margins of switches, ready to run.
 
 use super::program::Program;
 use crate::assembly::Switch;
 
-/// The switches of some formulas, and the program of their margins.
+/// Switches of some formulas, with the program of their margins.
 #[derive(Debug)]
 pub(super) struct Margins {
     pub(super) switches: Vec<Switch>,

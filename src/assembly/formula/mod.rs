@@ -1,18 +1,17 @@
-//! Formulas: text to a batch evaluator over columns, with the place of every error.
+//! Formulas: from text to a batch evaluator over columns. Every error has a position in the text.
 //!
-//! A [`Formula`] is parsed alone; a [`FormulaSet`] resolves several against each other and against variables and
-//! constants, and evaluates them.
+//! A [`Formula`] is parsed alone. A [`FormulaSet`] resolves several formulas against each other and against variables and constants, and
+//! evaluates them.
 //!
-//! Written `+ - * / ^`, `< <= > >= == !=`, `if(condition, x, y)`, `min max` of several, `abs sqrt exp ln log10 sin cos
-//! tan asin acos atan atan2 sinh cosh tanh hypot floor ceil sign`, `pi` and `deg` (= pi/180). `^` binds to the right
-//! and tighter than a sign: `-x^2` is `-(x^2)`. A condition is true when it is not 0. Names with other characters than
-//! letters, digits and `_` stand in backquotes.
+//! Syntax: `+ - * / ^`, `< <= > >= == !=`, `if(condition, x, y)`, `min max` of several, `abs sqrt exp ln log10 sin cos tan asin acos atan
+//! atan2 sinh cosh tanh hypot floor ceil sign`, `pi` and `deg` (= pi/180). `^` binds to the right and tighter than a sign: `-x^2` is
+//! `-(x^2)`. A condition is true if it is not 0. Names with other characters than letters, digits and `_` are written in backquotes.
 //!
-//! An infinity may occur on the way (`1/(1/a + 1/b)` at `a = 0` is 0), NaN never vanishes, and a result that is not
-//! finite is an error of that point.
+//! Intermediate results may be infinite (`1/(1/a + 1/b)` at `a = 0` is 0). NaN always leads to NaN. A result that is not finite is an error
+//! of the point.
 //!
-//! The same programs run on other things than columns of numbers, whatever can be a `Scalar`: on a [`Jet`] they give
-//! exact derivatives, on an [`Interval`] bounds that no rounding breaks, on a magnitude the size of what is rounded.
+//! The same programs run on every type that implements `Scalar`, not only on columns of numbers. A [`Jet`] gives exact derivatives, an
+//! [`Interval`] gives bounds that include rounding, and a magnitude gives the size of the terms that are rounded.
 
 mod batch;
 mod cancel;

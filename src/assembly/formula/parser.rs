@@ -1,7 +1,7 @@
-//! Tokens to a formula, by precedence climbing.
+//! Parser from tokens to a formula, by precedence climbing.
 //!
-//! Nodes stand in a flat list, operands before what uses them, so that a sum of ten thousand terms is as harmless to
-//! every later pass as a sum of two.
+//! Nodes are stored in a flat list, operands before the operations that use them. Later passes therefore need no recursion, and a sum of
+//! ten thousand terms is as harmless as a sum of two.
 
 use std::ops::Range;
 
@@ -11,16 +11,16 @@ use super::lexer::{Token, tokens};
 use sensitol_numeric::names::nearest;
 use sensitol_numeric::unit::Unit;
 
-/// A formula as it was written.
+/// Formula as it was written.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Formula {
     pub(super) text: String,
     pub(super) nodes: Vec<(Node, Range<usize>)>,
-    /// The units of numbers that have one, by node.
+    /// Units of numbers that have one, by node.
     units: Vec<(usize, Unit)>,
 }
 
-/// One part of a formula; operands are indices of earlier nodes.
+/// Part of a formula. Operands are indices of earlier nodes.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Node {
     Number(f64),
@@ -30,14 +30,14 @@ pub(super) enum Node {
     If(usize, usize, usize),
 }
 
-/// Parentheses, signs and powers within each other.
+/// Greatest depth of nested parentheses, signs and powers.
 const DEEPEST: usize = 256;
 
 impl Formula {
-    /// Reads a formula.
+    /// Parses a formula.
     ///
     /// # Errors
-    /// The first thing that is wrong, with its place in the text.
+    /// Fails at the first fault, with its position in the text.
     ///
     /// ```
     /// use sensitol::assembly::formula::Formula;
@@ -60,22 +60,23 @@ impl Formula {
         }
     }
 
-    /// The text it was read from.
+    /// Returns the text that was parsed.
     pub(crate) fn text(&self) -> &str {
         &self.text
     }
 
-    /// The unit that the number at a node has.
+    /// Returns the unit of the number at a node.
     pub(super) fn unit_of(&self, node: usize) -> Option<&Unit> {
         self.units.iter().find(|(place, _)| *place == node).map(|(_, unit)| unit)
     }
 
-    /// Whether no number has a unit.
+    /// True if no number has a unit.
     pub(super) fn has_no_units(&self) -> bool {
         self.units.is_empty()
     }
 
-    /// The formula on names that are multiplied by a factor each, and divided by `result`: numbers with units in SI.
+    /// Returns the formula with each name multiplied by a factor, and the result divided by `result`. Numbers with units are converted to
+    /// SI.
     pub fn converted(&self, factor: &dyn Fn(&str) -> f64, result: f64) -> Self {
         let mut nodes: Vec<(Node, Range<usize>)> = Vec::with_capacity(self.nodes.len());
         let mut places = Vec::with_capacity(self.nodes.len());
@@ -113,7 +114,7 @@ impl Formula {
         Self { text: self.text.clone(), nodes, units: Vec::new() }
     }
 
-    /// Every name it uses, with its place; names used twice appear twice.
+    /// Returns every name with its position. A name that is used twice appears twice.
     pub fn names(&self) -> impl Iterator<Item = (&str, Range<usize>)> {
         self.nodes.iter().filter_map(|(node, span)| match node {
             Node::Name(name) => Some((name.as_str(), span.clone())),
@@ -122,7 +123,7 @@ impl Formula {
     }
 }
 
-/// Whether formulas already mean something by this name.
+/// True if formulas use this name for a function or constant.
 ///
 /// ```
 /// use sensitol::assembly::formula::parser::is_reserved;
@@ -140,7 +141,7 @@ struct Parser<'a> {
     units: Vec<(usize, Unit)>,
 }
 
-/// How tightly a sign binds what stands after it: more than `*`, less than `^`, so that `-x^2` is `-(x^2)`.
+/// Binding strength of a sign: more than `*`, less than `^`, so that `-x^2` is `-(x^2)`.
 const SIGN: u8 = 5;
 
 fn infix(token: &Token) -> Option<(Binary, u8, u8)> {
@@ -196,7 +197,7 @@ impl Parser<'_> {
         self.nodes[node].1.clone()
     }
 
-    /// An expression whose operators bind at least as tightly as `floor`.
+    /// Parses an expression whose operators bind at least as tightly as `floor`.
     fn expression(&mut self, floor: u8, depth: usize) -> Result<usize, FormulaError> {
         if depth > DEEPEST {
             return Err(self.error_here(FormulaFault::TooDeep { limit: DEEPEST }));
@@ -321,7 +322,7 @@ impl Parser<'_> {
         })
     }
 
-    /// Consumes the `)` that belongs to the `(` at `open`, and says where it ends.
+    /// Consumes the `)` that belongs to the `(` at `open`, and returns its end.
     fn close(&mut self, open: Range<usize>) -> Result<usize, FormulaError> {
         match self.peek() {
             Some(Token::Close) => {

@@ -1,4 +1,4 @@
-//! Variables inside a sine or cosine: by what they are multiplied there.
+//! Variables inside a sine or cosine, with their factors there.
 
 use std::collections::BTreeMap;
 
@@ -6,18 +6,19 @@ use super::functions::{Binary, Unary};
 use super::graph::{GraphNode, NodeId};
 use super::set::FormulaSet;
 
-/// Variables and what they are multiplied by in a sum.
+/// Variables of a sum with their factors.
 type Linear = BTreeMap<usize, f64>;
 
 impl FormulaSet {
-    /// Every variable of a sine or cosine whose argument is linear, with its factor: radians per unit.
+    /// Returns every variable of a sine or cosine whose argument is linear, with its factor: radians per unit.
     pub(crate) fn turning(&self) -> Vec<(usize, f64)> {
         let nodes = self.graph.nodes();
         let turned = |node: &GraphNode| match *node {
             GraphNode::Unary(Unary::Sin | Unary::Cos, a) => Some(a),
             _ => None,
         };
-        // A sum of a thousand variables elsewhere has five hundred thousand terms on its way.
+        // Only nodes inside a sine or cosine are collected: a sum of a thousand variables has five hundred thousand terms in its partial
+        // sums.
         let needed = self.graph.needed(nodes.iter().filter_map(turned));
         let mut linear: Vec<Option<Linear>> = Vec::with_capacity(nodes.len());
         let mut found = Vec::new();
@@ -31,7 +32,7 @@ impl FormulaSet {
         found
     }
 
-    /// None where a node is not linear.
+    /// Returns the linear terms of a node, or None if it is not linear.
     fn linear(&self, node: GraphNode, known: &[Option<Linear>]) -> Option<Linear> {
         let of = |id: NodeId| known[id as usize].as_ref();
         let times = |terms: &Linear, by: f64| {

@@ -1,9 +1,9 @@
-//! The graph as a sequence of column operations, with as few columns in flight as it takes.
+//! Sequence of column operations for a graph, with as few stored columns as possible.
 
 use super::functions::{Binary, Unary};
 use super::graph::{Graph, GraphNode, NodeId};
 
-/// Where an operation finds a column.
+/// Source of an operand's column.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Operand {
     Constant(f64),
@@ -11,7 +11,7 @@ pub(super) enum Operand {
     Register(usize),
 }
 
-/// One operation on columns.
+/// Operation on columns.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Step {
     Unary { function: Unary, a: Operand, to: usize },
@@ -19,37 +19,37 @@ pub(super) enum Step {
     If { condition: Operand, then: Branch, otherwise: Branch, to: usize },
 }
 
-/// The steps that are computed only where some row takes this branch, and their result.
+/// Steps that are computed only if some row takes this branch, and their result.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Branch {
     pub(super) steps: Vec<Step>,
     pub(super) result: Operand,
 }
 
-/// Everything that some outputs need, in order.
+/// Operations that some outputs need, in order.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Program {
     pub(super) steps: Vec<Step>,
     pub(super) results: Vec<Operand>,
     pub(super) registers: usize,
-    /// The variables that it uses, ascending.
+    /// Variables that the program uses, ascending.
     pub(super) variables: Vec<usize>,
 }
 
-/// Branches nested deeper are computed with the branch around them, which is right as well, only slower.
+/// Greatest depth of nested branches. Deeper ones are computed with the branch around them, which is correct but slower.
 const DEEPEST: usize = 64;
 
-/// A piece of the program that runs as a whole or not at all: the program itself, or one branch of an `if`.
+/// Part of the program that runs as a whole or not at all: the program itself, or one branch of an `if`.
 struct Region {
     parent: usize,
     depth: usize,
     nodes: Vec<NodeId>,
-    /// The condition of its `if`, and whether this is the branch taken where it holds; None for the program itself.
+    /// Condition of its `if`, and true for the branch that is taken if it holds; None for the program itself.
     entry: Option<(NodeId, bool)>,
 }
 
-/// For every node that `roots` need the conditions under which its value counts: those of the `if`s around it, with what they must
-/// come to. None for a node that is not needed.
+/// Returns for every node that `roots` need the conditions under which its value counts: those of the surrounding `if`s, with their
+/// required outcomes. Returns None for a node that is not needed.
 pub(super) fn guards(graph: &Graph, roots: &[NodeId]) -> Vec<Option<Vec<(NodeId, bool)>>> {
     let layout = Layout::of(graph, roots);
     let conditions = |&region: &Option<usize>| {
@@ -88,12 +88,12 @@ impl Program {
     }
 }
 
-/// Which region every needed node belongs to: the innermost one that all its users share.
+/// Region of every needed node: the innermost one that all its users share.
 struct Layout {
     regions: Vec<Region>,
-    /// The regions of the two branches of an `if`.
+    /// Regions of the two branches of an `if`.
     branches: Vec<Option<(usize, usize)>>,
-    /// The region of every node that is needed.
+    /// Region of every node that is needed.
     region_of: Vec<Option<usize>>,
 }
 
@@ -106,7 +106,7 @@ impl Layout {
         for &root in roots {
             region_of[root as usize] = Some(0);
         }
-        // Users come after what they use, so that going backwards meets every user first.
+        // Users come after their operands, so that a backward loop meets every user first.
         for id in (0..count).rev() {
             let Some(region) = region_of[id] else { continue };
             let node = graph.nodes()[id];
@@ -148,7 +148,7 @@ impl Layout {
         *known = Some(known.map_or(region, |known| self.common(known, region)));
     }
 
-    /// The innermost region that holds both.
+    /// Returns the innermost region that contains both.
     fn common(&self, mut a: usize, mut b: usize) -> usize {
         while a != b {
             let deeper = if self.regions[a].depth >= self.regions[b].depth { &mut a } else { &mut b };
@@ -157,7 +157,7 @@ impl Layout {
         a
     }
 
-    /// Calls `visit` for every operation in the order in which the program runs them, the `if` after its branches.
+    /// Calls `visit` for every operation in the order in which the program runs them. An `if` comes after its branches.
     fn walk(&self, region: usize, visit: &mut impl FnMut(NodeId)) {
         for &id in &self.regions[region].nodes {
             if let Some((then, otherwise)) = self.branches[id as usize] {
@@ -171,7 +171,7 @@ impl Layout {
         }
     }
 
-    /// For every node the time of its last use; results are used after the end.
+    /// Returns for every node the time of its last use. Results are used after the end.
     fn last_use(&self, graph: &Graph, roots: &[NodeId]) -> Vec<usize> {
         let mut last_use = vec![0; graph.nodes().len()];
         let mut clock = 0;
@@ -218,7 +218,7 @@ impl Layout {
     }
 }
 
-/// Columns in flight: a register is free again after the last use of what it holds.
+/// Columns in use. A register is free again after the last use of its column.
 struct Registers {
     register: Vec<Option<usize>>,
     last_use: Vec<usize>,
@@ -236,7 +236,7 @@ impl Registers {
         }
     }
 
-    /// A register for the result of `id`, never one of its own operands', which are freed only now.
+    /// Returns a register for the result of `id`. It is never one of its own operands, which are freed afterwards.
     fn define(&mut self, graph: &Graph, id: NodeId) -> usize {
         self.clock += 1;
         let to = self.free.pop().unwrap_or_else(|| {

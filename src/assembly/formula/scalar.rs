@@ -1,41 +1,41 @@
-//! A program on whatever can be computed with: numbers, jets, intervals.
+//! Programs on any type of value: numbers, jets, intervals.
 
 use super::functions::{Binary, Unary, select};
 use super::program::{Branch, Operand, Program, Step};
 
-/// A value that a program can be run on in place of columns of numbers.
+/// Value that a program can run on instead of columns of numbers.
 pub(crate) trait Scalar: Clone {
-    /// A number that never changes.
+    /// Returns a constant.
     fn constant(value: f64) -> Self;
 
-    /// A function of one argument.
+    /// Applies a function of one argument.
     fn unary(function: Unary, a: &Self) -> Self;
 
-    /// A function of two arguments.
+    /// Applies a function of two arguments.
     fn binary(function: Binary, a: &Self, b: &Self) -> Self;
 
-    /// The product of a value with itself, where it matters that both factors are the same.
+    /// Returns the product of a value with itself. Some types use that both factors are equal.
     fn square(a: &Self) -> Self {
         Self::binary(Binary::Multiply, a, a)
     }
 
-    /// The meaning of this value as the condition of an `if`.
+    /// Returns the meaning of this value as the condition of an `if`.
     fn verdict(&self) -> Verdict;
 
-    /// The value of an `if` whose condition is open, from both its branches.
+    /// Returns the value of an `if` whose condition is open, from both branches.
     fn join(condition: &Self, then: Self, otherwise: Self) -> Self;
 }
 
-/// The outcome of a condition.
+/// Outcome of a condition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Verdict {
-    /// It is not 0: the first branch alone is run.
+    /// The condition is not 0: only the first branch is run.
     Holds,
-    /// It is 0: the second branch alone is run.
+    /// The condition is 0: only the second branch is run.
     Fails,
-    /// It has no value, and so neither has the `if`.
+    /// The condition has no value, so that the `if` has none.
     Undefined,
-    /// It cannot be told: both branches are run and [joined](Scalar::join).
+    /// The condition is not decided: both branches are run and [joined](Scalar::join).
     Open,
 }
 
@@ -66,9 +66,9 @@ impl Scalar for f64 {
 }
 
 impl Program {
-    /// Runs the program once, on what `variable` returns, and returns every result in order.
+    /// Runs the program once on the values that `variable` returns, and returns every result in order.
     ///
-    /// `registers` is room that one run leaves to the next.
+    /// `registers` keeps memory from one run to the next.
     pub(super) fn evaluate<S: Scalar>(&self, variable: &impl Fn(usize) -> S, registers: &mut Vec<S>) -> Vec<S> {
         registers.resize(self.registers, S::constant(f64::NAN));
         let mut run = Evaluation { variable, registers };

@@ -18,12 +18,12 @@ use super::slopes::Sloped;
 use crate::assembly::Bounds;
 use sensitol_numeric::names::nearest;
 
-/// The meaning of a name that is not a formula.
+/// Meaning of a name that is not a formula.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Meaning {
-    /// The column of this index.
+    /// Variable: the column of this index.
     Variable(usize),
-    /// A number.
+    /// Constant with this value.
     Constant(f64),
 }
 
@@ -33,10 +33,10 @@ pub(super) enum Reference {
     Formula(usize),
 }
 
-/// Formulas in any order, resolved against each other.
+/// Set of formulas in any order, resolved against each other.
 ///
-/// Only what the asked formulas need is computed, common parts once. Cost: a formula of `n` operations takes about
-/// `n` passes over blocks of 256 rows.
+/// Only the parts that the asked formulas need are computed, common parts once. Cost: a formula of `n` operations takes about `n` passes
+/// over blocks of 256 rows.
 ///
 /// ```
 /// use sensitol::assembly::formula::Formula;
@@ -56,19 +56,19 @@ pub(super) enum Reference {
 #[derive(Debug)]
 pub struct FormulaSet {
     pub(super) formulas: Vec<Entry>,
-    /// Formulas before those that use them.
+    /// Order of evaluation: formulas before those that use them.
     pub(super) order: Vec<usize>,
     pub(super) graph: Graph,
     pub(super) roots: Vec<NodeId>,
-    /// The variables of every formula, once they were asked for.
+    /// Variables of every formula, computed when they are first asked for.
     variables: Vec<OnceLock<Vec<usize>>>,
-    /// For every formula the node of the graph that each of its own nodes became.
+    /// Node of the graph for each node of every formula.
     pub(super) places: Vec<Vec<NodeId>>,
-    /// Where some formulas change their form, kept for the same reason as the program.
+    /// Switches of the formulas that were last asked for, because the same ones are asked for repeatedly.
     pub(super) margins: Mutex<Option<(Vec<usize>, Arc<Margins>)>>,
-    /// The last program, since the same outputs are asked again and again.
+    /// Program of the outputs that were last asked for, because the same ones are asked for repeatedly.
     program: Mutex<Option<(Vec<usize>, Arc<Program>)>>,
-    /// The last program of bounds, whose sums are without what cancels.
+    /// Last program of bounds. Terms that cancel are removed from its sums.
     bounding: Mutex<Option<(usize, Arc<Program>)>>,
 }
 
@@ -77,7 +77,7 @@ pub struct FormulaSet {
 pub struct Routine(Arc<Program>);
 
 impl Routine {
-    /// Every formula on what `variable` returns; `room` is what one run leaves to the next.
+    /// Evaluates every formula on the values that `variable` returns. `room` keeps memory from one run to the next.
     pub(crate) fn run<S: Scalar>(&self, variable: &impl Fn(usize) -> S, room: &mut Vec<S>) -> Vec<S> {
         self.0.evaluate(variable, room)
     }
@@ -87,7 +87,7 @@ impl Routine {
 pub(super) struct Entry {
     pub(super) name: String,
     pub(super) formula: Formula,
-    /// The meanings of the names among the formula's nodes.
+    /// Meanings of the names among the formula's nodes.
     pub(super) references: HashMap<usize, Reference>,
 }
 
@@ -95,7 +95,7 @@ impl FormulaSet {
     /// Resolves every name.
     ///
     /// # Errors
-    /// The index of the formula at fault, with an undefined name or a cycle.
+    /// Fails with the index of the faulty formula, for an undefined name or a cycle.
     pub fn new<'n>(
         formulas: Vec<(String, Formula)>,
         meanings: impl IntoIterator<Item = (&'n str, Meaning)>,
@@ -104,10 +104,10 @@ impl FormulaSet {
         Self::with_unnamed(formulas, named, meanings)
     }
 
-    /// The same, but that only the first `named` formulas can be used by the others: the rest bear a name for errors.
+    /// Resolves every name. Only the first `named` formulas can be used by the others; the names of the rest are for errors.
     ///
     /// # Errors
-    /// As [`new`](Self::new).
+    /// Fails like [`new`](Self::new).
     pub(crate) fn with_unnamed<'n>(
         formulas: Vec<(String, Formula)>,
         named: usize,
@@ -136,27 +136,27 @@ impl FormulaSet {
         Ok(Self { formulas: entries, order, graph, roots, variables, places, margins, program, bounding })
     }
 
-    /// Number of formulas.
+    /// Returns the number of formulas.
     pub fn len(&self) -> usize {
         self.formulas.len()
     }
 
-    /// Numbers, names, functions and operators of all formulas together.
+    /// Returns the number of nodes of all formulas together: numbers, names, functions and operators.
     pub(crate) fn parts(&self) -> usize {
         self.formulas.iter().map(|entry| entry.formula.nodes.len()).sum()
     }
 
-    /// Whether there are no formulas.
+    /// True if there are no formulas.
     pub fn is_empty(&self) -> bool {
         self.formulas.is_empty()
     }
 
-    /// The variables that a formula can depend on, through other formulas too, ascending.
+    /// Returns the variables that a formula can depend on, directly or through other formulas, ascending.
     pub fn variables(&self, formula: usize) -> &[usize] {
         self.variables[formula].get_or_init(|| self.graph.variables(self.roots[formula]))
     }
 
-    /// The formulas that these formulas use, themselves included, as a flag per formula.
+    /// Returns a flag for each formula that these formulas use, including themselves.
     pub fn used(&self, by: impl IntoIterator<Item = usize>) -> Vec<bool> {
         let mut used = vec![false; self.len()];
         for formula in by {
@@ -170,8 +170,8 @@ impl FormulaSet {
         used
     }
 
-    /// Evaluates some formulas on `rows` rows; `variable` gives a variable's column, `result` gets the position in
-    /// `formulas`, the row and the value, which is NaN or infinite where there is none.
+    /// Evaluates some formulas on `rows` rows. `variable` returns a variable's column. `result` receives the position in `formulas`, the
+    /// row and the value, which is NaN or infinite if it does not exist.
     pub fn evaluate<'v>(
         &self,
         formulas: &[usize],
@@ -184,7 +184,8 @@ impl FormulaSet {
         });
     }
 
-    /// The same, handing out the values of some rows together, from a first row on.
+    /// Evaluates some formulas like `evaluate`, but passes the values of several rows together. `result` receives the position, the first
+    /// row and the values.
     pub(crate) fn evaluate_blocks<'v>(
         &self,
         formulas: &[usize],
@@ -202,17 +203,17 @@ impl FormulaSet {
         }
     }
 
-    /// Some formulas at one point, with exact derivatives; `variable` gives a variable's value and how it moves.
+    /// Evaluates some formulas at one point, with exact derivatives. `variable` gives the value of a variable and its derivatives.
     ///
-    /// Cost: about what ten evaluations take.
+    /// Cost: about ten evaluations.
     pub fn jets(&self, formulas: &[usize], variable: impl Fn(usize) -> Jet) -> Vec<Jet> {
         self.evaluate_scalar(formulas, variable)
     }
 
-    /// Encloses a formula over a box, an interval for every variable, in interval arithmetic. Terms that a sum adds and subtracts again are
-    /// left out.
+    /// Returns bounds of a formula over a box, with an interval for every variable, by interval arithmetic. Terms that a sum adds and
+    /// subtracts again are left out.
     ///
-    /// Cost: about as many operations on intervals as the formula has, times one more than there are variables that vary.
+    /// Cost: about as many operations on intervals as the formula has, times one more than the number of variables that vary.
     ///
     /// ```
     /// use sensitol::assembly::formula::Formula;
@@ -239,12 +240,12 @@ impl FormulaSet {
         Bounds { value, slopes }
     }
 
-    /// Some formulas at one point, on any kind of value.
+    /// Evaluates some formulas at one point, on any type of value.
     pub(crate) fn evaluate_scalar<S: Scalar>(&self, formulas: &[usize], variable: impl Fn(usize) -> S) -> Vec<S> {
         self.program(formulas).evaluate(&variable, &mut Vec::new())
     }
 
-    /// Some formulas made ready to be run again and again, by any number of threads.
+    /// Prepares some formulas for repeated runs, by any number of threads.
     pub(crate) fn routine(&self, formulas: &[usize]) -> Routine {
         let roots: Vec<NodeId> = formulas.iter().map(|&formula| self.roots[formula]).collect();
         Routine(Arc::new(Program::of(&self.graph, &roots)))
@@ -263,7 +264,7 @@ impl FormulaSet {
         program
     }
 
-    /// The program of one formula for bounds.
+    /// Returns the program of one formula for bounds.
     fn bounding(&self, formula: usize) -> Arc<Program> {
         let mut last = self.bounding.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         if let Some((of, program)) = &*last
@@ -281,14 +282,14 @@ impl FormulaSet {
         program
     }
 
-    /// Why a formula has no finite value at one point: the first part of it, or of a formula that it uses there, that
-    /// made the value what it is. None when it has a value.
+    /// Returns the reason why a formula has no finite value at one point, or None if it has one. The reason is the first part that causes
+    /// the failure, in this formula or in one that it uses there.
     pub fn explain(&self, formula: usize, variable: impl Fn(usize) -> f64) -> Option<FormulaFailure> {
         let mut values: Vec<Vec<f64>> = vec![Vec::new(); self.len()];
         for &index in &self.order {
             values[index] = self.formulas[index].values(&values, &variable);
         }
-        // An infinity on the way to a NaN may be harmless (1/(1/0) is 0): a NaN is traced to where it arose.
+        // An infinity before a NaN may be harmless (1/(1/0) is 0), so that a NaN is traced to its own origin.
         let fault = match *values[formula].last()? {
             value if value.is_finite() => return None,
             value if value.is_nan() => f64::is_nan,
@@ -308,7 +309,7 @@ impl FormulaSet {
                     live[*used] = true;
                 }
             }
-            // Later in this loop is earlier in the order: the deepest cause wins.
+            // Later in this loop is earlier in the order, so that the deepest cause remains.
             failure = entry.failure(&values[index], &taken, fault).or(failure);
         }
         failure
@@ -332,7 +333,7 @@ fn resolve(formula: &Formula, known: &HashMap<String, Reference>) -> Result<Hash
     Ok(references)
 }
 
-/// Formulas before those that use them, or the cycle that makes it impossible.
+/// Returns the formulas in an order in which each comes before those that use it, or the cycle that makes this impossible.
 fn order(entries: &[Entry]) -> Result<Vec<usize>, (usize, FormulaError)> {
     let uses: Vec<Vec<usize>> = entries.iter().map(|entry| entry.uses().collect()).collect();
     let mut missing: Vec<usize> = uses.iter().map(Vec::len).collect();
@@ -356,7 +357,7 @@ fn order(entries: &[Entry]) -> Result<Vec<usize>, (usize, FormulaError)> {
     if order.len() == entries.len() {
         return Ok(order);
     }
-    // Every formula left uses another one left: following such uses must come round.
+    // Every remaining formula uses another remaining one, so that following these uses leads to a cycle.
     let start = (0..entries.len()).find(|&index| missing[index] > 0).expect("some formula is left");
     let mut path = vec![start];
     loop {
@@ -379,7 +380,7 @@ fn order(entries: &[Entry]) -> Result<Vec<usize>, (usize, FormulaError)> {
 }
 
 impl Entry {
-    /// The formulas that this one names, each once, ascending.
+    /// Returns the formulas that this one names, each once, ascending.
     fn uses(&self) -> impl Iterator<Item = usize> {
         let mut uses: Vec<usize> = (self.references.values())
             .filter_map(|reference| match reference {
@@ -392,7 +393,7 @@ impl Entry {
         uses.into_iter()
     }
 
-    /// The node of the graph for each of its own.
+    /// Adds the formula to the graph. Returns the node of the graph for each node of the formula.
     fn add_to(&self, graph: &mut Graph, roots: &[NodeId]) -> Vec<NodeId> {
         let mut ids: Vec<NodeId> = Vec::with_capacity(self.formula.nodes.len());
         for (index, (node, _)) in self.formula.nodes.iter().enumerate() {
@@ -412,7 +413,7 @@ impl Entry {
         ids
     }
 
-    /// The value of every node at one point, branches not taken included.
+    /// Returns the value of every node at one point, including branches that are not taken.
     fn values(&self, formulas: &[Vec<f64>], variable: &impl Fn(usize) -> f64) -> Vec<f64> {
         let mut values: Vec<f64> = Vec::with_capacity(self.formula.nodes.len());
         for (index, (node, _)) in self.formula.nodes.iter().enumerate() {
@@ -431,7 +432,7 @@ impl Entry {
         values
     }
 
-    /// Which nodes have a part in the result at a point where the nodes have these values.
+    /// Returns a flag for each node that has a part in the result, given the values of all nodes.
     fn taken(&self, values: &[f64]) -> Vec<bool> {
         let mut taken = vec![false; values.len()];
         *taken.last_mut().expect("a formula is never empty") = true;
@@ -456,7 +457,7 @@ impl Entry {
         taken
     }
 
-    /// The first node with a part in the result that `fault` finds at fault while none of its operands is.
+    /// Returns the failure of the first node in the result that `fault` flags, while none of its operands is flagged.
     fn failure(&self, values: &[f64], taken: &[bool], fault: fn(f64) -> bool) -> Option<FormulaFailure> {
         let sound = |operand: usize| !fault(values[operand]);
         let (span, reason) = self.formula.nodes.iter().enumerate().find_map(|(index, (node, span))| {

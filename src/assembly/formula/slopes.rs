@@ -1,38 +1,38 @@
-//! Intervals that carry how fast they change: what decides on which side of a box a formula is least.
+//! Intervals with bounds of their slopes, which decide on which side of a box a formula is least.
 
 use super::functions::{Binary, Unary};
 use super::interval::Interval;
 use super::scalar::{Scalar, Verdict};
 
-/// A value over a box with its slope along each of some dimensions.
+/// Value over a box with its slope along each of some dimensions.
 ///
-/// Where the value is [whole](Interval::is_whole), the mean value theorem holds with these slopes: at a kink they enclose those
-/// of both sides.
+/// If the value is [whole](Interval::is_whole), the mean value theorem holds with these slopes. At a kink they enclose the slopes of both
+/// sides.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Sloped {
     pub(super) value: Interval,
-    /// None for what does not depend on any dimension.
+    /// Slopes along the dimensions; empty for a value that does not depend on any.
     pub(super) slopes: Vec<Interval>,
 }
 
 impl Sloped {
-    /// The dimension at `index` of `count`.
+    /// Returns the dimension at `index` of `count`.
     pub(super) fn variable(value: Interval, index: usize, count: usize) -> Self {
         let slope = |other: usize| Interval::constant(if other == index { 1.0 } else { 0.0 });
         Self { value, slopes: (0..count).map(slope).collect() }
     }
 
-    /// A value that does not depend on any dimension.
+    /// Returns a value that does not depend on any dimension.
     pub(super) fn still(value: Interval) -> Self {
         Self { value, slopes: Vec::new() }
     }
 
-    /// `f(self)` from `f` and `f'`.
+    /// Returns `f(self)` from `f` and `f'`.
     fn through(&self, value: Interval, slope: Interval) -> Self {
         Self { value, slopes: self.slopes.iter().map(|own| slope.multiply(own)).map(certain).collect() }
     }
 
-    /// With slopes made of those of two values, 0 where one of them has none.
+    /// Combines the slopes of two values, with 0 for a value without slopes.
     fn from(value: Interval, a: &Self, b: &Self, slope: impl Fn(&Interval, &Interval) -> Interval) -> Self {
         let zero = Interval::constant(0.0);
         let of = |operand: &'_ Self, index: usize| operand.slopes.get(index).copied().unwrap_or(zero);
@@ -40,7 +40,7 @@ impl Sloped {
         Self { value, slopes: (0..count).map(|index| certain(slope(&of(a, index), &of(b, index)))).collect() }
     }
 
-    /// Nothing is known of the slopes of what moves.
+    /// Returns a value whose slopes are unknown if an operand depends on a dimension.
     fn unknown(value: Interval, operands: &[&Self]) -> Self {
         let count = operands.iter().map(|operand| operand.slopes.len()).max().unwrap_or(0);
         Self { value, slopes: vec![Interval::EVERYTHING; count] }
@@ -62,7 +62,7 @@ impl Sloped {
     }
 }
 
-/// An empty slope says nothing.
+/// Replaces an empty slope, which is no bound, by an unbounded one.
 fn certain(slope: Interval) -> Interval {
     if slope.is_empty() { Interval::EVERYTHING } else { slope }
 }
@@ -114,7 +114,7 @@ impl Scalar for Sloped {
             Binary::Add => Self::from(y, a, b, Interval::add),
             Binary::Subtract => Self::from(y, a, b, Interval::subtract),
             Binary::Multiply => Self::from(y, a, b, |of_a, of_b| of_a.multiply(&b.value).add(&a.value.multiply(of_b))),
-            // From q b = a.
+            // The slope follows from q b = a.
             Binary::Divide => Self::from(y, a, b, |of_a, of_b| of_a.subtract(&y.multiply(of_b)).divide(&b.value)),
             Binary::Power => a.power(b, y),
             Binary::Hypot => {
@@ -132,7 +132,7 @@ impl Scalar for Sloped {
             Binary::Max if a.value.lower() > b.value.upper() => Self { value: y, ..a.clone() },
             Binary::Max if b.value.lower() > a.value.upper() => Self { value: y, ..b.clone() },
             Binary::Min | Binary::Max => Self::from(y, a, b, Interval::hull),
-            // A comparison that is certain stands still.
+            // A comparison with a certain result is constant.
             _ if y.lower() == y.upper() => Self::still(y),
             _ => Self::unknown(y, &[a, b]),
         }
@@ -152,12 +152,12 @@ impl Scalar for Sloped {
     }
 }
 
-/// The part of it that is not negative.
+/// Returns the part of an interval that is not negative.
 fn positive(x: &Interval) -> Interval {
     Interval::between(x.lower().max(0.0), x.upper().max(0.0))
 }
 
-/// `side / length`, a sine or cosine.
+/// Returns `side / length`, a sine or cosine.
 fn direction(side: &Interval, length: &Interval) -> Interval {
     let ratio = side.divide(length);
     let (lower, upper) = (ratio.lower().max(-1.0), ratio.upper().min(1.0));

@@ -1,4 +1,4 @@
-//! Facts from the formulas' own tree: where they change their form, and their degree as polynomials.
+//! Switches of formulas, where they change their form, and their degree as polynomials.
 //!
 //! Every switch has a margin, a function of the variables that changes its sign where the formula changes its form:
 //!
@@ -10,9 +10,9 @@
 //! | `sqrt(x)`, `ln(x)`, `log10(x)`, `x^0.7`; `asin(x)`, `acos(x)` | `x`; `1 - abs(x)` | edge |
 //! | `a/b`, `x^-2`; `tan(x)` | `b`, `x`; `cos(x)` | pole |
 //!
-//! A product as divisor has a margin for each factor, so that `1/x^2` is seen to have a pole. Margins are formulas themselves and
-//! run on the same machine; inside the branch of an `if` that is not taken a margin is NaN. An equality has no margin: two
-//! varying values are equal nowhere.
+//! A product as divisor has a margin for each factor, so that the pole of `1/x^2` is found. Margins are formulas themselves and run on the
+//! same machine. Inside the branch of an `if` that is not taken a margin is NaN. An equality has no margin: two varying values are equal
+//! with probability 0.
 
 use std::sync::{Arc, PoisonError};
 
@@ -25,7 +25,7 @@ use super::set::FormulaSet;
 use crate::assembly::{Switch, SwitchKind};
 
 impl FormulaSet {
-    /// The places at which some formulas change their form, those of the formulas that they use included, each once.
+    /// Returns the switches of some formulas and of the formulas that they use, each once.
     ///
     /// ```
     /// use sensitol::assembly::SwitchKind;
@@ -41,9 +41,9 @@ impl FormulaSet {
         self.prepared(formulas).switches.clone()
     }
 
-    /// The margin of every switch of [`switches`](Self::switches) at `rows` rows; NaN where the switch has no part in the value.
+    /// Returns the margin of every switch of [`switches`](Self::switches) at `rows` rows, NaN if the switch has no part in the value.
     ///
-    /// Shapes: a column of `rows` values for every switch. Cost: about as much as evaluating the formulas.
+    /// Shapes: a column of `rows` values for every switch. Cost: about one evaluation of the formulas.
     pub fn margins<'v>(&self, formulas: &[usize], rows: usize, variable: impl Fn(usize) -> &'v [f64]) -> Vec<Vec<f64>> {
         let margins = self.prepared(formulas);
         let mut columns = vec![Vec::with_capacity(rows); margins.switches.len()];
@@ -57,9 +57,10 @@ impl FormulaSet {
         columns
     }
 
-    /// The degree of a formula as a polynomial in its variables, of which `variable` says the degree; None where it is not one.
+    /// Returns the degree of a formula as a polynomial in its variables, whose degrees `variable` gives. Returns None if it is not a
+    /// polynomial.
     ///
-    /// Constants and other formulas are followed. Cost: one pass over the operations.
+    /// Constants and other formulas are included. Cost: one pass over the operations.
     ///
     /// ```
     /// use sensitol::assembly::formula::Formula;
@@ -138,7 +139,7 @@ impl FormulaSet {
         }
     }
 
-    /// A node as it is written where it occurs first.
+    /// Returns the switch of a node, with the text of its first occurrence.
     fn described(&self, id: NodeId, kind: SwitchKind) -> Switch {
         let place = self.order.iter().find_map(|&entry| {
             let node = self.places[entry].iter().position(|&place| place == id)?;
@@ -155,7 +156,7 @@ impl FormulaSet {
     }
 }
 
-/// The margins of one node.
+/// Returns the kinds and margins of the switches of one node.
 fn margins_of(graph: &mut Graph, node: GraphNode) -> Vec<(SwitchKind, NodeId)> {
     match node {
         GraphNode::Unary(function, x) => {
@@ -203,7 +204,7 @@ fn margins_of(graph: &mut Graph, node: GraphNode) -> Vec<(SwitchKind, NodeId)> {
     }
 }
 
-/// The parts of a product that vary, whose signs make its own; the same part twice is one.
+/// Returns the varying factors of a product, each once. Their signs determine the sign of the product.
 fn factors(graph: &Graph, of: NodeId) -> Vec<NodeId> {
     let (mut open, mut found) = (vec![of], Vec::new());
     while let Some(id) = open.pop() {

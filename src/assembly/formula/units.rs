@@ -1,8 +1,8 @@
-//! Units of formulas: what every part of a formula measures, and where two units do not go together.
+//! Units of formulas: the quantity that every part measures, and places where two units are incompatible.
 //!
-//! Numbers are used as they are written, so that a result is right exactly where units agree in kind and in scale. A name without a
-//! unit, and what is made of it, is of any unit. A literal factor may be a conversion by hand (`25.4*shim`), and one that is no
-//! common factor may hide a unit (`400*travel`). Radians may be dropped, never invented.
+//! Numbers are used as they are written, so that a result is right only if units agree in kind and in scale. A name without a unit, and
+//! every part that contains it, is compatible with any unit. A literal factor may be a conversion by hand (`25.4*shim`). One that is not a
+//! common factor may hide a unit (`400*travel`). Radians may be dropped, but not introduced.
 
 use std::ops::Range;
 
@@ -11,48 +11,48 @@ use super::parser::{Formula, Node};
 use super::set::{FormulaSet, Reference};
 use sensitol_numeric::unit::{SAME, Unit};
 
-/// Literal factors that are followed.
+/// Greatest number of literal factors of a part that are followed.
 const FOLLOWED: usize = 8;
 /// Factors and divisors that hide no unit.
 const SIMPLE: [f64; 7] = [1.0, 2.0, 3.0, 4.0, 6.0, 8.0, std::f64::consts::PI];
 
-/// The role of a formula, where its unit follows from that.
+/// Role of a formula, which may determine its unit.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Role {
-    /// Anything.
+    /// No restriction of the unit.
     Free,
-    /// A value in this unit.
+    /// Value that must have this unit.
     Declared(Unit),
-    /// An angle in radians.
+    /// Angle that must be in radians.
     Angle,
-    /// A length that goes with that of this formula.
+    /// Length that must be compatible with that of this formula.
     Like(usize),
-    /// A result whose unit has to be declared where it has one and units are converted.
+    /// Result whose unit must be declared if it has one and units are converted.
     Result,
 }
 
-/// Two units that do not go together.
+/// Finding that two units are incompatible.
 #[derive(Debug, Clone, PartialEq)]
 pub struct UnitFinding {
     /// Index of the formula.
     pub formula: usize,
-    /// The part of its text.
+    /// Range of the faulty part in its text.
     pub span: Range<usize>,
-    /// The fault.
+    /// Description of the fault.
     pub what: String,
-    /// The text to write instead.
+    /// Text to write instead.
     pub remedy: String,
-    /// Whether a number without a unit could explain it.
+    /// True if a number without a unit could explain the finding.
     pub doubtful: bool,
 }
 
-/// The quantity that a part of a formula measures.
+/// Quantity that a part of a formula measures.
 #[derive(Debug, Clone, PartialEq)]
 struct Quantity {
     unit: Unit,
-    /// Literal factors in it.
+    /// Literal factors of the part.
     factors: Vec<f64>,
-    /// Whether it is a number without a unit.
+    /// True for a number without a unit.
     literal: bool,
 }
 
@@ -65,7 +65,7 @@ impl Quantity {
         Self { unit: Unit::one(), factors: vec![value], literal: true }
     }
 
-    /// Its scale, and those that it has where some of its factors are conversions by hand.
+    /// Returns the scale of the unit, and the scales that follow if some of the factors are conversions by hand.
     fn scales(&self) -> Vec<f64> {
         let mut scales = vec![self.unit.scale];
         for factor in self.factors.iter().filter(|factor| **factor != 0.0) {
@@ -79,7 +79,7 @@ impl Quantity {
         self.unit.same_kind(&other.unit) && self.scales().iter().any(|a| others.iter().any(|b| near(*a, *b)))
     }
 
-    /// A factor that may hide a unit.
+    /// Returns a factor that may hide a unit.
     fn doubtful(&self) -> Option<f64> {
         let simple = |x: f64| SIMPLE.iter().any(|simple| near(x.abs(), *simple) || near(1.0 / x.abs(), *simple));
         self.factors.iter().copied().find(|&factor| factor != 0.0 && !simple(factor))
@@ -107,7 +107,7 @@ fn near(a: f64, b: f64) -> bool {
     (a - b).abs() <= SAME * a.abs().max(b.abs())
 }
 
-/// The finding in one formula: the first finding counts, as the others follow from it.
+/// Check of one formula. Only the first finding counts, because further ones follow from it.
 struct Pass<'f> {
     formula: &'f Formula,
     index: usize,
@@ -116,8 +116,8 @@ struct Pass<'f> {
 }
 
 impl FormulaSet {
-    /// The quantity that every formula measures, and the first fault of units in each; `unit` knows the names from outside, and
-    /// `role` the purpose of a formula. With `convert` all names are taken in SI.
+    /// Returns the first finding of incompatible units in every formula. `unit` gives the units of names from outside, and `role` the role
+    /// of a formula. With `convert` all names are in SI.
     ///
     /// Cost: one pass over the formulas, and no evaluation.
     pub(crate) fn units(
@@ -174,7 +174,7 @@ impl Pass<'_> {
         self.first.get_or_insert(UnitFinding { formula, span, what, remedy, doubtful });
     }
 
-    /// A part as it is written, in parentheses where it is a sum.
+    /// Returns a part as it is written, with parentheses around a sum.
     fn text(&self, node: usize) -> String {
         let text = self.formula.text()[self.formula.nodes[node].1.clone()].trim();
         match self.formula.nodes[node].0 {
@@ -183,13 +183,13 @@ impl Pass<'_> {
         }
     }
 
-    /// Whether a node is the constant `deg`.
+    /// True if a node is the constant `deg`.
     fn is_deg(&self, node: usize) -> bool {
         matches!(self.formula.nodes[node].0, Node::Number(_))
             && self.formula.text()[self.formula.nodes[node].1.clone()].trim_matches(['(', ')', ' ']) == "deg"
     }
 
-    /// The quantity that the formula measures; None where a unit is unknown.
+    /// Returns the quantity that the formula measures, or None if a unit is unknown.
     fn run(&mut self, of_name: &dyn Fn(usize, &str) -> Option<Quantity>) -> Option<Quantity> {
         let formula = self.formula;
         let mut all: Vec<Option<Quantity>> = Vec::with_capacity(formula.nodes.len());
@@ -201,7 +201,7 @@ impl Pass<'_> {
                     Some(Quantity::of(if self.convert { unit.in_si() } else { unit }))
                 }
                 Node::Number(_) if self.is_deg(index) && !self.convert => {
-                    // The number of radians of a degree: degrees times it are radians.
+                    // The constant has the unit radians per degree, so that degrees times `deg` are radians.
                     Some(Quantity::of(Unit::radians_of_a_degree()))
                 }
                 Node::Number(value) => Some(Quantity::number(*value)),
@@ -223,6 +223,7 @@ impl Pass<'_> {
             };
             all.push(own);
         }
+        // Conversion needs the units of all names in a formula, or of none.
         if let (true, Some(node)) = (self.convert, unknown) {
             let some = (formula.nodes.iter().zip(&all))
                 .any(|((node, _), found)| matches!(node, Node::Name(_)) && found.is_some());
@@ -257,7 +258,7 @@ impl Pass<'_> {
         }
     }
 
-    /// Sine and others want radians or a plain number.
+    /// Checks an argument that must be an angle in radians or a plain number.
     fn angle(&mut self, found: Option<&Quantity>, node: usize, of: &str) {
         let Some(found) = found.filter(|found| !found.literal) else { return };
         let what = if of == "angle" { "an angle".to_owned() } else { format!("{of} of") };
@@ -278,7 +279,7 @@ impl Pass<'_> {
         self.fail(node, what(&unit), remedy, false);
     }
 
-    /// Exponentials, logarithms and inverse functions want a plain number.
+    /// Checks the argument of an exponential, logarithm or inverse function, which must be a plain number.
     fn plain(&mut self, found: Option<&Quantity>, node: usize, function: Unary) {
         let Some(found) = found.filter(|found| !found.literal) else { return };
         let scale = self.convert || found.scales().iter().any(|scale| near(*scale, 1.0));
@@ -398,7 +399,7 @@ impl Pass<'_> {
         }
     }
 
-    /// Two parts of one unit; what both measure.
+    /// Checks that two parts have the same unit, and returns the common quantity.
     fn alike(
         &mut self,
         [a, b]: [Option<&Quantity>; 2],
@@ -413,7 +414,7 @@ impl Pass<'_> {
         if a.literal || b.literal {
             let (known, bare, place) = if a.literal { (b, a, 0) } else { (a, b, 1) };
             let zero = bare.factors.contains(&0.0);
-            // A number beside an angle is in radians, as `pi` is.
+            // A number beside an angle is in radians, like `pi`.
             let plain = known.unit.is_plain() && (known.unit.radians > 0.0 || known.unit.to_string() == "1");
             if self.convert && !known.literal && !zero && !plain {
                 let number = nodes.map_or_else(|| "2".to_owned(), |nodes| self.text(nodes[place]));
@@ -447,7 +448,7 @@ impl Pass<'_> {
         Some(a.clone())
     }
 
-    /// The result of a formula is in its declared unit.
+    /// Checks that the result of a formula has its declared unit.
     fn declared(&mut self, found: Option<&Quantity>, declared: &Unit) {
         let Some(found) = found.filter(|found| !found.literal) else { return };
         let node = self.formula.nodes.len() - 1;
@@ -467,7 +468,7 @@ impl Pass<'_> {
         }
     }
 
-    /// A result with a unit says which.
+    /// Checks that a result with a unit declares it.
     fn needs_unit(&mut self, found: Option<&Quantity>) {
         let Some(found) = found.filter(|found| !found.literal && !found.unit.is_plain()) else { return };
         let (node, unit) = (self.formula.nodes.len() - 1, found.unit.clone());
@@ -480,13 +481,13 @@ impl Pass<'_> {
     }
 }
 
-/// A factor as it is shown: with as many digits as it needs, twelve at most.
+/// Formats a factor with as many digits as it needs, twelve at most.
 fn shown(factor: f64) -> String {
     let rounded: f64 = format!("{factor:.11e}").parse().unwrap_or(factor);
     if (1e-4..1e6).contains(&rounded.abs()) { rounded.to_string() } else { format!("{rounded:e}") }
 }
 
-/// That a number hides a unit.
+/// Advises that a number may hide a unit.
 fn hidden(factor: f64, unit: &Unit) -> String {
     format!("if the number {} has a unit, write it: {}[{unit}]", shown(factor), shown(factor))
 }
@@ -503,7 +504,7 @@ mod tests {
         found["printed"].as_object().unwrap().clone()
     }
 
-    /// Over the names of the case `units-check-accepts`, and `x` without a unit.
+    /// Returns the findings with the names of the case `units-check-accepts`, and `x` without a unit.
     fn findings(text: &str, role: Role, convert: bool) -> Vec<UnitFinding> {
         let named = [
             ("a", "mm"),
@@ -573,7 +574,7 @@ mod tests {
             "if the number 400 has a unit, write it: 400[N/mm]"
         );
         assert_eq!(findings("400[N/mm]*a + F", Role::Free, false), []);
-        // A common factor hides none.
+        // A common factor hides no unit.
         assert!(!findings("2*a + F", Role::Free, false)[0].doubtful);
     }
 
@@ -607,7 +608,7 @@ mod tests {
             "the formula gives N/mm^2, unit says kPa: factor 1000: write unit = \"N/mm^2\", or units = \"convert\" at the top"
         );
         assert_eq!(declared("F/A", "MPa"), None);
-        // A conversion by hand.
+        // The factor 1000 is a conversion by hand.
         assert_eq!(declared("1000*F/A", "kPa"), None);
         assert!(declared("F*a", "mm").unwrap().starts_with("the formula gives N.mm, unit says mm"));
         assert_eq!(findings("th", Role::Angle, false)[0].remedy, "write th*deg");

@@ -1,4 +1,4 @@
-//! The state at every point: found from the nominal one, and on its branch.
+//! Solution of the closure conditions at every point: on the branch of the nominal state, which every search starts from.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -10,70 +10,70 @@ use super::newton::{Root, Search, Stuck};
 use super::system::{Scales, System};
 use crate::assembly::formula::FormulaSet;
 
-/// Solves the conditions at any point, once the nominal state is known.
+/// Solver of the conditions at any point, once the nominal state is known.
 pub(in crate::assembly) struct Assembler {
     pub(super) system: System,
-    /// The dimensions to which the start values belong.
+    /// Dimensions to which the start values belong.
     nominal: Vec<f64>,
     anchor: Mutex<Option<Result<Arc<Anchor>, Box<AssemblyFailure>>>>,
 }
 
-/// The nominal state, from which every other one is found.
+/// Nominal state, from which every other state is found.
 pub(in crate::assembly) struct Anchor {
     pub(super) given: Vec<f64>,
     pub(super) u: Vec<f64>,
     pub(super) scales: Scales,
     sign: f64,
-    /// The derivatives of the unknowns by what the conditions use, 0 where there is none: a prediction only.
+    /// Derivatives of the unknowns by the variables that the conditions use, 0 if one does not exist. They serve predictions only.
     slopes: Mat<f64>,
-    /// The condition number of the scaled Jacobian, and the unknown that is held least.
+    /// Condition number of the scaled Jacobian.
     condition: f64,
+    /// Index of the unknown that is determined least.
     weakest: usize,
 }
 
-/// A root further off its prediction than this part of the way is followed before it is believed.
+/// Greatest distance of a root from its prediction, as part of the distance moved, at which it is accepted without following it.
 const OFF: f64 = 0.25;
-/// As is one that took more steps than this.
+/// Greatest number of steps after which a root is accepted without following it.
 const STEPS: usize = 12;
-/// A root that is followed may be off by this part of a step, and a step that is off by less may grow.
+/// Greatest distance of a followed root from its prediction, as part of a step.
 const FOLLOWED: f64 = 0.5;
+/// Distance of a followed root from its prediction, as part of a step, below which the next step is twice as long.
 const EASY: f64 = 0.1;
-/// Rounding may set a root off its prediction by this.
+/// Distance of a root from its prediction that rounding may cause, in scales of the unknowns.
 const SLACK: f64 = 1e-9;
-/// The shortest step, as a part of the way.
+/// Shortest step, as a part of the way.
 const SHORTEST: f64 = 1.0 / 65536.0;
-/// The most parts of the way.
+/// Greatest number of steps of a followed way.
 const PARTS: usize = 1000;
-/// Beyond this condition number the unknowns are not determined.
+/// Condition number beyond which the unknowns are not determined.
 const SINGULAR: f64 = 1e10;
-/// Above this one a nominal position is worth a warning: the assembly ends at a distance of about the square of the
-/// inverse, a ten-thousandth of its size, which is what tolerances are.
+/// Condition number above which a nominal position causes a warning. The assembly then ends at a distance of about the square of the
+/// inverse, a ten-thousandth of its size, and tolerances are of this order.
 const NEARLY_SINGULAR: f64 = 100.0;
 
 impl Assembler {
-    /// Of conditions whose formulas stand in `set` from `first` on; `given` counts the variables that are no unknowns.
+    /// Creates the solver of conditions whose formulas are in `set` from `first` on. `given` is the number of variables that are not
+    /// unknowns.
     pub(in crate::assembly) fn new(conditions: &Conditions, set: &FormulaSet, first: usize, given: usize) -> Self {
         let system = System::new(conditions, set, first, given);
         Self { system, nominal: conditions.nominal.clone(), anchor: Mutex::new(None) }
     }
 
-    /// How many unknowns there are.
     pub(in crate::assembly) fn len(&self) -> usize {
         self.system.len()
     }
 
-    /// The variables that the conditions depend on, ascending.
+    /// Returns the variables that the conditions depend on, ascending.
     pub(in crate::assembly) fn uses(&self) -> &[usize] {
         &self.system.uses
     }
 
-    /// The nominal dimensions.
     pub(in crate::assembly) fn nominal(&self) -> &[f64] {
         &self.nominal
     }
 
-    /// The nominal state, sought at the first call: `given` says what the variables are there, None when that cannot be
-    /// had now.
+    /// Returns the nominal state, which the first call seeks. `given` returns the nominal variables, or None if they are not available now.
     pub(in crate::assembly) fn anchor(
         &self,
         set: &FormulaSet,
@@ -86,13 +86,13 @@ impl Assembler {
         anchor.clone()
     }
 
-    /// The nominal state, if it was sought and found.
+    /// Returns the nominal state, if it was sought and found.
     pub(in crate::assembly) fn known_anchor(&self) -> Option<Arc<Anchor>> {
         let anchor = self.anchor.lock().unwrap_or_else(PoisonError::into_inner);
         anchor.as_ref()?.as_ref().ok().map(Arc::clone)
     }
 
-    /// From the start values to the nominal state.
+    /// Finds the nominal state from the start values.
     fn assemble(&self, set: &FormulaSet, given: Vec<f64>) -> Result<Anchor, AssemblyFailure> {
         let system = &self.system;
         let start: Vec<f64> = system.unknowns.iter().map(|unknown| unknown.start()).collect();
@@ -103,6 +103,7 @@ impl Assembler {
         let scales = system.scales(&given, &start);
         let search = Search { system, scales: &scales, given: &given };
         let root = search.from(&start).map_err(|stuck| self.failure(set, &search, stuck, Some(&begun), None))?;
+        // The scales of the start values may be far off, so the root has its own.
         let scales = system.scales(&given, &root.u);
         let search = Search { system, scales: &scales, given: &given };
         let stuck = || Stuck { u: root.u.clone(), values: system.values(&given, &root.u), singular: true };
@@ -112,6 +113,7 @@ impl Assembler {
         if condition.number.is_nan() || condition.number >= SINGULAR {
             return Err(singular());
         }
+        // Derivatives by the given variables, for the predictions at other points.
         let by = system.derivatives(&given, &root.u, &system.uses);
         let mut slopes = Mat::zeros(system.len(), system.uses.len());
         for k in 0..system.uses.len() {
@@ -133,7 +135,7 @@ impl Assembler {
         })
     }
 
-    /// The unknowns at a point; `set` explains a formula that has no value there.
+    /// Returns the unknowns at a point. `set` explains a formula that has no value there.
     pub(in crate::assembly) fn solve(
         &self,
         set: &FormulaSet,
@@ -145,6 +147,7 @@ impl Assembler {
             return Ok(anchor.u.clone());
         }
         let search = Search { system: &self.system, scales: &anchor.scales, given };
+        // The direct search from the prediction is enough if it ends near the prediction, on the same branch, in few steps.
         let predicted = search.moved(&anchor.u, &self.prediction(anchor, given), 1.0);
         let direct = search.from(&predicted);
         if let Ok(root) = &direct {
@@ -154,6 +157,7 @@ impl Assembler {
                 return Ok(root.u.clone());
             }
         }
+        // In all other cases the state is followed from the nominal one, so that it stays on its branch.
         match (self.follow(anchor, given), direct) {
             (Ok(u), _) => Ok(u),
             (Err(followed), Err(stuck)) => Err(self.failure(set, &search, stuck, None, Some(followed))),
@@ -170,7 +174,7 @@ impl Assembler {
         }
     }
 
-    /// How the unknowns move from the nominal state to a point, to first order, in scales.
+    /// Returns the first-order change of the unknowns from the nominal state to a point, in scales.
     fn prediction(&self, anchor: &Anchor, given: &[f64]) -> Vec<f64> {
         let change =
             |(k, &index): (usize, &usize), j: usize| anchor.slopes[(j, k)] * (given[index] - anchor.given[index]);
@@ -182,7 +186,8 @@ impl Assembler {
             .collect()
     }
 
-    /// Follows the state along the straight way from the nominal dimensions to a point; or how far that went.
+    /// Follows the state along the straight way from the nominal dimensions to a point. Returns the part of the way that succeeded if it
+    /// fails.
     fn follow(&self, anchor: &Anchor, given: &[f64]) -> Result<Vec<f64>, f64> {
         let system = &self.system;
         let at = |part: f64| -> Vec<f64> {
@@ -204,6 +209,7 @@ impl Assembler {
                     -terms.sum::<f64>() / anchor.scales.equations[i]
                 })
                 .collect();
+            // Tries ever shorter steps until the root stays on the branch and near its prediction.
             let rate = linear.solve(&right);
             loop {
                 let part = step.min(1.0 - done);
@@ -234,7 +240,7 @@ impl Assembler {
         Err(done)
     }
 
-    /// The error of a search that got stuck; `begun` are the equations at the start values of the nominal state.
+    /// Returns the error of a search that got stuck. `begun` are the equations at the start values of the nominal state.
     fn failure(
         &self,
         set: &FormulaSet,
@@ -276,7 +282,7 @@ impl Assembler {
 }
 
 impl Anchor {
-    /// The unknown that is held least and the condition number, where the nominal position is nearly singular.
+    /// Returns the unknown that is determined least and the condition number, if the nominal position is nearly singular.
     pub(in crate::assembly) fn nearly_singular(&self, assembler: &Assembler) -> Option<(String, f64)> {
         let unknown = || assembler.system.unknowns[self.weakest].name().to_owned();
         (self.condition > NEARLY_SINGULAR).then(|| (unknown(), self.condition))

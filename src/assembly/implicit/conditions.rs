@@ -1,8 +1,8 @@
-//! Unknowns and the conditions that determine them, as they are given.
+//! Unknowns and the conditions that determine them, as given by the study.
 
 use crate::assembly::formula::{Formula, FormulaSet};
 
-/// A value that is found, not given.
+/// Value that closure conditions determine.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unknown {
     name: String,
@@ -11,35 +11,35 @@ pub struct Unknown {
     upper: f64,
 }
 
-/// A condition of the assembled state.
+/// Condition of the assembled state.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Condition {
-    /// A formula that is zero.
+    /// A formula that must be zero.
     Equation {
-        /// Its name.
+        /// Name of the equation.
         name: String,
-        /// The formula that is zero.
+        /// Formula that must be zero.
         formula: Formula,
     },
-    /// Vectors that close: two equations.
+    /// Loop of vectors that must close: two equations.
     Loop {
-        /// Its name.
+        /// Name of the loop.
         name: String,
-        /// The vectors, one after the other.
+        /// Vectors of the loop, one after the other.
         links: Vec<Link>,
     },
 }
 
-/// One vector of a loop.
+/// Vector of a loop.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Link {
-    /// Its length; a negative one points the other way.
+    /// Length of the vector; a negative one points the other way.
     pub length: Formula,
-    /// Its absolute angle in radians.
+    /// Absolute angle in radians.
     pub angle: Formula,
 }
 
-/// As many conditions as unknowns, and where the search for the nominal state starts.
+/// Conditions and as many unknowns, with the start of the search for the nominal state.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Conditions {
     pub(super) unknowns: Vec<Unknown>,
@@ -47,52 +47,52 @@ pub struct Conditions {
     pub(super) nominal: Vec<f64>,
 }
 
-/// Why conditions determine no state.
+/// Reason why conditions determine no state.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ConditionsError {
     /// The start lies outside its bounds, or the bounds are no interval.
     #[error("the start {start} of `{name}` does not lie between its bounds {lower} and {upper}")]
     StartOutside {
-        /// The unknown.
+        /// Name of the unknown.
         name: String,
-        /// Where it starts.
+        /// Start value of the unknown.
         start: f64,
-        /// The lower bound.
+        /// Lower bound of the unknown.
         lower: f64,
-        /// The upper bound.
+        /// Upper bound of the unknown.
         upper: f64,
     },
-    /// A loop without vectors.
+    /// A loop has no vectors.
     #[error("the loop `{name}` has no vectors")]
     EmptyLoop {
-        /// The loop.
+        /// Name of the loop.
         name: String,
     },
-    /// More equations than unknowns, or fewer.
+    /// The numbers of equations and unknowns differ.
     #[error(
         "{equations} for {unknowns}",
         equations = counted(equations, "equation"),
         unknowns = counted(unknowns, "unknown")
     )]
     Unbalanced {
-        /// Every equation, a loop as two.
+        /// Names of all equations, two for a loop.
         equations: Vec<String>,
-        /// Every unknown.
+        /// Names of all unknowns.
         unknowns: Vec<String>,
     },
-    /// No condition says anything of an unknown.
+    /// No condition depends on an unknown.
     #[error("no equation and no loop depends on the unknown `{name}`")]
     Undetermined {
-        /// The unknown.
+        /// Name of the unknown.
         name: String,
     },
-    /// A condition that no unknown can fulfil.
+    /// A condition does not depend on any unknown.
     #[error("the {what} `{name}` depends on no unknown: it holds or not, whatever they are")]
     WithoutUnknown {
-        /// `equation` or `loop`.
+        /// Kind of the condition, `equation` or `loop`.
         what: &'static str,
-        /// Its name.
+        /// Name of the condition.
         name: String,
     },
 }
@@ -104,10 +104,10 @@ fn counted(names: &[String], what: &str) -> String {
 }
 
 impl Unknown {
-    /// With bounds that it never leaves, infinite where there is none.
+    /// Creates an unknown with bounds that it never leaves; a missing bound is infinite.
     ///
     /// # Errors
-    /// When the start does not lie between them.
+    /// Fails if the start does not lie between the bounds.
     pub fn new(name: impl Into<String>, start: f64, lower: f64, upper: f64) -> Result<Self, ConditionsError> {
         let name = name.into();
         if !(start.is_finite() && lower <= start && start <= upper && lower < upper) {
@@ -116,24 +116,24 @@ impl Unknown {
         Ok(Self { name, start, lower, upper })
     }
 
-    /// Its name.
+    /// Returns the name of the unknown.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Where the search for the nominal state starts.
+    /// Returns the start value of the search for the nominal state.
     pub(crate) fn start(&self) -> f64 {
         self.start
     }
 
-    /// The bounds.
+    /// Returns the lower and the upper bound.
     pub(crate) fn bounds(&self) -> [f64; 2] {
         [self.lower, self.upper]
     }
 }
 
 impl Condition {
-    /// The names of its equations, one or two.
+    /// Returns the names of the equations, one or two.
     pub(crate) fn equations(&self) -> Vec<String> {
         match self {
             Self::Equation { name, .. } => vec![format!("equation `{name}`")],
@@ -141,7 +141,7 @@ impl Condition {
         }
     }
 
-    /// Its formulas, each with a name for errors.
+    /// Returns the formulas of the condition, each with a name for errors.
     pub(super) fn formulas(&self) -> Vec<(String, Formula)> {
         match self {
             Self::Equation { name, formula } => vec![(name.clone(), formula.clone())],
@@ -158,10 +158,10 @@ impl Condition {
 }
 
 impl Conditions {
-    /// Unknowns that start from their assembled state near the `nominal` dimensions.
+    /// Creates conditions on unknowns, whose start values are near their assembled state at the `nominal` dimensions.
     ///
     /// # Errors
-    /// When a loop is empty, or there are more equations than unknowns, or fewer.
+    /// Fails if a loop is empty, or if the numbers of equations and unknowns differ.
     pub fn new(unknowns: Vec<Unknown>, conditions: Vec<Condition>, nominal: Vec<f64>) -> Result<Self, ConditionsError> {
         for condition in &conditions {
             if let Condition::Loop { name, links } = condition
@@ -178,12 +178,12 @@ impl Conditions {
         Ok(Self { unknowns, conditions, nominal })
     }
 
-    /// The unknowns.
+    /// Returns the unknowns.
     pub fn unknowns(&self) -> &[Unknown] {
         &self.unknowns
     }
 
-    /// The same conditions with every formula made another.
+    /// Returns the same conditions with every formula replaced by `of`.
     pub fn with_formulas(&self, of: &dyn Fn(&Formula) -> Formula) -> Self {
         let condition = |condition: &Condition| match condition {
             Condition::Equation { name, formula } => Condition::Equation { name: name.clone(), formula: of(formula) },
@@ -195,8 +195,8 @@ impl Conditions {
         Self { conditions: self.conditions.iter().map(condition).collect(), ..self.clone() }
     }
 
-    /// For every formula of the conditions, in their order: its place within its loop, None of an equation. Even places are lengths,
-    /// odd ones angles.
+    /// Returns for every formula of the conditions, in their order, its place within its loop, or None for an equation. Even places are
+    /// lengths, odd ones angles.
     pub fn places(&self) -> Vec<Option<usize>> {
         let of = |condition: &Condition| match condition {
             Condition::Equation { .. } => vec![None],
@@ -205,13 +205,13 @@ impl Conditions {
         self.conditions.iter().flat_map(of).collect()
     }
 
-    /// Every formula of the conditions, in order: an equation's one, a loop's lengths and angles in turn.
+    /// Returns every formula of the conditions, in order: one for an equation, lengths and angles in turn for a loop.
     pub fn formulas(&self) -> Vec<(String, Formula)> {
         self.conditions.iter().flat_map(Condition::formulas).collect()
     }
 
-    /// Every unknown stands in some condition and every condition depends on some unknown, in formulas of `set` from
-    /// `first` on with the unknowns as variables after the `given` ones.
+    /// Checks that every unknown is in some condition and that every condition depends on some unknown. The formulas are in `set` from
+    /// `first` on, with the unknowns as variables after the `given` ones.
     pub(in crate::assembly) fn check(
         &self,
         set: &FormulaSet,

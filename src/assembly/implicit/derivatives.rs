@@ -1,11 +1,11 @@
-//! How the unknowns change: exact first and second derivatives, by the implicit function theorem.
+//! Exact first and second derivatives of the unknowns, by the implicit function theorem.
 
 use super::assembler::{Anchor, Assembler};
 use super::linear::Linear;
 use super::newton::Search;
 use crate::assembly::formula::{FormulaSet, Jet};
 
-/// The unknowns at a point and how they change there.
+/// Unknowns at a point, with the factorised Jacobian for their derivatives.
 pub(in crate::assembly) struct Tangent<'a> {
     assembler: &'a Assembler,
     anchor: &'a Anchor,
@@ -15,7 +15,7 @@ pub(in crate::assembly) struct Tangent<'a> {
 }
 
 impl Assembler {
-    /// The unknowns at a point, to be differentiated; None where they are not determined there or have a kink.
+    /// Returns the unknowns at a point, to be differentiated. Returns None if they are not determined there or have a kink.
     pub(in crate::assembly) fn tangent<'a>(
         &'a self,
         set: &FormulaSet,
@@ -34,7 +34,7 @@ impl Assembler {
 }
 
 impl Tangent<'_> {
-    /// Every unknown along two directions, of which `along` gives every given variable's part.
+    /// Returns every unknown along two directions. `along` gives the part of every given variable.
     pub(in crate::assembly) fn jets(&self, along: &dyn Fn(usize) -> [f64; 2]) -> Vec<Jet> {
         let first = |direction: usize, jets: &[Jet]| {
             self.solved(&jets.iter().map(|jet| jet.first(direction)).collect::<Vec<_>>())
@@ -43,10 +43,12 @@ impl Tangent<'_> {
         if self.assembler.uses().iter().all(|&index| along(index) == [0.0; 2]) {
             return still;
         }
+        // With unknowns at rest, the residuals give the right side of the first derivatives.
         let residuals = self.residuals(along, &still);
         let first = [0, 1].map(|direction| first(direction, &residuals));
         let moving = |j: usize| Jet::variable(self.u[j], [first[0][j], first[1][j]]);
         let moving: Vec<Jet> = (0..self.u.len()).map(moving).collect();
+        // With unknowns moving at these rates, the residuals give the right side of the second derivatives.
         let residuals = self.residuals(along, &moving);
         let second = self.solved(&residuals.iter().map(Jet::second).collect::<Vec<_>>());
         (0..self.u.len()).map(|j| Jet::known(self.u[j], [first[0][j], first[1][j]], second[j])).collect()
@@ -60,7 +62,7 @@ impl Tangent<'_> {
         self.assembler.system.residuals(&variable, &mut Vec::new())
     }
 
-    /// `-J^-1` of a column, NaN where any part of it does not exist.
+    /// Returns `-J^-1` of a column, NaN if any part of the column does not exist.
     fn solved(&self, column: &[Option<f64>]) -> Vec<f64> {
         let scales = &self.anchor.scales;
         let right: Option<Vec<f64>> =

@@ -3,33 +3,33 @@
 use faer::linalg::solvers::{PartialPivLu, Solve};
 use faer::prelude::*;
 
-/// A factorised Jacobian, scaled so that its entries are of the order of 1.
+/// Factorised Jacobian, scaled so that its entries are of the order of 1.
 pub(super) struct Linear {
     lu: PartialPivLu<f64>,
     matrix: Mat<f64>,
 }
 
-/// Directions that are held less than this part of the best held one are left out of a step.
+/// Smallest singular value, as part of the largest, of a direction that a step includes.
 const LEAST: f64 = 1e-8;
 
-/// How well a matrix determines a solution.
+/// Condition of a matrix, and the unknown and equation that it determines least.
 pub(super) struct Condition {
-    /// Largest by smallest singular value.
+    /// Ratio of the largest to the smallest singular value.
     pub(super) number: f64,
-    /// The unknown that is determined least.
+    /// Unknown that is determined least.
     pub(super) unknown: usize,
-    /// The equation that should determine it.
+    /// Equation that should determine it.
     pub(super) equation: usize,
 }
 
 impl Linear {
-    /// None when an entry is not finite.
+    /// Factorises a matrix. Returns None if an entry is not finite.
     pub(super) fn new(matrix: Mat<f64>) -> Option<Self> {
         let finite = (0..matrix.nrows()).all(|i| (0..matrix.ncols()).all(|j| matrix[(i, j)].is_finite()));
         finite.then(|| Self { lu: matrix.partial_piv_lu(), matrix })
     }
 
-    /// The solution of `J t = b`; where `J` is singular, the least that helps.
+    /// Returns the solution of `J t = b`. If `J` is singular, it is the smallest step with the least residual.
     pub(super) fn solve(&self, b: &[f64]) -> Vec<f64> {
         let right = Mat::from_fn(b.len(), 1, |i, _| b[i]);
         let exact = self.lu.solve(&right);
@@ -37,7 +37,7 @@ impl Linear {
         if exact.iter().all(|t| t.is_finite()) { exact } else { self.least(b) }
     }
 
-    /// The least step that meets `b` as well as the directions that are held can.
+    /// Returns the smallest step with the least residual, along the directions that are determined.
     pub(super) fn least(&self, b: &[f64]) -> Vec<f64> {
         let Ok(svd) = self.matrix.svd() else { return vec![0.0; b.len()] };
         let (u, s, v) = (svd.U(), svd.S().column_vector(), svd.V());
@@ -49,7 +49,7 @@ impl Linear {
         t
     }
 
-    /// The sign of the determinant: it changes where a branch of solutions ends.
+    /// Returns the sign of the determinant, which changes where a branch of solutions ends.
     pub(super) fn sign(&self) -> f64 {
         let (upper, (forward, _)) = (self.lu.U(), self.lu.P().arrays());
         let mut sign: f64 = (0..forward.len()).map(|i| upper[(i, i)].signum()).product();

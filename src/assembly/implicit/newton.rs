@@ -1,44 +1,45 @@
-//! A safeguarded Newton method: steps bounded by the scale of the unknowns and by their bounds, shortened until the
-//! equations come closer to zero, and in the end repeated until rounding stops them.
+//! Safeguarded Newton method. Steps are bounded by the scale of the unknowns and by their bounds, and shortened until the equations come
+//! closer to zero. In the end they are repeated until rounding stops them.
 
 use faer::Mat;
 
 use super::linear::Linear;
 use super::system::{Scales, System};
 
-/// Where the conditions hold.
+/// State at which the conditions hold.
 #[derive(Debug, Clone)]
 pub(super) struct Root {
     pub(super) u: Vec<f64>,
-    /// The sign of the Jacobian's determinant.
+    /// Sign of the Jacobian's determinant.
     pub(super) sign: f64,
     pub(super) iterations: usize,
 }
 
-/// Where the search ended otherwise.
+/// State at which a search ended without a root.
 #[derive(Debug, Clone)]
 pub(super) struct Stuck {
     pub(super) u: Vec<f64>,
     pub(super) values: Vec<f64>,
-    /// Whether the equations hold there, but do not determine the unknowns.
+    /// True if the equations hold there, but do not determine the unknowns.
     pub(super) singular: bool,
 }
 
-/// The most steps of one search.
+/// Greatest number of steps of one search.
 const MOST: usize = 60;
-/// The longest step, in scales of the unknowns.
+/// Longest step, in scales of the unknowns.
 const REACH: f64 = 0.5;
-/// Shorter steps are Newton's own to the end.
+/// Length of a step, in scales, below which all further steps are full Newton steps.
 const NEAR: f64 = 1e-6;
-/// Rounding of the unknowns alone makes steps of this size.
+/// Length of steps that rounding of the unknowns alone causes, in scales.
 const ROUNDING: f64 = 1e-16;
-/// A search whose last step is longer than this has found nothing.
+/// Greatest length of the last step of a successful search, in scales.
 const FOUND: f64 = 1e-10;
-/// The least decrease of the equations, as a part of what the step promises, and the most halvings towards it.
+/// Least decrease of the equations, as a part of the predicted decrease.
 const DECREASE: f64 = 1e-4;
+/// Greatest number of halvings of a step until the decrease is reached.
 const HALVINGS: usize = 30;
 
-/// A system at one point.
+/// System of conditions at one point, with its scales.
 pub(super) struct Search<'s> {
     pub(super) system: &'s System,
     pub(super) scales: &'s Scales,
@@ -46,7 +47,7 @@ pub(super) struct Search<'s> {
 }
 
 impl Search<'_> {
-    /// The Jacobian at a state, scaled; None where it is not finite.
+    /// Returns the scaled Jacobian at a state. Returns None if it is not finite.
     pub(super) fn linear(&self, u: &[f64]) -> Option<Linear> {
         let jacobian = self.system.jacobian(self.given, u, self.scales);
         let Scales { equations, unknowns } = self.scales;
@@ -54,14 +55,14 @@ impl Search<'_> {
         Linear::new(Mat::from_fn(n, n, |i, j| jacobian[(i, j)] * unknowns[j] / equations[i]))
     }
 
-    /// The equations at a state, scaled, and their norm; infinite where one has no value.
+    /// Returns the scaled equations and their norm, which is infinite if an equation has no value.
     fn scaled(&self, values: &[f64]) -> (Vec<f64>, f64) {
         let scaled: Vec<f64> = values.iter().zip(&self.scales.equations).map(|(value, size)| value / size).collect();
         let norm = scaled.iter().map(|value| value * value).sum::<f64>().sqrt();
         (scaled, if norm.is_nan() { f64::INFINITY } else { norm })
     }
 
-    /// A state moved by a step in scales, held within the bounds.
+    /// Returns a state moved by a step in scales, and limited to the bounds.
     pub(super) fn moved(&self, u: &[f64], step: &[f64], part: f64) -> Vec<f64> {
         let one = |j: usize| {
             let [lower, upper] = self.system.unknowns[j].bounds();
@@ -70,17 +71,17 @@ impl Search<'_> {
         (0..u.len()).map(one).collect()
     }
 
-    /// The largest difference between two states, in scales.
+    /// Returns the largest difference between two states, in scales.
     pub(super) fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
         let parts = a.iter().zip(b).zip(&self.scales.unknowns).map(|((a, b), scale)| ((a - b) / scale).abs());
         parts.fold(0.0, f64::max)
     }
 
-    /// The state near `start` at which the conditions hold.
+    /// Returns the state near `start` at which the conditions hold.
     pub(super) fn from(&self, start: &[f64]) -> Result<Root, Stuck> {
         let mut u = start.to_vec();
         let mut values = self.system.values(self.given, &u);
-        // The length of the last step of Newton's own, once it is near.
+        // Length of the last full Newton step, once the search is near.
         let mut last = f64::INFINITY;
         for iterations in 0..MOST {
             let (scaled, norm) = self.scaled(&values);
@@ -89,7 +90,7 @@ impl Search<'_> {
             let step = linear.solve(&opposite);
             let length = step.iter().fold(0.0f64, |length, t| length.max(t.abs()));
             if length < NEAR || last < NEAR {
-                // As long as steps get shorter they are not rounding.
+                // Steps that get shorter are not caused by rounding yet.
                 if length <= ROUNDING || length > 0.5 * last {
                     let found = last.min(length) < FOUND && norm < NEAR;
                     return if found {
@@ -103,6 +104,7 @@ impl Search<'_> {
                 values = self.system.values(self.given, &u);
                 continue;
             }
+            // A very long step belongs to a nearly singular Jacobian: directions that are not determined are left out.
             let step = if length < 1.0 / NEAR { step } else { linear.least(&opposite) };
             let Some(next) = self.shortened(&u, &step, norm) else { break };
             (u, values) = next;
@@ -111,7 +113,7 @@ impl Search<'_> {
         Err(Stuck { u, values, singular })
     }
 
-    /// As much of a step as brings the equations closer to zero.
+    /// Returns the state after the largest part of a step that brings the equations closer to zero, with the equations there.
     fn shortened(&self, u: &[f64], step: &[f64], norm: f64) -> Option<(Vec<f64>, Vec<f64>)> {
         let length = step.iter().fold(0.0f64, |length, t| length.max(t.abs()));
         let mut part = (REACH / length).min(1.0);
@@ -126,7 +128,7 @@ impl Search<'_> {
         None
     }
 
-    /// The equation that is worst off, relative to the size of its terms.
+    /// Returns the equation with the greatest residual, relative to the size of its terms.
     pub(super) fn worst(&self, values: &[f64]) -> usize {
         let off = |i: usize| match (values[i] / self.scales.equations[i]).abs() {
             off if off.is_nan() => f64::INFINITY,

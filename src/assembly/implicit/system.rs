@@ -1,43 +1,42 @@
-//! The conditions as functions that can be evaluated and differentiated.
+//! Conditions as functions that can be evaluated and differentiated.
 
 use faer::Mat;
 
 use super::conditions::{Condition, Conditions, Unknown};
 use crate::assembly::formula::{Binary, FormulaFailure, FormulaSet, Jet, Routine, Scalar, Unary};
 
-/// `m` conditions on `m` unknowns. Their formulas' variables are what is given, then the unknowns.
+/// System of `m` conditions on `m` unknowns. The variables of the formulas are the given ones, followed by the unknowns.
 pub(super) struct System {
     pub(super) unknowns: Vec<Unknown>,
-    /// The name of every equation.
     pub(super) equations: Vec<String>,
     conditions: Vec<Kind>,
     routine: Routine,
-    /// The formulas of the routine, in the set.
+    /// Indices in the set of the formulas of the routine.
     formulas: Vec<usize>,
-    /// How many variables are given; the unknowns' indices follow.
+    /// Number of given variables. The indices of the unknowns follow.
     given: usize,
-    /// Those of them that the conditions depend on.
+    /// Given variables that the conditions depend on, ascending.
     pub(super) uses: Vec<usize>,
 }
 
-/// The equations that the values of the routine make: an equation of one, a loop of twice as many as it has links.
+/// Number of values of the routine in a condition: one for an equation, twice the number of links for a loop.
 enum Kind {
     Equation,
     Loop { links: usize },
 }
 
-/// How large the terms of every equation are, and how far every unknown has to move to matter.
+/// Size of the terms of every equation, and a significant move of every unknown.
 #[derive(Debug, Clone)]
 pub(super) struct Scales {
     pub(super) equations: Vec<f64>,
     pub(super) unknowns: Vec<f64>,
 }
 
-/// A step for a derivative where the exact one does not exist, relative to the unknown's scale.
+/// Step of a difference that replaces a missing derivative, relative to the unknown's scale.
 const STEP: f64 = 1e-7;
 
 impl System {
-    /// Of conditions whose formulas stand in `set` from `first` on, with the unknowns as variables after the `given` ones.
+    /// Creates the system of conditions whose formulas are in `set` from `first` on, with the unknowns as variables after the `given` ones.
     pub(super) fn new(conditions: &Conditions, set: &FormulaSet, first: usize, given: usize) -> Self {
         let kinds = conditions.conditions.iter().map(|condition| match condition {
             Condition::Equation { .. } => Kind::Equation,
@@ -60,12 +59,11 @@ impl System {
         }
     }
 
-    /// Number of unknowns.
     pub(super) fn len(&self) -> usize {
         self.unknowns.len()
     }
 
-    /// Every equation's value.
+    /// Returns the value of every equation. `room` keeps memory from one call to the next.
     pub(super) fn residuals<S: Scalar>(&self, variable: &impl Fn(usize) -> S, room: &mut Vec<S>) -> Vec<S> {
         let values = self.routine.run(variable, room);
         let mut values = values.chunks(1);
@@ -90,7 +88,7 @@ impl System {
         residuals
     }
 
-    /// The equations' values at a state.
+    /// Returns the values of the equations at a state.
     pub(super) fn values(&self, given: &[f64], u: &[f64]) -> Vec<f64> {
         self.residuals(&|index: usize| self.variable(given, u, index), &mut Vec::new())
     }
@@ -99,11 +97,11 @@ impl System {
         index.checked_sub(self.given).map_or_else(|| given[index], |unknown| u[unknown])
     }
 
-    /// The derivatives of the equations by each of these variables at a state; NaN where there is none.
+    /// Returns the derivatives of the equations by each of these variables at a state, NaN if one does not exist.
     pub(super) fn derivatives(&self, given: &[f64], u: &[f64], by: &[usize]) -> Mat<f64> {
         let mut derivatives = Mat::zeros(self.len(), by.len());
         let mut room = Vec::new();
-        // A jet has two directions.
+        // A jet has two directions, so that one run gives two columns.
         for (pair, directions) in by.chunks(2).enumerate() {
             let seed = |index: usize| {
                 let along = [0, 1].map(|d| f64::from(u8::from(directions.get(d) == Some(&index))));
@@ -118,7 +116,7 @@ impl System {
         derivatives
     }
 
-    /// The derivatives by the unknowns; at a kink a difference stands for what does not exist.
+    /// Returns the derivatives by the unknowns. At a kink a difference replaces the missing derivative.
     pub(super) fn jacobian(&self, given: &[f64], u: &[f64], scales: &Scales) -> Mat<f64> {
         let unknowns: Vec<usize> = (self.given..self.given + self.len()).collect();
         let mut jacobian = self.derivatives(given, u, &unknowns);
@@ -140,7 +138,7 @@ impl System {
         jacobian
     }
 
-    /// How far an unknown may move before its curvature counts as much as its slope.
+    /// Returns the distance that an unknown may move before its curvature counts as much as its slope.
     fn bend(&self, given: &[f64], u: &[f64], unknown: usize, equations: &[f64]) -> f64 {
         let along = |index: usize| [f64::from(u8::from(index == self.given + unknown)); 2];
         let seed = |index: usize| Jet::variable(self.variable(given, u, index), along(index));
@@ -153,8 +151,8 @@ impl System {
         if reach > 0.0 { reach } else { f64::INFINITY }
     }
 
-    /// The sizes of the terms at a state: of a loop the sum of its lengths, of an equation what its variables make of it
-    /// to first order; and how far an unknown moves until it makes as much, or until a straight line says nothing of it.
+    /// Returns the scales at a state. The scale of a loop is the sum of its lengths, that of an equation its first-order change by all
+    /// variables. The scale of an unknown is the move that changes an equation by its scale, or from which the curvature dominates.
     pub(super) fn scales(&self, given: &[f64], u: &[f64]) -> Scales {
         let all: Vec<usize> = self.uses.iter().copied().chain(self.given..self.given + self.len()).collect();
         let derivatives = self.derivatives(given, u, &all);
@@ -180,7 +178,7 @@ impl System {
         let slope = |i: usize, j: usize| finite(derivatives[(i, self.uses.len() + j)]);
         for (i, size) in equations.iter_mut().enumerate() {
             if *size == 0.0 {
-                // Everything is 0 here: what a unit of the unknowns makes.
+                // All terms are 0 here: the effect of one unit of the unknowns is the scale.
                 *size = (0..self.len()).map(|j| slope(i, j)).fold(0.0, f64::max);
             }
             if *size == 0.0 {
@@ -199,12 +197,12 @@ impl System {
         Scales { equations, unknowns }
     }
 
-    /// Why an equation has no value at a state.
+    /// Returns the failure of the first equation that has no value at a state.
     pub(super) fn explain(&self, set: &FormulaSet, given: &[f64], u: &[f64]) -> Option<FormulaFailure> {
         self.formulas.iter().find_map(|&formula| set.explain(formula, |index| self.variable(given, u, index)))
     }
 
-    /// The state with its names.
+    /// Returns a state with the names of the unknowns.
     pub(super) fn named(&self, u: &[f64]) -> Vec<(String, f64)> {
         self.unknowns.iter().zip(u).map(|(unknown, &value)| (unknown.name().to_owned(), value)).collect()
     }

@@ -1,6 +1,7 @@
-//! One number for all interactions that were not examined, from the points that check.
+//! Estimate of all interactions that were not examined by a single factor, from residuals at the check points.
 //!
-//! A product of functions of one dimension each, and a function of a sum, have with slopes `b`, curvatures `a` and one `l`
+//! A product of functions of one dimension each, and a function of a sum, have these coefficients, with slopes `b`, curvatures `a` and one
+//! factor `l`:
 //!
 //! ```text
 //! A_jk = l b_j b_k                       u_j u_k
@@ -8,26 +9,25 @@
 //! C_ijk = t l^2 b_i b_j b_k              u_i u_j u_k
 //! ```
 //!
-//! `l` is fitted to the even part of what is left at mirrored points, `t` to the odd part; each is taken only where it explains
-//! nearly all of that. `u_j^2 u_k` is the one that matters most: with its mean it is a slope `B_jjk u_k` that no difference about the
-//! means has seen.
+//! `l` is fitted to the even part of the residuals at mirrored points, `t` to the odd part. Each is used only if it explains nearly all of
+//! its part. `u_j^2 u_k` is the most important of these terms: its mean is a slope `B_jjk u_k` that no difference about the means shows.
 
 use super::chosen::ChosenPoints;
 use crate::plan::{Corner, DifferencePlan};
 use sensitol_numeric::surrogate::Univariate;
 
-/// The rest of a part after a fit must be below this part of it, for the products,
+/// Greatest unexplained share of the even part for which the fitted products are used.
 const EXPLAINS: f64 = 0.2;
-/// and for the powers beyond.
+/// Greatest unexplained share of the odd part for which the fitted odd terms are used.
 const EXPLAINS_ODD: f64 = 0.5;
-/// Products of curvatures above this part of those of slopes want all four corners.
+/// Ratio of a product of curvatures to that of the slopes above which a pair needs all four corners.
 const SQUARE: f64 = 0.1;
-/// With fewer pairs of points than that nothing is fitted to them.
+/// Fewest pairs of mirrored points for a fit.
 const FEWEST: usize = 4;
-/// A larger `t` indicates a bad fit: a root has 3.
+/// Greatest plausible `t`. A larger one indicates a bad fit: a root has 3.
 const LARGEST: f64 = 6.0;
 
-/// Slopes and curvatures of all parts.
+/// Slopes and curvatures of the parts of all dimensions.
 pub(super) struct Bends {
     slopes: Vec<f64>,
     curvatures: Vec<f64>,
@@ -48,12 +48,13 @@ impl Bends {
         self.slopes[j]
     }
 
-    /// Of the line along which a function of a sum is bent: its curvatures go like the squares of the terms.
+    /// Component of the line along which a function of a sum is curved. The curvatures of such a function are proportional to the squares
+    /// of the terms.
     pub(super) fn bend(&self, j: usize) -> f64 {
         self.curvatures[j].abs().sqrt().copysign(self.slopes[j])
     }
 
-    /// `sum of b_j b_k u_j u_k` over all pairs but these.
+    /// Returns `sum of b_j b_k u_j u_k` over all pairs except `but`.
     fn products(&self, u: &[f64], but: &[(usize, usize)]) -> f64 {
         let term = |j: usize| self.slopes[j] * u[j];
         let [sum, squares] =
@@ -61,7 +62,7 @@ impl Bends {
         0.5 * (sum * sum - squares) - but.iter().map(|&(j, k)| term(j) * term(k)).sum::<f64>()
     }
 
-    /// The odd terms for `t = 1`.
+    /// Returns the sum of the odd terms for `t = 1`. Pairs in `but` are left out of the terms `u_j^2 u_k`.
     fn thirds(&self, u: &[f64], together: f64, but: &[(usize, usize)]) -> f64 {
         let line = |j: usize| self.slopes[j] * u[j];
         let bend = |j: usize| self.curvatures[j] * u[j] * u[j];
@@ -79,7 +80,7 @@ impl Bends {
         together * (bends * p1 - own - direct) + together * together * triples + cubes
     }
 
-    /// The contribution of the terms `u_j^2 u_k` to the slopes.
+    /// Returns the contribution of the terms `u_j^2 u_k` to the slopes.
     fn slopes_of_thirds(&self, factor: f64, but: &[(usize, usize)]) -> Vec<f64> {
         let all: f64 = self.curvatures.iter().sum();
         let mut bends: Vec<f64> = self.curvatures.iter().map(|own| all - own).collect();
@@ -90,13 +91,13 @@ impl Bends {
         bends.iter().zip(&self.slopes).map(|(bends, slope)| factor * bends * slope).collect()
     }
 
-    /// Whether `u_j^2 u_k^2` may be so large beside the product that two corners do not tell them apart.
+    /// True if `u_j^2 u_k^2` may be so large beside the product that two corners do not separate them.
     pub(super) fn square(&self, j: usize, k: usize) -> bool {
         (self.curvatures[j] * self.curvatures[k]).abs() > SQUARE * (self.slopes[j] * self.slopes[k]).abs()
     }
 
-    /// The terms that the corners of an examined pair show beside its product: `u_j^2 u_k` and `u_j u_k^2`, which are to each
-    /// other as `a_j b_k` to `a_k b_j`, and `u_j^2 u_k^2` where all four are known.
+    /// Returns the terms that the corners of an examined pair show beside its product. The terms `u_j^2 u_k` and `u_j u_k^2` have the ratio
+    /// of `a_j b_k` to `a_k b_j`. The term `u_j^2 u_k^2` is included if all four corners are known.
     pub(super) fn twist(&self, (j, k): (usize, usize), corners: &[Option<Corner>; 4]) -> Option<Twist> {
         let [Some((u1, v1, d1)), Some((u2, v2, d2)), ..] = *corners else { return None };
         let [first, second] = [self.curvatures[j] * self.slopes[k], self.curvatures[k] * self.slopes[j]];
@@ -104,7 +105,7 @@ impl Bends {
         let (t1, t2) = (twist(u1, v1), twist(u2, v2));
         let square = match *corners {
             [.., Some((u3, v3, d3)), Some((u4, v4, d4))] => {
-                // Odd terms cancel where the nodes are opposite to each other, nearly so elsewhere.
+                // Odd terms cancel if the nodes are opposite to each other, and nearly cancel otherwise.
                 let all = [(u1, v1), (u2, v2), (u3, v3), (u4, v4)];
                 (d1 + d2 + d3 + d4) / all.iter().map(|(u, v)| (u * v).powi(2)).sum::<f64>()
             }
@@ -119,33 +120,33 @@ impl Bends {
         }
         let product = (d1 * t2 - d2 * t1) / determinant;
         let factor = (u1 * v1 * d2 - u2 * v2 * d1) / determinant;
-        // As in a product or a function of a sum, or it is something else.
+        // A factor beyond this ratio belongs neither to a product nor to a function of a sum.
         let plausible = (factor * self.slopes[j] * self.slopes[k]).abs() <= LARGEST * product.abs();
         plausible.then_some(Twist { product, slopes: [factor * second, factor * first], square })
     }
 }
 
-/// The terms that the corners of a pair show.
+/// Terms that the corners of a pair show.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Twist {
-    /// `A_jk`
+    /// Coefficient `A_jk` of the product.
     pub(super) product: f64,
-    /// The contribution of the odd terms to the slopes of `j` and `k`.
+    /// Contribution of the odd terms to the slopes of `j` and `k`.
     pub(super) slopes: [f64; 2],
-    /// The factor of `u_j^2 u_k^2 = 1 + (u_j^2 - 1) + (u_k^2 - 1) + (u_j^2 - 1)(u_k^2 - 1)`: what it adds to both curvatures.
+    /// Coefficient of `u_j^2 u_k^2 = 1 + (u_j^2 - 1) + (u_k^2 - 1) + (u_j^2 - 1)(u_k^2 - 1)`, which is added to both curvatures.
     pub(super) square: f64,
 }
 
-/// The estimate of the interactions that were not examined, by the points that check.
+/// Estimate of the interactions that were not examined, from the check points.
 pub(super) struct Atoms {
-    /// `l`, where it was not known before.
+    /// Factor `l`, if this fit determined it.
     pub(super) together: Option<f64>,
-    /// The amounts that are added to the slopes.
+    /// Amounts that are added to the slopes; None if the odd terms are not plausible.
     pub(super) slopes: Option<Vec<f64>>,
 }
 
-/// From what is left at the points that check, a value for each, None where it is unknown; `together` is `l` where the probes
-/// have told it, and `pairs` are those that were examined.
+/// Estimates the interactions that were not examined. `left` has a residual for each check point, None if it is unknown. `together` is `l`
+/// if the probes have determined it, and `pairs` are the examined ones.
 pub(super) fn atoms(
     plan: &DifferencePlan,
     bought: &ChosenPoints,
@@ -176,11 +177,11 @@ pub(super) fn atoms(
 
 struct OneFactor {
     factor: f64,
-    /// The part that it leaves of the values.
+    /// Share of the values that the fit does not explain.
     left: f64,
 }
 
-/// The factor of a shape in the even, centred, or odd parts of values at mirrored pairs of points.
+/// Fits the factor of `shape` to the even, centred parts or to the odd parts of values at mirrored pairs of points.
 fn factor(values: &[Option<f64>], shape: &[f64], even: bool) -> Option<OneFactor> {
     let sign = if even { 1.0 } else { -1.0 };
     let half = |(values, shape): (&[Option<f64>], &[f64])| {

@@ -1,4 +1,4 @@
-//! Which points to buy next: from what is known to the next stage, evaluating nothing.
+//! Choice of the next points of `auto`, from the answers so far. Nothing is evaluated here.
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -13,56 +13,63 @@ use crate::method::polynomial_surface::PolynomialSurface;
 use crate::plan::{DifferencePlan, KnownAnswers, Plan, Point, Purpose, Stage, scattered};
 use crate::problem::Problem;
 
-/// Mirrored pairs of points in a set that checks: twelve points.
+/// Mirrored pairs of points in a set of check points: twelve points.
 const CHECKS: usize = 6;
-/// An estimated error above this part of what is wanted is worth a second set, where there are so many dimensions.
+/// Estimated error, as part of the wanted one, above which a second set of check points confirms the estimate.
 const CONFIRM: f64 = 0.1;
+/// Fewest dimensions for which a second set confirms the estimate.
 const CONFIRM_FROM: usize = 5;
-/// Sets that may sharpen an estimate which is no more than so many times what is wanted.
+/// Greatest number of sets of check points.
 const SETS: usize = 3;
+/// Greatest estimated error, as multiple of the wanted one, that a further set may sharpen.
 const NEAR: f64 = 2.0;
-/// Even powers above this part of what is wanted may be interactions that count.
+/// Share of even residuals, as part of the wanted error, above which further interactions are examined.
 const PAIRS: f64 = 0.1;
-/// Characteristics that are looked at three sigma out along their steepest line, and how far within the support.
+/// Greatest number of characteristics that are examined far out along their steepest line.
 const LINES: usize = 4;
+/// Distance of these points from the means, in sigmas.
 const FAR_OUT: f64 = 3.0;
+/// Part of the distance from the mean to the end of the support that these points keep within.
 const WITHIN: f64 = 0.98;
-/// Curvature of this share of the variance has a line of its own, unless the cosine between the two is above that.
+/// Share of the variance above which the line of the curvature gets points of its own.
 const BENT: f64 = 1e-6;
+/// Cosine of the angle between steepest and curved line above which the steepest line stands for both.
 const PARALLEL: f64 = 0.9;
-/// Points next to the means stand this far off, in sigmas of every dimension.
+/// Distance of the points that measure scatter from the means, in sigmas of every dimension.
 const NEXT_TO: f64 = 1e-3;
-/// Up to so many dimensions pairs are bought one by one: 2 x 18 probes would cost as much.
+/// Greatest number of dimensions for which pairs are evaluated one by one: 2 x 18 probes would cost as much.
 const DIRECT: usize = 12;
-/// A budget that leaves so much lets a costly model be sampled in a quarter of it.
+/// Smallest remaining budget that lets a costly model be sampled, in a quarter of it.
 const SAMPLED: usize = 1024;
-/// Probes that judge, and the first that are fitted.
+/// Number of probes that judge the fits.
 const JUDGING: usize = 12;
+/// Number of probes of the first fit.
 const FITTED: usize = 6;
-/// Odd powers below this part of what is wanted let a probe stand alone, without its mirror image.
+/// Share of odd residuals, as part of the wanted error, below which a probe needs no mirror image.
 const ALONE: f64 = 0.1;
-/// By how much the probes that are fitted grow.
+/// Factor by which the number of fitted probes grows.
 const GROWTH: f64 = 1.25;
-/// The finest error of sigma that is asked for where that of another result is wanted.
+/// Finest error of sigma that is aimed at to reach the wanted error of another result.
 const FINEST: f64 = 1e-7;
-/// Evaluations beyond which nothing is worth its price any more: so many times those of every second derivative, and these.
+/// Greatest number of evaluations worth their price, as multiple of those of every second derivative.
 const OVER_FULL: f64 = 1.3;
+/// Evaluations that are added to this multiple.
 const ON_TOP: usize = 16;
-/// Errors of sigma that are reached one after the other, and every tenth of them.
+/// Errors of sigma that are reached one after the other. Their tenths, hundredths and so on follow.
 const LEVELS: [f64; 3] = [0.1, 0.05, 0.02];
-/// A share of the variance that is a rounding.
+/// Share of the variance below which it is a rounding error.
 const NOTHING: f64 = 1e-12;
-/// Scores nearer to each other than this part are those of twins, which are bought together or not at all.
+/// Relative difference of scores below which pairs count as equal. Equal pairs are examined together or not at all.
 const TWINS: f64 = 1e-6;
-/// The signs are the same for every study of as many dimensions, and no seed of anybody's.
+/// Seed of the signs of the probes. It is constant, so that all studies with as many dimensions have the same signs.
 const KEY: u64 = 0x5e_75_17_02;
 
-/// Evaluations of derivatives beyond which it does not go, failed points apart.
+/// Returns the number of evaluations beyond which no derivative is evaluated. Replacements of failed points are not included.
 pub(super) fn most(n: usize) -> usize {
     (OVER_FULL * (n * n + 3 * n + 1) as f64) as usize + ON_TOP
 }
 
-/// The next smaller of [`LEVELS`] and their tenths.
+/// Returns the next smaller one of [`LEVELS`] and their tenths.
 fn next_level(accuracy: f64) -> f64 {
     let mut unit = 1.0;
     loop {
@@ -74,28 +81,27 @@ fn next_level(accuracy: f64) -> f64 {
     }
 }
 
-/// The state of a climb.
+/// State of a refinement by `auto`.
 pub(super) struct Climb<'p> {
     problem: &'p Problem,
     pub(super) plan: DifferencePlan,
     pub(super) bought: ChosenPoints,
-    /// The accuracy of sigma to reach in the end,
+    /// Accuracy of sigma to reach in the end.
     wanted: f64,
-    /// and for now: it falls in steps that are the same for everybody, so that what a finer error takes begins with what a coarser
-    /// one takes.
+    /// Accuracy of sigma to reach next. It is lowered in fixed steps, so that a finer accuracy repeats the evaluations of a coarser one.
     accuracy: f64,
     budget: usize,
-    /// Evaluated so far, and what has been chosen since.
+    /// Evaluations so far, and those that have been chosen since.
     spent: usize,
-    /// Positions with five points, and those that have no five.
+    /// True for a position with five points, and for one that cannot have five.
     pub(super) refined: Vec<bool>,
     sets: usize,
     looked_out: bool,
-    /// Pairs are bought with all four corners.
+    /// True if pairs are evaluated at all four corners.
     squares: bool,
-    /// Probes are single points.
+    /// True if probes are single points, without their mirror images.
     alone: bool,
-    /// Every interaction is bought one by one.
+    /// True if every interaction is evaluated by itself.
     pub(super) dense: bool,
     short_of_budget: bool,
     pub(super) rest: Option<ClimbEnd>,
@@ -136,7 +142,7 @@ impl<'p> Climb<'p> {
         climb
     }
 
-    /// Wants more of sigma than it did, by a factor below 1, where that can lead on; whether it can.
+    /// Tightens the wanted error of sigma by a factor below 1. Returns true if that can lead to further evaluations.
     pub(super) fn tighten(&mut self, factor: f64) -> bool {
         let on = self.rest == Some(ClimbEnd::Reached) && self.wanted > FINEST;
         if on {
@@ -146,7 +152,7 @@ impl<'p> Climb<'p> {
         on
     }
 
-    /// The next points, or None when the climb is over; `evaluated` counts the points so far.
+    /// Returns the next points, or None if the refinement is over. `evaluated` counts the points so far.
     pub(super) fn next(&mut self, known: &KnownAnswers, evaluated: usize) -> Option<Stage> {
         self.spent = evaluated;
         loop {
@@ -154,7 +160,7 @@ impl<'p> Climb<'p> {
             if !stage.points.is_empty() {
                 let left = self.budget.saturating_sub(evaluated);
                 if stage.points.len() > left {
-                    // Failed points are replaced beyond what was planned.
+                    // Replacements of failed points come in addition to the planned ones and may exceed the budget.
                     stage.points.truncate(left);
                     self.rest = Some(ClimbEnd::Budget);
                 }
@@ -166,13 +172,13 @@ impl<'p> Climb<'p> {
         }
     }
 
-    /// The view of every characteristic.
+    /// Returns the view of every characteristic, or None if it has no value at the means.
     pub(super) fn views(&self, known: &KnownAnswers) -> Vec<Option<View>> {
         let characteristics = 0..self.problem.characteristics().len();
         characteristics.map(|c| View::of(&self.plan, known, &self.bought, c, self.accuracy)).collect()
     }
 
-    /// The points that have been chosen and are not evaluated yet.
+    /// Returns the points that have been chosen and are not evaluated yet.
     pub(super) fn wanted(&self, known: &KnownAnswers) -> Stage {
         let mut stage = self.plan.next(known).unwrap_or_default();
         let checks = self.bought.checks.iter().flatten().map(|point| (point, Purpose::Check));
@@ -189,12 +195,12 @@ impl<'p> Climb<'p> {
         stage
     }
 
-    /// Whether every mixed derivative of a characteristic is known.
+    /// True if every mixed derivative of a characteristic is known.
     pub(super) fn knows_all_pairs(&self, c: usize) -> bool {
         self.bought.polynomial(c).is_some() || self.bought.known(c).len() == self.plan.possible_pairs()
     }
 
-    /// Pairs whose interactions the formulas of all characteristics give.
+    /// Returns the number of pairs whose interactions are given by the formulas of all characteristics.
     pub(super) fn pairs_by_formulas(&self) -> usize {
         match self.bought.polynomials.iter().all(Option::is_some) {
             true => self.plan.possible_pairs(),
@@ -206,7 +212,7 @@ impl<'p> Climb<'p> {
         self.plan.varying().len()
     }
 
-    /// How many of `most` purchases of `each` evaluations there is money for; takes it.
+    /// Returns how many of `most` items of `each` evaluations the budget allows, and charges them.
     fn afford(&mut self, most: usize, each: usize) -> usize {
         let count = most.min(self.budget.saturating_sub(self.spent) / each);
         self.short_of_budget |= count < most;
@@ -214,7 +220,7 @@ impl<'p> Climb<'p> {
         count
     }
 
-    /// Buys what lowers the error; whether there was anything.
+    /// Chooses the evaluations that lower the error most. Returns true if there are any.
     fn choose(&mut self, known: &KnownAnswers) -> bool {
         self.short_of_budget = false;
         let views: Vec<View> = self.views(known).into_iter().flatten().collect();
@@ -224,6 +230,7 @@ impl<'p> Climb<'p> {
                 return true;
             }
         }
+        // Every estimate is within the error of this step: confirm it once if it is close, then go to the next step.
         let short: Vec<&View> = views.iter().filter(|view| view.error() > self.accuracy).collect();
         if short.is_empty() {
             let doubtful = views.iter().any(|view| view.error() > CONFIRM * self.accuracy);
@@ -236,10 +243,12 @@ impl<'p> Climb<'p> {
             self.rest = Some(ClimbEnd::Reached);
             return false;
         }
+        // Interactions of a product are too many to examine, but a regression of its logarithm takes few points.
         if self.positions() > DIRECT && self.may_be_sampled() && short.iter().all(|view| self.multiplies(view, known)) {
             self.rest = Some(ClimbEnd::Exhausted);
             return false;
         }
+        // Hidden terms and interactions are examined in one stage. Other evaluations follow only if these need none.
         let curved = self.refine_hidden(&short);
         let near = short.iter().all(|view| view.error() < NEAR * self.accuracy);
         let found = self.examine(&short, known)
@@ -247,6 +256,7 @@ impl<'p> Climb<'p> {
             || self.refine_rest(&short)
             || self.examine_rest(&short)
             || near && self.sets < SETS && self.spent + 2 * CHECKS <= most(self.positions()) && self.check();
+        // No evaluation helps at this step. A finer step may still have some.
         if !found && !self.short_of_budget && self.descend() {
             return true;
         }
@@ -256,7 +266,7 @@ impl<'p> Climb<'p> {
         found
     }
 
-    /// Whether points of the model follow where the surface is not enough.
+    /// True if points of the model can be sampled if the surface is not accurate enough.
     fn may_be_sampled(&self) -> bool {
         let free = !self.problem.function().signature().costly;
         free || self.budget != usize::MAX && self.budget.saturating_sub(self.spent) >= SAMPLED
@@ -266,7 +276,7 @@ impl<'p> Climb<'p> {
         is_product(&self.plan, known, &self.bought, view, self.wanted)
     }
 
-    /// Goes on to the next of the errors on the way to what is wanted; whether there is one.
+    /// Goes on to the next finer error on the way to the wanted one. Returns true if there is one.
     fn descend(&mut self) -> bool {
         let on = self.accuracy > self.wanted * (1.0 + TWINS);
         if on {
@@ -275,7 +285,7 @@ impl<'p> Climb<'p> {
         on
     }
 
-    /// Another set of points that check.
+    /// Adds check points.
     fn check(&mut self) -> bool {
         let pairs = self.afford(CHECKS, 2);
         if pairs == 0 {
@@ -288,15 +298,15 @@ impl<'p> Climb<'p> {
         true
     }
 
-    /// How many points the look along the steepest lines takes, where the budget allows, and every characteristic has a slope.
+    /// Returns the number of points far out along the steepest lines, within the budget, if every characteristic has a slope.
     pub(super) fn looks_out(&self, characteristics: usize) -> usize {
         let wanted = if self.plan.varying().is_empty() { 0 } else { 2 * characteristics.min(LINES) };
         let begun = self.wanted(&KnownAnswers::nothing(characteristics)).points.len();
         wanted.min(self.budget.saturating_sub(begun) / 2 * 2)
     }
 
-    /// Two points far out along the steepest line of every characteristic, and two along the one that bends it, where that is
-    /// another.
+    /// Chooses two points far out along the steepest line of every characteristic. If the line of its curvature has another direction, two
+    /// points along that line are added.
     fn look_out(&mut self, views: &[View]) -> bool {
         for view in views.iter().take(LINES) {
             let steepest: Vec<f64> = (0..self.positions()).map(|j| view.bends.slope(j)).collect();
@@ -329,7 +339,7 @@ impl<'p> Climb<'p> {
         !self.bought.tails.is_empty()
     }
 
-    /// Two points next to the means.
+    /// Chooses two points next to the means, which measure the scatter of the answers.
     fn listen(&mut self) {
         if self.afford(1, 2) == 0 {
             return;
@@ -344,11 +354,11 @@ impl<'p> Climb<'p> {
             });
             self.plan.point_at(at.collect::<Vec<_>>())
         });
-        // Where a mean is so large that nothing lies next to it, there is nothing to hear.
+        // If a mean is so large that no number lies this near to it, the scatter cannot be measured.
         self.bought.noise = points.iter().all(|point| *point != Point::Centre).then_some(points);
     }
 
-    /// The parts that even and odd powers leave, as shares of the variance.
+    /// Returns the even and the odd part of the residuals, as shares of the variance.
     fn left(&self, view: &View) -> [f64; 2] {
         let Some(check) = &view.check else { return [0.0; 2] };
         if self.plan.inputs().shapes().iter().any(|shape| skewed(&shape.moments)) {
@@ -357,25 +367,25 @@ impl<'p> Climb<'p> {
         [view.share(check.even), view.share(check.odd)]
     }
 
-    /// Whether odd powers are left that may be slopes unseen: some twelve points see a third of that.
+    /// True if the odd residuals may be slopes that the check points do not show: twelve points show about a third of them.
     fn too_odd(&self, odd: f64) -> bool {
         odd > 4.0 * self.accuracy * self.accuracy
     }
 
-    /// The same of even powers, as far as the surrogate is even itself.
+    /// True if the even residuals may be curvatures that the check points do not show, as far as the surrogate is even itself.
     fn too_even(&self, view: &View) -> bool {
         let curved = view.check.as_ref().map_or(0.0, |check| check.curved);
         self.too_odd(self.left(view)[0] * curved)
     }
 
-    /// Whether odd powers are left that no axis can have, but the corners of pairs.
+    /// True if odd residuals are left that belong to no axis, but to the corners of pairs.
     fn twisted(&self, view: &View) -> bool {
         let strong = |j: usize| view.shares[j][0] > 0.01;
         let axes = (0..self.positions()).all(|j| self.refined[j] || !strong(j));
         self.positions() <= DIRECT && axes && self.too_odd(self.left(view)[1])
     }
 
-    /// Five points where three hide too much.
+    /// Refines dimensions to five points if three hide too much.
     fn refine_hidden(&mut self, short: &[&View]) -> bool {
         let mut wanted = vec![false; self.positions()];
         for view in short {
@@ -400,18 +410,18 @@ impl<'p> Climb<'p> {
         self.refine(&wanted)
     }
 
-    /// Five points for the strongest that have three, where nothing else explains what is left.
+    /// Refines the strongest dimensions with three points to five, if nothing else explains the residuals.
     fn refine_rest(&mut self, short: &[&View]) -> bool {
         let mut wanted = vec![false; self.positions()];
         for view in short {
             let [even, odd] = self.left(view);
             let curved = odd < 0.25 * even;
-            // The corners of a kink may take all curvature from its axes.
+            // Corners of a kink may show all curvature, so that the axes show none.
             let straight = self.positions() <= DIRECT && view.shares.iter().all(|[_, curved]| *curved < NOTHING);
             let of = usize::from(curved && !straight);
             let strength = |j: usize| if self.refined[j] { 0.0 } else { view.shares[j][of] };
             let strongest = (0..self.positions()).map(strength).fold(0.0, f64::max);
-            // A part does not hide more than it is.
+            // Terms that a part hides are not larger than the part.
             if strongest > 0.01 * self.accuracy {
                 (0..self.positions()).for_each(|j| wanted[j] |= strength(j) >= 0.3 * strongest);
             }
@@ -432,7 +442,7 @@ impl<'p> Climb<'p> {
         found
     }
 
-    /// Interactions where even powers are left.
+    /// Examines interactions if even residuals are left.
     fn examine(&mut self, short: &[&View], known: &KnownAnswers) -> bool {
         let lacking: Vec<&View> = short
             .iter()
@@ -449,14 +459,14 @@ impl<'p> Climb<'p> {
         self.screen(&lacking, known)
     }
 
-    /// Further pairs of few dimensions, where nothing else is left to buy.
+    /// Examines further pairs of few dimensions, if nothing else is left to evaluate.
     fn examine_rest(&mut self, short: &[&View]) -> bool {
         let left = |view: &&View| self.left(view)[0] > PAIRS * self.accuracy;
         let lacking: Vec<&View> = short.iter().copied().filter(left).collect();
         !lacking.is_empty() && self.positions() <= DIRECT && self.examine_strongest(&lacking, self.positions().max(3))
     }
 
-    /// The pairs with the largest product of two shares that have not been bought.
+    /// Examines the pairs with the largest product of two shares that are not known yet.
     fn examine_strongest(&mut self, lacking: &[&View], most: usize) -> bool {
         let mut ranked: Vec<(f64, usize, usize)> = Vec::new();
         for j in 0..self.positions() {
@@ -479,7 +489,7 @@ impl<'p> Climb<'p> {
             lacking.iter().any(|view| view.bends.square(j, k) && self.plan.joint(view.characteristic, j, k))
         };
         if !self.dense && !self.squares && ranked.iter().any(square) {
-            // The pairs that there are get their other corners too.
+            // Pairs that were evaluated at two corners get the other two as well.
             self.squares = self.afford(self.bought.direct.len().max(1), 2) >= self.bought.direct.len();
             if self.squares {
                 self.plan.use_four_corners();
@@ -493,10 +503,10 @@ impl<'p> Climb<'p> {
         count > 0
     }
 
-    /// Probes: the first, more, or every pair instead where that is nearly as cheap.
+    /// Evaluates probes: the first ones, then more, or every pair instead if that is nearly as cheap.
     fn screen(&mut self, lacking: &[&View], known: &KnownAnswers) -> bool {
         if self.bought.judging.is_empty() {
-            // The axes show all that one dimension does: a single point has interactions of two beside it, and of three.
+            // Axes show all effects of one dimension, so that a single point shows interactions of two and of three dimensions.
             self.alone = lacking.iter().all(|view| self.left(view)[1] <= ALONE * self.wanted);
             let judging = self.afford(JUDGING, self.points_of_probe());
             let fitted = if judging < JUDGING { 0 } else { self.afford(FITTED, self.points_of_probe()) };
@@ -504,7 +514,7 @@ impl<'p> Climb<'p> {
             self.bought.fitted = self.probes(known, 2, 0, fitted);
             return fitted > 0;
         }
-        // Of the variance that may be left in all, half for what is not found here.
+        // Half of the error that may be left is reserved for interactions that the screening does not find.
         let unfound = lacking.iter().any(|view| view.unscreened.is_some_and(|left| left > 0.5 * self.accuracy));
         if !unfound {
             return false;
@@ -536,13 +546,13 @@ impl<'p> Climb<'p> {
         if self.alone { 1 } else { 2 }
     }
 
-    /// Whether the fit leaves more than a tenth of what interactions there are.
+    /// True if the fit leaves more than a tenth of the variance of all interactions.
     fn hopeless(&self, view: &View) -> bool {
         let found: f64 = view.products.values().map(|mixed| mixed.value.powi(2)).sum();
         view.unscreened.is_some_and(|left| left > 0.1 * (left + view.share(found)))
     }
 
-    /// Probes `first ..` of one kind.
+    /// Returns the probes of one kind from number `first`.
     fn probes(&self, known: &KnownAnswers, kind: u64, first: usize, count: usize) -> Vec<Probe> {
         let corners = self.plan.corners(known);
         let probe = |index: usize| {

@@ -1,19 +1,20 @@
 //! `auto`: as few evaluations as the wanted accuracy takes.
 //!
-//! It starts as `second-order`, with parabolas for 2N+1 evaluations, and with twelve points of the dimensions' distribution (a
-//! Latin hypercube in mirrored pairs) at which the surrogate is compared with the model. As long as what is left there, and what
-//! polynomials may hide, is more than the wanted error of sigma, it buys what is expected to help:
+//! It starts like `second-order`, with parabolas for 2N+1 evaluations. Twelve check points of the dimensions' distribution (a Latin
+//! hypercube in mirrored pairs) compare the surrogate with the model. While the residuals there, and the terms that polynomials may hide,
+//! exceed the wanted error of sigma, it adds the evaluations that are expected to help:
 //!
-//! - two nodes more for dimensions that three points hide too much of;
-//! - interactions where even powers are left: up to twelve dimensions pair by pair, strongest first; beyond, probes that move
-//!   all dimensions at once and a sparse fit to them, growing, until every pair for itself is nearly as cheap;
-//! - two nodes more for the strongest of the others, where odd powers are left.
+//! - two nodes more for dimensions in which three points hide too much;
+//! - interactions if even powers are left: up to twelve dimensions pair by pair, strongest first. With more dimensions, probes move all
+//!   dimensions at once and a sparse model is fitted to them. The number of probes grows until a separate evaluation of every pair is
+//!   nearly as cheap;
+//! - two nodes more for the strongest of the other dimensions, if odd powers are left.
 //!
-//! Of more than twelve dimensions it buys no interactions where the model is a product, so that all of them interact, and points of the
-//! model may follow: a regression of their logarithm takes fewer.
+//! With more than twelve dimensions it examines no interactions of a model that is a product, because all of them interact. If points of
+//! the model may follow, a regression of its logarithm takes fewer evaluations.
 //!
-//! The rest that is left in the end adds to the variance as the unexplained part that it is, and is the estimate of the error.
-//! All points are those of a fixed design: the same study gives the same numbers, whatever the seed.
+//! The unexplained remainder adds to the variance, and is the estimate of the error. All points belong to a fixed design: the same study
+//! gives the same numbers with any seed.
 
 mod atoms;
 mod chosen;
@@ -38,16 +39,16 @@ use climb::Climb;
 use start::Start;
 use view::View;
 
-/// The relative error of sigma that is wanted unless said otherwise.
+/// Relative error of sigma that is wanted if the options give none.
 pub const ACCURACY: f64 = 0.01;
-/// Pairs that are listed where a product of all slopes has made them all.
+/// Greatest number of pairs that are listed if a product of all slopes gives every pair an interaction.
 const LISTED: usize = 20_000;
 
 pub(super) struct Auto;
 
 pub(super) const AUTO: Auto = Auto;
 
-/// The ladder that it begins with.
+/// Difference plan that it begins with.
 const BASE: Ladder = Ladder {
     method: Method::Auto,
     runs: Method::Auto,
@@ -58,7 +59,7 @@ const BASE: Ladder = Ladder {
     order: Order::Second,
 };
 
-/// Where derivatives are exact, all of them cost one evaluation.
+/// Difference plan with exact derivatives, all of which cost one evaluation.
 const EXACT: Ladder = Ladder { interactions: Examined::All(crate::plan::Stencil::TwoPoint), ..BASE };
 
 impl Procedure for Auto {
@@ -94,7 +95,7 @@ impl Procedure for Auto {
         if options.derivatives == Some(DerivativeSource::Exact) {
             return EXACT.fits(problem, options);
         }
-        // It makes do with less than it would like.
+        // The first points alone must be within the budget. Check points are left out if it allows no more.
         Cost::of(&BASE.differences(problem, options)?).within(self.name(), problem, options)?;
         Ok(Cost::of(&*self.plan(problem, options)?))
     }
@@ -116,8 +117,8 @@ impl Procedure for Auto {
     }
 }
 
-/// Climbs until `excess`, the largest estimated error of an outcome in parts of what is wanted of it, is no more than 1, as far as
-/// tightening the wanted error of sigma gets that.
+/// Refines until `excess` is no more than 1, as far as tightening the wanted error of sigma can reach that. `excess` is the largest
+/// estimated error of an outcome divided by the wanted one.
 pub fn climb_until(
     problem: &Problem,
     options: &Options,
@@ -143,7 +144,7 @@ pub fn climb_until(
     }
 }
 
-/// The relative error of sigma that is wanted.
+/// Returns the wanted relative error of sigma, after a check of all wanted errors.
 fn accuracy(options: &Options) -> Result<f64, MethodError> {
     let accuracy = options.accuracy.unwrap_or(ACCURACY);
     for (figure, wanted) in [(Figure::Sigma, Some(accuracy))].into_iter().chain(options.accuracies.wanted()) {
@@ -159,7 +160,7 @@ fn climb<'p>(problem: &'p Problem, options: &Options) -> Result<Climb<'p>, Metho
     Ok(Climb::new(problem, BASE.differences(problem, options)?, accuracy, options))
 }
 
-/// The results of the climb.
+/// Builds the outcome from the state of the refinement.
 fn outcome(problem: &Problem, options: &Options, climb: &Climb<'_>, evaluated: &Evaluated) -> Outcome {
     let known = &evaluated.known;
     let views = climb.views(known);
@@ -173,7 +174,7 @@ fn outcome(problem: &Problem, options: &Options, climb: &Climb<'_>, evaluated: &
         let mixed = |pair: &(usize, usize)| match (view, polynomial) {
             (Some(_), Some(polynomial)) => Some(polynomial.mixed(*pair)),
             (Some(view), _) if climb.bought.direct.binary_search(pair).is_ok() => view.products.get(pair).copied(),
-            // A pair of another characteristic, which was not examined in this one.
+            // The pair was examined in another characteristic, and not in this one.
             (Some(view), _) => Some(view.products.get(pair).copied().unwrap_or(Mixed::screened(0.0))),
             (None, _) => None,
         };
@@ -221,7 +222,7 @@ fn outcome(problem: &Problem, options: &Options, climb: &Climb<'_>, evaluated: &
     outcome.with_proofs(problem, &climb.bought.polynomials)
 }
 
-/// The pairs that some surrogate has, or that were examined; of more than can be read, those that are known.
+/// Returns the pairs that a surrogate has, or that were examined. If there are too many to read, only the known ones are returned.
 fn listed(climb: &Climb<'_>, views: &[Option<View>]) -> Vec<(usize, usize)> {
     let mut pairs = climb.bought.direct.clone();
     let few = views.iter().flatten().map(View::screened).sum::<usize>() <= LISTED;

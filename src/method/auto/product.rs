@@ -1,18 +1,18 @@
-//! Whether a characteristic is a product of functions of one dimension each, so that its logarithm is their sum.
+//! Test for a product of functions of one dimension each, whose logarithm is a sum of such functions.
 //!
-//! All pairs of such a function interact, and three at a time too: interactions are the wrong thing to buy. A regression of the
-//! logarithm has one term or two for every dimension instead (Box and Cox 1964).
+//! All pairs of such a function interact, and all triples too, so that examining interactions is a waste. A regression of the logarithm has
+//! one term or two for every dimension instead (Box and Cox 1964).
 
 use super::chosen::ChosenPoints;
 use super::view::View;
 use crate::plan::{DifferencePlan, KnownAnswers, Point};
 
-/// The share of the variance that the product leaves at the points that check is less than this part of what the surface leaves, and of
-/// the wanted error: neither counts beside it.
+/// Greatest residual of a product at the check points, as part of the surface's residual and of the wanted error: it is negligible beside
+/// both.
 const PART: f64 = 0.1;
 
-/// Whether `f(m) prod_j exp(a_j u_j + b_j u_j^2)` through the values on the axes explains the points that check, where the surface of
-/// `view` does not. All values must have one sign.
+/// True if `f(m) prod_j exp(a_j u_j + b_j u_j^2)` through the values on the axes explains the check points, while the surface of `view`
+/// does not. All values must have one sign.
 pub(super) fn is_product(
     plan: &DifferencePlan,
     known: &KnownAnswers,
@@ -33,7 +33,8 @@ pub(super) fn is_product(
     !off.is_empty() && remains < PART * left.min(accuracy)
 }
 
-/// Slope and bend of the logarithm along every axis, from its innermost nodes; None without values of the centre's sign there.
+/// Returns slope and bend of the logarithm along every axis, from its innermost nodes. Returns None if the values there do not have the
+/// sign of the centre.
 fn factors(plan: &DifferencePlan, known: &KnownAnswers, c: usize) -> Option<Vec<[f64; 2]>> {
     let centre = known.value(&Point::Centre, c)?;
     let factor = |&d: &usize| {

@@ -1,18 +1,18 @@
-//! Which interactions there are, from probes that move every dimension at once.
+//! Search for interactions by probes that move every dimension at once.
 //!
-//! A probe is a vector of signs `e`; with the nodes `u+` and `u-` of a pair, `r = (u+ - u-)/2`, and `e` and `-e` evaluated,
+//! A probe is a vector of signs `e`. With the nodes `u+` and `u-` of a pair, `r = (u+ - u-)/2`, and evaluations at `e` and `-e`,
 //!
 //! ```text
 //! y(e) = [f(e) + f(-e)]/2 - f0 - sum_j G_j = const + sum_{j<k} r_j r_k A_jk e_j e_k + (products of four)
 //! G_j  = [f(+_j) + f(-_j)]/2 - f0
 //! ```
 //!
-//! Where next to nothing odd is left, `e` stands alone: `y(e) = f(e) - f0 - sum_j [f(e_j) - f0]` has products of three beside it, which the
-//! probes that judge count as left.
+//! If almost no odd residuals are left, `e` is evaluated alone. Then `y(e) = f(e) - f0 - sum_j [f(e_j) - f0]` also contains products of
+//! three, which the judging probes count as unexplained.
 //!
-//! A constant, the one product `((b'e)^2 - b'b)/2` that a function of a sum has, and single pairs are fitted by orthogonal
-//! matching pursuit (Pati, Rezaiifar and Krishnaprasad 1993); the scores of all pairs are the matrix `E' diag(residual) E`, so that
-//! their N(N-1)/2 columns never exist. The fit without any interaction always competes. Probes that no fit has seen judge.
+//! Three kinds of terms are fitted by orthogonal matching pursuit (Pati, Rezaiifar and Krishnaprasad 1993): a constant, the one product
+//! `((b'e)^2 - b'b)/2` of a function of a sum, and single pairs. The scores of all pairs are the matrix `E' diag(residual) E`, so that
+//! their N(N-1)/2 columns are never stored. The fit without any interaction always competes. Probes that no fit has used judge.
 
 use faer::linalg::matmul::matmul;
 use faer::linalg::solvers::SolveLstsqCore;
@@ -20,27 +20,28 @@ use faer::{Accum, Conj, Mat, Par};
 
 use sensitol_numeric::surrogate::DEPENDENT;
 
-/// Signs and what was seen there.
+/// Signs of the probes, and the values `y(e)` there.
 pub(super) struct Probed<'a> {
     pub(super) signs: Vec<&'a [f64]>,
     pub(super) seen: Vec<f64>,
 }
 
-/// The fit of one characteristic.
+/// Fit of the interactions of one characteristic.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Fit {
-    /// Factor of the products of all slopes.
+    /// Factor of the product of all slopes.
     pub(super) together: f64,
-    /// Single pairs in units of the signs.
+    /// Single pairs, in units of the signs.
     pub(super) pairs: Vec<(usize, usize, f64)>,
-    /// Mean square of what is left at the probes that judge.
+    /// Mean square of the residuals at the probes that judge.
     pub(super) left: f64,
 }
 
-/// A pair for every so many probes.
+/// Number of fitted probes that allow one more pair in the fit.
 const PROBES_PER_PAIR: f64 = 2.5;
 
-/// The best fit to the first, judged by the second; `slopes` in units of the signs, `enough` the mean square that may be left.
+/// Returns the best fit to `fitted`, judged by `judging`. `slopes` are in units of the signs, and `enough` is the mean square that may be
+/// left.
 pub(super) fn fit(fitted: &Probed<'_>, judging: &Probed<'_>, slopes: &[f64], enough: f64) -> Fit {
     let most = (fitted.seen.len() as f64 / PROBES_PER_PAIR) as usize;
     let none = Fit { left: mean_square(&judging.seen), ..Fit::default() };
@@ -52,7 +53,7 @@ fn mean_square(values: &[f64]) -> f64 {
     values.iter().map(|value| value * value).sum::<f64>() / values.len().max(1) as f64
 }
 
-/// The product of all slopes at a vector of signs.
+/// Returns the product of all slopes at a vector of signs.
 fn together(signs: &[f64], slopes: &[f64]) -> f64 {
     let sum: f64 = signs.iter().zip(slopes).map(|(e, b)| e * b).sum();
     0.5 * (sum * sum - slopes.iter().map(|b| b * b).sum::<f64>())
@@ -66,6 +67,7 @@ fn pursued(fitted: &Probed<'_>, judging: &Probed<'_>, slopes: &[f64], most: usiz
     let mut basis: Vec<Vec<f64>> = Vec::new();
     let mut left = fitted.seen.clone();
     let ones = columns[0].clone();
+    // The constant and the product of all slopes enter first: they cost two columns and may explain all pairs.
     project(&mut basis, &mut left, &ones);
     let atom: Vec<f64> = fitted.signs.iter().map(|signs| together(signs, &scaled)).collect();
     let has_atom = project(&mut basis, &mut left, &atom);
@@ -83,7 +85,7 @@ fn pursued(fitted: &Probed<'_>, judging: &Probed<'_>, slopes: &[f64], most: usiz
             .map(|(j, k)| (scores[(j, k)].abs(), j, k))
             .filter(|(_, j, k)| !chosen.contains(&(*j, *k)))
             .collect();
-        // Several at a time where there are many to come.
+        // Several pairs at a time, because large fits have many pairs to find.
         let batch = (rows / 256).max(1).min(most - chosen.len()).min(ranked.len());
         if batch == 0 {
             break;
@@ -107,9 +109,10 @@ fn pursued(fitted: &Probed<'_>, judging: &Probed<'_>, slopes: &[f64], most: usiz
             break;
         }
     }
+    // A final fit of all columns at once gives the coefficients. The judging probes then measure it.
     let coefficients = least_squares(&columns, &fitted.seen);
     let offset = 1 + usize::from(has_atom);
-    // The atom was fitted to slopes divided by the largest.
+    // The product was fitted with slopes divided by the largest.
     let factor = if has_atom { coefficients[1] / (largest * largest) } else { 0.0 };
     let pairs: Vec<(usize, usize, f64)> =
         chosen.iter().zip(&coefficients[offset..]).map(|(&(j, k), &value)| (j, k, value)).collect();
@@ -122,12 +125,13 @@ fn pursued(fitted: &Probed<'_>, judging: &Probed<'_>, slopes: &[f64], most: usiz
     Fit { together: factor, pairs, left: mean_square(&misses) }
 }
 
-/// Makes a column orthogonal to the basis and takes it in, and what it explains out of `left`; whether it is a new one.
+/// Orthogonalises a column against the basis, adds it, and removes the part that it explains from `left`. Returns false if it depends on
+/// the basis.
 fn project(basis: &mut Vec<Vec<f64>>, left: &mut [f64], column: &[f64]) -> bool {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let size = dot(column, column).sqrt();
     let mut rest = column.to_vec();
-    // Twice is enough (Parlett 1980).
+    // Two passes are enough (Parlett 1980).
     for _ in 0..2 {
         for known in basis.iter() {
             let along = dot(known, &rest);
@@ -156,7 +160,7 @@ fn least_squares(columns: &[Vec<f64>], seen: &[f64]) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    /// Signs by a linear congruence: any will do.
+    /// Pseudo-random signs by a linear congruential generator.
     fn signs(rows: usize, n: usize, seed: u64) -> Vec<Vec<f64>> {
         let mut state = seed;
         let mut next = || {
@@ -170,7 +174,7 @@ mod tests {
         Probed { signs: signs.iter().map(Vec::as_slice).collect(), seen: signs.iter().map(|e| seen(e)).collect() }
     }
 
-    /// Two pairs of forty dimensions, of 780: found exactly from sixty probes.
+    /// Two of the 780 pairs of forty dimensions are found exactly from sixty probes.
     #[test]
     fn single_pairs_are_found() {
         let (fitted, judging) = (signs(60, 40, 1), signs(12, 40, 2));
@@ -183,7 +187,7 @@ mod tests {
         assert!((pairs[0].2 + 0.5).abs() < 1e-12 && (pairs[1].2 - 2.0).abs() < 1e-12);
     }
 
-    /// The square of a sum of two hundred: one product, from six probes.
+    /// The square of a sum of two hundred dimensions is one product, found from six probes.
     #[test]
     fn a_function_of_a_sum_is_one_product() {
         let slopes: Vec<f64> = (0..200).map(|j| 1.0 + 0.01 * f64::from(j)).collect();
@@ -193,7 +197,7 @@ mod tests {
         assert!((found.together - 0.02).abs() < 1e-12 && found.pairs.is_empty(), "{found:?}");
     }
 
-    /// Noise that no fit explains is left: the fit without interactions is never beaten by a worse one.
+    /// A fit that does not explain noise never replaces the fit without interactions.
     #[test]
     fn noise_is_left() {
         let (fitted, judging) = (signs(8, 30, 5), signs(12, 30, 6));

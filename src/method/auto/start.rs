@@ -1,9 +1,9 @@
-//! The points that `auto` evaluates in any case: the plan that it begins with.
+//! Plan that `auto` begins with: the points that it evaluates in any case.
 
 use super::climb::Climb;
 use crate::plan::{DifferencePlan, Geometry, KnownAnswers, Plan, Stage};
 
-/// Parabolas, and the points that check and listen.
+/// Points of the parabolas, check points, and points that measure the scatter.
 #[derive(Debug)]
 pub(super) struct Start {
     plan: DifferencePlan,
@@ -13,7 +13,7 @@ pub(super) struct Start {
 }
 
 impl Start {
-    /// Of a climb that has not begun.
+    /// Returns the plan of a refinement that has not begun.
     pub(super) fn of(climb: Climb<'_>, characteristics: usize) -> Self {
         let first = climb.wanted(&KnownAnswers::nothing(characteristics));
         let later = climb.looks_out(characteristics);

@@ -1,4 +1,4 @@
-//! The state of one characteristic on the way: its surrogate, and how far that may be off.
+//! State of one characteristic during the refinement: its surrogate, and the estimated error of the surrogate.
 
 use std::collections::BTreeMap;
 
@@ -16,56 +16,55 @@ use sensitol_numeric::surrogate::{DerivativeOrigin, Surrogate, Univariate};
 /// Mixed derivatives by pair.
 type Products = BTreeMap<(usize, usize), Mixed>;
 
-/// One characteristic as far as it is known.
+/// Surrogate of one characteristic so far, with its moments and errors.
 pub(super) struct View {
     pub(super) characteristic: usize,
     pub(super) surrogate: Surrogate,
-    /// Of the surrogate.
     pub(super) moments: Moments,
     pub(super) check: Option<SurrogateCheck>,
-    /// The amounts that parts may hide, by position: variance.
+    /// Variance that each part may hide, by position.
     pub(super) hidden: Vec<f64>,
-    /// Variance of every part, and what of it is curved, as a share of the surrogate's.
+    /// Variance of every part, and of its curved terms, as shares of the surrogate's variance.
     pub(super) shares: Vec<[f64; 2]>,
-    /// Products of two positions, with what is not complete.
+    /// Products of two positions, including those that are not complete.
     pub(super) products: Products,
-    /// Mean square of what the screening's fit left at the probes that judge it, as a share of the variance.
+    /// Mean square of the screening's residuals at the judging probes, as a share of the variance.
     pub(super) unscreened: Option<f64>,
-    /// The scatter of the answers.
+    /// Scatter of the answers next to the means.
     pub(super) noise: Option<f64>,
-    /// The largest difference of model and surrogate along the steepest line, in sigmas; infinite where the model fails. And what of it
-    /// the points that check do not explain.
+    /// Largest difference of model and surrogate along the steepest line, in sigmas; infinite if the model fails.
     pub(super) tail: Option<f64>,
+    /// Value of `tail` without the part that the check points explain.
     pub(super) beyond: Option<f64>,
     pub(super) bends: Bends,
 }
 
-/// A surface before its figures are known.
+/// Surface whose figures are not computed yet.
 struct Draft {
-    /// Its value at the means.
+    /// Value of the surface at the means.
     base: f64,
     parts: Vec<Option<Univariate>>,
     products: Products,
     bends: Bends,
-    /// Variance of every part as it was evaluated.
+    /// Variance of every part as evaluated.
     own: Vec<f64>,
-    /// Mean square of what the screening's fit left at the probes that judge it.
+    /// Mean square of the screening's residuals at the judging probes.
     unscreened: Option<f64>,
 }
 
-/// The answers of one characteristic so far.
+/// Answers of one characteristic so far.
 #[derive(Clone, Copy)]
 struct Answers<'a> {
     plan: &'a DifferencePlan,
     known: &'a KnownAnswers,
     bought: &'a ChosenPoints,
     characteristic: usize,
-    /// The value at the means.
+    /// Value of the model at the means.
     centre: f64,
 }
 
 impl Draft {
-    /// The formula itself.
+    /// Returns the surface of a formula that is a polynomial.
     fn of_polynomial(polynomial: &PolynomialSurface, answers: Answers<'_>) -> Self {
         let parts: Vec<Option<Univariate>> = polynomial.parts.iter().copied().map(Some).collect();
         let own = variances(answers.plan, &parts);
@@ -73,7 +72,7 @@ impl Draft {
         Self { base: answers.centre, bends, parts, products, own, unscreened: None }
     }
 
-    /// Parts and pairs as they were evaluated, and estimates of all other pairs.
+    /// Returns a surface of evaluated parts and pairs, with estimates of all other pairs.
     fn of_points(answers: Answers<'_>, accuracy: f64) -> Option<Self> {
         let Answers { plan, known, bought, characteristic: c, centre } = answers;
         let parts: Vec<Option<Univariate>> = plan.varying().iter().map(|&d| plan.part(known, c, d)).collect();
@@ -105,7 +104,7 @@ impl Draft {
         surrogate_of(self.base, &self.parts, &self.products)
     }
 
-    /// Takes the terms of corners beside products where the points that check agree.
+    /// Adds the terms that corners show beside products, if they lower the residuals at the check points.
     fn twist(&mut self, answers: Answers<'_>) {
         let Answers { plan, known, bought, characteristic: c, .. } = answers;
         let (mut parts, mut products, mut base) = (self.parts.clone(), self.products.clone(), self.base);
@@ -115,7 +114,7 @@ impl Draft {
                 mixed.value = twist.product;
             }
             for (position, slope) in [(j, twist.slopes[0]), (k, twist.slopes[1])] {
-                // How these terms share what the corners show is an assumption.
+                // The split of a corner's value into these terms is an assumption.
                 let added = |part: Univariate| {
                     part.with_slope(slope).with_curvature(twist.square).with_origin(DerivativeOrigin::Screened)
                 };
@@ -133,8 +132,8 @@ impl Draft {
         }
     }
 
-    /// Adds estimates of all interactions that were not examined, where one number explains what is left; `together` is that of the
-    /// probes. None where a part is unknown.
+    /// Adds estimates of all interactions that were not examined, if a single factor explains the residuals. `together` is the factor that
+    /// the probes gave. Returns None if a part is unknown.
     fn add_atoms(&mut self, answers: Answers<'_>, together: Option<f64>) -> Option<()> {
         let Answers { plan, known, bought, characteristic: c, .. } = answers;
         let left = left_at(plan, known, c, bought, &self.surrogate())?;
@@ -156,14 +155,14 @@ impl Draft {
     }
 }
 
-/// Variance of every part; 0 of one that is unknown.
+/// Returns the variance of every part; 0 for an unknown part.
 fn variances(plan: &DifferencePlan, parts: &[Option<Univariate>]) -> Vec<f64> {
     let shapes = plan.inputs().shapes();
     parts.iter().zip(shapes).map(|(part, shape)| part.map_or(0.0, |part| part.term(shape).variance(1.0))).collect()
 }
 
 impl View {
-    /// None without a value at the means, or where a part is unknown.
+    /// Returns the view of a characteristic, or None if it has no value at the means or if a part is unknown.
     pub(super) fn of(
         plan: &DifferencePlan,
         known: &KnownAnswers,
@@ -185,7 +184,7 @@ impl View {
         let part = |j: usize| {
             let part = surrogate.parts[j].expect("moments need every part");
             let (d, shape) = (plan.varying()[j], &plan.inputs().shapes()[j]);
-            // A formula hides nothing of itself.
+            // Parts of a formula hide no terms.
             let hidden = plan
                 .samples(known, c, d)
                 .filter(|_| plan.depends(c, d) && polynomial.is_none())
@@ -216,7 +215,7 @@ impl View {
         })
     }
 
-    /// The number of products of the surrogate that are estimates.
+    /// Returns the number of products of the surrogate that are estimates.
     pub(super) fn screened(&self) -> usize {
         self.products.values().filter(|mixed| mixed.value != 0.0 && !mixed.origin.is_known()).count()
     }
@@ -225,7 +224,7 @@ impl View {
         self.moments.variance()
     }
 
-    /// A part of the variance as a share of it.
+    /// Returns a part of the variance as a share of it.
     pub(super) fn share(&self, part: f64) -> f64 {
         if self.variance() > 0.0 {
             part / self.variance()
@@ -236,18 +235,18 @@ impl View {
         }
     }
 
-    /// The part that is left at the check, as a share of the variance; None without a check.
+    /// Returns the variance of the residuals at the check points, as a share of the variance. Returns None if there are no check points.
     pub(super) fn left(&self) -> Option<f64> {
         self.check.as_ref().map(|check| self.share(check.variance))
     }
 
-    /// The relative error of sigma by what polynomials hide; what the check has not seen is not there.
+    /// Returns the relative error of sigma from terms that polynomials hide. The residuals at the check points bound it.
     pub(super) fn truncation(&self) -> f64 {
         let hidden = 0.5 * self.share(self.hidden.iter().sum());
         self.left().map_or(hidden, |left| hidden.min(1.5 * left.sqrt()))
     }
 
-    /// The estimated relative error of sigma.
+    /// Returns the estimated relative error of sigma.
     pub(super) fn error(&self) -> f64 {
         let sigma = self.moments.sigma().max(f64::MIN_POSITIVE);
         let unseen = |check: &SurrogateCheck| check.unseen(self.variance()) + check.shown(1) / sigma;
@@ -262,7 +261,7 @@ fn surrogate_of(centre: f64, parts: &[Option<Univariate>], products: &Products) 
     Surrogate { centre, parts: parts.to_vec(), interactions }
 }
 
-/// The differences between the model and the surrogate at the points that check.
+/// Returns the residuals (model minus surrogate) at the check points.
 fn left_at(
     plan: &DifferencePlan,
     known: &KnownAnswers,
@@ -279,7 +278,7 @@ fn left_at(
     Some(points.iter().zip(&rises).map(left).collect())
 }
 
-/// The scatter of answers next to the means, beyond the changes by the surrogate.
+/// Returns the scatter of answers next to the means, beyond the change of the surrogate.
 fn scatter(
     plan: &DifferencePlan,
     known: &KnownAnswers,
@@ -291,13 +290,15 @@ fn scatter(
     let inputs: Vec<[f64; 2]> = (0..plan.varying().len()).map(|j| [places[0][j], places[1][j]]).collect();
     let rises = surrogate.rises(&inputs)?;
     let rise = |i: usize| Some((known.value(&points[i], c)? - surrogate.centre) - rises[i]);
-    // The second difference of three values of one scatter has six times its square.
+    // The second difference of three values with equal scatter has six times its variance.
     Some((rise(0)? + rise(1)?).abs() / 6f64.sqrt())
 }
 
-/// The difference between model and surrogate far out along the lines on which it was looked, in sigmas. Of what both ends of a line
-/// have in common, that is explained which a parabola along it has that leaves the share `even` of the variance at the points that
-/// check: `c s^2` with the variance `2 c^2`, and 9 c at its ends.
+/// Returns the largest difference between model and surrogate far out along the examined lines, in sigmas.
+///
+/// The part that both ends of a line have in common may be a parabola that the check points show already. A parabola `c s^2` along the line
+/// has the variance `2 c^2` and 9 c at the ends. The explained part is the one of a parabola that leaves the share `even` of the variance
+/// at the check points.
 fn tail(
     plan: &DifferencePlan,
     known: &KnownAnswers,
@@ -330,14 +331,14 @@ fn tail(
     bought.tails.iter().filter(|(of, _)| *of == c).filter_map(|(_, points)| largest(points)).reduce(f64::max)
 }
 
-/// The probes as one characteristic has answered them.
+/// Probes with the answers of one characteristic.
 struct Screened<'a> {
     fitted: Probed<'a>,
     judging: Probed<'a>,
     /// Half the distance of the two nodes, by position.
     half: Vec<f64>,
     slopes: Vec<f64>,
-    /// The ratio of a mean square of the probes to a variance.
+    /// Ratio of a mean square of the probes to a variance.
     unit: f64,
 }
 
@@ -391,7 +392,7 @@ impl<'a> Screened<'a> {
         enough.then_some(Self { fitted, judging, half, slopes, unit: squares * squares })
     }
 
-    /// The best fit; `enough` is the variance that may be left.
+    /// Returns the best fit. `enough` is the variance that may be left.
     fn fit(&self, enough: f64) -> Fit {
         screening::fit(&self.fitted, &self.judging, &self.slopes, enough * self.unit)
     }
@@ -413,7 +414,7 @@ impl<'a> Screened<'a> {
     }
 }
 
-/// Whether a distribution is so skewed that mirrored points do not tell even from odd powers.
+/// True if a distribution is so skewed that mirrored points do not separate even from odd powers.
 pub(super) fn skewed(moments: &StandardMoments) -> bool {
     moments.skewness.abs() > 0.3
 }
