@@ -1,4 +1,4 @@
-//! `guard` of a characteristic, as it is written.
+//! Type of `guard` of a characteristic in a study file.
 
 use std::fmt;
 
