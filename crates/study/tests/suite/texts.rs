@@ -15,7 +15,7 @@ fn pins() -> StudyText {
         .with_file("pin.csv", file("examples/measured-pin/pin.csv"))
 }
 
-/// The same bytes are the same study, whether they come from a folder or from memory: every number is the same double.
+/// A study from a folder and one from the same bytes in memory agree: every number is the same double.
 #[test]
 fn text_and_files_are_one_study() {
     let read = Study::read(&repository("examples/measured-pin/study.toml")).unwrap();
