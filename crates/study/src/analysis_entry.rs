@@ -85,7 +85,7 @@ pub(super) enum PairsEntry {
     Listed(Vec<(String, String)>),
 }
 
-/// `1.5` or `"modified"`.
+/// Factor of the inflated RSS: `1.5` or `"modified"`.
 #[derive(Debug, Clone)]
 pub(super) enum FactorEntry {
     Number(f64),

@@ -6,7 +6,7 @@ use serde::de::{Deserialize, Deserializer, Visitor, value};
 
 use super::spanned::Spanned;
 
-/// `0.01`, or `{ false_accept = 0.001 }`.
+/// Guard band: `0.01`, or `{ false_accept = 0.001 }`.
 #[derive(Debug)]
 pub(super) enum GuardEntry {
     Width(f64),
