@@ -1,6 +1,6 @@
-//! External programs as assembly functions, and the journal that keeps their answers on disk.
+//! Runs external programs as assembly functions, with a journal that keeps their answers on disk.
 //!
-//! In a browser there are no programs: the settings of one can be read there, and nothing else.
+//! A browser runs no programs. Only their settings are available there.
 
 #![cfg_attr(not(test), deny(clippy::disallowed_methods))]
 

@@ -1,9 +1,9 @@
-//! `compression-clearance`: between piston and cylinder head of a diesel engine, a chain in one dimension.
+//! Model `compression-clearance`: gap between piston and cylinder head of a diesel engine, a one-dimensional chain.
 
 use super::{Block, Model, ModelInput, ModelOutput};
 use sensitol::assembly::Responses;
 
-/// The gap that is left at the top dead centre, gravity taking up every clearance:
+/// Gap at the top dead centre, with gravity closing every clearance:
 ///
 /// ```text
 /// clearance = A + B + C - D - H - L + (E - F)/2 + (G - F)/2 + (J - K)/2 - P/2

@@ -1,4 +1,4 @@
-//! `dual-mass-flywheel`: torsional vibration behind a dual-mass and behind a single-mass flywheel.
+//! Model `dual-mass-flywheel`: torsional vibration behind a dual-mass and behind a single-mass flywheel.
 
 use std::f64::consts::PI;
 use std::ops::{Add, Mul};
@@ -10,8 +10,8 @@ use super::{Block, Model, ModelInput, ModelOutput};
 use sensitol::assembly::{EvaluationError, Responses};
 use sensitol_numeric::elementary::{Cos, Elementary, Exp, Sin};
 
-/// Torsional vibration of a three-cylinder four-stroke engine with a flywheel of two masses, or of one with the clutch's
-/// damper behind it:
+/// Models the torsional vibration of a three-cylinder four-stroke engine, with a flywheel of two masses, or with a single-mass one and the
+/// clutch's damper behind it:
 ///
 /// ```text
 /// D(W)  = (J1 + J2)(k + i c W) - J1 J2 W^2
@@ -23,8 +23,8 @@ use sensitol_numeric::elementary::{Cos, Elementary, Exp, Sin};
 /// dW_at(th) = sum_m Re c_m H(1.5 m w) exp(1.5 i m th),  m = 1 .. 8,  c_m those of T_g + T_i;  dW_half half its range over th
 /// ```
 ///
-/// The single-mass flywheel is the same with `J_f`, `J_c`, `k_c` and `c_c`. The gas trace is ours (the paper shows a picture) and
-/// belongs to r/l = 45/143, whatever the tolerances make of r and l.
+/// The single-mass flywheel is the same with `J_f`, `J_c`, `k_c` and `c_c`. The gas trace is our own, since the paper shows a picture only.
+/// It belongs to r/l = 45/143 and does not change with tolerances of r and l.
 pub static DUAL_MASS_FLYWHEEL: Model = Model {
     name: "dual-mass-flywheel",
     title: "torsional vibration of a three-cylinder engine with a dual-mass or single-mass flywheel",
@@ -217,17 +217,17 @@ pub static DUAL_MASS_FLYWHEEL: Model = Model {
 };
 
 const INPUTS: usize = 17;
-/// Vibrations of this order of the crankshaft are the first of three cylinders.
+/// Order of the crankshaft of the first vibration of three cylinders.
 const ORDER: f64 = 1.5;
-/// Orders that `dW2_1000_multi` takes in.
+/// Number of orders in `dW2_1000_multi`.
 const HARMONICS: usize = 8;
-/// Places at which the search of its extremes begins: twelve for every period of the highest order.
+/// Number of points at which the search for its extremes begins: twelve for every period of the highest order.
 const PLACES: usize = 96;
 
 fn evaluate(block: &Block<'_>, out: &mut Responses) {
     for (output, model) in DUAL_MASS_FLYWHEEL.outputs.iter().enumerate() {
         let Some(column) = block.column(output) else { continue };
-        // Of the columns only those that it depends on are read.
+        // Only the columns that the output depends on are read.
         let mut x = [0.0; INPUTS];
         let columns: Vec<(usize, &[f64])> = model.depends_on.iter().map(|&at| (at, block.input(at))).collect();
         for row in 0..block.rows() {
@@ -242,7 +242,7 @@ fn evaluate(block: &Block<'_>, out: &mut Responses) {
 
 const NO_CROSSING: &str = "the accelerations behind the two flywheels do not cross between their critical speeds";
 
-/// One output at one point; None where it is a crossing that does not exist.
+/// One output at one point. Returns None if the output is a crossing that does not exist.
 fn value(output: usize, x: &[f64; INPUTS]) -> Option<f64> {
     let (dual, single) = (|| Shaft::new(x[0], x[1], x[2], x[3]), || Shaft::new(x[4], x[5], x[6], x[7]));
     let crank = Crank { r: x[9], l: x[10], bore: x[11], mass: x[12] + x[13], p3: x[14] };
@@ -278,24 +278,26 @@ fn value(output: usize, x: &[f64; INPUTS]) -> Option<f64> {
     })
 }
 
-/// The circular frequency of order 1.5 at a speed in rpm.
+/// Circular frequency of order 1.5 at a speed in rpm.
 fn circular(n: f64) -> f64 {
     ORDER * n * PI / 30.0
 }
 
-/// Of a complex number. Nothing here is so large that its square is not, and a root is the same everywhere.
+/// Absolute value of a complex number. The squares of all numbers here are finite, and the square root gives the same bits on every
+/// machine.
 fn size(re: f64, im: f64) -> f64 {
     (re * re + im * im).sqrt()
 }
 
-/// Two masses, spring and damper.
+/// Two masses with a spring and a damper between them.
 struct Shaft {
     stiffness: f64,
     damping: f64,
-    /// Sum and product of the masses.
+    /// Sum of the masses' inertias.
     sum: f64,
+    /// Product of the masses' inertias.
     product: f64,
-    /// The second mass.
+    /// Inertia of the second mass.
     last: f64,
 }
 
@@ -308,7 +310,7 @@ impl Shaft {
         30.0 / PI / ORDER * (self.stiffness * self.sum / self.product).sqrt()
     }
 
-    /// |D|^2 as polynomial in the square of the frequency, constant first.
+    /// Coefficients of |D|^2 as a polynomial in the square of the frequency, constant first.
     fn denominator(&self) -> [f64; 3] {
         let [spring, damper] = [self.sum * self.stiffness, self.sum * self.damping];
         [spring * spring, damper * damper - 2.0 * spring * self.product, self.product * self.product]
@@ -318,30 +320,30 @@ impl Shaft {
         size(self.sum * self.stiffness - self.product * w * w, self.sum * self.damping * w)
     }
 
-    /// |H2|.
+    /// Absolute value |H2|.
     fn second(&self, w: f64) -> f64 {
         size(self.stiffness, self.damping * w) / (w * self.size_of_denominator(w))
     }
 
-    /// |H1|.
+    /// Absolute value |H1|.
     fn first(&self, w: f64) -> f64 {
         size(self.stiffness - self.last * w * w, self.damping * w) / (w * self.size_of_denominator(w))
     }
 
-    /// The largest W |H2|: where the derivative of its square by W^2 is 0, a quadratic equation.
+    /// Largest W |H2|. The derivative of its square by W^2 is 0 there, a quadratic equation.
     fn largest_acceleration(&self) -> f64 {
         let [d, b, a] = self.denominator();
         let [k, c] = [self.stiffness * self.stiffness, self.damping * self.damping];
         let rest = c * d - b * k;
-        // The larger root in the form that damping may vanish in.
+        // The larger root, in the form that admits a damping of 0.
         let square = rest / (a * k + (a * a * k * k + a * c * rest).sqrt());
         ((k + c * square) / (d + square * (b + square * a))).sqrt()
     }
 }
 
-/// The speed between the critical speeds at which both accelerate alike.
+/// Speed between the critical speeds at which both flywheels give the same acceleration. Returns None if there is none.
 fn crossing(dual: &Shaft, single: &Shaft) -> Option<f64> {
-    // |H2|^2 of one times the denominators of both, less the other's: a cubic in W^2.
+    // Equal |H2|^2, multiplied by both denominators, gives a cubic in W^2.
     let side = |of: &Shaft, other: &Shaft| {
         let ([k, c], d) = ([of.stiffness * of.stiffness, of.damping * of.damping], other.denominator());
         [k * d[0], k * d[1] + c * d[0], k * d[2] + c * d[1], c * d[2]]
@@ -354,7 +356,7 @@ fn crossing(dual: &Shaft, single: &Shaft) -> Option<f64> {
     if !(low < high && at(low) > 0.0 && at(high) < 0.0) {
         return None;
     }
-    // From the middle of the speeds, Newton's steps as long as they stay within.
+    // Newton's method from the middle of the critical speeds. A step that leaves the bracket is replaced by halving.
     let mut x = 0.25 * (low.sqrt() + high.sqrt()).powi(2);
     for _ in 0..128 {
         if at(x) > 0.0 {
@@ -378,7 +380,7 @@ struct Crank {
     r: f64,
     l: f64,
     bore: f64,
-    /// The mass that goes up and down.
+    /// Reciprocating mass.
     mass: f64,
     p3: f64,
 }
@@ -390,7 +392,7 @@ enum Mass {
     Last,
 }
 
-/// An angle of the cycle, -360 to 360 degrees.
+/// Angle of the cycle, wrapped to -360 .. 360 degrees.
 fn wrapped(degrees: f64) -> f64 {
     (degrees + 360.0).rem_euclid(720.0) - 360.0
 }
@@ -407,13 +409,13 @@ impl Crank {
         area * [0.0, 240.0, 480.0].map(cylinder).iter().sum::<f64>()
     }
 
-    /// Torque of the inertia of three cylinders, of which order 3 alone remains.
+    /// Torque of the inertia of three cylinders: only order 3 remains in their sum.
     fn inertia(&self, degrees: f64, n: f64) -> f64 {
         let (w, theta) = (n * PI / 30.0, wrapped(degrees) * PI / 180.0);
         -2.25 * self.r / self.l * self.mass * self.r * self.r * w * w * Sin::of(3.0 * theta)
     }
 
-    /// Orders of the speed at either end of a shaft.
+    /// Fourier coefficients of the speed at either end of a shaft.
     fn speeds(&self, shaft: &Shaft, mass: Mass, n: f64) -> [Complex; HARMONICS] {
         let w = n * PI / 30.0;
         let (area, ratio) = (0.25 * PI * self.bore * self.bore * self.r, self.r / self.l);
@@ -426,7 +428,7 @@ impl Crank {
             if order == 2 {
                 torque.im += 2.25 * ratio * self.mass * self.r * self.r * w * w;
             }
-            // H2 = (k + icW)/(iWD), D its denominator; H1 has k - J2 W^2 for k.
+            // H2 = (k + icW)/(iWD), with its denominator D. H1 has k - J2 W^2 in place of k.
             let frequency = ORDER * order as f64 * w;
             let spring = Complex { re: shaft.stiffness, im: shaft.damping * frequency };
             let denominator = spring * shaft.sum + Complex { re: -shaft.product * frequency * frequency, im: 0.0 };
@@ -439,7 +441,7 @@ impl Crank {
     }
 }
 
-/// The sum of orders at 1.5 times the crank angle, with derivatives.
+/// Sum of all orders, with derivatives, at `x`, which is 1.5 times the crank angle.
 fn wave(speeds: &[Complex; HARMONICS], x: f64) -> Jet {
     let turn = Complex { re: Cos::of(x), im: Sin::of(x) };
     let (mut power, mut jet) = (turn, [0.0; 3]);
@@ -453,7 +455,7 @@ fn wave(speeds: &[Complex; HARMONICS], x: f64) -> Jet {
     Jet(jet)
 }
 
-/// Half the range of the sum of orders over the crank angle.
+/// Half the range of the sum of all orders over the crank angle.
 fn half_range(speeds: &[Complex; HARMONICS]) -> f64 {
     let place = 2.0 * PI / PLACES as f64;
     let mut values = [0.0; PLACES];
@@ -505,7 +507,7 @@ impl Mul<f64> for Complex {
     }
 }
 
-/// `exp(i m x)` at the places, for every order.
+/// Values of `exp(i m x)` at the points of the search, for every order.
 static TURNS: LazyLock<Vec<[Complex; HARMONICS]>> = LazyLock::new(|| {
     let turn = |place: usize, order: usize| {
         let x = 2.0 * PI * (place * order % PLACES) as f64 / PLACES as f64;
@@ -516,13 +518,13 @@ static TURNS: LazyLock<Vec<[Complex; HARMONICS]>> = LazyLock::new(|| {
 
 /// Crank angle of ignition, degrees.
 const IGNITION: f64 = -15.0;
-/// The rod by the crank of the gas trace.
+/// Ratio of rod to crank in the gas trace.
 const ROD_BY_CRANK: f64 = 143.0 / 45.0;
 
-/// Fourier coefficients of three cylinders' pressure times sin th, and times sin 2 th: without p3, and by p3, for either.
+/// Fourier coefficients of three cylinders' pressure times sin th, and times sin 2 th. Each has a constant and a factor of p3.
 ///
-/// The trace is smooth between -360, -180, the ignition at -15, 180 and 360 degrees; between them, Gauss's rule on parts of at
-/// most 15 degrees leaves 1e-15.
+/// The trace is smooth between -360, -180, the ignition at -15, 180 and 360 degrees. In between, Gauss's rule on parts of at most 15
+/// degrees has an error of 1e-15.
 static TORQUES: LazyLock<[[Complex; 4]; HARMONICS]> = LazyLock::new(|| {
     const PARTS: [(f64, f64, usize); 4] =
         [(-360.0, -180.0, 12), (-180.0, IGNITION, 11), (IGNITION, 180.0, 13), (180.0, 360.0, 12)];
@@ -545,7 +547,7 @@ static TORQUES: LazyLock<[[Complex; 4]; HARMONICS]> = LazyLock::new(|| {
                     }
                 };
                 let pressures = [fresh - gas::ATMOSPHERE, burnt];
-                // Three cylinders, and 2/(4 pi) of the integral over two turns.
+                // Factor for three cylinders, and 2/(4 pi) of the integral over two turns.
                 let share = 3.0 * weight * half * PI / 180.0 / (2.0 * PI);
                 for (harmonic, sums) in sums.iter_mut().enumerate() {
                     let angle = ORDER * (harmonic + 1) as f64 * theta;

@@ -1,4 +1,4 @@
-//! `engine-balance`: unbalanced force and moment of an inline four-cylinder engine.
+//! Model `engine-balance`: unbalanced force and moment of an inline four-cylinder engine.
 
 use std::f64::consts::PI;
 
@@ -6,7 +6,7 @@ use super::{Block, Model, ModelInput, ModelOutput};
 use sensitol::assembly::Responses;
 use sensitol_numeric::elementary::{Cos, Elementary, Work, on_this_processor};
 
-/// The inputs' places, in the order of `ENGINE_BALANCE.inputs`.
+/// Indices of the inputs, in the order of `ENGINE_BALANCE.inputs`.
 mod input {
     pub const MP: usize = 0;
     pub const MR: usize = 1;
@@ -65,7 +65,7 @@ pub static ENGINE_BALANCE: Model = Model {
     bounds: &[],
 };
 
-/// Rows whose angles and sums stay in the nearest cache.
+/// Number of rows in a pass, so that their angles and sums stay in the nearest cache.
 const LANES: usize = 256;
 
 fn evaluate(block: &Block<'_>, out: &mut Responses) {
@@ -89,7 +89,7 @@ struct Balance<'a> {
     inputs: [&'a [f64]; 13],
     forces: &'a mut [f64],
     moments: &'a mut [f64],
-    /// For an angle, its cosine, and the ratio of crank to rod.
+    /// Scratch space for an angle, its cosine, and the ratio of crank to rod.
     room: &'a mut [[f64; LANES]; 3],
 }
 
@@ -114,8 +114,8 @@ impl Work for Balance<'_> {
             }
             Cos::map_inline(angles, shares);
             for row in 0..rows {
-                // cos t cos phi - sin t sin phi = cos(t + phi): each cylinder's share, first and second order, the latter by
-                // cos 2x = 2 cos^2 x - 1, which is off by as much as cos x.
+                // Each cylinder adds its first and second order. The sum cos t cos phi - sin t sin phi is cos(t + phi). The second order
+                // uses cos 2x = 2 cos^2 x - 1, whose absolute error is like that of cos x.
                 let c = shares[row];
                 let share = c + ratios[row] * (2.0 * c * c - 1.0);
                 forces[row] += share;

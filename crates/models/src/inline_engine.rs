@@ -1,4 +1,4 @@
-//! `inline-engine-balance`: unbalanced forces and moments of an inline engine of any layout.
+//! Model `inline-engine-balance`: unbalanced forces and moments of an inline engine of any layout.
 
 use std::f64::consts::PI;
 
@@ -6,7 +6,7 @@ use super::{Block, Model, ModelInput, ModelOutput};
 use sensitol::assembly::{EvaluationError, Responses};
 use sensitol_numeric::elementary::{Cos, Elementary, Work, on_this_processor};
 
-/// The inputs' places, in the order of `INLINE_ENGINE.inputs`.
+/// Indices of the inputs, in the order of `INLINE_ENGINE.inputs`.
 mod input {
     pub const MP: usize = 0;
     pub const MR: usize = 1;
@@ -21,10 +21,10 @@ mod input {
     pub const Z: usize = 21;
 }
 
-/// Cylinders at most.
+/// Greatest number of cylinders.
 const MOST: usize = 12;
 
-/// The general form of `engine-balance`: n cylinders, each with its crank angle and its place along the shaft:
+/// Generalises `engine-balance` to n cylinders, each with its crank angle and its place along the shaft:
 ///
 /// ```text
 /// mr = MP + MR hc/(hc + hp)
@@ -95,7 +95,7 @@ const MOMENT: &[usize] = &[
     31, 32,
 ];
 
-/// Rows whose sums stay in the nearest cache.
+/// Number of rows in a pass, so that their sums stay in the nearest cache.
 const LANES: usize = 256;
 
 fn evaluate(block: &Block<'_>, out: &mut Responses) {

@@ -1,10 +1,10 @@
-//! Values with two derivatives by one variable, for the maxima over an angle, and the search of such a maximum.
+//! Values with two derivatives by one variable, for maxima over an angle, and the search for such a maximum.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use sensitol_numeric::elementary::{Elementary, Exp, Ln};
 
-/// The numbers in which the formulas of a mechanism are written: plain ones, or ones with derivatives by the crank angle.
+/// Number type of the formulas of a mechanism: plain, or with derivatives by the crank angle.
 pub(super) trait Real:
     Copy
     + Neg<Output = Self>
@@ -49,12 +49,12 @@ impl Real for f64 {
     }
 }
 
-/// A value, its first and its second derivative. Sums, and products with a number, are inlined where code is optimised for size too.
+/// A value with its first and second derivative. Sums and products with a number are inlined even where code is optimised for size.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Jet(pub(super) [f64; 3]);
 
 impl Jet {
-    /// A function of `x`, given its value and derivatives there.
+    /// Function of `x`, given its value and derivatives at `x`.
     #[inline]
     fn through(x: Self, [f, d, dd]: [f64; 3]) -> Self {
         let [_, x1, x2] = x.0;
@@ -162,16 +162,15 @@ impl Mul<f64> for Jet {
     }
 }
 
-/// A step of the search that is smaller than this is the last: what it leaves is its third power.
+/// Size of the last step of the search. The remaining error is about its third power.
 const LAST_STEP: f64 = 1e-6;
-/// Halvings that any bracket ends within.
+/// Greatest number of steps: halving ends any bracket within them.
 const MOST_STEPS: usize = 64;
 
-/// The largest value of a smooth function within `ends`, and where it is, from a place in the same lobe.
+/// Largest value of a smooth function within `ends`, and its place. `start` lies in the same lobe.
 ///
-/// Newton's method on the first derivative within a bracket that the derivative's sign narrows. The rest of the last step is
-/// taken off by the parabola there, so that the value is smooth in whatever else the function depends on: neither the grid that
-/// the search began on nor where it ended shows.
+/// Newton's method on the first derivative, within a bracket that the sign of the derivative narrows. The error of the last step is removed
+/// by the parabola there. So the value is a smooth function of all parameters, independent of the grid and of the last step.
 pub(super) fn climb(function: impl Fn(f64) -> Jet, start: f64, ends: [f64; 2]) -> Peak {
     let ([mut low, mut high], mut at) = (ends, start);
     let mut top = Peak { at, value: f64::NAN };
@@ -184,7 +183,7 @@ pub(super) fn climb(function: impl Fn(f64) -> Jet, start: f64, ends: [f64; 2]) -
             high = at;
         }
         let newton = at - slope / curvature;
-        // At an end that the function rises towards, the end is the largest.
+        // If the function rises towards an end, that end is the largest.
         let inside = curvature < 0.0 && newton >= low && newton <= high;
         let next = if inside { newton } else { 0.5 * (low + high) };
         if inside && (next - at).abs() < LAST_STEP {
@@ -198,7 +197,7 @@ pub(super) fn climb(function: impl Fn(f64) -> Jet, start: f64, ends: [f64; 2]) -
     top
 }
 
-/// A maximum.
+/// A maximum with its place.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Peak {
     pub(super) at: f64,

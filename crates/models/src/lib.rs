@@ -1,4 +1,4 @@
-//! Built-in closed-form models, a file each, and their registry.
+//! Built-in closed-form models, each in its own file, and their registry.
 //!
 //! # A new model
 //! One new file with a `pub static` [`Model`], one line in [`ALL`], a test in `tests/accuracy/published.rs` with reference values
@@ -22,7 +22,7 @@ use sensitol::assembly::{AssemblyFunction, Input, Output, Request, Responses, Ru
 use sensitol::warning::Warning;
 use sensitol_numeric::names::UnknownName;
 
-/// Every built-in model, in the order in which they are listed.
+/// All built-in models, in the order of their list.
 pub static ALL: &[&Model] = &[
     &engine_balance::ENGINE_BALANCE,
     &inline_engine::INLINE_ENGINE,
@@ -33,47 +33,47 @@ pub static ALL: &[&Model] = &[
     &spot_weld::SPOT_WELD,
 ];
 
-/// A closed-form model: named inputs with documented nominal values, named outputs.
+/// A closed-form model: named inputs with documented nominal values, and named outputs.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Model {
-    /// Its name in study files.
+    /// Name in study files.
     pub name: &'static str,
-    /// One line.
+    /// Description in one line.
     pub title: &'static str,
     /// Author, year, equations, and departures from them.
     pub source: &'static str,
-    /// Its inputs, in the order in which `evaluate` gets them.
+    /// Inputs, in the order in which `evaluate` receives them.
     pub inputs: &'static [ModelInput],
-    /// Its outputs, in the order in which `evaluate` is asked for them.
+    /// Outputs, in the order of their indices in `evaluate`.
     pub outputs: &'static [ModelOutput],
-    /// Evaluates a block of rows.
+    /// Function that evaluates a block of rows.
     pub(crate) evaluate: fn(&Block<'_>, &mut Responses),
-    /// Outputs that can leave what the formulas describe.
+    /// Bounds of outputs beyond which the formulas do not hold.
     pub(crate) bounds: &'static [Validity],
 }
 
-/// A bound of an output beyond which the formulas describe nothing real.
+/// Bound of an output beyond which the formulas describe nothing real.
 #[derive(Debug)]
 pub(crate) struct Validity {
-    /// The output's place.
+    /// Index of the output.
     output: usize,
-    /// Whether a value at a row is beyond.
+    /// True if a value of the output at this row is beyond the bound.
     beyond: fn(&Block<'_>, usize, f64) -> bool,
-    /// The bound, and what does not hold beyond.
+    /// Text of the bound and of the part that does not hold beyond.
     reason: &'static str,
 }
 
 /// An input of a built-in model.
 #[derive(Debug)]
 pub struct ModelInput {
-    /// Its symbol.
+    /// Symbol.
     pub name: &'static str,
-    /// Its unit.
+    /// Unit.
     pub unit: &'static str,
-    /// The value it has where a study does not say.
+    /// Default value for studies that leave the input out.
     pub nominal: f64,
-    /// Its description.
+    /// Description.
     pub about: &'static str,
 }
 
@@ -81,17 +81,17 @@ pub struct ModelInput {
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct ModelOutput {
-    /// Its symbol.
+    /// Symbol.
     pub name: &'static str,
-    /// Its unit.
+    /// Unit.
     pub unit: &'static str,
-    /// Its description.
+    /// Description.
     pub about: &'static str,
-    /// Indices of the inputs that it depends on, ascending.
+    /// Indices of the inputs that the output depends on, ascending.
     pub depends_on: &'static [usize],
 }
 
-/// A request to a model: some rows of points, and some of its outputs.
+/// Request to a model: some rows of points, and some of its outputs.
 #[derive(Debug)]
 pub(crate) struct Block<'a> {
     columns: &'a [&'a [f64]],
@@ -100,17 +100,16 @@ pub(crate) struct Block<'a> {
 }
 
 impl Block<'_> {
-    /// The values of one input.
+    /// Values of one input in these rows.
     pub(crate) fn input(&self, index: usize) -> &[f64] {
         &self.columns[index][self.rows.clone()]
     }
 
-    /// Number of rows.
     pub(crate) fn rows(&self) -> usize {
         self.rows.len()
     }
 
-    /// The column of the responses that this output belongs in; None when it is not asked for.
+    /// Column of the responses for this output. Returns None if it is not requested.
     pub(crate) fn column(&self, output: usize) -> Option<usize> {
         self.outputs.iter().position(|&asked| asked == output)
     }
@@ -148,7 +147,7 @@ impl Model {
 struct BuiltIn {
     model: &'static Model,
     signature: Signature,
-    /// Which of the model's bounds some evaluated value has passed.
+    /// True for each bound that some evaluated value has passed.
     passed: Vec<AtomicBool>,
 }
 
@@ -196,7 +195,7 @@ impl AssemblyFunction for BuiltIn {
     }
 }
 
-/// The model of this name.
+/// Finds the model with this name.
 impl FromStr for &'static Model {
     type Err = UnknownName;
 

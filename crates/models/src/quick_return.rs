@@ -1,4 +1,4 @@
-//! `quick-return`: stroke and time ratio of a crank-shaper mechanism.
+//! Model `quick-return`: stroke and time ratio of a crank-shaper mechanism.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -35,7 +35,7 @@ pub static QUICK_RETURN: Model = Model {
     bounds: &[],
 };
 
-/// Rows whose sums stay in the nearest cache.
+/// Number of rows in a pass, so that their sums stay in the nearest cache.
 const LANES: usize = 256;
 
 fn evaluate(block: &Block<'_>, out: &mut Responses) {
@@ -69,7 +69,7 @@ impl Work for Stroke<'_> {
         let rows = self.strokes.len();
         let [r, d, e, q, c, height, s] = self.inputs.map(|input| &input[..rows]);
         for (row, stroke) in self.strokes.iter_mut().enumerate() {
-            // Sine and cosine of delta and gamma as ratios: no angle is needed.
+            // Sine and cosine of delta and gamma are ratios of lengths, so no angle is computed.
             let reach = r[row] + 0.5 * s[row];
             let square = d[row] * d[row] + e[row] * e[row];
             let rest = (square - reach * reach).sqrt();
@@ -79,7 +79,7 @@ impl Work for Stroke<'_> {
     }
 }
 
-/// Where the ram stands at one end of its stroke; `reach` is negative at the other end.
+/// Place of the ram at one end of its stroke. `reach` is negative at the other end.
 #[inline(always)]
 fn ram([d, e, q, c, height]: [f64; 5], reach: f64, [rest, square]: [f64; 2]) -> f64 {
     let sin = (e * rest + d * reach) / square;

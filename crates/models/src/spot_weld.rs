@@ -1,11 +1,11 @@
-//! `spot-weld`: gap and two flushes between the electrodes of a spot-welding gun, a chain in three dimensions.
+//! Model `spot-weld`: gap and two flushes between the electrodes of a spot-welding gun, a chain in three dimensions.
 
 use super::{Block, Model, ModelInput, ModelOutput};
 use sensitol::assembly::Responses;
 use sensitol_numeric::elementary::{Cos, Elementary, Sin, Work, on_this_processor};
 
-/// Two arms turn about pivots on one frame, and each holds an electrode at a right angle to its end. With x forward, y sideways
-/// and z up, and Rx, Ry, Rz the turns about them, the tip of an electrode is at
+/// Models two arms that turn about pivots on one frame. Each holds an electrode at a right angle to its end. With x forward, y sideways and
+/// z up, and Rx, Ry, Rz the rotations about them, the tip of an electrode is at
 ///
 /// ```text
 /// tip = p + Rz(yaw) Rx(tilt) Ry(close) [ (rear, 0, 0) + Rz(skew) Ry(bend) (front, 0, -+tip) ]
@@ -70,14 +70,16 @@ pub static SPOT_WELD: Model = Model {
     bounds: &[],
 };
 
-/// Inputs of one arm.
+/// Number of inputs of one arm.
 const ARM: usize = 11;
-/// A shift of a pivot moves the tip along itself only, and the yaw comes last and turns nothing up.
+/// Inputs of the gap. A shift of a pivot moves the tip along its own axis only. The yaw comes last and does not change the height.
 const GAP: &[usize] = &[2, 3, 5, 6, 7, 8, 9, 10, 13, 14, 16, 17, 18, 19, 20, 21];
+/// Inputs of the flush along x.
 const FLUSH1: &[usize] = &[0, 3, 4, 5, 6, 7, 8, 9, 10, 11, 14, 15, 16, 17, 18, 19, 20, 21];
+/// Inputs of the flush along y.
 const FLUSH2: &[usize] = &[1, 3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 15, 16, 17, 18, 19, 20, 21];
 
-/// Rows whose angles stay in the nearest cache.
+/// Number of rows in a pass, so that their angles stay in the nearest cache.
 const LANES: usize = 128;
 
 fn evaluate(block: &Block<'_>, out: &mut Responses) {
@@ -100,7 +102,7 @@ fn evaluate(block: &Block<'_>, out: &mut Responses) {
     }
 }
 
-/// Adds the place of one tip to the differences: of the upper arm with +, of the lower with -.
+/// Adds the place of one tip to the differences, with the sign + for the upper arm and - for the lower one.
 struct Tip<'a> {
     inputs: [&'a [f64]; ARM],
     sign: f64,
@@ -133,7 +135,7 @@ impl Work for Tip<'_> {
     #[inline(always)]
     fn work(self) {
         let Self { inputs: [px, py, pz, tilt, yaw, close, rear, bend, skew, front, tip], sign, differences } = self;
-        // One by one: the closure of an array's `map` is compiled by itself, for the least processor.
+        // One by one, since the closure of an array's `map` would be compiled separately, for the least processor.
         let (tilt, yaw, close) = (Turn::of(tilt), Turn::of(yaw), Turn::of(close));
         let (bend, skew) = (Turn::of(bend), Turn::of(skew));
         let [gap, forward, sideways] = differences;

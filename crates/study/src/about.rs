@@ -20,7 +20,7 @@ pub(super) struct AboutEntry {
 }
 
 impl AboutEntry {
-    /// The cells that have a text, in their order on a drawing.
+    /// Cells of the title block that have a text, in their order on a drawing.
     pub(super) fn cells(self) -> Vec<(&'static str, String)> {
         let Self { part, drawing, revision, author, note } = self;
         let all = [("Part", part), ("Drawing", drawing), ("Revision", revision), ("Author", author), ("Note", note)];

@@ -1,4 +1,4 @@
-//! The section `[analysis]` as it is written.
+//! Types of the section `[analysis]` of a study file.
 
 use std::fmt;
 
@@ -11,7 +11,7 @@ use super::spanned::Spanned;
 #[cfg(feature = "schema")]
 use sensitol::method::{ACCURACY, Options};
 
-/// Two names whose product is in the surface.
+/// Names of two dimensions whose product is a term of the surface.
 pub(super) type Product = (Spanned<String>, Spanned<String>);
 
 /// `[analysis]`.
@@ -85,7 +85,7 @@ pub(super) enum PairsEntry {
     Listed(Vec<(String, String)>),
 }
 
-/// `1.5` or `"modified"`.
+/// Factor of the inflated RSS: `1.5` or `"modified"`.
 #[derive(Debug, Clone)]
 pub(super) enum FactorEntry {
     Number(f64),

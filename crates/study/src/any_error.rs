@@ -1,4 +1,4 @@
-//! Every error between a study and its results in one type, for programs that pass them on.
+//! One type for all errors between a study and its results, for programs that pass them on.
 
 use sensitol::warning::Advice;
 
@@ -8,13 +8,13 @@ use crate::{RewriteError, StudyError};
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// A study file is wrong.
+    /// The study file is not valid.
     #[error(transparent)]
     Study(#[from] StudyError),
-    /// A study cannot be written with changes.
+    /// The study cannot be rewritten.
     #[error(transparent)]
     Rewrite(#[from] RewriteError),
-    /// The engine reports an error.
+    /// The engine returns an error.
     #[error(transparent)]
     Engine(sensitol::Error),
 }
@@ -26,7 +26,7 @@ impl<E: Into<sensitol::Error>> From<E> for Error {
 }
 
 impl Error {
-    /// The text to write instead, where that can be said.
+    /// Text to write instead. Returns None if no general advice exists.
     pub fn help(&self) -> Option<String> {
         match self {
             Self::Study(error) => error.help(),
@@ -35,7 +35,7 @@ impl Error {
         }
     }
 
-    /// The actions to take, beside changing what is written; the most promising first.
+    /// Actions to take, besides changing the study. The most promising is first.
     pub fn advice(&self) -> Vec<Advice> {
         match self {
             Self::Study(error) => error.fault.advice(),

@@ -1,4 +1,4 @@
-//! From the file's types to a problem: names, model, formulas, characteristics.
+//! Builds the problem from the parsed study file: names, model, formulas and characteristics are checked and put together.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -45,9 +45,9 @@ pub(super) struct Built {
     pub(super) setups: Vec<SetUp>,
     pub(super) requirements: Vec<(String, Requirement)>,
     pub(super) warnings: Vec<Warning>,
-    /// The files that it read beside the study.
+    /// Contents of the data files that the study reads.
     pub(super) data: Vec<Arc<[u8]>>,
-    /// These files, and those of the model.
+    /// These files with names and paths, and those of the model.
     pub(super) files: Vec<NamedFile>,
 }
 
@@ -60,10 +60,12 @@ pub(super) fn build(
     let written = |entry: &CharacteristicEntry| entry.formula.is_some();
     let unknown = |name: &str| file.unknowns.0.iter().any(|(known, _)| known.get_ref() == name);
     let all = file.characteristics.0.iter();
+    // A characteristic is `open` if neither a formula nor an unknown gives its value: then a model must.
     let open = all.clone().any(|(name, of)| !written(of.get_ref()) && !unknown(name.get_ref()));
     let evaluated = model(file.model.as_ref(), open, source)?;
     let program = evaluated.as_ref().is_some_and(ModelOf::is_external);
     let model = evaluated.as_ref().and_then(ModelOf::built_in);
+    // Sections that do not depend on each other are all read before the build stops, so that their faults are reported together.
     let mut faults = Faults::default();
     faults.take(names(file, model));
     let mut blocks = faults.take(joint::blocks(file, &mut data)).unwrap_or_default();
@@ -80,6 +82,7 @@ pub(super) fn build(
         }
     }
     faults.none()?;
+    // From here on each step needs the results of the previous ones, so the first fault ends the build.
     let implicit = implicit(file, &dimensions, source)?;
     let written = Written { formulas, implicit };
     let used = |name: &str| written.names().any(|used| used == name);
@@ -87,6 +90,7 @@ pub(super) fn build(
     drive::known_to_program(file, &used)?;
     let (characteristics, outputs) = characteristics(file, model, program)?;
     let composite = compose(file, evaluated.as_ref(), &dimensions, &written, outputs.clone(), source)?;
+    // Units are checked on the formulas as written. A conversion changes the formulas, so they are composed again.
     let held = units::Units::of(file, model, &dimensions, &written, source)?;
     let of_units = held.check(&composite)?;
     let composite = match held.converted(&written) {
@@ -103,6 +107,7 @@ pub(super) fn build(
     warnings.extend(elements.closing.iter().map(|closing| interference(closing, &dimensions, &blocks)));
     idle_formula(program, &composite, &written, &elements.made)?;
     warnings.extend(unused(file, evaluated.as_ref(), &composite, &written, &used, &elements.made));
+    // Costs and [analysis] may change dimensions: the end of the band that stays, and the factors of the RSS.
     let dimensions = super::conventions::taken(file, holding(file, dimensions)?)?;
     let problem = Problem::new(dimensions, composite)
         .and_then(|problem| problem.asking(characteristics))
@@ -115,21 +120,22 @@ pub(super) fn build(
     let (losses, setups) = (losses(file, &problem)?, setups(file)?);
     let requirements = requirements(file, &problem)?;
     let problem = requiring(problem, &requirements)?;
+    // Files of the model follow those of the dimensions.
     let mut files = data.files();
     files.extend(file.model.iter().flat_map(|entry| files::of_model(entry.get_ref(), source.place.path())));
     Ok(Built { problem, options, costs, losses, setups, requirements, warnings, data: data.bytes(), files })
 }
 
-/// The share of pairs of a float that do not go together.
+/// Warning that a hole may be smaller than its pin, with the share of pairs for which it is. The share is None if it cannot be computed.
 fn interference(closing: &Closing, dimensions: &[Dimension], blocks: &[joint::Block]) -> Warning {
-    /// Places of the pin's distribution at which that of the hole is asked.
+    /// Quantiles of the pin at which the distribution function of the hole is averaged.
     const PLACES: u32 = 4096;
     let dimension = |name: &str| {
         let name = name.trim_matches('`');
         let alone = !blocks.iter().any(|block| block.dimensions.iter().any(|of| of == name));
         dimensions.iter().find(|dimension| dimension.name() == name && alone)
     };
-    // A size that does not vary stands as a number.
+    // A size that does not vary is a number.
     let fixed = |text: &str| match dimension(text) {
         Some(dimension) => dimension.distribution().is_none().then(|| dimension.nominal()),
         None => text.parse().ok(),
@@ -148,9 +154,9 @@ fn interference(closing: &Closing, dimensions: &[Dimension], blocks: &[joint::Bl
     Warning::Interference { element: element.clone(), share }
 }
 
-/// Dimensions that are spread evenly over full turns inside a sine or cosine.
+/// Warning of dimensions that are uniform over whole turns inside a sine or cosine.
 fn full_turns(dimensions: &[Dimension], composite: &Composite) -> Option<Warning> {
-    /// The difference to a whole number of turns that a band in degrees or a rounded pi may have.
+    /// Permitted difference to a whole number of turns: bands in degrees and a rounded pi are not exact.
     const OFF: f64 = 1e-4;
     let turns = |&(d, radians): &(usize, f64)| {
         let law = dimensions[d].distribution().filter(|law| law.name() == "uniform")?;
@@ -165,7 +171,7 @@ fn full_turns(dimensions: &[Dimension], composite: &Composite) -> Option<Warning
     (!found.is_empty()).then_some(Warning::PeriodicInput { dimensions: found })
 }
 
-/// The requirement of each characteristic.
+/// Requirements of the characteristics that have one, by name.
 fn requirements(file: &StudyFile, problem: &Problem) -> Result<Vec<(String, Requirement)>, Fault> {
     let mut requirements = Vec::new();
     for (characteristic, (name, entry)) in problem.characteristics().iter().zip(&file.characteristics.0) {
@@ -176,7 +182,7 @@ fn requirements(file: &StudyFile, problem: &Problem) -> Result<Vec<(String, Requ
     Ok(requirements)
 }
 
-/// The problem with what its characteristics must keep.
+/// Adds the requirements to the characteristics of the problem.
 fn requiring(problem: Problem, requirements: &[(String, Requirement)]) -> Result<Problem, Fault> {
     let of = |one: &Characteristic| {
         let required = requirements.iter().find(|(name, _)| name == one.name());
@@ -188,7 +194,7 @@ fn requiring(problem: Problem, requirements: &[(String, Requirement)]) -> Result
     problem.asking(characteristics).map_err(|error| fault(Box::new(error.into())))
 }
 
-/// Every name means one thing.
+/// Checks that every name is valid and means one thing only.
 fn names(file: &StudyFile, model: Option<&Model>) -> Result<(), Faults> {
     let mut faults = Faults::default();
     let with_formula = file.characteristics.0.iter().filter(|(_, entry)| entry.get_ref().formula.is_some());
@@ -238,7 +244,7 @@ fn dimensions(file: &StudyFile, model: Option<&Model>, data: &mut Data<'_>) -> R
         let of_model = |name: &str| input(name).map(|input| input.nominal);
         let of_line = dimension::dimensions(name, entry, &of_model, data).map_err(|found| {
             let below = if found.key.is_empty() { String::new() } else { format!(".{}", found.key) };
-            // A fault of the line as a whole is shown at the dimension's name.
+            // A fault without a place of its own within the line is shown at the dimension's name.
             let span = found.span.filter(|span| !span.is_empty()).unwrap_or_else(|| name.span());
             Fault {
                 span: Some(span),
@@ -281,7 +287,7 @@ fn formulas<'f>(file: &'f StudyFile, source: &Source) -> Result<Vec<Named<'f>>, 
     faults.none().map(|()| parsed)
 }
 
-/// Dimensions and constants are inputs of the model, or else a formula uses them.
+/// Checks that every dimension and constant is an input of the built-in model or is used by a formula.
 fn known_to_model(file: &StudyFile, model: Option<&Model>, used: &dyn Fn(&str) -> bool) -> Result<(), Faults> {
     let Some(model) = model else { return Ok(()) };
     let mut faults = Faults::default();
@@ -313,7 +319,7 @@ fn characteristics(
         let (text, key) = (name.get_ref(), format!("characteristics.{}", name.get_ref()));
         let entry = entry.get_ref();
         let mut unit = entry.unit.clone();
-        // The program itself says which outputs it offers.
+        // An external program states its outputs at its start, so they cannot be checked here.
         let unknowns = file.unknowns.names();
         if entry.formula.is_none() && !program && !unknowns.iter().any(|unknown| unknown.get_ref() == text) {
             let output = faults.take(offered(name, &key, model, &unknowns));
@@ -325,7 +331,7 @@ fn characteristics(
     faults.none().map(|()| (characteristics, outputs))
 }
 
-/// The model's output of this name, for a characteristic that has no formula and is not an unknown.
+/// Output of the built-in model with the name of a characteristic that has no formula and is not an unknown.
 fn offered<'m>(
     name: &Spanned<String>,
     key: &str,
@@ -437,7 +443,7 @@ fn compose(
     Composite::new(parts).map_err(|error| failed(error).into())
 }
 
-/// The fault of a formula, or that a name in it which reads as several needs backquotes.
+/// Replaces the fault of a formula by `FormulaFault::NeedsBackquotes` if the fault lies within a name that must stand in backquotes.
 fn of_several_words(file: &StudyFile, formula: &str, error: FormulaError) -> FormulaError {
     let dimensions = dimension::names(&file.dimensions);
     let others = [file.constants.names(), file.formulas.names(), file.unknowns.names()].concat();
@@ -452,7 +458,7 @@ fn of_several_words(file: &StudyFile, formula: &str, error: FormulaError) -> For
     }
 }
 
-/// The outputs that a program is asked for: characteristics without formula, and names in formulas that mean nothing else.
+/// Outputs that a program must answer: characteristics without formula, and names in formulas that nothing else defines.
 fn asked_of_program(
     inputs: &[Input],
     constants: &[(String, f64)],
@@ -474,7 +480,7 @@ fn asked_of_program(
     asked
 }
 
-/// Dimensions whose nominal value lies outside the limits that they give themselves.
+/// A dimension whose `same_as` names itself.
 fn outside_limits(file: &StudyFile) -> Option<Warning> {
     let outside = file.dimensions.0.iter().filter_map(|(name, entry)| {
         let (Some(nominal), Some(limits)) = (&entry.get_ref().nominal, &entry.get_ref().limits) else { return None };
@@ -485,7 +491,7 @@ fn outside_limits(file: &StudyFile) -> Option<Warning> {
     (!dimensions.is_empty()).then_some(Warning::NominalOutsideLimits { dimensions })
 }
 
-/// Beside a program a formula that nothing needs was meant to drive it.
+/// Refuses formulas that nothing needs in a study with a program. They were most likely meant to drive the program.
 fn idle_formula(program: bool, composite: &Composite, written: &Written<'_>, made: &[String]) -> Result<(), Faults> {
     if !program {
         return Ok(());
@@ -501,7 +507,7 @@ fn idle_formula(program: bool, composite: &Composite, written: &Written<'_>, mad
     faults.none()
 }
 
-/// Constants, formulas and unknowns that no characteristic of the file needs.
+/// Warnings of constants, formulas and unknowns that no characteristic needs.
 fn unused(
     file: &StudyFile,
     model: Option<&ModelOf>,
@@ -518,7 +524,7 @@ fn unused(
     let is_input = |name: &str| match model {
         None => false,
         Some(ModelOf::BuiltIn(model)) => model.inputs.iter().any(|input| input.name == name),
-        // A program says itself what it does not know.
+        // A program refuses unknown inputs itself.
         Some(ModelOf::Program(_) | ModelOf::Host(_)) => true,
     };
     let idle_constants = (file.constants.names().into_iter())
@@ -534,7 +540,6 @@ fn unused(
 }
 
 impl<T> Entries<T> {
-    /// The names, in order.
     pub(super) fn names(&self) -> Vec<&Spanned<String>> {
         self.0.iter().map(|(name, _)| name).collect()
     }

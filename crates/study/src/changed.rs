@@ -1,4 +1,4 @@
-//! A study with other keys of `[analysis]`.
+//! Changes of the options of a study.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -13,11 +13,11 @@ use super::{Study, de, options};
 use sensitol::method::Method;
 
 impl Study {
-    /// The study with the keys of this JSON object in place of its own keys of `[analysis]`, as the command line's options do it:
-    /// with another method, pairs, stencil, nodes and steps that the study chose for its own are left out.
+    /// The study with the keys of this JSON object in place of its own keys of `[analysis]`, like options of the command line. If the
+    /// method changes, the pairs, stencil, nodes and steps of the study are dropped, since it chose them for its own method.
     ///
     /// # Errors
-    /// An unknown key, or a value that is impossible; the place is the key alone.
+    /// Fails for an unknown key or an impossible value. The error has a key but no place.
     ///
     /// ```
     /// use sensitol::Method;
@@ -35,7 +35,7 @@ impl Study {
             let keys = Tree::of_json(keys)?;
             let mut entry: AnalysisEntry = de::read(&keys).map_err(below_analysis)?;
             super::conventions::only_in_study(&entry)?;
-            // Written out: lines of geometric elements are not yet plain dimensions in the text itself.
+            // Read from the expanded text: the original text may hold geometric elements that are not plain dimensions.
             let own = Tree::of_toml(&self.expanded).ok().map(|tree| de::read::<StudyFile>(&tree)).transpose()?;
             if let Some(own) = own {
                 entry = merged(entry, own.analysis);
@@ -43,33 +43,33 @@ impl Study {
             Ok((options::options(&entry, &self.problem)?, entry.seed.map(Spanned::into_inner)))
         };
         let (options, seed) = read().map_err(|mut faults| {
-            // Places in the keys given here are no places of the study.
+            // Places in the given keys are not places in the study.
             faults.0.iter_mut().for_each(|fault| fault.span = None);
             StudyError::of(faults.0, &self.name, &Arc::from("")).expect("keys that fail have a fault")
         })?;
         Ok(Self { options, seed, ..self.clone() })
     }
 
-    /// The text that it was read from.
+    /// Text that the study was read from.
     #[doc(hidden)]
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// The folder from which its relative paths start.
+    /// Folder from which relative paths start.
     #[doc(hidden)]
     pub fn folder(&self) -> &Path {
         self.place.path()
     }
 
-    /// Its text as JSON, whatever it was written in.
+    /// The text as JSON, whatever its format.
     #[doc(hidden)]
     pub fn as_json(&self) -> String {
         self.tree().as_ref().map(as_json).unwrap_or_default()
     }
 }
 
-/// Keys in the order of the study, which a map of `serde_json` does not keep.
+/// Tree as JSON. Keys keep the order of the study, which a map of `serde_json` does not.
 fn as_json(tree: &Tree) -> String {
     let text = |text: &str| Json::from(text).to_string();
     let all = |parts: Vec<String>| parts.join(", ");
@@ -87,7 +87,7 @@ fn as_json(tree: &Tree) -> String {
     }
 }
 
-/// The faults with the section's name before their keys.
+/// Adds the name of the section to the keys of faults.
 fn below_analysis(mut faults: Faults) -> Faults {
     for fault in &mut faults.0 {
         let below = if fault.key.is_empty() { "" } else { "." };
@@ -96,7 +96,7 @@ fn below_analysis(mut faults: Faults) -> Faults {
     faults
 }
 
-/// The keys of `given`, and where it has none those of `own`, as far as they go with its method.
+/// Options of `given`, completed by those of `own` that still apply with its method.
 fn merged(given: AnalysisEntry, own: AnalysisEntry) -> AnalysisEntry {
     let method = given.method.as_ref().and_then(|method| method.get_ref().parse::<Method>().ok());
     let other = |kept: &[Method]| method.is_some_and(|method| !kept.contains(&method));

@@ -1,4 +1,4 @@
-//! The inflations of the RSS, as `[analysis]` and dimensions have them.
+//! Reads the factors that inflate the RSS, of `[analysis]` and of dimensions.
 
 use std::ops::Range;
 
@@ -8,7 +8,7 @@ use super::spanned::Spanned;
 use sensitol_numeric::dimension::{Convention, Dimension, RssFactor};
 use sensitol_numeric::names::nearest;
 
-/// The word for a factor that follows from worst case and RSS.
+/// Word for the factor that follows from worst case and RSS.
 const MODIFIED: &str = "modified";
 
 fn above_zero(value: f64, span: Range<usize>, key: &str) -> Result<f64, Fault> {
@@ -16,12 +16,12 @@ fn above_zero(value: f64, span: Range<usize>, key: &str) -> Result<f64, Fault> {
     if value > 0.0 { Ok(value) } else { Err(out()) }
 }
 
-/// The factor of a dimension's own part.
+/// RSS factor of one dimension.
 pub(super) fn factor(given: &Spanned<f64>, key: &str) -> Result<RssFactor, Fault> {
     above_zero(*given.get_ref(), given.span(), key).map(RssFactor::Factor)
 }
 
-/// The part of a half band by which a mean may be off.
+/// Fraction of the half-width by which a mean may be off.
 pub(super) fn mean_shift(given: &Spanned<f64>, key: &str) -> Result<f64, Fault> {
     let value = *given.get_ref();
     let out = || fault(given.span(), key, StudyFault::OutOfRange { value, range: "from 0 to 1" });
@@ -42,7 +42,7 @@ fn of_all(entry: &Spanned<FactorEntry>) -> Result<RssFactor, Fault> {
     }
 }
 
-/// Dimensions that say nothing themselves take what `[analysis]` says.
+/// Dimensions with the factors of `[analysis]`, unless they have their own.
 pub(super) fn taken(file: &StudyFile, dimensions: Vec<Dimension>) -> Result<Vec<Dimension>, Fault> {
     let entry = &file.analysis;
     let rss_factor = entry.rss_factor.as_ref().map(of_all).transpose()?;
@@ -55,7 +55,7 @@ pub(super) fn taken(file: &StudyFile, dimensions: Vec<Dimension>) -> Result<Vec<
     Ok(dimensions.into_iter().map(with).collect())
 }
 
-/// They belong to the problem, which other options do not change.
+/// Refuses factors in later changes of options: they belong to the problem, which other options do not change.
 pub(super) fn only_in_study(entry: &AnalysisEntry) -> Result<(), Fault> {
     let given: [(&'static str, Option<Range<usize>>); 2] = [
         ("rss_factor", entry.rss_factor.as_ref().map(Spanned::span)),

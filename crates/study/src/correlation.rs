@@ -1,4 +1,4 @@
-//! From `[[correlation]]` to pairs of dimensions that vary together.
+//! Reads `[[correlation]]`: pairs of dimensions that vary together.
 
 use super::error::{Fault, StudyFault, fault};
 use super::joint::Block;
@@ -8,14 +8,14 @@ use sensitol::problem::Problem;
 use sensitol::warning::Warning;
 use sensitol_numeric::correlation::{self, CorrelationError, Pair, Refusal};
 
-/// Rounds in which correlations of rows are brought to what their distributions allow.
+/// Greatest number of rounds that move correlations of rows into the range that their distributions permit.
 const ROUNDS: usize = 8;
-/// A correlation that is off by less is the same in print.
+/// Difference of correlations below which no warning is given, since it does not show in print.
 const TRIFLE: f64 = 0.001;
-/// Correlations at an end of the possible range are moved inside by this factor.
+/// Factor that moves a correlation at the end of its range to the inside.
 const INSIDE: f64 = 1.0 - 1e-9;
 
-/// The problem with its dimensions correlated as its pairs say, as the rows of measured files are, and within zones.
+/// Problem with the correlations of the study, those of the rows of measured files, and the zones.
 pub(super) fn correlated(
     problem: Problem,
     entries: &[Spanned<CorrelationEntry>],
@@ -42,7 +42,7 @@ pub(super) fn correlated(
     let joint: Vec<correlation::Block> = joint.iter().filter_map(law).collect();
     let at = |error: CorrelationError| {
         let Some(index) = error.pair.filter(|&index| index < entries.len()) else {
-            // All pairs together: the first of them has to stand for the whole.
+            // A fault of all pairs together is shown at the first pair.
             let span = entries.first().map(Spanned::span);
             return Fault { span, key: "correlation".into(), fault: Box::new(StudyFault::Correlation(error.refusal)) };
         };
@@ -67,7 +67,7 @@ pub(super) fn correlated(
     Ok((problem, moved(&pairs[entries.len()..], &copulas)))
 }
 
-/// The correlation of rows that is farthest off what is taken, where that is more than a trifle.
+/// Warning of the correlation of rows that had to be moved farthest. Returns None if it moved less than [`TRIFLE`].
 fn moved(taken: &[Pair], blocks: &[&Block]) -> Option<Warning> {
     let rows = blocks.iter().flat_map(|block| &block.pairs);
     let off = |(taken, rows): &(&Pair, &Pair)| (taken.value - rows.value).abs();
@@ -76,7 +76,8 @@ fn moved(taken: &[Pair], blocks: &[&Block]) -> Option<Warning> {
     (off(&(taken, rows)) > TRIFLE).then(|| Warning::RowsByCopula { dimensions: rows.between.clone(), correlation })
 }
 
-/// Brings correlations of rows to the nearest that distributions by a copula have; false where that is not what is wrong.
+/// Moves correlations of rows to the nearest ones that a copula of the distributions can have. Returns false if the error has another
+/// reason.
 fn nearer(pairs: &mut [Pair], written: usize, error: &CorrelationError) -> bool {
     match (&error.refusal, error.pair) {
         (Refusal::Unreachable { range, .. }, Some(index)) if index >= written => {
@@ -99,7 +100,7 @@ fn nearer(pairs: &mut [Pair], written: usize, error: &CorrelationError) -> bool 
     }
 }
 
-/// The fault of a pair of dimensions whose rows give their correlation already.
+/// Fault of a pair whose rows or zone already determine how it varies. Returns None if the pair may have a correlation.
 fn beside_rows(entry: &Spanned<CorrelationEntry>, blocks: &[Block]) -> Option<StudyFault> {
     let (a, b) = entry.get_ref().between.get_ref();
     let block = blocks.iter().find(|block| block.dimensions.iter().any(|name| name == a || name == b))?;

@@ -1,4 +1,4 @@
-//! `[costs]` and `require`: what tolerances cost, and what characteristics must keep.
+//! Reads `[costs]` and `require`: the cost of tolerances and the requirements of characteristics.
 
 use std::ops::Range;
 
@@ -19,10 +19,10 @@ use sensitol_numeric::fits::{HeldEnd, held_end};
 use sensitol_numeric::names::nearest;
 use sensitol_numeric::requirement::Requirement;
 
-/// The present half band by this, and times this, where no bound is given.
+/// Default bounds of the half-width: the present one divided by this factor, and multiplied by it.
 const RANGE: f64 = 10.0;
 
-/// The requirement of each characteristic: what it says itself, or its target yield.
+/// Requirement of a characteristic: `target_cpk`, `require` or `target_yield`. Returns None if it has none of them.
 pub(super) fn requirement(
     characteristic: &Characteristic,
     entry: &CharacteristicEntry,
@@ -76,7 +76,7 @@ pub(super) fn requirement(
     requirement.checked(characteristic.limits().exist()).map(Some).map_err(|error| at(span, error.into()))
 }
 
-/// A cost and the dimensions that share it.
+/// Dimensions that share a tolerance, with their cost.
 struct Group<'f> {
     name: &'f Spanned<String>,
     members: Vec<usize>,
@@ -84,13 +84,13 @@ struct Group<'f> {
     offers: Offers,
 }
 
-/// The ways of making a part, and the free tolerance of which they are steps or grades.
+/// Offers for a tolerance. `rounded` is the free tolerance that the offers are steps or grades of, if they are.
 struct Offers {
     all: Vec<Offer>,
     rounded: Option<Offer>,
 }
 
-/// The groups of dimensions that share a tolerance, each with its cost, in the order of the file.
+/// Groups of dimensions that share a tolerance, each with its cost, in the order of the file.
 pub(super) fn costs(file: &StudyFile, source: &Source, problem: &Problem) -> Result<Vec<Priced>, Fault> {
     let names: Vec<&str> = file.costs.0.iter().map(|(name, _)| name.get_ref().as_str()).collect();
     let mut groups: Vec<Group<'_>> = Vec::new();
@@ -105,6 +105,7 @@ pub(super) fn costs(file: &StudyFile, source: &Source, problem: &Problem) -> Res
         let offers = offers(entry, source, name, &key, &problem.dimensions()[members[0]])?;
         groups.push(Group { name, members, parts, offers });
     }
+    // `same_as` may name a dimension further down, so it is resolved when all groups exist.
     for (name, entry) in &file.costs.0 {
         let Some(other) = &entry.get_ref().same_as else { continue };
         let key = format!("costs.{}", name.get_ref());
@@ -128,6 +129,7 @@ pub(super) fn costs(file: &StudyFile, source: &Source, problem: &Problem) -> Res
         group.members.append(&mut members);
         group.parts += parts;
     }
+    // Process options are distributed like their members, which are complete only now.
     let priced = |Group { name, members, parts, offers }: Group<'_>| {
         let at = |error| fault(name.span(), format!("costs.{}", name.get_ref()), StudyFault::Cost(error));
         let Offers { mut all, rounded } = offers;
@@ -141,7 +143,7 @@ pub(super) fn costs(file: &StudyFile, source: &Source, problem: &Problem) -> Res
     groups.into_iter().map(priced).collect()
 }
 
-/// Model, formula, table, `same_as` and processes exclude each other.
+/// Checks that a cost has exactly one form (model, formula, table, `same_as`, processes) and only the numbers of that form.
 fn one_form(entry: &CostEntry, name: &Spanned<String>, key: &str) -> Result<(), Fault> {
     let forms: [(&'static str, Option<Range<usize>>); 5] = [
         ("model", entry.model.as_ref().map(Spanned::span)),
@@ -196,7 +198,7 @@ fn one_form(entry: &CostEntry, name: &Spanned<String>, key: &str) -> Result<(), 
     Ok(())
 }
 
-/// The dimension of this name, or both coordinates of the position, which are one part.
+/// Indices of the dimension of this name, with the number of parts. Both coordinates of a position count as one part.
 fn members(file: &StudyFile, problem: &Problem, name: &Spanned<String>, key: &str) -> Result<(Vec<usize>, f64), Fault> {
     let text = name.get_ref();
     let dimensions = problem.dimensions();
@@ -223,7 +225,7 @@ fn members(file: &StudyFile, problem: &Problem, name: &Spanned<String>, key: &st
     Ok((vec![d], 1.0))
 }
 
-/// Where the numbers of a cost stand.
+/// Numbers of a cost entry or of a process, with their places.
 struct Numbers<'e> {
     model: &'e Option<Spanned<String>>,
     a: &'e Option<Spanned<f64>>,
@@ -243,6 +245,7 @@ fn offers(
 ) -> Result<Offers, Fault> {
     let CostEntry { model, a, b, k, c, min, max, processes, .. } = entry;
     let Some(processes) = processes else {
+        // Without processes: one curve, which steps or grades turn into a list.
         let numbers = Numbers { model, a, b, k, c, min, max };
         let present = dimension.half_band();
         let offer = match written(entry, source, key)? {
@@ -261,7 +264,7 @@ fn offers(
             }
             _ => return Ok(Offers { all: vec![offer], rounded: None }),
         };
-        // Steps lie between the bounds; grades have bounds of their own.
+        // Steps use the bounds of the offer. Grades have bounds of their own.
         let rounded = match entry.step {
             Some(_) => Some(offer),
             None => {
@@ -276,6 +279,7 @@ fn offers(
         return Err(fault(processes.span(), format!("{key}.processes"), CostError::NoProcess));
     }
     let mut offers: Vec<Offer> = Vec::new();
+    // Each process is one tolerance at one cost, or a curve between its own bounds.
     for (index, process) in processes.get_ref().iter().enumerate() {
         let (span, process) = (process.span(), process.get_ref());
         let key = format!("{key}.processes[{}]", index + 1);
@@ -321,12 +325,12 @@ fn offers(
             None => offer,
         });
     }
-    // The loosest first, so that neighbours in the list are neighbours in cost.
+    // Loosest first, so that neighbours in the list have similar costs.
     offers.sort_by(|x, y| (y.max, y.min).partial_cmp(&(x.max, x.min)).unwrap_or(std::cmp::Ordering::Equal));
     Ok(Offers { all: offers, rounded: None })
 }
 
-/// The line of a dimension that says of how its parts lie what a process does, and nothing else.
+/// Line of a dimension with the distribution keys of a process, and no others.
 fn spread_of(process: &ProcessEntry) -> DimensionEntry {
     DimensionEntry {
         distribution: process.distribution.clone(),
@@ -340,7 +344,8 @@ fn spread_of(process: &ProcessEntry) -> DimensionEntry {
     }
 }
 
-/// Gives offers the dimensions as their processes make them, where these say how their parts lie: all of a list or none.
+/// Adds to each offer the dimensions as its process makes them, if the processes state a distribution. In a list all processes state one or
+/// none does.
 fn made(
     offers: &mut [Offer],
     processes: &[Spanned<ProcessEntry>],
@@ -390,7 +395,7 @@ fn made(
     Ok(())
 }
 
-/// The cost as a formula or a table.
+/// Curve of a cost that is given as a formula or a table. Returns None if it is a model.
 fn written(entry: &CostEntry, source: &Source, key: &str) -> Result<Option<Curve>, Fault> {
     if let Some(formula) = &entry.formula {
         let at = |error| in_formula(source, formula.span(), format!("{key}.formula"), error);
@@ -402,15 +407,15 @@ fn written(entry: &CostEntry, source: &Source, key: &str) -> Result<Option<Curve
     entry.table.as_ref().map(of_table).transpose()
 }
 
-/// The most steps between the least and the greatest half band: more of them are as good as a free tolerance.
+/// Greatest number of steps between the bounds: a finer list is as good as a free tolerance.
 const MOST_STEPS: f64 = 1000.0;
 
-/// The whole multiples of a step within an offer, the loosest first.
+/// Whole multiples of a step within an offer, loosest first.
 fn stepped(offer: &Offer, step: f64) -> Result<Vec<Offer>, StudyFault> {
     if !(step.is_finite() && step > 0.0) {
         return Err(CostError::Tolerance { name: "step", value: step }.into());
     }
-    // A bound that is a multiple itself is one, whatever its last digit.
+    // The allowance of 1e-9 keeps a bound that is itself a multiple up to rounding.
     let (first, last) = ((offer.min / step - 1e-9).ceil().max(1.0), (offer.max / step + 1e-9).floor());
     if first > last {
         return Err(StudyFault::NoStep { step, min: offer.min, max: offer.max });
@@ -425,7 +430,7 @@ fn stepped(offer: &Offer, step: f64) -> Result<Vec<Offer>, StudyFault> {
     (0..=(last - first) as usize).map(multiple).collect::<Result<_, CostError>>().map_err(StudyFault::from)
 }
 
-/// The dimensions with the ends of their bands that stay: as their costs say, and otherwise as their fits have them.
+/// Dimensions with the end of the band that stays when the tolerance changes: `fixed_side` of the cost, and otherwise that of the fit.
 pub(super) fn holding(file: &StudyFile, mut dimensions: Vec<Dimension>) -> Result<Vec<Dimension>, Fault> {
     for dimension in &mut dimensions {
         let own = file.dimensions.0.iter().find(|(name, _)| name.get_ref() == dimension.name());
@@ -461,7 +466,7 @@ pub(super) fn holding(file: &StudyFile, mut dimensions: Vec<Dimension>) -> Resul
 }
 
 impl Numbers<'_> {
-    /// A curve over a range of half bands; `present` is the half band that bounds default to, where they may.
+    /// Curve of a cost model over a range of half-widths. Missing bounds follow from the half-width `present`, if that is given.
     fn offer(&self, key: &str, line: &Range<usize>, present: Option<f64>) -> Result<Offer, Fault> {
         let model = self.model.as_ref().expect("a cost with a model");
         let Some(kind) = CurveKind::NAMED.iter().find(|(name, _)| name == model.get_ref()).map(|(_, kind)| *kind)
@@ -505,7 +510,7 @@ impl Numbers<'_> {
         self.between(curve, key, line, present)
     }
 
-    /// The same of a formula or a table, whose ends are its bounds unless others are given.
+    /// Curve of a formula or a table with its bounds. The ends of a table are its default bounds.
     fn offer_of(&self, curve: Curve, key: &str, line: &Range<usize>, present: f64) -> Result<Offer, Fault> {
         let Some([least, greatest]) = curve.range() else { return self.between(curve, key, line, Some(present)) };
         let bound = |given: &Option<Spanned<f64>>, end: f64| given.as_ref().map_or(end, |given| *given.get_ref());
@@ -513,12 +518,12 @@ impl Numbers<'_> {
             .map_err(|error| self.at_number(error, key, line))
     }
 
-    /// A curve between the bounds that are given, or default to the present half band, where they may.
+    /// Curve between the given bounds. Missing ones follow from the half-width `present`, if that is given.
     fn between(&self, curve: Curve, key: &str, line: &Range<usize>, present: Option<f64>) -> Result<Offer, Fault> {
         let bound = |given: &Option<Spanned<f64>>, factor: f64| {
             given.as_ref().map_or(present.unwrap_or(f64::NAN) * factor, |given| *given.get_ref())
         };
-        // A dimension without tolerance is refused by whoever allocates; its line is not a fault of the bounds.
+        // Allocation refuses a dimension without tolerance, so its bounds are not reported as faults here.
         let (mut min, mut max) = (bound(self.min, 1.0 / RANGE), bound(self.max, RANGE));
         if present == Some(0.0) {
             (min, max) = (1.0, 1.0);
@@ -530,7 +535,7 @@ impl Numbers<'_> {
         Offer::between(curve, min, max).map_err(|error| self.at_number(error, key, line))
     }
 
-    /// A fault at the number that it speaks of.
+    /// Fault at the number that the error names.
     fn at_number(&self, error: CostError, key: &str, line: &Range<usize>) -> Fault {
         let (name, value) = match error {
             CostError::Negative { name, .. } | CostError::NotPositive { name, .. } => (

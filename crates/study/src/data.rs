@@ -1,4 +1,4 @@
-//! Tables of measured values: CSV files beside a study.
+//! Measured values from CSV files beside a study.
 
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
@@ -9,19 +9,19 @@ use crate::table::{DELIMITERS, NumberFault, Style, delimiter, records};
 use sensitol::warning::Warning;
 use sensitol_numeric::names::nearest;
 
-/// The entries for values that were not measured, in any case of letters.
+/// Cells that stand for a missing value, compared in lower case.
 const MISSING: [&str; 5] = ["", "-", "na", "n/a", "nan"];
 
-/// A file of measured values that cannot be used: file, line, column, what is wrong, and what to write instead.
+/// A file of measured values that cannot be used: file, line, column, fault, and the text to write instead.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{}{}{}: {problem}", self.file, self.line.map(|line| format!(", line {line}")).unwrap_or_default(), self.column())]
 #[non_exhaustive]
 pub struct DataFault {
-    /// The file as the study names it.
+    /// Name of the file in the study.
     pub file: String,
-    /// The line, from 1; None where the fault has none.
+    /// Line in the file, from 1; None if the fault has none.
     pub line: Option<u64>,
-    /// The column's name; None where the fault has none.
+    /// Name of the column; None if the fault has none.
     pub column: Option<String>,
     /// The fault.
     pub problem: Box<DataProblem>,
@@ -34,10 +34,10 @@ pub enum DataProblem {
     /// The file cannot be read.
     #[error("the file cannot be read: {reason}")]
     Unreadable {
-        /// The operating system's words.
+        /// Message of the operating system.
         reason: String,
     },
-    /// The study was given as text with its files, and this one is not among them.
+    /// The study was given as text in memory, without this file.
     #[error("no file of this name was given with the text of the study")]
     NotGiven {
         /// The most similar name.
@@ -45,96 +45,96 @@ pub enum DataProblem {
         /// The names that were given.
         known: Vec<String>,
     },
-    /// The file is not text, or in another encoding.
+    /// The file is not text in UTF-8.
     #[error("the file is not UTF-8 text")]
     NotUtf8,
-    /// The first line holds values.
+    /// The first line holds numbers instead of column names.
     #[error("the first line names the columns, but `{cell}` is a number")]
     NoHeader {
-        /// The first number in it.
+        /// First number in it.
         cell: String,
     },
-    /// There is no header.
+    /// The file has no header line.
     #[error("the file is empty")]
     Empty,
-    /// A line with more or fewer cells than the header.
+    /// A line with another number of cells than the header.
     #[error("columns: {expected} in the header, {found} in this line")]
     Ragged {
-        /// Cells of the line.
+        /// Number of cells in the line.
         found: usize,
-        /// Cells of the header.
+        /// Number of cells in the header.
         expected: usize,
     },
     /// A cell that is neither a number nor empty.
     #[error("`{text}` is not a number")]
     NoNumber {
-        /// The cell.
+        /// Text of the cell.
         text: String,
-        /// Whether a decimal comma is what is wrong with it.
+        /// True if a decimal comma is the reason.
         comma: bool,
     },
-    /// A number that is infinite, or beyond a double.
+    /// A number that is infinite or beyond the range of a double.
     #[error("`{text}` is not finite")]
     NotFinite {
-        /// The cell.
+        /// Text of the cell.
         text: String,
     },
-    /// Decimal commas and decimal points in one column.
+    /// Decimal commas and decimal points in the same column.
     #[error("`{text}` has a decimal {}, but line {other} a {}", mark(*comma), mark(!*comma))]
     TwoMarks {
-        /// The cell.
+        /// Text of the cell.
         text: String,
-        /// Whether it has the comma.
+        /// True if this cell has the comma.
         comma: bool,
-        /// The first line with the other mark.
+        /// First line with the other mark.
         other: u64,
     },
     /// There is no such column.
     #[error("there is no column `{name}`")]
     UnknownColumn {
-        /// As written.
+        /// Name of the column in the study.
         name: String,
-        /// The most similar one.
+        /// Most similar column.
         nearest: Option<String>,
-        /// The columns that there are.
+        /// Columns of the file.
         known: Vec<String>,
     },
-    /// Two columns of the name.
+    /// Two columns with the same name.
     #[error("the column `{name}` stands twice")]
     ColumnTwice {
         /// The name.
         name: String,
     },
-    /// Several columns, of which not just one holds numbers, and no name.
+    /// The study names no column of a file with several, and not exactly one of them holds numbers.
     #[error("there are several columns, and the study names none")]
     WhichColumn {
-        /// The columns that there are.
+        /// Columns of the file.
         known: Vec<String>,
     },
-    /// Too few values to tell a law from.
+    /// Too few values for a distribution.
     #[error("there are {found} values{}, and at least {least} are needed", besides(*.missing))]
     TooFew {
-        /// Values in the column.
+        /// Number of values in the column.
         found: usize,
-        /// Cells without one.
+        /// Number of cells without a value.
         missing: usize,
-        /// How many there must be.
+        /// Least permitted number of values.
         least: usize,
     },
-    /// A number of a part that stands twice.
+    /// A part number that occurs twice.
     #[error("`{text}` stands in line {other} already: it joins rows of several files")]
     SerialTwice {
-        /// The number.
+        /// The part number.
         text: String,
-        /// The first line with it.
+        /// Line in which it occurs first.
         other: u64,
     },
-    /// All values are the same.
+    /// All values are equal.
     #[error("all {count} values are {value}: nothing varies")]
     Constant {
-        /// How many there are.
+        /// Number of values.
         count: usize,
-        /// Their value.
+        /// The value.
         value: f64,
     },
 }
@@ -154,7 +154,7 @@ impl DataFault {
 }
 
 impl DataProblem {
-    /// The text to write instead, where that can be said.
+    /// Text to write instead. Returns None if no general advice exists.
     pub fn help(&self) -> Option<String> {
         let columns = |known: &[String]| {
             format!("its columns are {}", known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", "))
@@ -192,13 +192,13 @@ impl DataProblem {
     }
 }
 
-/// The files that the dimensions of a study read beside it, and their oddities.
+/// Files that the dimensions of a study read, with their warnings.
 pub(super) struct Data<'s> {
     place: &'s Place,
-    /// Every file once, in the order of the dimensions.
+    /// Files without duplicates, in the order of the dimensions.
     files: Vec<(NamedFile, Arc<[u8]>)>,
     pub(super) warnings: Vec<Warning>,
-    /// Of a dimension whose rows belong together with others: the lines that all have.
+    /// Lines to keep of a dimension whose rows belong together with others: those in which all of them have a value.
     kept: HashMap<String, HashSet<u64>>,
 }
 
@@ -206,17 +206,17 @@ pub(super) struct Data<'s> {
 pub(super) struct Column {
     pub(super) name: String,
     pub(super) values: Vec<f64>,
-    /// The line of each value.
+    /// Line of each value.
     pub(super) lines: Vec<u64>,
-    /// The lines without one.
+    /// Lines without a value.
     pub(super) missing: Vec<u64>,
 }
 
-/// A table with a name in the first column of every row.
+/// A table whose first column names the rows.
 pub(super) struct Cells {
-    /// Of the other columns.
+    /// Names of the columns after the first.
     pub(super) names: Vec<String>,
-    /// The name of a row, and its numbers; None where a cell is empty.
+    /// Rows with their name and their numbers; None for an empty cell.
     pub(super) rows: Vec<(String, Vec<Option<f64>>)>,
 }
 
@@ -225,17 +225,17 @@ impl<'s> Data<'s> {
         Self { place, files: Vec::new(), warnings: Vec::new(), kept: HashMap::new() }
     }
 
-    /// The bytes of every file that was read.
+    /// Contents of all files that were read.
     pub(super) fn bytes(&self) -> Vec<Arc<[u8]>> {
         self.files.iter().map(|(_, bytes)| Arc::clone(bytes)).collect()
     }
 
-    /// Every file that was read.
+    /// Names and paths of all files that were read.
     pub(super) fn files(&self) -> Vec<NamedFile> {
         self.files.iter().map(|(file, _)| file.clone()).collect()
     }
 
-    /// A column of a file; without a name the only one, or the only one that holds nothing but numbers.
+    /// A column of a file. Without a name it is the only column, or the only one with nothing but numbers.
     pub(super) fn column(&mut self, file: &str, name: Option<&str>) -> Result<Column, DataFault> {
         let table = self.table(file)?;
         let fault = |line, problem| DataFault { file: file.to_owned(), line, column: None, problem: Box::new(problem) };
@@ -246,23 +246,23 @@ impl<'s> Data<'s> {
         })
     }
 
-    /// Keeps these lines of a dimension's column only.
+    /// Restricts the column of a dimension to these lines.
     pub(super) fn keep(&mut self, dimension: &str, lines: HashSet<u64>) {
         self.kept.insert(dimension.to_owned(), lines);
     }
 
-    /// A column of a file for this dimension, without the rows that lack a value of another dimension of the same parts.
+    /// Column of a dimension, without the rows in which another dimension of the same parts has no value.
     pub(super) fn column_of(&mut self, dimension: &str, file: &str, name: Option<&str>) -> Result<Column, DataFault> {
         let mut column = self.column(file, name)?;
         if let Some(lines) = self.kept.get(dimension) {
             let all: Vec<(f64, u64)> = column.values.iter().copied().zip(column.lines.iter().copied()).collect();
-            // The dimension that lacks the value is the one that is warned of.
+            // The warning of a missing value belongs to the dimension that lacks it, so these rows are left out silently.
             (column.values, column.lines) = all.into_iter().filter(|(_, line)| lines.contains(line)).unzip();
         }
         Ok(column)
     }
 
-    /// The names of a file's columns, and the lines with the text of one of them; None where there is no such column.
+    /// Column names of a file, and the text of one column with its lines. The column is None if the file has none of this name.
     #[allow(clippy::type_complexity)]
     pub(super) fn texts(
         &mut self,
@@ -276,7 +276,7 @@ impl<'s> Data<'s> {
         Ok((table.names, texts))
     }
 
-    /// All cells of a file whose first column is a name.
+    /// Cells of a file whose first column names the rows.
     pub(super) fn cells(&mut self, file: &str) -> Result<Cells, DataFault> {
         let table = self.table(file)?;
         let mut rows: Vec<(String, Vec<Option<f64>>)> =
@@ -306,7 +306,6 @@ impl<'s> Data<'s> {
         })
     }
 
-    /// The text of a file.
     pub(super) fn text(&mut self, file: &str) -> Result<String, DataFault> {
         let bytes = self.read(file)?;
         let text = std::str::from_utf8(&bytes).map_err(|error| {
@@ -338,16 +337,16 @@ impl<'s> Data<'s> {
     }
 }
 
-/// A table with a header, every row with its line.
+/// A table with a header. Every row has the number of its line.
 struct Table {
     names: Vec<String>,
     rows: Vec<(u64, csv::StringRecord)>,
-    /// Whether a comma in a cell can only be a decimal one.
+    /// True if commas do not separate columns, so that one in a cell can only be a decimal comma.
     decimal_commas: bool,
 }
 
 impl Table {
-    /// Blank lines count as nothing; there are no comments.
+    /// Reads CSV text. Blank lines are skipped. There is no syntax for comments.
     fn parse(text: &str) -> Result<Self, (Option<u64>, DataProblem)> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let delimiter = delimiter(text, DELIMITERS);
@@ -389,7 +388,7 @@ impl Table {
         }
     }
 
-    /// The numbers of a column, or the first line with something else.
+    /// Numbers of a column, or the first line with a cell that is not a number.
     fn numbers(&self, index: usize) -> Result<Column, (u64, DataProblem)> {
         let name = self.names[index].clone();
         let mut column = Column { name, values: Vec::new(), lines: Vec::new(), missing: Vec::new() };

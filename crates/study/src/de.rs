@@ -1,4 +1,4 @@
-//! The tree as source of serde types, so that every error knows its place and its key.
+//! Deserialises serde types from the tree, so that every error has its place and its key.
 
 use std::fmt::Display;
 use std::ops::Range;
@@ -11,7 +11,7 @@ use super::error::{Fault, Faults, StudyFault};
 use super::tree::{Key, Tree, Value};
 use sensitol_numeric::names::nearest;
 
-/// A fault on its way up: the place is that of the innermost value it passed, the key grows outwards.
+/// A fault on its way up through the tree. Its place is that of the innermost value with one. Each level adds its key in front of `path`.
 #[derive(Debug)]
 pub(super) struct Error {
     span: Option<Range<usize>>,
@@ -91,7 +91,8 @@ impl de::Error for Error {
     }
 }
 
-/// Reads the tree; what is at fault is left out and the rest read again, so that all faults are told at once.
+/// Reads the tree into a type. After a fault the value at fault is removed and the rest is read again, so that all faults are reported
+/// together.
 pub(super) fn read<T: serde::de::DeserializeOwned>(tree: &Tree) -> Result<T, Faults> {
     let mut faults = Faults::default();
     let mut left = match T::deserialize(tree) {
@@ -110,7 +111,7 @@ pub(super) fn read<T: serde::de::DeserializeOwned>(tree: &Tree) -> Result<T, Fau
         let Err(error) = T::deserialize(&left) else { break };
         let on = left.remove(&error.path);
         let fault = error.into_fault();
-        // A key that is missing in an entry from which a wrong one was removed may be that one.
+        // A missing key is not reported if a wrong key was removed from the same entry: the wrong one is probably a misspelling of it.
         let entry = |key: &str| key.split('.').take(2).map(str::to_owned).collect::<Vec<_>>();
         let follows = matches!(*fault.fault, StudyFault::MissingKey { .. })
             && faults.0.iter().any(|earlier| entry(&earlier.key) == entry(&fault.key));
@@ -124,7 +125,7 @@ pub(super) fn read<T: serde::de::DeserializeOwned>(tree: &Tree) -> Result<T, Fau
     Err(faults)
 }
 
-/// The type that Rust expects, in the words of who writes a study.
+/// Text for a type that serde expects, in terms of a study file.
 fn words(expected: &dyn de::Expected) -> String {
     let text = expected.to_string();
     match text.as_str() {
@@ -141,7 +142,7 @@ fn words(expected: &dyn de::Expected) -> String {
 }
 
 impl Tree {
-    /// The fault of a value that is not `expected`.
+    /// Error for a value that is not of the kind `expected`.
     #[cold]
     fn mismatch(&self, expected: &dyn de::Expected) -> Error {
         let found = match &self.value {
@@ -156,7 +157,7 @@ impl Tree {
         <Error as de::Error>::invalid_type(found, expected).at(&self.span)
     }
 
-    /// All `values` of this list.
+    /// Passes all items of this list to the visitor. An item that is left over is a fault.
     fn items<'de, V: Visitor<'de>>(&'de self, values: &'de [Tree], visitor: V) -> Result<V::Value, Error> {
         let mut items = Items { items: values.iter(), index: 0 };
         let result = visitor.visit_seq(&mut items).and_then(|value| match items.items.len() {
@@ -191,7 +192,7 @@ impl<'de> Deserializer<'de> for &'de Tree {
         result.map_err(|error| error.at(&self.span))
     }
 
-    // For types that have values of one kind alone: their visitors then have no code for the other kinds.
+    // Deserialise types with values of one kind only, so that their visitors need no code for the other kinds.
 
     fn deserialize_bool<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
         match &self.value {
@@ -273,7 +274,7 @@ impl<'de> Deserializer<'de> for &'de Tree {
         if is_spanned(name) {
             return visitor.visit_map(SpannedDeserializer::new(self, self.span.clone()));
         }
-        // Keys have names: a list of values in the order of a structure's fields is not a table.
+        // A list of values in the order of a structure's fields is refused: studies name their keys.
         self.deserialize_map(visitor)
     }
 
@@ -293,7 +294,7 @@ impl<'de> MapAccess<'de> for Entries<'de> {
     fn next_key_seed<K: de::DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, Error> {
         self.value = self.entries.next();
         let Some((key, _)) = self.value else { return Ok(None) };
-        // A key that is not known here is a fault at the key, not at its value.
+        // An unknown key is a fault at the key, not at its value.
         seed.deserialize(key).map(Some).map_err(|error| error.at(&key.span).within(&key.name))
     }
 
@@ -326,7 +327,7 @@ impl<'de> IntoDeserializer<'de, Error> for &'de Key {
     }
 }
 
-/// A key is a text that may be asked for its place too.
+/// A key is a text that also gives its place.
 impl<'de> Deserializer<'de> for &'de Key {
     type Error = Error;
 
@@ -367,7 +368,7 @@ mod tests {
         pair: Option<[f64; 2]>,
     }
 
-    /// An entry as it is read, or its first fault.
+    /// Reads one entry. Returns the text of its first fault.
     fn read_entry(entry: &str) -> Result<Entry, String> {
         let tree = Tree::of_json(&format!("{{\"entry\": {entry}}}")).map_err(|fault| fault.fault.to_string())?;
         let found = read::<std::collections::BTreeMap<String, Entry>>(&tree);

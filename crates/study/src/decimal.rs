@@ -1,11 +1,11 @@
-//! Numbers that were computed from the decimals of a study.
+//! Rounds numbers that were computed from the decimals of a study.
 
-/// Significant digits of numbers that go on into formulas and tables.
+/// Significant digits of numbers in formulas and tables.
 pub(super) const KEPT: usize = 15;
-/// Those of numbers in messages: a difference of decimals may have lost some.
+/// Significant digits of numbers in messages. Fewer, since a difference of decimals may have lost some.
 pub(super) const SAID: usize = 13;
 
-/// A number without what rounding leaves of sums of decimals.
+/// Number rounded to significant digits, which removes the rounding errors of sums of decimals.
 pub(super) fn decimal(value: f64, digits: usize) -> f64 {
     format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
 }

@@ -1,4 +1,4 @@
-//! How a dimension, or what a process makes of it, is distributed, as it is written.
+//! Type of `distribution` in a study file, for a dimension or a process.
 
 use std::fmt;
 
@@ -72,7 +72,7 @@ pub(super) struct PartEntry {
     pub(super) shift: Option<Spanned<f64>>,
 }
 
-/// A text names the kind alone; a table may have parameters. To be used with `deserialize_with`.
+/// Reads a text, which names the kind alone, or a table with parameters. For `deserialize_with`.
 pub(super) fn distribution<'de, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Option<Spanned<DistributionEntry>>, D::Error> {

@@ -1,4 +1,4 @@
-//! The values that drive the model: its inputs by name, for a program those of `[model] inputs`.
+//! Inputs of the model: by name for a built-in model, and those of `[model] inputs` for a program.
 
 use super::dimension;
 use super::error::{Fault, Faults, StudyFault, fault};
@@ -13,14 +13,14 @@ use sensitol_models::{Model, ModelInput};
 use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::names::nearest;
 
-/// The values that a program is sent.
+/// Values that a program is sent: names, their sources, and the greeting.
 pub(super) struct ToProgram {
     pub(super) inputs: Vec<Input>,
     pub(super) sources: Vec<assembly::Source>,
     pub(super) greeting: Greeting,
 }
 
-/// Where the inputs of a built-in model come from: a dimension, a formula, a constant, or its own nominal value.
+/// Sources of the inputs of a built-in model: a dimension, a formula, a constant, or its own nominal value.
 pub(super) fn of_built_in(
     model: &Model,
     dimensions: &[Dimension],
@@ -33,7 +33,7 @@ pub(super) fn of_built_in(
     model.inputs.iter().map(source).collect()
 }
 
-/// The thing that bears this name.
+/// Source of the dimension, formula or constant of this name. Returns None if there is none.
 fn named(
     name: &str,
     dimensions: &[Dimension],
@@ -46,7 +46,7 @@ fn named(
     dimension.or_else(formula).or_else(|| constant().map(assembly::Source::Fixed))
 }
 
-/// The inputs of a program: the names of `[model] inputs`, or else all dimensions, with the constants told once.
+/// Inputs of a program: the names of `[model] inputs`, or else all dimensions. Constants are sent once, with the greeting.
 pub(super) fn of_program(
     file: &StudyFile,
     dimensions: &[Dimension],
@@ -107,13 +107,12 @@ pub(super) fn of_program(
     Ok(ToProgram { inputs: inputs.collect(), sources, greeting })
 }
 
-/// The unit of a constant.
 fn of_constant(file: &StudyFile, name: &str) -> Option<String> {
     let constant = file.constants.0.iter().find(|(constant, _)| constant.get_ref() == name);
     constant.and_then(|(_, one)| one.get_ref().unit.clone())
 }
 
-/// The names of `[model] inputs`, where the model is a program that has them.
+/// Names of `[model] inputs`. Returns None if they are not given or the model is not a program.
 fn asked(file: &StudyFile) -> Option<&Spanned<Vec<Spanned<String>>>> {
     let entry: &ModelEntry = file.model.as_ref()?.get_ref();
     entry.inputs.as_ref().filter(|_| entry.command.is_some())
@@ -165,7 +164,7 @@ fn nominal(
     out.value(0, 0).ok_or_else(|| failed(out.error(0, 0).map(ToString::to_string).unwrap_or_default()))
 }
 
-/// The formulas that one needs, itself included, and whether it needs the unknowns.
+/// Indices of the formulas that one formula needs, itself included. True if it also needs the unknowns.
 fn closure(index: usize, written: &Written<'_>) -> (Vec<usize>, bool) {
     let (mut kept, mut conditions, mut next) = (vec![index], false, 0);
     let take = |name: &str, kept: &mut Vec<usize>| {
@@ -193,7 +192,7 @@ fn closure(index: usize, written: &Written<'_>) -> (Vec<usize>, bool) {
     (kept, conditions)
 }
 
-/// With `[model] inputs`, dimensions and constants are among them, or else a formula uses them.
+/// Checks that all dimensions and constants are in `[model] inputs` or are used by a formula.
 pub(super) fn known_to_program(file: &StudyFile, used: &dyn Fn(&str) -> bool) -> Result<(), Faults> {
     let (Some(names), Some(model)) = (asked(file), &file.model) else { return Ok(()) };
     let sent = |name: &str| names.get_ref().iter().any(|sent| sent.get_ref() == name);

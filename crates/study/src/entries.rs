@@ -1,4 +1,4 @@
-//! A table of names, in the order in which it is written.
+//! A table of names in the order of the file.
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -8,7 +8,7 @@ use serde::{Deserialize, Deserializer};
 
 use super::spanned::Spanned;
 
-/// Named entries in the order of the file, every name and entry with its place.
+/// Named entries in the order of the file. Names and entries have their places.
 #[derive(Debug, Clone)]
 pub(super) struct Entries<T>(pub(super) Vec<(Spanned<String>, Spanned<T>)>);
 

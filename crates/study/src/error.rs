@@ -1,4 +1,4 @@
-//! The faults of a study, and their places.
+//! Faults of a study, and their places in the file.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -20,27 +20,27 @@ use sensitol_numeric::inspection::InspectionError;
 use sensitol_numeric::names::UnknownName;
 use sensitol_numeric::requirement::RequirementError;
 
-/// A study that cannot be used: file, place, key, what is wrong, and what to write instead.
+/// A study that cannot be used: file, place, key, fault, and the text to write instead.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{}{}{}{}", self.place(), self.fault, self.help().map(|help| format!(" ({help})")).unwrap_or_default(), self.others())]
 #[non_exhaustive]
 pub struct StudyError {
-    /// The file's name as it was given.
+    /// Name of the file as it was given.
     pub file: String,
-    /// The file's text, as far as it could be read.
+    /// Text of the file, as far as it could be read.
     pub text: Arc<str>,
-    /// Byte range in the text; None where the fault has no place.
+    /// Byte range in the text; None if the fault has no place.
     pub span: Option<Range<usize>>,
-    /// The key concerned, with those around it, such as `dimensions.a.tolerance`; empty at the top.
+    /// Full name of the key at fault, such as `dimensions.a.tolerance`; empty if the fault concerns the whole study.
     pub key: String,
     /// The fault.
     pub fault: Box<StudyFault>,
-    /// The other faults of the same study, in the order of the file: 20 in all at most.
+    /// Other faults of the study, in the order of the file. At most 20 faults are reported in all.
     pub more: Vec<StudyError>,
 }
 
 impl StudyError {
-    /// Of the faults of one study, those that come first in its file; None without a fault.
+    /// Error with the faults in the order of the file, the first of them at the top. Returns None if there is no fault.
     pub(super) fn of(faults: Vec<Fault>, file: &str, text: &Arc<str>) -> Option<Self> {
         let mut faults = faults;
         faults.sort_by_key(|fault| fault.span.as_ref().map_or(usize::MAX, |span| span.start));
@@ -57,7 +57,7 @@ impl StudyError {
         Some(Self { more: errors.collect(), ..first })
     }
 
-    /// Line and column, both from 1, the column in characters.
+    /// Line and column of the fault. Both count from 1, columns in characters. Returns None if the fault has no place.
     ///
     /// ```
     /// use sensitol_study::Study;
@@ -71,12 +71,12 @@ impl StudyError {
         Some((1 + before.matches('\n').count(), 1 + before[line_start..].chars().count()))
     }
 
-    /// The text to write instead, where that can be said.
+    /// Text to write instead. Returns None if no general advice exists.
     pub fn help(&self) -> Option<String> {
         self.fault.help()
     }
 
-    /// How many faults there are beside the first.
+    /// Text for the number of further faults.
     fn others(&self) -> String {
         match self.more.len() {
             0 => String::new(),
@@ -85,7 +85,7 @@ impl StudyError {
         }
     }
 
-    /// `file:line:column: key: `, as far as they are known.
+    /// Prefix `file:line:column: key: `, without the parts that are unknown.
     fn place(&self) -> String {
         let at = self.line_column().map(|(line, column)| format!(":{line}:{column}")).unwrap_or_default();
         let key = if self.key.is_empty() { String::new() } else { format!("{}: ", self.key) };
@@ -100,54 +100,54 @@ pub enum StudyFault {
     /// The file cannot be read.
     #[error("the file cannot be read: {reason}")]
     Unreadable {
-        /// The operating system's words.
+        /// Message of the operating system.
         reason: String,
     },
     /// A folder was given.
     #[error("this is a folder, not a study")]
     IsFolder {
-        /// A study within it, if there is one.
+        /// Path of a study within the folder; None if there is none.
         within: Option<String>,
     },
     /// The file is not text.
     #[error("the file is not UTF-8 text: byte {byte:#04x} at offset {offset}")]
     NotUtf8 {
-        /// The first byte that is none.
+        /// First byte that is not valid UTF-8.
         byte: u8,
-        /// Where it stands.
+        /// Offset of that byte in the file.
         offset: usize,
     },
-    /// No study format ends like this.
+    /// The file name does not end in `.toml` or `.json`.
     #[error("a study is a .toml or a .json file")]
     UnknownFormat {
-        /// The study of this name with such an ending, if there is one.
+        /// Path of a study with the same name and a valid ending; None if there is none.
         beside: Option<String>,
     },
     /// The text is neither TOML nor JSON.
     #[error("{message}")]
     Syntax {
-        /// The parser's words.
+        /// Message of the parser.
         message: String,
-        /// The probable meaning.
+        /// Probable mistake behind the fault.
         slip: Option<Slip>,
     },
-    /// A key that means nothing here.
+    /// A key that does not exist here.
     #[error("there is no key `{key}` here")]
     UnknownKey {
-        /// As written.
+        /// The key as written.
         key: String,
         /// The most similar valid key.
         nearest: Option<String>,
         /// The valid keys.
         valid: Vec<String>,
     },
-    /// A key that stands twice.
+    /// A key that is given twice.
     #[error("`{key}` is given twice")]
     DuplicateKey {
         /// The key.
         key: String,
     },
-    /// A key that must be there is not.
+    /// A required key is missing.
     #[error("`{key}` is missing")]
     MissingKey {
         /// The key.
@@ -163,22 +163,22 @@ pub enum StudyFault {
         /// The kind of value that is there.
         found: String,
     },
-    /// A word that none of the possible ones is.
+    /// A word that is not one of the permitted ones.
     #[error("there is no {what} `{found}`")]
     UnknownWord {
         /// The kind of thing that the word should name.
         what: &'static str,
-        /// As written.
+        /// The word as written.
         found: String,
-        /// The most similar possible one.
+        /// Most similar permitted word.
         nearest: Option<String>,
-        /// The possible ones.
+        /// Permitted words.
         known: Vec<String>,
     },
     /// NaN or an infinity.
     #[error("`{text}` is not a finite number")]
     NotFinite {
-        /// As written.
+        /// The number as written.
         text: String,
     },
     /// A number outside its range.
@@ -186,30 +186,30 @@ pub enum StudyFault {
     OutOfRange {
         /// The number.
         value: f64,
-        /// The range that it must be in.
+        /// Permitted range.
         range: &'static str,
     },
     /// Two keys that exclude or contradict each other.
     #[error("`{a}` and `{b}` {why}")]
     Conflict {
-        /// One key.
+        /// The first key.
         a: &'static str,
-        /// The other.
+        /// The second key.
         b: &'static str,
-        /// How they exclude each other.
+        /// Reason, as the end of the sentence "`a` and `b` ...".
         why: String,
     },
-    /// A key that means nothing for this kind of distribution.
+    /// A key that has no effect for this kind of distribution.
     #[error("`{key}` means nothing for {to}")]
     DoesNotApply {
         /// The key.
         key: &'static str,
-        /// For what.
+        /// Thing that the key does not apply to.
         to: String,
         /// The text to write instead.
         instead: &'static str,
     },
-    /// Deviations or limits the wrong way round.
+    /// Deviations or limits in the wrong order.
     #[error("the lower value {lower} must be below the upper value {upper}")]
     Swapped {
         /// The value given first.
@@ -217,19 +217,19 @@ pub enum StudyFault {
         /// The value given second.
         upper: f64,
     },
-    /// The dimension is impossible.
+    /// The dimension is not possible.
     #[error(transparent)]
     Dimension(#[from] DimensionFault),
-    /// There is no such fit.
+    /// The fit is not a tolerance class of ISO 286.
     #[error(transparent)]
     Fit(#[from] FitError),
-    /// The limits are impossible.
+    /// The limits are not possible.
     #[error(transparent)]
     Limits(#[from] LimitsError),
-    /// The closure conditions determine nothing.
+    /// The closure conditions do not determine the unknowns.
     #[error(transparent)]
     Conditions(#[from] ConditionsError),
-    /// A formula is wrong.
+    /// A formula is not valid.
     #[error("{0}")]
     Formula(FormulaFault),
     /// A name that formulas already use for something else.
@@ -238,48 +238,48 @@ pub enum StudyFault {
         /// The name.
         name: String,
     },
-    /// A name of nothing.
+    /// An empty name.
     #[error("a name must not be empty")]
     EmptyName,
-    /// A name with a character that is not seen, or that moves others.
+    /// A name with an invisible character, or one that changes the direction of the text.
     #[error("a name must not contain the invisible character U+{:04X}", *character as u32)]
     HiddenCharacter {
         /// The character.
         character: char,
     },
-    /// A name that something else in the study bears.
+    /// A name that is already in use.
     #[error("the name `{name}` is taken: {by} bears it already")]
     NameTaken {
         /// The name.
         name: String,
-        /// The thing that bears it.
+        /// Thing that has the name already.
         by: &'static str,
     },
-    /// A name that stands in two sections.
+    /// A name in both [dimensions] and [formulas].
     #[error("`{name}` is a dimension and a formula")]
     DimensionAndFormula {
         /// The name.
         name: String,
     },
-    /// Dimensions that are measured from each other.
+    /// Dimensions that are measured from each other in a circle.
     #[error("`{}` is measured from itself{}", path[0], way(path))]
     FromCircle {
-        /// The dimensions, each measured from the next, and the last from the first.
+        /// Dimensions of the circle: each is measured from the next, and the last from the first.
         path: Vec<String>,
     },
-    /// A configuration of something else.
+    /// A configuration that sets a name which is neither a dimension nor a constant.
     #[error("configuration `{configuration}` sets `{name}`, which is not a dimension or constant")]
     UnknownConfigured {
         /// The configuration.
         configuration: String,
-        /// The name.
+        /// The name that it sets.
         name: String,
         /// The most similar dimension or constant.
         nearest: Option<String>,
-        /// The dimensions and constants that there are.
+        /// Dimensions and constants of the study.
         known: Vec<String>,
     },
-    /// A configuration of a dimension whose limits do not move with its nominal value.
+    /// A configuration that sets a dimension with absolute limits, which do not move with the nominal value.
     #[error("configuration `{configuration}` sets `{name}`, whose limits are absolute")]
     ConfiguredLimits {
         /// The configuration.
@@ -287,41 +287,41 @@ pub enum StudyFault {
         /// The dimension.
         name: String,
     },
-    /// A configuration that bears the word for all of them.
+    /// A configuration with the reserved name `all`.
     #[error("the name `all` stands for every configuration")]
     ReservedConfiguration,
-    /// A configuration is asked for, and there is none.
+    /// A configuration is asked for, but the study has none.
     #[error("the study has no [configurations]")]
     NoConfigurations,
-    /// A correlation of two columns of one measured file.
+    /// A correlation between two columns of one measured file.
     #[error("the correlation between `{}` and `{}` is that of their rows, {value:.3}", between[0], between[1])]
     CorrelationOfRows {
         /// The dimensions.
         between: [String; 2],
-        /// The correlation of the rows.
+        /// Correlation of their rows.
         value: f64,
     },
-    /// A correlation of two dimensions of one zone.
+    /// A correlation between two dimensions of one zone.
     #[error("`{}` and `{}` lie within one zone, which says how they vary together", between[0], between[1])]
     CorrelationInZone {
         /// The dimensions.
         between: [String; 2],
     },
-    /// A joint block of too few or too many dimensions.
+    /// A joint block with too few or too many dimensions.
     #[error("{}, and `of` names {found}", match law { Some(law) => format!("a {law} is of two dimensions"), None => "rows are of two dimensions or more".to_owned() })]
     JointCount {
-        /// The law of the zone; None of measured rows.
+        /// Distribution of the zone; None for measured rows.
         law: Option<String>,
-        /// How many dimensions there are.
+        /// Number of dimensions in `of`.
         found: usize,
     },
-    /// A dimension of two blocks.
+    /// A dimension that belongs to two joint blocks.
     #[error("`{name}` belongs to another [[joint]] already")]
     JointTwice {
         /// The dimension.
         name: String,
     },
-    /// A dimension of a measured block whose values come from elsewhere.
+    /// A dimension of a measured block with values from another file.
     #[error("`{name}` is not measured in {file:?}")]
     JointFile {
         /// The dimension.
@@ -329,131 +329,131 @@ pub enum StudyFault {
         /// The file of the block.
         file: String,
     },
-    /// A dimension of a zone without a band.
+    /// A dimension of a zone without a tolerance band.
     #[error("`{name}` has no tolerance: the half width of the {law} is unknown")]
     JointBand {
         /// The dimension.
         name: String,
-        /// The law of the zone.
+        /// Distribution of the zone.
         law: String,
     },
-    /// A dimension of a zone with a distribution of its own.
+    /// A dimension of a zone that also has a distribution of its own.
     #[error("`{name}` has a distribution, and the {law} says how it varies")]
     JointDistribution {
         /// The dimension.
         name: String,
-        /// The law of the zone.
+        /// Distribution of the zone.
         law: String,
     },
-    /// A correlation of a measured dimension that varies with others of its file, and one beside them.
+    /// A correlation between a dimension of a block of rows or a zone and a dimension outside of it.
     #[error(
         "`{inside}` varies with {others} as their rows or their zone say, so that nothing else is correlated with it"
     )]
     CorrelationBesideRows {
-        /// The dimension.
+        /// The dimension of the block.
         inside: String,
-        /// The others of the same rows.
+        /// The other dimensions of the block.
         others: String,
     },
-    /// A feature whose size gives a bonus, and that has no band.
+    /// A feature of size without a tolerance band, so that its bonus cannot be computed.
     #[error("`{name}` has no band: its maximum material is unknown")]
     NoMaterial {
         /// The dimension.
         name: String,
     },
-    /// A hole that no pin passes.
+    /// A hole that no pin fits into.
     #[error("hole {} is smaller than pin {}: nothing floats", band(hole), band(pin))]
     NothingFloats {
         /// Least and greatest size of the hole.
         hole: [f64; 2],
-        /// And of the pin.
+        /// Least and greatest size of the pin.
         pin: [f64; 2],
     },
-    /// A zone that is wider than its feature is long.
+    /// A zone wider than the length of its feature.
     #[error("length {length} is below the zone {zone}")]
     LengthBelowZone {
-        /// The length.
+        /// Length of the feature.
         length: f64,
-        /// The zone.
+        /// Width of the zone.
         zone: f64,
     },
-    /// A fastener of more or fewer than two places or holes.
+    /// A fastener with a number of places or holes other than two.
     #[error("`{key}` names {found}, and a fastener holds two parts together")]
     FastenerPair {
-        /// `places` or `holes`.
+        /// The key, `places` or `holes`.
         key: String,
-        /// How many there are.
+        /// Number of places or holes.
         found: usize,
     },
-    /// Units that do not go together.
+    /// Units that do not fit together.
     #[error("{what}")]
     Units {
-        /// The fault.
+        /// Description of the fault.
         what: String,
         /// The text to write instead.
         remedy: String,
     },
-    /// A formula that drives the model and needs what it answers.
+    /// A formula that drives the model and also needs an output of the model.
     #[error("formula `{name}` drives the model and needs its output `{output}`: a cycle")]
     DrivenByOutput {
         /// The formula.
         name: String,
-        /// The output of the model.
+        /// The output that it needs.
         output: String,
     },
-    /// A formula beside a program that nothing needs.
+    /// A formula that nothing needs, in a study with a program.
     #[error("formula `{name}` reaches neither a characteristic nor the model")]
     IdleFormula {
         /// The formula.
         name: String,
     },
-    /// A formula that drives a program has no value where the program is greeted with one.
+    /// A formula that drives a program has no value at the nominal dimensions, so the program cannot be greeted with one.
     #[error("formula `{name}` drives the model and has no value at the nominal dimensions: {reason}")]
     NoNominal {
         /// The formula.
         name: String,
-        /// Why.
+        /// Reason why it has no value.
         reason: String,
     },
-    /// A dimension or constant that the model does not have and no formula uses.
+    /// A dimension or constant that is no input of the model and that no formula uses.
     #[error("the model `{model}` has no input `{name}`, and no formula uses it")]
     UnknownInput {
-        /// The model.
+        /// Name or command of the model.
         model: String,
-        /// The name.
+        /// The dimension or constant.
         name: String,
         /// The most similar input.
         nearest: Option<String>,
-        /// The inputs that there are.
+        /// Inputs of the model.
         known: Vec<String>,
     },
-    /// A file that the model depends on is not there.
+    /// A file that the model depends on does not exist.
     #[error("there is no file {}", path.display())]
     MissingFile {
-        /// Where it was looked for.
+        /// Path at which the file was expected.
         path: std::path::PathBuf,
     },
-    /// Answers evaluated elsewhere do not say for which value of a dimension.
+    /// A table of answers evaluated elsewhere has no column for a dimension.
     #[error(transparent)]
     MissingColumn(#[from] NoColumn),
-    /// Answers evaluated elsewhere, for a study that runs no model.
+    /// Answers evaluated elsewhere are given for a study that runs no external model.
     #[error(
         "points that were evaluated elsewhere answer a [model] command, or characteristics without a formula: the study has neither"
     )]
     NothingExternal,
-    /// This build of the library runs no external programs.
+    /// The study needs an external program, and this build of the library runs none.
     #[error("`{program}` cannot be run: external programs are not part of this build")]
     NoPrograms {
         /// The program of the study.
         program: String,
     },
-    /// There is nothing to evaluate.
+    /// The study has no dimension or no characteristic.
     #[error("the study has no {what}")]
     Nothing {
         /// `dimension` or `characteristic`.
         what: &'static str,
     },
-    /// Dimensions cannot vary together like this.
+    /// The correlations of the study are not possible.
     #[error(transparent)]
     Correlation(Refusal),
     /// The analysis options do not fit the study.
@@ -467,72 +467,72 @@ pub enum StudyFault {
     ProcessFile {
         /// The file as the study names it.
         file: String,
-        /// The line, from 1; None where the fault has none.
+        /// Line in that file, from 1; None if the fault has none.
         line: Option<usize>,
-        /// The key in it; empty where the fault has none.
+        /// Key in that file; empty if the fault has none.
         key: String,
-        /// The fault.
+        /// Fault in that file.
         fault: Box<StudyFault>,
     },
-    /// A dimension that would share its own tolerance.
+    /// A dimension whose `same_as` names itself.
     #[error("`{name}` is the dimension itself")]
     SameAsItself {
         /// The dimension.
         name: String,
     },
-    /// A dimension that would share the tolerance of one that shares another's.
+    /// A dimension whose `same_as` names a dimension that has `same_as` too.
     #[error("`{name}` has no cost of its own: it is the same as `{end}`")]
     SameAsChain {
-        /// The dimension named.
+        /// Dimension that `same_as` names.
         name: String,
-        /// The one that it is the same as.
+        /// Dimension whose tolerance that one shares.
         end: String,
     },
-    /// A cost is impossible.
+    /// The cost is not possible.
     #[error(transparent)]
     Cost(#[from] CostError),
-    /// A step that no tolerance within the bounds is a multiple of.
+    /// A step without a multiple between the bounds.
     #[error("no multiple of the step {step} lies between min {min} and max {max}")]
     NoStep {
         /// The step.
         step: f64,
-        /// The least half band.
+        /// Least permitted half-width.
         min: f64,
-        /// The greatest.
+        /// Greatest permitted half-width.
         max: f64,
     },
-    /// Grades from a coarser to a finer one.
+    /// Tolerance grades with the coarser one first.
     #[error("the grades go from {first} to {last}: write the finer one first")]
     OutOfOrder {
-        /// The first.
+        /// Grade given first.
         first: String,
-        /// The last.
+        /// Grade given last.
         last: String,
     },
-    /// No grade between the bounds.
+    /// No tolerance grade lies between the bounds.
     #[error("no half of a grade from {first} to {last} lies between min and max")]
     NoGrade {
-        /// The first.
+        /// Finest grade.
         first: String,
-        /// The last.
+        /// Coarsest grade.
         last: String,
     },
-    /// More steps than a list should have.
+    /// More steps between the bounds than are permitted.
     #[error(
         "a step of {step} makes {count} tolerances between min and max, and {most} are the most: raise the step or leave it out"
     )]
     TooManySteps {
         /// The step.
         step: f64,
-        /// How many.
+        /// Number of multiples between the bounds.
         count: f64,
-        /// The most.
+        /// Greatest permitted number.
         most: f64,
     },
-    /// An inspection is impossible.
+    /// The inspection is not possible.
     #[error(transparent)]
     Inspection(#[from] InspectionError),
-    /// A requirement is impossible.
+    /// The requirement is not possible.
     #[error(transparent)]
     Requirement(#[from] RequirementError),
     /// Dimensions, model and characteristics do not fit together.
@@ -540,13 +540,13 @@ pub enum StudyFault {
     Problem(#[from] ProblemError),
 }
 
-/// From the least to the greatest size.
+/// Text of a size or of a range of sizes.
 fn band([least, greatest]: &[f64; 2]) -> String {
     let plain = |value: &f64| format!("{value:.6}").trim_end_matches('0').trim_end_matches('.').to_owned();
     if least == greatest { plain(least) } else { format!("{} .. {}", plain(least), plain(greatest)) }
 }
 
-/// The way back to the first of these names.
+/// Text of the chain of names that leads back to the first of them.
 fn way(path: &[String]) -> String {
     if path.len() < 2 { String::new() } else { format!(": {} -> {}", path.join(" -> "), path[0]) }
 }
@@ -558,29 +558,29 @@ impl From<UnknownName> for StudyFault {
     }
 }
 
-/// A key after the place of a fault.
+/// Text of a key, to follow the place of a fault.
 fn below(key: &str) -> String {
     if key.is_empty() { String::new() } else { format!(", {key}") }
 }
 
-/// A fault with its place and its key, on its way to becoming a [`StudyError`].
+/// Fault with its place and key, before it becomes a [`StudyError`] with file and text.
 pub(super) struct Fault {
     pub(super) span: Option<Range<usize>>,
     pub(super) key: String,
     pub(super) fault: Box<StudyFault>,
 }
 
-/// Faults that were found independently of each other, and what was found without one; `Err` where there is any.
+/// Faults that were found independently of each other.
 #[derive(Default)]
 pub(super) struct Faults(pub(super) Vec<Fault>);
 
 impl Faults {
-    /// The result of a part of the study; None where it is at fault, which is kept.
+    /// Value of a result. Returns None and keeps the faults if the result is an error.
     pub(super) fn take<T>(&mut self, found: Result<T, impl Into<Self>>) -> Option<T> {
         found.map_err(|faults| self.0.extend(faults.into().0)).ok()
     }
 
-    /// Everything so far, if nothing was at fault.
+    /// Returns `Ok` if no fault was kept.
     pub(super) fn none(self) -> Result<(), Self> {
         if self.0.is_empty() { Ok(()) } else { Err(self) }
     }

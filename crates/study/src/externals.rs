@@ -1,5 +1,4 @@
-//! Settings that a study file does not hold: where the answers of external programs are kept, who hears them, and which
-//! configuration is meant.
+//! Settings that a study file does not hold: the journal of external programs, the callback for their messages, and the configuration.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -8,7 +7,7 @@ use std::sync::Arc;
 use sensitol::assembly::{AssemblyFunction, Signature, Table};
 use sensitol_external::{Greeting, Listener};
 
-/// Makes the function that answers a study's model from the names and units of its inputs and outputs, nominal values and constants.
+/// Makes the function that answers a study's model, from the names and units of its inputs and outputs, nominal values and constants.
 #[derive(Clone)]
 pub struct Host(Arc<dyn Fn(Signature, Greeting) -> Arc<dyn AssemblyFunction> + Send + Sync>);
 
@@ -24,22 +23,22 @@ impl fmt::Debug for Host {
     }
 }
 
-/// How the external programs of a study are treated.
+/// Settings of the external programs of a study.
 #[derive(Clone)]
 pub struct Externals {
-    /// Where their answers are kept.
+    /// Place of the journal that keeps their answers.
     pub journal: JournalPlace,
-    /// Who hears every line that they write to stderr.
+    /// Callback for every line that they write to stderr.
     pub listener: Option<Listener>,
-    /// Answers that were evaluated elsewhere: nothing is started then.
+    /// Answers that were evaluated elsewhere. No program is started then.
     pub points: Option<Arc<Table>>,
-    /// Whether they are asked again and again for the nominal point, to see whether they still answer as they did.
+    /// True if the nominal point is evaluated again from time to time, to check that the programs still give the same answer.
     pub sentinels: bool,
-    /// Which of the study's configurations is meant; the study as written where it is None.
+    /// Name of the configuration; None for the study as written.
     pub configuration: Option<String>,
-    /// Whether only the points are wanted that something else is to answer: nothing is started then either.
+    /// True if only the points are wanted, which something else will answer. No program is started then.
     pub unanswered: bool,
-    /// Who answers in place of a program.
+    /// Function that answers in place of a program.
     pub host: Option<Host>,
 }
 
@@ -58,36 +57,36 @@ impl Default for Externals {
 }
 
 impl Externals {
-    /// With answers kept there.
+    /// Keeps answers in a journal at this place.
     #[must_use]
     pub fn with_journal(mut self, place: JournalPlace) -> Self {
         self.journal = place;
         self
     }
 
-    /// With someone who hears every line that they write to stderr.
+    /// Sets a callback for every line that the programs write to stderr.
     #[must_use]
     pub fn with_listener(mut self, listener: Listener) -> Self {
         self.listener = Some(listener);
         self
     }
 
-    /// With answers that were evaluated elsewhere in place of programs.
+    /// Uses answers that were evaluated elsewhere, in place of programs.
     #[must_use]
     pub fn with_points(mut self, table: Arc<Table>) -> Self {
         self.points = Some(table);
         self
     }
 
-    /// Of this configuration of the study.
+    /// Selects a configuration of the study.
     #[must_use]
     pub fn with_configuration(mut self, name: impl Into<String>) -> Self {
         self.configuration = Some(name.into());
         self
     }
 
-    /// With a function of the calling program as the study's model: in place of the program that its `[model]` names, and where it
-    /// has no `[model]`. `host` gets names and units of inputs and outputs, nominal values and constants. Formulas may use its outputs.
+    /// Uses a function of the calling program as the study's model, in place of the program of its `[model]`, or if it has no `[model]`.
+    /// `host` gets names and units of inputs and outputs, nominal values and constants. Formulas may use its outputs.
     ///
     /// ```
     /// use std::sync::Arc;
@@ -119,19 +118,19 @@ impl Externals {
         self
     }
 
-    /// To say which points something else is to answer.
+    /// Sets that only the points are wanted, which something else will answer.
     #[must_use]
     pub fn with_unanswered(mut self, unanswered: bool) -> Self {
         self.unanswered = unanswered;
         self
     }
 
-    /// Whether nothing that this program starts answers.
+    /// True if nothing that this program starts gives the answers.
     pub(super) fn elsewhere(&self) -> bool {
         self.points.is_some() || self.unanswered
     }
 
-    /// With evaluations of the nominal point again and again, or without.
+    /// Turns repeated evaluations of the nominal point on or off.
     #[must_use]
     pub fn with_sentinels(mut self, sentinels: bool) -> Self {
         self.sentinels = sentinels;
@@ -139,20 +138,20 @@ impl Externals {
     }
 }
 
-/// Where the answers of external programs are kept.
+/// Place of the journal of external programs.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum JournalPlace {
-    /// Nowhere: they are gone with the run.
+    /// No journal: the answers are lost after the run.
     #[default]
     Nowhere,
-    /// Beside the study: `gap.journal.sqlite` for `gap.toml`.
+    /// A file beside the study: `gap.journal.sqlite` for `gap.toml`.
     BesideStudy,
-    /// In this file.
+    /// The given file.
     At(PathBuf),
 }
 
 impl JournalPlace {
-    /// The command line's choice: a file, `none`, or nothing.
+    /// Place that the command line asks for: a file, `none`, or by default beside the study.
     pub fn asked(path: Option<&Path>) -> Self {
         match path {
             None => Self::BesideStudy,
@@ -161,7 +160,7 @@ impl JournalPlace {
         }
     }
 
-    /// The file for the study of this name.
+    /// Path of the journal for the study of this name. Returns None if there is no journal.
     pub fn path(&self, study: &str) -> Option<PathBuf> {
         match self {
             Self::Nowhere => None,

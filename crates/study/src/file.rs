@@ -1,4 +1,4 @@
-//! The study file as it is written: one set of types for TOML and JSON.
+//! Types of the study file, for TOML and JSON alike.
 
 use std::fmt;
 use std::ops::Range;
@@ -252,7 +252,7 @@ pub(super) struct DimensionEntry {
 }
 
 impl PartEntry {
-    /// Its line, as if it were a dimension of its own.
+    /// The part of a mixture as an entry of `[dimensions]`.
     pub(super) fn as_dimension(&self) -> DimensionEntry {
         DimensionEntry {
             nominal: self
@@ -274,15 +274,15 @@ impl PartEntry {
 /// One line of `[formulas]`: a text, or `{ formula = "a + b", unit = "mm" }`.
 #[derive(Debug)]
 pub(super) struct FormulaEntry {
-    /// Of the text alone.
+    /// Text of an entry that is a text alone; empty if the entry is a table.
     plain: String,
-    /// Of a table.
+    /// Text of an entry that is a table.
     written: Option<Spanned<String>>,
     pub(super) unit: Option<String>,
 }
 
 impl FormulaEntry {
-    /// Its text, and where that stands; `whole` is where the entry stands.
+    /// Text of the formula with its place. `whole` is the place of the entry.
     pub(super) fn text(&self, whole: Range<usize>) -> (Range<usize>, &str) {
         match &self.written {
             None => (whole, &self.plain),

@@ -1,4 +1,4 @@
-//! The files that belong to a study beside its own: measured data, and what a program is and depends on.
+//! Files that belong to a study: measured values, and files of the program.
 
 use std::path::{Path, PathBuf};
 
@@ -9,36 +9,36 @@ use super::spanned::Spanned;
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct NamedFile {
-    /// Its role in the study.
+    /// Role of the file in the study.
     pub role: FileRole,
-    /// As it is written there.
+    /// Name of the file in the study.
     pub written: String,
-    /// Where it is.
+    /// Path of the file.
     pub path: PathBuf,
 }
 
-/// The role of a file in a study.
+/// Role of a file in a study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FileRole {
-    /// Measured values of a dimension.
+    /// Values of a dimension.
     Measured,
     /// The program of the model, or a file that it depends on.
     Model,
 }
 
 impl NamedFile {
-    /// Its name in a sentence.
+    /// Name of the file for use in a sentence.
     pub fn shown(&self) -> String {
         format!("`{}`", self.written)
     }
 
-    /// Whether another folder makes it another file.
+    /// True if the path depends on the folder of the study.
     pub fn is_relative(&self) -> bool {
         Path::new(&self.written).is_relative()
     }
 }
 
-/// The words of a command that are files of the study's folder, and the files that the model depends on.
+/// Files of the study's folder that a command contains, and the files that the model depends on.
 pub(super) fn of_model(entry: &ModelEntry, folder: &Path) -> Vec<NamedFile> {
     let words = entry.command.iter().flat_map(|command| command.get_ref());
     let files = entry.files.iter().flatten().map(Spanned::get_ref);

@@ -7,7 +7,7 @@ use sensitol_numeric::fits::grade_width;
 use sensitol_numeric::names::nearest;
 use sensitol_numeric::unit::Unit;
 
-/// IT01 to IT18.
+/// Names of the grades IT01 to IT18.
 fn names() -> Vec<String> {
     ["01", "0"]
         .into_iter()
@@ -17,7 +17,7 @@ fn names() -> Vec<String> {
         .collect()
 }
 
-/// The grades from the first to the last, the loosest first, each with half of it as half band; within the bounds that are given.
+/// Offers of the grades from the first to the last, loosest first, within the given bounds. The half-width is half of a grade.
 pub(super) fn graded(
     curve: &Curve,
     ends: &[String; 2],

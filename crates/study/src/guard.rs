@@ -1,4 +1,4 @@
-//! `guard` of a characteristic, as it is written.
+//! Type of `guard` of a characteristic in a study file.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use serde::de::{Deserialize, Deserializer, Visitor, value};
 
 use super::spanned::Spanned;
 
-/// `0.01`, or `{ false_accept = 0.001 }`.
+/// Guard band: `0.01`, or `{ false_accept = 0.001 }`.
 #[derive(Debug)]
 pub(super) enum GuardEntry {
     Width(f64),

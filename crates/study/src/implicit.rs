@@ -1,4 +1,4 @@
-//! `[unknowns]`, `[equations]` and `[loops]`.
+//! Reads `[unknowns]`, `[equations]` and `[loops]`.
 
 use std::ops::Range;
 
@@ -9,14 +9,14 @@ use sensitol::assembly::formula::Formula;
 use sensitol::assembly::implicit::{Condition, Conditions, ConditionsError, Link, Unknown};
 use sensitol_numeric::dimension::Dimension;
 
-/// The conditions of a file, and where each of their formulas stands in it.
+/// Conditions of a study, with the places of their formulas.
 pub(super) struct Implicit {
     pub(super) conditions: Conditions,
-    /// In the order of [`Conditions::formulas`].
+    /// Places and keys, in the order of [`Conditions::formulas`].
     pub(super) places: Vec<(Range<usize>, String)>,
 }
 
-/// None in a file without unknowns, equations and loops.
+/// Conditions of a study. Returns None if it has no unknowns, equations and loops.
 pub(super) fn implicit(file: &StudyFile, dimensions: &[Dimension], source: &Source) -> Result<Option<Implicit>, Fault> {
     if file.unknowns.0.is_empty() && file.equations.0.is_empty() && file.loops.0.is_empty() {
         return Ok(None);
@@ -57,7 +57,7 @@ pub(super) fn implicit(file: &StudyFile, dimensions: &[Dimension], source: &Sour
     Ok(Some(Implicit { conditions, places }))
 }
 
-/// A fault of the conditions at what it speaks of.
+/// Fault of the conditions at the name that the error is about.
 pub(super) fn placed(file: &StudyFile, error: ConditionsError) -> Fault {
     let unknowns = || file.unknowns.names().into_iter().map(|name| ("unknowns", name));
     let equations = || file.equations.names().into_iter().map(|name| ("equations", name));

@@ -1,4 +1,4 @@
-//! `gauge` and `guard` of a characteristic: how it is inspected.
+//! Reads `gauge` and `guard` of a characteristic.
 
 use super::error::{Fault, StudyFault, fault};
 use super::file::CharacteristicEntry;
@@ -6,7 +6,7 @@ use super::guard::GuardEntry;
 use sensitol_numeric::characteristic::Characteristic;
 use sensitol_numeric::inspection::{Guard, Inspection, InspectionError};
 
-/// A characteristic with its gauge and guard bands.
+/// Adds the gauge and the guard band to a characteristic.
 pub(super) fn inspected(
     characteristic: Characteristic,
     entry: &CharacteristicEntry,
@@ -29,7 +29,7 @@ pub(super) fn inspected(
         };
         inspection =
             inspection.with_guard(wanted).map_err(|error| fault(span.clone(), format!("{key}.guard"), error))?;
-        // Without limits the gauge is at fault, with them the guard.
+        // Without limits the gauge is at fault. With limits it is the guard.
         if characteristic.limits().exist() {
             at = (span, "guard");
         }

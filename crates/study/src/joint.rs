@@ -1,4 +1,4 @@
-//! Columns of measured files whose rows belong together: of one file, or of several that a serial number joins.
+//! Finds columns of measured files whose rows are the same parts: rows of one file, or of several that a serial number joins.
 
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
@@ -11,30 +11,30 @@ use sensitol::warning::Warning;
 use sensitol_numeric::correlation::{JointLaw, Pair, Rows};
 use sensitol_numeric::names::nearest;
 
-/// Fewer rows than this in common say nothing of how columns vary together.
+/// Least number of common rows: fewer say nothing about how columns vary together.
 const LEAST: usize = 5;
-/// Lines that a warning names.
+/// Greatest number of lines that a warning names.
 const NAMED: usize = 5;
 
-/// Dimensions that are measured on the same parts, or lie within one zone.
+/// Dimensions that are measured on the same parts or lie within one zone.
 pub(super) struct Block {
     pub(super) dimensions: Vec<String>,
-    /// The correlation of every two of them in the rows that all have; none of a zone.
+    /// Correlations of all pairs in the rows that every dimension has; empty for a zone.
     pub(super) pairs: Vec<Pair>,
-    /// How they vary together; None where that is by the normal copula of `pairs`.
+    /// Joint distribution; None if the dimensions follow the normal copula of `pairs`.
     pub law: Option<JointLaw>,
 }
 
-/// A dimension that is measured, as the study names it.
+/// A measured dimension of a study.
 struct Member<'f> {
     name: &'f Spanned<String>,
     entry: &'f DimensionEntry,
     file: &'f Spanned<String>,
-    /// The column that joins it to other files.
+    /// Column with the part number, which joins it to other files; None if it is joined by lines.
     serial: Option<&'f Spanned<String>>,
 }
 
-/// Finds the rows that belong together, and keeps them in `data`; what is wrong with a single column is said where that is read.
+/// Finds the rows that belong together and keeps them in `data`. Faults of a single column are reported where the column is read.
 pub(super) fn blocks(file: &StudyFile, data: &mut Data<'_>) -> Result<Vec<Block>, Faults> {
     let mut faults = Faults::default();
     let mut members: Vec<Member<'_>> = Vec::new();
@@ -83,9 +83,9 @@ pub(super) fn blocks(file: &StudyFile, data: &mut Data<'_>) -> Result<Vec<Block>
     faults.none().map(|()| found)
 }
 
-/// None where one of the columns cannot be read.
+/// Block of dimensions that are measured on the same parts. Returns None if a column cannot be read or too few rows are common.
 fn block(group: &[Member<'_>], data: &mut Data<'_>) -> Result<Option<Block>, Fault> {
-    // For every member its values by the row that they belong to.
+    // Values and lines of each member, by the key of the part.
     let mut columns: Vec<HashMap<String, (f64, u64)>> = Vec::with_capacity(group.len());
     for member in group {
         let name = member.entry.column.as_ref().map(|column| column.get_ref().as_str());
@@ -99,7 +99,7 @@ fn block(group: &[Member<'_>], data: &mut Data<'_>) -> Result<Option<Block>, Fau
     }
     let mut common: Vec<&String> =
         columns[0].keys().filter(|key| columns[1..].iter().all(|column| column.contains_key(*key))).collect();
-    // In the order of the first file, so that sums do not depend on a hash.
+    // The order of the first file makes sums independent of the order of a hash map.
     common.sort_by_key(|key| columns[0][*key].1);
     for (member, column) in group.iter().zip(&columns) {
         let kept: HashSet<u64> = common.iter().map(|key| column[*key].1).collect();
@@ -115,7 +115,7 @@ fn block(group: &[Member<'_>], data: &mut Data<'_>) -> Result<Option<Block>, Fau
         data.keep(member.name.get_ref(), kept);
     }
     if common.len() < LEAST {
-        // The column itself says that there are too few.
+        // The fault of too few values is reported where the column is read.
         return Ok(None);
     }
     let rows: Vec<Vec<f64>> = columns.iter().map(|column| common.iter().map(|key| column[*key].0).collect()).collect();
@@ -123,13 +123,13 @@ fn block(group: &[Member<'_>], data: &mut Data<'_>) -> Result<Option<Block>, Fau
     let mut pairs = Vec::new();
     for a in 0..names.len() {
         for b in a + 1..names.len() {
-            // A column that does not vary is a fault of its own.
+            // A column that does not vary is reported where it is read.
             if let Some(value) = correlation(&rows[a], &rows[b]) {
                 pairs.push(Pair { between: [names[a].clone(), names[b].clone()], value });
             }
         }
     }
-    // A fitted law has no rows: they vary together by a copula.
+    // A fitted distribution has no rows, so the dimensions vary together by a copula.
     let fitted =
         group.iter().any(|member| member.entry.model.as_ref().is_some_and(|model| model.get_ref() == "pearson"));
     let still = |column: &Vec<f64>| column.iter().all(|value| *value == column[0]);
@@ -137,7 +137,7 @@ fn block(group: &[Member<'_>], data: &mut Data<'_>) -> Result<Option<Block>, Fau
     Ok(Some(Block { dimensions: names, pairs, law }))
 }
 
-/// The number of the part in every line.
+/// Part number of every line.
 fn serials(member: &Member<'_>, serial: &Spanned<String>, data: &mut Data<'_>) -> Result<HashMap<u64, String>, Fault> {
     let at = |found: DataFault| {
         fault(serial.span(), format!("dimensions.{}.match", member.name.get_ref()), StudyFault::Data(found))
@@ -167,7 +167,7 @@ fn serials(member: &Member<'_>, serial: &Spanned<String>, data: &mut Data<'_>) -
     Ok(texts.into_iter().filter(|(_, text)| !text.is_empty()).collect())
 }
 
-/// Pearson's coefficient; None where one of the two does not vary.
+/// Pearson's correlation coefficient. Returns None if one of the two does not vary.
 fn correlation(x: &[f64], y: &[f64]) -> Option<f64> {
     let n = x.len() as f64;
     let (mx, my) = (x.iter().sum::<f64>() / n, y.iter().sum::<f64>() / n);

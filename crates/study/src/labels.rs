@@ -1,9 +1,9 @@
-//! Texts of dimensions and characteristics that mean nothing to an analysis.
+//! Texts of dimensions and characteristics that have no effect on an analysis.
 
 use super::file::{CharacteristicEntry, DimensionEntry};
 use sensitol_numeric::labels::Labels;
 
-/// An empty text is none.
+/// Labels of these texts. An empty text counts as none.
 fn labels([description, part, drawing, revision, feature]: [&Option<String>; 5]) -> Labels {
     let text = |text: &Option<String>| text.clone().filter(|text| !text.trim().is_empty());
     Labels {
@@ -16,14 +16,12 @@ fn labels([description, part, drawing, revision, feature]: [&Option<String>; 5])
 }
 
 impl DimensionEntry {
-    /// Its texts.
     pub(super) fn labels(&self) -> Labels {
         labels([&self.description, &self.part, &self.drawing, &self.revision, &self.feature])
     }
 }
 
 impl CharacteristicEntry {
-    /// Its texts.
     pub(super) fn labels(&self) -> Labels {
         labels([&self.description, &self.part, &self.drawing, &self.revision, &self.feature])
     }

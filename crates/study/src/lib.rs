@@ -1,7 +1,7 @@
 //! Study files: an assembly and its characteristics in TOML or JSON.
 //!
-//! One set of types describes both formats. Everything that is wrong is a [`StudyError`] with file, line, column, key and
-//! what to write instead; the first one found is reported.
+//! One set of types describes both formats. A fault is a [`StudyError`] with file, line, column, key and the text to write instead. Faults
+//! that are independent of each other are reported together.
 //!
 //! # Distributions
 //! `distribution = "uniform"`, or a table with parameters, such as `{ kind = "beta", alpha = 2, beta = 5 }`:
@@ -124,56 +124,56 @@ use sensitol_numeric::requirement::Requirement;
 use source::Source;
 use tree::Tree;
 
-/// A study: a problem, how it is to be analysed, and what is odd about it.
+/// A study: a problem, the options of its analysis, its costs and requirements, and its warnings.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Study {
-    /// Its title.
+    /// Title.
     pub title: Option<String>,
     /// Dimensions, assembly function and characteristics.
     pub problem: Problem,
     /// The `[analysis]` section.
     pub options: Options,
-    /// The seed of the `[analysis]` section, for what draws random numbers.
+    /// Seed of the random numbers, from the `[analysis]` section.
     pub seed: Option<u64>,
-    /// The section `[dimensions]`: for every entry its keys, with their values as TOML.
+    /// Entries of the section `[dimensions]`, each with its keys and their values as TOML.
     pub lines: Vec<(String, Vec<(String, String)>)>,
-    /// The costs of tolerances, by groups that share one.
+    /// Costs of tolerances, by groups of dimensions that share one.
     pub costs: Vec<Priced>,
-    /// The costs of deviations and rejects.
+    /// Costs of deviations and rejects.
     pub losses: Vec<QualityLoss>,
-    /// The costs of setting up machines.
+    /// Costs of setting up machines.
     pub setups: Vec<SetUp>,
-    /// The requirements of characteristics, by name.
+    /// Requirements, each with the name of its characteristic.
     pub requirements: Vec<(String, Requirement)>,
-    /// Warnings of entries that are legal but most likely not meant.
+    /// Warnings of entries that are permitted but are most likely mistakes.
     pub warnings: Vec<Warning>,
-    /// SHA-256 of the file's bytes, followed by those of every file of measured values, each once, in the order of the
-    /// dimensions; in hexadecimal. As `cat gap.toml pin.csv | sha256sum` prints it.
+    /// SHA-256 of the bytes of the study file followed by those of every data file that it reads, in hexadecimal. Each file counts once, in
+    /// the order of reading. Without other data files it equals the output of `cat gap.toml pin.csv | sha256sum`.
     pub sha256: String,
-    /// The files that it names, in the order of the dimensions, those of the model last.
+    /// Files that the study names, in the order of the dimensions. Those of the model are last.
     pub files: Vec<NamedFile>,
-    /// The title block of pages, from the section `[about]`: name and text of every cell.
+    /// Title block of printed pages, from the section `[about]`: name and text of every cell.
     pub about: Vec<(&'static str, String)>,
-    /// The names of its configurations.
+    /// Names of the configurations.
     pub configurations: Vec<String>,
-    /// The study in plain keys, as TOML: what stands for relative dimensions is written out, each with its origin as comment, and a
-    /// configuration that was asked for is set. Analysing it gives the same numbers.
+    /// The study in plain keys, as TOML. Short forms such as relative dimensions are written out, each with its origin as comment. The
+    /// configuration that was asked for is set. Its analysis gives the same numbers.
     pub expanded: String,
-    /// The text that it was read from.
+    /// Text that the study was read from.
     text: Arc<str>,
     format: Format,
     name: String,
     place: Place,
-    /// Who answers in place of a program.
+    /// Function that answers in place of a program; None if there is none.
     host: Option<Host>,
 }
 
 impl Study {
-    /// Faults of a study that are told at once.
+    /// Greatest number of faults that one error reports.
     pub const MOST_FAULTS: usize = 20;
 
-    /// Costs and requirements of the characteristics that its problem asks for.
+    /// Costs of the study, and the requirements of the characteristics in the order of its problem.
     pub fn allocation_task(&self) -> AllocationTask {
         let of = |one: &Characteristic| {
             self.requirements.iter().find(|(name, _)| name == one.name()).map(|(_, requirement)| *requirement)
@@ -187,25 +187,25 @@ impl Study {
     /// Reads a `.toml` or `.json` file.
     ///
     /// # Errors
-    /// The faults in it: with the file or its syntax, or else with its keys and values, or else with what they mean together.
-    /// Faults that do not follow from each other are told together.
+    /// Returns the faults of the first of three steps that fails: file and syntax, keys and values, or their meaning together. Faults that
+    /// do not follow from each other are reported together.
     pub fn read(path: &Path) -> Result<Self, StudyError> {
         Self::read_with(path, Externals::default())
     }
 
-    /// [`read`](Self::read), with external programs treated like this. Nothing is started by reading.
+    /// [`read`](Self::read) with settings for external programs. Reading starts no program.
     ///
     /// # Errors
-    /// As [`read`](Self::read).
+    /// Fails like [`read`](Self::read).
     pub fn read_with(path: &Path, externals: Externals) -> Result<Self, StudyError> {
         Self::read_as(path, externals, None)
     }
 
-    /// [`read_with`](Self::read_with), for a [sweep](sensitol::sweep) over the parameter of this name: a constant, or an input of a
-    /// built-in model that the study leaves out, becomes a dimension without tolerance.
+    /// [`read_with`](Self::read_with), for a [sweep](sensitol::sweep) over the parameter of this name. A constant becomes a dimension
+    /// without tolerance, and so does an input of a built-in model that the study leaves out.
     ///
     /// # Errors
-    /// As [`read`](Self::read), and when there is no such parameter.
+    /// Fails like [`read`](Self::read), or if there is no such parameter.
     pub fn read_sweeping(path: &Path, externals: Externals, parameter: &str) -> Result<Self, StudyError> {
         Self::read_as(path, externals, Some(parameter))
     }
@@ -252,7 +252,7 @@ impl Study {
         }
     }
 
-    /// From TOML text; `name` stands for the file in errors, and relative paths start from the current folder.
+    /// Reads TOML text. Errors show `name` in place of a file, and relative paths start from the current folder.
     ///
     /// ```
     /// use sensitol_study::Study;
@@ -270,15 +270,15 @@ impl Study {
         Self::from_text(StudyText::toml(name, text))
     }
 
-    /// From JSON text; `name` stands for the file in errors.
+    /// Reads JSON text. Errors show `name` in place of a file.
     pub fn from_json(text: &str, name: &str) -> Result<Self, StudyError> {
         Self::from_text(StudyText::json(name, text))
     }
 
-    /// From text in memory, with the files that it names.
+    /// Reads text in memory, with the files that it names.
     ///
     /// # Errors
-    /// As [`read`](Self::read).
+    /// Fails like [`read`](Self::read).
     pub fn from_text(study: StudyText) -> Result<Self, StudyError> {
         let StudyText { format, name, text, files, externals, parameter, folder } = study;
         Self::parse(&text, format, &name, Place::memory(files, folder), externals, parameter.as_deref())

@@ -1,9 +1,9 @@
-//! The section `[dimensions]` as it was written, to be written again with some of it changed.
+//! Section `[dimensions]` as written, for callers that write it again with changes.
 
 use super::tree::{Tree, Value};
 use super::write;
 
-/// For every entry its keys, with their values as TOML.
+/// Entries of the section, with their keys and their values as TOML.
 pub(super) fn of(study: &Tree) -> Vec<(String, Vec<(String, String)>)> {
     let dimensions = entries(study).iter().find(|(key, _)| key.name == "dimensions");
     let keys =

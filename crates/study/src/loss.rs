@@ -1,4 +1,4 @@
-//! `[loss]` and `[setup]`: what deviations and rejects cost, and machines before the first part.
+//! Reads `[loss]` and `[setup]`: the costs of deviations and rejects, and of setting up machines.
 
 use super::error::{Fault, StudyFault, fault};
 use super::file::StudyFile;
@@ -7,7 +7,7 @@ use sensitol::allocation::{CostError, QualityLoss, SetUp};
 use sensitol::problem::Problem;
 use sensitol_numeric::names::nearest;
 
-/// The losses, in the order of the file.
+/// Losses, in the order of the file.
 pub(super) fn losses(file: &StudyFile, problem: &Problem) -> Result<Vec<QualityLoss>, Fault> {
     let characteristics = problem.characteristics();
     let mut losses = Vec::new();
@@ -54,7 +54,7 @@ pub(super) fn losses(file: &StudyFile, problem: &Problem) -> Result<Vec<QualityL
     Ok(losses)
 }
 
-/// The set-up costs, in the order of the file, of machines that some process needs.
+/// Set-up costs in the order of the file, of the machines that some process needs.
 pub(super) fn setups(file: &StudyFile) -> Result<Vec<SetUp>, Fault> {
     let processes =
         || file.costs.0.iter().filter_map(|(name, entry)| Some((name, entry.get_ref().processes.as_ref()?)));

@@ -1,4 +1,4 @@
-//! From `[model]` to what is evaluated: a built-in model or an external program.
+//! Reads `[model]`: a built-in model or an external program.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -16,10 +16,10 @@ use sensitol_external::{ForeignUnits, Greeting, Settings};
 use sensitol_models::Model;
 use sensitol_numeric::names::UnknownName;
 
-/// Most children side by side: more is a slip of the pen.
+/// Greatest number of workers. A greater one is most likely a typing error.
 const WORKERS: u64 = 1024;
 
-/// The model that a study evaluates beside its formulas.
+/// Model that a study evaluates beside its formulas.
 pub(super) enum ModelOf {
     BuiltIn(&'static Model),
     Program(Program),
@@ -27,10 +27,9 @@ pub(super) enum ModelOf {
     Host(Host),
 }
 
-/// An external program.
 pub(super) struct Program {
     settings: Settings,
-    /// The files that it depends on beside its arguments.
+    /// Files that the program depends on, besides its arguments.
     files: Vec<PathBuf>,
 }
 
@@ -42,14 +41,14 @@ impl ModelOf {
         }
     }
 
-    /// Whether it is asked for whatever the study does not write as a formula.
+    /// True if the model must answer every name that the study does not define. Only built-in models have fixed outputs.
     pub(super) fn is_external(&self) -> bool {
         self.built_in().is_none()
     }
 }
 
-/// The model of a study: the calling program's where there is one, and otherwise what `[model]` says.
-/// Where answers come from elsewhere, `open` characteristics, those without a formula, need no `[model]`.
+/// Model of a study: the function of the calling program, or else that of `[model]`. If answers come from elsewhere, characteristics
+/// without formula (`open`) need no `[model]`.
 pub(super) fn model(
     entry: Option<&Spanned<ModelEntry>>,
     open: bool,
@@ -65,7 +64,7 @@ pub(super) fn model(
         }
         _ if host.is_some() => Ok(host),
         None if open && source.externals.elsewhere() => {
-            // It has a name as every program, and is never started.
+            // The settings need some command, which is never started.
             let settings = Settings::new(["elsewhere"]);
             Ok(Some(ModelOf::Program(Program { settings, files: Vec::new() })))
         }
@@ -159,14 +158,14 @@ fn program(command: &Spanned<Vec<String>>, entry: &ModelEntry, source: &Source) 
     Ok(Program { settings, files })
 }
 
-/// A function of all dimensions, with `outputs` by name and unit.
+/// Signature of a function of all inputs, with `outputs` by name and unit.
 pub(super) fn signature(inputs: &[Input], outputs: Vec<(String, Option<String>)>) -> Signature {
     let outputs = outputs.into_iter().map(|(name, unit)| Output { name, unit, depends_on: None }).collect();
     Signature { inputs: inputs.to_vec(), outputs, ..Signature::default() }
 }
 
-/// The program as assembly function of this signature; its answers kept where the study is read to be evaluated, and its units held
-/// against those of the study where these are.
+/// Assembly function that the program answers. Its answers are kept in a journal if the settings name one. `held` is the handling of its
+/// units.
 pub(super) fn process(
     program: &Program,
     signature: Signature,
@@ -180,7 +179,7 @@ pub(super) fn process(
     started(program, signature, greeting, (source, held))
 }
 
-/// The program, and the journal that keeps its answers.
+/// Starts nothing yet: makes the process, with a journal if the settings name one.
 #[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
 fn started(
     program: &Program,
@@ -196,7 +195,7 @@ fn started(
     Ok(Arc::new(process))
 }
 
-/// In a browser no program is run.
+/// Fails: a browser runs no programs.
 #[cfg(all(target_family = "wasm", target_os = "unknown"))]
 fn started(
     program: &Program,

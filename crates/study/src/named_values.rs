@@ -1,4 +1,4 @@
-//! Lines that give a name a value: constants and unknowns.
+//! Types of constants and unknowns in a study file.
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! From `[analysis]` to options.
+//! Reads the options of `[analysis]`.
 
 use std::str::FromStr;
 
@@ -10,12 +10,12 @@ use sensitol::method::{Accuracies, MethodError, Options, Pairs};
 use sensitol::problem::Problem;
 use sensitol_numeric::names::{UnknownName, nearest};
 
-/// The value of this word under a key of `[analysis]`.
+/// Parses a word under a key of `[analysis]`.
 fn named<T: FromStr<Err = UnknownName>>(word: &Spanned<String>, key: &str) -> Result<T, Fault> {
     word.get_ref().parse().map_err(|unknown: UnknownName| fault(word.span(), format!("analysis.{key}"), unknown))
 }
 
-/// A share of assemblies that keep all limits at once: there are two characteristics with limits at least.
+/// Checks the target of the joint yield: a share between 0 and 1, in a study with at least two characteristics with limits.
 fn joint_target(target: &Spanned<f64>, problem: &Problem) -> Result<f64, Fault> {
     let value = *target.get_ref();
     let at = |found| fault(target.span(), "analysis.target_joint_yield", found);
@@ -30,7 +30,7 @@ fn joint_target(target: &Spanned<f64>, problem: &Problem) -> Result<f64, Fault> 
     Ok(value)
 }
 
-/// The problem with the pairs that are known to interact.
+/// Adds to the problem the pairs of dimensions with known products.
 pub(super) fn products(entry: &AnalysisEntry, problem: Problem) -> Result<Problem, Fault> {
     let Some(pairs) = &entry.products else { return Ok(problem) };
     let known: Vec<String> = problem.dimensions().iter().map(|dimension| dimension.name().to_owned()).collect();
@@ -106,7 +106,7 @@ pub(super) fn options(entry: &AnalysisEntry, problem: &Problem) -> Result<Option
     if let Some(derivatives) = &entry.derivatives {
         options.derivatives = Some(named(derivatives, "derivatives")?);
     }
-    // Whether the options fit each other and the study shows at its plan; what is at fault is most likely the pairs.
+    // A conflict that the single keys do not show is reported at the pairs first, since these are the most likely cause.
     options.method.procedure().check(problem, &options).map_err(|error| {
         let of_derivatives = entry.derivatives.as_ref().map(Spanned::span);
         let of_nodes = entry.nodes.as_ref().map(Spanned::span);

@@ -1,4 +1,4 @@
-//! Where the files are that a study names: in its folder, or in memory beside its text.
+//! Place of the files that a study names: its folder, or memory.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::externals::Externals;
 
-/// The two formats of one schema.
+/// Formats of study files. Both have the same keys.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Format {
@@ -16,7 +16,7 @@ pub enum Format {
     Json,
 }
 
-/// The text of a study, with the files that it names: nothing of it has to be on a disk.
+/// Text of a study, with the files that it names. Nothing needs to be on a disk.
 ///
 /// ```
 /// use sensitol_study::{Study, StudyText};
@@ -44,7 +44,7 @@ pub struct StudyText {
 }
 
 impl StudyText {
-    /// A text of this format; `name` stands for the file in errors.
+    /// Study text in this format. Errors show `name` in place of a file.
     pub(crate) fn new(format: Format, name: impl Into<String>, text: impl Into<String>) -> Self {
         Self {
             format,
@@ -57,67 +57,65 @@ impl StudyText {
         }
     }
 
-    /// TOML.
+    /// Study text in TOML. Errors show `name` in place of a file.
     pub fn toml(name: impl Into<String>, text: impl Into<String>) -> Self {
         Self::new(Format::Toml, name, text)
     }
 
-    /// JSON.
+    /// Study text in JSON. Errors show `name` in place of a file.
     pub fn json(name: impl Into<String>, text: impl Into<String>) -> Self {
         Self::new(Format::Json, name, text)
     }
 
-    /// With a file of measured values, named as the study names it. Once one is given, no other is looked for on a disk.
+    /// Adds a file under the name that the study has for it. With at least one such file, none is read from the disk.
     #[must_use]
     pub fn with_file(mut self, name: impl Into<String>, content: impl AsRef<[u8]>) -> Self {
         self.files.insert(name.into(), Arc::from(content.as_ref()));
         self
     }
 
-    /// In this folder, from which relative paths start; otherwise that is the current folder.
+    /// Sets the folder from which relative paths start. The default is the current folder.
     #[must_use]
     pub fn in_folder(self, folder: impl Into<PathBuf>) -> Self {
         Self { folder: folder.into(), ..self }
     }
 
-    /// With external programs treated like this.
+    /// Sets the treatment of external programs.
     #[must_use]
     pub fn with_externals(self, externals: Externals) -> Self {
         Self { externals, ..self }
     }
 
-    /// For a [sweep](sensitol::sweep) over the parameter of this name, as [`read_sweeping`](super::Study::read_sweeping).
+    /// Selects the parameter of a [sweep](sensitol::sweep), like [`read_sweeping`](super::Study::read_sweeping).
     #[must_use]
     pub fn sweeping(self, parameter: impl Into<String>) -> Self {
         Self { parameter: Some(parameter.into()), ..self }
     }
 }
 
-/// Where a study's files are.
+/// Place of the files of a study.
 #[derive(Debug, Clone)]
 pub(super) struct Place {
     folder: PathBuf,
-    /// By the names that the study has for them; None where they are files of the folder.
+    /// Files by the names in the study; None if they are read from the folder.
     memory: Option<Arc<BTreeMap<String, Arc<[u8]>>>>,
 }
 
 impl Place {
-    /// Files of a folder.
     pub(super) fn folder(folder: &Path) -> Self {
         Self { folder: folder.to_owned(), memory: None }
     }
 
-    /// Files in memory, or of this folder where there are none.
+    /// Files in memory, or of this folder if there are none in memory.
     pub(super) fn memory(files: BTreeMap<String, Arc<[u8]>>, folder: PathBuf) -> Self {
         Self { folder, memory: (!files.is_empty()).then(|| Arc::new(files)) }
     }
 
-    /// The folder that relative paths start from.
+    /// Folder from which relative paths start.
     pub(super) fn path(&self) -> &Path {
         &self.folder
     }
 
-    /// The bytes of a file.
     pub(super) fn read(&self, file: &str) -> Result<Arc<[u8]>, Unread> {
         match &self.memory {
             Some(files) => {
@@ -129,13 +127,13 @@ impl Place {
     }
 }
 
-/// Why a file has no bytes.
+/// Reasons why a file cannot be read.
 pub(super) enum Unread {
-    /// It is none of those in memory.
+    /// The file is not among those in memory.
     NotGiven {
-        /// Their names.
+        /// Names of the files in memory.
         known: Vec<String>,
     },
-    /// The operating system does not read it.
+    /// The operating system reports an error.
     Failed(std::io::Error),
 }

@@ -1,4 +1,4 @@
-//! `[costs]` and `require` as they are written.
+//! Types of `[costs]`, `[loss]` and `require` in a study file.
 
 use std::fmt;
 use std::ops::Range;
@@ -117,7 +117,7 @@ pub(super) struct ProcessEntry {
 }
 
 impl ProcessEntry {
-    /// The first key that says how its parts lie, with its place.
+    /// First key that states a distribution, with its place. Returns None if the process states none.
     pub(super) fn spread(&self) -> Option<(&'static str, Range<usize>)> {
         let span = |of: &Option<Spanned<f64>>| of.as_ref().map(Spanned::span);
         [

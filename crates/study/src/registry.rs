@@ -1,4 +1,4 @@
-//! The parts of a type's schema that come from elsewhere: the names that are registered, and forms that serde does not know.
+//! Parts of the schema that no `derive` can make: names from registries, and forms that serde does not derive.
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::{Map, Value, json};
@@ -10,77 +10,72 @@ use sensitol::plan::Stencil;
 use sensitol_external::Settings;
 use sensitol_models;
 
-/// The names of all methods.
 pub(super) fn methods() -> Vec<&'static str> {
     METHODS.iter().map(|method| method.name()).collect()
 }
 
-/// The names of all built-in models.
 pub(super) fn built_in_models() -> Vec<&'static str> {
     sensitol_models::ALL.iter().map(|model| model.name).collect()
 }
 
-/// How units are held.
+/// Modes of the check of units.
 pub(super) fn unit_modes() -> Vec<&'static str> {
     words::UNIT_MODES.to_vec()
 }
 
-/// The names of all stencils.
 pub(super) fn stencils() -> Vec<&'static str> {
     Stencil::NAMES.to_vec()
 }
 
-/// Which sensitivities can be asked for.
+/// Names of the choices of sensitivities.
 pub(super) fn sensitivities() -> Vec<&'static str> {
     SENSITIVITIES.to_vec()
 }
 
-/// The sources of derivatives.
 pub(super) fn derivatives() -> Vec<&'static str> {
     DerivativeSource::NAMES.to_vec()
 }
 
-/// How external programs are run unless the study says otherwise.
+/// Default settings of external programs.
 pub(super) fn program() -> Settings {
     Settings::new([""])
 }
 
-/// The kinds of distribution.
+/// Names of the kinds of distribution.
 pub(super) fn kinds() -> Vec<&'static str> {
     words::kinds().map(|(name, _)| name).collect()
 }
 
-/// The models of measured values.
+/// Names of the distributions for measured values.
 pub(super) fn measured_models() -> Vec<&'static str> {
     MEASURED_MODELS.to_vec()
 }
 
-/// The zones of a joint block.
+/// Names of the zones of a joint block.
 pub(super) fn zones() -> Vec<&'static str> {
     words::ZONES.to_vec()
 }
 
-/// The names of all cost models.
 pub(super) fn cost_models() -> Vec<&'static str> {
     CurveKind::NAMED.iter().map(|(name, _)| *name).collect()
 }
 
-/// Exactly one of these keys must be there.
+/// Condition that exactly one of these keys is given.
 pub(super) fn one_of<const N: usize>(keys: [&str; N]) -> Value {
     keys.iter().map(|key| json!({ "required": [key] })).collect()
 }
 
-/// A name, or a list of names.
+/// Schema of a name or a list of names.
 pub(super) fn names(_: &mut SchemaGenerator) -> Schema {
     json_schema!({ "anyOf": [{ "type": "string" }, { "type": "array", "items": { "type": "string" }, "minItems": 1 }] })
 }
 
-/// A zone or a length.
+/// Schema of a zone or a length.
 pub(super) fn zone(_: &mut SchemaGenerator) -> Schema {
     json_schema!({ "type": "number", "minimum": 0 })
 }
 
-/// A distribution, whose table is that of a dimension.
+/// Schema of a distribution as a word or a table with parameters.
 pub(super) fn word_or_table(_: &mut SchemaGenerator) -> Schema {
     let kind = json!({ "description": "The kind of distribution; beside it its parameters, as of a dimension.", "type": "string", "enum": kinds() });
     let table = json!({ "type": "object", "properties": { "kind": kind }, "required": ["kind"] });
@@ -91,7 +86,7 @@ pub(super) fn truth(_: &mut SchemaGenerator) -> Schema {
     json_schema!({ "type": "boolean" })
 }
 
-/// Where form deviations, or the mean of a process, lie.
+/// Schema of the side of a form deviation or of the mean of a process.
 pub(super) fn side(_: &mut SchemaGenerator) -> Schema {
     json_schema!({ "type": "string", "enum": ["out", "+", "-"] })
 }
@@ -104,12 +99,12 @@ fn diameter(what: &str) -> Value {
     json!({ "description": what, "anyOf": [{ "type": "string" }, { "type": "number", "minimum": 0 }] })
 }
 
-/// A table with some keys that it needs, and no others than these.
+/// Schema of a table with these keys only, some of them required.
 fn table(properties: Value, required: &[&str]) -> Value {
     json!({ "type": "object", "properties": properties, "required": required, "additionalProperties": false })
 }
 
-/// A diameter, or a table with a feature whose size widens the zone.
+/// Schema of `position`: a diameter, or a table with a feature whose size widens the zone.
 pub(super) fn position(_: &mut SchemaGenerator) -> Schema {
     let name = |what: &str| json!({ "description": what, "type": "string" });
     let frame = table(
@@ -126,7 +121,7 @@ pub(super) fn position(_: &mut SchemaGenerator) -> Schema {
     json_schema!({ "anyOf": [{ "type": "number" }, frame] })
 }
 
-/// Play between two sizes.
+/// Schema of `float`, the play between a hole and a pin.
 pub(super) fn float(_: &mut SchemaGenerator) -> Schema {
     let laws = json!({
         "description": "Where the pin lies: evenly along a line, on either side, always on one, evenly in the hole, on its wall in any direction.",
@@ -137,7 +132,7 @@ pub(super) fn float(_: &mut SchemaGenerator) -> Schema {
     Schema::try_from(table(sizes, &["hole", "pin"])).unwrap_or_default()
 }
 
-/// A round pin and a slot.
+/// Schema of `locate`, a round pin and a slot.
 pub(super) fn locate(_: &mut SchemaGenerator) -> Schema {
     let sizes = json!({
         "hole": diameter("The round hole."),
@@ -149,7 +144,7 @@ pub(super) fn locate(_: &mut SchemaGenerator) -> Schema {
     Schema::try_from(table(sizes, &["hole", "pin", "slot", "pin2", "distance"])).unwrap_or_default()
 }
 
-/// A zone, or a table with its part outside of the material.
+/// Schema of `profile`: a zone, or a table with its part outside of the material.
 pub(super) fn profile(_: &mut SchemaGenerator) -> Schema {
     let frame = table(
         json!({ "zone": size("Width of the zone."), "outward": size("Its part outside of the material.") }),
@@ -158,7 +153,7 @@ pub(super) fn profile(_: &mut SchemaGenerator) -> Schema {
     json_schema!({ "anyOf": [{ "type": "number", "minimum": 0 }, frame] })
 }
 
-/// A fixed or floating fastener.
+/// Schema of `fastener`, fixed or floating.
 pub(super) fn fastener(_: &mut SchemaGenerator) -> Schema {
     let two = |what: &str| json!({ "description": what, "type": "array", "items": { "type": "string" }, "minItems": 2, "maxItems": 2 });
     let keys = json!({
@@ -173,7 +168,7 @@ pub(super) fn fastener(_: &mut SchemaGenerator) -> Schema {
     Schema::try_from(table(keys, &["kind", "pin", "places"])).unwrap_or_default()
 }
 
-/// Tables of numbers by name, or a file of them.
+/// Schema of `[configurations]`: tables of numbers by name, or a file of them.
 pub(super) fn configurations(_: &mut SchemaGenerator) -> Schema {
     let place = json!({ "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 2 });
     let values = json!({ "type": "object", "additionalProperties": { "anyOf": [{ "type": "number" }, place] } });
@@ -186,7 +181,7 @@ pub(super) fn configurations(_: &mut SchemaGenerator) -> Schema {
     })
 }
 
-/// Lines of processes, or a file of such lines; keys as at a dimension.
+/// Schema of `[processes]`: lines with keys like those of a dimension, or a file of such lines.
 pub(super) fn processes<T: JsonSchema>(generator: &mut SchemaGenerator) -> Schema {
     let mut law = distribution::<T>(generator).to_value();
     law["description"] = json!("How it is distributed.");
@@ -210,7 +205,7 @@ pub(super) fn processes<T: JsonSchema>(generator: &mut SchemaGenerator) -> Schem
     ] })
 }
 
-/// The name of a kind, or a table with the parameters that it knows, of the type that has those of all kinds.
+/// Schema of `distribution`: the name of a kind, or one table for each kind with its own parameters. `T` has the parameters of all kinds.
 pub(super) fn distribution<T: JsonSchema>(generator: &mut SchemaGenerator) -> Schema {
     let all = T::json_schema(generator).to_value();
     let table = |(name, knows): (&'static str, &'static [&'static str])| {

@@ -1,4 +1,4 @@
-//! The actions to take on a fault of a study, and the texts to write instead.
+//! Remedies for the faults of a study: actions to take, and texts to write instead.
 
 use super::error::StudyFault;
 use super::slip::{Slip, percent};
@@ -13,12 +13,12 @@ use sensitol_numeric::inspection::InspectionError;
 use sensitol_numeric::requirement::RequirementError;
 
 impl StudyFault {
-    /// The actions to take, beside changing what is written.
+    /// Actions to take, besides changing the text of the study.
     pub fn advice(&self) -> Vec<Advice> {
         if let Self::Method(error) = self { error.advice() } else { Vec::new() }
     }
 
-    /// The text to write instead, where that can be said.
+    /// Text to write instead. Returns None if no general advice exists.
     pub(crate) fn help(&self) -> Option<String> {
         let meant = |name: &String| format!("did you mean `{name}`?");
         let one_of = |known: &[String]| format!("it is one of {}", known.join(", "));

@@ -1,7 +1,6 @@
-//! A study with other tolerances and nominal values, and otherwise as it was written, comments included.
+//! Rewrites a study with other tolerances and nominal values. Everything else stays as it was written, comments included.
 //!
-//! Only the numbers concerned are replaced in the text, at their places. The new text is read again and must hold the wanted
-//! values.
+//! Only the numbers concerned are replaced in the text. The new text is read again and must give the wanted dimensions.
 
 use std::ops::Range;
 
@@ -15,34 +14,34 @@ use sensitol::allocation::Offer;
 use sensitol::problem::Problem;
 use sensitol_numeric::dimension::Dimension;
 
-/// A study written anew.
+/// A rewritten study.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Rewritten {
-    /// The whole text.
+    /// Text of the whole study.
     pub text: String,
-    /// The entries that have changed, as they stand in it, each with its name.
+    /// Changed entries as text, each with its name.
     pub entries: String,
-    /// Dimensions whose fit of ISO 286 has become a plain tolerance.
+    /// Names of the dimensions whose fit of ISO 286 was replaced by a plain tolerance.
     pub replaced_fits: Vec<String>,
 }
 
-/// Why a study cannot be written anew.
+/// Reasons why a study cannot be rewritten.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RewriteError {
-    /// A form that does not scale by a number or two.
+    /// The entry has a form in which tolerances cannot be replaced.
     #[error("dimension `{dimension}` cannot be written anew: {why}; change it by hand")]
     ByHand {
         /// The dimension.
         dimension: String,
-        /// The reason that stands in the way.
+        /// Reason that the form gives.
         why: &'static str,
     },
-    /// The new text is not a study.
+    /// The new text cannot be read as a study.
     #[error("the study written anew cannot be read: {0}")]
     Unreadable(Box<StudyError>),
-    /// The new text has another meaning.
+    /// The new text gives another dimension than wanted.
     #[error("dimension `{dimension}` written anew is not what was wanted; change it by hand")]
     NotTheSame {
         /// The dimension.
@@ -50,25 +49,25 @@ pub enum RewriteError {
     },
 }
 
-/// Digits of a tolerance, cut off rather than rounded: what is written is never wider than what was found.
+/// Significant digits of a tolerance. They are cut off, not rounded, so that a written tolerance is never wider than the wanted one.
 const DIGITS: usize = 6;
-/// Decimals from which on numbers are written with an exponent.
+/// Greatest number of decimals that are written without an exponent.
 const LONGEST: i32 = 20;
-/// How far a tolerance that was read again may be off, relative.
+/// Relative tolerance of half-widths and sigmas that are read again. It covers the cut to six digits.
 const SAME: f64 = 1e-5;
-/// And a nominal value, in sigmas.
+/// Tolerance of nominal values and means that are read again, in sigmas.
 const SAME_PLACE: f64 = 1e-3;
-/// Shapes that differ by less are one.
+/// Relative tolerance within which two distributions count as the same.
 const ALIKE: f64 = 1e-9;
 
 impl Study {
-    /// The study with the tolerances and nominal values of `wanted`, a problem with the same dimensions.
+    /// Rewrites the study with the tolerances and nominal values of `wanted`, a problem with the same dimensions.
     ///
     /// Tolerances have six digits and are cut off, so that they are never wider than wanted; nominal values are rounded to a ten
     /// thousandth of their sigma.
     ///
     /// # Errors
-    /// When a dimension that has changed is a mixture of parts, or what was written does not say what was wanted.
+    /// Fails if a dimension that has changed is a mixture of parts, or if the new text does not give the wanted dimensions.
     ///
     /// ```
     /// use sensitol_study::Study;
@@ -83,13 +82,13 @@ impl Study {
         Ok(self.rewritten_and_read(wanted)?.0)
     }
 
-    /// The dimensions of a problem with the digits that its tolerances and nominal values have in a file; None where they cannot be written.
+    /// Dimensions of `wanted` with the digits that a file would hold. Returns None if the study cannot be rewritten.
     pub fn written_dimensions(&self, wanted: &Problem) -> Option<Vec<Dimension>> {
         let (_, read) = self.rewritten_and_read(wanted).ok()?;
         Some(read.problem.dimensions().to_vec())
     }
 
-    /// The text, and the study that it is.
+    /// Rewrites the study and reads the result.
     fn rewritten_and_read(&self, wanted: &Problem) -> Result<(Rewritten, Self), RewriteError> {
         let tree = self.tree();
         let lines = tree.as_ref().and_then(|tree| tree.entry("dimensions"));
@@ -101,7 +100,7 @@ impl Study {
                 continue;
             }
             let name = old.zone().unwrap_or(old.name());
-            // Of a relative dimension the study writes its own part under its name.
+            // The study writes a relative dimension `a` as `a`, and the problem holds its own part as `a.own`.
             let own = name.strip_suffix(".own").filter(|_| lines.is_some_and(|lines| lines.entry(name).is_none()));
             let name = own.unwrap_or(name);
             if changed.contains(&name) {
@@ -118,6 +117,7 @@ impl Study {
                 replaced_fits.push(name.to_owned());
             }
         }
+        // Assemble the new text from the old one and the replacements, in the order of their places.
         edits.sort_by_key(|(place, _)| (place.start, place.end));
         let (mut text, mut at) = (String::with_capacity(self.text.len()), 0);
         for (place, new) in &edits {
@@ -126,6 +126,7 @@ impl Study {
             at = place.end;
         }
         text += &self.text[at..];
+        // Read the text again, since a wrong replacement must not go unnoticed.
         let read = self.read_again(&text)?;
         for (found, new) in read.problem.dimensions().iter().zip(wanted.dimensions()) {
             let band = found.half_band() <= new.half_band() * (1.0 + 1e-12)
@@ -140,7 +141,7 @@ impl Study {
         Ok((Rewritten { text, entries, replaced_fits }, read))
     }
 
-    /// The dimension with the cost and the name of the process that makes this one so, where it says how its parts lie.
+    /// Name of the dimension with the cost, and of the process that gives the new distribution. Returns None if no process does.
     fn process_of(&self, d: usize, new: &Dimension) -> Option<(&str, &str)> {
         let group = self.costs.iter().find(|group| group.members.contains(&d))?;
         let place = group.members.iter().position(|&member| member == d)?;
@@ -149,7 +150,7 @@ impl Study {
         Some((self.problem.dimensions()[group.members[0]].name(), process))
     }
 
-    /// The tree of the text that it was read from.
+    /// Tree of the text that the study was read from.
     pub(super) fn tree(&self) -> Option<Tree> {
         match self.format {
             Format::Toml => Tree::of_toml(&self.text).ok(),
@@ -163,7 +164,7 @@ impl Study {
             .map_err(|error| RewriteError::Unreadable(Box::new(error)))
     }
 
-    /// The entries of these dimensions as they are written.
+    /// Text of the entries with these names.
     fn entries(&self, names: &[&str]) -> String {
         let tree = self.tree();
         let lines = tree.as_ref().and_then(|tree| tree.entry("dimensions"));
@@ -176,7 +177,7 @@ impl Study {
             let name = &self.text[key.span.clone()];
             let written = match self.text[line.span.clone()].starts_with('{') {
                 true => self.text[line.span.clone()].to_owned(),
-                // A section of its own, as the table that it is.
+                // A section of its own, such as [dimensions.a], is shown as a table on one line.
                 false => inline(&self.text, line),
             };
             text += &write::entry(self.format, name, widest - width(key), &written);
@@ -185,10 +186,10 @@ impl Study {
     }
 }
 
-/// Keys that say how parts lie within a band.
+/// Keys of the distribution within a band.
 const SPREAD: [&str; 9] = ["process", "cp", "cpk", "sigma", "sigmas", "side", "drift", "shift", "distribution"];
 
-/// The keys by which a process of a list of costs says how its parts lie.
+/// Distribution keys of one process in the costs of a dimension.
 fn spread_of<'t>(tree: &'t Tree, cost: &str, process: &str) -> Option<Vec<&'t (Key, Tree)>> {
     let Value::Array(list) = &tree.entry("costs")?.entry(cost)?.entry("processes")?.value else { return None };
     let is_named =
@@ -197,7 +198,7 @@ fn spread_of<'t>(tree: &'t Tree, cost: &str, process: &str) -> Option<Vec<&'t (K
     Some(keys.iter().filter(|(key, _)| SPREAD.contains(&key.name.as_str())).collect())
 }
 
-/// Whether two dimensions lie alike within bands of the same width about their nominal values.
+/// True if two dimensions have the same band width and the same distribution relative to the nominal value.
 fn alike(a: &Dimension, b: &Dimension) -> bool {
     let (Some(of), Some(found)) = (a.distribution(), b.distribution()) else { return false };
     let offset = |of: &Dimension| (of.mean() - of.nominal()) / of.sigma();
@@ -208,7 +209,7 @@ fn alike(a: &Dimension, b: &Dimension) -> bool {
         && of.iter().zip(found).all(|(&a, b)| a.is_nan() && b.is_nan() || near(a, b))
 }
 
-/// A table of its own on one line.
+/// Text of a section as a table on one line.
 fn inline(text: &str, line: &Tree) -> String {
     let Value::Table(keys) = &line.value else { return String::new() };
     let of = |span: &Range<usize>| &text[span.clone()];
@@ -222,19 +223,19 @@ impl Tree {
     }
 }
 
-/// The entry of one dimension, or of a position.
+/// Entry of a dimension or of a position, with the old and the new dimension.
 struct Entry<'a> {
     text: &'a str,
     format: Format,
     line: &'a Tree,
     old: &'a Dimension,
     new: &'a Dimension,
-    /// The keys of the process that says how its parts lie.
+    /// Distribution keys of the process; None if the distribution does not change.
     spread: Option<Vec<&'a (Key, Tree)>>,
 }
 
 impl Entry<'_> {
-    /// The replacements; true where a fit has become a tolerance.
+    /// Adds the replacements for this entry. Returns true if a fit was replaced by a tolerance.
     fn edits(&self, edits: &mut Vec<(Range<usize>, String)>) -> Result<bool, RewriteError> {
         let by_hand = |why| RewriteError::ByHand { dimension: self.old.name().to_owned(), why };
         let Value::Table(keys) = &self.line.value else { return Err(by_hand("it is no table")) };
@@ -264,7 +265,7 @@ impl Entry<'_> {
                     replace(self.deviation(&value.value, width, width, false));
                 }
                 ("tolerance", _) if scales => replace(half.clone()),
-                // Written as zones; what is none of these bands has formulas of its own.
+                // These keys hold the whole width of a zone. The other geometric elements have formulas of their own and no plain band.
                 (
                     "position" | "profile" | "symmetry" | "flatness" | "straightness" | "roundness" | "cylindricity"
                     | "runout" | "total_runout" | "coaxiality" | "concentricity",
@@ -315,7 +316,7 @@ impl Entry<'_> {
         Ok(fit)
     }
 
-    /// The keys of the line that say how its parts lie give way to those of the process.
+    /// Replaces the distribution keys of the entry by those of the process.
     fn respread(&self, keys: &[(Key, Tree)], spread: &[&(Key, Tree)], edits: &mut Vec<(Range<usize>, String)>) {
         let inline = self.text[self.line.span.clone()].starts_with('{');
         let between = if inline { ", " } else { "\n" };
@@ -339,7 +340,7 @@ impl Entry<'_> {
         }
     }
 
-    /// The nominal of a built-in model, written where it moves.
+    /// Inserts a nominal value that the entry has left to the built-in model.
     fn insert_nominal(&self, keys: &[(Key, Tree)], nominal: &str, edits: &mut Vec<(Range<usize>, String)>) {
         let inline = self.text[self.line.span.clone()].starts_with('{');
         let at = keys.first().map_or(self.line.span.start + 1, |(key, _)| key.span.start);
@@ -349,7 +350,7 @@ impl Entry<'_> {
         edits.push((at..at, text));
     }
 
-    /// Text and value of the new nominal: to a ten thousandth of sigma, where it has moved.
+    /// Text and value of the new nominal, rounded to a ten thousandth of sigma if it has changed.
     fn nominal(&self) -> (String, f64) {
         let value = self.new.nominal();
         if self.old.nominal() == value {
@@ -367,13 +368,13 @@ impl Entry<'_> {
         (text, rounded)
     }
 
-    /// The band with `factor` times its width.
+    /// Deviations of the band with `factor` times its width.
     fn band(&self, factor: f64) -> [f64; 2] {
         self.old.opened(self.old.tolerance().unwrap_or_else(|| self.old.reach()), factor)
     }
 
-    /// An end of the band in the way in which the old one is written, as a number or in percent of the nominal: rounded towards
-    /// the inside of a band of this half width.
+    /// Text of one deviation in the form of the old one: a number, or percent of the nominal. It is rounded towards the inside of a band of
+    /// half-width `width`.
     fn deviation(&self, written: &Value, end: f64, width: f64, up: bool) -> String {
         match written {
             Value::Text(_) => {
@@ -385,12 +386,12 @@ impl Entry<'_> {
     }
 }
 
-/// A number with the digits that make six of `scale`, rounded up or down, without zeros at the end.
+/// Text of a number with [`DIGITS`] significant digits relative to `scale`, rounded up or down, without trailing zeros.
 fn rounded(value: f64, scale: f64, up: bool) -> String {
     if scale == 0.0 || !value.is_finite() {
         return "0.0".to_owned();
     }
-    // A value that is a round number but for rounding is that number.
+    // The blur keeps a round number that misses its last digit by floating-point rounding only.
     let magnitude = libm::log10(scale.abs() * (1.0 + 8.0 * f64::EPSILON)).floor() as i32;
     let decimals = DIGITS as i32 - 1 - magnitude;
     let inside = |scaled: f64| {
@@ -418,9 +419,9 @@ fn rounded(value: f64, scale: f64, up: bool) -> String {
     }
 }
 
-/// A number rounded to this many decimals.
+/// Rounds a number to this many decimals, which may be negative.
 fn in_tenths(value: f64, decimals: i32, round: impl Fn(f64) -> f64) -> f64 {
-    // A decimal text is a double with no more than one rounding, however many decimals there are.
+    // The decimal exponent goes through text: parsing rounds once only, however many decimals there are.
     let whole = round(value * power_of_ten(decimals));
     format!("{whole}e{}", -decimals).parse().unwrap_or(value)
 }
@@ -429,7 +430,7 @@ fn power_of_ten(decimals: i32) -> f64 {
     format!("1e{decimals}").parse().unwrap_or(f64::NAN)
 }
 
-/// Six digits, rounded down.
+/// Text of a number cut to [`DIGITS`] significant digits.
 fn cut(value: f64) -> String {
     rounded(value, value, false)
 }

@@ -1,7 +1,7 @@
-//! The JSON Schema of study files, from the types that read them.
+//! JSON Schema of study files, from the types that read them.
 //!
-//! A new key of a study needs nothing here: its type's `derive` and its doc comment make its schema. The forms that serde does
-//! not know, such as a number or a pair of numbers, and the words that a registry knows are written by hand.
+//! A new key of a study needs nothing here: the `derive` and the doc comment of its type make its schema. Some schemas are written by hand:
+//! forms that serde does not derive, such as a number or a pair of numbers, and the words of a registry.
 
 use std::borrow::Cow;
 
@@ -19,7 +19,7 @@ use sensitol::method::Pairs;
 
 /// The schema of study files, draft 2020-12, in TOML and JSON alike.
 ///
-/// A study that it accepts is well formed; whether formulas, names and numbers fit each other only [`Study`](super::Study) knows.
+/// A study that it accepts is well formed. Only [`Study`](super::Study) checks that formulas, names and numbers fit each other.
 pub fn schema() -> Value {
     let schema = SchemaSettings::draft2020_12().into_generator().into_root_schema_for::<StudyFile>();
     let mut schema = schema.to_value();
@@ -27,7 +27,7 @@ pub fn schema() -> Value {
     schema
 }
 
-/// A key that may be left out is not a key that may be null; and the width of a number is ours alone.
+/// Removes the parts that schemars adds for Rust types: null for optional keys, and the formats of numbers.
 fn tidy(value: &mut Value) {
     match value {
         Value::Object(object) => {
@@ -54,7 +54,7 @@ fn tidy(value: &mut Value) {
                     _ => _ = object.insert("anyOf".to_owned(), present.into()),
                 }
             }
-            // A key that is left out has a default, but this is not null.
+            // An omitted key has a default other than null.
             if object.get("default") == Some(&Value::Null) {
                 object.remove("default");
             }
@@ -105,7 +105,7 @@ impl JsonSchema for ToleranceEntry {
     }
 }
 
-/// A number and a percent sign.
+/// Pattern of a number with a percent sign.
 const PERCENT: &str = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*%\s*$";
 
 impl JsonSchema for Deviation {

@@ -1,31 +1,31 @@
-//! Words that people type by habit, and those that a study writes instead.
+//! Habitual typing mistakes, and the text that a study needs instead.
 
 use std::fmt;
 use std::ops::Range;
 
-/// The probable meaning of a fault.
+/// Probable mistake behind a fault.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Slip {
-    /// A comma in a number.
+    /// A decimal comma.
     DecimalComma {
-        /// As written.
+        /// The number as written.
         found: String,
     },
-    /// Quotes that turn.
+    /// Typographic quotes.
     CurlyQuotes,
-    /// A minus sign or a dash of typesetting.
+    /// A typographic minus sign or dash.
     TypesetMinus,
-    /// Two entries of a table or a list without a comma between them.
+    /// A missing comma between two entries of a table or a list.
     MissingComma,
     /// A number in quotes.
     QuotedNumber {
-        /// Without the quotes.
+        /// The number without the quotes.
         number: String,
     },
     /// A command line in one text.
     CommandLine {
-        /// Its words.
+        /// Words of the command line.
         words: Vec<String>,
     },
 }
@@ -48,7 +48,7 @@ impl fmt::Display for Slip {
 }
 
 impl Slip {
-    /// The probable meaning of a text that no parser reads, with a fault at this place, of which the parser says this.
+    /// Probable mistake in a text that the parser refused at this place with this message. Returns None if none is likely.
     pub(super) fn of_syntax(text: &str, at: &Range<usize>, message: &str) -> Option<Self> {
         let start = text.get(..at.start)?.rfind('\n').map_or(0, |newline| newline + 1);
         let line = text[start..].lines().next().unwrap_or_default();
@@ -64,7 +64,7 @@ impl Slip {
         }
     }
 
-    /// The probable meaning of a value that is of the wrong kind.
+    /// Probable mistake in a value of the wrong kind. Returns None if none is likely.
     pub(super) fn of_value(expected: &str, found: &str) -> Option<Self> {
         let text = found.strip_prefix("the text \"")?.strip_suffix('"')?;
         if expected.starts_with("a list such as") {
@@ -81,7 +81,7 @@ impl Slip {
     }
 }
 
-/// A number with a comma in it that ends at this place of the line, or holds it.
+/// Number with a comma in it that holds this place of the line or ends there.
 fn decimal_comma(line: &str, here: usize) -> Option<String> {
     let digit = |c: char| c.is_ascii_digit();
     for (comma, _) in line.match_indices(',') {
@@ -96,7 +96,7 @@ fn decimal_comma(line: &str, here: usize) -> Option<String> {
     None
 }
 
-/// Percents as a share, without the digits that a division adds.
+/// Share that equals a percentage, without the rounding of a division.
 pub(super) fn percent(value: f64) -> f64 {
     format!("{value}e-2").parse().unwrap_or(value / 100.0)
 }

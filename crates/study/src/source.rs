@@ -1,4 +1,4 @@
-//! The text of a study file, and places in it.
+//! Text of a study file, and places in it.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -8,20 +8,20 @@ use super::externals::Externals;
 use super::place::Place;
 use sensitol::assembly::formula::FormulaError;
 
-/// A study file's name and text.
+/// Name and text of a study file, with the settings for its files and programs.
 #[derive(Clone)]
 pub(super) struct Source {
     pub(super) name: String,
     pub(super) text: Arc<str>,
-    /// Where the files are that it names.
+    /// Place of the files that the study names.
     pub(super) place: Place,
     pub(super) externals: Externals,
 }
 
 impl Source {
-    /// The place in the file of a range of a decoded string, whose literal with its quotes stands at `literal`.
+    /// Range in the file of a range of a decoded string, whose literal with its quotes is at `literal`.
     ///
-    /// Every escape is one character of the string; a line break right after a triple quote is none.
+    /// Every escape is one character of the string. A line break right after a triple quote is no character.
     pub(super) fn within_string(&self, literal: Range<usize>, decoded: Range<usize>) -> Range<usize> {
         let raw = &self.text[literal.clone()];
         let quote = ["\"\"\"", "'''", "\"", "'"].into_iter().find(|quote| raw.starts_with(quote)).unwrap_or("");
@@ -34,7 +34,7 @@ impl Source {
     }
 }
 
-/// Bytes of a literal's body before the decoded byte `target`.
+/// Number of bytes in a literal's body before the decoded byte `target`.
 fn raw_offset(body: &str, target: usize, escapes: bool) -> usize {
     let (mut raw, mut decoded) = (0, 0);
     while decoded < target && raw < body.len() {
@@ -50,7 +50,7 @@ fn raw_offset(body: &str, target: usize, escapes: bool) -> usize {
             Some('u') => 4,
             Some('U') => 8,
             Some(c) if c.is_whitespace() => {
-                // A TOML line continuation swallows all white space that follows.
+                // A TOML line continuation removes all white space that follows.
                 raw += 1 + rest[1..].len() - rest[1..].trim_start().len();
                 continue;
             }
@@ -63,7 +63,7 @@ fn raw_offset(body: &str, target: usize, escapes: bool) -> usize {
     raw
 }
 
-/// A fault within a formula, at its place in the file.
+/// Fault within a formula, at its place in the file.
 pub(super) fn in_formula(source: &Source, text: Range<usize>, key: String, error: FormulaError) -> Fault {
     let span = source.within_string(text, error.span);
     fault(span, key, StudyFault::Formula(error.fault))

@@ -1,15 +1,15 @@
-//! A study in several of its configurations at once: the same dimensions with the same tolerances, every characteristic in each.
+//! Combines several configurations of a study: the dimensions and tolerances are shared, and every characteristic occurs once for each.
 
 use super::Study;
 use sensitol::allocation::QualityLoss;
 use sensitol::problem::{Problem, ProblemError};
 
 impl Study {
-    /// The study with every characteristic once in each of these configurations of it, named `gap [hot]`: what is required is required in all
-    /// of them, by the same tolerances. Nominal values are those of the study itself; a configuration moves them, and sets constants.
+    /// The study with every characteristic once for each of these configurations of it, named `gap [hot]`. All requirements apply in each
+    /// of them, with the same tolerances. Nominal values are those of the study itself; a configuration moves them, and sets constants.
     ///
     /// # Errors
-    /// When a dimension has another tolerance in one of them, as percent of a nominal value have.
+    /// Fails if a dimension has another tolerance in a configuration, which happens for percentages of a nominal value.
     ///
     /// ```
     /// use sensitol_study::Study;

@@ -1,4 +1,4 @@
-//! A study file as a sweep reads it: the swept parameter is a dimension, whatever it was.
+//! Prepares a study file for a sweep: the swept parameter becomes a dimension.
 
 use super::dimension;
 use super::error::{Fault, StudyFault, fault};
@@ -23,7 +23,7 @@ pub(super) fn as_dimension(file: &mut StudyFile, name: &str) -> Result<(), Fault
         (Some(at), _) => {
             let key = file.constants.0[at].0.clone();
             if model.is_some_and(|model| model.command.is_some()) {
-                // A program is told constants once, and dimensions at every point.
+                // A program receives constants once only, but dimensions at every point.
                 let (what, instead) = ("a constant of a program".to_owned(), "make it a dimension without tolerance");
                 let does_not = StudyFault::DoesNotApply { key: "sweep", to: what, instead };
                 return Err(fault(key.span(), format!("constants.{name}"), does_not));

@@ -1,4 +1,4 @@
-//! `[[correlation]]` and `[[joint]]` as they are written.
+//! Types of `[[correlation]]` and `[[joint]]` in a study file.
 
 use std::fmt;
 

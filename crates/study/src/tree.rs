@@ -1,4 +1,4 @@
-//! TOML and JSON as one tree of values that know where they stand.
+//! TOML and JSON as one tree of values with their places in the file.
 
 use std::ops::Range;
 
@@ -23,7 +23,7 @@ pub(super) enum Value {
     Number(f64),
     Integer(i64),
     Truth(bool),
-    /// Something that studies have no use for: a date, or null.
+    /// A value that studies do not use: a date, or null.
     Other(&'static str),
 }
 
@@ -35,7 +35,7 @@ pub(super) struct Key {
 }
 
 impl Tree {
-    /// Leaves out what stands at this path, with a list that it stands in; whether there was such a thing.
+    /// Removes the value at this path, or the innermost list that holds it. Returns true if the path begins at an entry of this table.
     pub(super) fn remove(&mut self, path: &[String]) -> bool {
         let Some((first, rest)) = path.split_first() else { return false };
         let Value::Table(entries) = &mut self.value else { return false };
@@ -143,7 +143,7 @@ fn json_value(value: &ast::Value<'_>) -> Result<Tree, Fault> {
     Ok(Tree { span, value })
 }
 
-/// JSON lets a key stand twice; a study does not.
+/// JSON permits a repeated key. A study does not.
 fn json_object(object: &ast::Object<'_>) -> Result<Value, Fault> {
     let mut entries: Vec<(Key, Tree)> = Vec::with_capacity(object.properties.len());
     let mut seen = std::collections::HashSet::new();

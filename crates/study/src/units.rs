@@ -1,4 +1,4 @@
-//! How a study holds its units: not at all, with a warning, as errors, or by conversion.
+//! Units of a study: ignored, checked with a warning, checked as errors, or converted.
 
 use std::collections::HashMap;
 
@@ -25,17 +25,17 @@ enum Mode {
     Convert,
 }
 
-/// The units of a study, and how they are held.
+/// Units of the names in a study, and the mode of their check.
 pub(super) struct Units {
     mode: Mode,
-    /// Of dimensions, constants, unknowns and outputs of the model.
+    /// Units of dimensions, constants, unknowns, outputs of the model, and formulas that declare one.
     named: HashMap<String, Unit>,
     unknown: Option<Warning>,
-    /// The roles of the formulas: the named ones, then those of the conditions.
+    /// Roles of the formulas, first of the named ones, then of the conditions.
     roles: Vec<Role>,
-    /// Where they stand: key and text, and where the text stands in the file.
+    /// Keys, names and places of the formulas, in the same order.
     places: Vec<Place>,
-    /// Factors of the model's inputs, and of its outputs.
+    /// Factors from the units of the study to those of the model, of its inputs and of its outputs.
     factors: [Vec<f64>; 2],
     source: Source,
 }
@@ -47,7 +47,7 @@ struct Place {
 }
 
 impl Units {
-    /// Reads all units; what the model's border asks for is checked here.
+    /// Reads all units. Inputs and outputs of a built-in model are checked against its own units here.
     pub(super) fn of(
         file: &StudyFile,
         model: Option<&Model>,
@@ -67,7 +67,7 @@ impl Units {
             of_unknowns.filter_map(|(name, one)| Some((name.get_ref().as_str(), one.get_ref().unit.as_deref()?))),
         );
         match model {
-            // Where it is converted, its name means the characteristic everywhere.
+            // With conversion the name of an output means the characteristic everywhere, in the unit that the study asks for.
             Some(model) => texts.extend(model.outputs.iter().map(|output| {
                 let asked = file.characteristics.0.iter().find(|(name, _)| name.get_ref() == output.name);
                 let asked = asked.and_then(|(_, one)| one.get_ref().unit.as_deref()).filter(|_| mode == Mode::Convert);
@@ -104,7 +104,7 @@ impl Units {
         Ok(units)
     }
 
-    /// The warnings of units, or the faults.
+    /// Checks the units of all formulas. Returns warnings, or faults if the mode is stricter.
     pub(super) fn check(&self, composite: &Composite) -> Result<Vec<Warning>, Faults> {
         if self.mode == Mode::Labels {
             return Ok(Vec::new());
@@ -125,7 +125,7 @@ impl Units {
         faults.none().map(|()| self.unknown.iter().cloned().collect())
     }
 
-    /// The first finding, with the other formulas.
+    /// Warning of the first finding, with the names of the other formulas. Returns None if there is no finding.
     fn warning(&self, findings: Vec<UnitFinding>) -> Option<Warning> {
         let mut findings = findings;
         findings.sort_by_key(|finding| finding.formula);
@@ -139,7 +139,7 @@ impl Units {
         Some(Warning::UnitMismatch { formula, column, part, what, instead: remedy, others })
     }
 
-    /// The text of a formula, without its quotes.
+    /// Text of a formula without its quotes.
     fn text(&self, formula: usize) -> String {
         let raw = &self.source.text[self.places[formula].span.clone()];
         let quote = ["\"\"\"", "'''", "\"", "'"].into_iter().find(|quote| raw.starts_with(quote)).unwrap_or("");
@@ -147,14 +147,14 @@ impl Units {
         if quote.len() == 3 { body.strip_prefix('\n').unwrap_or(body).to_owned() } else { body.to_owned() }
     }
 
-    /// Factors of the inputs and outputs of a built-in model; other units than its own are converted, or faults.
+    /// Factors of the inputs and outputs of a built-in model. A unit other than the model's is converted or is a fault.
     fn border(&self, file: &StudyFile, model: &Model) -> Result<[Vec<f64>; 2], Faults> {
         let mut faults = Faults::default();
         let mut differs = |name: &str, given: &str, own: &str, of: &str, span: std::ops::Range<usize>, key: String| {
             let (Some(unit), Some(models)) = (Unit::parse(given), Unit::parse(own)) else { return 1.0 };
             let factor = unit.scale / models.scale;
             let same = (factor - 1.0).abs() <= SAME;
-            // Of two temperature scales with other zeros there is a difference in place of a factor.
+            // Temperature scales with different zeros differ by an offset, so no factor converts them.
             let kind = unit.same_kind(&models) && unit.point == models.point;
             if kind && (same || self.mode == Mode::Convert && !unit.point) {
                 return if same { 1.0 } else { factor };
@@ -198,12 +198,12 @@ impl Units {
         faults.none().map(|()| [factors, outputs])
     }
 
-    /// Factors of the model's inputs, and of its outputs.
+    /// Factors of the model's inputs and of its outputs.
     pub(super) fn factors(&self) -> [Vec<f64>; 2] {
         self.factors.clone()
     }
 
-    /// The formulas in SI, with their results in their own units; None where nothing is converted.
+    /// Formulas in SI units, with their results in the declared units. Returns None if nothing is converted.
     pub(super) fn converted<'f>(&self, written: &Written<'f>) -> Option<Written<'f>> {
         if self.mode != Mode::Convert {
             return None;
@@ -229,7 +229,7 @@ impl Units {
     }
 }
 
-/// How an external program's units that are not the study's are taken; a wrong mode is said elsewhere.
+/// Handling of units of an external program. An unknown mode is reported elsewhere.
 pub(super) fn foreign(file: &StudyFile) -> ForeignUnits {
     match mode(file) {
         Ok(Mode::Warn | Mode::Check) => ForeignUnits::Refused,
@@ -266,7 +266,7 @@ fn unknown_unit(mode: Mode, unknown: &[(&str, &str)]) -> Option<Warning> {
     Some(Warning::UnknownUnit { units })
 }
 
-/// The role of every formula.
+/// Roles of all formulas in the check of units.
 fn roles(model: Option<&Model>, written: &Written<'_>) -> Vec<Role> {
     let of_named = |named: &Named<'_>| {
         let input = model.and_then(|model| model.inputs.iter().find(|input| input.name == named.name));

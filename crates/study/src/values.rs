@@ -1,25 +1,25 @@
-//! Numbers that can be written in several ways.
+//! Numbers that a study can give in several forms.
 
 use std::fmt;
 
 use serde::de::{self, SeqAccess, Unexpected, Visitor, value};
 use serde::{Deserialize, Deserializer};
 
-/// `50.0`, or `[50.0, 30.0]` of a position.
+/// Nominal value: `50.0`, or `[50.0, 30.0]` of a position.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum NominalEntry {
     One(f64),
     Two([f64; 2]),
 }
 
-/// `0.3` or `[-0.1, 0.3]`, each a number or a part of the nominal.
+/// Tolerance: `0.3` or `[-0.1, 0.3]`, each a number or a percentage of the nominal.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum ToleranceEntry {
     Half(Deviation),
     Deviations([Deviation; 2]),
 }
 
-/// `0.3` or `"2%"`.
+/// Deviation: `0.3` or `"2%"`.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Deviation {
     Value(f64),
@@ -27,7 +27,7 @@ pub(super) enum Deviation {
 }
 
 impl ToleranceEntry {
-    /// Whether it says that there is no tolerance.
+    /// True if the tolerance is 0.
     pub(super) fn is_zero(&self) -> bool {
         let zero = |deviation: &Deviation| matches!(deviation, Deviation::Value(0.0) | Deviation::Percent(0.0));
         match self {
@@ -93,7 +93,7 @@ impl<'de> Deserialize<'de> for Deviation {
     }
 }
 
-/// A finite number with a percent sign.
+/// Parses a finite number with a percent sign.
 fn percent(text: &str) -> Option<Deviation> {
     let number = text.trim().strip_suffix('%')?.trim_end();
     number.parse().ok().filter(|value: &f64| value.is_finite()).map(Deviation::Percent)

@@ -1,22 +1,22 @@
-//! Words and numbers of study files that their types, their readers and their schema share.
+//! Words and numbers of study files that their types, readers and schema share.
 
-/// Sigmas that half a tolerance band has unless the study says otherwise.
+/// Default number of sigmas in half a tolerance band.
 pub(super) const SIGMAS: f64 = 3.0;
-/// The models of measured values; the first one unless the study says otherwise.
+/// Distributions for measured values. The first is the default.
 pub(super) const MEASURED_MODELS: [&str; 2] = ["empirical", "pearson"];
-/// Which sensitivities can be asked for.
+/// Choices of `sensitivities`.
 pub(super) const SENSITIVITIES: [&str; 2] = ["all", "varying"];
-/// The requirements that have a name.
+/// Requirements that are named by a word.
 pub(super) const REQUIREMENTS: [&str; 2] = ["worst-case", "rss"];
-/// The form of `[[correlation]]`.
+/// Form of `[[correlation]]`, for faults.
 pub(super) const CORRELATIONS: &str = "a list, each pair of dimensions below its own [[correlation]],";
 
-/// The form of `[[joint]]`.
+/// Form of `[[joint]]`, for faults.
 pub(super) const BLOCKS: &str = "a list, each block of dimensions below its own [[joint]],";
-/// The zones of `[[joint]]`.
+/// Zones of `[[joint]]`.
 pub(super) const ZONES: [&str; 3] = ["disc", "rim", "diamond"];
 
-/// A kind of distribution by its name in study files.
+/// Kind of distribution in study files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Normal,
@@ -37,11 +37,11 @@ pub(super) enum Kind {
     Rayleigh,
     Mixture,
     Tabulated,
-    /// Told by the key `moments`, not by a name.
+    /// Distribution by the key `moments`, which has no name.
     Moments,
 }
 
-/// Name, the parameters that a kind knows, and what to write instead of others.
+/// Name and kind of a distribution, its parameters, and the text to write instead of others.
 pub(super) type KnownKind = (&'static str, Kind, &'static [&'static str], &'static str);
 
 const NOTHING: &str = "it has no parameters of its own";
@@ -67,10 +67,10 @@ pub(super) const KINDS: [KnownKind; 18] = [
     ("tabulated", Kind::Tabulated, &["scores", "values"], "it knows `scores` and `values`"),
 ];
 
-/// The names of all kinds, with the parameters that each knows.
+/// Names of all kinds, with their parameters.
 pub(super) fn kinds() -> impl Iterator<Item = (&'static str, &'static [&'static str])> {
     KINDS.iter().map(|known| (known.0, known.2))
 }
 
-/// How units are held, the second where nothing is said.
+/// Modes of the check of units. The second is the default.
 pub(super) const UNIT_MODES: [&str; 4] = ["labels", "warn", "check", "convert"];

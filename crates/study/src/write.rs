@@ -1,9 +1,9 @@
-//! How parts of a study are written, in TOML and in JSON: nothing else writes either.
+//! Writes parts of a study in TOML and JSON. No other module writes either.
 
 use super::place::Format;
 use super::tree::{Tree, Value};
 
-/// A key with its value, both as they are written.
+/// Text of a key with its value. Both are given as text of the format.
 pub fn pair(format: Format, key: &str, value: &str) -> String {
     match format {
         Format::Toml => format!("{key} = {value}"),
@@ -11,7 +11,7 @@ pub fn pair(format: Format, key: &str, value: &str) -> String {
     }
 }
 
-/// An entry of a table below others: its name as it is written, and its value after `pad` more columns.
+/// Text of an entry in a table of entries. `pad` spaces align its value with those of the others.
 pub(super) fn entry(format: Format, name: &str, pad: usize, value: &str) -> String {
     match format {
         Format::Toml => format!("{name}{:pad$} = {value}\n", ""),
@@ -19,18 +19,18 @@ pub(super) fn entry(format: Format, name: &str, pad: usize, value: &str) -> Stri
     }
 }
 
-/// A table of TOML on one line, of its pairs.
+/// Text of a TOML table on one line, from its pairs.
 pub fn inline(pairs: impl IntoIterator<Item = String>) -> String {
     let pairs: Vec<String> = pairs.into_iter().collect();
     if pairs.is_empty() { "{}".to_owned() } else { format!("{{ {} }}", pairs.join(", ")) }
 }
 
-/// An array of numbers or others, as they are written.
+/// Text of an array, from its items.
 pub(super) fn array(items: impl IntoIterator<Item = String>) -> String {
     format!("[{}]", items.into_iter().collect::<Vec<_>>().join(", "))
 }
 
-/// A value as TOML on one line.
+/// Text of a value as TOML on one line.
 pub(super) fn value(tree: &Tree) -> String {
     match &tree.value {
         Value::Table(entries) => {
@@ -41,23 +41,23 @@ pub(super) fn value(tree: &Tree) -> String {
         Value::Number(number) => self::number(*number),
         Value::Integer(integer) => integer.to_string(),
         Value::Truth(truth) => truth.to_string(),
-        // No study that was read has one.
+        // No study that was read contains such a value.
         Value::Other(_) => quoted(""),
     }
 }
 
-/// The shortest decimals that are this double again, with a point or an exponent.
+/// Shortest text that is parsed as the same double, with a point or an exponent.
 pub(super) fn number(number: f64) -> String {
     format!("{number:?}")
 }
 
-/// A key of TOML, in quotes where it needs them.
+/// Text of a TOML key, in quotes if it needs them.
 pub(super) fn name(name: &str) -> String {
     let bare = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '_');
     if bare { name.to_owned() } else { quoted(name) }
 }
 
-/// Text in quotes: a basic string of TOML.
+/// Text in quotes, as a basic string of TOML.
 pub fn quoted(text: &str) -> String {
     let mut quoted = String::from("\"");
     for c in text.chars() {

@@ -1,4 +1,4 @@
-//! The formulas of a study, with the place of each.
+//! Formulas of a study, with their places.
 
 use std::ops::Range;
 
@@ -6,29 +6,29 @@ use super::error::{Fault, StudyFault, fault};
 use super::implicit::Implicit;
 use sensitol::assembly::formula::Formula;
 
-/// A formula of the file: of `[formulas]` or of a characteristic.
+/// A formula of `[formulas]` or of a characteristic.
 #[derive(Clone)]
 pub(super) struct Named<'f> {
     pub(super) name: String,
-    /// Its text, and where that stands with its quotes in the file.
+    /// Text of the formula. `span` is its place in the file, with its quotes.
     pub(super) text: &'f str,
     pub(super) span: Range<usize>,
     pub(super) key: String,
     pub(super) formula: Formula,
-    /// The unit that it is said to have.
+    /// Declared unit of its value.
     pub(super) unit: Option<&'f str>,
-    /// Whether it is that of a characteristic.
+    /// True if it is the formula of a characteristic.
     pub(super) result: bool,
 }
 
-/// Everything that is written as a formula.
+/// All formulas of a study, and its implicit conditions.
 pub(super) struct Written<'f> {
     pub(super) formulas: Vec<Named<'f>>,
     pub(super) implicit: Option<Implicit>,
 }
 
 impl Written<'_> {
-    /// Every name that a formula or a condition uses.
+    /// All names that formulas and conditions use.
     pub(super) fn names(&self) -> impl Iterator<Item = String> {
         let of_conditions = self.implicit.iter().flat_map(|implicit| implicit.conditions.formulas());
         let all =
@@ -36,13 +36,13 @@ impl Written<'_> {
         all.flat_map(|formula| formula.names().map(|(name, _)| name.to_owned()).collect::<Vec<_>>())
     }
 
-    /// A fault of the formula at this place.
+    /// Fault at the formula with this index.
     pub(super) fn at(&self, index: usize, found: StudyFault) -> Fault {
         let named = &self.formulas[index];
         fault(named.span.clone(), named.key.clone(), found)
     }
 
-    /// Where a formula of this name stands.
+    /// Index of the formula with this name.
     pub(super) fn place(&self, name: &str) -> Option<usize> {
         self.formulas.iter().position(|named| named.name == name)
     }

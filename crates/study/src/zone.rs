@@ -1,4 +1,4 @@
-//! `[[joint]]`: dimensions that vary together as a whole, and zones in which points are spread evenly.
+//! Reads `[[joint]]`: dimensions that vary together as a whole, and zones with evenly spread points.
 
 use super::error::{Fault, StudyFault, fault};
 use super::file::{DimensionEntry, StudyFile};
@@ -10,18 +10,18 @@ use sensitol_numeric::correlation::JointLaw;
 use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::names::nearest;
 
-/// The exponents of the beta distribution that a coordinate of a disc has.
+/// Both exponents of the beta distribution of one coordinate, for points spread evenly over a disc.
 pub(super) const OF_DISC: f64 = 1.5;
-/// And of a rim.
+/// Both exponents of the beta distribution of one coordinate, for points spread evenly over the rim of a disc.
 pub(super) const OF_RIM: f64 = 0.5;
 
-/// A zone by its name.
+/// Joint distribution of the zone with this name. Returns None if there is no such zone.
 pub(super) fn law(name: &str) -> Option<JointLaw> {
     let laws = [JointLaw::Disc, JointLaw::Rim, JointLaw::Diamond];
     ZONES.iter().zip(laws).find(|(known, _)| **known == name).map(|(_, law)| law)
 }
 
-/// The zones of a study, in the order of the file, and the positions that are spread evenly.
+/// Blocks of the zones, in the order of the file, followed by the positions that are spread evenly over their zone.
 pub(super) fn zones(file: &StudyFile) -> Result<Vec<Block>, Fault> {
     let mut found: Vec<Block> = Vec::new();
     let mut taken: Vec<&str> = Vec::new();
@@ -50,12 +50,12 @@ pub(super) fn zones(file: &StudyFile) -> Result<Vec<Block>, Fault> {
     Ok(found)
 }
 
-/// Whether a position is spread evenly over its zone.
+/// True if a position is spread evenly over its zone.
 pub(super) fn is_even(entry: &DimensionEntry) -> bool {
     entry.distribution.as_ref().is_some_and(|given| given.get_ref().kind == "uniform")
 }
 
-/// The law of an entry; None of one whose dimensions are measured.
+/// Joint distribution of an entry. Returns None if its dimensions are measured.
 fn checked(file: &StudyFile, entry: &Spanned<JointEntry>, key: &str) -> Result<Option<JointLaw>, Fault> {
     let (span, entry) = (entry.span(), entry.get_ref());
     let of = entry.of.get_ref();
@@ -86,7 +86,7 @@ fn checked(file: &StudyFile, entry: &Spanned<JointEntry>, key: &str) -> Result<O
             if of.len() < 2 {
                 return Err(count(None));
             }
-            // The expansion has given the file to those that have none.
+            // The expansion has copied the file to dimensions without one.
             let other = |line: &DimensionEntry| {
                 line.measured.as_ref().is_none_or(|own| own.get_ref() != measured.get_ref() && line.serial.is_none())
             };
@@ -125,7 +125,7 @@ fn checked(file: &StudyFile, entry: &Spanned<JointEntry>, key: &str) -> Result<O
     }
 }
 
-/// Whether the distribution of a line is that of a zone's coordinate, as the expansion writes it.
+/// True if a line has the distribution of a coordinate of the zone, which the expansion adds.
 fn follows(line: &DimensionEntry, law: &JointLaw) -> bool {
     let Some(given) = &line.distribution else { return false };
     let given = given.get_ref();
@@ -139,7 +139,7 @@ fn follows(line: &DimensionEntry, law: &JointLaw) -> bool {
     }
 }
 
-/// The dimensions of a disc and of a rim within one zone, so that no worst case puts a point at the ends of both.
+/// Marks the dimensions of discs and rims as one zone, so that the worst case does not put a point at the ends of both coordinates.
 pub(super) fn zoned(dimensions: Vec<Dimension>, blocks: &[Block]) -> Vec<Dimension> {
     let round = |block: &&Block| matches!(block.law, Some(JointLaw::Disc | JointLaw::Rim));
     let zone = |dimension: &Dimension| {

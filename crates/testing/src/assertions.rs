@@ -1,4 +1,4 @@
-//! Assertions about numbers, and dimensions that many tests use.
+//! Assertions about numbers, and dimensions for many tests.
 
 use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::distribution::StandardMoments;
@@ -11,7 +11,7 @@ pub fn close(found: f64, expected: f64, tolerance: f64, scale: f64) {
     assert!(error <= allowed, "{found} is {error:e} off {expected}, more than {allowed:e}");
 }
 
-/// Asserts a relative error.
+/// Asserts `|found - expected| <= tolerance |expected|`.
 #[track_caller]
 pub fn relative(found: f64, expected: f64, tolerance: f64) {
     close(found, expected, tolerance, 0.0);
@@ -30,7 +30,7 @@ pub fn standard(n: usize) -> Vec<Dimension> {
     normals(&vec![0.0; n], &vec![3.0; n])
 }
 
-/// Every number of the moments of a standardised variable.
+/// All numbers of the moments of a standardised variable.
 pub fn fields(m: StandardMoments) -> [f64; 9] {
     [m.skewness, m.excess, m.m5, m.m6, m.m7, m.m8, m.h6, m.h7, m.h8]
 }

@@ -1,16 +1,16 @@
-//! Points of the tolerance bands, and the extremes of a model among them.
+//! Points within the tolerance bands, and the extremes of a model at them.
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use sensitol::Problem;
 use sensitol::assembly::{Points, Request, Responses, Run};
 
-/// The box of a problem: the band of every dimension.
+/// Band of every dimension.
 pub fn bands(problem: &Problem) -> Vec<[f64; 2]> {
     problem.dimensions().iter().map(|d| d.reach().map(|reach| d.nominal() + reach)).collect()
 }
 
-/// The extremes of every characteristic among these points.
+/// Extremes of every characteristic at these points.
 pub fn among(problem: &Problem, points: &[Vec<f64>]) -> Vec<[f64; 2]> {
     let mut out = Responses::open(points.len(), problem.outputs().len());
     let points = Points::from_rows(points);
@@ -22,7 +22,7 @@ pub fn among(problem: &Problem, points: &[Vec<f64>]) -> Vec<[f64; 2]> {
     (0..problem.outputs().len()).map(ends).collect()
 }
 
-/// All `2^N` vertices of the dimensions that vary.
+/// All `2^N` vertices of the varying dimensions.
 pub fn vertices(problem: &Problem) -> Vec<Vec<f64>> {
     let bands = bands(problem);
     let varying: Vec<usize> = (0..bands.len()).filter(|&d| bands[d][0] < bands[d][1]).collect();
@@ -34,7 +34,7 @@ pub fn vertices(problem: &Problem) -> Vec<Vec<f64>> {
     (0..1 << varying.len()).map(vertex).collect()
 }
 
-/// Random points within the bands, evenly.
+/// Random points, uniform within the bands.
 pub fn random_points(problem: &Problem, count: usize) -> Vec<Vec<f64>> {
     let (bands, mut rng) = (bands(problem), Xoshiro256PlusPlus::seed_from_u64(11));
     let point = |_| bands.iter().map(|[a, b]| a + (b - a) * rng.random::<f64>()).collect();

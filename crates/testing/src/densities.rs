@@ -1,4 +1,4 @@
-//! Every distribution with its density from a formula of its own, and an integrator that copes with all of them.
+//! All distributions with independent formulas of their densities, and an integrator for them.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -8,16 +8,20 @@ use sensitol_numeric::distribution::{
     Student, Tabulated, Trapezoidal, Triangular, TruncatedNormal, UShaped, Uniform, Weibull,
 };
 
-/// A distribution and its density, as a sum of pieces that are smooth inside: each an interval and a function of the distances
-/// from its two ends, the second infinite where there is none.
+/// A distribution with its density.
 pub struct Case {
+    /// The distribution under test.
     pub distribution: Arc<dyn Distribution>,
+    /// Density as a sum of pieces.
     pub pieces: Vec<Piece>,
 }
 
-/// An interval on which the density is smooth inside. Ends may be singular.
+/// An interval with a smooth density inside. The density may be singular at its ends. `density` takes the distances from both ends; the
+/// second is infinite if the interval is.
 pub struct Piece {
+    /// Lower end.
     pub from: f64,
+    /// Upper end; may be infinite.
     pub to: f64,
     density: Box<dyn Fn(f64, f64) -> f64>,
 }
@@ -27,8 +31,8 @@ impl Piece {
         Self { from, to, density: Box::new(density) }
     }
 
-    /// Integral of `f(x)` times the density over the part of the piece between two places, by the tanh-sinh rule, towards
-    /// infinity by the exp-sinh rule (Takahasi and Mori 1974), which double exponentially ignore what happens at the ends.
+    /// Integral of `f(x)` times the density over the part of the piece in this interval. It uses the tanh-sinh rule, and towards infinity
+    /// the exp-sinh rule (Takahasi and Mori 1974). Both damp the ends of the interval double exponentially.
     fn integral(&self, between: [f64; 2], f: &dyn Fn(f64) -> f64) -> f64 {
         let (from, to) = (self.from.max(between[0]), self.to.min(between[1]));
         if from >= to {
@@ -37,14 +41,14 @@ impl Piece {
         let step = 1.0 / 64.0;
         let value = |near: f64, far: f64, x: f64| {
             let density = (self.density)(near + (from - self.from), far + (self.to - to).max(0.0));
-            // 0 times infinity far out, infinity at a singular end: both vanish beside the slope.
+            // Terms such as 0 times infinity far out, or infinity at a singular end, vanish by the weight.
             if density == 0.0 || !density.is_finite() { 0.0 } else { f(x) * density }
         };
         let node = |i: i32| {
             let t = f64::from(i) * step;
             let s = 0.5 * PI * t.sinh();
             if to.is_finite() {
-                // Shares of the interval on either side, both with all their digits.
+                // Fractions of the interval on either side, both with all their digits.
                 let (left, right) = (1.0 / (1.0 + (-2.0 * s).exp()), 1.0 / (1.0 + (2.0 * s).exp()));
                 let width = to - from;
                 let slope = PI * t.cosh() * left * right * width;
@@ -64,16 +68,17 @@ impl Case {
         Self { distribution: Arc::new(distribution), pieces }
     }
 
-    /// Integral of `f(x)` times the density between two places.
+    /// Integral of `f(x)` times the density over an interval.
     pub fn integral(&self, between: [f64; 2], f: impl Fn(f64) -> f64) -> f64 {
         self.pieces.iter().map(|piece| piece.integral(between, &f)).sum()
     }
 
-    /// Expectation of `f(x)`.
+    /// Expected value of `f(x)`.
     pub fn mean(&self, f: impl Fn(f64) -> f64) -> f64 {
         self.integral([f64::NEG_INFINITY, f64::INFINITY], f)
     }
 
+    /// Density at `x`.
     pub fn density(&self, x: f64) -> f64 {
         let inside = |piece: &&Piece| x >= piece.from && x <= piece.to;
         self.pieces.iter().filter(inside).map(|piece| (piece.density)(x - piece.from, piece.to - x)).sum()
@@ -84,7 +89,7 @@ fn gauss(z: f64) -> f64 {
     (-0.5 * z * z).exp() / (2.0 * PI).sqrt()
 }
 
-/// Both halves of a normal density, far enough out.
+/// Both halves of a normal density, out to 14 sigma.
 fn normal_pieces(mean: f64, sigma: f64, weight: f64) -> Vec<Piece> {
     let far = 14.0 * sigma;
     vec![
@@ -118,7 +123,7 @@ fn trapezoidal(top: f64) -> Case {
     Case::new(Trapezoidal::new(-1.0, 1.0, top).unwrap(), pieces)
 }
 
-/// Parent with mean `mean` and this sigma, between -1 and 2; `mass` of it lies there, to the digits of mpmath.
+/// Normal parent with this mean and sigma, truncated to -1 .. 2. `mass` is its probability there, to the digits of mpmath.
 fn truncated(mean: f64, sigma: f64, mass: f64) -> Case {
     let density = move |d: f64, _: f64| gauss((d - 1.0 - mean) / sigma) / (sigma * mass);
     Case::new(TruncatedNormal::new(-1.0, 2.0, mean, sigma).unwrap(), vec![Piece::new(-1.0, 2.0, density)])
@@ -131,15 +136,15 @@ fn beta(alpha: f64, beta: f64, function: f64) -> Case {
 }
 
 fn u_shaped() -> Case {
-    // From the middle 1.5 the distance d in halves of 0.5.
+    // Distance d from the middle 1.5, whose half-width is 0.5.
     let pieces = vec![Piece::new(1.0, 1.5, |_, d| 12.0 * d * d), Piece::new(1.5, 2.0, |d, _| 12.0 * d * d)];
     Case::new(UShaped::new(1.0, 2.0).unwrap(), pieces)
 }
 
-/// Between -1 and 1, by the density of GUM Supplement 1, 6.4.3.2.
+/// Curvilinear trapezoid between -1 and 1, by the density of GUM Supplement 1, 6.4.3.2.
 fn curvilinear(d: f64) -> Case {
     let (end, flat) = (1.0 + d, 1.0 - d);
-    // ln(end/t) of the distance from the end.
+    // Function ln(end/t) of the distance from the end.
     let ramp = move |from_end: f64| -(-from_end / end).ln_1p() / (4.0 * d);
     let pieces = vec![
         Piece::new(-end, -flat, move |from_end, _| ramp(from_end)),
@@ -149,15 +154,15 @@ fn curvilinear(d: f64) -> Case {
     Case::new(CurvilinearTrapezoid::new(-1.0, 1.0, d).unwrap(), pieces)
 }
 
-/// With 25 degrees of freedom, so that the moments exist that rules of nine nodes take; scale 1.
+/// Student distribution with scale 1. It has 25 degrees of freedom, so that the moments for rules of nine nodes exist.
 fn student() -> Case {
-    // Gamma(13)/(Gamma(12.5) sqrt(25 pi)). Beyond 1e4 lies nothing that even the twentieth moment sees.
+    // The constant is Gamma(13)/(Gamma(12.5) sqrt(25 pi)). The density beyond 1e4 does not even affect the twentieth moment.
     let density = |d: f64| 0.394_973_789_636_461_2 * (1.0 + d * d / 25.0).powf(-13.0);
     let pieces = vec![Piece::new(-1e4, 0.0, move |_, d| density(d)), Piece::new(0.0, 1e4, move |d, _| density(d))];
     Case::new(Student::with_scale(0.0, 1.0, 25.0).unwrap(), pieces)
 }
 
-/// Within a lot 0.2, lots within `drift` about 3: a difference of two normal distribution functions.
+/// Lots with sigma 0.2 and means within `drift` about 3. The density is a difference of two normal distribution functions.
 pub fn drifting(drift: f64) -> Case {
     let below = |z: f64| 0.5 * libm::erfc(-z / 2f64.sqrt());
     let density = move |off: f64| {
@@ -180,7 +185,7 @@ fn rayleigh() -> Case {
     Case::new(Rayleigh::new(0.5, 2.0).unwrap(), vec![Piece::new(0.5, f64::INFINITY, density)])
 }
 
-/// Shape and the gamma function of it; scale 2, from 1 on.
+/// Gamma distribution with scale 2, from 1 on. `function` is the gamma function of the shape.
 fn gamma(shape: f64, function: f64) -> Case {
     let density = move |d: f64, _: f64| (0.5 * d).powf(shape - 1.0) * (-0.5 * d).exp() / (2.0 * function);
     let law = Gamma::new(1.0, 1.0 + 2.0 * shape, 2.0 * shape.sqrt()).unwrap();
@@ -194,7 +199,7 @@ fn lognormal(tau: f64) -> Case {
     Case::new(law, vec![Piece::new(-1.0, f64::INFINITY, density)])
 }
 
-/// Shape with `Gamma(1 + 1/shape)` and `Gamma(1 + 2/shape)`; scale 1.
+/// Weibull distribution with scale 1. `first` is `Gamma(1 + 1/shape)`, `second` is `Gamma(1 + 2/shape)`.
 fn weibull(shape: f64, first: f64, second: f64) -> Case {
     let density = move |d: f64, _: f64| shape * d.powf(shape - 1.0) * (-d.powf(shape)).exp();
     let law = Weibull::new(0.0, first, (second - first * first).sqrt()).unwrap();
@@ -217,21 +222,22 @@ fn mixture() -> Case {
     Case::new(Mixture::new(parts).unwrap(), pieces)
 }
 
-/// Two sources that have nothing in common, with a gap between them.
+/// Mixture of two sources with a gap between them.
 fn apart() -> Case {
     let parts = vec![part(0.5, Uniform::new(0.0, 1.0).unwrap()), part(0.5, Uniform::new(4.0, 5.0).unwrap())];
     let pieces = vec![Piece::new(0.0, 1.0, |_, _| 0.5), Piece::new(4.0, 5.0, |_, _| 0.5)];
     Case::new(Mixture::new(parts).unwrap(), pieces)
 }
 
-/// A straight line over the scores from -5 to 5, which have this mass of a normal distribution.
+/// Table on a straight line over the scores from -5 to 5, which have this mass of a normal distribution.
 fn straight_table(mass: f64) -> Case {
     let density = move |d: f64, _: f64| gauss(10.0 * d - 5.0) * 10.0 / mass;
     let table = Tabulated::new(&[-5.0, -1.0, 0.5, 5.0], &[7.0, 7.4, 7.55, 8.0]).unwrap();
     Case::new(table, vec![Piece::new(7.0, 8.0, density)])
 }
 
-/// Three lines on the parabola 2 + z/2 + z^2/18, which ascends from -3 to 3: the cubics are that, and its root is the score.
+/// Table with three points of the parabola 2 + z/2 + z^2/18, which ascends from -3 to 3. The cubics equal the parabola, and its root is the
+/// score.
 fn parabola_table(mass: f64) -> Case {
     let density = move |d: f64, _: f64| {
         let slope = (1.0 / 36.0 + 2.0 * d / 9.0).sqrt();
@@ -241,7 +247,7 @@ fn parabola_table(mass: f64) -> Case {
     Case::new(table, vec![Piece::new(1.0, 4.0, density)])
 }
 
-/// Constants: mpmath 1.3 with 30 digits.
+/// All distributions with their densities. The constants are from mpmath 1.3 with 30 digits.
 pub fn cases() -> Vec<Case> {
     vec![
         normal(),

@@ -2,18 +2,18 @@
 
 use std::path::{Path, PathBuf};
 
-/// A file of the repository.
+/// Path of a file of the repository.
 pub fn repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap().join(path)
 }
 
-/// The text of a file of the repository.
+/// Text of a file of the repository.
 pub fn read(path: &str) -> String {
     let file = repository(path);
     std::fs::read_to_string(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()))
 }
 
-/// Examples that need more than the repository has; `tests/adapters/run` runs their console blocks where that is installed.
+/// Examples that need installed programs. `tests/adapters/run` runs their console blocks where those are installed.
 pub const INSTALLED: [&str; 7] = [
     "stacked-blocks-freecad",
     "stack-up-workbook",
@@ -24,7 +24,7 @@ pub const INSTALLED: [&str; 7] = [
     "stacked-blocks-dask",
 ];
 
-/// The studies of all examples, with the folder's name; what an adapter wants to know of its document is no study.
+/// Studies of all examples, with the names of their folders. Settings files of adapters are left out.
 pub fn example_studies() -> Vec<(String, PathBuf)> {
     let mut studies = Vec::new();
     for folder in std::fs::read_dir(repository("examples")).unwrap() {
@@ -41,27 +41,28 @@ pub fn example_studies() -> Vec<(String, PathBuf)> {
     studies
 }
 
-/// A JSON file of `tests/data`.
+/// Content of a JSON file of `tests/data`.
 pub fn data(name: &str) -> serde_json::Value {
     let text = std::fs::read_to_string(repository("tests/data").join(name)).unwrap();
     serde_json::from_str(&text).unwrap()
 }
 
-/// The problem of this name in a file of `tests/data` that lists `problems`.
+/// Problem of this name in a file of `tests/data` that lists `problems`.
 pub fn problem(file: &str, name: &str) -> serde_json::Value {
     let all = data(file);
     let found = all["problems"].as_array().unwrap().iter().find(|one| one["name"] == name);
     found.unwrap_or_else(|| panic!("no {name}")).clone()
 }
 
-/// A case of the elements by its name.
+/// Case of this name in the tests of geometric elements.
 pub fn case(name: &str) -> serde_json::Value {
     let cases = data("elements.json");
     let found = cases["cases"].as_array().unwrap().iter().find(|case| case["name"] == name).cloned();
     found.unwrap_or_else(|| panic!("no case {name}"))
 }
 
-/// The part of a document between the marks of this name is the text that was generated now.
+/// Asserts that the part of a document between the marks of this name is the given text. With `SENSITOL_UPDATE_DOCS` it writes the text
+/// instead.
 pub fn generated(document: &str, name: &str, text: &str) {
     let path = repository(document);
     let found = read(document);
@@ -75,7 +76,7 @@ pub fn generated(document: &str, name: &str, text: &str) {
     assert_eq!(&found[start..stop], text, "{document}: SENSITOL_UPDATE_DOCS=1 writes it anew");
 }
 
-/// That a page has this text, however its lines are broken and without its marks of emphasis.
+/// Asserts that a page contains a sentence, regardless of line breaks and of marks of emphasis.
 #[track_caller]
 pub fn says(document: &str, sentence: &str) {
     let plain = |text: &str| text.replace("**", "").split_whitespace().collect::<Vec<_>>().join(" ");

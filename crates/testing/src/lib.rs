@@ -1,4 +1,4 @@
-//! Files, assertions and problems that the tests of several packages share.
+//! Shared files, assertions and problems for the tests of several packages.
 
 mod assertions;
 #[cfg(feature = "engine")]

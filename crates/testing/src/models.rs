@@ -7,19 +7,19 @@ use sensitol::assembly::{AssemblyFunction, EvaluationError, Request, Responses, 
 use sensitol::{Closure, Problem};
 use sensitol_numeric::correlation::Pair;
 
-/// Every point that a function was asked for.
+/// Record of all points at which a function was evaluated.
 #[derive(Clone, Default)]
 pub struct Asked(Arc<Mutex<Vec<Vec<f64>>>>);
 
 impl Asked {
-    /// The points so far, in order of their coordinates.
+    /// Points so far, in order of their coordinates.
     pub fn points(&self) -> Vec<Vec<f64>> {
         let mut points = self.0.lock().unwrap().clone();
         points.sort_by(|a, b| a.partial_cmp(b).unwrap());
         points
     }
 
-    /// How many points were asked, each of them once.
+    /// Number of points. Asserts that each was evaluated once only.
     #[track_caller]
     pub fn distinct(&self) -> usize {
         let points = self.points();
@@ -29,7 +29,7 @@ impl Asked {
         points.len()
     }
 
-    /// A characteristic `y` that remembers its points.
+    /// Function of a characteristic `y` that records its points.
     pub fn watching(&self, function: impl Fn(&[f64]) -> f64 + Send + Sync + 'static) -> Closure {
         let asked = self.clone();
         Closure::scalar("y", move |x| {
@@ -39,7 +39,7 @@ impl Asked {
     }
 }
 
-/// A function with one output that refuses some points.
+/// Function with one output that refuses some points.
 pub fn refusing(
     function: impl Fn(&[f64]) -> f64 + Send + Sync + 'static,
     refuses: impl Fn(&[f64]) -> bool + Send + Sync + 'static,
@@ -52,7 +52,7 @@ pub fn refusing(
     })
 }
 
-/// A formula that costs as much as a program: its points are counted, and it tells nothing of itself.
+/// A formula that counts as costly. It counts its points and gives no information about its structure.
 struct Costly {
     signature: Signature,
     inner: Problem,
@@ -70,12 +70,12 @@ impl AssemblyFunction for Costly {
     }
 }
 
-/// The same problem as an external model would be treated, and the number of points asked for.
+/// The problem as a costly external model, and the count of its points.
 pub fn costly(problem: &Problem) -> (Problem, Arc<AtomicUsize>) {
     counted(problem, true)
 }
 
-/// The same function with its points counted, as a model that costs something or that is cheap.
+/// The problem with a count of its points, as a costly or as a cheap model.
 pub fn counted(problem: &Problem, costly: bool) -> (Problem, Arc<AtomicUsize>) {
     let asked = Arc::new(AtomicUsize::new(0));
     let signature = Signature { costly, cheap: !costly, ..problem.function().signature().clone() };

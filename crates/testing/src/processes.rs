@@ -5,7 +5,7 @@ use std::process::Command;
 
 use crate::repository;
 
-/// The child of `tests/children` in C, compiled: a linker for C is there wherever this was built.
+/// Path of the compiled C child of `tests/children`. A C compiler is present, since Rust needs one to link.
 pub fn child_in_c() -> String {
     static BUILT: std::sync::OnceLock<PathBuf> = std::sync::OnceLock::new();
     let built = BUILT.get_or_init(|| {

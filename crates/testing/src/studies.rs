@@ -1,21 +1,21 @@
-//! Studies of a few lines, and their faults.
+//! Short studies, and their faults.
 
 use sensitol::{Analysis, Method, analyze};
 use sensitol_numeric::dimension::Dimension;
 use sensitol_study::{Study, StudyError};
 
-/// A study in TOML.
+/// Parses a study in TOML.
 pub fn parse(text: &str) -> Result<Study, StudyError> {
     Study::from_toml(text, "study.toml")
 }
 
-/// A study of one dimension `a`, written as this line.
+/// Dimension `a` of a study with this line.
 pub fn dimension(line: &str) -> Result<Dimension, StudyError> {
     let text = format!("[dimensions]\na = {line}\n[characteristics]\ny = {{ formula = \"a\" }}\n");
     parse(&text).map(|study| study.problem.dimensions()[0].clone())
 }
 
-/// Place, key, message and help of the fault, as one line each.
+/// Place, key, message and help of the fault, in one line each.
 fn fault(text: &str) -> String {
     let error = parse(text).err().unwrap_or_else(|| panic!("valid: {text}"));
     let place = error.line_column().map_or("-".to_owned(), |(line, column)| format!("{line}:{column}"));
@@ -24,12 +24,12 @@ fn fault(text: &str) -> String {
     format!("{place} [{spanned}] {}: {}{help}", error.key, error.fault)
 }
 
-/// Faults of several studies, a line each.
+/// Faults of several studies, one below the other.
 pub fn faults(texts: &[&str]) -> String {
     texts.iter().map(|text| fault(text)).collect::<Vec<_>>().join("\n")
 }
 
-/// The analysis of a study by a method.
+/// Analysis of a study by a method.
 pub fn analysed(text: &str, method: Method) -> Analysis {
     let study = parse(text).unwrap_or_else(|error| panic!("{error}"));
     analyze(&study.problem, &method.into()).unwrap()

@@ -1,18 +1,18 @@
-//! Points that a run is evaluating, so that another one at the same journal waits for their answers instead of evaluating them too.
+//! Claims of points that a run is evaluating. Another run at the same journal waits for their answers instead of evaluating them too.
 //!
-//! A run notes the points of a batch before it sends the first one, and removes the note when all are answered and confirmed. It counts up a
-//! number twice a second meanwhile. A run that is killed leaves its note behind: it is known to be gone when its process is, and on
-//! another machine when the number stands still.
+//! A run notes the points of a batch before it sends the first one. It removes the note when all are answered and confirmed. In between it
+//! counts up a number twice a second. A killed run leaves its note behind. Another run recognises that on the same machine by the missing
+//! process, and on another machine by a number that stands still.
 
 use std::collections::{HashMap, HashSet};
 use std::time::{Duration, Instant};
 
 use rusqlite::{Connection, params};
 
-/// How often a run says that it is alive.
+/// Time between two beats of a run.
 pub(super) const BEAT: Duration = Duration::from_millis(500);
-/// For how long a number may stand still: six beats, for a machine that is busy. A run that is taken for gone by mistake costs points that are evaluated
-/// twice, and nothing else.
+/// Time without a beat after which a run counts as gone: six beats, for a machine that is busy. A run that is taken for gone by mistake
+/// costs a second evaluation of its points, and nothing else.
 const SILENT: Duration = Duration::from_secs(3);
 
 /// Another run that has claimed points.
@@ -24,22 +24,22 @@ pub(super) struct Claimant {
     pid: u32,
 }
 
-/// Tells the runs that are gone from those that are at work.
+/// Beats of the other runs, to find those that are gone.
 #[derive(Debug, Default)]
 pub(super) struct Watch(HashMap<i64, (i64, Instant)>);
 
 impl Watch {
-    /// How many runs it has seen.
+    /// Number of runs under watch.
     pub(super) fn len(&self) -> usize {
         self.0.len()
     }
 
-    /// Forgets all others.
+    /// Ends the watch of all other runs.
     pub(super) fn keep(&mut self, claimants: &[Claimant]) {
         self.0.retain(|run, _| claimants.iter().any(|one| one.run == *run));
     }
 
-    /// Whether a run is gone: its process is, or it has not been heard of for a while.
+    /// True if a run is gone: its process does not exist, or its beat has stood still for too long.
     pub(super) fn is_gone(&mut self, claimant: &Claimant) -> bool {
         if claimant.host == host() && std::path::Path::new("/proc/self").exists() {
             let process = std::path::Path::new("/proc").join(claimant.pid.to_string());
@@ -56,12 +56,13 @@ impl Watch {
     }
 }
 
-/// This machine since it was started; empty where nothing tells.
+/// Identifier of this machine since its start; empty if the system has none.
 fn host() -> String {
     std::fs::read_to_string("/proc/sys/kernel/random/boot_id").map(|id| id.trim().to_owned()).unwrap_or_default()
 }
 
-/// Claims points that no other run has claimed, and says which those are; with the number of the claim.
+/// Claims the points that no other run has claimed. Returns the number of the claim, and true for each point that is now claimed by this
+/// run.
 pub(super) fn claim(
     connection: &Connection,
     model: i64,
@@ -90,7 +91,7 @@ pub(super) fn claim(
     Ok((Some(connection.last_insert_rowid()), mine))
 }
 
-/// The other runs that are at points of this model.
+/// Other runs with claims on points of this model.
 pub(super) fn claimants(connection: &Connection, model: i64, own: Option<i64>) -> rusqlite::Result<Vec<Claimant>> {
     let find = "SELECT run, beat, host, pid FROM claim WHERE model = ?1 AND run IS NOT ?2";
     let mut statement = connection.prepare_cached(find)?;
@@ -100,7 +101,7 @@ pub(super) fn claimants(connection: &Connection, model: i64, own: Option<i64>) -
     statement.query_map(params![model, own], claimant)?.collect()
 }
 
-/// FNV-1a, 64 bits. Two points of one hash cost a wait.
+/// Hash FNV-1a, 64 bits. Two points with the same hash cost a needless wait only.
 fn hash(bytes: &[u8]) -> [u8; 8] {
     let step = |hash: u64, &byte: &u8| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, step).to_le_bytes()

@@ -1,12 +1,13 @@
-//! Answers of external programs, kept on disk: an evaluation may have cost a minute of CAD time.
+//! Journal of external programs: their answers on disk, since one evaluation may have cost a minute of CAD time.
 //!
-//! Every answer is in the file before anything is made of it, so that a run that is killed goes on where it was, and a
-//! repeated or enlarged one evaluates only what is new. An answer is known by the model (program and arguments, the contents
-//! of its script and of the files that it depends on, what the adapter says of itself, constants, names and units of the
-//! dimensions), the exact point, and the output. The nominal point is evaluated again by every run: where it has another value than
-//! the journal, the model has changed, and its answers are forgotten. An answer that a sentinel puts in doubt is forgotten at
-//! once, and kept again only when another, trusted process has answered it. A point that has no value by the program's own word is kept
-//! too; a crash or a missed deadline is not: the next run tries again.
+//! Every answer is in the file before it is used. So a killed run continues at the same place, and a repeated or enlarged one evaluates
+//! only the new points. The key of an answer is the model, the exact point, and the output. The key of a model consists of program and
+//! arguments, the contents of its script and of the files that it depends on, the adapter's own description, constants, and names and units
+//! of the dimensions.
+//!
+//! Every run evaluates the nominal point again. If its value differs from the journal, the model has changed, and all its answers are
+//! deleted. An answer that a sentinel puts in doubt is deleted at once, and kept again only after another, trusted process has given it. A
+//! point for which the program itself reports no value is kept too. A crash or a missed deadline is not kept: the next run tries again.
 
 mod claims;
 pub mod store;
@@ -32,41 +33,41 @@ use sensitol::assembly::{
 use sensitol::assembly::{EvaluatorAccount, OutdatedJournal, ProcessFault};
 use sensitol::summary::StopReason;
 
-/// How often it is looked whether another run has ended what it claimed.
+/// Time between two looks for the end of another run's claim.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// A program whose answers are kept.
+/// An external program with its answers in a journal.
 ///
-/// Evaluations: those that the file does not hold.
+/// Evaluations: the points that the file does not hold.
 pub struct Journaled {
     process: Process,
     path: PathBuf,
     files: Vec<PathBuf>,
     open: Mutex<Option<Open>>,
-    /// Held while a batch is evaluated.
+    /// Held while a batch is evaluated, since the stage and the claim of a run belong to one batch.
     turn: Mutex<()>,
 }
 
 struct Open {
     store: Store,
     model: i64,
-    /// Whether the model sends derivatives.
+    /// True if the model sends derivatives.
     gradients: bool,
-    /// Whether the nominal point was asked in this run.
+    /// True if the nominal point has been evaluated in this run.
     rechecked: bool,
-    /// How the model differs from what was kept of it, where it did.
+    /// Difference between the model and its answers in the journal; None if there is none.
     outdated: Option<OutdatedJournal>,
-    /// Why nothing can be kept any more.
+    /// Reason why nothing can be kept any more; None while the journal works.
     failure: Option<JournalError>,
 }
 
 impl Journaled {
-    /// Keeps the answers of `process` in the journal at `path`; `files` are what it depends on beside its arguments.
+    /// Keeps the answers of `process` in the journal at `path`. `files` are those that it depends on besides its arguments.
     pub fn new(process: Process, path: PathBuf, files: Vec<PathBuf>) -> Self {
         Self { process, path, files, open: Mutex::new(None), turn: Mutex::new(()) }
     }
 
-    /// The key of the answers of this model.
+    /// Key of the answers of this model.
     fn identity(&self, outputs: &[usize]) -> Result<String, EvaluationError> {
         let adapter = self.process.adapter(outputs).map_err(Box::new)?;
         let inputs = &self.signature().inputs;
@@ -77,8 +78,8 @@ impl Journaled {
             })?;
             Ok(Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect::<String>())
         };
-        // The name of a file is not its contents, and the study may have been moved: only hashes count. The first
-        // file among the arguments is the script that answers; a later one may be its log.
+        // Only hashes of contents count, since names say nothing about contents and the study may have been moved. The first file among the
+        // arguments is the script. A later one may be its log.
         let Settings { argv, folder, .. } = self.process.settings();
         let script = argv.iter().map(|word| folder.join(word)).find(|path| path.is_file());
         let files: Vec<PathBuf> = script.into_iter().chain(self.files.iter().cloned()).collect();
@@ -94,7 +95,7 @@ impl Journaled {
             "dimensions": inputs.iter().map(|input| &input.name).collect::<Vec<_>>(),
             "units": inputs.iter().map(|input| &input.unit).collect::<Vec<_>>(),
         });
-        // The same point is sent as other numbers then.
+        // With converted units the same point is sent as other numbers.
         if self.process.converts() {
             identity["units converted"] = true.into();
         }
@@ -106,7 +107,7 @@ impl Journaled {
         let dimensions: Vec<String> = self.signature().inputs.iter().map(|input| input.name.clone()).collect();
         let store = Store::open(&self.path).map_err(|error| not_kept(&error))?;
         let model = store.model(&identity, &dimensions).map_err(|error| not_kept(&error))?;
-        // Of a model that nothing is known of nothing is reused but what runs at the same time find out.
+        // A model without answers needs no recheck: only answers of runs at the same time can be reused.
         let rechecked = !store.has_answers(model).map_err(|error| not_kept(&error))?;
         let gradients = self.process.adapter(outputs).map_err(Box::new)?.gradients;
         Ok(Open { store, model, gradients, rechecked, outdated: None, failure: None })
@@ -145,7 +146,7 @@ impl AssemblyFunction for Journaled {
         if let Err(error) = self.prepare(ask.outputs) {
             return refuse(out, &error);
         }
-        // The stage and the claim of a run are those of one batch.
+        // The stage and the claim of a run belong to one batch.
         let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
         if let Err(error) = self.evaluated(ask, run, out) {
             let message = not_kept(&error);
@@ -157,13 +158,13 @@ impl AssemblyFunction for Journaled {
     }
 }
 
-/// The journal's answers for some points.
+/// Answers of the journal to some points.
 struct Recollection {
-    /// Rows whose answers are known, with them.
+    /// Rows with known answers.
     known: Vec<(usize, Vec<Answer>)>,
-    /// Which of these nothing has confirmed, as places in `known`.
+    /// Indices in `known` of the rows without a confirmation.
     unconfirmed: Vec<usize>,
-    /// The stages that those are of.
+    /// Stages of these rows.
     stages: Vec<i64>,
     missing: Vec<usize>,
 }
@@ -177,7 +178,7 @@ impl Recollection {
                 found.missing.push(row);
                 continue;
             };
-            // An answer of a time when the model sent no derivatives is asked for again.
+            // An answer without derivatives is evaluated again if the model sends them now.
             let lacks = |(name, one): (&&str, &Recalled)| {
                 Ok(one.answer.is_ok() && open.store.gradient(open.model, &rows[row], name)?.is_none())
             };
@@ -199,7 +200,7 @@ impl Recollection {
         Ok(found)
     }
 
-    /// Rows that are not known, or known and not confirmed.
+    /// Rows that are unknown, or known but not confirmed.
     fn unsettled(&self) -> Vec<usize> {
         let mut rows: Vec<usize> = self.unconfirmed.iter().map(|&place| self.known[place].0).collect();
         rows.extend(&self.missing);
@@ -207,7 +208,6 @@ impl Recollection {
         rows
     }
 
-    /// All rows.
     fn rows(&self) -> Vec<usize> {
         let mut rows: Vec<usize> = self.known.iter().map(|(row, _)| *row).collect();
         rows.extend(&self.missing);
@@ -215,7 +215,7 @@ impl Recollection {
         rows
     }
 
-    /// Points and values.
+    /// Points and values of the known rows.
     fn values(&self, rows: &[Vec<f64>]) -> (Vec<Vec<f64>>, Vec<Vec<Option<f64>>>) {
         let values = |answers: &[Answer]| answers.iter().map(|answer| answer.as_ref().ok().copied()).collect();
         self.known.iter().map(|(row, answers)| (rows[*row].clone(), values(answers))).unzip()
@@ -227,7 +227,7 @@ impl Journaled {
         self.open.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Acts on the open journal.
+    /// Calls a function on the open journal. Fails if the journal has failed before.
     fn with<T>(&self, act: impl FnOnce(&mut Open) -> Result<T, JournalError>) -> Result<T, JournalError> {
         match self.opened_store().as_mut() {
             Some(Open { failure: Some(failure), .. }) => Err(failure.clone()),
@@ -236,7 +236,7 @@ impl Journaled {
         }
     }
 
-    /// Known answers are returned, points that no other run is at are evaluated, and points that another one is at are waited
+    /// Answers all rows: known ones from the journal, and those of no other run by evaluation. Rows that another run has claimed are waited
     /// for.
     fn evaluated(&self, ask: &Request<'_>, run: &Run<'_>, out: &mut Responses) -> Result<(), JournalError> {
         let names: Vec<&str> =
@@ -251,7 +251,7 @@ impl Journaled {
                 Ok((Recollection::of(open, &names, &rows, &wanted)?, version))
             })?;
             let unsettled = found.unsettled();
-            // A point that another run is at is not confirmed, and may still change.
+            // An answer at which another run is working is not confirmed and may still change.
             let others: Vec<usize> = match unsettled.is_empty() {
                 true => Vec::new(),
                 false => self.with(|open| {
@@ -260,6 +260,7 @@ impl Journaled {
                     Ok(unsettled.iter().zip(mine).filter(|(_, mine)| !mine).map(|(&row, _)| row).collect())
                 })?,
             };
+            // A write by another run since the first look may have changed the answers, so they are read again.
             if !others.is_empty() || self.with(|open| open.store.version())? != version {
                 let theirs: HashSet<usize> = others.iter().copied().collect();
                 let own: Vec<usize> = wanted.iter().copied().filter(|row| !theirs.contains(row)).collect();
@@ -279,7 +280,7 @@ impl Journaled {
         Ok(())
     }
 
-    /// Waits until another run has ended what it claimed, or is gone; says which are.
+    /// Waits until a claim of another run ends, or a run is gone. Returns the runs that are gone.
     fn wait(&self, watch: &mut Watch, run: &Run<'_>) -> Result<Vec<i64>, JournalError> {
         loop {
             let claimants = self.with(|open| open.store.claimants(open.model))?;
@@ -295,7 +296,7 @@ impl Journaled {
         }
     }
 
-    /// Tells what is known of rows that no other run is at, and evaluates the others.
+    /// Answers rows without claims of other runs: known ones from the journal, and the others by evaluation.
     fn known_or_evaluated(
         &self,
         ask: &Request<'_>,
@@ -335,8 +336,8 @@ impl Journaled {
         self.asked(ask, (names, rows, &found.missing), run, out)
     }
 
-    /// Holds what is known against the model before it is used: the nominal point once in a run, and two answers that nothing has
-    /// confirmed. Returns whether something was forgotten.
+    /// Checks known answers against the model before their use: the nominal point once in a run, and two answers without a confirmation.
+    /// Returns true if answers were deleted.
     fn rechecked(
         &self,
         ask: &Request<'_>,
@@ -386,7 +387,7 @@ impl Journaled {
         Ok(forgotten)
     }
 
-    /// Evaluates rows, and keeps every answer before it is told.
+    /// Evaluates rows. Every answer is kept before it is returned.
     fn asked(
         &self,
         ask: &Request<'_>,
@@ -431,7 +432,7 @@ impl Journaled {
             note(self.with(|open| open.store.withdraw(model, &points)));
         };
         let beat = Mutex::new(Instant::now());
-        // Answers that cannot be kept are not evaluated: no more is asked, and what is known already stays.
+        // Once an answer cannot be kept, no more points are evaluated. Answers that are known stay.
         let stop = || {
             let mut beat = beat.lock().unwrap_or_else(PoisonError::into_inner);
             if beat.elapsed() >= BEAT {
@@ -480,7 +481,7 @@ impl Open {
         Ok(())
     }
 
-    /// Keeps what the nominal point has.
+    /// Keeps the values of the nominal point.
     fn keep_nominal(&mut self, names: &[&str], at: &[f64], values: &[Option<f64>]) -> Result<(), JournalError> {
         let kept = |(name, value): (&&str, &Option<f64>)| {
             Some(StoredAnswer { point: at.to_vec(), output: (*name).to_owned(), answer: Ok((*value)?) })
@@ -490,15 +491,15 @@ impl Open {
     }
 }
 
-/// An evaluation that takes longer is worth more than the time that a disk needs to write its answer.
+/// Time of an evaluation above which its answer is written through to the disk: it is then worth more than that write.
 const SLOW: Duration = Duration::from_millis(100);
 
-/// Whether so many answers of so many processes in this time are slow ones.
+/// True if an evaluation is slow, given this time for so many answers of so many processes.
 fn is_slow(elapsed: Duration, workers: usize, answers: usize) -> bool {
     elapsed * u32::try_from(workers).unwrap_or(u32::MAX) > SLOW * u32::try_from(answers).unwrap_or(u32::MAX)
 }
 
-/// Points that are still open are not evaluated, for this reason.
+/// Fails all points that are still open, with this error.
 fn refuse(out: &mut Responses, error: &EvaluationError) {
     let mut unsent = 0;
     for row in 0..out.rows() {
@@ -511,7 +512,7 @@ fn refuse(out: &mut Responses, error: &EvaluationError) {
     out.spent(-unsent);
 }
 
-/// Values, and reasons for none that the program gave itself.
+/// Answers to keep: values, and the program's own reports that there is none.
 fn worth_keeping(points: &Points, answers: &Responses, row: usize, names: &[&str]) -> Vec<StoredAnswer> {
     let kept = |(output, name): (usize, &&str)| {
         let answer = match (answers.value(row, output), answers.error(row, output)) {
@@ -531,7 +532,7 @@ fn worth_keeping(points: &Points, answers: &Responses, row: usize, names: &[&str
 mod tests {
     use super::*;
 
-    /// Derivatives that outlive an answer would be taken for those of the next one at that point.
+    /// Derivatives must be deleted with their answer. Otherwise they would count as those of the next answer at that point.
     #[test]
     fn derivatives_go_with_their_answer() {
         let folder = tempfile::tempdir().unwrap();
@@ -545,7 +546,7 @@ mod tests {
         assert_eq!(store.gradient(model, &[1.0], "y").unwrap(), None);
     }
 
-    /// Eight processes that take 0.2 s each give forty answers a second: an evaluation is slow all the same.
+    /// Eight processes that take 0.2 s each give forty answers a second, and yet each evaluation is slow.
     #[test]
     fn what_is_slow_is_an_evaluation() {
         assert!(is_slow(Duration::from_secs(1), 8, 40));

@@ -1,4 +1,4 @@
-//! The file: SQLite in WAL mode, which several runs may share and any SQLite tool can read.
+//! File of the journal: SQLite in WAL mode. Several runs may share it, and any SQLite tool can read it.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -7,15 +7,16 @@ use rusqlite::{Connection, ErrorCode, OptionalExtension, Transaction, Transactio
 
 use super::claims::{self, Claimant};
 
-/// The version of the file's content, for `PRAGMA user_version`.
+/// Version of the content, in `PRAGMA user_version`.
 const VERSION: i32 = 1;
-/// Who wrote it, for `PRAGMA application_id`: "snsl".
+/// Mark of the writer, in `PRAGMA application_id`: "snsl".
 const APPLICATION: i32 = 0x736e_736c;
-/// How long to wait for another run that is writing.
+/// Longest wait for another run that is writing.
 const PATIENCE: Duration = Duration::from_secs(30);
-/// And how long before it is tried once more.
+/// Pause between two attempts to open the file.
 const AGAIN: Duration = Duration::from_millis(5);
 
+/// Tables of version 1.
 const TABLES: &str = "
     CREATE TABLE model (
         id INTEGER PRIMARY KEY,
@@ -33,7 +34,7 @@ const TABLES: &str = "
         PRIMARY KEY (model, point, output)
     ) WITHOUT ROWID;
 ";
-/// Later additions, without which an earlier version works too: stages that no replay has confirmed, and points that a run is at.
+/// Later additions, which earlier versions ignore: stages without a confirmation by replay, claims, and derivatives.
 const LATER: &str = "
     CREATE TABLE IF NOT EXISTS stage (
         id INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -64,7 +65,7 @@ const LATER: &str = "
 #[error("journal {}: {fault}", path.display())]
 #[non_exhaustive]
 pub struct JournalError {
-    /// The file.
+    /// Path of the file.
     pub path: PathBuf,
     /// The fault.
     pub fault: JournalFault,
@@ -74,49 +75,49 @@ pub struct JournalError {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum JournalFault {
-    /// There is no such file.
+    /// The file does not exist.
     #[error("there is no such file")]
     Missing,
-    /// The file is something else.
+    /// The file is not a journal.
     #[error("this is no journal of sensitol; name another file, or none")]
     NotAJournal,
-    /// A later version wrote it.
+    /// The file was written by a later version.
     #[error("version {found} of the journal was written by a later sensitol; this one reads version {VERSION}")]
     Later {
-        /// The version found.
+        /// Version of the file.
         found: i32,
     },
     /// A file that the model depends on cannot be read.
     #[error("the model's file {} cannot be read: {reason}", file.display())]
     ModelFile {
-        /// The file.
+        /// Path of that file.
         file: PathBuf,
-        /// The operating system's words.
+        /// Message of the operating system.
         reason: String,
     },
-    /// Reading or writing failed; what was stored before stays.
+    /// Reading or writing failed. Stored answers stay as they are.
     #[error("{reason}; what it holds already is not touched")]
     Failed {
-        /// SQLite's words.
+        /// Message of SQLite.
         reason: String,
     },
 }
 
-/// One kept answer: a value, or why there is none.
+/// Answer to a point: a value, or the reason why there is none.
 pub type Answer = Result<f64, String>;
 
 /// An open journal.
 pub struct Store {
     path: PathBuf,
     connection: Connection,
-    /// The stage that answers are kept in; None for those that need no confirmation.
+    /// Stage of the answers that are kept now; None if they need no confirmation.
     stage: Option<i64>,
-    /// The claim of this run.
+    /// Claim of this run; None if it has none.
     claim: Option<i64>,
     durable: bool,
 }
 
-/// A kept answer, and the stage that it is of where nothing has confirmed that one.
+/// An answer from the journal, with its stage if that has no confirmation.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Recalled {
     pub(super) answer: Answer,
@@ -127,38 +128,38 @@ pub(super) struct Recalled {
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct KnownModel {
-    /// Its number in the file.
+    /// Number of the model in the file.
     pub id: i64,
     /// The key of the model, as JSON.
     pub identity: String,
-    /// Its dimensions, in the order of a point.
+    /// Names of the dimensions, in the order of a point.
     pub dimensions: Vec<String>,
-    /// When its first answer was kept.
+    /// Time at which the model was first noted, in UTC.
     pub since: String,
-    /// How many points are known.
+    /// Number of points with an answer.
     pub points: usize,
-    /// How many values, and how many reasons for none.
+    /// Number of values.
     pub values: usize,
-    /// How many reasons for no value.
+    /// Number of points and outputs without a value, with a reason.
     pub errors: usize,
 }
 
-/// A kept answer with its place.
+/// An answer with its point and output.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StoredAnswer {
     /// The point.
     pub point: Vec<f64>,
     /// The output.
     pub output: String,
-    /// The answer of the model.
+    /// Answer of the model.
     pub answer: Answer,
 }
 
 impl Store {
-    /// Opens a journal, which is made where there is none.
+    /// Opens a journal. A missing file is made.
     ///
     /// # Errors
-    /// When the file is something else, of a later version, or cannot be read and written.
+    /// Fails if the file is not a journal, is of a later version, or cannot be read and written.
     pub fn open(path: &Path) -> Result<Self, JournalError> {
         let connection = Connection::open(path).map_err(|error| at(path, &error))?;
         let store = Self { path: path.to_owned(), connection, stage: None, claim: None, durable: false };
@@ -166,7 +167,7 @@ impl Store {
         loop {
             match store.prepare() {
                 Ok(()) => return Ok(store),
-                // SQLite does not wait by itself for another run that is just changing how the file is written.
+                // SQLite does not wait by itself for another run that is switching the file to WAL mode.
                 Err(Opening::Sqlite(error)) if is_busy(&error) && begun.elapsed() < PATIENCE => {
                     std::thread::sleep(AGAIN);
                 }
@@ -176,10 +177,10 @@ impl Store {
         }
     }
 
-    /// Opens a journal that must be there.
+    /// Opens an existing journal.
     ///
     /// # Errors
-    /// As [`open`](Self::open), and when there is none.
+    /// Fails like [`open`](Self::open), or if the file does not exist.
     pub fn open_existing(path: &Path) -> Result<Self, JournalError> {
         if !path.is_file() {
             return Err(JournalError { path: path.to_owned(), fault: JournalFault::Missing });
@@ -190,7 +191,7 @@ impl Store {
     fn prepare(&self) -> Result<(), Opening> {
         let connection = &self.connection;
         connection.busy_timeout(PATIENCE)?;
-        // All at one moment: another run may be making the tables, and its mark is not older than they are.
+        // One transaction for all reads: another run may be making the tables at this moment.
         let look = connection.unchecked_transaction()?;
         let pragma = |name: &str| look.pragma_query_value(None, name, |row| row.get::<_, i32>(0));
         let (application, version) = (pragma("application_id")?, pragma("user_version")?);
@@ -203,11 +204,11 @@ impl Store {
             return Err(Opening::Fault(JournalFault::Later { found: version }));
         }
         connection.pragma_update(None, "journal_mode", "WAL")?;
-        // Every commit reaches the operating system: a killed run loses nothing. A power cut may cost the last moments.
+        // Every commit reaches the operating system, so a killed run loses nothing. A power cut may cost the last moments.
         connection.pragma_update(None, "synchronous", "NORMAL")?;
         connection.pragma_update(None, "foreign_keys", true)?;
         if tables == 0 {
-            // Another run may be at it too: whoever comes second finds the tables.
+            // Another run may make the tables at the same time. The second one finds them.
             let script = format!(
                 "{}; PRAGMA application_id = {APPLICATION}; PRAGMA user_version = {VERSION};",
                 TABLES.replace("CREATE TABLE", "CREATE TABLE IF NOT EXISTS").trim().trim_end_matches(';')
@@ -220,7 +221,7 @@ impl Store {
         Ok(())
     }
 
-    /// Adds what an earlier version did not make.
+    /// Adds the tables and columns that an earlier version did not make.
     fn complete(&self) -> rusqlite::Result<()> {
         let is_complete = |connection: &Connection| -> rusqlite::Result<bool> {
             let column = "SELECT count(*) FROM pragma_table_info('answer') WHERE name = 'stage'";
@@ -234,7 +235,7 @@ impl Store {
         }
         let making = Transaction::new_unchecked(&self.connection, TransactionBehavior::Immediate)?;
         making.execute_batch(LATER)?;
-        // Another run may have done it meanwhile, or an earlier version.
+        // Another run may have added the column meanwhile, or an earlier version.
         if !is_complete(&making)? {
             making.execute_batch("ALTER TABLE answer ADD COLUMN stage INTEGER")?;
         }
@@ -245,10 +246,10 @@ impl Store {
         result.map_err(|error| at(&self.path, &error))
     }
 
-    /// The number of the model of this identity, which is noted when it is new.
+    /// Number of the model with this identity. A new one is added.
     ///
     /// # Errors
-    /// When reading or writing fails.
+    /// Fails if reading or writing fails.
     pub fn model(&self, identity: &str, dimensions: &[String]) -> Result<i64, JournalError> {
         let dimensions = serde_json::to_string(dimensions).expect("names are JSON");
         let add = "INSERT INTO model (identity, dimensions) VALUES (?1, ?2) ON CONFLICT (identity) DO NOTHING";
@@ -257,10 +258,10 @@ impl Store {
         self.failed(self.connection.query_row(find, [identity], |row| row.get(0)))
     }
 
-    /// The model's answer for one output at one point, if that is known.
+    /// Answer of the model for one output at one point. Returns None if it is not known.
     ///
     /// # Errors
-    /// When reading fails.
+    /// Fails if reading fails.
     pub fn answer(&self, model: i64, point: &[f64], output: &str) -> Result<Option<Answer>, JournalError> {
         let find = "SELECT value, error FROM answer WHERE model = ?1 AND point = ?2 AND output = ?3";
         let found = self.connection.prepare_cached(find).and_then(|mut statement| {
@@ -270,7 +271,7 @@ impl Store {
         self.failed(found)
     }
 
-    /// The same, with the stage of an answer that nothing has confirmed.
+    /// Like [`answer`](Self::answer), with the stage of an answer without a confirmation.
     pub(super) fn recall(&self, model: i64, point: &[f64], output: &str) -> Result<Option<Recalled>, JournalError> {
         let find = "SELECT value, error, (SELECT id FROM stage WHERE id = answer.stage) FROM answer
             WHERE model = ?1 AND point = ?2 AND output = ?3";
@@ -283,18 +284,18 @@ impl Store {
         self.failed(found)
     }
 
-    /// Whether anything is known of a model.
+    /// True if the journal has an answer of the model.
     pub(super) fn has_answers(&self, model: i64) -> Result<bool, JournalError> {
         let find = "SELECT EXISTS (SELECT 1 FROM answer WHERE model = ?1)";
         self.failed(self.connection.query_row(find, [model], |row| row.get(0)))
     }
 
-    /// A number that changes when another run has written something.
+    /// Number that changes when another run writes to the file.
     pub(super) fn version(&self) -> Result<i64, JournalError> {
         self.failed(self.connection.pragma_query_value(None, "data_version", |row| row.get(0)))
     }
 
-    /// Keeps derivatives by every dimension beside the answer of one output at one point.
+    /// Keeps the derivatives of one output by all dimensions at one point.
     pub(super) fn keep_gradient(
         &self,
         model: i64,
@@ -307,7 +308,7 @@ impl Store {
         self.failed(self.connection.execute(add, params![model, bytes(point), output, slopes]).map(drop))
     }
 
-    /// Those that were kept.
+    /// Derivatives of one output at one point. Returns None if none were kept.
     pub(super) fn gradient(&self, model: i64, point: &[f64], output: &str) -> Result<Option<Vec<f64>>, JournalError> {
         let find = "SELECT slopes FROM gradient WHERE model = ?1 AND point = ?2 AND output = ?3";
         let found = self.connection.query_row(find, params![model, bytes(point), output], |row| row.get(0)).optional();
@@ -315,14 +316,14 @@ impl Store {
         Ok(self.failed::<Option<Vec<u8>>>(found)?.map(|bytes| bytes.chunks_exact(8).map(slope).collect()))
     }
 
-    /// From now on answers are kept as those of a stage that is not confirmed yet.
+    /// Opens a stage: answers from now on belong to it and have no confirmation yet.
     pub(super) fn open_stage(&mut self, model: i64) -> Result<(), JournalError> {
         self.failed(self.connection.execute("INSERT INTO stage (model) VALUES (?1)", [model]))?;
         self.stage = Some(self.connection.last_insert_rowid());
         Ok(())
     }
 
-    /// Ends the stage, confirmed or not.
+    /// Closes the stage. Without a confirmation its answers stay marked as unconfirmed.
     pub(super) fn close_stage(&mut self, confirmed: bool) -> Result<(), JournalError> {
         match self.stage.take().filter(|_| confirmed) {
             Some(stage) => self.failed(self.connection.execute("DELETE FROM stage WHERE id = ?1", [stage]).map(drop)),
@@ -330,7 +331,7 @@ impl Store {
         }
     }
 
-    /// Takes these stages as confirmed, or forgets their answers.
+    /// Marks stages as confirmed, or deletes their answers.
     pub(super) fn settle_stages(&mut self, stages: &[i64], confirmed: bool) -> Result<(), JournalError> {
         let settled = (|| {
             let transaction = self.connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
@@ -345,12 +346,13 @@ impl Store {
         self.failed(settled)
     }
 
-    /// Forgets all answers of a model; says how many there were.
+    /// Deletes all answers of a model. Returns their number.
     pub(super) fn forget_answers(&mut self, model: i64) -> Result<usize, JournalError> {
         self.failed(self.connection.execute("DELETE FROM answer WHERE model = ?1", [model]))
     }
 
-    /// Claims points that no other run is at; says which of them are now this run's. `gone` are runs that are known to have ended.
+    /// Claims the points that no other run has claimed. Returns true for each point that is now claimed by this run. Claims of the runs
+    /// `gone` are deleted.
     pub(super) fn claim(&mut self, model: i64, points: &[Vec<f64>], gone: &[i64]) -> Result<Vec<bool>, JournalError> {
         let own = self.claim;
         let claimed = (|| {
@@ -368,13 +370,13 @@ impl Store {
         Ok(mine)
     }
 
-    /// Says that this run is still at what it claimed.
+    /// Counts up the beat of this run's claim.
     pub(super) fn beat(&self) -> Result<(), JournalError> {
         let Some(run) = self.claim else { return Ok(()) };
         self.failed(self.connection.execute("UPDATE claim SET beat = beat + 1 WHERE run = ?1", [run]).map(drop))
     }
 
-    /// Leaves what it claimed to others.
+    /// Deletes the claim of this run.
     pub(super) fn release(&mut self) -> Result<(), JournalError> {
         match self.claim.take() {
             Some(run) => self.failed(self.connection.execute("DELETE FROM claim WHERE run = ?1", [run]).map(drop)),
@@ -382,15 +384,15 @@ impl Store {
         }
     }
 
-    /// The runs that are at points of this model.
+    /// Other runs with claims on points of this model.
     pub(super) fn claimants(&self, model: i64) -> Result<Vec<Claimant>, JournalError> {
         self.failed(claims::claimants(&self.connection, model, self.claim))
     }
 
-    /// Whether every commit reaches the disk, so that a power cut costs nothing, or the operating system only.
+    /// Sets whether every commit reaches the disk. If not, it only reaches the operating system, and a power cut may cost the last answers.
     ///
     /// # Errors
-    /// When the file cannot be read.
+    /// Fails if the file cannot be read.
     pub fn set_durable(&mut self, durable: bool) -> Result<(), JournalError> {
         if self.durable != durable {
             let synchronous = if durable { "FULL" } else { "NORMAL" };
@@ -400,17 +402,17 @@ impl Store {
         Ok(())
     }
 
-    /// Whether every commit reaches the disk.
+    /// True if every commit reaches the disk.
     pub fn is_durable(&self) -> bool {
         self.connection
             .pragma_query_value(None, "synchronous", |row| row.get::<_, i64>(0))
             .is_ok_and(|level| level >= 2)
     }
 
-    /// Keeps answers, all of them or none; the last answer to a point counts.
+    /// Keeps all of these answers or none. A later answer to a point replaces an earlier one.
     ///
     /// # Errors
-    /// When writing fails; nothing of these is kept then.
+    /// Fails if writing fails. Nothing is kept then.
     pub fn keep(&mut self, model: i64, answers: &[StoredAnswer]) -> Result<(), JournalError> {
         let stage = self.stage;
         let kept = (|| {
@@ -431,10 +433,10 @@ impl Store {
         self.failed(kept)
     }
 
-    /// Forgets what is known of these points: answers that are not trusted any more.
+    /// Deletes the answers to these points, which are not trusted any more.
     ///
     /// # Errors
-    /// When writing fails; nothing of this is forgotten then.
+    /// Fails if writing fails. Nothing is deleted then.
     pub fn withdraw(&mut self, model: i64, points: &[Vec<f64>]) -> Result<(), JournalError> {
         let withdrawn = (|| {
             let transaction = self.connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
@@ -449,10 +451,10 @@ impl Store {
         self.failed(withdrawn)
     }
 
-    /// Every model in the file.
+    /// All models in the file.
     ///
     /// # Errors
-    /// When reading fails.
+    /// Fails if reading fails.
     pub fn models(&self) -> Result<Vec<KnownModel>, JournalError> {
         let all = "SELECT id, identity, dimensions, since,
                 (SELECT count(DISTINCT point) FROM answer WHERE model = id),
@@ -476,10 +478,10 @@ impl Store {
         self.failed(models)
     }
 
-    /// Every answer of a model, point by point.
+    /// All answers of a model, point by point.
     ///
     /// # Errors
-    /// When reading fails.
+    /// Fails if reading fails.
     pub fn answers(&self, model: i64) -> Result<Vec<StoredAnswer>, JournalError> {
         let all = "SELECT point, output, value, error FROM answer WHERE model = ?1";
         let answers = self.connection.prepare(all).and_then(|mut statement| {
@@ -494,10 +496,10 @@ impl Store {
         self.failed(answers)
     }
 
-    /// Forgets a model and its answers, or all of them; says how many answers there were.
+    /// Deletes a model with its answers, or all models. Returns the number of deleted answers.
     ///
     /// # Errors
-    /// When writing fails; nothing is forgotten then.
+    /// Fails if writing fails. Nothing is deleted then.
     pub fn forget(&mut self, model: Option<i64>) -> Result<usize, JournalError> {
         let forgotten = (|| {
             let transaction = self.connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
@@ -537,7 +539,7 @@ fn answer(value: Option<f64>, error: Option<String>) -> rusqlite::Result<Answer>
     Ok(value.ok_or_else(|| error.unwrap_or_default()))
 }
 
-/// The exact doubles; 0 has one sign only.
+/// Bytes of the exact doubles of a point. Adding 0 removes the sign of a negative zero.
 fn bytes(point: &[f64]) -> Vec<u8> {
     point.iter().flat_map(|&x| (x + 0.0).to_le_bytes()).collect()
 }

@@ -1,4 +1,4 @@
-//! The work that is left of a batch of points, and its results.
+//! Open work of a batch of points, and its results.
 
 use std::collections::{HashMap, HashSet, VecDeque};
 
@@ -6,33 +6,33 @@ use super::protocol::Line;
 use sensitol::assembly::{Points, Progress, Responses, Run};
 use sensitol::assembly::{ProcessError, ProcessFault, StderrTail};
 
-/// The work that is left of a batch.
+/// Open work of a batch of points.
 pub(super) struct Batch<'a> {
     pub(super) points: &'a Points,
     pub(super) out: &'a mut Responses,
     pub(super) waiting: VecDeque<usize>,
-    /// Groups of rows among which one made a child crash: each is tried again with nothing else under way, and divided when it
-    /// crashes once more.
+    /// Groups of rows of which one made a child crash. Each group is tried again with nothing else under way, and is divided after another
+    /// crash.
     pub(super) suspects: VecDeque<Vec<usize>>,
-    /// Failures of every row that had one.
+    /// Number of failures of every row that had one.
     pub(super) failures: HashMap<usize, u32>,
     pub(super) left: usize,
-    /// Rows that are evaluated again because the child that answered them is not trusted: once.
+    /// Rows that are evaluated a second time, because the child that answered them is not trusted.
     pub(super) again: HashSet<usize>,
     /// Rows whose second answer is in doubt as well.
     pub(super) twice: HashSet<usize>,
-    /// Rows that are final and not yet told of.
+    /// Rows with final answers that are not yet reported.
     pub(super) done: Vec<usize>,
-    /// Rows that are not trusted any more and not yet told of as such.
+    /// Rows with withdrawn answers that are not yet reported.
     pub(super) withdrawn: Vec<usize>,
     pub(super) sent: usize,
-    /// Those of them that had been sent before.
+    /// Number of these sends that repeated a row.
     pub(super) resent: usize,
     ever: Vec<bool>,
 }
 
 impl<'a> Batch<'a> {
-    /// Every row of `points` is waiting.
+    /// Batch in which every row of `points` is waiting.
     pub(super) fn new(points: &'a Points, out: &'a mut Responses) -> Self {
         Self {
             points,
@@ -51,41 +51,41 @@ impl<'a> Batch<'a> {
         }
     }
 
-    /// Rows that are still to be sent.
+    /// Number of rows that are still to be sent.
     pub(super) fn unsent(&self) -> usize {
         self.waiting.len() + self.suspects.iter().map(Vec::len).sum::<usize>()
     }
 
-    /// Tries rows again of which one made a child crash, in two groups.
+    /// Tries the rows of a crash again in two groups.
     pub(super) fn divide(&mut self, rows: &[usize]) {
         let (first, second) = rows.split_at(rows.len().div_ceil(2));
         self.suspects.extend([first, second].into_iter().filter(|half| !half.is_empty()).map(<[usize]>::to_vec));
     }
 
-    /// Counts a row that is sent.
+    /// Counts a send of a row.
     pub(super) fn sends(&mut self, row: usize) {
         self.sent += 1;
         self.resent += usize::from(std::mem::replace(&mut self.ever[row], true));
     }
 
-    /// Whether a row is evaluated with nothing else under way in its child.
+    /// True if the row is evaluated with nothing else under way in its child.
     pub(super) fn goes_alone(&self, row: usize) -> bool {
         self.failures.contains_key(&row) || self.again.contains(&row)
     }
 
-    /// The points of rows.
+    /// Points of the rows.
     pub(super) fn coordinates(&self, rows: &[usize]) -> Vec<Vec<f64>> {
         rows.iter().map(|&row| self.points.row(row)).collect()
     }
 
-    /// Notes a failure of a row, and how many there are now.
+    /// Counts a failure of a row. Returns its failures so far.
     pub(super) fn charged(&mut self, row: usize) -> u32 {
         let failures = self.failures.entry(row).or_insert(0);
         *failures += 1;
         *failures
     }
 
-    /// Tries a row again, or gives it up when it has failed too often.
+    /// Tries a row again, or fails it after more than `retries` failures.
     pub(super) fn charge(&mut self, row: usize, error: &ProcessError, retries: u32) {
         if self.charged(row) <= retries {
             self.suspects.push_back(vec![row]);
@@ -101,7 +101,7 @@ impl<'a> Batch<'a> {
         self.finish(row);
     }
 
-    /// Evaluates rows again whose answers are in doubt; once. An answer that is in doubt a second time stays so.
+    /// Evaluates rows with doubtful answers again, but once only. An answer that is in doubt a second time stays in doubt.
     pub(super) fn distrust(&mut self, rows: &[usize]) {
         self.withdrawn.extend(rows);
         for &row in rows {
@@ -116,12 +116,12 @@ impl<'a> Batch<'a> {
 
     pub(super) fn finish(&mut self, row: usize) {
         self.left -= 1;
-        // A new answer takes the place of one that is not trusted.
+        // A new answer takes the place of the withdrawn one.
         self.withdrawn.retain(|&withdrawn| withdrawn != row);
         self.done.push(row);
     }
 
-    /// The answers of the model: values, and for what has none the reason.
+    /// Stores the answer of the model: values, and the reason for each that is missing.
     pub(super) fn settle(&mut self, row: usize, line: Line, names: &[String]) {
         let no_value = |message: String| {
             Box::new(ProcessError { fault: ProcessFault::NoValue { message }, stderr: StderrTail::default() }).into()
@@ -150,7 +150,7 @@ impl<'a> Batch<'a> {
         self.finish(row);
     }
 
-    /// No child can be had any more: everything left fails with this.
+    /// Fails everything that is open with this error, since no child can be started any more.
     pub(super) fn give_up(&mut self, error: &ProcessError) {
         for row in 0..self.out.rows() {
             if (0..self.out.outputs()).any(|output| self.out.is_open(row, output)) {

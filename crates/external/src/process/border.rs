@@ -1,11 +1,11 @@
-//! The border between a study and a program that has other units: a factor for every dimension and characteristic.
+//! Conversion of units between a study and a program: a factor for every dimension and characteristic.
 
 use super::protocol::{Hello, Line};
 use crate::settings::ForeignUnits;
 use sensitol::assembly::ProcessFault;
 use sensitol_numeric::unit::{SAME, Unit};
 
-/// Factors from the study's units to those of the program; all of them 1 where there are none.
+/// Factors from the study's units to those of the program. Empty lists stand for factors of 1.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Border {
     inputs: Vec<f64>,
@@ -13,8 +13,8 @@ pub(super) struct Border {
 }
 
 impl Border {
-    /// The factors between the units of a study and those that a program says it has. Units that are not known on either side say
-    /// nothing.
+    /// Factors between the units of a study and those that a program declares. A unit that is missing or unknown on either side gives a
+    /// factor of 1.
     pub(super) fn of(hello: &Hello, said: &serde_json::Value, held: ForeignUnits) -> Result<Self, ProcessFault> {
         if held == ForeignUnits::Ignored {
             return Ok(Self::default());
@@ -23,7 +23,7 @@ impl Border {
             let both = unit.as_deref().zip(said.get(name).and_then(serde_json::Value::as_str));
             let Some((study, own)) = both else { return Ok(1.0) };
             let (Some(given), Some(model)) = (Unit::parse(study), Unit::parse(own)) else { return Ok(1.0) };
-            // Of two temperature scales with other zeros there is a difference in place of a factor.
+            // Temperature scales with different zeros differ by an offset, so no factor converts them.
             let kind = given.same_kind(&model) && given.point == model.point;
             let factor = given.scale / model.scale;
             let same = (factor - 1.0).abs() <= SAME;
@@ -43,17 +43,17 @@ impl Border {
         Ok(if plain { Self::default() } else { Self { inputs, outputs } })
     }
 
-    /// Whether numbers pass as they are.
+    /// True if no number is converted.
     pub(super) fn is_open(&self) -> bool {
         self.inputs.is_empty() && self.outputs.is_empty()
     }
 
-    /// A point in the units of the program.
+    /// Point in the units of the program.
     pub(super) fn out(&self, point: impl Iterator<Item = f64>) -> impl Iterator<Item = f64> {
         point.enumerate().map(|(input, x)| self.inputs.get(input).map_or(x, |factor| x * factor))
     }
 
-    /// An answer in the units of the study, whatever its shape.
+    /// Converts an answer to the units of the study. Its shape need not be correct yet.
     pub(super) fn back(&self, line: &mut Line) {
         let value = |y: &mut Option<f64>, factor: f64| y.iter_mut().for_each(|y| *y /= factor);
         line.y.iter_mut().flatten().zip(&self.outputs).for_each(|(y, factor)| value(y, *factor));

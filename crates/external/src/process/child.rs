@@ -1,4 +1,4 @@
-//! One child process: its group, its pipes, and the threads that keep them moving.
+//! One child process: its process group, its pipes, and the threads that read and write them.
 
 use std::collections::VecDeque;
 use std::io::{BufRead, BufReader, Read, Write};
@@ -15,15 +15,16 @@ use super::protocol::Line;
 use crate::settings::Listener;
 use sensitol::assembly::{Exit, ProcessFault, Quoted, StderrTail};
 
-/// The longest line that is read: a hundred thousand characteristics fit into it.
+/// Greatest length of a line, in bytes. A hundred thousand characteristics fit into it.
 pub(super) const LONGEST: usize = 16 << 20;
-/// Lines of stderr that errors quote, and the characters of each.
+/// Number of lines of stderr that errors quote.
 const TAIL: usize = 5;
+/// Greatest number of characters of a quoted line of stderr.
 const TAIL_WIDTH: usize = 200;
-/// How long a child may take to end by itself once its stdin is closed.
+/// Time for a child to end by itself once its stdin is closed.
 const GRACE: Duration = Duration::from_secs(2);
 
-/// Something that happened in the child of this number.
+/// Event of the child with this number.
 #[derive(Debug)]
 pub(super) struct Event {
     pub(super) child: u64,
@@ -34,31 +35,31 @@ pub(super) struct Event {
 pub(super) enum What {
     /// Lines that arrived together.
     Lines(Vec<Result<Line, ProcessFault>>),
-    /// It closed its stdout; nothing comes any more.
+    /// The child closed its stdout. No more lines follow.
     Closed,
 }
 
 pub(super) struct Child {
     pub(super) number: u64,
-    /// Ends the child's group when this process is gone, however; None where it cannot be had.
+    /// Ends the child's group if this process ends in any way; None if it cannot be started.
     #[cfg(unix)]
     guard: Option<Guard>,
     process: Box<dyn ChildWrapper>,
-    /// To the thread that writes; None once its stdin is closed.
+    /// Channel to the thread that writes to stdin; None once stdin is closed.
     requests: Option<Sender<Vec<u8>>>,
-    /// Since when it could know that nothing more will come.
+    /// Time at which stdin was closed; None while it is open.
     closed: Option<Instant>,
     stderr: Arc<Mutex<VecDeque<String>>>,
     readers: Vec<JoinHandle<()>>,
 }
 
-/// A thread, where the system has one.
+/// Starts a thread. Fails if the system has none left.
 fn thread<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> std::io::Result<JoinHandle<T>> {
     std::thread::Builder::new().spawn(work)
 }
 
 impl Child {
-    /// Starts a program in a process group of its own. Never through a shell.
+    /// Starts a program in a process group of its own, never through a shell.
     pub(super) fn start(
         argv: &[String],
         folder: &Path,
@@ -71,7 +72,7 @@ impl Child {
             command.args(&argv[1..]).current_dir(folder);
             command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         });
-        // The whole group ends with its leader: what a child started for itself is not an orphan.
+        // The whole group ends with its leader, so that no grandchild is left behind.
         #[cfg(unix)]
         command.wrap(process_wrap::std::ProcessGroup::leader());
         #[cfg(windows)]
@@ -84,7 +85,7 @@ impl Child {
         })?;
         let (requests, lines) = channel::<Vec<u8>>();
         let mut stdin = process.stdin().take().expect("stdin is a pipe");
-        // A child that never reads blocks this thread alone.
+        // A child that never reads its stdin blocks this thread only.
         let write = move || {
             for line in lines {
                 if stdin.write_all(&line).and_then(|()| stdin.flush()).is_err() {
@@ -103,7 +104,7 @@ impl Child {
         let readers = match streams {
             Ok(readers) => readers,
             Err(error) => {
-                // The child reads the end of its input; nothing of it is waited for.
+                // The child is killed at once: without threads nothing can be exchanged with it.
                 let _ = process.start_kill();
                 let reason = format!("there is no thread for its streams: {error}");
                 return Err(ProcessFault::NotStarted { program: program.clone(), reason });
@@ -123,25 +124,25 @@ impl Child {
         })
     }
 
-    /// Sends lines; those that cannot be written come back as the child's end.
+    /// Sends lines. A failure shows later as the end of the child.
     pub(super) fn send(&self, lines: Vec<u8>) {
         if let Some(requests) = &self.requests {
             let _ = requests.send(lines);
         }
     }
 
-    /// Tells the child that nothing more will come.
+    /// Closes stdin, which announces that no more points follow.
     pub(super) fn close(&mut self) {
         self.requests = None;
         self.closed.get_or_insert_with(Instant::now);
     }
 
-    /// Ends the child and all that it started, at once.
+    /// Kills the child and its group at once.
     pub(super) fn kill(&mut self) -> (Exit, StderrTail) {
         self.end(Duration::ZERO)
     }
 
-    /// Ends the child and all that it started; it may take `grace` to end by itself first.
+    /// Ends the child and its group. It has `grace` to end by itself before it is killed.
     fn end(&mut self, grace: Duration) -> (Exit, StderrTail) {
         self.close();
         let begun = self.closed.unwrap_or_else(Instant::now);
@@ -151,12 +152,12 @@ impl Child {
             status = self.process.try_wait().ok().flatten();
         }
         let by_itself = status.is_some();
-        // Before the group's number is free for others.
+        // The guard must end before the group's number is free for other processes.
         #[cfg(unix)]
         drop(self.guard.take());
         let _ = self.process.start_kill();
         let status = status.or_else(|| self.process.wait().ok());
-        // The pipes are closed now, unless a process left the group: their last lines are worth a moment.
+        // The pipes are closed now, unless a process left the group. Their last lines are worth a short wait.
         let begun = Instant::now();
         while !self.readers.iter().all(JoinHandle::is_finished) && begun.elapsed() < Duration::from_millis(200) {
             std::thread::sleep(Duration::from_millis(1));
@@ -175,8 +176,8 @@ impl Child {
     }
 }
 
-/// A shell that waits for the end of a pipe whose other end only this process holds. The pipe closes even when this process is killed;
-/// the shell then ends the child's process group, busy or not. A child that waits for requests would have seen its own pipe close.
+/// A shell that waits for the end of a pipe whose other end only this process holds. The pipe closes even when this process is killed. The
+/// shell then ends the child's process group, even a busy one. A child that waits for requests would notice the end of its own pipe.
 #[cfg(unix)]
 struct Guard(std::process::Child);
 
@@ -184,7 +185,7 @@ struct Guard(std::process::Child);
 impl Guard {
     fn of(group: u32) -> Option<Self> {
         let mut command = std::process::Command::new("/bin/sh");
-        // In a group of its own: Ctrl-C on a terminal reaches this process first.
+        // A group of its own, since Ctrl-C on a terminal must reach this process first.
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         command.args(["-c", "read -r line; kill -s KILL -- \"-$1\"", "sensitol-guard", &group.to_string()]);
         command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().ok().map(Self)
@@ -193,7 +194,7 @@ impl Guard {
 
 #[cfg(unix)]
 impl Drop for Guard {
-    /// Its work is done: it must not see its pipe close.
+    /// Kills the shell, which must not see its pipe close.
     fn drop(&mut self) {
         let _ = self.0.kill();
         let _ = self.0.wait();
@@ -206,7 +207,7 @@ impl Drop for Child {
     }
 }
 
-/// A program named by a path is looked for in the study's folder, any other in the PATH.
+/// Path of a program. One with a folder in its name is relative to the study's folder. Others are searched in the PATH.
 fn path(program: &str, folder: &Path) -> std::path::PathBuf {
     let path = Path::new(program);
     if path.components().count() > 1 { folder.join(path) } else { path.to_owned() }
@@ -220,7 +221,7 @@ fn exit(status: ExitStatus) -> Exit {
     status.code().map_or(Exit::Signal(signal), Exit::Code)
 }
 
-/// Reads stdout until it ends or cannot be understood.
+/// Reads stdout until its end or a line that cannot be understood.
 fn read(stdout: impl Read, child: u64, events: &Sender<Event>) {
     let mut stdout = BufReader::with_capacity(1 << 16, stdout);
     let mut lines = Vec::new();
@@ -253,7 +254,7 @@ fn read(stdout: impl Read, child: u64, events: &Sender<Event>) {
     }
 }
 
-/// Keeps the last lines of stderr, and hands every line on.
+/// Keeps the last lines of stderr, and passes every line to the listener.
 fn listen(stderr: impl Read, tail: &Mutex<VecDeque<String>>, listener: Option<&Listener>) {
     let mut stderr = BufReader::new(stderr);
     let mut line = Vec::new();

@@ -1,4 +1,4 @@
-//! Children side by side, and the points under way in each.
+//! Pool of child processes, with the points under way in each.
 
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
@@ -15,69 +15,72 @@ use sensitol::assembly::EvaluatorAccount;
 use sensitol::assembly::{ModelInfo, Points, Responses, Run};
 use sensitol::assembly::{ProcessError, ProcessFault, Quoted, StderrTail};
 
-/// How often a stop is looked for.
+/// Longest time between two looks for a stop.
 const TICK: Duration = Duration::from_millis(50);
-/// The first pause before a child that failed is started again; it doubles with every failure in a row.
+/// First pause before a failed child is started again. It doubles with every failure in a row.
 const PAUSE: Duration = Duration::from_millis(50);
+/// Greatest pause before a failed child is started again.
 const LONGEST_PAUSE: Duration = Duration::from_secs(5);
-/// The longest deadline, some thirty years: a later moment may be more than the clock can hold.
+/// Longest deadline, some thirty years. A later moment may be more than the clock can hold.
 const FOREVER: Duration = Duration::from_secs(1_000_000_000);
-/// Starts in a row that may fail before no more are tried.
+/// Failed starts in a row after which no more are tried.
 const STARTS: u32 = 4;
-/// Crashes in a row, without an answer between them, after which points of an isolated program are suspected after all.
+/// Crashes in a row without an answer after which points of an isolated program are suspected after all.
 const ISOLATED: u32 = 3;
-/// How long a stop waits for points that were taken back: an answer that comes all the same is kept.
+/// Time that a stop waits for points that were taken back. An answer that still comes is kept.
 const TAKEN_BACK: Duration = Duration::from_secs(1);
 
-/// The children of one model, asked for one choice of outputs.
+/// Children of one model for one choice of outputs.
 pub(super) struct Pool {
     pub(super) settings: Settings,
     pub(super) hello: Hello,
     slots: Vec<Slot>,
     events: (Sender<Event>, Receiver<Event>),
-    /// Number of the next child, and of the next point.
+    /// Number of the next child.
     next_child: u64,
+    /// Number of the next point.
     next_point: u64,
-    /// Starts in a row that failed.
+    /// Failed starts in a row.
     failed_starts: u32,
-    /// Children in a row that said that they were ready and ended before they were sent a point; the last one's error where they are too many.
+    /// Children in a row that were ready and ended before they were sent a point.
     unused: u32,
+    /// Error of the last such child, once there were too many.
     useless: Option<ProcessError>,
     adapter: Option<ModelInfo>,
-    /// Whether numbers are converted on their way to the program and back.
+    /// True if numbers are converted on their way to the program and back.
     pub(super) converts: bool,
     pub(super) reference: Reference,
     pub(super) account: EvaluatorAccount,
-    /// Answers so far, of which some are replayed.
+    /// Answers so far, from which some are chosen for a replay.
     pub(super) answers: Answers,
-    /// The difference of every output when the nominal point is evaluated again.
+    /// Greatest difference of every output between two evaluations of the nominal point.
     pub(super) noise: Vec<f64>,
-    /// Whether an answer was found to depend on the points before it.
+    /// True once an answer was found to depend on the points before it.
     pub(super) flips: bool,
-    /// Whether it has another answer every time.
+    /// True if the model gives another answer every time.
     pub(super) hopeless: bool,
-    /// Whether points go to one child, one by one in their order, without sentinels.
+    /// True while points go to one child, one by one in their order, without sentinels.
     pub(super) walking: bool,
 }
 
-/// A place for one child.
+/// Slot of one child.
 #[derive(Default)]
 struct Slot {
     state: State,
     /// Failures since the last answer.
     failures: u32,
-    /// Since when it has been without a child that answers, after a failure.
+    /// Time since which the slot has had no child that answers; None unless a child failed.
     lost: Option<Instant>,
 }
 
 #[derive(Default)]
 enum State {
-    /// No child, and none wanted yet.
+    /// No child, and none is wanted yet.
     #[default]
     Empty,
-    /// No child before this moment.
+    /// No child may start before this moment.
     Pausing(Instant),
-    /// A child that has not said that it is ready.
+    /// A child that is not ready yet, and the deadline for it.
     Starting(Child, Instant),
     Ready(Box<Worker>),
 }
@@ -113,7 +116,7 @@ impl Pool {
         self.hello.characteristics == characteristics
     }
 
-    /// Starts one child and waits until it is ready: whether the model can be used at all.
+    /// Starts one child and waits until it is ready. Fails if the model cannot be used.
     pub(super) fn prepare(&mut self) -> Result<&ModelInfo, ProcessError> {
         while self.adapter.is_none() {
             if matches!(self.slots[0].state, State::Empty | State::Pausing(_)) {
@@ -124,7 +127,7 @@ impl Pool {
         Ok(self.adapter.as_ref().expect("a child is ready"))
     }
 
-    /// Evaluates every row of `points`; what a stop leaves undone stays open, but what is under way is waited for.
+    /// Evaluates all rows of `points`. After a stop, points under way are waited for and others stay open.
     pub(super) fn evaluate(&mut self, points: &Points, run: &Run<'_>, out: &mut Responses) {
         let rows = points.rows();
         let mut batch = Some(Batch::new(points, out));
@@ -139,6 +142,7 @@ impl Pool {
                 self.workers().for_each(Worker::take_back);
             }
             let work = batch.as_mut().expect("a batch");
+            // The batch ends when all rows are answered and a sentinel has confirmed them. After a stop it ends when nothing is under way.
             let checked = work.left == 0 && self.slots.iter().all(Slot::is_checked);
             let waits = stopped_at.is_some_and(|at| at.elapsed() < TAKEN_BACK)
                 && self.workers().any(|worker| worker.cancelled.values().any(Option::is_some));
@@ -160,11 +164,11 @@ impl Pool {
         work.out.spent(work.sent as i64 - (rows - work.left) as i64);
         self.account.counts.retried += work.resent as u64;
         if self.settings.verify == Some(0) {
-            // Nothing is replayed, so that what is in doubt twice stays so.
+            // Nothing is replayed, so rows that are in doubt twice stay in doubt.
             self.account.counts.unconfirmed += work.twice.len() as u64;
         }
         work.out.retried(work.resent);
-        // After giving up, a process may still work on points of this batch: the next one must not hear of them.
+        // After giving up, a process may still work on points of this batch. The next batch must not receive their answers.
         for slot in &mut self.slots {
             if let State::Ready(worker) = &mut slot.state {
                 worker.unchecked.clear();
@@ -193,7 +197,7 @@ impl Pool {
         self.slots.iter().any(|slot| matches!(&slot.state, State::Ready(worker) if !worker.under_way.is_empty()))
     }
 
-    /// Starts children where there is work for them, and gives every ready one as much as it may have.
+    /// Starts children if there is work for them, and sends every ready one as many points as it may have.
     fn dispatch(&mut self, batch: &mut Batch<'_>) -> Result<(), ProcessError> {
         let now = Instant::now();
         let mut wanted = batch.unsent();
@@ -209,7 +213,7 @@ impl Pool {
                     continue;
                 }
             };
-            // One child for each window of points: no more than there is work for.
+            // One child for each window of points is enough.
             wanted = wanted.saturating_sub(self.adapter.as_ref().map_or(1, |adapter| adapter.window));
             // Later failures arrive as events.
             if start && let Err(error) = self.start(index) {
@@ -223,12 +227,12 @@ impl Pool {
         let State::Ready(worker) = &mut self.slots[index].state else { return };
         let mut lines = Vec::new();
         let idle = batch.waiting.is_empty() && batch.suspects.is_empty();
-        // After every point that is evaluated again: the one that led the model astray will do so once more.
+        // A sentinel follows every point that is evaluated again: it may have led the model to a wrong solution, and would do so once more.
         let again = worker.unchecked.last().is_some_and(|row| batch.again.contains(row));
         let due = worker.troubled || again || worker.unchecked.len() >= interval(worker.window) || idle;
         if self.settings.sentinels && !self.walking && due && !worker.unchecked.is_empty() {
             if worker.under_way.is_empty() {
-                // One for each place that is known, where the program has several.
+                // One sentinel for each known place, if the program evaluates in several.
                 let places: Vec<Option<String>> = worker.places.iter().cloned().map(Some).collect();
                 for place in if places.is_empty() { vec![None] } else { places } {
                     let nominal = worker.border.out(self.hello.nominal.iter().copied());
@@ -252,12 +256,14 @@ impl Pool {
             request(&mut lines, self.next_point, worker.border.out(point), None);
             self.next_point += 1;
         };
+        // A suspected group is sent first, to a child with nothing else under way.
         if worker.under_way.is_empty()
             && let Some(group) = batch.suspects.pop_front()
         {
             worker.exclusive = true;
             group.into_iter().for_each(|row| send(row, worker, batch));
         }
+        // Other rows fill the window. A row that must be evaluated alone waits until nothing is under way.
         let window = if self.walking { 1 } else { worker.room() };
         while worker.under_way.len() < window && !worker.exclusive {
             let Some(&row) = batch.waiting.front() else { break };
@@ -287,7 +293,7 @@ impl Pool {
         Ok(())
     }
 
-    /// Waits for something to happen, or for a deadline, and acts on it. An error is one of every start.
+    /// Waits for an event or a deadline, and handles it. Fails if no child can be started.
     fn turn(&mut self, batch: &mut Option<Batch<'_>>) -> Result<(), ProcessError> {
         let now = Instant::now();
         let pause = self.deadlines().map(|deadline| deadline.saturating_duration_since(now)).min();
@@ -295,7 +301,7 @@ impl Pool {
         match self.events.1.recv_timeout(timeout) {
             Ok(event) => {
                 self.hear(event, batch)?;
-                // Whatever came meanwhile, before points are sent for it.
+                // Events that came meanwhile are handled before points are sent.
                 while let Ok(event) = self.events.1.try_recv() {
                     self.hear(event, batch)?;
                 }
@@ -315,7 +321,7 @@ impl Pool {
         })
     }
 
-    /// Ends what has taken too long.
+    /// Ends children that have missed a deadline.
     fn late(&mut self, batch: &mut Option<Batch<'_>>) -> Result<(), ProcessError> {
         let now = Instant::now();
         for index in 0..self.slots.len() {
@@ -330,7 +336,7 @@ impl Pool {
                     let fault = ProcessFault::TimedOut { after: self.settings.timeout };
                     let Some(late) = worker.under_way.remove(position) else { continue };
                     if worker.abilities.cancel && late.started.is_some() && late.row != SENTINEL {
-                        // The program goes on without this point.
+                        // The program can cancel this point, so the child goes on.
                         worker.cancel([late]);
                         let error = ProcessError { fault, stderr: worker.child.tail() };
                         self.account.failed(&error);
@@ -352,7 +358,7 @@ impl Pool {
             State::Ready(worker) => worker.child.number == event.child,
             _ => false,
         };
-        // A child that was ended already may still have something to say.
+        // A child that has been ended may still have lines in the channel.
         let Some(index) = self.slots.iter().position(of) else { return Ok(()) };
         match event.what {
             What::Closed => self.closed(index, batch),
@@ -361,7 +367,7 @@ impl Pool {
                     match &self.slots[index].state {
                         State::Starting(..) => self.greet(index, line)?,
                         State::Ready(_) => self.answer(index, line, batch),
-                        // An earlier line ended the child.
+                        // An earlier line has ended the child.
                         _ => break,
                     }
                 }
@@ -370,7 +376,7 @@ impl Pool {
         }
     }
 
-    /// The first line of a child.
+    /// Handles the first line of a child.
     fn greet(&mut self, index: usize, line: Result<Line, ProcessFault>) -> Result<(), ProcessError> {
         let State::Starting(child, _) = &mut self.slots[index].state else { return Ok(()) };
         let fault = match line {
@@ -405,7 +411,7 @@ impl Pool {
         self.lost_start(index, ProcessError { fault, stderr })
     }
 
-    /// A child that could not be started after others could is tried again, a few times.
+    /// Handles a failed start after an earlier one that worked: it is tried again, a few times.
     fn lost_start(&mut self, index: usize, error: ProcessError) -> Result<(), ProcessError> {
         self.failed_starts += 1;
         self.account.failed(&error);
@@ -413,13 +419,13 @@ impl Pool {
         if self.is_hopeless() { Err(error) } else { Ok(()) }
     }
 
-    /// Whether there is no child, and none to be had: the first start failed, or too many in a row did.
+    /// True if there is no child and no more starts are tried: the first start failed, or too many in a row did.
     fn is_hopeless(&self) -> bool {
         let alone = !self.slots.iter().any(|slot| matches!(slot.state, State::Ready(_)));
         self.adapter.is_none() || (alone && self.failed_starts >= STARTS)
     }
 
-    /// Leaves a place empty for a while that grows with every failure.
+    /// Leaves a slot empty for a pause that grows with every failure.
     fn pause(&mut self, index: usize) {
         let slot = &mut self.slots[index];
         let pause = if slot.failures == 0 { Duration::ZERO } else { PAUSE * 2u32.pow(slot.failures.min(10) - 1) };
@@ -427,7 +433,7 @@ impl Pool {
         slot.state = State::Pausing(Instant::now() + pause.min(LONGEST_PAUSE));
     }
 
-    /// An answer, or something that should have been one.
+    /// Handles a line of a ready child, which should be an answer.
     fn answer(&mut self, index: usize, line: Result<Line, ProcessFault>, batch: &mut Option<Batch<'_>>) {
         let slot = &mut self.slots[index];
         let State::Ready(worker) = &mut slot.state else { return };
@@ -441,6 +447,7 @@ impl Pool {
         {
             listener(note);
         }
+        // A line without id is a sign of life or changes the window.
         if line.id.is_none() && (line.alive || line.window.is_some()) {
             worker.window = line.window.unwrap_or(worker.window).max(1);
             if line.alive {
@@ -452,6 +459,7 @@ impl Pool {
             return self.fail(index, line.garbage("it has no id"), batch);
         };
         let is_start = line.started.is_some() && line.y.is_none() && line.error.is_none();
+        // A point that was taken back may still be answered.
         if let Some(row) = worker.cancelled.get(&id).copied() {
             if !is_start {
                 worker.cancelled.remove(&id);
@@ -471,7 +479,7 @@ impl Pool {
         }
         let expected = self.hello.characteristics.len();
         if let Some(fault) = line.misshapen(expected, self.hello.dimensions.len()) {
-            // Only this point: the line was whole, and the others may be right.
+            // Only this point fails: the line was complete, and other points may be right.
             if worker.under_way[position].row == SENTINEL {
                 return self.fail(index, fault, batch);
             }
@@ -520,7 +528,7 @@ impl Pool {
         }
     }
 
-    /// An answer to a point that was taken back: it is kept where its row is still open.
+    /// Handles an answer to a point that was taken back. It is kept if its row is still open.
     fn late_answer(&mut self, row: Option<usize>, line: Line, batch: &mut Option<Batch<'_>>) {
         let shaped =
             line.y.is_some() && line.misshapen(self.hello.characteristics.len(), self.hello.dimensions.len()).is_none();
@@ -532,10 +540,10 @@ impl Pool {
         }
     }
 
-    /// The nominal point, evaluated again: a child that answers otherwise than before is not trusted any more.
+    /// Handles an answer to a sentinel. A child with another value than before is not trusted any more.
     fn checked(&mut self, index: usize, found: Vec<Option<f64>>, batch: &mut Option<Batch<'_>>) {
         let State::Ready(worker) = &mut self.slots[index].state else { return };
-        // Of several places each has a sentinel: the last one settles what is checked, and the first that differs does.
+        // With several places each has a sentinel. The last one clears the check, and the first difference ends the child.
         let last = !worker.under_way.iter().any(|sent| sent.row == SENTINEL);
         let rows = worker.unchecked.clone();
         let suspects = batch.as_ref().map(|batch| batch.coordinates(&rows)).unwrap_or_default();
@@ -548,7 +556,7 @@ impl Pool {
             return;
         }
         worker.child.kill();
-        // An even number of flips hides from the nominal point: every answer of the batch is replayed at its end.
+        // An even number of flips does not show at the nominal point, so every answer of the batch is replayed at its end.
         self.flips |= is_flip(&non_repeatable);
         if let Some(batch) = batch {
             batch.out.note_non_repeatable(non_repeatable);
@@ -557,7 +565,7 @@ impl Pool {
         self.pause(index);
     }
 
-    /// A child closed its stdout.
+    /// Handles a child that closed its stdout.
     fn closed(&mut self, index: usize, batch: &mut Option<Batch<'_>>) -> Result<(), ProcessError> {
         match &mut self.slots[index].state {
             State::Starting(child, _) => {
@@ -572,7 +580,7 @@ impl Pool {
         }
     }
 
-    /// A child that did something wrong: it is ended, its oldest point is charged with it, the others are free.
+    /// Ends a child after a fault. Its oldest point is charged with it, and the others are sent again.
     fn fail(&mut self, index: usize, fault: ProcessFault, batch: &mut Option<Batch<'_>>) {
         self.crash(index, Some(fault), batch);
     }
@@ -586,14 +594,14 @@ impl Pool {
         self.slots[index].lost.get_or_insert(worker.since);
         let crashes = self.slots[index].failures;
         self.unused = if worker.asked { 0 } else { self.unused + 1 };
-        // No point is charged with it: without an end here such children would be started for ever.
+        // No point can be charged. Without this limit such children would be started for ever.
         if self.unused >= STARTS && !self.slots.iter().any(|slot| matches!(slot.state, State::Ready(_))) {
             self.useless = Some(error);
             return self.pause(index);
         }
         if let Some(batch) = batch {
             if worker.under_way.iter().any(|sent| sent.row == SENTINEL) {
-                // It did not survive the nominal point, which it had answered before.
+                // The child crashed at the nominal point, which it had answered before.
                 batch.distrust(&worker.unchecked);
                 return self.pause(index);
             }
@@ -607,7 +615,7 @@ impl Pool {
             } else if worker.abilities.isolated && crashes < ISOLATED {
                 rows.iter().rev().for_each(|&row| batch.waiting.push_front(row));
             } else {
-                // Of several points under way in a child that crashed it is not known which one it was.
+                // A crash with several points under way does not show which of them caused it.
                 batch.divide(&rows);
             }
         }
@@ -616,7 +624,7 @@ impl Pool {
 }
 
 impl Slot {
-    /// Whether nothing is left that its child has answered and that is not checked.
+    /// True if the slot has no answers that a sentinel must still confirm, and no points under way.
     fn is_checked(&self) -> bool {
         match &self.state {
             State::Ready(worker) => worker.unchecked.is_empty() && worker.under_way.is_empty(),
@@ -626,7 +634,7 @@ impl Slot {
 }
 
 impl Drop for Pool {
-    /// All are told first, so that they end side by side.
+    /// Closes all children first, so that they end at the same time.
     fn drop(&mut self) {
         for slot in &mut self.slots {
             match &mut slot.state {

@@ -1,4 +1,4 @@
-//! The external program as assembly function.
+//! The external program as an assembly function.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -9,10 +9,10 @@ use sensitol::assembly::EvaluatorAccount;
 use sensitol::assembly::ProcessError;
 use sensitol::assembly::{AssemblyFunction, EvaluationError, ModelInfo, Request, Responses, Run, Signature};
 
-/// An external program as assembly function.
+/// An external program as an assembly function.
 ///
-/// Evaluations: one for each point, and one more for each time that it is tried again. Children start with the first
-/// point or with [`prepare`](AssemblyFunction::prepare), and end with this value.
+/// Evaluations: one for each point, and one more for each retry. Children start with the first point or with
+/// [`prepare`](AssemblyFunction::prepare), and end with this value.
 pub struct Process {
     signature: Signature,
     settings: Settings,
@@ -21,10 +21,10 @@ pub struct Process {
 }
 
 impl Process {
-    /// A program that is asked for the outputs of `signature` at points of its inputs.
+    /// A program that evaluates the outputs of `signature` at points of its inputs.
     ///
     /// # Panics
-    /// When `argv` is empty, or there are not as many nominal values as inputs.
+    /// Panics if `argv` is empty, or if the number of nominal values differs from that of the inputs.
     pub fn new(signature: Signature, greeting: Greeting, settings: Settings) -> Self {
         assert!(!settings.argv.is_empty(), "a program has a name");
         assert_eq!(signature.inputs.len(), greeting.nominal.len(), "every dimension has a nominal value");
@@ -32,32 +32,31 @@ impl Process {
         Self { signature, settings, greeting, pool: Mutex::new(None) }
     }
 
-    /// The program's description of itself; starts the program if need be.
+    /// Description of the program by itself. Starts the program if it is not running.
     ///
     /// # Errors
-    /// When it does not start, or does not serve the study.
+    /// Fails if the program does not start or cannot serve the study.
     pub fn adapter(&self, outputs: &[usize]) -> Result<ModelInfo, ProcessError> {
         self.with_pool(outputs, |pool| pool.prepare().cloned())
     }
 
-    /// Whether numbers are converted on their way to the program and back; known once it has started.
+    /// True if numbers are converted on their way to the program and back. It is known once the program has started.
     pub(crate) fn converts(&self) -> bool {
         let pool = self.pool.lock().unwrap_or_else(PoisonError::into_inner);
         pool.as_ref().is_some_and(|pool| pool.converts)
     }
 
-    /// The account of its processes so far: nothing where none was started.
+    /// Account of the processes so far; empty if none was started.
     pub(crate) fn account(&self) -> EvaluatorAccount {
         let pool = self.pool.lock().unwrap_or_else(PoisonError::into_inner);
         pool.as_ref().map(|pool| pool.account.clone()).unwrap_or_default()
     }
 
-    /// How it is run.
     pub(crate) fn settings(&self) -> &Settings {
         &self.settings
     }
 
-    /// The content of its first line beside names.
+    /// Values of the first line to the program.
     pub(crate) fn greeting(&self) -> &Greeting {
         &self.greeting
     }
@@ -65,7 +64,7 @@ impl Process {
     fn with_pool<T>(&self, outputs: &[usize], act: impl FnOnce(&mut Pool) -> T) -> T {
         let names: Vec<String> = outputs.iter().map(|&output| self.signature.outputs[output].name.clone()).collect();
         let mut pool = self.pool.lock().unwrap_or_else(PoisonError::into_inner);
-        // Children are told once what they are asked for; another question takes others.
+        // A child gets the requested outputs once, at its start. Other outputs need other children.
         if pool.as_ref().is_none_or(|pool| !pool.asks(&names)) {
             let account = pool.take().map(|pool| pool.account.clone()).unwrap_or_default();
             let mut fresh = Pool::new(self.settings.clone(), self.hello(names));
@@ -92,32 +91,32 @@ impl Process {
     }
 }
 
-/// The result of a comparison of an earlier run's answers with the model as it is.
+/// Result of the comparison of an earlier run's answers with the model.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Recheck {
-    /// They are its answers, and this is what the nominal point has.
+    /// The answers agree. The values are those of the nominal point.
     Same(Vec<Option<f64>>),
-    /// The nominal point has another value: the model is another one.
+    /// The nominal point has another value, so the model has changed.
     Changed(Vec<Option<f64>>),
-    /// The nominal point is the same, and another point is not: these answers depend on the points before them.
+    /// The nominal point has the same value, but another point does not. These answers depend on the points before them.
     Doubtful(Vec<Option<f64>>),
-    /// A stop came first.
+    /// The run was stopped before the comparison ended.
     Stopped,
 }
 
 /// Answers of an earlier run.
 pub(crate) struct Kept<'a> {
-    /// The answers of the nominal point; None where they were not kept.
+    /// Answers of the nominal point; None if they were not kept.
     pub(crate) nominal: Option<&'a [Option<f64>]>,
-    /// Points and their values, by which noise is told from a difference.
+    /// Points with answers. Their range distinguishes noise from a difference.
     pub(crate) points: &'a [Vec<f64>],
     pub(crate) values: &'a [Vec<Option<f64>>],
-    /// Those of them that no replay has confirmed.
+    /// Indices of the points without a confirmation by replay.
     pub(crate) unconfirmed: &'a [usize],
 }
 
 impl Process {
-    /// Holds answers of an earlier run against the model: the nominal point once, and two of those that no replay has confirmed.
+    /// Compares answers of an earlier run with the model: the nominal point once, and two answers without a confirmation.
     pub(crate) fn recheck(&self, outputs: &[usize], kept: &Kept<'_>, run: &Run<'_>, out: &mut Responses) -> Recheck {
         self.with_pool(outputs, |pool| {
             let replays = self.settings.sentinels && self.settings.verify != Some(0);

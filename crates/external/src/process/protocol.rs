@@ -1,4 +1,4 @@
-//! The lines of the protocol, version 1 (`adapters/PROTOCOL.md`).
+//! Lines of the protocol, version 1 (`adapters/PROTOCOL.md`).
 
 use std::collections::BTreeMap;
 
@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 use sensitol::assembly::ModelInfo;
 use sensitol::assembly::{ProcessFault, Quoted};
 
-/// The version that is spoken here.
+/// Version of the protocol.
 pub(super) const VERSION: u32 = 1;
 
-/// The engine's first line: what the study has, and what it asks for.
+/// First line of the engine: dimensions, constants and requested characteristics.
 #[derive(Debug, Clone, Serialize)]
 pub(super) struct Hello {
     pub(super) sensitol: u32,
@@ -19,41 +19,41 @@ pub(super) struct Hello {
     pub(super) nominal: Vec<f64>,
     pub(super) constants: serde_json::Map<String, serde_json::Value>,
     pub(super) characteristics: Vec<String>,
-    /// Dimensions and constants that formulas use too: the child need not know them.
+    /// Dimensions and constants that formulas use too, so that the child need not know them.
     pub(super) optional: Vec<String>,
-    /// The units of the characteristics, which a child is not told: its own are held against them.
+    /// Units of the characteristics. They are not sent, only compared with those of the child.
     #[serde(skip)]
     pub(super) asked_units: Vec<Option<String>>,
 }
 
-/// Anything that a child may say. Keys that are not known here are for others.
+/// Any line of a child. Unknown keys are ignored.
 #[derive(Debug, Deserialize)]
 pub(super) struct Line {
     pub(super) ready: Option<bool>,
-    /// The version that the child speaks, where it says so.
+    /// Version of the protocol that the child declares.
     pub(super) sensitol: Option<u32>,
     pub(super) name: Option<String>,
     pub(super) version: Option<serde_json::Value>,
     pub(super) window: Option<usize>,
     pub(super) id: Option<u64>,
     pub(super) y: Option<Vec<Option<f64>>>,
-    /// Derivatives: a row for each characteristic.
+    /// Derivatives, with one row for each characteristic.
     pub(super) dy: Option<Vec<Vec<f64>>>,
     #[serde(default)]
     pub(super) errors: BTreeMap<String, String>,
     pub(super) error: Option<String>,
     #[serde(default)]
     pub(super) retry: bool,
-    /// A sign of life, which restarts the clock of what has not started.
+    /// Sign of life, which restarts the clock of points that have not started.
     #[serde(default)]
     pub(super) alive: bool,
-    /// Where the evaluation of point `id` has just begun.
+    /// Place at which the evaluation of point `id` has just begun.
     pub(super) started: Option<String>,
-    /// Where the answer was evaluated, and what it took.
+    /// Place of the evaluation. `cost_s` is its cost in seconds.
     #[serde(rename = "where")]
     pub(super) place: Option<String>,
     pub(super) cost_s: Option<f64>,
-    /// The abilities of the program; with `ready`.
+    /// Abilities of the program, with `ready`.
     #[serde(default)]
     pub(super) isolated: bool,
     #[serde(default)]
@@ -61,20 +61,20 @@ pub(super) struct Line {
     #[serde(default)]
     pub(super) cancel: bool,
     pub(super) places: Option<usize>,
-    /// Its own units of dimensions and characteristics, by name; with `ready`. Anything else under this key is for others.
+    /// Units of dimensions and characteristics by name, with `ready`. Other values of this key are ignored.
     #[serde(default)]
     pub(super) units: serde_json::Value,
-    /// For `-v`.
+    /// Message for the user, shown by `-v`.
     pub(super) note: Option<String>,
-    /// Whether it holds NaN or infinities, as Python's json writes them: no value, for that reason.
+    /// True if the line holds NaN or infinities, as Python's json writes them. Such an output has no value.
     #[serde(skip)]
     pub(super) not_finite: bool,
-    /// How it began, where it is odd.
+    /// Beginning of the line, kept if the line is odd.
     #[serde(skip)]
     pub(super) quoted: Option<Quoted>,
 }
 
-/// A line with null in place of NaN and infinities; None where there are none outside its strings.
+/// Line with null in place of NaN and infinities. Returns None if there are none outside of strings.
 fn finite(text: &[u8]) -> Option<Vec<u8>> {
     let (mut clean, mut inside, mut changed) = (Vec::with_capacity(text.len()), false, false);
     let mut rest = text;
@@ -93,7 +93,7 @@ fn finite(text: &[u8]) -> Option<Vec<u8>> {
 }
 
 impl Line {
-    /// Reads a line; what may have to be shown is kept.
+    /// Parses a line. Its beginning is kept if an error may have to quote it.
     pub(super) fn parse(text: &[u8]) -> Result<Self, ProcessFault> {
         let garbage =
             |error: serde_json::Error| ProcessFault::Garbage { reason: error.to_string(), line: Quoted::of(text) };
@@ -110,7 +110,7 @@ impl Line {
         Ok(line)
     }
 
-    /// The program by its own words in `ready`.
+    /// Description of the program by itself, from `ready`.
     pub(super) fn info(&self) -> ModelInfo {
         let version = self.version.clone().map(|version| match version {
             serde_json::Value::String(text) => text,
@@ -120,7 +120,7 @@ impl Line {
         ModelInfo { name: self.name.clone(), version, window, gradients: self.gradients }
     }
 
-    /// The fault in the shape of an answer.
+    /// Fault in the shape of an answer. Returns None if it has the right shape.
     pub(super) fn misshapen(&self, rows: usize, columns: usize) -> Option<ProcessFault> {
         let found = self.y.as_ref().map_or(rows, Vec::len);
         if found != rows {
@@ -131,7 +131,7 @@ impl Line {
         misshapen.then_some(ProcessFault::WrongGradients { rows, columns })
     }
 
-    /// As something that should have been an answer.
+    /// Fault of a line that should have been an answer.
     pub(super) fn garbage(&self, reason: &str) -> ProcessFault {
         let line = self.quoted.clone().unwrap_or_else(|| Quoted(String::new()));
         ProcessFault::Garbage { reason: reason.to_owned(), line }
@@ -146,7 +146,7 @@ impl Hello {
     }
 }
 
-/// A request for one point, at a place of the program where one is named. Numbers are the shortest that read back as the same
+/// Appends a request for one point, at a place of the program if one is given. Numbers are the shortest ones that are parsed as the same
 /// double.
 pub(super) fn request(line: &mut Vec<u8>, id: u64, point: impl Iterator<Item = f64>, place: Option<&str>) {
     line.extend_from_slice(b"{\"id\":");

@@ -1,9 +1,9 @@
-//! Points again, by walks of small steps in a fresh child: whether an answer depends on what was asked before it.
+//! Replays points by walks of small steps in a fresh child, to find answers that depend on the points before them.
 //!
-//! A solver that starts from its last solution flips on a long way and stays in the wrong branch until the next long way; sentinels
-//! see only every second flip. A fresh child that goes from the nominal point in small steps has no long way. Where its answer differs
-//! from the first one, a third child goes another way, one dimension after the other: two answers that agree are taken, three
-//! different ones are none. After any difference every point of the batch is walked to.
+//! A solver that starts from its last solution may flip on a long step, and stays in the wrong branch until the next long step. Sentinels
+//! detect only every second flip. A fresh child that walks from the nominal point in small steps makes no long step. If its answer differs
+//! from the first one, a third child takes another route, one dimension after the other. Two answers that agree are taken. Three different
+//! ones count as none. After any difference, every point of the batch is replayed.
 
 use super::pool::Pool;
 use super::sentinel::{FLIP, agree};
@@ -11,14 +11,14 @@ use super::suspicion::moved;
 use sensitol::assembly::{EvaluationError, NonRepeatable, Points, Responses, Run};
 use sensitol::assembly::{ProcessError, ProcessFault, StderrTail};
 
-/// Equal steps of a walk.
+/// Number of equal steps of a walk.
 const STEPS: usize = 3;
-/// Noise of the model, times this, is not a difference.
+/// Factor on the noise of the model, up to which a difference counts as noise.
 const NOISY: f64 = 10.0;
-/// Answers of an earlier run that are replayed before any is used.
+/// Number of answers of an earlier run that are replayed before any is used.
 const REUSED: usize = 2;
 
-/// The way from the nominal point to another one.
+/// Route from the nominal point to another one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Route {
     /// All dimensions at once.
@@ -28,7 +28,7 @@ enum Route {
 }
 
 impl Route {
-    /// The points on the way, the last one included.
+    /// Points on the route, the last one included.
     fn points(self, from: &[f64], to: &[f64]) -> Vec<Vec<f64>> {
         let part = |start: &[f64], end: &[f64], step: usize, steps: usize| -> Vec<f64> {
             let between =
@@ -40,7 +40,7 @@ impl Route {
             Self::Straight => (1..=STEPS).map(|step| part(from, to, step, STEPS)).collect(),
             Self::AxisByAxis => {
                 let moved = moved(from, to);
-                // A single dimension has no other way: it is gone in smaller steps.
+                // A single dimension has no second route, so the steps become smaller.
                 let steps = if moved.len() == 1 { 2 * STEPS - 1 } else { STEPS.div_ceil(moved.len().max(1)).max(2) };
                 let mut at = from.to_vec();
                 let mut way = Vec::new();
@@ -56,19 +56,19 @@ impl Route {
     }
 }
 
-/// Values of one point, None where it has none.
+/// Values of one point; None for outputs without one.
 type Values = Vec<Option<f64>>;
 
-/// The result of one walk.
+/// Result of one walk.
 #[derive(Debug, Clone, PartialEq)]
 enum Walked {
-    /// A stop came before its end.
+    /// The run was stopped before the end of the walk.
     Stopped,
-    /// The process did not get there: it crashed, was too slow, or cannot be started any more. That says nothing of the answer.
+    /// The process did not reach the end: it crashed, was too slow, or could not be started. The answer remains open.
     Lost,
-    /// The nominal point was not as it should be when the walk began: the end does not count.
+    /// The nominal point had a wrong value at the start of the walk, so the end does not count.
     Astray,
-    /// The answers at its end.
+    /// Values at the end of the walk.
     There(Values),
 }
 
@@ -81,12 +81,12 @@ impl Walked {
     }
 }
 
-/// Replays that differ, in three ways each, after which no more is tried: the model has another answer every time.
+/// Number of replays that differ on every route, after which no more are tried: the model gives another answer every time.
 const HOPELESS: usize = 3;
 
 impl Pool {
-    /// Replays some answers of a batch, and all of them where one of these differs. Returns the rows whose answers were changed
-    /// or taken away; None where a stop came before the end.
+    /// Replays some answers of a batch, and all of them if one differs. Returns the rows whose answers were changed or removed. Returns
+    /// None if a stop came before the end.
     pub(super) fn confirm(&mut self, points: &Points, out: &mut Responses, run: &Run<'_>) -> Option<Vec<usize>> {
         if !self.settings.sentinels || self.settings.verify == Some(0) {
             return Some(Vec::new());
@@ -104,7 +104,7 @@ impl Pool {
                 self.give_up(&known, &rows, &all, out);
                 return Some(known);
             }
-            // All of them will be; a few first, of which a model that never repeats itself is known.
+            // All rows will be replayed. A few come first, which suffice to recognise a model that never repeats itself.
             let more: Vec<usize> = known.filter(|row| !chosen.contains(row)).collect();
             chosen.extend(more.into_iter().take((2 * HOPELESS).saturating_sub(chosen.len())));
         }
@@ -112,7 +112,7 @@ impl Pool {
             return Some(Vec::new());
         }
         let changed = match self.replayed(&rows, &all, &chosen, out, run) {
-            // A stop came after a flip was found and before everything was confirmed.
+            // The run was stopped after a flip was found and before everything was confirmed.
             None if self.flips => {
                 self.give_up(&(0..rows.len()).collect::<Vec<_>>(), &rows, &all, out);
                 Some((0..rows.len()).collect())
@@ -125,7 +125,7 @@ impl Pool {
         changed
     }
 
-    /// Takes away the answers of a batch that was stopped after a flip: nothing confirmed them. Returns their rows.
+    /// Removes the answers of a batch that was stopped after a flip, since nothing confirmed them. Returns their rows.
     pub(super) fn doubt(&mut self, points: &Points, out: &mut Responses) -> Vec<usize> {
         if !self.flips || self.settings.verify == Some(0) {
             return Vec::new();
@@ -138,8 +138,8 @@ impl Pool {
         known
     }
 
-    /// Replays the answers of earlier batches, of which only some were, once a flip is found. Results may have been made of them: one
-    /// that differs, or that is not reached, is unconfirmed.
+    /// Replays the answers of earlier batches after a flip is found. Results may have been computed from them, so one that differs or is
+    /// not reached counts as unconfirmed.
     fn look_back(&mut self, batch: &[Vec<f64>], out: &mut Responses, run: &Run<'_>) {
         let (earlier, forgotten) = self.answers.unconfirmed(batch);
         self.account.counts.unconfirmed += forgotten as u64;
@@ -169,8 +169,8 @@ impl Pool {
         }
     }
 
-    /// The values of the nominal point now, and whether they are those that were kept; None where a stop came first. A model that
-    /// does not repeat itself is asked three times, and may differ by its noise.
+    /// Values of the nominal point, and true if they agree with the kept ones. A model that does not repeat itself is evaluated three times
+    /// and may differ by its noise. Returns None if a stop came first.
     pub(super) fn is_as_kept(
         &mut self,
         kept: Option<&[Option<f64>]>,
@@ -195,7 +195,7 @@ impl Pool {
         Some(((0..kept.len()).all(near), first))
     }
 
-    /// The answer to one point; None where a stop came first.
+    /// Answer to one point. Returns None if a stop came first.
     fn asked_once(&mut self, point: &[f64], out: &mut Responses, run: &Run<'_>) -> Option<Values> {
         let mut answers = Responses::open(1, out.outputs());
         let (stopped, abandoned) = (|| run.stop_reason(), || run.abandoned());
@@ -209,13 +209,13 @@ impl Pool {
         Some((0..answers.outputs()).map(|output| answers.value(0, output)).collect())
     }
 
-    /// Takes in answers of an earlier run, by which later ones are judged.
+    /// Adds answers of an earlier run, with which later ones are compared.
     pub(super) fn remember(&mut self, points: &[Vec<f64>], values: &[Values]) {
         values.iter().for_each(|values| self.reference.learn(values));
         self.answers.remember(points, values, &self.hello.nominal);
     }
 
-    /// Whether two of these answers, the most suspicious ones, are those of a fresh process; None where a stop came first.
+    /// True if a fresh process confirms two of these answers, those with the highest scores. Returns None if a stop came first.
     pub(super) fn are_as_kept(
         &mut self,
         points: &[Vec<f64>],
@@ -229,7 +229,7 @@ impl Pool {
         Some(!self.differing(&chosen, &walked, values).iter().any(|(_, walked)| walked.is_some()))
     }
 
-    /// Replays these rows, and where one differs all others.
+    /// Replays these rows, and all others if one of them differs.
     fn replayed(
         &mut self,
         rows: &[Vec<f64>],
@@ -242,7 +242,7 @@ impl Pool {
         let first = self.walk(&place(chosen), Route::Straight, out, run)?;
         let suspicious = self.differing(chosen, &first, all);
         self.confirm_others(chosen, &suspicious, rows);
-        // A point that a process does not reach in small steps is not a sign of a flip.
+        // A point that a process does not reach in small steps is no sign of a flip.
         if !self.flips && !suspicious.iter().any(|(_, walked)| walked.is_some()) {
             return Some(Vec::new());
         }
@@ -257,7 +257,7 @@ impl Pool {
             changed.extend(rest);
             return Some(changed);
         }
-        // Every other point as well: an even number of flips hides.
+        // All other points are replayed too, since an even number of flips does not show.
         let more = self.walk(&place(&rest), Route::Straight, out, run)?;
         let suspicious = self.differing(&rest, &more, all);
         self.confirm_others(&rest, &suspicious, rows);
@@ -265,14 +265,14 @@ impl Pool {
         Some(changed)
     }
 
-    /// Notes the rows that are not among those that differ as confirmed.
+    /// Confirms the rows that are not among those that differ.
     fn confirm_others(&mut self, of: &[usize], differing: &[(usize, Option<Values>)], rows: &[Vec<f64>]) {
         for &row in of.iter().filter(|row| !differing.iter().any(|(other, _)| other == *row)) {
             self.answers.confirm(&rows[row]);
         }
     }
 
-    /// Takes away the answers to rows: the model has another one every time.
+    /// Removes the answers to rows, since the model gives another one every time.
     fn give_up(&mut self, of: &[usize], rows: &[Vec<f64>], all: &[Values], out: &mut Responses) {
         for &row in of {
             let nothing = vec![None; all[row].len()];
@@ -280,7 +280,7 @@ impl Pool {
         }
     }
 
-    /// The rows whose walk ended elsewhere than they were answered; None for a walk without an end.
+    /// Rows whose walk ended with other values than their answer; None for a walk without an end.
     fn differing(&self, of: &[usize], walked: &[Walked], all: &[Values]) -> Vec<(usize, Option<Values>)> {
         let differs = |(&row, walked): (&usize, &Walked)| match walked.values() {
             Some(values) if self.alike(&all[row], values) => None,
@@ -289,8 +289,8 @@ impl Pool {
         of.iter().zip(walked).filter_map(differs).collect()
     }
 
-    /// Goes another way to rows whose replay differs: two ways that agree settle the answer, otherwise there is none. Returns how many
-    /// have none; None where a stop came before the end.
+    /// Takes another route to rows whose replay differs. Two routes that agree determine the answer, otherwise there is none. Returns the
+    /// number of rows without an answer. Returns None if a stop came before the end.
     fn settle(
         &mut self,
         rows: &[Vec<f64>],
@@ -312,7 +312,7 @@ impl Pool {
         Some(unsettled)
     }
 
-    /// Takes the answer on which two ways agree, or none; whether it is none.
+    /// Stores the answer on which two routes agree, or none. Returns true if there is none.
     fn replace(
         &mut self,
         row: usize,
@@ -340,7 +340,7 @@ impl Pool {
                 }
             }
         }
-        // The value now is the one that two ways agree on, or none.
+        // The stored value is confirmed, or known to be none.
         self.answers.confirm(point);
         self.account.counts.unconfirmed += u64::from(unsettled);
         unsettled
@@ -355,13 +355,13 @@ impl Pool {
         agree(a, b, self.reference.spread(output), NOISY * noise)
     }
 
-    /// The answers at these points, each reached from the nominal one by a child that went no long way before; None where a stop
-    /// came before the end.
+    /// Answers at these points, each reached from the nominal one by a child that has made no long step before. Returns None if a stop came
+    /// before the end.
     fn walk(&mut self, targets: &[Vec<f64>], route: Route, out: &mut Responses, run: &Run<'_>) -> Option<Vec<Walked>> {
         let mut found: Vec<Walked> = Vec::new();
         let mut truth: Option<Values> = None;
         while found.len() < targets.len() {
-            // The way back to the nominal point is a long one: a child that it leads astray is replaced.
+            // The way back to the nominal point is a long step. A child that flips on it is replaced.
             self.renew();
             let begun = found.len();
             while found.len() < targets.len() {
@@ -378,14 +378,14 @@ impl Pool {
                 }
             }
             if truth.is_none() {
-                // No process can be had any more.
+                // No child can be started any more.
                 found.resize(targets.len(), Walked::Lost);
             }
         }
         Some(found)
     }
 
-    /// One walk in the child that there is.
+    /// Walks to one point in the running child.
     fn walk_to(
         &mut self,
         target: &[f64],
@@ -407,7 +407,7 @@ impl Pool {
                 }
             }
             None => {
-                // A fresh child knows nothing but the way from its start: this is what the nominal point has.
+                // A fresh child has made no long step, so its value of the nominal point becomes the reference.
                 self.reference.trust(&answers[0]);
                 *truth = Some(answers[0].clone());
             }
@@ -415,7 +415,7 @@ impl Pool {
         answers.last().map_or(Walked::Lost, |values| Walked::There(values.clone()))
     }
 
-    /// Whether a nominal point is as before; small differences are noted as noise.
+    /// True if the nominal point has the expected values. Small differences are added to the noise.
     fn settles(&mut self, expected: &Values, found: &Values) -> bool {
         self.noise.resize(expected.len(), 0.0);
         let mut same = true;

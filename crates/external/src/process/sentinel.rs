@@ -1,31 +1,32 @@
-//! Whether a model still answers as it did: the nominal point, evaluated again.
+//! Sentinels: the nominal point is evaluated again, to check that a model still gives the same answer.
 
 use super::protocol::Line;
 use sensitol::assembly::NonRepeatable;
 
-/// In place of a row: the point is the nominal one, evaluated again.
+/// Row of a sentinel, in place of the row of a point.
 pub(super) const SENTINEL: usize = usize::MAX;
-/// Windows of points after which a child is checked, and points at the least.
+/// Windows of points after which a child is checked.
 const WINDOWS: usize = 16;
+/// Least number of points after which a child is checked.
 const POINTS: usize = 50;
-/// Answers agree when they differ by no more than this part of what the model has been seen to vary by,
+/// Greatest difference of two answers that agree, as a fraction of the range that the model has shown.
 const NOISE: f64 = 1e-7;
-/// and this part of themselves.
+/// Greatest difference of two answers that agree, as a fraction of the answer itself. Both limits are added.
 const ROUNDING: f64 = 1e-12;
 
-/// The reference answers of the nominal point, and how far answers vary.
+/// Reference answer of the nominal point, and the range of all answers.
 #[derive(Debug, Default)]
 pub(super) struct Reference {
     nominal: Option<Vec<Option<f64>>>,
     range: Vec<[f64; 2]>,
 }
 
-/// Points that a child may answer before it is checked.
+/// Number of points that a child may answer before it is checked.
 pub(super) fn interval(window: usize) -> usize {
     (WINDOWS * window).max(POINTS)
 }
 
-/// The values of an answer, None where it has none.
+/// Values of an answer; None for outputs without one.
 pub(super) fn values(line: &Line, outputs: usize) -> Vec<Option<f64>> {
     match (&line.y, &line.error) {
         (Some(values), None) => values.clone(),
@@ -33,7 +34,7 @@ pub(super) fn values(line: &Line, outputs: usize) -> Vec<Option<f64>> {
     }
 }
 
-/// Whether two answers are the same, for an output that varies by `spread` and repeats within `noise`.
+/// True if two answers agree, for an output with the range `spread` and the noise `noise`.
 pub(super) fn agree(a: Option<f64>, b: Option<f64>, spread: f64, noise: f64) -> bool {
     match (a, b) {
         (Some(a), Some(b)) => (a - b).abs() <= noise.max(NOISE * spread + ROUNDING * a.abs()),
@@ -42,10 +43,10 @@ pub(super) fn agree(a: Option<f64>, b: Option<f64>, spread: f64, noise: f64) -> 
     }
 }
 
-/// A change of an answer by more than this part of what the model varies by is another solution, and no noise.
+/// Change of an answer, as a fraction of the range, above which it is another solution and not noise.
 pub(super) const FLIP: f64 = 1e-3;
 
-/// Whether one of these differences is more than noise.
+/// True if one of these differences is more than noise.
 pub(super) fn is_flip(doubts: &[NonRepeatable]) -> bool {
     let far = |doubt: &NonRepeatable| match (doubt.expected, doubt.found) {
         (Some(a), Some(b)) => (a - b).abs() > FLIP * doubt.spread,
@@ -55,17 +56,17 @@ pub(super) fn is_flip(doubts: &[NonRepeatable]) -> bool {
 }
 
 impl Reference {
-    /// How far an output has been seen to vary.
+    /// Range of an output over all answers so far.
     pub(super) fn spread(&self, output: usize) -> f64 {
         self.range.get(output).map_or(0.0, |range| (range[1] - range[0]).max(0.0))
     }
 
-    /// Sets the values that later answers to the nominal point are compared with.
+    /// Sets the answer with which later ones to the nominal point are compared.
     pub(super) fn trust(&mut self, nominal: &[Option<f64>]) {
         self.nominal = Some(nominal.to_vec());
     }
 
-    /// Learns from an answer how far the model varies.
+    /// Extends the ranges by an answer.
     pub(super) fn learn(&mut self, values: &[Option<f64>]) {
         self.range.resize(values.len(), [f64::INFINITY, f64::NEG_INFINITY]);
         for (range, value) in self.range.iter_mut().zip(values) {
@@ -75,7 +76,7 @@ impl Reference {
         }
     }
 
-    /// The first answer to the nominal point is what later ones are held against: whether this one is like it.
+    /// Compares an answer to the nominal point with the reference. The first answer becomes the reference. Returns the outputs that differ.
     pub(super) fn check(
         &mut self,
         found: Vec<Option<f64>>,

@@ -1,38 +1,42 @@
-//! Which answers a model that remembers may have spoilt: those that fit worst into a surface of slopes and curvatures.
+//! Finds the answers of a program that may depend on earlier points: those that fit worst into a surface of slopes and curvatures.
 //!
-//! Along an axis with answers `f+`, `f-` on either side of the centre's `f0`: slope `g = |f+ - f-|/2`, curvature
-//! `c = |f+ + f- - 2 f0|/2`, effect `e = max(g, c)`, and `m` its median over the axes. A point is as suspicious as
-//! `max(c/(g + 0.02 m), e/(5 m))` says, a pair as `|f_ij - f_i - f_j + f0| / (0.5 (g_i + g_j) + 0.02 m)` does. This is a ranking and
-//! no test, for points of axes and others in turns: smooth and strongly curved models come out on top as well, and their answers repeat.
+//! An axis has answers `f+`, `f-` on either side of the centre's `f0`. Its slope is `g = |f+ - f-|/2`, its curvature `c = |f+ + f- - 2
+//! f0|/2`, and its effect `e = max(g, c)`. `m` is the median of `e` over the axes. The score of a point is `max(c/(g + 0.02 m), e/(5 m))`,
+//! and that of a pair `|f_ij - f_i - f_j + f0| / (0.5 (g_i + g_j) + 0.02 m)`.
+//!
+//! The score ranks points, in turns of those on axes and others. It is not a test: smooth and strongly curved models come out on top as
+//! well, and their answers repeat.
 
 use std::collections::{HashMap, HashSet};
 
-/// The answers so far, by the exact point; enough for the axes of any plan that a process can pay for.
+/// Greatest number of answers that are kept. It covers the axes of any plan that a process can pay for.
 const KEPT: usize = 20_000;
-/// Answers are replayed up to this part of them all, and this many at the least, beside two taken at random.
+/// Part of all answers that is replayed.
 const PART: f64 = 0.05;
+/// Least number of replayed answers, besides the random ones.
 const LEAST: usize = 5;
+/// Number of answers that are replayed in addition, independently of their score.
 const RANDOM: usize = 2;
-/// The part of the median effect that keeps a quotient finite.
+/// Fraction of the median effect in the denominator, which keeps a quotient finite.
 const FLOOR: f64 = 0.02;
 
-/// A point by its bits; 0 has one sign only.
+/// A point by the bits of its coordinates. A negative zero is stored as zero.
 type Key = Vec<u64>;
 
 fn key(point: &[f64]) -> Key {
     point.iter().map(|&x| (x + 0.0).to_bits()).collect()
 }
 
-/// Answers by point, across batches: a stage of pairs is judged by the axes of an earlier one.
+/// Answers by point, across batches: a stage of pairs is compared with the axes of an earlier stage.
 #[derive(Debug, Default)]
 pub(super) struct Answers {
     known: HashMap<Key, Vec<Option<f64>>>,
     centre: Option<Vec<f64>>,
     answered: usize,
     replayed: usize,
-    /// Answers for which there was no room: of the last batch, and of those before it.
+    /// Number of answers that were not kept for lack of space: of the last batch, and of those before it.
     dropped: [usize; 2],
-    /// Those that a fresh process gave as well, or that are known to be none.
+    /// Points with answers that a fresh process confirmed, or that are known to have none.
     confirmed: HashSet<Key>,
 }
 
@@ -40,7 +44,7 @@ pub(super) struct Answers {
 pub(super) type Answered = (Vec<f64>, Vec<Option<f64>>);
 
 impl Answers {
-    /// Notes an answer that a fresh process gave as well, or that is not used any more.
+    /// Notes an answer that a fresh process confirmed, or that is not used any more.
     pub(super) fn confirm(&mut self, point: &[f64]) {
         let key = key(point);
         if self.known.contains_key(&key) {
@@ -48,22 +52,22 @@ impl Answers {
         }
     }
 
-    /// Answers of earlier batches than this one that nothing confirmed, and how many more there are that were not kept.
+    /// Answers of earlier batches without a confirmation, and the number of further ones that were not kept.
     pub(super) fn unconfirmed(&mut self, batch: &[Vec<f64>]) -> (Vec<Answered>, usize) {
         let batch: HashSet<Key> = batch.iter().map(|point| key(point)).collect();
         let open = |key: &Key| !self.confirmed.contains(key) && !batch.contains(key);
         let mut found: Vec<(&Key, &Vec<Option<f64>>)> = self.known.iter().filter(|(key, _)| open(key)).collect();
         found.retain(|(_, values)| values.iter().any(Option::is_some));
-        // In the same order in every run.
+        // Sorted, since the order of a hash map differs between runs.
         found.sort_unstable_by(|a, b| a.0.cmp(b.0));
         let point = |key: &Key| key.iter().map(|&bits| f64::from_bits(bits)).collect();
         let found = found.into_iter().map(|(key, values)| (point(key), values.clone())).collect();
-        // The batch itself is confirmed by now.
+        // The current batch is confirmed by now, so only the count of earlier ones is returned.
         let [_, dropped] = std::mem::take(&mut self.dropped);
         (found, dropped)
     }
 
-    /// Takes in answers of an earlier run, which are not owed a replay.
+    /// Adds answers of an earlier run. They need no replay.
     pub(super) fn remember(&mut self, points: &[Vec<f64>], values: &[Vec<Option<f64>>], nominal: &[f64]) {
         let answered = self.answered;
         self.learn(points, values, nominal);
@@ -71,7 +75,7 @@ impl Answers {
         points.iter().for_each(|point| self.confirm(point));
     }
 
-    /// The most suspicious of these rows, at most so many.
+    /// The rows with the highest scores, `most` at most.
     pub(super) fn most_suspicious(
         &self,
         points: &[Vec<f64>],
@@ -87,7 +91,7 @@ impl Answers {
         rows
     }
 
-    /// Takes in answers that were just given. The first point of all is the centre, unless more points stand one step off another one.
+    /// Adds new answers. The first point of all becomes the centre, unless more points are one step away from the nominal one.
     pub(super) fn learn(&mut self, points: &[Vec<f64>], values: &[Vec<Option<f64>>], nominal: &[f64]) {
         self.answered += points.len();
         self.dropped = [0, self.dropped[0] + self.dropped[1]];
@@ -107,13 +111,14 @@ impl Answers {
         }
     }
 
-    /// How many more answers are to be replayed by now.
+    /// Number of answers that are still to be replayed.
     fn owed(&self) -> usize {
         let part = (PART * self.answered as f64).ceil() as usize;
         (part.max(LEAST) + RANDOM).saturating_sub(self.replayed)
     }
 
-    /// The rows to replay, as many as are owed of `most` or of the usual part: the most suspicious ones, and two others.
+    /// Rows to replay: those with the highest scores, and two others. Their number follows from `most` or from the usual part, less those
+    /// replayed before.
     pub(super) fn choose(
         &mut self,
         points: &[Vec<f64>],
@@ -126,7 +131,7 @@ impl Answers {
         let usable = |&row: &usize| values[row].iter().any(Option::is_some) && !moved(nominal, &points[row]).is_empty();
         let mut rows: Vec<usize> = (0..points.len()).filter(usable).collect();
         rows.sort_by(|&a, &b| scores[b].total_cmp(&scores[a]).then(a.cmp(&b)));
-        // Points of an axis and others in turns: a wrong one on an axis makes all pairs that use it look wrong as well.
+        // Points on axes and others take turns, since a wrong answer on an axis raises the scores of all pairs that use it.
         let on_axis = |&row: &usize| self.centre.as_ref().is_some_and(|centre| moved(centre, &points[row]).len() == 1);
         let (axes, others): (Vec<usize>, Vec<usize>) = rows.into_iter().partition(on_axis);
         let ranked = |of: Vec<usize>| of.into_iter().enumerate();
@@ -136,7 +141,7 @@ impl Answers {
         let mut rows: Vec<usize> = turns.into_iter().map(|(_, row)| row).collect();
         let random = RANDOM.min(owed);
         let mut others = rows.split_off((owed - random).min(rows.len()));
-        // Fractions of the golden ratio: the same choice in every run, and no pattern of a plan follows it.
+        // Fractions of the golden ratio give the same choice in every run, and no plan has such a pattern.
         for turn in 1..=random {
             if !others.is_empty() {
                 let place = (turn as f64 * 0.618_033_988_749_894_9).fract() * others.len() as f64;
@@ -151,7 +156,7 @@ impl Answers {
         *self.known.get(&key(point))?.get(output)?
     }
 
-    /// How suspicious every row is; 0 where nothing can be told.
+    /// Score of every row; 0 if it cannot be computed.
     fn scores(&self, points: &[Vec<f64>], values: &[Vec<Option<f64>>]) -> Vec<f64> {
         let mut scores = vec![0.0f64; points.len()];
         if let Some(centre) = &self.centre {
@@ -161,7 +166,7 @@ impl Answers {
         scores
     }
 
-    /// Raises the scores to what one output says.
+    /// Raises the scores to those of one output.
     fn score(
         &self,
         centre: &[f64],
@@ -195,14 +200,14 @@ impl Answers {
                 }
                 _ => 0.0,
             };
-            // Where nothing varies there is 0/0.
+            // An output that does not vary gives 0/0, which fails this comparison.
             if score > scores[row] {
                 scores[row] = score;
             }
         }
     }
 
-    /// Slope and curvature along every axis that has answers on both sides: of the pair of points nearest to the centre.
+    /// Slope and curvature along every axis with answers on both sides, from the pair of points nearest to the centre.
     fn axes(&self, centre: &[f64], output: usize, f0: f64) -> HashMap<usize, Axis> {
         let mut sides: HashMap<usize, [Option<(f64, f64)>; 2]> = HashMap::new();
         for (key, values) in &self.known {
@@ -228,7 +233,7 @@ struct Axis {
     curvature: f64,
 }
 
-/// The coordinates in which a point differs from another.
+/// Indices of the coordinates in which two points differ.
 pub(super) fn moved(from: &[f64], to: &[f64]) -> Vec<usize> {
     (0..from.len()).filter(|&d| from[d] != to[d]).collect()
 }

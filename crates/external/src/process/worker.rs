@@ -1,4 +1,4 @@
-//! One ready child: what it can do, and the points under way in it.
+//! One ready child: its abilities, and the points under way in it.
 
 use std::collections::{BTreeSet, HashMap, VecDeque};
 use std::time::{Duration, Instant};
@@ -8,14 +8,14 @@ use super::child::Child;
 use super::protocol::Line;
 use super::sentinel::{SENTINEL, interval};
 
-/// The abilities that a program declares in `ready` beside its window.
+/// Abilities that a program declares in `ready`, besides its window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Abilities {
-    /// Points do not share the process's fate: after a crash none of them is suspected.
+    /// True if a crash of one point does not affect others, so that none of them is suspected.
     pub(super) isolated: bool,
-    /// It takes back points that are no longer wanted.
+    /// True if the program can cancel points.
     pub(super) cancel: bool,
-    /// In how many places it evaluates.
+    /// Number of places at which it evaluates.
     pub(super) places: usize,
 }
 
@@ -24,8 +24,8 @@ pub(super) struct Abilities {
 pub(super) struct Sent {
     pub(super) id: u64,
     pub(super) row: usize,
-    /// When the program said that its evaluation began; None while it waits in the program's own queue, or where the program
-    /// does not say.
+    /// Start of the evaluation as the program reported it. None while the point waits in the program's queue, and if the program does not
+    /// report starts.
     pub(super) started: Option<Instant>,
 }
 
@@ -35,23 +35,23 @@ pub(super) struct Worker {
     pub(super) abilities: Abilities,
     /// Points under way, in the order in which they were sent.
     pub(super) under_way: VecDeque<Sent>,
-    /// Since when an answer or a sign of life is being waited for.
+    /// Time since which an answer or a sign of life is awaited.
     pub(super) since: Instant,
-    /// The number of the first point that it was sent.
+    /// Number of the first point that was sent to it.
     pub(super) first: u64,
-    /// Whether it was sent any.
+    /// True if a point was sent to it.
     pub(super) asked: bool,
-    /// Rows that it has answered since it was last known to be right.
+    /// Rows answered since the last sentinel that matched.
     pub(super) unchecked: Vec<usize>,
-    /// Whether it had no value somewhere: a failed request may poison later ones.
+    /// True if it gave no value at some point: a failed request may spoil later ones.
     pub(super) troubled: bool,
-    /// Whether nothing may join what is under way: among these points is one that made a child crash.
+    /// True if no point may be added to those under way, because one of them made a child crash.
     pub(super) exclusive: bool,
-    /// Points that were taken back, with their row while the batch is the same.
+    /// Cancelled points, with their rows while the batch is the same.
     pub(super) cancelled: HashMap<u64, Option<usize>>,
-    /// Where it said that it evaluates.
+    /// Places at which it has reported evaluations.
     pub(super) places: BTreeSet<String>,
-    /// Between its units and those of the study.
+    /// Conversion between its units and those of the study.
     pub(super) border: Border,
 }
 
@@ -78,14 +78,14 @@ impl Worker {
         }
     }
 
-    /// The earliest moment at which something under way has taken too long. A point that has started has a clock of its own;
-    /// the others share one, which every answer and every sign of life restarts.
+    /// Earliest deadline of the points under way. A point that has started has its own clock. The others share one, which every answer and
+    /// every sign of life restarts.
     pub(super) fn deadline(&self, timeout: Duration) -> Option<Instant> {
         let shared = self.under_way.iter().any(|sent| sent.started.is_none()).then_some(self.since);
         self.under_way.iter().filter_map(|sent| sent.started).chain(shared).min().map(|since| since + timeout)
     }
 
-    /// The place in `under_way` of the point that has taken too long: the one that started first, or else the oldest.
+    /// Index in `under_way` of the point that has missed its deadline: the first that started, or else the oldest.
     pub(super) fn overdue(&self, timeout: Duration, now: Instant) -> Option<usize> {
         let late = |since: Instant| since + timeout <= now;
         let started = self.under_way.iter().position(|sent| sent.started.is_some_and(late));
@@ -93,7 +93,7 @@ impl Worker {
         started.or_else(waiting)
     }
 
-    /// Adds a point to what is under way.
+    /// Adds a point to those under way.
     pub(super) fn sent(&mut self, id: u64, row: usize) {
         self.asked = true;
         if self.under_way.is_empty() {
@@ -102,12 +102,13 @@ impl Worker {
         self.under_way.push_back(Sent { id, row, started: None });
     }
 
-    /// Points that may be under way: none beyond the next check, so that the number of checks does not depend on when answers come.
+    /// Greatest number of points under way. None goes beyond the next sentinel, so that the number of sentinels does not depend on the
+    /// order of answers.
     pub(super) fn room(&self) -> usize {
         self.window.min(interval(self.window).saturating_sub(self.unchecked.len()))
     }
 
-    /// Takes back every point whose evaluation has not started, where the program can; a sentinel stays.
+    /// Cancels every point whose evaluation has not started, if the program can. Sentinels stay.
     pub(super) fn take_back(&mut self) {
         if !self.abilities.cancel {
             return;
@@ -119,7 +120,7 @@ impl Worker {
         self.cancel(back);
     }
 
-    /// Tells the program that these points are no longer wanted.
+    /// Sends a message that these points are no longer wanted.
     pub(super) fn cancel(&mut self, points: impl IntoIterator<Item = Sent>) {
         let points: Vec<Sent> = points.into_iter().collect();
         if points.is_empty() {
@@ -130,7 +131,7 @@ impl Worker {
         self.cancelled.extend(points.iter().map(|sent| (sent.id, Some(sent.row))));
     }
 
-    /// Notes where the program evaluates, as far as it declared several places.
+    /// Notes a place of evaluation, up to the number of places that the program declared.
     pub(super) fn note_place(&mut self, place: Option<&String>) {
         if let Some(place) = place
             && self.abilities.places > 1

@@ -1,4 +1,4 @@
-//! Derivatives that an external model sends: fewer evaluations, the same figures, and none on trust. The child is `tests/children/flips.c`.
+//! Derivatives from an external model: fewer evaluations, the same figures, and a check of each. The child is `tests/children/flips.c`.
 
 use sensitol::assembly::{AssemblyFunction, EvaluationError, ModelInfo, Request, Responses, Run, Signature};
 use sensitol_external::process::Process;
@@ -8,7 +8,7 @@ use sensitol::{Analysis, Dimension, Method, Options, Problem, analyze};
 use sensitol_external::journal::Journaled;
 use sensitol_testing::child_in_c;
 
-/// Without sentinels, whose evaluations would be counted too.
+/// A process without sentinels, whose evaluations would be counted too.
 fn process(mode: &str, n: usize) -> Process {
     let names: Vec<String> = (0..n).map(|d| format!("x{d}")).collect();
     let settings = Settings::new([child_in_c(), mode.into(), "5".into()]).with_verify(0).with_sentinels(false);
@@ -16,12 +16,12 @@ fn process(mode: &str, n: usize) -> Process {
 }
 
 fn problem(function: impl AssemblyFunction + 'static, n: usize) -> Problem {
-    // A tenth is a sigma, as the child has it.
+    // Sigma is 0.1, as in the child.
     let dimension = |d: usize| Dimension::normal(format!("x{d}"), 1.0, 0.3).unwrap();
     Problem::new((0..n).map(dimension), function).unwrap()
 }
 
-/// Without check points, whose evaluations would be counted too.
+/// Options without check points, whose evaluations would be counted too.
 fn options(method: Method) -> Options {
     Options::from(method).with_verify(0)
 }
@@ -30,8 +30,8 @@ fn of(mode: &str, n: usize, method: Method) -> Analysis {
     analyze(&problem(process(mode, n), n), &options(method)).unwrap()
 }
 
-/// The function is of second order, so that differences and derivatives are the same but for rounding: values of some 10 and sigmas of
-/// about 2 leave twelve digits.
+/// The function is of second order, so differences and derivatives agree up to rounding. Values of about 10 and sigmas of about 2 leave
+/// twelve digits.
 #[test]
 fn gradients_save_evaluations() {
     for n in [2, 4, 14] {
@@ -59,7 +59,7 @@ fn gradients_save_evaluations() {
     assert!(of("slopes", 4, Method::Full).warnings.is_empty(), "{:?}", of("slopes", 4, Method::Full).warnings);
 }
 
-/// Derivatives that the values refute are refused by name, and so are those that are declared and never sent.
+/// Derivatives that contradict the values are refused with their names. So are derivatives that are declared but never sent.
 #[test]
 fn wrong_gradients_are_refused() {
     for method in [Method::Rss, Method::SecondOrder, Method::Full] {
@@ -71,13 +71,13 @@ fn wrong_gradients_are_refused() {
         );
         assert_eq!(wrong.contains("by `x1`"), method != Method::Rss, "{wrong}");
         assert_eq!(error("silence"), "the model says that it sends gradients, and its answers have none of `y`");
-        // Who asks for differences needs none of them.
+        // Differences do not need the derivatives.
         let plainly = options(method).with_derivatives(sensitol::DerivativeSource::Difference);
         assert!(analyze(&problem(process("wrong", 4), 4), &plainly).is_ok());
     }
 }
 
-/// A budget that only the smaller plan keeps; and a journal has the derivatives too.
+/// A budget that only the smaller plan keeps. The journal keeps the derivatives too.
 #[test]
 fn gradients_are_kept_and_counted() {
     let budget = options(Method::Full).with_budget(29);
@@ -116,8 +116,9 @@ impl AssemblyFunction for Cubic {
     }
 }
 
-/// Value and slope at two points tell a cubic: with the moments 1, 3, 15 of a normal variable its mean is 0.3 and its variance
-/// 1 + 2 0.09 + 15 0.01 + 6 0.1 = 1.93, with 4 of the other dimension 5.93. By values alone `second-order` has no third order. Ten roundings.
+/// Value and slope at two points determine a cubic. With the moments 1, 3, 15 of a normal variable its mean is 0.3 and its variance 1 + 2
+/// 0.09 + 15 0.01 + 6 0.1 = 1.93. The other dimension adds 4, which gives 5.93. By values alone `second-order` has no third order. The
+/// tolerance is ten roundings.
 #[test]
 fn slopes_at_one_node_tell_a_cubic() {
     let cubic = problem(Cubic(Signature::of_names(["x0", "x1"], ["y"])), 2);

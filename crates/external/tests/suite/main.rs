@@ -1,4 +1,4 @@
-//! External programs as models.
+//! Tests of external programs as models.
 
 mod gradients;
 mod process;

@@ -1,4 +1,4 @@
-//! External programs: what they do right, and every way in which they go wrong. The children are `tests/children`.
+//! External programs: their correct behaviour, and all their faults. The children are in `tests/children`.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -16,14 +16,14 @@ use sensitol::simulation::{SimulationOptions, simulate};
 use sensitol::{Characteristic, Dimension, Problem, SpecLimits, StopReason};
 use sensitol_testing::repository;
 
-/// How long a test waits for what is sure to come, on however busy a machine.
+/// Longest wait of a test for an event that is sure to come, even on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// A child in a mode, with short deadlines that none but the slow ones reach.
+/// Settings of a child in a mode. Only the slow modes reach the deadlines.
 fn settings(mode: &str, more: &[&str]) -> Settings {
     let script = repository("tests/children/child.py").display().to_string();
     let argv = ["python3", &script, mode].into_iter().chain(more.iter().copied());
-    // Without sentinels, whose evaluations would be counted too; they have tests of their own.
+    // Without sentinels, whose evaluations would be counted too. They have tests of their own.
     let patient = Duration::from_secs(20);
     Settings::new(argv).with_timeout(patient).with_start_timeout(patient).with_sentinels(false)
 }
@@ -33,7 +33,7 @@ fn model(settings: Settings) -> Process {
     Process::new(Signature::of_names(["a", "b"], ["sum", "product"]), greeting, settings)
 }
 
-/// Both outputs at these values of `a`, where b is 2.
+/// Both outputs at these values of `a`, with b = 2.
 fn at(model: &Process, a: &[f64]) -> Responses {
     at_within(model, a, &Run::to_the_end())
 }
@@ -46,7 +46,7 @@ fn at_within(model: &Process, a: &[f64], run: &Run<'_>) -> Responses {
     out
 }
 
-/// Every row but these is right.
+/// Asserts that all rows except `wrong` have the right values.
 #[track_caller]
 fn right_but(a: &[f64], out: &Responses, wrong: &[usize]) {
     for (row, &a) in a.iter().enumerate() {
@@ -83,7 +83,7 @@ fn points_are_answered_exactly() {
     assert_eq!(at(&model, &[0.1 + 0.2]).value(0, 0), Some(0.1 + 0.2 + 2.0));
 }
 
-/// Only what is asked for is named to the child; another question takes another child.
+/// A child receives only the requested outputs. Other outputs need another child.
 #[test]
 fn a_child_is_asked_for_what_is_needed() {
     let model = model(settings("good", &[]));
@@ -101,7 +101,7 @@ fn answers_may_come_in_any_order() {
     right_but(&a, &out, &[]);
 }
 
-/// Children side by side; every row is told of once, as it becomes final.
+/// Children work side by side. Every row is reported once, when it is final.
 #[test]
 fn workers_share_the_points() {
     let settings = settings("slow", &["0.01"]).with_workers(3);
@@ -119,7 +119,7 @@ fn workers_share_the_points() {
     assert_eq!(told.load(Ordering::Relaxed), 60);
 }
 
-/// A fault that keeps a model from being used at all is known before any point is sent.
+/// A fault that prevents any use of a model is found before a point is sent.
 #[test]
 fn models_that_cannot_start() {
     let fault_of = |settings: Settings| match model(settings).prepare(&[0, 1]) {
@@ -144,13 +144,13 @@ fn models_that_cannot_start() {
     let program = |program: &str| fault_of(Settings::new([program]).with_folder(repository("tests"))).fault;
     assert!(matches!(program("no-such-program"), ProcessFault::NotFound { .. }));
     assert!(matches!(program("./no-such-program"), ProcessFault::NotFound { .. }));
-    // A file that is no program.
+    // The file is not a program.
     assert!(matches!(program("./children/child.py"), ProcessFault::NotStarted { .. }));
     let moved = settings("good", &[]).with_folder(PathBuf::from("/nowhere"));
     assert!(matches!(fault_of(moved).fault, ProcessFault::NotStarted { .. }));
 }
 
-/// A point at which the child does something wrong is lost, after one more try, with the right error; nothing else is.
+/// A point with a fault of the child fails after one retry, with the right error. All other points have values.
 #[test]
 fn a_point_that_goes_wrong_takes_no_other_with_it() {
     type Is = fn(&ProcessFault) -> bool;
@@ -173,19 +173,19 @@ fn a_point_that_goes_wrong_takes_no_other_with_it() {
         for output in 0..2 {
             let fault = fault(&out, 2, output);
             assert!(is(&fault), "{mode}: {fault:?}");
-            // Only a line that was meant for people belongs elsewhere.
+            // The advice to print to stderr belongs to lines for people only.
             assert_eq!(fault.to_string().contains("print to stderr"), mode == "garbage", "{mode}: {fault}");
         }
-        // One try more, and it is counted; a whole line with the wrong number of values is an answer like any other.
+        // One retry, which is counted. A complete line with the wrong number of values needs no retry.
         assert_eq!(out.extra(), if ["wrong-length", "wrong-gradients"].contains(&mode) { 0 } else { 1 }, "{mode}");
-        // The model goes on.
+        // The model continues to work.
         right_but(&POINTS[..2], &at(&model, &POINTS[..2]), &[]);
     }
     let out = at(&model(settings("crash", &[])), &POINTS);
     assert!(out.error(2, 0).unwrap().to_string().contains("Segmentation fault in sketch solver"));
 }
 
-/// NaN and infinities, as Python's json writes them, are no values; the process goes on.
+/// NaN and infinities, as Python's json writes them, count as no value. The process continues.
 #[test]
 fn numbers_that_are_not_finite_cost_no_restart() {
     let model = model(settings("nan-text", &[]));
@@ -195,7 +195,7 @@ fn numbers_that_are_not_finite_cost_no_restart() {
     assert_eq!((out.value(2, 1), out.extra(), model.account().unwrap().counts.starts), (Some(1.0), 0, 1));
 }
 
-/// A second answer to a point: the first one counts, the child that does so is not trusted with another.
+/// After a second answer to a point the first one counts. The child gets no further point.
 #[test]
 fn an_answer_given_twice() {
     let model = model(settings("twice", &[]).with_retries(0));
@@ -203,7 +203,7 @@ fn an_answer_given_twice() {
     let out = at(&model, &a);
     assert_eq!(out.value(1, 0), Some(15.0));
     right_but(&a[..1], &out, &[]);
-    // It was found out with the third point under way, which is charged with it, or before that was sent.
+    // The second answer was noticed either with the third point under way, which is charged with it, or before that was sent.
     if out.value(2, 0).is_none() {
         assert!(matches!(fault(&out, 2, 0), ProcessFault::AnsweredTwice { .. }));
     }
@@ -227,7 +227,7 @@ fn what_fails_once_succeeds_the_second_time() {
     assert_eq!((fault(&out, 2, 0), out.extra()), (ProcessFault::NoValue { message: "licence busy".into() }, 3));
 }
 
-/// A failure that the program itself reports is an error of just that characteristic or point, and not tried again.
+/// A failure that the program itself reports is an error of that characteristic or point only, and is not retried.
 #[test]
 fn a_child_may_have_no_value() {
     let no_value = |message: &str| ProcessFault::NoValue { message: message.into() };
@@ -241,7 +241,7 @@ fn a_child_may_have_no_value() {
     assert_eq!(out.extra(), 0);
 }
 
-/// Deadlines hold, for a child that hangs, that never reads, and that closes its stdout.
+/// Deadlines hold for a child that hangs, that never reads, and that closes its stdout.
 #[test]
 fn children_that_say_nothing() {
     let short = |mode: &str| settings(mode, &[]).with_timeout(Duration::from_millis(300));
@@ -258,10 +258,10 @@ fn children_that_say_nothing() {
     assert!((0..2).all(|row| matches!(fault(&out, row, 0), ProcessFault::Crashed { .. })));
 }
 
-/// A child that is done for before it was sent a point is charged to none: after a few of them no more are tried.
+/// The fault of a child that was not sent a point is charged to none. After a few such children no more are started.
 #[test]
 fn children_that_never_take_a_point_are_given_up() {
-    // One write, so that the engine reads both lines at once: an answer to what nobody asked ends the child.
+    // One write, so that the engine reads both lines at once. The unrequested answer ends the child.
     let lines = r#"{"ready":true}\n{"id":7,"y":[1,2]}\n"#;
     let model = model(Settings::new(["printf", lines]).with_retries(0).with_sentinels(false));
     let out = at(&model, &POINTS[..2]);
@@ -269,14 +269,14 @@ fn children_that_never_take_a_point_are_given_up() {
     assert_eq!(model.account().unwrap().counts.starts, 4);
 }
 
-/// A deadline that no clock can hold is one that never comes.
+/// A deadline beyond the range of the clock never comes.
 #[test]
 fn deadlines_may_be_far_away() {
     let far = settings("good", &[]).with_timeout(Duration::MAX).with_start_timeout(Duration::MAX);
     right_but(&POINTS, &at(&model(far), &POINTS), &[]);
 }
 
-/// One of several points under way crashes the child, or hangs: the others are answered all the same.
+/// One of several points under way crashes the child or makes it hang. The others are answered all the same.
 #[test]
 fn the_culprit_in_a_window_is_found() {
     let a: Vec<f64> = (0..30).map(f64::from).collect();
@@ -289,13 +289,13 @@ fn the_culprit_in_a_window_is_found() {
     }
 }
 
-/// A stop leaves the rest open, and waits for what is under way: that was paid for.
+/// A stop leaves the rest open and waits for points under way, since their cost is already spent.
 #[test]
 fn a_stop_loses_nothing() {
     let model = model(settings("slow", &["0.02"]));
     let a: Vec<f64> = (0..500).map(f64::from).collect();
     let points = Points::from_rows(&a.iter().map(|&a| [a, 2.0]).collect::<Vec<_>>());
-    // The child is up before the clock runs, however long that takes.
+    // The child is started before the clock runs, so its start does not count.
     right_but(&POINTS[..1], &at(&model, &POINTS[..1]), &[]);
     let begun = Instant::now();
     let stop = || (begun.elapsed() > Duration::from_millis(400)).then_some(StopReason::TimeLimit);
@@ -305,19 +305,19 @@ fn a_stop_loses_nothing() {
     assert!(answered > 0 && answered < a.len());
     right_but(&a[..answered], &out, &[]);
     assert_eq!((out.extra(), out.errors().count()), (0, 0));
-    // And nothing of it disturbs what is asked next.
+    // The stop does not affect later requests.
     right_but(&POINTS, &at(&model, &POINTS), &[]);
 }
 
-/// A child that no longer answers the nominal point as it did: what it has said since is evaluated again by another one.
+/// If a child gives another value at the nominal point, another child evaluates again all points that it has answered since.
 #[test]
 fn children_that_flip_are_found_out() {
-    // Sentinels alone: replays have tests of their own.
+    // Sentinels only, since replays have tests of their own.
     let guarded = |mode: &str, more: &[&str]| settings(mode, more).with_sentinels(true).with_verify(0);
     // The nominal point, some right answers, the flip, and wrong ones after it.
     let a = [1.0, 2.0, 3.0, 13.0, 4.0, 5.0];
     let out = at(&model(guarded("flips", &[])), &a);
-    // The point that flips the model flips the fresh child too: its own answer stays doubtful, all others are right.
+    // The point that flips the model also flips the fresh child. Its own answer stays in doubt, and all others are right.
     right_but(&a, &out, &[3]);
     let [first, second] = out.non_repeatable() else { panic!("{:?}", out.non_repeatable()) };
     assert_eq!(
@@ -325,27 +325,27 @@ fn children_that_flip_are_found_out() {
         ("sum", Some(3.0), Some(-3.0), 5)
     );
     assert_eq!((second.output.as_str(), &second.suspects), ("sum", &vec![vec![13.0, 2.0]]));
-    // An error is followed by a look at the nominal point: what comes after it is right again.
+    // A sentinel follows every error, so the answers after it are right again.
     let a = [1.0, 2.0, 13.0, 4.0, 5.0];
     let out = at(&model(guarded("poisoned-by-errors", &[])), &a);
     right_but(&a, &out, &[2]);
     assert_eq!(fault(&out, 2, 0), ProcessFault::NoValue { message: "does not assemble".into() });
     assert_eq!((out.non_repeatable().len(), out.non_repeatable()[0].output.as_str()), (2, "product"));
-    // One whose answer to the nominal point has another shape: as bad as another value.
+    // An answer of another shape at the nominal point counts like another value.
     let a = [1.0, 2.0, 13.0, 4.0];
     let out = at(&model(guarded("misshapen-later", &[])), &a);
     right_but(&a, &out, &[]);
     let a = [1.0, 2.0, 13.0, 4.0, 5.0];
-    // A model that never answers alike ends all the same, and says so.
+    // A model that never repeats itself ends all the same, and the result reports it.
     let out = at(&model(guarded("always-flips", &[])), &a);
     assert!(!out.non_repeatable().is_empty());
-    // One that always does costs one evaluation more.
+    // A model that repeats itself costs one more evaluation.
     let out = at(&model(guarded("good", &[])), &a);
     assert_eq!((out.non_repeatable().len(), out.extra()), (0, 1));
     right_but(&a, &out, &[]);
 }
 
-/// A simulation tells of it too, random or rare, and an analysis of what it sampled.
+/// A simulation reports it too, random or rare, and an analysis reports it for its samples.
 #[test]
 fn samples_of_a_model_that_flips_are_doubted() {
     let of = |mode: &str| {
@@ -366,7 +366,7 @@ fn samples_of_a_model_that_flips_are_doubted() {
     assert!(random.is_empty() && rare.unwrap().is_empty(), "{random:?}");
 }
 
-/// A process: its parent, and the instant of its start, so that a number given out again is not taken for it.
+/// A process with its parent and the time of its start, which distinguishes it from a later one with the same number.
 #[cfg(target_os = "linux")]
 #[derive(Debug, Clone, PartialEq)]
 struct Seen {
@@ -378,7 +378,7 @@ struct Seen {
 
 #[cfg(target_os = "linux")]
 impl Seen {
-    /// The process of this number, running or waiting to be reaped.
+    /// The process with this number, running or waiting to be reaped.
     fn of(pid: &str) -> Option<Self> {
         let stat = std::fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
         let fields: Vec<&str> = stat.rsplit(')').next()?.split_whitespace().collect();
@@ -386,14 +386,14 @@ impl Seen {
         Some(Self { pid: pid.into(), state: field(0)?, parent: field(1)?, begun: field(19)? })
     }
 
-    /// Gone, and reaped where that is for this process to do.
+    /// True if the process is gone, and is reaped if that is up to this process.
     fn gone(&self) -> bool {
         let dead = |now: &Self| now.state == "Z" && now.parent != std::process::id().to_string();
         Self::of(&self.pid).is_none_or(|now| now.begun != self.begun || dead(&now))
     }
 }
 
-/// Living processes with this text in their command line.
+/// Running processes with this text in their command line.
 #[cfg(target_os = "linux")]
 fn living(text: &str) -> Vec<Seen> {
     let mut found = Vec::new();
@@ -406,12 +406,12 @@ fn living(text: &str) -> Vec<Seen> {
     found
 }
 
-/// Whatever a child started ends with the model, and nothing of it waits to be reaped.
+/// Every process that a child started ends with the model, and none waits to be reaped.
 #[test]
 #[cfg(target_os = "linux")]
 fn no_orphan_is_left() {
     let family = {
-        // The same test may run elsewhere on this machine.
+        // The same test may run at the same time on this machine.
         let forever = format!("300.{}", std::process::id());
         let model = model(settings("grandchild", &[&forever]));
         right_but(&POINTS, &at(&model, &POINTS), &[]);
@@ -435,7 +435,7 @@ fn no_orphan_is_left() {
     }
 }
 
-/// Megabytes that a process holds.
+/// Memory of a process in megabytes.
 #[cfg(target_os = "linux")]
 fn resident(pid: &str) -> f64 {
     let status = std::fs::read_to_string(format!("/proc/{pid}/status")).unwrap_or_default();
@@ -443,7 +443,7 @@ fn resident(pid: &str) -> f64 {
     kilobytes.trim().trim_end_matches(" kB").parse::<f64>().unwrap_or(f64::NAN) / 1024.0
 }
 
-/// A hundred thousand points through one child that may have many under way: none is lost or mixed up, and neither side grows.
+/// A hundred thousand points through one child with many under way: none is lost or mixed up, and the memory of both sides does not grow.
 #[test]
 #[cfg(target_os = "linux")]
 fn many_points_through_one_child() {
@@ -455,12 +455,12 @@ fn many_points_through_one_child() {
     for _ in 0..9 {
         right_but(&a, &at(&model, &a), &[]);
     }
-    // Other tests run beside this one in the same process: what grows with the points would be hundreds of bytes for each.
+    // Other tests run in the same process. Memory that grows with the points would be hundreds of bytes for each.
     let after = [resident("self"), resident(pid)];
     assert!(after[0] - before[0] < 64.0 && after[1] - before[1] < 8.0, "{before:?} {after:?}");
 }
 
-/// A program that is there once and gone when it is to be started again: what is left fails, and what was answered stays.
+/// A program that disappears before it is to be started again: open points fail, and answers stay.
 #[test]
 fn a_program_that_is_gone_ends_the_batch() {
     let folder = tempfile::tempdir().unwrap();
@@ -478,13 +478,13 @@ fn a_program_that_is_gone_ends_the_batch() {
     );
 }
 
-/// `kill -9` of the children, whenever it comes: every point is answered all the same.
+/// `kill -9` of the children at any time: every point is answered all the same.
 #[test]
 #[cfg(target_os = "linux")]
 fn killed_children_lose_nothing() {
     let settings = settings("slow", &["0.02", "killed-children"]).with_workers(2).with_retries(3);
     let model = model(settings);
-    // A model whose very first start fails is no model.
+    // A model whose first start fails is given up at once.
     model.prepare(&[0, 1]).unwrap();
     let a: Vec<f64> = (0..200).map(f64::from).collect();
     let (done, answered) = (AtomicUsize::new(0), AtomicUsize::new(0));
@@ -492,7 +492,7 @@ fn killed_children_lose_nothing() {
         scope.spawn(|| {
             let mut before = 0;
             for round in 0..6 {
-                // Not faster than children start, however busy the machine: where none ever does, the model is given up.
+                // Kills are not faster than starts, however busy the machine. A model without any start is given up.
                 let ended = || done.load(Ordering::Relaxed) > 0;
                 while answered.load(Ordering::Relaxed) < before + 12 && !ended() {
                     std::thread::sleep(Duration::from_millis(17));
@@ -515,7 +515,7 @@ fn killed_children_lose_nothing() {
         out
     });
     right_but(&a, &out, &[]);
-    // A child had one point under way: that is what a kill costs.
+    // A kill costs the one point that the child had under way.
     assert!(out.extra() > 0 && out.extra() <= 6, "{}", out.extra());
 }
 
@@ -523,7 +523,7 @@ fn python(script: &Path) -> Settings {
     Settings::new(["python3".to_owned(), script.display().to_string()])
 }
 
-/// The SDK: names, errors of a point and of a characteristic, and a library that prints to descriptor 1.
+/// The Python SDK: names, errors of a point and of a characteristic, and a library that prints to descriptor 1.
 #[test]
 fn the_sdk_serves() {
     let folder = tempfile::tempdir().unwrap();
@@ -564,7 +564,7 @@ if __name__ == "__main__":
     assert_eq!((message(3, 0), out.value(3, 1)), ("the model returned nan".into(), Some(30.0)));
     assert_eq!(message(4, 0), "ZeroDivisionError: division by zero");
     assert_eq!(model.adapter(&[0, 1]).unwrap().version.as_deref(), Some("2"));
-    // It knows what it does not know.
+    // The SDK reports the names that it does not have.
     let unknown = |inputs: [&str; 2], outputs: [&str; 1]| {
         let greeting = Greeting::new(vec![0.0; 2]);
         let process = Process::new(Signature::of_names(inputs, outputs), greeting, python(&script));
@@ -575,7 +575,7 @@ if __name__ == "__main__":
     assert!(unknown(["a", "b"], ["quotient"]).contains("no characteristic `quotient`; there are sum, product"));
 }
 
-/// A function of whole columns; one bad point in them takes no other with it.
+/// A function of whole columns: one bad point in them does not affect the others.
 #[test]
 fn the_sdk_serves_batches() {
     let folder = tempfile::tempdir().unwrap();
@@ -603,7 +603,7 @@ model.serve()
     assert_eq!(fault(&out, 13, 0).to_string(), "RuntimeError: 13");
 }
 
-/// Difference of two dimensions, by the children that PROTOCOL.md shows: what is printed there works.
+/// Difference of two dimensions with the child programs printed in PROTOCOL.md: all of them work.
 #[test]
 fn the_children_of_the_documentation_work() {
     let text = std::fs::read_to_string(repository("adapters/PROTOCOL.md")).unwrap();
@@ -614,7 +614,7 @@ fn the_children_of_the_documentation_work() {
         ("octave", vec!["octave-cli", "--quiet"], "gap.m"),
     ] {
         if Command::new(program[0]).arg("--version").output().is_err() {
-            // Not passed in silence: the word stands in the log of the tests.
+            // A skipped language is reported in the log of the tests.
             eprintln!("skipped: {} is not installed", program[0]);
             continue;
         }
@@ -634,7 +634,7 @@ fn the_children_of_the_documentation_work() {
     }
 }
 
-/// The lines that PROTOCOL.md shows have the keys that the schema requires, and no others.
+/// The lines printed in PROTOCOL.md have the keys that the schema requires, and no others.
 #[test]
 fn the_schema_describes_the_lines() {
     let read = |path: &str| std::fs::read_to_string(repository(path)).unwrap();
@@ -657,7 +657,7 @@ fn the_schema_describes_the_lines() {
     }
 }
 
-/// Derivatives of the SDK are what the protocol wants: asked over the wire, without the engine.
+/// Derivatives of the SDK have the form of the protocol, tested over the wire without the engine.
 #[test]
 fn the_sdk_sends_gradients() {
     let folder = tempfile::tempdir().unwrap();
@@ -688,6 +688,6 @@ model.serve()
     assert_eq!(lines[0]["gradients"], true);
     let expected = serde_json::json!({"id": 7, "y": [6.0, 5.0], "dy": [[2.0, 0.0, 3.0], [1.0, 0.0, 1.0]]});
     assert_eq!(lines[1], expected);
-    // And the engine takes the answers as any others.
+    // The engine accepts the answers like any others.
     right_but(&POINTS, &at(&model(python(&script)), &POINTS), &[]);
 }

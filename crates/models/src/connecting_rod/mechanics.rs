@@ -1,4 +1,4 @@
-//! How the rod moves, and the forces that this takes.
+//! Motion of the rod, and the forces for it.
 
 use std::f64::consts::PI;
 
@@ -7,17 +7,17 @@ use super::super::jet::{Jet, Real};
 use super::{DEGREE, LANES, Rows, input};
 use sensitol_numeric::elementary::{Cos, Elementary, Sin};
 
-/// The rod by the crank of the gas trace, which tolerances do not change.
+/// Ratio of rod to crank in the gas trace. It is fixed: tolerances of the inputs do not change it.
 pub(super) const ROD_BY_CRANK: f64 = 133.6 / 41.0;
-/// The mass centre, and the distance of the eyes, that the optima are told from: m.
+/// Mass centre and distance of the eyes from which the optima are counted, m.
 pub(super) const REFERENCE: [f64; 2] = [0.105, 0.1336];
 
-/// The pressure at any angle, Pa.
+/// Pressure at an angle, Pa.
 pub(super) fn pressure(degrees: f64, p3: f64, start: f64) -> f64 {
     gas::pressure(degrees, p3, start, ROD_BY_CRANK)
 }
 
-/// The speed of the crankshaft: one for all rows in rpm, or the input `speed` of each.
+/// Speed of the crankshaft: one for all rows in rpm, or the input `speed` of each row.
 #[derive(Clone, Copy)]
 pub(super) enum Speed {
     Rpm(f64),
@@ -25,7 +25,7 @@ pub(super) enum Speed {
 }
 
 impl Speed {
-    /// In rad/s.
+    /// Circular frequency in rad/s.
     #[inline(always)]
     pub(super) fn circular(self, rows: &Rows, row: usize) -> f64 {
         match self {
@@ -35,7 +35,7 @@ impl Speed {
     }
 }
 
-/// A crank angle with the gas pressure there.
+/// A crank angle with its gas pressure.
 pub(super) struct Angle<T> {
     pub(super) sin: T,
     pub(super) cos: T,
@@ -49,7 +49,7 @@ impl Angle<f64> {
 }
 
 impl Angle<Jet> {
-    /// With derivatives by the angle; of the pressure too where gas matters.
+    /// Angle with derivatives by the angle. The pressure is 0 without gas.
     pub(super) fn around(theta: f64, gas: Option<(f64, f64)>) -> Self {
         let (s, c) = (Sin::of(theta), Cos::of(theta));
         let (sin, cos) = (Jet([s, c, -s]), Jet([c, -s, -c]));
@@ -57,7 +57,7 @@ impl Angle<Jet> {
             let degrees = Jet([theta / DEGREE, 1.0 / DEGREE, 0.0]);
             match theta / DEGREE {
                 ..-180.0 => Jet([gas::SUCTION, 0.0, 0.0]),
-                // Exclusive of 180 itself, as in `pressure`: both sides are equal there.
+                // The bound excludes 180, as in `pressure`. Both sides are equal there.
                 at if at > 180.0 => gas::blow_down(degrees, p3),
                 _ => {
                     let unburnt = gas::unburnt_log(degrees, start).exp();
@@ -69,12 +69,13 @@ impl Angle<Jet> {
     }
 }
 
-/// How the rod moves.
+/// Motion of the rod at one crank angle.
 pub(super) struct Motion<T> {
     pub(super) sin_a: T,
     pub(super) cos_a: T,
-    /// Square of the rate of the rod's angle, and its acceleration.
+    /// Square of the angular velocity of the rod.
     pub(super) rate: T,
+    /// Angular acceleration of the rod.
     pub(super) turn: T,
     /// Acceleration of the piston.
     pub(super) piston: T,
@@ -93,14 +94,14 @@ impl<T: Real> Motion<T> {
         Self { sin_a, cos_a, rate, turn, piston }
     }
 
-    /// Acceleration at a distance from the small end, along the cylinder and across it.
+    /// Acceleration of a point of the rod at this distance from the small end, along the cylinder and across it.
     #[inline(always)]
     pub(super) fn acceleration(&self, at: f64) -> [T; 2] {
         let along = self.piston + (self.rate * self.cos_a + self.turn * self.sin_a) * -at;
         [along, (self.turn * self.cos_a + -(self.rate * self.sin_a)) * at]
     }
 
-    /// The force across the cylinder at the small end, of a body of this mass, centre and inertia, and a force along it.
+    /// Force across the cylinder at the small end. The rod has this mass, centre and inertia, and `along` is the force along the cylinder.
     #[inline(always)]
     pub(super) fn side_force(&self, [mass, centre, inertia]: [f64; 3], [ax, ay]: [T; 2], along: T, l: f64) -> T {
         let rest = (ay * self.cos_a - ax * self.sin_a) * (mass * (l - centre));
@@ -108,21 +109,21 @@ impl<T: Real> Motion<T> {
     }
 }
 
-/// The effect that is maximised.
+/// Effect whose maximum is searched for.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Effect {
     Compression,
     Tension,
     Normal,
     AgainstNormal,
-    /// That the rod exerts on the crank.
+    /// Torque of the rod on the crank.
     Torque,
     Braking,
-    /// Compression at the big end: the small end's, less what accelerates the rod along itself.
+    /// Compression at the big end: that at the small end, less the force that accelerates the rod along its axis.
     BigEnd,
 }
 
-/// One effect on a rod with mass, centre of mass and inertia, with a force along the cylinder at its small end.
+/// Effect on a rod with mass, centre of mass and inertia, and with a force along the cylinder at its small end.
 #[inline(always)]
 pub(super) fn effect<T: Real>(
     effect: Effect,
@@ -152,19 +153,19 @@ pub(super) fn effect<T: Real>(
     }
 }
 
-/// Something that has a value at every crank angle in every row.
+/// A quantity with a value at every crank angle in every row.
 pub(super) trait Curve {
     fn at<T: Real>(&self, row: usize, angle: &Angle<T>) -> T;
 }
 
-/// Gas, piston and rod.
+/// Effect of gas, piston and rod.
 pub(super) struct Loaded<'r> {
     pub(super) rows: &'r Rows,
     pub(super) speed: Speed,
     pub(super) effect: Effect,
 }
 
-/// Piston and rod without gas.
+/// Effect of piston and rod without gas.
 pub(super) struct Unfired<'r>(pub(super) Loaded<'r>);
 
 impl Curve for Unfired<'_> {
@@ -175,7 +176,7 @@ impl Curve for Unfired<'_> {
 }
 
 impl Loaded<'_> {
-    /// With this force of the gas along the cylinder.
+    /// Effect with this force of the gas along the cylinder.
     #[inline(always)]
     fn by<T: Real>(&self, row: usize, angle: &Angle<T>, gas: T) -> T {
         let x = self.rows.row(row);
@@ -198,22 +199,22 @@ pub(super) fn gas_force<T: Real>(angle: &Angle<T>, bore: f64) -> T {
     (angle.pressure + -gas::ATMOSPHERE) * (-0.25 * PI * bore * bore)
 }
 
-/// Where the mass centre of the rod is.
+/// Place of the rod's mass centre.
 #[derive(Clone, Copy)]
 pub(super) enum Centre {
     Given,
-    /// At mc_F, the inertia as for the nominal distance of the eyes.
+    /// Mass centre at mc_F. The inertia is that for the nominal distance of the eyes.
     Optimum,
-    /// At mc_T, the inertia as for the mass centre and the distance of the eyes that there are.
+    /// Mass centre at mc_T. The inertia is that for the actual mass centre and distance of the eyes.
     Tied,
 }
 
-/// The rod without piston and gas.
+/// Effect of the rod without piston and gas.
 pub(super) struct Alone<'r> {
     rows: &'r Rows,
     speed: Speed,
     effect: Effect,
-    /// Mass, centre of mass and inertia in every row, the same at any angle.
+    /// Mass, centre of mass and inertia in every row. They do not depend on the angle.
     bodies: [[f64; LANES]; 3],
 }
 

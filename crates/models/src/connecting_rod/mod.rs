@@ -1,4 +1,4 @@
-//! `connecting-rod`: forces, crank torque, section, buckling and mass of a connecting rod.
+//! Model `connecting-rod`: forces, crank torque, section, buckling and mass of a connecting rod.
 
 mod mechanics;
 mod search;
@@ -14,7 +14,7 @@ use search::{CYCLE, GAS_ANGLES, ROD_ANGLES, SAFETY, height_at, heights, maxima, 
 use section::{Root, Section, shank};
 use sensitol::assembly::{EvaluationError, Responses};
 
-/// The inputs' places, in the order of `CONNECTING_ROD.inputs`.
+/// Indices of the inputs, in the order of `CONNECTING_ROD.inputs`.
 mod input {
     pub const R: usize = 0;
     pub const L: usize = 1;
@@ -47,8 +47,8 @@ mod input {
 }
 const INPUTS: usize = 28;
 
-/// A connecting rod as three lumped masses: forces at its ends over the crank angle, their largest values, the height of the
-/// section that carries them, buckling, and the mass of the shank.
+/// Models a connecting rod as three lumped masses. Outputs are the forces at its ends over the crank angle with their largest values, the
+/// height of the section that carries them, buckling, and the mass of the shank.
 ///
 /// With th from the firing top dead centre, s = r sin th/L, sin a = s, cos a = -sqrt(1 - s^2) and w the speed:
 ///
@@ -64,16 +64,17 @@ const INPUTS: usize = 28;
 /// A = (2 k1 + k2 k3) t^2,  Izz = t^4 [k1/6 + k2 k3^3/12 + k1 (k3 + 1)^2/2],  Iyy = t^4 [2 k1^3 + k3 k2^3]/12,  H = (k3 + 2) t
 /// ```
 ///
-/// `H_req_3000` is the least height whose stress at the root of the shank is S_y/5 at every angle:
-/// |Fa|/A + |M| (k3 + 2) t/(2 Izz), with the shank cut off the eyes. `H_req` is the same at the speed and the section of the
-/// inputs. The search ends at k3 = -2, where H = 0. For k3 < 0 the flanges overlap, and the formulas count the overlap twice:
-/// below 2 t a height is a number without a section. H_margin is therefore taken against the larger of H_req_3000 and 2 t.
-/// Euler's safety is pi^2 E Izz/(L^2 F_comp) in the plane of motion and 4 pi^2 E Iyy/(L^2 F_comp) across it; `H_buckling_zz` and
-/// `H_buckling_yy` are the heights with a safety of 5 under the largest compression of the big end. [`gas`] has the pressure.
+/// `H_req_3000` is the least height whose stress at the root of the shank is S_y/5 at every angle: |Fa|/A + |M| (k3 + 2) t/(2 Izz), with
+/// the shank cut off the eyes. `H_req` is the same at the speed and the section of the inputs. The search ends at k3 = -2, where H = 0. For
+/// k3 < 0 the flanges overlap, and the formulas count the overlap twice: a height below 2 t is a number without a section. H_margin is
+/// therefore taken against the larger of H_req_3000 and 2 t.
 ///
-/// Maxima of outputs at 3000 rpm are over -60 to 180 degrees with gas, over 0 to 180 of the rod alone; those at the input `speed`
-/// over both turns. They are found to rounding: smooth in the inputs as long as
-/// one lobe is the largest. `Fn_opt` is the larger of two lobes that are nearly alike, and has a kink where they are.
+/// Euler's safety is pi^2 E Izz/(L^2 F_comp) in the plane of motion and 4 pi^2 E Iyy/(L^2 F_comp) across it. `H_buckling_zz` and
+/// `H_buckling_yy` are the heights with a safety of 5 under the largest compression of the big end. The pressure is that of [`gas`].
+///
+/// Maxima of outputs at 3000 rpm are over -60 to 180 degrees with gas, and over 0 to 180 of the rod alone. Those at the input `speed` are
+/// over both turns. They are found to rounding, and are smooth in the inputs as long as one lobe is the largest. `Fn_opt` is the larger of
+/// two nearly equal lobes, and has a kink at their equality.
 pub static CONNECTING_ROD: Model = Model {
     name: "connecting-rod",
     title: "forces, crank torque, section height, buckling and mass of a connecting rod",
@@ -361,12 +362,12 @@ pub static CONNECTING_ROD: Model = Model {
 const OVERLAP: &str =
     "a height below 2 t, where the flanges of the I section overlap and the formulas count the overlap twice";
 
-/// Whether a required height is less than that of both flanges. A height of 0 asks for no section.
+/// True if a required height is less than that of both flanges. A height of 0 needs no section.
 fn overlaps(block: &Block<'_>, row: usize, height: f64) -> bool {
     height > 0.0 && height < 2.0 * block.input(input::T)[row]
 }
 
-/// The outputs' places.
+/// Indices of the outputs.
 mod output {
     pub(crate) const F_TENS_6000: usize = 0;
     pub(crate) const F_COMP_3000: usize = 1;
@@ -405,15 +406,15 @@ mod output {
 }
 
 const DEGREE: f64 = PI / 180.0;
-/// Rows whose inputs and maxima stay in the nearest cache.
+/// Number of rows in a pass, so that their inputs and maxima stay in the nearest cache.
 const LANES: usize = 128;
 
-/// The larger of both; unknown where the height is.
+/// The larger of both. Returns NaN if `height` is NaN.
 fn least(height: f64, flanges: f64) -> f64 {
     if height < flanges { flanges } else { height }
 }
 
-/// The inputs of some rows in SI units, a column each.
+/// Inputs of some rows in SI units, one column for each.
 struct Rows {
     x: [[f64; LANES]; INPUTS],
     count: usize,
@@ -426,7 +427,7 @@ impl Rows {
     }
 }
 
-/// The inputs of one row.
+/// Inputs of one row.
 #[derive(Clone, Copy)]
 struct Row<'r> {
     rows: &'r Rows,
@@ -434,14 +435,14 @@ struct Row<'r> {
 }
 
 impl Row<'_> {
-    /// Inlined where code is optimised for size too, as a closure is not: every angle takes some twenty inputs.
+    /// A method, since closures are not inlined where code is optimised for size: every angle takes some twenty inputs.
     #[inline(always)]
     fn of(self, input: usize) -> f64 {
         self.rows.x[input][self.row]
     }
 }
 
-/// The inputs' units in SI; degrees and rpm stay.
+/// Factors of the inputs' units to SI. Degrees and rpm stay.
 const SI: [f64; INPUTS] = {
     let mut si = [1e-3; INPUTS];
     si[input::I_G] = 1e-6;
@@ -501,7 +502,7 @@ fn answer(rows: &Rows, first: usize, asked: &[(usize, usize)], out: &mut Respons
     let height = found(is_asked(&[output::H_REQ_3000, output::H_MARGIN, output::THETA_H_REQ]), &|| {
         heights(Root { rows, speed: fired, webs: [1.0; LANES], at_cut: false }, &GAS_ANGLES)
     });
-    // At the speed that is given.
+    // Maxima at the input `speed`.
     let given = |effect| move || maxima(&Loaded { rows, speed: Speed::Given, effect }, rows, &CYCLE, true);
     let pushed = found(is_asked(&[output::F_COMP, output::THETA_F]), &given(Effect::Compression));
     let big_ends = [output::F_COMP_BIG, output::H_BUCKLING_ZZ, output::H_BUCKLING_YY];

@@ -1,4 +1,4 @@
-//! Maxima over the crank angle in many rows at once, and the height of a section that carries the largest stress.
+//! Maxima over the crank angle in many rows at once, and the section height that carries the largest stress.
 
 use std::sync::LazyLock;
 
@@ -9,16 +9,16 @@ use super::section::{MOST_WEB, Root, crossing};
 use super::{DEGREE, LANES, Rows, input};
 use sensitol_numeric::elementary::{Cos, Elementary, Exp, Sin, Work, on_this_processor};
 
-/// Safety against yield.
+/// Safety factor against yield.
 pub(super) const SAFETY: f64 = 5.0;
-/// Degrees between the angles at which a maximum is first looked for: a fifth of the narrowest lobe at most.
+/// Distance of the grid's angles, degrees: at most a fifth of the narrowest lobe.
 pub(super) const STEP: f64 = 5.0;
 
-/// Angles at which a search begins, with what the volume makes of the pressure there.
+/// Angles at which a search begins, with the pressure terms that depend on the volume there.
 pub(super) struct Grid {
     pub(super) degrees: Vec<f64>,
     pub(super) strokes: Vec<[f64; 2]>,
-    /// The parts of the exhaust's pressure, by 1 and by p3, after the stroke that does work.
+    /// Constant and factor of p3 of the exhaust's pressure, after the working stroke.
     pub(super) exhaust: Vec<[f64; 2]>,
     pub(super) turns: Vec<[f64; 2]>,
     pub(super) ends: [f64; 2],
@@ -30,7 +30,8 @@ impl Grid {
         let degrees: Vec<f64> = (0..=steps).map(|step| from + STEP * step as f64).collect();
         let turns: Vec<[f64; 2]> =
             degrees.iter().map(|at| at * DEGREE).map(|theta| [Sin::of(theta), Cos::of(theta)]).collect();
-        // Before the compression nothing burns, and after the expansion everything has: the pressures' two parts are then these.
+        // Nothing burns before the compression, and everything has burnt after the expansion. The two terms of the pressure are then
+        // constant.
         let working = |(degrees, &[sin, cos]): (&f64, &[f64; 2])| match *degrees {
             ..-180.0 => [gas::SUCTION, 0.0],
             at if at > 180.0 => [0.0, 0.0],
@@ -47,7 +48,7 @@ pub(super) static GAS_ANGLES: LazyLock<Grid> = LazyLock::new(|| Grid::over(-60.0
 pub(super) static CYCLE: LazyLock<Grid> = LazyLock::new(|| Grid::over(-360.0, 360.0));
 pub(super) static ROD_ANGLES: LazyLock<Grid> = LazyLock::new(|| Grid::over(0.0, 180.0));
 
-/// The largest value over the grid in every row, and the angle's place.
+/// Finds the angle of the grid with the largest value, in every row.
 pub(super) struct Scan<'a, C> {
     pub(super) curve: &'a C,
     pub(super) rows: &'a Rows,
@@ -61,7 +62,7 @@ impl<C: Curve> Work for Scan<'_, C> {
     #[inline(always)]
     fn work(self) -> [f64; LANES] {
         let Self { curve, rows, grid, gas } = self;
-        // The same number, by which the compiler sees that every row lies within its column.
+        // The minimum does not change the count. It shows the compiler that every row lies within its column.
         let count = rows.count.min(LANES);
         let (mut best, mut place) = ([f64::NEG_INFINITY; LANES], [0.0; LANES]);
         let (mut exponents, mut unburnt) = ([0.0; LANES], [1.0; LANES]);
@@ -86,7 +87,7 @@ impl<C: Curve> Work for Scan<'_, C> {
     }
 }
 
-/// The largest value of a curve in every row, and where.
+/// Largest value of a curve in every row, and its angle.
 pub(super) fn maxima<C: Curve>(curve: &C, rows: &Rows, grid: &Grid, gas: bool) -> [Peak; LANES] {
     let places = on_this_processor(Scan { curve, rows, grid, gas });
     let mut peaks = [Peak { at: f64::NAN, value: f64::NAN }; LANES];
@@ -96,24 +97,24 @@ pub(super) fn maxima<C: Curve>(curve: &C, rows: &Rows, grid: &Grid, gas: bool) -
     peaks
 }
 
-/// The maximum near a place of the grid.
+/// Maximum near an angle of the grid.
 pub(super) fn refined<C: Curve>(curve: &C, rows: &Rows, grid: &Grid, gas: bool, row: usize, from: f64) -> Peak {
     let load = gas.then(|| (rows.x[input::P3][row], rows.x[input::THS][row]));
     let ends = [(from - STEP * DEGREE).max(grid.ends[0]), (from + STEP * DEGREE).min(grid.ends[1])];
     climb(|theta| curve.at(row, &Angle::<Jet>::around(theta, load)), from, ends)
 }
 
-/// Heights that Newton's method asks for at most.
+/// Greatest number of steps of Newton's method for a height.
 pub(super) const MOST_HEIGHTS: usize = 60;
-/// The height of the web by the thickness that the first pass over the grid begins with: the design's.
+/// Height of the web by the thickness at the first pass over the grid: that of the design.
 pub(super) const FIRST_WEB: f64 = 8.0;
-/// Where Newton's method gives over to [`overlapping`].
+/// Height of the web by the thickness below which [`overlapping`] replaces Newton's method.
 pub(super) const LEAST_WEB: f64 = 1e-3;
-/// Passes over the grid: each but the first sees whether the lobe has stayed the largest.
+/// Greatest number of passes over the grid. All but the first check that the same lobe is the largest.
 pub(super) const PASSES: usize = 6;
 
-/// The least height of the section in every row, and the angle that requires it: the largest stress over the angle is what is
-/// allowed. The web may vanish and flanges may overlap, down to k3 = -2, where they alone carry: the height is 0 there.
+/// Least height of the section in every row, with the angle that requires it: the largest stress over the angle equals the permitted one.
+/// The web may vanish and the flanges may overlap, down to k3 = -2. There the flanges alone carry, and the height is 0.
 pub(super) fn heights(mut root: Root<'_>, grid: &Grid) -> [Peak; LANES] {
     let rows = root.rows;
     let mut found = [Peak { at: f64::NAN, value: f64::NAN }; LANES];
@@ -151,7 +152,8 @@ pub(super) fn heights(mut root: Root<'_>, grid: &Grid) -> [Peak; LANES] {
     found
 }
 
-/// Brings the largest stress of a lobe to what is allowed by the height of the web, and tells the angle.
+/// Finds the height of the web at which the largest stress of a lobe equals the permitted one. Returns the angle, or None if the height
+/// leaves its range.
 pub(super) fn required(root: &mut Root<'_>, grid: &Grid, row: usize, mut from: f64) -> Option<f64> {
     let rows = root.rows;
     let allowed = rows.x[input::S_Y][row] / SAFETY;
@@ -159,7 +161,7 @@ pub(super) fn required(root: &mut Root<'_>, grid: &Grid, row: usize, mut from: f
         let k3 = root.webs[row];
         let peak = refined(root, rows, grid, true, row, from);
         from = peak.at;
-        // The stress by the web's height at that angle: the angle's own change does not matter at a maximum.
+        // At a maximum the change of the angle has no effect, so the derivative by the web's height is taken at a fixed angle.
         let h = 1e-6 * k3;
         let pressure = pressure(peak.at / DEGREE, rows.x[input::P3][row], rows.x[input::THS][row]);
         let angle = Angle::of(peak.at, pressure);
@@ -169,13 +171,13 @@ pub(super) fn required(root: &mut Root<'_>, grid: &Grid, row: usize, mut from: f
         };
         let slope = (stress(k3 + h) - stress(k3 - h)) / (2.0 * h);
         let step = (peak.value - allowed) / slope;
-        // Never to nothing at once: the stress grows without bound there.
+        // The stress grows without bound as the web vanishes, so a step never removes more than nine tenths of it.
         let next = if step < 0.9 * k3 { k3 - step } else { 0.1 * k3 };
         root.webs[row] = next;
         if !(next > LEAST_WEB && next < MOST_WEB) {
             return None;
         }
-        // The next step would be the square of this one.
+        // The error of the next step would be the square of this one.
         if step.abs() <= 1e-8 * next {
             return Some(from);
         }
@@ -183,11 +185,11 @@ pub(super) fn required(root: &mut Root<'_>, grid: &Grid, row: usize, mut from: f
     None
 }
 
-/// Steps in which a web between 0 and -2 thicknesses is looked for: the stress has one hump there, 0.5 wide or more.
+/// Steps of the search for a web between 0 and -2 thicknesses. The stress has one hump there, at least 0.5 wide.
 const OVERLAPS: usize = 20;
 
-/// The height for which flanges overlap: where the largest stress is what is allowed for the first time from above, because it
-/// need not grow as the height falls. Without such a place the flanges alone carry: 0.
+/// Height for overlapping flanges. From above it is the first one at which the largest stress equals the permitted one, since the stress
+/// need not grow as the height falls. Without such a height the flanges alone carry, and it is 0.
 fn overlapping(root: &mut Root<'_>, grid: &Grid, row: usize) -> Peak {
     let (rows, t) = (root.rows, root.rows.x[input::T][row]);
     let allowed = rows.x[input::S_Y][row] / SAFETY;
@@ -196,7 +198,7 @@ fn overlapping(root: &mut Root<'_>, grid: &Grid, row: usize) -> Peak {
     let (mut before, mut above) = (f64::NEG_INFINITY, largest(web(0)).value);
     let mut bracket = None;
     if above >= allowed {
-        // Newton's method jumped over the root.
+        // Newton's method jumped over the root, which lies above.
         let mut high = 1.0;
         while largest(high).value >= allowed {
             high *= 2.0;
@@ -214,7 +216,7 @@ fn overlapping(root: &mut Root<'_>, grid: &Grid, row: usize) -> Peak {
         if here >= allowed {
             bracket = Some([web(step), web(step - 1)]);
         } else if step > 1 && above > before && above >= here {
-            // A top between the steps may reach what they do not.
+            // A maximum between the steps may reach the permitted stress although the steps do not.
             let (mut low, mut high) = (web(step), web(step - 2));
             for _ in 0..40 {
                 let [a, b] = [low + (high - low) / 3.0, high - (high - low) / 3.0];
@@ -236,7 +238,7 @@ fn overlapping(root: &mut Root<'_>, grid: &Grid, row: usize) -> Peak {
         if middle <= low || middle >= high {
             return Peak { at, value: (low + 2.0) * t };
         }
-        // Where the bracket is narrow the lobe stays: from its last top to the next.
+        // In a narrow bracket the lobe stays the same, so the search starts from its last angle.
         let peak = if high - low > 1e-3 {
             strained(root, grid, row, middle)
         } else {
@@ -251,7 +253,7 @@ fn overlapping(root: &mut Root<'_>, grid: &Grid, row: usize) -> Peak {
     }
 }
 
-/// The largest stress over the grid for a web of this height.
+/// Largest stress over the grid for a web of this height.
 fn strained(root: &mut Root<'_>, grid: &Grid, row: usize, web: f64) -> Peak {
     root.webs[row] = web;
     let (root, rows) = (&*root, root.rows);
@@ -265,7 +267,7 @@ fn strained(root: &mut Root<'_>, grid: &Grid, row: usize, web: f64) -> Peak {
     refined(root, rows, grid, true, row, grid.degrees[place] * DEGREE)
 }
 
-/// The least height of the section at one crank angle.
+/// Least height of the section at one crank angle.
 pub(super) fn height_at(root: &mut Root<'_>, row: usize, angle: &Angle<f64>) -> f64 {
     let (rows, t) = (root.rows, root.rows.x[input::T][row]);
     let allowed = rows.x[input::S_Y][row] / SAFETY;
@@ -283,13 +285,13 @@ pub(super) fn height_at(root: &mut Root<'_>, row: usize, angle: &Angle<f64>) -> 
     if over(0.0) >= 0.0 {
         return (crossing(over, [0.0, high]) + 2.0) * t;
     }
-    // As finely as the hump of the stress asks for, from above.
+    // Steps from above that are fine enough for the hump of the stress.
     let web = |step: usize| -2.0 * step as f64 / (20 * OVERLAPS) as f64;
     let found = (1..=20 * OVERLAPS).find(|&step| over(web(step)) >= 0.0);
     found.map_or(0.0, |step| (crossing(over, [web(step), web(step - 1)]) + 2.0) * t)
 }
 
-/// Degrees after the gas exchange dead centre for which the big end is pulled. The stroke is that of suction, whose pressure is one.
+/// Degrees after the gas exchange dead centre in which the big end is pulled. The stroke is that of suction, with constant pressure.
 pub(super) fn pulled(rows: &Rows, row: usize) -> f64 {
     let curve = Loaded { rows, speed: Speed::Given, effect: Effect::BigEnd };
     let compression = |degrees: f64| curve.at(row, &Angle::of(degrees * DEGREE, gas::SUCTION));

@@ -1,10 +1,10 @@
-//! The section of the shank, and the stress at its root.
+//! Section of the shank, and the stress at its root.
 
 use super::super::jet::Real;
 use super::mechanics::{Angle, Curve, Motion, Speed, gas_force};
 use super::{LANES, Rows, input};
 
-/// The stress in a section of the shank, for a web of this height: at its root, or where the input `cut` says.
+/// Stress in a section of the shank with webs of this height. The section is at the root, or at the input `cut` if `at_cut`.
 pub(super) struct Root<'r> {
     pub(super) rows: &'r Rows,
     pub(super) speed: Speed,
@@ -13,7 +13,7 @@ pub(super) struct Root<'r> {
 }
 
 impl Root<'_> {
-    /// Axial force and bending moment there.
+    /// Axial force and bending moment in the section.
     #[inline(always)]
     pub(super) fn load<T: Real>(&self, row: usize, angle: &Angle<T>) -> [T; 2] {
         let x = self.rows.row(row);
@@ -30,7 +30,7 @@ impl Root<'_> {
         if !self.at_cut {
             return [axial, normal * -root + motion.turn * x.of(input::I_S)];
         }
-        // The part of the shank before the section adds what accelerates it.
+        // The part of the shank before the section adds its inertia forces.
         let before = x.of(input::CUT) * length;
         let (mass, centre) = (mass * x.of(input::CUT), root + 0.5 * before);
         let [ax, ay] = motion.acceleration(centre);
@@ -50,7 +50,7 @@ impl Curve for Root<'_> {
     }
 }
 
-/// An I section: thickness and proportions; `k3`, the height of the web by the thickness, is asked for.
+/// An I section: thickness and proportions. `k3`, the height of the web by the thickness, is an argument of the methods.
 pub(super) struct Section {
     pub(super) t: f64,
     pub(super) k1: f64,
@@ -73,24 +73,24 @@ impl Section {
         (2.0 * self.k1 + self.k2 * k3) * self.t * self.t
     }
 
-    /// Izz.
+    /// Second moment of area Izz.
     #[inline(always)]
     pub(super) fn across(&self, k3: f64) -> f64 {
         let (square, k1) = (self.t * self.t, self.k1);
         square * square * (k1 / 6.0 + self.k2 * k3 * k3 * k3 / 12.0 + 0.5 * k1 * (k3 + 1.0) * (k3 + 1.0))
     }
 
-    /// Iyy.
+    /// Second moment of area Iyy.
     #[inline(always)]
     pub(super) fn along(&self, k3: f64) -> f64 {
         let (square, k1, k2) = (self.t * self.t, self.k1, self.k2);
         square * square * (2.0 * k1 * k1 * k1 + k3 * k2 * k2 * k2) / 12.0
     }
 
-    /// The height that Izz of this size needs: the largest root of a cubic. Where the flanges alone are stiffer, 0.
+    /// Height of the section for this Izz: the largest root of a cubic. Returns 0 if the flanges alone are stiffer.
     pub(super) fn height_across(&self, inertia: f64) -> f64 {
         let (k1, k2) = (self.k1, self.k2);
-        // Izz is least at the larger root of its derivative, k2/4 k3^2 + k1 (k3 + 1), and grows above it.
+        // Izz has its minimum at the larger root of its derivative, k2/4 k3^2 + k1 (k3 + 1), and grows above it.
         let low = if k1 > k2 { -2.0 / (1.0 + (1.0 - k2 / k1).sqrt()) } else { -2.0 };
         let off = |k3: f64| self.across(k3) / inertia - 1.0;
         if off(low) > 0.0 {
@@ -103,24 +103,24 @@ impl Section {
         (crossing(off, [low, high]) + 2.0) * self.t
     }
 
-    /// The height that Iyy of this size needs; negative where the flanges alone are stiffer.
+    /// Height of the section for this Iyy. It is negative if the flanges alone are stiffer.
     pub(super) fn height_along(&self, inertia: f64) -> f64 {
         let (square, k1, k2) = (self.t * self.t, self.k1, self.k2);
         let k3 = (12.0 * inertia / (square * square) - 2.0 * k1 * k1 * k1) / (k2 * k2 * k2);
         (k3 + 2.0) * self.t
     }
 
-    /// Stress of a bending moment of 1.
+    /// Stress per unit of bending moment.
     #[inline(always)]
     pub(super) fn bending(&self, k3: f64) -> f64 {
         0.5 * (k3 + 2.0) * self.t / self.across(k3)
     }
 }
 
-/// The tallest web by the thickness that is looked for.
+/// Greatest height of a web by the thickness in all searches.
 pub(super) const MOST_WEB: f64 = 1e6;
 
-/// Where a function passes 0 within an interval at whose ends it has opposite signs: halved until nothing lies between.
+/// Zero of a function in an interval with opposite signs at its ends, by halving until no double lies between.
 pub(super) fn crossing(mut function: impl FnMut(f64) -> f64, [mut low, mut high]: [f64; 2]) -> f64 {
     let falls = function(high) < 0.0;
     loop {
@@ -136,7 +136,6 @@ pub(super) fn crossing(mut function: impl FnMut(f64) -> f64, [mut low, mut high]
     }
 }
 
-/// Length of the shank.
 #[inline(always)]
 pub(super) fn shank(rows: &Rows, row: usize) -> f64 {
     let x = rows.row(row);

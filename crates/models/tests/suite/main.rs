@@ -1,3 +1,3 @@
-//! Published models.
+//! Tests of published models.
 
 mod models;

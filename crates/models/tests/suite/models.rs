@@ -1,4 +1,4 @@
-//! The built-in models of the published cases, against derivatives of 60-digit arithmetic and other people's samples.
+//! Built-in models of published cases, against derivatives in 60-digit arithmetic and independent samples.
 
 use serde_json::Value;
 
@@ -69,7 +69,7 @@ impl Case {
         Self::of("dual-mass-flywheel", data("dual-mass-flywheel.json"))
     }
 
-    /// The characteristics that the model has; of the others only the rod's T_opt lobes are left out.
+    /// Characteristics that the model has. It lacks only the lobes of the rod's T_opt.
     fn outputs(&self) -> Vec<(&String, &Value)> {
         let all = self.truth["kcs"].as_object().unwrap();
         let known = |name: &str| self.model.outputs.iter().any(|output| output.name == name);
@@ -107,8 +107,8 @@ fn nominal_values_are_those_of_sixty_digits() {
     assert_eq!((rounded("n_crit_DMF"), rounded("n_crit_SMF"), rounded("n_cross").round()), (614.81, 2124.10, 837.0));
 }
 
-/// Five-point differences at 0.05 sigma: what they leave is the fifth derivative by 2e-7 sigma^4, and 1e-10 of sigma by rounding;
-/// a slope that adds less than 1e-4 to the characteristic's sigma is held to that part of it.
+/// Five-point differences at 0.05 sigma have an error of the fifth derivative times 2e-7 sigma^4, and a rounding error of 1e-10 of sigma. A
+/// slope that adds less than 1e-4 to the characteristic's sigma may be wrong by that part of it.
 #[test]
 fn gradients_are_those_of_sixty_digits() {
     for case in Case::rods().into_iter().chain([Case::flywheel()]) {
@@ -134,8 +134,8 @@ fn gradients_are_those_of_sixty_digits() {
     }
 }
 
-/// Second order with true derivatives: `full` with steps of 0.05 sigma, which leave 4e-4 of the third derivative by sigma^2 in
-/// slopes and 2e-4 of the fourth in curvatures: of the most curved, A_peak_DMF and T_opt_tied, 1e-5.
+/// Second order with true derivatives: `full` with steps of 0.05 sigma. Its error is 4e-4 of the third derivative by sigma^2 in slopes, and
+/// 2e-4 of the fourth in curvatures. For the most curved outputs, A_peak_DMF and T_opt_tied, it is 1e-5.
 #[test]
 fn second_order_moments_are_those_listed() {
     for case in Case::rods().into_iter().chain([Case::flywheel()]) {
@@ -155,7 +155,7 @@ fn second_order_moments_are_those_listed() {
     }
 }
 
-/// Both sample: four standard errors of both together. 4 million points of theirs, 40 000 of ours.
+/// Both results are sampled, so the tolerance is four standard errors of both together: 4 million independent points, 40 000 of the engine.
 #[test]
 fn samples_agree_with_other_peoples() {
     for case in Case::rods().into_iter().chain([Case::flywheel()]) {
@@ -182,13 +182,14 @@ fn samples_agree_with_other_peoples() {
     }
 }
 
-/// The larger of two lobes: with five points along a line derivative methods say so, and `auto` samples the model instead.
+/// `Fn_opt` is the larger of two lobes. With five points along a line derivative methods warn of the kink, and `auto` samples the model
+/// instead.
 #[test]
 fn the_kink_is_seen_and_sampled_around() {
     let rod = &Case::rods()[0];
     let problem = rod.problem(&["Fn_opt"]);
     let theirs = &rod.truth["monte_carlo"]["Fn_opt"];
-    // The methods run by themselves: a verification would sample a built-in model.
+    // Verification is off, since it would sample a built-in model.
     let alone = |method: Method| sensitol::Options::from(method).with_verify(0);
     let warned = |method: Method| {
         let analysis = analyze(&problem, &alone(method)).unwrap();
@@ -201,20 +202,20 @@ fn the_kink_is_seen_and_sampled_around() {
         let sigma = number(theirs, "sigma");
         [(moments.mean() - number(theirs, "mean")) / sigma, moments.sigma() / sigma - 1.0]
     };
-    // Three points along a line have no kink: only this shows that the warning is needed.
+    // Three points along a line do not show a kink. The wrong figures prove that the warning is needed.
     let blind = off(&analyze(&problem, &alone(Method::SecondOrder)).unwrap());
     assert!(blind.iter().any(|off| off.abs() > 0.1), "{blind:?}");
     warned(Method::SixN);
     let auto = warned(Method::Auto);
     let sampled = auto.characteristics[0].model_sampled.as_ref().expect("auto sampled the model");
     assert!(sampled.samples >= 1000, "{sampled:?}");
-    // One percent of sigma is what auto promises; the reference's own error is a tenth of that.
+    // The tolerance of `auto` is one percent of sigma. The reference's own error is a tenth of that.
     let [mean, sigma] = off(&auto);
     assert!(mean.abs() < 0.03 && sigma.abs() < 0.03, "{mean} {sigma}");
 }
 
-/// Maxima over the crank angle: second differences at 0.01 sigma are those at sigma but for the fourth derivative. The grid on
-/// which the search begins, and where it ends, would show here a thousandfold.
+/// Maxima over the crank angle: second differences at 0.01 sigma equal those at sigma, except for the fourth derivative. An influence of
+/// the search grid or of its last step would show here a thousandfold.
 #[test]
 fn maxima_over_the_angle_are_smooth() {
     for case in Case::rods().into_iter().chain([Case::flywheel()]) {
@@ -235,13 +236,13 @@ fn maxima_over_the_angle_are_smooth() {
                     let out = values(case.model, &[column], &[at(-h), at(0.0), at(h)]);
                     let y = |row: usize| out.value(row, 0).unwrap();
                     let realised = at(h)[place] - at(-h)[place];
-                    // Of values near y: rounding makes 4 units in the last place of each into 1/h^2 as much.
+                    // Values near y: rounding by 4 units in the last place of each is divided by h^2.
                     let rounding = 16.0 * f64::EPSILON * y(1).abs() / (h * h);
                     ((y(2) - 2.0 * y(1) + y(0)) / (realised / sigma / 2.0).powi(2), rounding)
                 };
                 let ((small, rounding), (large, _)) = (second(0.01), second(1.0));
                 let off = (small - large).abs();
-                // Fourth derivatives by sigma^4/12: none here exceeds 1e-3 of the characteristic's sigma.
+                // Fourth derivatives by sigma^4/12 are below 1e-3 of the characteristic's sigma here.
                 assert!(
                     off < 2e-3 * sigma_y + rounding,
                     "{name} by {}: {small:e} {large:e}",
@@ -252,15 +253,14 @@ fn maxima_over_the_angle_are_smooth() {
     }
 }
 
-/// No lobe takes another's place unseen: from one end of every tolerance to the other, twice as far as three sigma, and along
-/// random lines, the angle of the maximum moves without a jump.
+/// No lobe replaces another: along 64 diagonals of the box, to six sigma on either side, the angle of the maximum moves without a jump.
 #[test]
 fn lobes_are_not_switched() {
     for case in Case::rods() {
         for name in ["theta_F_comp", "theta_H_req"] {
             let column = output(case.model, name);
             for direction in 0..64u64 {
-                // Signs by the bits of a multiple of an odd number: every direction its own corner.
+                // Signs are the bits of a multiple of an odd number, so that every direction has its own corner.
                 let signs = direction.wrapping_mul(0x9e37_79b9_7f4a_7c15);
                 let at = |u: f64| {
                     let mut point = case.nominal.clone();
@@ -272,14 +272,14 @@ fn lobes_are_not_switched() {
                 let rows: Vec<Vec<f64>> = (0..=48).map(|step| at(0.25 * f64::from(step) - 6.0)).collect();
                 let out = values(case.model, &[column], &rows);
                 let angles: Vec<f64> = (0..rows.len()).map(|row| out.value(row, 0).unwrap()).collect();
-                // A lobe away is 20 degrees or more; a quarter of sigma moves the ignition by a sixth of one.
+                // Another lobe is at least 20 degrees away. A quarter of sigma moves the ignition by a sixth of a degree.
                 assert!(angles.windows(2).all(|pair| (pair[1] - pair[0]).abs() < 1.0), "{name} {angles:?}");
             }
         }
     }
 }
 
-/// Formulas of another form: the four cylinders of the paper one by one, and an engine whose forces cancel.
+/// Independent formulas: the four cylinders of the paper one by one, and an engine whose forces cancel.
 #[test]
 fn inline_engines_of_any_layout() {
     let (general, four) = (model("inline-engine-balance"), model("engine-balance"));
@@ -298,7 +298,7 @@ fn inline_engines_of_any_layout() {
     for t in [0.0, 0.3, 2.0] {
         set(&mut six, "t", t);
         for name in ["F1", "F2", "M1", "M2"] {
-            // Of single forces of 1e4 N.
+            // The single forces are 1e4 N.
             assert!(value(general, name, &six).abs() < 1e-9, "{name}");
         }
     }
@@ -314,7 +314,7 @@ fn inline_engines_of_any_layout() {
         value(general, "M1", &at).abs()
     });
     let (mr, r, omega) = (0.427 + 0.597 * 0.0372 / (0.0372 + 0.0973), 0.0425, 628.3185f64);
-    // A tenth of a degree off the worst position costs 1e-6 of it.
+    // A tenth of a degree off the worst position changes the moment by 1e-6.
     relative(worst.fold(0.0, f64::max), 3f64.sqrt() * mr * r * omega * omega * 0.05, 2e-6);
     for n in [0.0, 2.5, 13.0, f64::NAN] {
         let mut at = at.clone();
@@ -324,7 +324,7 @@ fn inline_engines_of_any_layout() {
     }
 }
 
-/// Twelve parts: 0.8411, root of the sum of squares 0.09047, worst case 0.229.
+/// Published figures of twelve parts: 0.8411, root of the sum of squares 0.09047, worst case 0.229.
 #[test]
 fn compression_clearance() {
     let model = model("compression-clearance");
@@ -334,7 +334,7 @@ fn compression_clearance() {
     let analysis = analyze(&Problem::new(dimensions, model.function()).unwrap(), &Method::Rss.into()).unwrap();
     let found = &analysis.characteristics[0];
     assert!((found.nominal.unwrap() - 0.8411).abs() < 1e-12);
-    // To the digits given.
+    // To the published digits.
     assert!((found.rss.unwrap() - 0.09047).abs() < 5e-6);
     let [low, high] = found.worst_case.unwrap();
     assert!((0.5 * (high - low) - 0.229).abs() < 1e-12 && (0.5 * (high + low) - 0.8411).abs() < 1e-12);
@@ -343,12 +343,12 @@ fn compression_clearance() {
     assert!((3.0 * found.moments.unwrap().sigma() - 0.0905).abs() < 5e-5);
 }
 
-/// The design's figures: nominal values, and samples of 4 million.
+/// Figures of the design: nominal values, and samples of 4 million points.
 #[test]
 fn quick_return() {
     let model = model("quick-return");
     let at = nominal(model);
-    // The same by angles, as they are written: to rounding.
+    // The formulas by angles, as they are published, agree to rounding.
     let [r, d, e, q, c, height, s] = at[..] else { panic!("seven inputs") };
     let (delta, gamma) = (e.atan2(d), ((r + 0.5 * s) / d.hypot(e)).asin());
     let ram = |b: f64| q * b.sin() + (c * c - (height - q * b.cos()).powi(2)).sqrt();
@@ -361,7 +361,7 @@ fn quick_return() {
     let dimensions = model.inputs.iter().zip(tolerances);
     let dimensions = dimensions.map(|(input, t)| Dimension::normal(input.name, input.nominal, t).unwrap());
     let analysis = analyze(&Problem::new(dimensions, model.function()).unwrap(), &Method::Full.into()).unwrap();
-    // 4e6 points: 5e-4 of sigma in the mean, 4e-4 of sigma, 1.2e-3 and 2.4e-3; four of each.
+    // Standard errors of 4e6 points: 5e-4 of sigma in the mean, 4e-4 of sigma, 1.2e-3 and 2.4e-3. The tolerance is four of each.
     for (found, expected) in analysis
         .characteristics
         .iter()
@@ -400,7 +400,7 @@ fn shift(by: [f64; 3]) -> Matrix {
     })
 }
 
-/// A turn about a unit axis by the quaternion of half the angle.
+/// Rotation about a unit axis by the quaternion of half the angle.
 fn turn(axis: [f64; 3], degrees: f64) -> Matrix {
     let half = 0.5 * degrees.to_radians();
     let w = half.cos();
@@ -413,7 +413,7 @@ fn turn(axis: [f64; 3], degrees: f64) -> Matrix {
     ]
 }
 
-/// The chain of rigid bodies by homogeneous matrices, the turns by quaternions: to 1e-12 of its 300 mm.
+/// The chain of rigid bodies by homogeneous matrices, with rotations by quaternions: agrees to 1e-12 of its 300 mm.
 #[test]
 fn spot_weld_is_a_chain_of_rigid_bodies() {
     let model = model("spot-weld");
@@ -439,7 +439,7 @@ fn spot_weld_is_a_chain_of_rigid_bodies() {
     for (output, expected) in [10.0, 0.0, 0.0].into_iter().enumerate() {
         assert!((nominal.value(0, output).unwrap() - expected).abs() < 1e-12);
     }
-    // Far from nominal, so that no term hides: every input off by as much as a tenth of an arm, or 20 degrees.
+    // Far from nominal, so that no term hides: every input is off by up to a tenth of an arm, or 20 degrees.
     let rows: Vec<Vec<f64>> = (1..=300u32)
         .map(|row| {
             let off = |place: usize| 20.0 * (f64::from(row) * (1.0 + 0.37 * place as f64)).sin();
@@ -457,13 +457,13 @@ fn spot_weld_is_a_chain_of_rigid_bodies() {
     }
 }
 
-/// An output depends on what it says, and on all of it; one asked alone is the one asked with others.
+/// An output depends on exactly the declared inputs. Its value does not depend on the other requested outputs.
 #[test]
 fn outputs_depend_on_what_they_say() {
     for model in sensitol_models::ALL {
         let at = nominal(model);
         let all: Vec<usize> = (0..model.outputs.len()).collect();
-        // A little off the nominal: zero angles hide a dependence.
+        // Slightly off the nominal, since zero angles hide a dependence.
         let base: Vec<f64> = at.iter().map(|x| if x.fract() == 0.0 && *x == 4.0 { *x } else { x + 1e-3 }).collect();
         let row = |place: usize| {
             let mut point = base.clone();
@@ -484,7 +484,7 @@ fn outputs_depend_on_what_they_say() {
             for place in 0..at.len() {
                 let moves = value(place + 1) != value(0);
                 let says = output.depends_on.contains(&place);
-                // Cylinders that are not there, and the crank angle of a balanced order, change nothing.
+                // Missing cylinders, and the crank angle of a balanced order, have no effect.
                 assert!(says || !moves, "{}: {} moves with {}", model.name, output.name, model.inputs[place].name);
                 let rod = model.name == "connecting-rod" || model.name == "spot-weld" || model.name == "quick-return";
                 assert!(
@@ -500,7 +500,7 @@ fn outputs_depend_on_what_they_say() {
     }
 }
 
-/// Blocks, lanes and neighbours change no bit.
+/// The value at a point has the same bits for any blocks, lanes and neighbours.
 #[test]
 fn a_value_belongs_to_its_point_alone() {
     for model in sensitol_models::ALL {

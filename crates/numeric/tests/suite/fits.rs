@@ -1,4 +1,4 @@
-//! ISO 286 fits against printed tables and the standard's formulas, and what there is no fit for.
+//! ISO 286 fits, compared with printed tables and the standard's formulas, and sizes without a fit.
 
 use proptest::prelude::*;
 use sensitol_numeric::fits::{FitError, deviations};
@@ -10,31 +10,32 @@ const SHAFTS: [&str; 28] = [
 ];
 const GRADES: [&str; 20] =
     ["01", "0", "1", "2", "3", "4", "5", "6", "7", "8", "9", "10", "11", "12", "13", "14", "15", "16", "17", "18"];
-/// Upper ends of the size ranges, and of those that are divided further.
+/// Upper ends of the size ranges, in mm.
 const RANGES: [f64; 13] = [3.0, 6.0, 10.0, 18.0, 30.0, 50.0, 80.0, 120.0, 180.0, 250.0, 315.0, 400.0, 500.0];
+/// Upper ends of the finer size ranges, in mm.
 const STEPS: [f64; 25] = [
     3.0, 6.0, 10.0, 14.0, 18.0, 24.0, 30.0, 40.0, 50.0, 65.0, 80.0, 100.0, 120.0, 140.0, 160.0, 180.0, 200.0, 225.0,
     250.0, 280.0, 315.0, 355.0, 400.0, 450.0, 500.0,
 ];
 
-/// Deviations in micrometres, to the tenth that the tables have (js and JS: the twentieth).
+/// Deviations in micrometres, rounded to the tenths of the tables (js and JS: to twentieths).
 #[track_caller]
 fn um(nominal: f64, class: &str) -> [f64; 2] {
     deviations(nominal, class).unwrap().map(|mm| (mm * 2e4).round() / 20.0)
 }
 
-/// The width of a grade.
+/// Width of a grade, in micrometres.
 fn it(nominal: f64, grade: &str) -> f64 {
     um(nominal, &format!("h{grade}"))[0].abs()
 }
 
-/// How far the shaft's nearer limit is from the zero line; None where there is no such shaft.
+/// Distance of the shaft's nearer limit from the zero line, in micrometres. Returns None if there is no such shaft.
 fn fundamental(nominal: f64, letter: &str) -> Option<f64> {
     let [lower, upper] = deviations(nominal, &format!("{letter}7")).ok()?.map(|mm| (mm * 1e4).round() / 10.0);
     Some(if letter <= "h" { -upper } else { lower })
 }
 
-/// The mean size of the range that ends here: the first one begins at 1 mm.
+/// Geometric mean of a size range. The first range begins at 1 mm.
 fn mean_size(ends: &[f64], place: usize) -> f64 {
     let begin = if place == 0 { 1.0 } else { ends[place - 1] };
     (begin * ends[place]).sqrt()
@@ -48,14 +49,14 @@ fn printed_limit_deviations() {
         let [class, nominal, lower, upper, _] = line.split(',').collect::<Vec<_>>()[..] else { panic!("{line}") };
         let [lower, upper] = [lower, upper].map(|text| text.parse::<f64>().unwrap());
         let found = deviations(nominal.parse().unwrap(), class).unwrap_or_else(|error| panic!("{line}: {error}"));
-        // The doubles nearest to the printed values, not merely near them.
+        // The doubles nearest to the printed values, without tolerance.
         assert_eq!(found, [lower / 1000.0, upper / 1000.0], "{line}");
         rows += 1;
     }
     assert!(rows >= 300, "{rows} rows");
 }
 
-/// The tables of a textbook, value by value, without its two misprints.
+/// All values of a textbook's tables, except its two misprints.
 #[test]
 fn printed_tolerances_and_fundamental_deviations() {
     let book = data("iso286-tables.json");
@@ -95,7 +96,7 @@ fn printed_tolerances_and_fundamental_deviations() {
     for (size, row) in book["holes"]["deltas"].as_object().unwrap() {
         let size: f64 = size.parse().unwrap();
         for (grade, printed) in (3..).zip(row.as_array().unwrap()) {
-            // ES of K is -ei + delta, and ei of k is that of grade 7 in every grade.
+            // ES of K is -ei + delta. The ei of k in any grade is that of grade 7.
             let delta = um(size, &format!("K{grade}"))[1] + um(size, "k7")[0];
             assert_eq!(Some(delta), number(printed), "delta of grade {grade} at {size}");
             compared += 1;
@@ -110,9 +111,8 @@ fn printed_tolerances_and_fundamental_deviations() {
     assert!(compared > 600, "{compared} values");
 }
 
-/// Every entry of the tables of fundamental deviations, against the standard's formula at the mean size: the rounding is
-/// to whole micrometres at first and to tens and fifties above. Entries that the standard prints otherwise than its formula gives
-/// are listed, and stand in the printed tables of the tests above.
+/// All fundamental deviations, compared with the standard's formula at the mean size. The standard rounds to whole micrometres at first,
+/// and to tens and fifties above. Entries that it prints differently are listed. The tests above compare those with printed tables.
 #[test]
 fn fundamental_deviations_follow_their_formulas() {
     let mut entries = 0;
@@ -133,8 +133,8 @@ fn fundamental_deviations_follow_their_formulas() {
     assert_eq!(entries, 3 * 25 + 3 * 6 + 4 * 13 + 4 * 13 + 25 * 8 + 19 + 21 + 20, "the whole table");
 }
 
-/// The rounding of a value: the standard rounds to 1 um at first, to 5 and 10 above 200 (a to g: above 60), to 20 and 50
-/// above 600, a to c to tens throughout.
+/// Rounding of a value. The standard rounds to 1 um at first, to 5 and 10 above 200 (a to g: above 60), to 20 and 50 above 600, and a to c
+/// always to tens.
 fn rounding(letter: &str, value: f64) -> f64 {
     match value {
         _ if letter <= "b" => 0.05 * value,
@@ -144,7 +144,7 @@ fn rounding(letter: &str, value: f64) -> f64 {
     }
 }
 
-/// With the ends of the ranges that its values are given for.
+/// Letters with formulas, with the ends of the size ranges of their values.
 fn letters_with_formulas() -> Vec<(&'static str, &'static [f64])> {
     let by_range = ["cd", "d", "e", "ef", "f", "fg", "g", "k", "m", "n", "p"];
     let ends = |letter: &'static str| if by_range.contains(&letter) { &RANGES[..] } else { &STEPS[..] };
@@ -155,7 +155,7 @@ fn letters_with_formulas() -> Vec<(&'static str, &'static [f64])> {
         .collect()
 }
 
-/// ISO 286-1:1988, table 5: the fundamental deviation at the mean size `d`; most have one value, p and s an interval.
+/// Fundamental deviation at the mean size `d` by ISO 286-1:1988, table 5. Most have one value, p and s an interval.
 fn formula(letter: &str, size: f64, d: f64) -> [f64; 2] {
     let it = |grade: &str| it(size, grade);
     let one = |value: f64| [value, value];
@@ -191,8 +191,8 @@ fn formula(letter: &str, size: f64, d: f64) -> [f64; 2] {
     }
 }
 
-/// Where the printed value is not the formula's: c between its two branches, transition at the smallest sizes, and
-/// interference there, where the standard keeps the letters apart.
+/// True if the printed value differs from the formula: for c between its two branches, and for transition and interference at the smallest
+/// sizes, where the standard keeps the letters apart.
 fn printed_otherwise(letter: &str, size: f64) -> bool {
     match letter {
         "c" => size > 10.0 && size <= 40.0,
@@ -207,7 +207,8 @@ fn printed_otherwise(letter: &str, size: f64) -> bool {
     }
 }
 
-/// IT5 to IT18 are 7 to 2500 tolerance units; IT01 to IT1 straight lines of the size; IT2 to IT4 lie between IT1 and IT5.
+/// Formulas of the grades: IT5 to IT18 are 7 to 2500 tolerance units, IT01 to IT1 are linear in the size, and IT2 to IT4 lie between IT1
+/// and IT5.
 #[test]
 fn tolerances_follow_their_formulas() {
     let units = [7.0, 10.0, 16.0, 25.0, 40.0, 64.0, 100.0, 160.0, 250.0, 400.0, 640.0, 1000.0, 1600.0, 2500.0];
@@ -216,14 +217,15 @@ fn tolerances_follow_their_formulas() {
         let i = 0.45 * d.cbrt() + 0.001 * d;
         for (grade, factor) in (5..).zip(units) {
             let found = it(size, &grade.to_string());
-            // Rounded to 1 um below 60 and to preferred numbers, up to 4.5 % away, above; to 3 mm the standard prints up to a sixth more.
+            // Values below 60 are rounded to 1 um, and those above to preferred numbers up to 4.5 % away. To 3 mm the standard prints up to
+            // a sixth more.
             let (more, rounding) = (if place == 0 { 1.16 } else { 1.0 }, (0.045 * found).max(0.72));
             let formula = factor * i;
             let printed = formula - rounding..=more * formula + rounding;
             assert!(printed.contains(&found), "IT{grade} {size}: {found} {formula}");
         }
         for (grade, formula) in [("01", 0.3 + 0.008 * d), ("0", 0.5 + 0.012 * d), ("1", 0.8 + 0.02 * d)] {
-            // Printed in the steps of preferred numbers, a quarter apart: 1, 1.2, 1.5, 2, 2.5, 3, 4.
+            // Printed in steps of preferred numbers, a quarter apart: 1, 1.2, 1.5, 2, 2.5, 3, 4.
             let found = it(size, grade);
             assert!((found - formula).abs() <= 0.25 * found.max(formula), "IT{grade} {size}: {found} {formula}");
         }
@@ -236,12 +238,12 @@ fn tolerances_follow_their_formulas() {
         assert!(GRADES.windows(2).all(|pair| it(size, pair[0]) < it(size, pair[1])), "wider from grade to grade");
     }
     for grade in GRADES {
-        // The finest stay the same over some neighbours.
+        // The finest grades are constant over some neighbouring ranges.
         assert!(RANGES.windows(2).all(|pair| it(pair[0], grade) <= it(pair[1], grade)), "wider from size to size");
     }
 }
 
-/// Every class at every size: what there is has the width of its grade, and lies where its letter says.
+/// Every class at every size: existing ones have the width of their grade and the position of their letter.
 #[test]
 fn every_class_keeps_the_rules() {
     let mut offered = 0;
@@ -255,7 +257,7 @@ fn every_class_keeps_the_rules() {
         match (shaft, hole) {
             (Ok(shaft), Ok(hole)) if letter == "h" => assert!(shaft[1] == 0.0 && hole[0] == 0.0),
             (Ok(shaft), Ok(hole)) if letter == "js" => assert!(shaft == hole && shaft[0] == -shaft[1]),
-            // With clearance the hole is the shaft mirrored.
+            // With clearance the hole is the mirrored shaft.
             (Ok([lower, upper]), Ok(hole)) if letter < "h" => assert_eq!(hole, [-upper, -lower], "{class} {nominal}"),
             (_, Ok([_, upper])) if letter > "k" => interference(nominal, letter, grade, (upper * 1e4).round() / 10.0),
             _ => {}
@@ -269,8 +271,8 @@ fn every_class() -> impl Iterator<Item = (&'static str, &'static str, f64)> {
     SHAFTS.into_iter().flat_map(move |letter| GRADES.into_iter().flat_map(move |grade| sized(letter, grade)))
 }
 
-/// The upper deviation of a hole from M on: where the hole basis and the shaft basis give the same fit, such as H7/p6 and P7/h6,
-/// the greatest clearance is the same; in the coarse grades the hole is the shaft mirrored.
+/// Checks the upper deviation of a hole from M on. For equal fits on hole and shaft basis, such as H7/p6 and P7/h6, the greatest clearance
+/// is the same. In coarse grades the hole is the mirrored shaft.
 fn interference(nominal: f64, letter: &str, grade: &str, upper: f64) {
     let number: u32 = grade.parse().unwrap();
     let matched = number <= if letter <= "n" { 8 } else { 7 };
@@ -287,7 +289,7 @@ fn interference(nominal: f64, letter: &str, grade: &str, upper: f64) {
     assert!((upper - expected).abs() < 1e-9, "{letter}{grade} {nominal}: {upper}, not {expected}");
 }
 
-/// Further from the zero line with the letter and with the size.
+/// The distance from the zero line grows with the letter and with the size.
 #[test]
 fn letters_and_sizes_are_in_order() {
     for size in STEPS {
@@ -299,13 +301,13 @@ fn letters_and_sizes_are_in_order() {
     for letter in SHAFTS {
         let over: Vec<f64> = STEPS.iter().filter_map(|&size| fundamental(size, letter)).collect();
         let grows = over.windows(2).all(|pair| pair[0] <= pair[1]);
-        // The lower deviations of js and j are below the zero line, and k starts on it.
+        // The lower deviations of js and j are below the zero line, and that of k starts on it.
         assert!(grows || letter == "js" || letter == "j", "{letter}: {over:?}");
     }
 }
 
 proptest! {
-    /// A size belongs to the range that it ends.
+    /// A size range includes its upper end.
     #[test]
     fn sizes_within_a_range_are_alike(place in 0usize..25, part in 0.001f64..1.0) {
         let begin = if place == 0 { 1.0 } else { STEPS[place - 1] };
@@ -317,7 +319,7 @@ proptest! {
         }
     }
 
-    /// Whatever is written gives an answer or an error, and an error says something.
+    /// Any text gives a result or an error, and the error has a message.
     #[test]
     fn any_text_is_answered(nominal in proptest::num::f64::ANY, class in "\\PC{0,5}|[A-Za-z]{1,2}[0-9]{1,2}") {
         match deviations(nominal, &class) {

@@ -1,4 +1,4 @@
-//! The joint yield of laws over the same inputs, against products and single integrals.
+//! Joint yield of distributions over the same inputs, compared with products and single integrals.
 
 use std::sync::Arc;
 
@@ -33,7 +33,8 @@ fn limits(lower: f64, upper: f64) -> SpecLimits {
     SpecLimits::new(Some(lower), Some(upper)).unwrap()
 }
 
-/// Exact: with two independent characteristics the joint yield is the product; with the same one twice it is the yield.
+/// The joint yield is exact in two cases: the product for two independent characteristics, and the yield itself for the same characteristic
+/// twice.
 #[test]
 fn a_joint_yield_counts_common_failures_once() {
     let inputs = vec![normal(), uniform(), uniform()];
@@ -52,7 +53,7 @@ fn a_joint_yield_counts_common_failures_once() {
     assert!((alone.value - yield_of(&first, limits)).abs() < 1e-15);
 }
 
-/// An integral by the rule of Simpson: of smooth functions over these steps to 1e-9 of their size.
+/// Integral by Simpson's rule. For smooth functions over these steps its error is 1e-9 of their size.
 fn simpson(from: f64, to: f64, f: &dyn Fn(f64) -> f64) -> f64 {
     const STEPS: u32 = 4000;
     let width = (to - from) / f64::from(STEPS);
@@ -64,23 +65,24 @@ fn simpson(from: f64, to: f64, f: &dyn Fn(f64) -> f64) -> f64 {
     (0..=STEPS).map(|i| weight(i) * f(from + width * f64::from(i))).sum::<f64>() * width / 3.0
 }
 
-/// What of a normal variable of this sigma lies beyond a distance on either side.
+/// Probability of a normal variable with this sigma beyond a distance on either side.
 fn beyond(sigma: f64, to_lower: f64, to_upper: f64) -> f64 {
     let normal = Normal::new(0.0, sigma).unwrap();
     normal.cdf(-to_lower) + normal.sf(to_upper)
 }
 
-/// Of three characteristics that are independent given what they share: what all limits reject, without cancellation.
+/// Probability that at least one of three characteristics is rejected, given that each is with the probability `of` and they are
+/// independent. The form avoids cancellation.
 fn any_of_three(of: f64) -> f64 {
     of * (3.0 - 3.0 * of + of * of)
 }
 
-/// The density of the standard normal distribution.
+/// Density of the standard normal distribution.
 fn density(s: f64) -> f64 {
     (-0.5 * s * s).exp() / (2.0 * std::f64::consts::PI).sqrt()
 }
 
-/// Three characteristics of shared inputs, which stand first, and a normal one of its own each.
+/// Three characteristics of shared inputs, which are first, and of one normal input each.
 fn sharing(shared: &[&[f64]], own: f64, inputs: &[Law]) -> Vec<SurfaceLaw> {
     let own = [own];
     let one = |k: usize| {
@@ -91,8 +93,8 @@ fn sharing(shared: &[&[f64]], own: f64, inputs: &[Law]) -> Vec<SurfaceLaw> {
     (0..3).map(one).collect()
 }
 
-/// Four shared inputs and one of its own for each of three characteristics: given what is shared they are independent, and the joint yield
-/// is one integral. Errors are of points that lie where limits are broken: they hold, and fall with the rejects.
+/// Three characteristics with four shared inputs and one own input each. Given the shared inputs they are independent, so the joint yield
+/// is one integral. The errors follow from points at which limits are broken: they hold, and fall with the rejects.
 #[test]
 fn a_joint_yield_is_known_in_the_tail() {
     let inputs: Vec<Law> = (0..7).map(|_| normal()).collect();
@@ -111,11 +113,12 @@ fn a_joint_yield_is_known_in_the_tail() {
     }
 }
 
-/// What is shared is bent, uniform, or a parabola that breaks limits on both sides and that no direction explains.
+/// The shared input is curved, uniform, or a parabola that breaks limits on both sides, which no direction explains.
 #[test]
 fn a_joint_yield_of_bent_surfaces_is_within_its_error() {
     let root = 3f64.sqrt();
-    // The last is the part of the rejects that the error may be: far out a uniform input is no direction, and a parabola nowhere.
+    // The last number is the permitted error as a fraction of the rejects. No direction helps for a uniform input far out, or for a
+    // parabola anywhere.
     type Shared<'a> = (Law, &'a [f64], &'a dyn Fn(f64) -> f64, [f64; 2], f64);
     let cases: [Shared<'_>; 3] = [
         (normal(), &[1.0, 0.2], &density, [-9.0, 9.0], 0.05),
@@ -129,7 +132,7 @@ fn a_joint_yield_of_bent_surfaces_is_within_its_error() {
         for limit in [2.0, 3.0, 4.0] {
             let all: Vec<(&SurfaceLaw, SpecLimits)> = laws.iter().map(|law| (law, limits(-limit, limit))).collect();
             let found = joint_yield(&all);
-            // The surface is 0 at the nominal, and its parabola is not taken off its mean.
+            // The surface is 0 at the nominal. The parabola has a mean other than 0.
             let given = |s: f64| {
                 let at = part[0] * s + part[1] * s * s;
                 density(s) * any_of_three(beyond(own, limit + at, limit - at))
@@ -142,7 +145,7 @@ fn a_joint_yield_of_bent_surfaces_is_within_its_error() {
     }
 }
 
-/// Three normal inputs with the same correlation, each with limits of its own: one factor is what they share.
+/// Three normal inputs with equal correlations and a limit each. They share one factor.
 #[test]
 fn a_joint_yield_of_correlated_inputs_is_one_integral() {
     let names = ["a", "b", "c"];

@@ -1,4 +1,4 @@
-//! The law of a surface, against 78 surfaces whose probabilities and quantiles come from other routes, and its properties.
+//! Distribution of a surface, compared with independent results for 78 surfaces, and its properties.
 
 use std::sync::{Arc, LazyLock};
 
@@ -28,7 +28,7 @@ fn list(value: &Value) -> &[Value] {
     value.as_array().map_or(&[], Vec::as_slice)
 }
 
-/// A law of the oracles' file; the surface standardises it.
+/// Input distribution of the oracles' file. The surface standardises it.
 fn input(law: &Value) -> Law {
     let of = |key: &str| number(&law[key]);
     match law["kind"].as_str().unwrap() {
@@ -61,7 +61,7 @@ fn input(law: &Value) -> Law {
     }
 }
 
-/// A surface of the oracles' file, and its inputs.
+/// A surface of the oracles' file, with its inputs.
 fn surface(of: &Value) -> (Surrogate, Vec<Law>) {
     let inputs = list(&of["inputs"]);
     let coefficients = |input: &Value| list(&input["g"]["poly"]).iter().map(number).collect::<Vec<_>>();
@@ -82,7 +82,7 @@ static ORACLES: LazyLock<Vec<Value>> = LazyLock::new(|| {
     text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
 });
 
-/// A group of the table in which the accuracy of the law is stated.
+/// Group of the table that states the accuracy of the distribution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Group {
     Uniforms,
@@ -108,13 +108,13 @@ fn group(oracle: &Value) -> Group {
     }
 }
 
-/// The errors of a law against an oracle: the largest errors, and by how much the stated error has covered them.
+/// Errors of a distribution against an oracle: the largest errors, and their ratio to the stated error.
 #[derive(Debug, Default, Clone, Copy)]
 struct Worst {
     absolute: f64,
-    /// In a tail of at most 0.01.
+    /// Largest relative error in a tail of at most 0.01.
     relative: f64,
-    /// Error less the oracle's own, by the stated error.
+    /// Error less that of the oracle, divided by the stated error.
     covered: f64,
     stated: f64,
 }
@@ -148,7 +148,7 @@ fn limits(oracle: &Value, law: &SurfaceLaw) -> Worst {
         let y = number(&limit["y"]);
         [("cdf", LawTail::Lower), ("sf", LawTail::Upper)].map(|(key, tail)| {
             let (found, expected) = (law.tail(y, tail), number(&limit[key]));
-            // Limits stand in the file with 10 digits as they were used; probabilities to a double's last digit.
+            // Limits in the file have the 10 digits that were used. Probabilities are exact to a double's last digit.
             let worst = Worst::of(found, expected, (relative + 3e-16) * expected);
             if std::env::var("SENSITOL_LAW_TABLE").is_ok() && worst.covered > 0.5 {
                 println!("  {} {key} at {y}: {found:?} for {expected}: {worst:?}", oracle["name"]);
@@ -159,7 +159,7 @@ fn limits(oracle: &Value, law: &SurfaceLaw) -> Worst {
     list(&oracle["limits"]).iter().flat_map(of).fold(Worst::default(), Worst::with)
 }
 
-/// Of all oracles of a group; with SENSITOL_LAW_TABLE set the table of accuracies is printed.
+/// Largest errors of all oracles of a group. Prints the table of accuracies if SENSITOL_LAW_TABLE is set.
 fn worst(group_of: Group, covered: f64) -> Worst {
     let mut all = Worst::default();
     for oracle in ORACLES.iter().filter(|oracle| group(oracle) == group_of) {
@@ -206,14 +206,13 @@ fn two_inputs_agree_with_graded_panels() {
 
 #[test]
 fn cycles_agree_with_tensor_quadrature() {
-    // The stated error leaves one in a hundred beyond: of 108 figures the worst is allowed half as much again.
+    // One in a hundred figures may exceed the stated error. The worst of 108 figures may exceed it by half.
     let worst = worst(Group::Cycles, 1.5);
-    // With 2^13 points; at 1e-9 below, next to the corner of a support to which no single tilt leads, a sixth.
+    // With 2^13 points. At 1e-9 of the lower tail the error is a sixth: a corner of the support is near, which no single tilt reaches.
     assert!(worst.absolute < 1e-4 && worst.relative < 0.3, "{worst:?}");
 }
 
-/// Quantiles of every oracle: off by no more than the stated error and what the oracle's own probability is worth in the
-/// limit.
+/// Quantiles of every oracle. Their error is at most the stated one and the uncertainty of the oracle's own probability.
 #[test]
 fn quantiles_agree_with_those_of_the_other_routes() {
     for oracle in ORACLES.iter() {
@@ -223,8 +222,8 @@ fn quantiles_agree_with_those_of_the_other_routes() {
             let tail = if quantile["upper"].as_bool().unwrap() { LawTail::Upper } else { LawTail::Lower };
             let (found, expected) = (law.quantile(tail, p), number(&quantile["y"]));
             let density = law.density(expected).value;
-            // Quantiles of the file are good to 1e-12 sigma or to what their probabilities allow, where these are known to
-            // 1e-9; the limit itself is rounded.
+            // Quantiles of the file are accurate to 1e-12 sigma. If their probabilities are known to 1e-9 only, that accuracy counts. The
+            // limit itself is rounded.
             let own = 1e-8 * p / density + 1e-11 * law.sigma();
             let off = (found.value - expected).abs();
             let factor = if law.branch() == Branch::Sampled { 1.5 } else { 1.0 };
@@ -259,7 +258,7 @@ fn made(surrogate: &Surrogate, inputs: &[Law]) -> SurfaceLaw {
     SurfaceLaw::of(surrogate, inputs, None, &LawOptions::default()).unwrap()
 }
 
-/// One of every way of the exact branch: a form, hats, panels, a tree, and all of them together.
+/// One case of each method of the exact branch: a form, hats, panels, a tree, and all of them together.
 fn exact_laws() -> Vec<(Surrogate, Vec<Law>)> {
     let pairs = [(0, 1, 0.3), (1, 2, -0.2), (0, 2, 0.4)];
     vec![
@@ -274,8 +273,8 @@ fn exact_laws() -> Vec<(Surrogate, Vec<Law>)> {
     ]
 }
 
-/// Both tails have contours of their own within 1.5 sigma of the mean: they sum to 1 to the 1e-12 that they are stated to
-/// have, and to their stated errors where a corner of the law is near.
+/// Within 1.5 sigma of the mean the two tails have different contours. They sum to 1 within their stated errors: 1e-12, and more next to a
+/// corner of the distribution.
 #[test]
 fn both_tails_sum_to_1() {
     for (surrogate, inputs) in exact_laws() {
@@ -300,10 +299,11 @@ fn a_cdf_rises_and_its_slope_is_the_density() {
             assert!(low.value <= high.value + low.error + high.error);
             let (y, step) = (at(k) + 0.3 * law.sigma(), 1e-3 * law.sigma());
             let cdf = |by: f64| law.below(y + by * step).value;
-            // Central differences of the fourth order: 1e-12 by the third power of the step, and rounding by the step.
+            // Central differences of fourth order: the truncation error is about 1e-12 (step to the fourth power),
+            // and rounding is divided by the step.
             let slope = (8.0 * (cdf(1.0) - cdf(-1.0)) - (cdf(2.0) - cdf(-2.0))) / (12.0 * step);
             let off = (slope - law.density(y).value).abs() * law.sigma();
-            // Densities of uniform inputs have corners.
+            // Densities with uniform inputs have corners.
             assert!(off < 1e-6, "{off:e} at {y}");
         }
     }
@@ -316,13 +316,14 @@ fn a_quantile_inverts_its_tail() {
         for p in [0.5, 0.3, 1e-2, 1e-5, 1e-8] {
             for tail in [LawTail::Lower, LawTail::Upper] {
                 let y = law.quantile(tail, p).value;
-                // A limit is a double: its rounding by the density, which near an end of the support is large in parts of p.
+                // A limit is a double. Its rounding times the density matters next to an end of the support, where the density is large
+                // relative to p.
                 let rounding = 4e-16 * (y.abs() + law.sigma()) * law.density(y).value;
                 let off = (law.tail(y, tail).value - p).abs();
                 assert!(off < 1e-11 * p + 4.0 * rounding, "{tail:?} {p}: {off:e}");
             }
         }
-        // A probability above one half is the other tail's.
+        // A probability above one half is computed from the other tail.
         let (a, b) = (law.quantile(LawTail::Lower, 0.75).value, law.quantile(LawTail::Upper, 0.25).value);
         assert_eq!(a, b);
     }
@@ -338,8 +339,8 @@ fn scaled(surrogate: &Surrogate, by: f64) -> Surrogate {
     Surrogate { centre: surrogate.centre * by, parts: parts.collect(), interactions }
 }
 
-/// Another unit and a reflection change nothing but rounding; the sampled branch has the same points in any unit, and in a
-/// reflection too because its direction only turns about.
+/// Another unit and a reflection change rounding only. The sampled branch has the same points in any unit. In a reflection it has them too,
+/// since its direction changes its sign only.
 #[test]
 fn units_and_reflections_change_nothing() {
     let cycle = of(0.0, &[&[1.0], &[0.8, 0.1], &[0.6]], &[(0, 1, 0.1), (1, 2, 0.1), (0, 2, -0.1)]);
@@ -352,7 +353,7 @@ fn units_and_reflections_change_nothing() {
             for k in [-4.0, -2.0, -0.5, 0.5, 3.0] {
                 let y = law.mean() + k * law.sigma();
                 let (one, same) = (law.above(y), if by > 0.0 { other.above(y * by) } else { other.below(y * by) });
-                // Exact to 1e-12, sampled within the errors where reflected points differ.
+                // Exact distributions agree to 1e-12. Sampled ones agree within the errors, since reflected points may differ.
                 let allowed = if law.branch() == Branch::Sampled { one.error + same.error } else { 2e-11 * one.value };
                 assert!((one.value - same.value).abs() <= allowed + 1e-15, "{by} {k}: {one:?} {same:?}");
             }
@@ -373,17 +374,17 @@ fn the_order_of_inputs_changes_nothing() {
         for k in [-3.0, -1.0, 0.2, 2.0, 4.0] {
             let y = one.mean() + k * one.sigma();
             let (a, b) = (one.above(y), other.above(y));
-            // Trees take another root; both are good to 1e-12.
+            // Trees start from another root. Both results are accurate to 1e-12.
             assert!((a.value - b.value).abs() <= 2e-12 * a.value + 1e-15, "{k}: {a:?} {b:?}");
         }
     }
 }
 
-/// Moments of the law by panels over its density agree with the exact moments of the surface.
+/// Moments of the distribution, by panels over its density, equal the exact moments of the surface.
 #[test]
 fn moments_of_the_law_are_those_of_the_surface() {
-    // The last two have a normal input with a slope alone, so that the density is smooth; a form by itself has a corner at its
-    // vertex, and uniform inputs have theirs, which cost these panels digits.
+    // The last two have a normal input with a slope only, so their density is smooth. A form has a corner at its vertex, and uniform inputs
+    // have corners too, which cost these panels digits.
     let [form, uniforms, _, _, mixed] = <[(Surrogate, Vec<Law>); 5]>::try_from(exact_laws()).unwrap();
     let pairs = [(0, 1, 0.3), (1, 2, -0.2), (0, 2, 0.4)];
     let smooth = of(1.0, &[&[1.0, 0.2], &[0.5, -0.1], &[0.3], &[0.8]], &pairs);
@@ -395,7 +396,7 @@ fn moments_of_the_law_are_those_of_the_surface() {
         let (mean, sigma) = (moments.mean(), moments.sigma());
         assert!((law.mean() - mean).abs() < 1e-12 * sigma && (law.sigma() / sigma - 1.0).abs() < 1e-12);
         let expected = [1.0, 0.0, 1.0, moments.skewness().unwrap(), moments.kurtosis().unwrap()];
-        // By parts, E u^k = k int u^(k-1) sf(u) - k int u^(k-1) (-1)^k cdf(-u), Gauss panels of a quarter sigma.
+        // Integration by parts: E u^k = k int u^(k-1) sf(u) - k int u^(k-1) (-1)^k cdf(-u), with Gauss panels of a quarter sigma.
         let gauss = Rule::of(&Uniform::new(-1.0, 1.0).unwrap(), 12);
         let mut found = [1.0, 0.0, 0.0, 0.0, 0.0];
         for panel in 0..160 {
@@ -414,7 +415,7 @@ fn moments_of_the_law_are_those_of_the_surface() {
     }
 }
 
-/// Lines of normal inputs, also correlated ones, are normal to the last digits, in the tails too.
+/// Linear functions of normal inputs, correlated ones too, are normal to the last digits, also in the tails.
 #[test]
 fn a_line_of_normals_is_normal() {
     let pair = |a: &str, b: &str, value| Pair { between: [a.into(), b.into()], value };
@@ -427,16 +428,16 @@ fn a_line_of_normals_is_normal() {
     for z in [-9.0, -6.0, -1.0, 0.0, 2.5, 5.0, 8.5] {
         let exact = 0.5 * libm::erfc(z / 2f64.sqrt());
         let found = law.above(2.0 + z * sigma);
-        // The rounding of the limit grows with the square of z.
+        // The effect of the limit's rounding grows with the square of z.
         assert!((found.value / exact - 1.0).abs() < 1e-14 * (1.0 + z * z), "{z}: {found:?}");
     }
 }
 
-/// By Richardson's differences of laws with other tolerances.
+/// Derivatives equal Richardson's differences of distributions with other tolerances.
 #[test]
 fn derivatives_are_those_of_differences() {
     let mut all = exact_laws();
-    // Two inputs: panels.
+    // Two inputs use panels.
     all.push((of(0.0, &[&[1.0, 0.1], &[0.6]], &[(0, 1, 0.2)]), vec![uniform(), triangular()]));
     for (surrogate, inputs) in all {
         let law = made(&surrogate, &inputs);
@@ -447,7 +448,7 @@ fn derivatives_are_those_of_differences() {
                 let at = |by: f64| made(&wider(&surrogate, j, 1.0 + by), &inputs).tail(y, tail).value;
                 let h = 1e-3;
                 let slope = (8.0 * (at(h) - at(-h)) - (at(2.0 * h) - at(-2.0 * h))) / (12.0 * h);
-                // Differences of figures that are good to 1e-12, of the fourth order.
+                // Fourth-order differences of figures that are accurate to 1e-12.
                 assert!((found.value - slope).abs() < 1e-7, "{j} at {k}: {found:?} for {slope}");
             }
         }
@@ -472,14 +473,14 @@ fn cycle() -> (Surrogate, Vec<Law>) {
     cycle_with(0.9)
 }
 
-/// With a wide normal input the exact law of this takes the direction's place, with a narrow one it does not.
+/// A cycle with a normal input. A wide one is summed by an exact distribution in place of the direction, a narrow one is not.
 fn cycle_with(slope: f64) -> (Surrogate, Vec<Law>) {
     let surrogate = of(0.0, &[&[1.0], &[0.8, 0.1], &[0.6], &[slope]], &[(0, 1, 0.1), (1, 2, 0.1), (0, 2, -0.1)]);
     (surrogate, vec![uniform(), triangular(), triangular(), normal()])
 }
 
-/// The derivative along each point's own direction is that of the estimate, so that it agrees with differences at held
-/// points to the accuracy of these; both sample the same coordinates.
+/// The derivative along each point's own direction is the derivative of the estimate. It agrees with differences at held points within
+/// their accuracy. Both sample the same coordinates.
 #[test]
 fn derivatives_of_sampled_laws_are_within_their_errors() {
     for slope in [0.9, 0.1] {
@@ -497,18 +498,19 @@ fn sampled_derivatives(slope: f64) {
         for (j, found) in law.tail_derivatives(y, tail).unwrap().iter().enumerate() {
             let at = |by: f64| held.tail(&made(&wider(&surrogate, j, 1.0 + by), &inputs), y).value;
             let slope = (at(1e-3) - at(-1e-3)) / 2e-3;
-            // One has the control and the other has not: their errors are those of the derivative.
+            // Only one of the two estimates uses the control variate, so they differ by the errors of the derivative.
             assert!((found.value - slope).abs() < 2.0 * found.error + 1e-4 * slope.abs(), "{j}: {found:?} {slope}");
         }
     }
 }
 
-/// Along a tolerance a cubic through held figures leaves rounding, and one through figures of their own may not.
+/// Along a tolerance, a cubic through figures at held points leaves rounding errors only. A cubic through independently computed figures
+/// may leave more.
 #[test]
 fn held_figures_are_smooth_in_a_tolerance() {
-    // Sampled along a normal direction: a root never leaves its support.
+    // Sampled along a normal direction, in which a root never leaves its support.
     let along = of(0.0, &[&[1.0], &[0.4, 0.1], &[0.3]], &[(0, 1, 0.1), (1, 2, 0.1), (0, 2, -0.1)]);
-    // Beside an exact law, whose table is a cubic from place to place: 1e-8.
+    // With an exact distribution, the table of which is a piecewise cubic: 1e-8.
     let mut all: Vec<(Surrogate, Vec<Law>, f64)> =
         exact_laws().into_iter().map(|(surrogate, inputs)| (surrogate, inputs, 1e-12)).collect();
     all.push((along, vec![normal(), triangular(), triangular()], 1e-12));
@@ -523,7 +525,7 @@ fn held_figures_are_smooth_in_a_tolerance() {
         let values: Vec<f64> = (0..21)
             .map(|i| held.tail(&made(&wider(&surrogate, 0, 1.0 + 1e-4 * f64::from(i)), &inputs), y).value)
             .collect();
-        // Fourth differences are 70 times the rounding of a value at most; the fourth derivative leaves 1e-16.
+        // Fourth differences are at most 70 times the rounding of a value. The fourth derivative contributes 1e-16.
         for five in values.windows(5) {
             let fourth = five[0] - 4.0 * five[1] + 6.0 * five[2] - 4.0 * five[3] + five[4];
             assert!(fourth.abs() < allowed, "{fourth:e} of {:?}", law.branch());
@@ -531,15 +533,15 @@ fn held_figures_are_smooth_in_a_tolerance() {
     }
 }
 
-/// A mean field that starts in the middle sees nothing of `z1 z2`, whose two signs are equally far out.
+/// Both signs of `z1 z2` are equally far out, so a mean field that starts in the middle does not find them.
 #[test]
 fn a_symmetric_product_is_tilted_to_both_sides() {
-    // A product of two uniform inputs and a hair of two others in a cycle.
+    // A product of two uniform inputs, with a tiny effect of two more products in a cycle.
     let tiny = 1e-9;
     let pairs = [(0, 1, 1.0), (0, 2, tiny), (1, 2, tiny)];
     let law = made(&of(0.0, &[&[], &[], &[tiny]], &pairs), &[uniform(), uniform(), uniform()]);
     assert_eq!(law.branch(), Branch::Sampled);
-    // Of two uniform inputs on +-1: P(3 u v > y) = (1 - c + c log c)/2 with c = y/3.
+    // Two uniform inputs on +-1 have P(3 u v > y) = (1 - c + c log c)/2 with c = y/3.
     for y in [1.0, 2.0, 2.9, 2.99] {
         let c: f64 = y / 3.0;
         let exact = 0.5 * (1.0 - c + c * c.ln());
@@ -560,7 +562,7 @@ fn atoms_make_a_step_function() {
     let coin: Law = Arc::new(Measured::new(&[0.0, 1.0]).unwrap());
     let law = made(&of(10.0, &[&[1.0], &[2.0]], &[]), &[Arc::clone(&coin), coin]);
     assert!(law.is_step_function());
-    // Values 7, 9, 11 and 13, each with a quarter; a limit itself is kept.
+    // The values 7, 9, 11 and 13 have a quarter each. A limit at a value is kept.
     assert_eq!([law.below(9.0).value, law.below(9.1).value, law.above(9.0).value], [0.25, 0.5, 0.5]);
     assert_eq!([law.above(13.0).value, law.below(7.0).value], [0.0, 0.0]);
     assert!(law.above(13.0).proven);
@@ -571,7 +573,7 @@ fn atoms_make_a_step_function() {
     assert!(law.tail_derivatives(9.0, LawTail::Lower).is_none());
 }
 
-/// 20 and 30 measured values and a narrow normal input: the law of the sum is 600 narrow peaks, whose masses are counted.
+/// Sum of 20 and 30 measured values and a narrow normal input: 600 narrow peaks, whose probabilities are counted.
 #[test]
 fn measured_values_beside_a_normal_keep_their_masses() {
     let values = |n: u32, step: f64| -> Vec<f64> { (0..n).map(|i| f64::from(i * i % 31) * step).collect() };
@@ -594,7 +596,7 @@ fn one_input_none_and_limits_beyond_the_support() {
     let law = made(&of(1.0, &[&[1.0, 1.0]], &[]), &[uniform()]);
     assert_eq!(law.branch(), Branch::Single);
     let u = 3f64.sqrt();
-    // 1 + z + z^2 on +-sqrt 3: least 3/4, greatest 4 + sqrt 3; between the roots of y the inner part lies below.
+    // The function 1 + z + z^2 on +-sqrt 3 has the least value 3/4 and the greatest 4 + sqrt 3. Between the roots of y it lies below y.
     let found = law.below(2.0);
     assert!((found.value - 5f64.sqrt() / (2.0 * u)).abs() < 1e-14, "{found:?}");
     assert!(law.below(0.74).proven && law.below(0.74).value == 0.0);
@@ -610,8 +612,8 @@ fn one_input_none_and_limits_beyond_the_support() {
     assert_eq!(wrong.unwrap_err(), LawError::Shapes { parts: 1, inputs: 0 });
 }
 
-/// A lognormal input too heavy for a tilt, beside a normal one and a uniform one: panels over the exact law of these. By
-/// tensor panels of the other two, exact to 1e-9.
+/// A lognormal input too heavy for a tilt, with a normal and a uniform one: panels over the exact distribution of these two. The reference
+/// by tensor panels of the other two is accurate to 1e-9.
 #[test]
 fn a_heavy_tail_is_summed_beside_an_exact_law() {
     let heavy: Law = Arc::new(Lognormal::new(0.0, 1.0, 1.3).unwrap());
@@ -619,13 +621,14 @@ fn a_heavy_tail_is_summed_beside_an_exact_law() {
     assert_eq!(law.branch(), Branch::Sampled);
     let tau = (1.0f64 + 1.69).ln().sqrt();
     for y in [-1.5, 0.0, 3.0, 12.0] {
-        // Over the normal variable behind the lognormal one, and over the uniform one, the normal one by its own law.
+        // Reference: integral over the normal variable behind the lognormal one and over the uniform one, with the normal one in closed
+        // form.
         let (mut exact, n) = (0.0, 4000);
         for i in 0..n {
             let v = -10.0 + 20.0 * (f64::from(i) + 0.5) / f64::from(n);
             let z = ((tau * v - 0.5 * tau * tau).exp() - 1.0) / 1.3;
             let weight = 20.0 / f64::from(n) * (-0.5 * v * v).exp() / (2.0 * std::f64::consts::PI).sqrt();
-            // The mean of sf of the normal over a uniform of half width 0.6 sqrt 3, by the integral of its tail.
+            // Mean of the normal tail function over a uniform of half-width 0.6 sqrt 3, by the integral of the tail.
             let a = 0.6 * 3f64.sqrt();
             let tail = |x: f64| {
                 let x = x / 0.5;
@@ -639,7 +642,7 @@ fn a_heavy_tail_is_summed_beside_an_exact_law() {
     }
 }
 
-/// The same laws whatever has been asked of them before, and however many threads there are.
+/// Figures do not depend on earlier calls or on the number of threads.
 #[test]
 fn figures_depend_on_nothing_but_the_surface() {
     let (surrogate, inputs) = cycle();

@@ -1,7 +1,8 @@
-//! The law of random surfaces against counts that share nothing with it: every distribution, one to six inputs, products, powers up to four.
+//! Distributions of random surfaces, compared with independent counts. The surfaces have all distributions, one to six inputs, products,
+//! and powers up to four.
 //!
-//! The count is a Latin hypercube of every input's quantiles. Its variance is at most that of independent points (A. B. Owen, SIAM Journal on
-//! Numerical Analysis 34 (1997)), so that six standard errors of these bound it.
+//! The count uses a Latin hypercube of every input's quantiles. Its variance is at most that of independent points (A. B. Owen, SIAM
+//! Journal on Numerical Analysis 34 (1997)), so six standard errors of these bound its error.
 
 use std::sync::{Arc, LazyLock};
 
@@ -17,22 +18,23 @@ use sensitol_numeric::surrogate::{Surrogate, Univariate};
 
 type Law = Arc<dyn Distribution>;
 
-/// Random surfaces.
+/// Number of random surfaces.
 const CASES: u64 = 300;
-/// Points of a sampled law: a quarter of the usual number, for a quarter of the time.
+/// Points of a sampled distribution: a quarter of the usual number, to save time.
 const LAW_POINTS: usize = 1 << 11;
-/// Points of the count.
+/// Number of points of the count.
 const POINTS: usize = 1 << 15;
-/// Standard errors that bound a count: 300 cases have some ten thousand counts, and of a normal variable 2e-9 lie beyond six.
+/// Standard errors that bound a count. 300 cases have about ten thousand counts, and a normal variable exceeds six with the probability
+/// 2e-9.
 const ERRORS: f64 = 6.0;
 /// Accuracy of the distribution functions of inputs.
 const ROUNDING: f64 = 1e-10;
-/// The largest error of a figure that is worth a law, with as few points as here.
+/// Largest error for which a distribution is returned, with as few points as here.
 const LARGEST_ERROR: f64 = 0.03;
-/// Points of which the count of a rare share may be off where no standard error is known.
+/// Number of points by which the count of a rare event may differ, if no standard error is known.
 const FEW: f64 = 8.0;
 
-/// SplitMix64 (Steele, Lea and Flood 2014): the same numbers everywhere.
+/// Generator SplitMix64 (Steele, Lea and Flood 2014), with the same numbers on every machine.
 struct Random(u64);
 
 impl Random {
@@ -43,7 +45,7 @@ impl Random {
         word ^ word >> 31
     }
 
-    /// Between 0 and 1.
+    /// Uniform number between 0 and 1.
     fn share(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1u64 << 53) as f64
     }
@@ -52,14 +54,14 @@ impl Random {
         (self.share() * count as f64) as usize
     }
 
-    /// Between -1 and 1, times one of these.
+    /// Uniform number between -1 and 1, times a random one of these scales.
     fn scaled(&mut self, scales: &[f64]) -> f64 {
         let scale = scales[self.below(scales.len())];
         scale * (2.0 * self.share() - 1.0)
     }
 }
 
-/// One of every distribution that has probabilities, and of some a second shape; the normal one first.
+/// All distributions that have probabilities, some in two shapes. The normal one is first.
 fn distributions() -> Vec<Law> {
     let part = |weight: f64, mean: f64, sigma: f64| Part {
         name: String::new(),
@@ -92,7 +94,7 @@ fn distributions() -> Vec<Law> {
     ]
 }
 
-/// The distributions, with the standardised quantiles at the middles of as many equal shares as there are points.
+/// Distributions with their standardised quantiles at the middles of [`POINTS`] equal shares.
 static INPUTS: LazyLock<Vec<(Law, Vec<f64>)>> = LazyLock::new(|| {
     let standardised = |law: Law| {
         let probability = law.probability().unwrap();
@@ -118,7 +120,7 @@ static ORDERS: LazyLock<Vec<Vec<u32>>> = LazyLock::new(|| {
 struct Case {
     number: u64,
     surrogate: Surrogate,
-    /// Places in [`INPUTS`].
+    /// Indices in [`INPUTS`].
     inputs: Vec<usize>,
 }
 
@@ -159,7 +161,7 @@ impl Case {
         self.inputs.iter().map(|&input| Arc::clone(&INPUTS[input].0)).collect()
     }
 
-    /// The values of the surface at all points, ascending.
+    /// Values of the surface at all points, ascending.
     fn values(&self) -> Vec<f64> {
         let mut values = vec![self.surrogate.centre; POINTS];
         let columns: Vec<Vec<f64>> = (self.inputs.iter().zip(ORDERS.iter()))
@@ -178,24 +180,24 @@ impl Case {
     }
 }
 
-/// The counts below and above a limit by points.
+/// Fractions of the points below and above a limit.
 fn counted(values: &[f64], y: f64) -> [f64; 2] {
     let below = values.partition_point(|&value| value < y);
     let above = values.len() - values.partition_point(|&value| value <= y);
     [below, above].map(|count| count as f64 / values.len() as f64)
 }
 
-/// The error of a count of this share.
+/// Error of a counted fraction.
 fn error_of_count(share: f64) -> f64 {
     ERRORS * (share * (1.0 - share) / POINTS as f64).sqrt() + FEW / POINTS as f64
 }
 
-/// Shares below which limits are taken from the points.
+/// Fractions of the points below the tested limits.
 const SHARES: [f64; 7] = [3e-4, 0.01, 0.1, 0.5, 0.9, 0.99, 0.9997];
-/// Probabilities of quantiles in ascending order, each by the tail that it leaves.
+/// Tested quantiles, ascending: tail and probability in it.
 const QUANTILES: [(LawTail, f64); 3] = [(LawTail::Lower, 0.00135), (LawTail::Upper, 0.3), (LawTail::Upper, 0.00135)];
 
-/// The faults of one law; empty if there are none.
+/// Faults of one distribution; empty if there are none.
 fn faults(case: &Case, law: &SurfaceLaw) -> Vec<String> {
     let values = case.values();
     let mut faults = Vec::new();
@@ -204,12 +206,13 @@ fn faults(case: &Case, law: &SurfaceLaw) -> Vec<String> {
             faults.push(what);
         }
     };
-    // A hundredth of sampled figures is stated to lie beyond the error, of Student's law with 15 degrees; 3e-5 lie beyond twice as much.
+    // One in a hundred sampled figures may exceed its error, by Student's distribution with 15 degrees of freedom. Twice the error is
+    // exceeded with 3e-5.
     let factor = if law.branch() == Branch::Sampled { 2.0 } else { 1.0 };
     let tolerance = 1e-9 * law.sigma() + 1e-12 * law.mean().abs();
     let mut before: Option<(f64, f64)> = None;
     for share in SHARES {
-        // Between two values: steps of equal values are counted on either side by both.
+        // Between two values, so that a step of equal values is on the same side in both counts.
         let y = values[(share * POINTS as f64) as usize] + tolerance;
         let counts = counted(&values, y);
         let mut agrees = |tail: LawFigure, count: f64| {
@@ -219,7 +222,7 @@ fn faults(case: &Case, law: &SurfaceLaw) -> Vec<String> {
             check(tail.error <= LARGEST_ERROR, format!("{y}: the error of {tail:?}"));
             tail
         };
-        // The smaller tail, and about the middle both.
+        // The smaller tail is tested, and both near the middle.
         let below = if share <= 0.5 { Some(agrees(law.below(y), counts[0])) } else { None };
         let above = if share >= 0.5 { Some(agrees(law.above(y), counts[1])) } else { None };
         let complement = |above: LawFigure| 1.0 - above.value;
@@ -239,7 +242,7 @@ fn faults(case: &Case, law: &SurfaceLaw) -> Vec<String> {
         check(pair[0].value <= pair[1].value, format!("quantiles fall: {pair:?}"));
     }
     for ((tail, p), quantile) in QUANTILES.into_iter().zip(quantiles) {
-        // With a step at the quantile the share lies between those strictly beyond it and at it.
+        // At a step the probability lies between that strictly beyond the quantile and that including it.
         let reach = tolerance + factor * quantile.error;
         let (outer, inner) = (quantile.value - reach, quantile.value + reach);
         let [least, most] = match tail {
@@ -255,13 +258,13 @@ fn faults(case: &Case, law: &SurfaceLaw) -> Vec<String> {
     faults
 }
 
-/// The law of a case is right, or refused for a reason; the branch that it takes.
+/// Checks the distribution of a case. Returns its branch, or None if it was refused for a reason.
 fn checked(case: &Case) -> Result<Option<Branch>, String> {
     let mut options = LawOptions::default();
     options.points = LAW_POINTS;
     let law = match SurfaceLaw::of(&case.surrogate, &case.laws(), None, &options) {
         Ok(law) => law,
-        // An input whose tail falls as a power has no transform, and a surface of which no part is left has no variance.
+        // An input whose tail falls as a power has no transform. A surface without remaining parts has no variance.
         Err(LawError::LongTail { .. } | LawError::NoVariance) => return Ok(None),
         Err(error) => return Err(format!("{}: {error}", case.number)),
     };
@@ -274,12 +277,12 @@ fn checked(case: &Case) -> Result<Option<Branch>, String> {
     Err(format!("{number} {names:?} {surrogate:?} {branch:?}:\n  {}", faults.join("\n  ")))
 }
 
-/// Checks every second case, from this one on.
+/// Checks every second case, beginning with `first`.
 fn check(first: u64) {
     let found: Vec<_> = (first..CASES).step_by(2).map(|number| checked(&Case::of(number))).collect();
     let failed: Vec<&String> = found.iter().filter_map(|found| found.as_ref().err()).collect();
     assert!(failed.is_empty(), "{} laws fail:\n{failed:#?}", failed.len());
-    // All branches are among the surfaces.
+    // All branches occur among the surfaces.
     for branch in [Branch::Exact, Branch::Single, Branch::Sampled] {
         let count = found.iter().filter(|found| **found == Ok(Some(branch))).count();
         assert!(count > 10, "{branch:?}: {count}");
@@ -296,7 +299,7 @@ fn laws_of_odd_random_surfaces_agree_with_counts() {
     check(1);
 }
 
-/// The tail of a corner that a thin normal input rounds is known with few digits far beyond it: no quantile is found there.
+/// Far beyond a corner that a narrow normal input rounds, the tail is known to few digits only. No quantile may be found there.
 #[test]
 fn quantiles_beside_a_corner_are_those_of_the_law() {
     let part = Some(Univariate::of_coefficients(&[0.0, -0.5, 0.0, 2e-5]));

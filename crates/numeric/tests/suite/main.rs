@@ -1,4 +1,4 @@
-//! Distributions, moments, Pearson system, samples and laws.
+//! Tests of distributions, moments, Pearson system, samples and surface distributions.
 
 mod distributions;
 mod fits;

@@ -1,4 +1,4 @@
-//! Moments: against exact rationals, against enumeration, and by their properties.
+//! Moments, compared with exact rationals and with enumeration, and their properties.
 
 use proptest::prelude::*;
 use sensitol_numeric::distribution::StandardMoments;
@@ -8,7 +8,7 @@ use sensitol_numeric::distribution::rule::Rule;
 use sensitol_numeric::moments::{Interactions, Term, contributions, of_quadratic};
 use sensitol_testing::{close, data, relative};
 
-/// A decimal, or a fraction as `p/q`, as a double.
+/// Double of a decimal or of a fraction `p/q`.
 fn number(value: &serde_json::Value) -> f64 {
     let text = value.as_str().unwrap();
     match text.split_once('/') {
@@ -21,7 +21,7 @@ fn numbers(value: &serde_json::Value) -> Vec<f64> {
     value.as_array().unwrap().iter().map(number).collect()
 }
 
-/// The oracle states coefficients in the inputs' own units; the engine wants them per sigma.
+/// The oracle gives coefficients in the inputs' own units. The engine needs them per sigma.
 #[test]
 fn exact_rationals_are_met() {
     let cases = data("moments.json");
@@ -48,7 +48,7 @@ fn exact_rationals_are_met() {
     }
 }
 
-/// Triplets `[j, k, "value"]`.
+/// Parses triplets `[j, k, "value"]`.
 fn pairs(value: &serde_json::Value) -> Vec<(usize, usize, f64)> {
     let index = |value: &serde_json::Value| value.as_u64().unwrap() as usize;
     value.as_array().unwrap().iter().map(|pair| (index(&pair[0]), index(&pair[1]), number(&pair[2]))).collect()
@@ -75,7 +75,7 @@ impl Discrete {
     }
 }
 
-/// Mean, sigma, skewness and kurtosis by going through every combination of the inputs' points.
+/// Mean, sigma, skewness and kurtosis by enumeration of all combinations of the inputs' points.
 fn enumerated(inputs: &[Discrete], value: impl Fn(&[f64]) -> f64) -> [f64; 4] {
     let mut all = vec![(Vec::new(), 1.0)];
     for input in inputs {
@@ -113,7 +113,7 @@ fn discrete() -> impl Strategy<Value = Discrete> {
     })
 }
 
-/// Coefficients of a quadratic of `inputs.len()` inputs: linear, curved, and a matrix of which the upper half counts.
+/// Coefficients of a quadratic of `inputs.len()` inputs: linear, curved, and a matrix whose upper half is used.
 fn quadratic(inputs: std::ops::Range<usize>) -> impl Strategy<Value = (Vec<Discrete>, Vec<f64>, Vec<f64>, Vec<f64>)> {
     prop::collection::vec(discrete(), inputs).prop_flat_map(|inputs| {
         let n = inputs.len();
@@ -126,8 +126,8 @@ fn upper(n: usize, matrix: &[f64]) -> Vec<(usize, usize, f64)> {
     (0..n).flat_map(|j| (j + 1..n).map(move |k| (j, k, matrix[j * n + k]))).collect()
 }
 
-/// Line and parabola of an input with two values may cancel: the moments of the input, which are rounded, then say less, and
-/// a kurtosis loses the fourth power of what is lost.
+/// True unless line and parabola of an input with two values cancel. The rounded moments of the input are then too inexact, and a kurtosis
+/// has the fourth power of their error.
 fn nothing_cancels(found: &Moments, linear: &[f64], curved: &[f64]) -> bool {
     let largest = linear.iter().chain(curved).fold(0.0f64, |largest, value| largest.max(value.abs()));
     found.sigma() > 0.1 * largest
@@ -141,8 +141,8 @@ fn value(u: &[f64], linear: &[f64], curved: &[f64], pairs: &[(usize, usize, f64)
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
-    /// 1 to 9 inputs: both the sparse and, from 8 on, the dense product. 1e-9: the enumeration itself sums up to 2e4
-    /// terms and subtracts the mean.
+    /// Both products are tested with 1 to 9 inputs: the sparse one and, from 8 on, the dense one. The tolerance is 1e-9, since the
+    /// enumeration itself sums up to 2e4 terms and subtracts the mean.
     #[test]
     fn enumeration_is_met((inputs, linear, curved, matrix) in quadratic(1..10)) {
         let n = inputs.len();
@@ -177,7 +177,7 @@ proptest! {
         close(shares + products, 1.0, 1e-12, 1.0);
     }
 
-    /// A parabola as a table is the same as by the input's moments.
+    /// A parabola as a table has the same moments as by the input's moments.
     #[test]
     fn a_parabola_is_a_parabola(input in discrete(), b in -2.0..2.0f64, a in -2.0..2.0f64) {
         let values = input.rule.nodes.iter().map(|&u| b * u + a * u * u).collect();
@@ -190,7 +190,7 @@ proptest! {
         }
     }
 
-    /// Coefficients times any factor: sigma times its size, the same shape, mirrored when it is negative.
+    /// Coefficients times a factor: sigma is multiplied by its size, and a negative factor mirrors the shape.
     #[test]
     fn scale_does_not_matter((inputs, linear, curved, matrix) in quadratic(1..6), power in -150..150i32, minus: bool) {
         let factor = 10f64.powi(power) * if minus { -1.0 } else { 1.0 };
@@ -208,7 +208,7 @@ proptest! {
         close(other.excess().unwrap(), one.excess().unwrap(), 1e-12, 1.0);
     }
 
-    /// The order of the inputs does not matter, nor which way an input is counted.
+    /// The result depends neither on the order of the inputs nor on their direction.
     #[test]
     fn order_and_direction_of_inputs_do_not_matter((inputs, linear, curved, matrix) in quadratic(2..6)) {
         let n = inputs.len();
@@ -216,7 +216,7 @@ proptest! {
         let moments: Vec<StandardMoments> = inputs.iter().map(|input| input.moments).collect();
         let one = of_quadratic(0.0, &linear, &curved, &Interactions::of_pairs(n, pairs.clone()), &moments);
         prop_assume!(nothing_cancels(&one, &linear, &curved));
-        // Backwards in order, and the first one counted the other way round.
+        // In reverse order, and with the first input in the opposite direction.
         let back = |values: &[f64]| values.iter().rev().copied().collect::<Vec<f64>>();
         let mut turned = back(&linear);
         turned[n - 1] = -turned[n - 1];
@@ -241,7 +241,7 @@ proptest! {
         prop_assert!(moments.excess().unwrap() >= bound - 1e-12);
     }
 
-    /// An input without effect changes nothing, to the last bit.
+    /// An input without effect changes no bit.
     #[test]
     fn an_idle_input_changes_nothing((inputs, linear, curved, matrix) in quadratic(1..6)) {
         let n = inputs.len();
@@ -256,7 +256,7 @@ proptest! {
     }
 }
 
-/// Skewness and excess of `b u + a (u^2 - 1)` with normal u, relative to a sum of squares that hides neither.
+/// Skewness and excess of `b u + a (u^2 - 1)` with normal u, relative to themselves, so that no larger term hides an error.
 #[test]
 fn a_tiny_curvature_keeps_its_digits() {
     for a in [1e-3, 1e-6, 1e-9, 1e-12] {
@@ -267,7 +267,7 @@ fn a_tiny_curvature_keeps_its_digits() {
     }
 }
 
-/// One input a million times stronger than the others.
+/// One input has a million times the effect of the others.
 #[test]
 fn a_dominating_input_does_not_drown_the_others() {
     let n = 20;
@@ -279,7 +279,7 @@ fn a_dominating_input_does_not_drown_the_others() {
     assert_eq!((moments.skewness(), moments.excess()), (Some(0.0), Some(0.0)));
 }
 
-/// A thousand equal chi-squared variables: skewness sqrt(8/n), excess 12/n.
+/// The sum of a thousand equal chi-squared variables has the skewness sqrt(8/n) and the excess 12/n.
 #[test]
 fn a_thousand_squares() {
     let n = 1000;
@@ -290,8 +290,8 @@ fn a_thousand_squares() {
     relative(moments.excess().unwrap(), 0.012, 1e-13);
 }
 
-/// `(sum u)^2` of n normal inputs is n times a chi-squared variable with one degree of freedom, whatever n: every
-/// pair interacts, so that the dense product is at work.
+/// The square `(sum u)^2` of n normal inputs is n times a chi-squared variable with one degree of freedom, for any n. All pairs interact,
+/// so the dense product is used.
 #[test]
 fn the_square_of_a_sum() {
     for n in [2, 7, 8, 30, 300, 1000] {
@@ -305,7 +305,7 @@ fn the_square_of_a_sum() {
     }
 }
 
-/// Heavily skewed inputs: an exponential variable is its own linear function.
+/// Heavily skewed input: an exponential variable is its own linear function.
 #[test]
 fn a_heavily_skewed_input_passes_through() {
     let exponential = StandardMoments::from_standard([2.0, 9.0, 44.0, 265.0, 1854.0, 14833.0]);
@@ -319,7 +319,7 @@ fn a_characteristic_that_does_not_vary_has_no_shape() {
     assert_eq!((moments.mean(), moments.sigma(), moments.skewness(), moments.kurtosis()), (4.0, 0.0, None, None));
 }
 
-/// Sparse and dense give the same: a ring of interactions, alone and beside a pair of every other kind at 0.
+/// Sparse and dense products agree: a ring of interactions, alone and with all other pairs at 0.
 #[test]
 fn sparse_and_dense_agree() {
     let n = 60;

@@ -1,4 +1,4 @@
-//! The Pearson system against 25 digits, closed forms, other libraries and itself.
+//! Pearson system, compared with 25-digit results, closed forms and other libraries, and its properties.
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -6,7 +6,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use sensitol_numeric::pearson::{Pearson, PearsonError, PearsonType};
 use sensitol_testing::repository;
 
-/// A member in 25 digits.
+/// A distribution of the system in 25 digits.
 struct Member {
     id: u64,
     kind: String,
@@ -95,7 +95,7 @@ fn quantiles_have_all_their_digits() {
 #[test]
 fn types_and_supports_are_the_oracle_s() {
     for member in members() {
-        // A kurtosis on the line between two types is no double: it lies on the one side or the other.
+        // A kurtosis on the line between two types is not a double, so it lies on one side or the other.
         if member.row["b2_exact"].is_null() {
             assert_eq!(member.law.kind().to_string(), member.kind, "member {}", member.id);
             for (found, expected) in member.law.support().into_iter().zip(member.ends) {
@@ -108,14 +108,14 @@ fn types_and_supports_are_the_oracle_s() {
     }
 }
 
-/// Skewness, kurtosis and a probability, spread over the magnitudes at which something may go wrong.
+/// Skewness, kurtosis and a probability, over all magnitudes at which an error is likely.
 fn random(cases: usize) -> impl Iterator<Item = (f64, f64, f64)> {
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(20_261_121);
     std::iter::repeat_with(move || {
         let mut power = |from: f64, to: f64| 10f64.powf(rng.random_range(from..to));
         let skewness = power(-9.0, 1.5);
         let bound = 1.0 + skewness * skewness;
-        // From next to the bound to far from it; or next to the line of type III, where most assemblies are.
+        // Kurtosis from next to its bound to far from it, or next to the line of type III, where most assemblies are.
         let third = 3.0 + 1.5 * skewness * skewness;
         let kurtosis =
             [bound + power(-7.0, 4.0), third + power(-15.0, 0.0), third - power(-15.0, 0.0)][rng.random_range(0..3)];
@@ -130,8 +130,8 @@ fn power_of(rng: &mut Xoshiro256PlusPlus) -> f64 {
     10f64.powf(rng.random_range(lowest..0.0))
 }
 
-/// The probability of the quantile is the one it was asked for; where the next doubles on either side are farther apart
-/// than that, it lies between theirs. That is so next to an end of the support alone.
+/// A quantile has the probability that it was computed for. If neighbouring doubles differ by more than that, the probability lies between
+/// theirs. This happens next to an end of the support only.
 #[test]
 fn quantiles_and_probabilities_invert_each_other() {
     let mut steep = 0;
@@ -165,14 +165,14 @@ fn a_law_and_its_mirror_image_agree_to_the_last_bit() {
             assert_eq!(law.cdf(z), mirror.sf(-z));
             assert_eq!(law.log_cdf(z), mirror.log_sf(-z));
         }
-        // A symmetric law is its own mirror image.
+        // A symmetric distribution is its own mirror image.
         let symmetric = Pearson::new(0.0, 1.0, 0.0, kurtosis).unwrap();
         assert_eq!(symmetric.quantile(p), -symmetric.upper_quantile(p));
         assert_eq!(symmetric.cdf(-1.3), symmetric.sf(1.3));
     }
 }
 
-/// Both probabilities are those of one law: they sum to 1, and never fall or rise the wrong way.
+/// Both probabilities sum to 1 and are monotone.
 #[test]
 fn probabilities_are_monotone_and_sum_to_one() {
     for (skewness, kurtosis, _) in random(300) {
@@ -182,14 +182,14 @@ fn probabilities_are_monotone_and_sum_to_one() {
             let z = 0.05 * f64::from(step);
             let now = [law.cdf(z), law.sf(z)];
             assert!((now[0] + now[1] - 1.0).abs() < 1e-13, "{skewness} {kurtosis} {z}: {now:?}");
-            // Rounding of values that hardly differ.
+            // Allows for rounding of values that hardly differ.
             assert!(now[0] >= before[0] * (1.0 - 1e-13) && now[1] <= before[1] * (1.0 + 1e-13));
             before = now;
         }
     }
 }
 
-/// Across every boundary between types, a small step in the moments is a small step in all that follows from them.
+/// At every boundary between types, a small step in the moments gives a small step in all results.
 #[test]
 fn nothing_jumps_where_types_meet() {
     let mut boundaries = vec![(0.0, 3.0), (0.0, 9.0 / 5.0)];
@@ -209,7 +209,7 @@ fn nothing_jumps_where_types_meet() {
             [probabilities.concat(), quantiles.concat()].concat()
         };
         let law = Pearson::new(0.0, 1.0, skewness, kurtosis).unwrap();
-        // Where the density of an end is infinite or 0 its own place moves: look elsewhere.
+        // Near an end with an infinite or vanishing density the end itself moves, so it is left out.
         let ends = law.support();
         let inside = |z: f64| ends.iter().all(|end| (z - end).abs() > 0.05);
         let keep: Vec<bool> =
@@ -236,7 +236,7 @@ fn nothing_jumps_where_types_meet() {
     }
 }
 
-/// Every pair of doubles is a law or an error, soon.
+/// Every pair of doubles gives a distribution or an error in a short time.
 #[test]
 fn any_pair_of_doubles_is_a_law_or_an_error() {
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(3);
@@ -251,7 +251,7 @@ fn any_pair_of_doubles_is_a_law_or_an_error() {
     };
     for index in 0..40_000 {
         let (skewness, kurtosis) = (number(index), number(index / 4));
-        // Half of them near the bound.
+        // Half of them are near the bound.
         let kurtosis = if index % 2 == 0 { kurtosis } else { (1.0 + skewness * skewness) * (1.0 + number(2).min(1.0)) };
         match Pearson::new(0.0, 1.0, skewness, kurtosis) {
             Ok(law) => {
@@ -277,7 +277,7 @@ fn any_pair_of_doubles_is_a_law_or_an_error() {
     assert!(laws > 5000, "{laws}");
 }
 
-/// A law with these moments, and its probabilities below and above from elsewhere.
+/// Name, type and moments of a distribution, with independent probabilities below and above.
 type KnownMember = (&'static str, PearsonType, [f64; 4], Box<dyn Fn(f64) -> [f64; 2]>);
 
 fn raw(kind: PearsonType, mean: f64, variance: f64, skewness: f64, excess: f64) -> (PearsonType, [f64; 4]) {
@@ -355,7 +355,7 @@ fn closed_forms() -> Vec<KnownMember> {
 fn agree(known: &[KnownMember], tolerance: f64) {
     for (name, kind, [mean, sigma, skewness, kurtosis], of) in known {
         let law = Pearson::new(*mean, *sigma, *skewness, *kurtosis).unwrap();
-        // 8/3 is no double: the inverse gamma comes to lie beside its line.
+        // The number 8/3 is not a double, so the inverse gamma lies beside its line.
         assert!(
             law.kind() == *kind || *kind == PearsonType::V || *kind == PearsonType::III,
             "{name}: {:?}",
@@ -363,7 +363,7 @@ fn agree(known: &[KnownMember], tolerance: f64) {
         );
         for p in [1e-9, 1e-4, 0.02, 0.2, 0.5, 0.8, 0.98, 0.9999, 1.0 - 1e-9] {
             let x = law.quantile(p);
-            // Next to an end the place of the end itself is rounded.
+            // Next to an end the rounding of the end itself dominates.
             if law.support().into_iter().any(|end| (x - end).abs() < 1e-3 * sigma) {
                 continue;
             }
@@ -378,11 +378,11 @@ fn agree(known: &[KnownMember], tolerance: f64) {
 
 #[test]
 fn members_are_the_distributions_that_have_names() {
-    // The moments are rounded; far out that is some hundred roundings.
+    // The moments are rounded. Far out that amounts to some hundred roundings.
     agree(&closed_forms(), 2e-12);
 }
 
-/// statrs 0.19, whose incomplete beta and gamma functions have ten to twelve digits away from the tails.
+/// Library statrs 0.19. Its incomplete beta and gamma functions have ten to twelve digits, except in the tails.
 #[test]
 fn members_are_those_of_another_library() {
     use statrs::distribution::{Beta, ContinuousCDF, FisherSnedecor, Gamma, InverseGamma, StudentsT};
@@ -419,12 +419,12 @@ fn members_are_those_of_another_library() {
     agree(&known, 1e-9);
 }
 
-/// Far out, where the probabilities themselves vanish, their logarithms follow the known laws.
+/// Far out, where the probabilities themselves vanish, their logarithms follow the known distributions.
 #[test]
 fn logarithms_go_on_where_probabilities_vanish() {
     let normal = Pearson::normal(0.0, 1.0).unwrap();
     for z in [10.0f64, 40.0, 1e3, 1e6] {
-        // Mills' ratio of the normal: 1/z (1 - 1/z^2 + 3/z^4 - 15/z^6 ...), whose first left-out term is 105/z^8.
+        // Mills' ratio of the normal: 1/z (1 - 1/z^2 + 3/z^4 - 15/z^6 ...). The first omitted term is 105/z^8.
         let y = 1.0 / (z * z);
         let expected = -0.5 * z * z - 0.5 * (2.0 * std::f64::consts::PI).ln() - z.ln()
             + (1.0 - y + 3.0 * y * y - 15.0 * y * y * y).ln();
@@ -446,7 +446,7 @@ fn mean_and_sigma_only_move_and_stretch() {
         let law = Pearson::new(mean, sigma, 0.4, 3.3).unwrap();
         for z in [-2.0, 0.3, 4.0] {
             let x = mean + sigma * z;
-            // The digits of z that are lost to the mean.
+            // Digits of z that are lost by adding the mean.
             let lost = 10.0 * f64::EPSILON * (1.0 + (mean / sigma).abs()) * 10.0;
             assert!(off(law.cdf(x), standard.cdf(z)) < lost && off(law.pdf(x) * sigma, standard.pdf(z)) < lost);
         }
@@ -461,7 +461,7 @@ fn impossible_moments_are_named() {
         panic!("infeasible")
     };
     assert_eq!(bound, 3.25);
-    // The two values have the skewness that was asked for.
+    // The two values have the requested skewness.
     let moment = |power| law.values.iter().zip(law.probabilities).map(|(value, p)| p * value.powi(power)).sum::<f64>();
     for (power, expected) in [(0, 1.0), (1, 0.0), (2, 1.0), (3, -1.5), (4, 3.25)] {
         assert!((moment(power) - expected).abs() < 1e-14);
@@ -477,7 +477,7 @@ fn impossible_moments_are_named() {
     assert!(law.cdf(f64::NAN).is_nan() && law.pdf(f64::NAN).is_nan());
 }
 
-/// Variates follow the law: Kolmogorov's distance of 100 000 is below 1.95/sqrt n with probability 0.999.
+/// Variates follow the distribution: Kolmogorov's distance of 100 000 values is below 1.95/sqrt n with the probability 0.999.
 #[test]
 fn variates_follow_the_law() {
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(7);

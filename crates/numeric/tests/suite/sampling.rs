@@ -1,4 +1,4 @@
-//! Sampling: Sobol's points, sums that merge, bins, and points that are the same for anybody who asks.
+//! Sampling: Sobol' points, sums that merge, histogram bins, and points that do not depend on the caller.
 
 use proptest::prelude::*;
 use sensitol_numeric::correlation::{Correlation, Pair};
@@ -15,7 +15,7 @@ fn column(sobol: &Sobol, dimension: usize, key: Option<u64>, points: usize) -> V
     column
 }
 
-/// Points of scipy 1.x, `qmc.Sobol(2048, scramble=False, bits=52)`, whose i-th point is ours at `i xor i/2` (Gray's code).
+/// Points of scipy 1.x, `qmc.Sobol(2048, scramble=False, bits=52)`. Its i-th point is ours at `i xor i/2` (Gray code).
 #[test]
 fn sobol_points_are_those_of_joe_and_kuo() {
     let sobol = Sobol::new(SOBOL_DIMENSIONS).unwrap();
@@ -36,8 +36,8 @@ fn sobol_points_are_those_of_joe_and_kuo() {
     assert!(Sobol::new(SOBOL_DIMENSIONS + 1).is_none());
 }
 
-/// The numbers of Joe and Kuo's text are all there: point 2^k of a dimension is `m_(k+1)/2^(k+1)`, in the text up to the polynomial's
-/// degree `s`, and from there by the recurrence `m_k = 2 a_1 m_(k-1) xor .. 2^(s-1) a_(s-1) m_(k-s+1) xor 2^s m_(k-s) xor m_(k-s)`.
+/// All numbers of Joe and Kuo's text. Point 2^k of a dimension is `m_(k+1)/2^(k+1)`. The text has them up to the polynomial's degree `s`,
+/// and the recurrence `m_k = 2 a_1 m_(k-1) xor .. 2^(s-1) a_(s-1) m_(k-s+1) xor 2^s m_(k-s) xor m_(k-s)` gives the others.
 #[test]
 fn every_direction_number_is_that_of_the_published_table() {
     let sobol = Sobol::new(SOBOL_DIMENSIONS).unwrap();
@@ -64,7 +64,7 @@ fn every_direction_number_is_that_of_the_published_table() {
     assert_eq!(dimensions, SOBOL_DIMENSIONS);
 }
 
-/// Any block of points can be had by itself.
+/// Any block of points can be computed by itself.
 #[test]
 fn sobol_blocks_are_parts_of_the_whole() {
     let sobol = Sobol::new(5).unwrap();
@@ -79,8 +79,8 @@ fn sobol_blocks_are_parts_of_the_whole() {
     }
 }
 
-/// Every elementary interval of volume `2^(t-m)` holds `2^t` of `2^m` points: t = 0 in two dimensions, 1 in three. Owen's
-/// scrambling keeps that.
+/// Every elementary interval of volume `2^(t-m)` holds `2^t` of `2^m` points, with t = 0 in two dimensions and 1 in three. Owen's
+/// scrambling preserves this.
 #[test]
 fn points_are_balanced_scrambled_or_not() {
     let sobol = Sobol::new(3).unwrap();
@@ -109,7 +109,7 @@ fn points_are_balanced_scrambled_or_not() {
     }
 }
 
-/// Scrambled coordinates are uniform over many keys, digit by digit, and digits of one point are independent.
+/// Scrambled coordinates are uniform over many keys, digit by digit. The digits of one point are independent.
 #[test]
 fn scrambling_is_uniform() {
     let sobol = Sobol::new(1).unwrap();
@@ -122,13 +122,13 @@ fn scrambling_is_uniform() {
         product += (first[0] - 0.5) * (first[1] - 0.5);
     }
     let n = keys as f64;
-    // Four standard errors: sqrt(1/12/n). The second point lies in the other half: E[product] = -1/16.
+    // The tolerance is four standard errors, sqrt(1/12/n) each. The second point lies in the other half: E[product] = -1/16.
     close(mean / n, 0.5, 4.0 * (1.0 / 12.0 / n).sqrt(), 1.0);
     close(product / n, -1.0 / 16.0, 4.0 * 0.05 / n.sqrt(), 1.0);
 }
 
-/// The bit that flips a digit belongs to the digits above it and to nothing else: any two nodes of the tree have independent
-/// ones, near the root and below, in one tree of hashed digits and in the next.
+/// The bit that flips a digit depends on the digits above it only. Any two nodes of the tree have independent bits, near the root and
+/// below, within one tree of hashed digits and across trees.
 #[test]
 fn every_node_has_a_random_bit_of_its_own() {
     const POINTS: usize = 64;
@@ -157,7 +157,7 @@ fn every_node_has_a_random_bit_of_its_own() {
             flips[key / 64] |= bit << (key % 64);
         }
     }
-    // Six standard errors of a fair coin: of the 165 000 pairs one in 3000 runs would have one beyond.
+    // Six standard errors of a fair coin. With 165 000 pairs, one run in 3000 has a pair beyond.
     let fair = |ones: u32| (f64::from(ones) - keys as f64 / 2.0).abs() < 6.0 * (keys as f64).sqrt() / 2.0;
     for (j, one) in flips.iter().enumerate() {
         assert!(fair(one.iter().map(|word| word.count_ones()).sum()), "{:?}", nodes[j]);
@@ -166,7 +166,7 @@ fn every_node_has_a_random_bit_of_its_own() {
             assert!(fair(differ), "{:?} and {:?}", nodes[j], nodes[k]);
         }
     }
-    // The same digits above, the same flips: points that part at one level agree before.
+    // Equal digits above give equal flips: points that differ from one level on agree before it.
     for (point, other) in (0..POINTS).flat_map(|a| (0..a).map(move |b| (a, b))) {
         let scrambled = digits(Some(77));
         let shared = |a: u64, b: u64| (a ^ b).leading_zeros();
@@ -174,13 +174,13 @@ fn every_node_has_a_random_bit_of_its_own() {
     }
 }
 
-/// Counts of random normal values in cells of one sigma's tenth and in the far tails, against the distribution function.
+/// Counts of random normal values, in cells of a tenth of sigma and in the far tails, against the distribution function.
 #[test]
 fn random_normals_are_normal() {
     let one = [Dimension::normal("z", 0.0, 3.0).unwrap()];
     let law = one[0].distribution().unwrap().probability().unwrap();
     let draws = Draws::new(&one, None, Sampler::Random, 3).unwrap();
-    // Far out one edge is where the tail of the ziggurat begins.
+    // One far edge is the beginning of the ziggurat's tail.
     let far = [-4.5, -4.0, -3.654_152_885_361_009];
     let middle = (-35..=35).map(|i| f64::from(i) / 10.0);
     let edges: Vec<f64> = far.into_iter().chain(middle).chain(far.into_iter().rev().map(|edge| -edge)).collect();
@@ -198,18 +198,18 @@ fn random_normals_are_normal() {
         let share = below(i) - if i == 0 { 0.0 } else { below(i - 1) };
         chi_square += (count as f64 - n * share).powi(2) / (n * share);
     }
-    // 77 degrees of freedom: mean 77, sigma 12.4; five of these either way.
+    // With 77 degrees of freedom the mean is 77 and sigma 12.4. The bounds are five sigma.
     assert!((15.0..139.0).contains(&chi_square), "{chi_square}");
 }
 
-/// Quantiles of many probabilities at once are those of each, in the centre, the tails and far out.
+/// Quantiles of many probabilities at once equal those of each, in the centre, in the tails and far out.
 #[test]
 fn quantiles_by_the_block_are_those_one_by_one() {
     let one = Dimension::normal("z", 5.0, 0.3).unwrap();
     let law = one.distribution().unwrap().probability().unwrap();
     let p = (1..700).map(|i| if i < 500 { f64::from(i) / 1000.0 } else { 10f64.powi(-(i - 480)) });
     let tails: Vec<f64> = p.flat_map(|p| [p, -p]).collect();
-    // Beyond the middle, and what is no probability: alone, and among others.
+    // Values beyond the middle, and values that are not probabilities, alone and among others.
     let beyond = [0.6, 0.95, 0.99, 1.0 - 1e-12, 1.0, 0.0, 1.5, f64::NAN].map(|p| [p, -p]).concat();
     for tails in beyond.chunks(1).chain([&beyond[..], &[&beyond[..], &tails].concat()]) {
         let mut found = tails.to_vec();
@@ -230,10 +230,10 @@ fn quantiles_by_the_block_are_those_one_by_one() {
 }
 
 proptest! {
-    /// Merged in any parts, a sample is itself.
+    /// A sample merged from any parts has the sums of the whole.
     #[test]
     fn summaries_merge(values in prop::collection::vec(-1.0..1.0f64, 3..200), cuts in prop::collection::vec(0.0..1.0f64, 0..5)) {
-        // Far from 0: sums about the origin would have lost everything.
+        // Far from 0, where sums about the origin would lose all digits.
         let values: Vec<f64> = values.iter().map(|value| 1e6 + value).collect();
         let mut ends: Vec<usize> = cuts.iter().map(|cut| (cut * values.len() as f64) as usize).collect();
         ends.sort_unstable();
@@ -248,12 +248,12 @@ proptest! {
         prop_assert_eq!(merged.range(), whole.range());
         close(merged.mean(), whole.mean(), 1e-15, 0.0);
         for order in 2..=8 {
-            // A mean of 1e6 has an ulp of 1e-10, by which every deviation may be off.
+            // A mean of 1e6 has an ulp of 1e-10, which is the error of every deviation.
             close(merged.moment(order), whole.moment(order), 1e-8, 1.0);
         }
     }
 
-    /// Quantiles out of bins are those of the sorted sample, to the square of a bin's width.
+    /// Quantiles from bins equal those of the sorted sample, to the square of a bin's width.
     #[test]
     fn bins_know_quantiles(values in prop::collection::vec(-3.0..3.0f64, 100..500), p in 0.01..0.99f64) {
         let scale = Scale::about(0.5, 2.0);
@@ -264,7 +264,7 @@ proptest! {
         sorted.sort_unstable_by(f64::total_cmp);
         let rank = (p * values.len() as f64).ceil();
         let found = fine.at_rank(rank).unwrap();
-        // At a whole rank the value is the upper end of what lies in its bin: a bin is 1e-3 of the spread, wider far out.
+        // At a whole rank the value is the upper end of the values in its bin. A bin is 1e-3 of the spread, and wider far out.
         close(found, sorted[rank as usize - 1], 1e-3 * 2.0 * 2.0, 1.0);
     }
 }
@@ -285,7 +285,7 @@ fn a_histogram_counts_everything_once() {
     }
 }
 
-/// 8 of 10 and 0 of 50, as scipy's `binomtest(...).proportion_ci(method='wilson')` has them.
+/// Wilson intervals for 8 of 10 and 0 of 50, as given by scipy's `binomtest(...).proportion_ci(method='wilson')`.
 #[test]
 fn intervals_of_shares_are_wilson_s() {
     let [low, high] = wilson(8.0, 10.0);
@@ -300,7 +300,7 @@ fn portion(first: u64, rows: usize) -> Portion {
     Portion { replicate: 0, first, rows }
 }
 
-/// A dimension's values do not change with what else there is, nor with the portions that others ask for.
+/// A dimension's values depend neither on other dimensions nor on the portions that are requested.
 #[test]
 fn points_are_the_same_for_anybody() {
     let three = normals(&[1.0, 2.0, 3.0], &[0.1, 0.2, 0.3]);
@@ -312,14 +312,14 @@ fn points_are_the_same_for_anybody() {
         assert_ne!(all.column(0), draws.points(portion(0, 1024)).column(0));
         assert_ne!(all.column(0), Draws::new(&three, None, sampler, 6).unwrap().points(portion(1024, 1024)).column(0));
     }
-    // Value stability: what seed 5 gives today it gives for good.
+    // Value stability: the values of seed 5 never change.
     let first = Draws::new(&three, None, Sampler::Random, 5).unwrap().points(portion(0, 3));
     insta::assert_debug_snapshot!([first.row(0), first.row(1), first.row(2)]);
     let first = Draws::new(&three, None, Sampler::Sobol, 5).unwrap().points(portion(0, 3));
     insta::assert_debug_snapshot!([first.row(0), first.row(1), first.row(2)]);
 }
 
-/// Correlated inputs have their distributions and their correlation, random or not.
+/// Correlated inputs keep their distributions and have their correlation, for random and Sobol' points.
 #[test]
 fn correlated_points_are_as_asked() {
     let dimensions = [
@@ -339,7 +339,7 @@ fn correlated_points_are_as_asked() {
             let product = points.column(j).iter().zip(points.column(k)).map(|(x, y)| (x - a.mean()) * (y - b.mean()));
             product.sum::<f64>() / points.rows() as f64 / a.sigma() / b.sigma()
         };
-        // Four standard errors of a correlation: (1 - r^2)/sqrt n.
+        // The tolerance is four standard errors of a correlation, (1 - r^2)/sqrt n each.
         for (j, k, value) in [(0, 2, 0.6), (2, 3, -0.5), (0, 3, 0.0)] {
             close(of(j, k), value, 4.0 / 256.0, 1.0);
         }

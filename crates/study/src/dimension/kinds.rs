@@ -1,4 +1,4 @@
-//! The kinds of distribution: their names, what each knows, and what each makes of band, sigma and shift.
+//! Kinds of distribution: their names, their parameters, and their construction from band, sigma and shift.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -23,7 +23,7 @@ pub(super) type OfBand = fn(&DimensionEntry, f64, Option<[f64; 2]>) -> Result<Sp
 /// A normal distribution from a dimension's entry, mean, sigma and tolerance.
 pub(super) type OfProcess = fn(&DimensionEntry, f64, f64, Option<[f64; 2]>) -> Result<Spread, Fault>;
 
-/// The distribution of this line; None when it does not vary.
+/// Distribution of a line of `[dimensions]`. Returns None if the dimension does not vary.
 pub(super) fn distribution(
     entry: &DimensionEntry,
     nominal: f64,
@@ -98,7 +98,7 @@ fn kind(entry: &DimensionEntry) -> Result<Kind, Fault> {
     Ok(*kind)
 }
 
-/// Every parameter that a table may have, and where it stands.
+/// Every parameter of the table `distribution`, with its place if it is given.
 fn parameters(entry: &DistributionEntry) -> [(&'static str, Option<Range<usize>>); 11] {
     let span = |parameter: &Option<Spanned<f64>>| parameter.as_ref().map(Spanned::span);
     [
@@ -120,7 +120,7 @@ fn within(parameter: &str) -> String {
     format!("distribution.{parameter}")
 }
 
-/// Mean = the band's middle plus `shift`; sigma = half band / `sigmas`, or as given.
+/// Normal distribution. Its mean is the middle of the band plus `shift`, its sigma is given or half the band by `sigmas`.
 fn normal(
     entry: &DimensionEntry,
     nominal: f64,
@@ -135,7 +135,7 @@ fn normal(
     process(entry, nominal + middle + shift(entry), sigma, tolerance)
 }
 
-/// As a normal distribution; its sigma may be given by the scale.
+/// Student distribution, with mean and sigma like the normal one. Sigma may be given by the scale instead.
 fn student(entry: &DimensionEntry, nominal: f64, tolerance: Option<[f64; 2]>) -> Result<Spread, Fault> {
     let degrees = parameter(entry, "degrees", |entry| &entry.degrees)?;
     let middle = tolerance.map_or(0.0, |[lower, upper]| 0.5 * (lower + upper));
@@ -160,7 +160,7 @@ fn student(entry: &DimensionEntry, nominal: f64, tolerance: Option<[f64; 2]>) ->
     placed(entry, shared(Student::with_scale(mean, value, degrees)))
 }
 
-/// The support is the band, or about it; mean and sigma follow from the shape.
+/// Distribution whose support is the band. Mean and sigma follow from the shape. Only the curvilinear trapezoid reaches beyond the band.
 fn over_band(kind: Kind, entry: &DimensionEntry, nominal: f64, tolerance: Option<[f64; 2]>) -> Result<Spread, Fault> {
     let name = KINDS.iter().find(|known| known.1 == kind).map_or("", |known| known.0);
     let to = || format!("a {name} distribution");
@@ -208,13 +208,13 @@ fn over_band(kind: Kind, entry: &DimensionEntry, nominal: f64, tolerance: Option
     Ok(distribution)
 }
 
-/// The mode is a value of the dimension, as `limits` are; where it lies in the band, from -1 to 1.
+/// Place of the mode within the band, from -1 to 1. The study gives it as a value of the dimension, like `limits`.
 fn lean(entry: &DimensionEntry, nominal: f64, offset: f64, half: f64) -> Result<f64, Fault> {
     let Some(mode) = entry.distribution.as_ref().and_then(|entry| entry.get_ref().mode.as_ref()) else {
         return Ok(0.0);
     };
     let lean = ((mode.get_ref() - nominal) - offset) / half;
-    // The rounding of a mode at an end of the band is not a fault.
+    // The allowance of 1e-9 admits a mode at an end of the band in spite of rounding.
     if lean.abs() > 1.0 + 1e-9 {
         let (value, range) = (*mode.get_ref(), "within the tolerance band");
         let outside = DistributionError::OutOfRange { parameter: "mode", value, range };
@@ -223,7 +223,7 @@ fn lean(entry: &DimensionEntry, nominal: f64, offset: f64, half: f64) -> Result<
     Ok(lean.clamp(-1.0, 1.0))
 }
 
-/// Mean = nominal plus `shift`, whatever the band; sigma as given or half band / `sigmas`.
+/// Distribution with a tail. Its mean is the nominal plus `shift`, whatever the band. Sigma is given or half the band by `sigmas`.
 fn with_tail(
     entry: &DimensionEntry,
     nominal: f64,
@@ -245,7 +245,7 @@ fn with_tail(
     placed(entry, build(origin(entry), nominal + shift(entry), sigma))
 }
 
-/// Mean = nominal plus `shift`; the distance from the origin fixes sigma.
+/// Distribution with the mean at the nominal plus `shift`. Its distance from the origin determines sigma.
 fn of_mean(
     entry: &DimensionEntry,
     nominal: f64,
@@ -266,7 +266,7 @@ fn of_mean(
     Ok(distribution)
 }
 
-/// Known by moments: mean = nominal plus `shift`, whatever the band.
+/// Distribution known by its central moments, with the mean at the nominal plus `shift`, whatever the band.
 fn moments(entry: &DimensionEntry, nominal: f64) -> Result<Spread, Fault> {
     let moments = entry.moments.as_ref().expect("the kind was told by them");
     match CentralMoments::new(nominal + shift(entry), *moments.get_ref()) {
@@ -275,7 +275,7 @@ fn moments(entry: &DimensionEntry, nominal: f64) -> Result<Spread, Fault> {
     }
 }
 
-/// The table says all: values of the dimension by their scores.
+/// Tabulated distribution: the table holds values of the dimension over normal scores, so nothing else may be given.
 fn tabulated(entry: &DimensionEntry) -> Result<Spread, Fault> {
     const TO: &str = "a tabulated distribution";
     let table = entry.distribution.as_ref().expect("its kind was told by it");
@@ -308,7 +308,7 @@ fn origin(entry: &DimensionEntry) -> f64 {
     table.and_then(|table| table.origin.as_ref()).map_or(0.0, |origin| *origin.get_ref())
 }
 
-/// A parameter that must be there.
+/// Value of a required parameter.
 fn parameter(
     entry: &DimensionEntry,
     key: &'static str,
@@ -331,7 +331,7 @@ fn parameter(
     })
 }
 
-/// A sigma beside a distribution that has one of its own must be that.
+/// Checks that a given sigma equals that of a distribution which determines its own.
 pub(super) fn agreeing(entry: &DimensionEntry, spread: &Spread, a: &'static str, what: &str) -> Result<(), Fault> {
     let (Some(given), Some(distribution)) = (&entry.sigma, spread) else { return Ok(()) };
     if agree(*given.get_ref(), distribution.sigma()) {
@@ -341,7 +341,7 @@ pub(super) fn agreeing(entry: &DimensionEntry, spread: &Spread, a: &'static str,
     Err(fault(given.span(), "sigma", conflict(a, "sigma", &why)))
 }
 
-/// The distribution, or its fault at the key that is to blame.
+/// The distribution, or its error at the key that caused it.
 pub(super) fn placed(
     entry: &DimensionEntry,
     distribution: Result<Arc<dyn Distribution>, DistributionError>,

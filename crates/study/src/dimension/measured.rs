@@ -1,4 +1,4 @@
-//! A dimension by measured values: `{ measured = "pin.csv", column = "d_mm" }`.
+//! Dimensions with measured values: `{ measured = "pin.csv", column = "d_mm" }`.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -13,23 +13,23 @@ use sensitol_numeric::dimension::DimensionFault;
 use sensitol_numeric::distribution::{Distribution, DistributionError, Measured, PearsonLaw, Resample, outliers};
 use sensitol_numeric::names::nearest;
 
-/// Fewer values are no sample: four moments of four values say nothing.
+/// Least number of values: four moments of four values say nothing.
 const LEAST: usize = 5;
-/// Below this the moments from the third on are guesses.
+/// Number of values below which a warning is given: the moments from the third on are then guesses.
 const SMALL: usize = 30;
-/// A gauge that resolves no less than this part of sigma is coarse: a tenth of the process spread of six sigma
-/// (Measurement Systems Analysis, AIAG, 4th edition, chapter I-E).
+/// Resolution of a gauge, in sigmas of the values, from which it counts as coarse: a tenth of the process spread of six sigma (Measurement
+/// Systems Analysis, AIAG, 4th edition, chapter I-E).
 const RESOLUTION: f64 = 0.6;
-/// Lines and values that a warning names.
+/// Greatest number of lines and values that a warning names.
 const NAMED: usize = 5;
 
-/// A law, and the column that it follows from.
+/// Distribution of measured values, with their column.
 pub(super) struct Law {
     pub(super) distribution: Arc<dyn Distribution>,
     pub(super) column: Column,
 }
 
-/// The law of this line's measured values; None where it has none.
+/// Distribution of the measured values of a line. Returns None if the line names none.
 pub(super) fn law(name: &str, entry: &DimensionEntry, data: &mut Data<'_>) -> Result<Option<Law>, Fault> {
     let Some(measured) = &entry.measured else {
         return match [("column", &entry.column), ("model", &entry.model)].into_iter().find(|(_, key)| key.is_some()) {
@@ -79,7 +79,7 @@ pub(super) fn law(name: &str, entry: &DimensionEntry, data: &mut Data<'_>) -> Re
     Ok(Some(Law { distribution, column }))
 }
 
-/// The data say how the dimension spreads and where it lies: nothing else does beside them.
+/// Checks that the line states no other distribution or place: the values determine both.
 fn conflicts(entry: &DimensionEntry) -> Result<(), Fault> {
     let excluded: [(&'static str, Option<Range<usize>>); 6] = [
         ("distribution", entry.distribution.as_ref().map(Spanned::span)),
@@ -120,7 +120,7 @@ fn is_pearson(entry: &DimensionEntry) -> Result<bool, Fault> {
     }
 }
 
-/// Warns of odd values.
+/// Adds warnings of missing values, small samples, outliers and coarse gauges.
 fn warn(name: &str, file: &str, column: &Column, law: &Measured, data: &mut Data<'_>) {
     let (dimension, file, values) = (|| name.to_owned(), file.to_owned(), column.values.len());
     if !column.missing.is_empty() {
@@ -147,11 +147,11 @@ fn warn(name: &str, file: &str, column: &Column, law: &Measured, data: &mut Data
     }
 }
 
-/// How many of the values lie outside the tolerance band, where there is one.
+/// Adds a warning if values lie outside of the tolerance band.
 pub(super) fn outside(name: &str, nominal: f64, band: Option<[f64; 2]>, law: &Law, data: &mut Data<'_>) {
     let Some([lower, upper]) = band else { return };
     let (low, high) = (nominal + lower, nominal + upper);
-    // Values that were computed from limits may be off them by a rounding.
+    // Values that were computed from limits may differ from them by rounding.
     let slack = 4.0 * f64::EPSILON * low.abs().max(high.abs());
     let far = |value: f64| value < low - slack || value > high + slack;
     let column = &law.column;

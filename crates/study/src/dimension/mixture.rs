@@ -1,4 +1,4 @@
-//! A mixture: parts that are written as dimensions are, and take from the dimension what they do not say.
+//! Mixtures. A part is written like a dimension and takes missing values from the dimension.
 
 use super::super::error::{Fault, StudyFault, fault};
 use super::super::file::{DimensionEntry, PartEntry};
@@ -9,7 +9,7 @@ use super::spread::{Spread, is_flat, nothing_to_spread, sigma, sigmas};
 use super::tolerance::tolerance;
 use sensitol_numeric::distribution::{Mixture, Part};
 
-/// Each part by itself, with the dimension's nominal and band where it gives none.
+/// Distribution of a mixture. Each part has the dimension's nominal and band unless it gives its own.
 pub(super) fn mixture(entry: &DimensionEntry, nominal: f64, band: Option<[f64; 2]>) -> Result<Spread, Fault> {
     let table = entry.distribution.as_ref().expect("a mixture was named");
     let to = || "a mixture".to_owned();

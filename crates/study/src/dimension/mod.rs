@@ -1,4 +1,4 @@
-//! From one line of `[dimensions]` to a dimension, or the two of a position: tolerance and distribution in their several forms.
+//! Reads lines of `[dimensions]`: a dimension, or the two of a position, from tolerance and distribution in their several forms.
 
 mod kinds;
 mod measured;
@@ -21,13 +21,13 @@ use super::values::NominalEntry;
 use sensitol_numeric::dimension::{Convention, Dimension, DimensionError};
 use spread::Spread;
 
-/// The distribution of this line; None when it does not vary. Parts of a mixture are such lines again.
+/// Distribution of a line. Returns None if the dimension does not vary. Parts of a mixture are read by the same function.
 fn distribution(entry: &DimensionEntry, nominal: f64, tolerance: Option<[f64; 2]>) -> Result<Spread, Fault> {
     kinds::distribution(entry, nominal, tolerance, mixture::mixture, process::normal)
 }
 
-/// The dimensions of this line, or what is wrong at which key below the dimension's; `model` knows the values that the model
-/// gives by itself. The files that it reads beside the study, and their oddities, are in `data`.
+/// Dimensions of a line. A fault has the key below that of the dimension. `model` gives the nominal values of a built-in model. `data`
+/// collects the files that the line reads, and their warnings.
 pub(super) fn dimensions(
     name: &Spanned<String>,
     entry: &Spanned<DimensionEntry>,
@@ -40,7 +40,7 @@ pub(super) fn dimensions(
     }
 }
 
-/// The names of all dimensions with their places: a position declares two.
+/// Names of all dimensions with their places. A position declares two.
 pub(super) fn names(entries: &Entries<DimensionEntry>) -> Vec<Spanned<String>> {
     let of_line = |(name, entry): &(Spanned<String>, Spanned<DimensionEntry>)| match entry.get_ref().position {
         Some(_) => position::names(name.get_ref()).map(|coordinate| Spanned::new(name.span(), coordinate)).to_vec(),
@@ -71,7 +71,7 @@ fn dimension(
     built(name, entry, nominal, tolerance, distribution, line)
 }
 
-/// With this spread over this band, unit and step.
+/// Dimension with this distribution and band, and with the unit and step of the entry.
 fn built(
     name: &str,
     entry: &DimensionEntry,
@@ -97,7 +97,7 @@ fn built(
     Ok(dimension.with_convention(convention(entry, tolerance)?))
 }
 
-/// A dimension as a process makes it whose line says how its parts lie, within this half band.
+/// The dimension as a process makes it that states its distribution, with this half-width.
 pub(super) fn made(
     old: &Dimension,
     process: &DimensionEntry,
@@ -114,11 +114,11 @@ pub(super) fn made(
     Ok(old.remade(made.map_err(whole)?).with_convention(convention))
 }
 
-/// How stacks take this line beside its band.
+/// Convention of the line for tolerance stacks: RSS factor, mean shift, degrees of freedom and lots.
 fn convention(entry: &DimensionEntry, tolerance: Option<[f64; 2]>) -> Result<Convention, Fault> {
     let rss_factor = entry.rss_factor.as_ref().map(|given| conventions::factor(given, "rss_factor")).transpose()?;
     let mean_shift = entry.mean_shift.as_ref().map(|given| conventions::mean_shift(given, "mean_shift")).transpose()?;
-    // Only of a normal distribution a process is known.
+    // A process is known only for a normal distribution.
     let standing = process::standing(entry, tolerance)?;
     let lot = match (standing.known(), spread::sigma(entry, tolerance), tolerance) {
         (true, Ok(Some(sigma)), Some([lower, upper])) => {
@@ -129,7 +129,7 @@ fn convention(entry: &DimensionEntry, tolerance: Option<[f64; 2]>) -> Result<Con
     Ok(Convention { rss_factor, mean_shift, degrees: degrees(entry)?, lot })
 }
 
-/// Degrees of freedom for a budget of uncertainty: as given, or those of a Student distribution.
+/// Degrees of freedom for an uncertainty budget: as given, or those of a Student distribution.
 fn degrees(entry: &DimensionEntry) -> Result<Option<f64>, Fault> {
     let of_law = entry.distribution.as_ref().and_then(|law| law.get_ref().degrees.as_ref());
     let Some(given) = &entry.degrees else { return Ok(of_law.map(|degrees| *degrees.get_ref())) };
@@ -143,7 +143,7 @@ fn degrees(entry: &DimensionEntry) -> Result<Option<f64>, Fault> {
     }
 }
 
-/// As given, or of the model, or the middle of the limits, or the mean of what was measured.
+/// Nominal value: as given, or of the model, or the middle of the limits, or the mean of the measured values.
 fn nominal(entry: &DimensionEntry, model: Option<f64>, mean: Option<f64>, line: &Range<usize>) -> Result<f64, Fault> {
     let middle = entry.limits.as_ref().map(|limits| 0.5 * (limits.get_ref()[0] + limits.get_ref()[1]));
     let given = match &entry.nominal {
@@ -163,7 +163,7 @@ fn nominal(entry: &DimensionEntry, model: Option<f64>, mean: Option<f64>, line: 
     })
 }
 
-/// Least and greatest value of a line; None without a band, and where the line is at fault, which is said where it is read.
+/// Least and greatest value of a line. Returns None if it has no band, and for a line at fault, whose fault is reported elsewhere.
 pub(super) fn limits(entry: &DimensionEntry) -> Option<[f64; 2]> {
     let nominal = nominal(entry, None, None, &(0..0)).ok()?;
     let [lower, upper] = tolerance::tolerance(entry, nominal).ok()??;

@@ -1,14 +1,15 @@
-//! A distribution whose mean lies off the middle by a part of the band.
+//! Distribution whose mean lies off the middle of the band by a constant fraction of its width.
 
 use std::sync::Arc;
 
 use sensitol_numeric::distribution::{Distribution, Jacobi, Probability, Resample, Scaled, StandardMoments};
 
-/// The mean that `cp` and `cpk` place: both indices stay where the tolerance changes, so the mean moves in proportion to the band.
+/// Distribution with the mean placed by `cp` and `cpk`. Both indices stay constant when the tolerance changes, so the mean moves in
+/// proportion to the band.
 #[derive(Debug, Clone)]
 pub(super) struct OffCentre {
     pub(super) law: Arc<dyn Distribution>,
-    /// How far off the middle its mean lies, in the dimension's unit.
+    /// Distance of the mean from the middle, in the dimension's unit, with its sign.
     pub(super) by: f64,
 }
 

@@ -1,4 +1,4 @@
-//! A position tolerance: two dimensions, the coordinates of a point within a circular zone.
+//! Position tolerances: two dimensions, the coordinates of a point within a circular zone.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -13,12 +13,13 @@ use crate::zone::{OF_DISC, is_even};
 use sensitol_numeric::dimension::{Dimension, DimensionFault};
 use sensitol_numeric::distribution::{Beta, DistributionError};
 
-/// The dimensions that a position of this name declares.
+/// Names of the two dimensions of a position.
 pub(super) fn names(name: &str) -> [String; 2] {
     ["x", "y"].map(|axis| format!("{name}_{axis}"))
 }
 
-/// Both coordinates: normal about the nominal, half the zone's diameter their half band; or spread evenly over the zone.
+/// Both coordinates. They are normal about the nominal with the radius of the zone as half-width, or the point is spread evenly over the
+/// zone.
 pub(super) fn position(
     name: &str,
     diameter: &Spanned<f64>,
@@ -33,7 +34,7 @@ pub(super) fn position(
     let nominal = nominal(entry, names.each_ref().map(|name| model(name)), &line.span())?;
     let band = radius.map(|radius| [-radius, radius]);
     let coordinate = |(coordinate, nominal): (&String, f64)| {
-        // Spread evenly over the zone, a coordinate has the distribution of a disc's.
+        // A coordinate of a point that is spread evenly over a disc has a beta distribution.
         let distribution = match (band, is_even(entry)) {
             (None, true) => None,
             (Some([_, radius]), true) => {
@@ -48,7 +49,7 @@ pub(super) fn position(
     names.iter().zip(nominal).map(coordinate).collect()
 }
 
-/// None where the zone is a point.
+/// Radius of the zone. Returns None if the zone is a point.
 fn radius(diameter: &Spanned<f64>, entry: &DimensionEntry) -> Result<Option<f64>, Fault> {
     let value = *diameter.get_ref();
     let failed = |found: StudyFault| Err(fault(diameter.span(), "position", found));
@@ -79,7 +80,7 @@ fn nominal(entry: &DimensionEntry, model: [Option<f64>; 2], line: &Range<usize>)
     }
 }
 
-/// The zone says what band and distribution would say.
+/// Checks that the line gives neither a band nor a distribution beside the zone.
 fn alone(entry: &DimensionEntry) -> Result<(), Fault> {
     let bands: [(&'static str, Option<Range<usize>>); 3] = [
         ("tolerance", entry.tolerance.as_ref().map(Spanned::span)),

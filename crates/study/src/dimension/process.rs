@@ -1,4 +1,4 @@
-//! Where a process stands within its band: `cpk` beside `cp`, its `side`, and the `drift` of its lots.
+//! Place of a process within its band: `cpk` beside `cp`, its `side`, and the `drift` of its lots.
 
 use super::super::error::{Fault, StudyFault, fault};
 use super::super::file::DimensionEntry;
@@ -11,32 +11,32 @@ use sensitol_numeric::dimension::Lot;
 use sensitol_numeric::distribution::{Drifting, Mixture, Normal, Part};
 use sensitol_numeric::names::nearest;
 
-/// The two sides of the middle.
+/// Signs of the two sides of the middle.
 const SIDES: [&str; 2] = ["+", "-"];
 
-/// The mean of a process.
+/// Place of the mean of a process.
 pub(super) struct Standing {
-    /// How far the mean lies off, 0 or above.
+    /// Distance of the mean from the middle of the band, 0 or above.
     offset: f64,
-    /// Towards which side, 1 or -1; None where the parts come from both.
+    /// Side of the mean, 1 or -1; None if half of the parts come from either side.
     side: Option<f64>,
-    /// How far the mean of a lot lies off that of all, at most.
+    /// Greatest distance of the mean of a lot from the mean of all parts.
     drift: f64,
 }
 
 impl Standing {
-    /// Whether anything is said of the mean.
+    /// True if the mean is off the middle or drifts.
     pub(super) fn known(&self) -> bool {
         self.offset + self.drift > 0.0
     }
 
-    /// A lot within half a band, its mean shifted by so much.
+    /// Lot of a process, in units of the half-width `half`. `shift` adds to its drift.
     pub(super) fn lot(&self, sigma: f64, half: f64, shift: f64) -> Lot {
         Lot { sigma: sigma / half, off: self.offset / half, further: self.drift + shift.abs() }
     }
 }
 
-/// With sigma = half/(3 cp) the mean is off by half (1 - cpk/cp).
+/// Place of the mean: sigma is half/(3 cp), and the mean is off the middle by half (1 - cpk/cp).
 pub(super) fn standing(entry: &DimensionEntry, tolerance: Option<[f64; 2]>) -> Result<Standing, Fault> {
     let drift = match &entry.drift {
         Some(drift) if *drift.get_ref() < 0.0 => {
@@ -76,7 +76,7 @@ fn sign(side: &Spanned<String>) -> Result<f64, Fault> {
     }
 }
 
-/// Normal about its mean, or about two as likely ones; with a drift the means of lots are uniform about these.
+/// Normal distribution about the mean, or about two equally likely ones. With a drift the means of lots are uniform about these.
 pub(super) fn normal(
     entry: &DimensionEntry,
     mean: f64,

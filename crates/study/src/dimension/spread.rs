@@ -1,4 +1,4 @@
-//! How far a dimension spreads: sigma, sigmas, cp and shift, which contradict each other at times.
+//! Spread of a dimension: `sigma`, `sigmas`, `cp` and `shift`, with their contradictions.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -11,13 +11,13 @@ use super::super::words::SIGMAS;
 use super::conflict;
 use sensitol_numeric::distribution::Distribution;
 
-/// Two ways of giving sigma agree when they differ by no more than this.
+/// Relative difference within which two ways of giving sigma agree.
 const AGREE: f64 = 1e-9;
 
-/// How a dimension varies; None when it does not.
+/// Distribution of a dimension; None if it does not vary.
 pub(super) type Spread = Option<Arc<dyn Distribution>>;
 
-/// As given, or half band / `sigmas`; None where nothing says how much.
+/// Sigma as given, or half the band by `sigmas`. Returns None if neither a sigma nor a band is given.
 pub(super) fn sigma(entry: &DimensionEntry, tolerance: Option<[f64; 2]>) -> Result<Option<f64>, Fault> {
     let per_band = sigmas(entry)?;
     let from_band =
@@ -26,7 +26,7 @@ pub(super) fn sigma(entry: &DimensionEntry, tolerance: Option<[f64; 2]>) -> Resu
     let given = *sigma.get_ref();
     match from_band {
         None => {
-            // `tolerance = 0` beside a sigma contradicts it.
+            // A sigma beside `tolerance = 0` contradicts it.
             if let (Some(band), true) = (&entry.tolerance, given != 0.0) {
                 let disagree = conflict("tolerance", "sigma", "disagree: a band of 0 has sigma 0");
                 return Err(fault(band.span(), "tolerance", disagree));
@@ -49,10 +49,10 @@ pub(super) fn shift(entry: &DimensionEntry) -> f64 {
     entry.shift.as_ref().map_or(0.0, |shift| *shift.get_ref())
 }
 
-/// A key, its place and its value as a number of sigmas.
+/// A key with its place, and its value as a number of sigmas.
 pub(super) type PerBand = (&'static str, Range<usize>, f64);
 
-/// How many sigmas half a band has, where the study says.
+/// Number of sigmas in half a band. Returns None if the study does not give it.
 pub(super) fn sigmas(entry: &DimensionEntry) -> Result<Option<PerBand>, Fault> {
     let positive = |key: &'static str, given: &Spanned<f64>, factor: f64| {
         let value = *given.get_ref();
@@ -71,7 +71,7 @@ pub(super) fn sigmas(entry: &DimensionEntry) -> Result<Option<PerBand>, Fault> {
         let why = format!("disagree: cpk {} is above cp {}", cpk / SIGMAS, cp / SIGMAS);
         return Err(fault(span.clone(), "cpk", StudyFault::Conflict { a: "cp", b: "cpk", why }));
     }
-    // Without cp the mean lies in the middle, and the two are the same.
+    // Without cp the mean lies in the middle of the band, and cpk equals cp.
     let of_cp = of_cp.or(of_cpk);
     match (of_sigmas, of_cp) {
         (Some((_, _, sigmas)), Some((key, span, of_cp))) if !agree(sigmas, of_cp) => {
@@ -82,7 +82,7 @@ pub(super) fn sigmas(entry: &DimensionEntry) -> Result<Option<PerBand>, Fault> {
     }
 }
 
-/// A dimension without band and sigma is fixed, unless something in it speaks of variation.
+/// Returns None: without band and sigma the dimension is fixed. Fails if the line has a key that describes variation.
 pub(super) fn nothing_to_spread(entry: &DimensionEntry) -> Result<Spread, Fault> {
     let flat = entry.tolerance.is_some() || entry.limits.is_some() || entry.position.is_some();
     let speaks: [(&'static str, Option<Range<usize>>); 7] = [
@@ -95,7 +95,7 @@ pub(super) fn nothing_to_spread(entry: &DimensionEntry) -> Result<Spread, Fault>
         ("drift", entry.drift.as_ref().map(Spanned::span)),
     ];
     for (key, span) in speaks {
-        // A tolerance that is set to 0 for once leaves the rest of the line alone.
+        // A tolerance set to 0 as a trial leaves the other keys of the line as they are.
         if let Some(span) = span.filter(|_| !flat || key == "shift") {
             return Err(fault(span, key, needs_band(key)));
         }
@@ -114,12 +114,12 @@ pub(super) fn agree(a: f64, b: f64) -> bool {
     (a - b).abs() <= AGREE * a.abs().max(b.abs())
 }
 
-/// Whether it is written that there is no tolerance.
+/// True if the tolerance is given as 0.
 pub(super) fn is_flat(entry: &DimensionEntry) -> bool {
     entry.tolerance.as_ref().is_some_and(|tolerance| tolerance.get_ref().is_zero())
 }
 
-/// Refuses what only a normal distribution knows.
+/// Refuses keys that only apply to a normal distribution.
 pub(super) fn only_normal(entry: &DimensionEntry, to: &str) -> Result<(), Fault> {
     let span = |of: &Option<Spanned<f64>>| of.as_ref().map(Spanned::span);
     let keys: [(&'static str, Option<Range<usize>>); 3] = [

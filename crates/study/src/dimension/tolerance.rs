@@ -1,4 +1,4 @@
-//! The tolerance band in its several forms.
+//! Tolerance band in its several forms.
 
 use std::ops::Range;
 
@@ -10,7 +10,7 @@ use super::conflict;
 use sensitol_numeric::dimension::DimensionFault;
 use sensitol_numeric::fits;
 
-/// Deviations from the nominal; None where there is no band or one of width 0.
+/// Deviations from the nominal. Returns None if there is no band or its width is 0.
 pub(super) fn tolerance(entry: &DimensionEntry, nominal: f64) -> Result<Option<[f64; 2]>, Fault> {
     one_form(entry)?;
     let (span, key, deviations) = match (&entry.tolerance, &entry.limits, &entry.fit) {
@@ -30,7 +30,7 @@ pub(super) fn tolerance(entry: &DimensionEntry, nominal: f64) -> Result<Option<[
     }
 }
 
-/// Tolerance, limits and fit are three ways of giving one band.
+/// Checks that only one of tolerance, limits and fit gives the band.
 fn one_form(entry: &DimensionEntry) -> Result<(), Fault> {
     let forms: [(&'static str, Option<Range<usize>>); 3] = [
         ("tolerance", entry.tolerance.as_ref().map(Spanned::span)),
@@ -64,7 +64,7 @@ fn deviations(tolerance: &Spanned<ToleranceEntry>, nominal: f64) -> Result<[f64;
     }
 }
 
-/// ISO 286 counts in millimetres, and nothing here converts units.
+/// Deviations of a fit. The unit must be mm, in which ISO 286 is written: nothing is converted here.
 fn fit(class: &Spanned<String>, unit: Option<&str>, nominal: f64) -> Result<[f64; 2], Fault> {
     match unit {
         Some("mm") => fits::deviations(nominal, class.get_ref()).map_err(|error| fault(class.span(), "fit", error)),

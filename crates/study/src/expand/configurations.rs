@@ -1,18 +1,18 @@
-//! `[configurations]`: nominal values and constants of several sizes of one assembly.
+//! Expands `[configurations]`: nominal values and constants of several sizes of one assembly.
 
 use super::{Expanded, Tree, Value, wrong_type};
 use crate::data::{Cells, Data};
 use crate::error::{Fault, Faults, StudyFault, fault};
 use sensitol_numeric::names::nearest;
 
-/// A size: names and what they are.
+/// A configuration: names of dimensions and constants, with their values.
 struct Configuration {
     name: String,
     span: std::ops::Range<usize>,
     values: Vec<(String, Tree)>,
 }
 
-/// Checks every configuration, sets the nominal values and constants of the one asked for, and leaves the section out.
+/// Checks every configuration, sets the nominal values and constants of the requested one, and removes the section.
 pub(super) fn expand(expanded: &mut Expanded, asked: Option<&str>, data: &mut Data<'_>) -> Result<(), Faults> {
     let configurations = match expanded.tree.get("configurations") {
         Some(section) => read(section, data)?,
@@ -81,7 +81,7 @@ fn read(section: &Tree, data: &mut Data<'_>) -> Result<Vec<Configuration>, Fault
     faults.none().map(|()| configurations)
 }
 
-/// A row of the file is a configuration, and its first column the name.
+/// Configurations of a file: one in each row, with its name in the first column.
 fn of_file(file: &str, entry: &Tree, data: &mut Data<'_>) -> Result<Vec<Configuration>, Fault> {
     let at = |found| fault(entry.span.clone(), "configurations.file", StudyFault::Data(found));
     let Cells { names, rows } = data.cells(file).map_err(at)?;

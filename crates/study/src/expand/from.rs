@@ -1,4 +1,4 @@
-//! Relative dimensions: `x2 = { nominal = 40, tolerance = 0.1, from = "x1" }` is `x1` plus a dimension of its own.
+//! Expands relative dimensions: `x2 = { nominal = 40, tolerance = 0.1, from = "x1" }` is `x1` plus a dimension of its own.
 
 use super::geometry::{Shape, place, shape, takes_from};
 use super::{Expanded, OWN, Origin, Tree, Value, quoted, wrong_type};
@@ -7,9 +7,9 @@ use crate::tree::Key;
 use sensitol_numeric::names::nearest;
 use sensitol_numeric::unit::Unit;
 
-/// The value that a dimension is relative to, before it is checked.
+/// A relative dimension, before it is checked.
 struct Relative {
-    /// Its place in the section.
+    /// Index of the dimension in its section.
     place: usize,
     name: String,
     bases: Vec<(String, std::ops::Range<usize>)>,
@@ -30,7 +30,7 @@ pub(super) fn expand(expanded: &mut Expanded) -> Result<(), Faults> {
     Ok(())
 }
 
-/// Every dimension with a `from`; None where there is none.
+/// Dimensions with the key `from`. Returns None if the study has no dimensions.
 fn relatives(tree: &Tree, faults: &mut Faults) -> Option<Vec<Relative>> {
     let dimensions = tree.get("dimensions")?.entries();
     let mut relatives = Vec::new();
@@ -58,7 +58,7 @@ fn relatives(tree: &Tree, faults: &mut Faults) -> Option<Vec<Relative>> {
     (!relatives.is_empty()).then_some(relatives)
 }
 
-/// The fault of one of them.
+/// First fault of a relative dimension. Returns None if it has none.
 fn checked(tree: &Tree, relative: &Relative, all: &[Relative]) -> Option<Fault> {
     let dimensions = tree.get("dimensions")?.entries();
     let (key, entry) = &dimensions[relative.place];
@@ -110,7 +110,7 @@ fn checked(tree: &Tree, relative: &Relative, all: &[Relative]) -> Option<Fault> 
     None
 }
 
-/// The names along which one comes back to itself.
+/// Chain of names from a dimension back to itself. Returns None if there is none.
 fn circle(name: &str, base: &str, all: &[Relative]) -> Option<Vec<String>> {
     let mut paths = vec![vec![name.to_owned(), base.to_owned()]];
     while let Some(path) = paths.pop() {
@@ -140,7 +140,7 @@ fn replace(expanded: &mut Expanded, relative: &Relative) {
         .map(|(key, _)| key.name.clone())
         .collect();
     let at = dimensions.get(relative.place).and_then(|(_, entry)| place(entry.get("nominal")?)).unwrap_or([0.0; 2]);
-    // The lever of a rotation has the unit of the place; one that is not known says nothing.
+    // The lever of a rotation has the unit of the place. An unknown unit is left out.
     let unit = match dimensions.get(relative.place).and_then(|(_, entry)| entry.get("unit")).map(|unit| &unit.value) {
         Some(Value::Text(unit)) if Unit::parse(unit).is_some() => format!("[{unit}]"),
         _ => String::new(),
@@ -176,7 +176,7 @@ fn replace(expanded: &mut Expanded, relative: &Relative) {
     renamed(&mut expanded.tree, &relative.name, &own);
 }
 
-/// Costs, correlations and blocks of a relative dimension are those of its own part.
+/// Renames a relative dimension to its own part in costs, correlations and blocks.
 fn renamed(tree: &mut Tree, name: &str, own: &str) {
     if let Some(costs) = tree.get_mut("costs").and_then(Tree::entries_mut) {
         for (key, entry) in costs {
@@ -197,7 +197,7 @@ fn renamed(tree: &mut Tree, name: &str, own: &str) {
     }
 }
 
-/// Replaces a text, and those of a list.
+/// Replaces a text, or those in a list.
 fn text(tree: &mut Tree, name: &str, own: &str) {
     match &mut tree.value {
         Value::Text(found) if found == name => own.clone_into(found),
@@ -206,10 +206,10 @@ fn text(tree: &mut Tree, name: &str, own: &str) {
     }
 }
 
-/// The part that the rotation of a located part adds to a coordinate of a feature at this nominal place.
+/// Term that the rotation of a located part adds to a coordinate of a feature at this nominal place.
 fn turned(base: &str, axis: &str, [x, y]: [f64; 2], unit: &str) -> String {
     let rotation = quoted(&format!("{base}_rot"));
-    // Along x a rotation moves a feature by -y, along y by x.
+    // A rotation moves a feature by -y along x, and by x along y.
     let lever = if axis == "_x" { -y } else { x };
     match lever {
         0.0 => String::new(),

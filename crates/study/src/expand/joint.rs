@@ -1,10 +1,10 @@
-//! `[[joint]]`: the file of measured rows, or the distribution of a zone's coordinates, at the dimensions themselves.
+//! Expands `[[joint]]`: copies the file of measured rows, or the distribution of a zone's coordinates, to the dimensions themselves.
 
 use super::{Expanded, Tree, Value};
 use crate::tree::Key;
 use crate::zone::{OF_DISC, OF_RIM};
 
-/// Gives the dimensions of every block the keys that it says of them; what is wrong with a block is said where it is read.
+/// Gives the dimensions of every block the keys that the block determines. Faults of a block are reported where it is read.
 pub(super) fn expand(expanded: &mut Expanded) {
     let Some(Value::Array(blocks)) = expanded.tree.get("joint").map(|list| list.value.clone()) else { return };
     for block in &blocks {
@@ -29,7 +29,7 @@ pub(super) fn expand(expanded: &mut Expanded) {
                     }
                 }
             }
-            // Other faults are reported where the block is read, and not of a distribution that the study does not write.
+            // Other faults are reported where the block is read. A fault of a distribution that the study does not contain would confuse.
             (None, Some(law)) if names.len() == 2 => {
                 let Some(distribution) = distribution(law) else { continue };
                 for name in &names {
@@ -51,12 +51,12 @@ fn key(name: &str, at: &Tree) -> Key {
     Key { span: at.span.clone(), name: name.to_owned() }
 }
 
-/// The keys of a dimension.
+/// Keys of a dimension.
 fn line<'t>(tree: &'t mut Tree, name: &str) -> Option<&'t mut Vec<(Key, Tree)>> {
     tree.get_mut("dimensions")?.get_mut(name)?.entries_mut()
 }
 
-/// Of a coordinate of a zone.
+/// Distribution of a coordinate of a zone. Returns None for an unknown zone.
 fn distribution(law: &Tree) -> Option<Tree> {
     let Value::Text(name) = &law.value else { return None };
     let at = |value| Tree { span: law.span.clone(), value };

@@ -1,7 +1,7 @@
-//! The short forms of a study, in the keys that everything below knows: dimensions, constants and formulas.
+//! Expands the short forms of a study into plain dimensions, constants and formulas.
 //!
-//! The expansion is of the file's tree, before its types are read. The study that is read is therefore just what `expanded`
-//! writes, and no analysis knows of the short form.
+//! The expansion changes the tree of the file before it is read into types. The study that is read is therefore exactly the one that
+//! `expanded` writes, and no analysis needs to handle a short form.
 
 mod configurations;
 mod from;
@@ -17,44 +17,43 @@ use super::error::{Fault, Faults, StudyFault, fault};
 use super::tree::{Key, Tree, Value};
 use sensitol::assembly::formula::is_plain;
 
-/// A study in plain keys.
+/// A study with plain keys only.
 pub(super) struct Expanded {
     pub(super) tree: Tree,
-    /// The names of its configurations, in the order of the file.
+    /// Names of the configurations, in the order of the file.
     pub(super) configurations: Vec<String>,
-    /// For every entry that an element declares, section and name, with the key of the element and its place.
+    /// Origins of all entries that a geometric element declares.
     pub(super) origins: Vec<Origin>,
-    /// Things to know of its geometric elements.
+    /// Facts about the geometric elements that the plain lines do not hold.
     pub(super) elements: Elements,
 }
 
-/// Things to know of geometric elements beside their plain lines.
+/// Facts about geometric elements that their plain lines do not hold.
 #[derive(Default)]
 pub(super) struct Elements {
-    /// Formulas of which the study need not use all.
+    /// Names of formulas that the study need not use.
     pub(super) made: Vec<String>,
-    /// Sizes whose bands can close the clearance.
+    /// Pairs of sizes whose bands overlap, so that the clearance may be 0.
     pub(super) closing: Vec<Closing>,
 }
 
-/// A hole and a pin that may be larger.
+/// A hole with a pin that may be larger than it.
 pub(super) struct Closing {
     pub(super) element: String,
-    /// Diameters as formulas.
+    /// Diameter of the hole, as a formula.
     pub(super) hole: String,
     pub(super) pin: String,
 }
 
-/// Where an entry comes from.
+/// Origin of an entry: the key of its element with its place.
 pub(super) struct Origin {
     section: &'static str,
     name: String,
-    /// The key of the element.
     key: String,
     span: Range<usize>,
 }
 
-/// A study in plain keys, with the nominal values and constants of a configuration where one is asked for.
+/// Expands a study. Sets the nominal values and constants of `configuration` if one is given.
 pub(super) fn expand(tree: Tree, configuration: Option<&str>, data: &mut Data<'_>) -> Result<Expanded, Faults> {
     let mut expanded =
         Expanded { tree, configurations: Vec::new(), origins: Vec::new(), elements: Elements::default() };
@@ -64,20 +63,20 @@ pub(super) fn expand(tree: Tree, configuration: Option<&str>, data: &mut Data<'_
     joint::expand(&mut expanded);
     from::expand(&mut expanded)?;
     geometry::expand(&mut expanded)?;
-    // The blocks of elements.
+    // A second time, for the blocks that geometric elements have added.
     joint::expand(&mut expanded);
     Ok(expanded)
 }
 
 impl Expanded {
-    /// The study as TOML, every entry that an element declares with its origin in `text` as comment.
+    /// Text of the study as TOML. An entry from an element has its origin in `text` as comment.
     pub(super) fn toml(&self, text: &str) -> String {
         toml::written(&self.tree, &self.origins, text)
     }
 }
 
 impl Tree {
-    /// The entries of a table; none of anything else.
+    /// Entries of a table. Returns an empty list for other values.
     fn entries(&self) -> &[(Key, Self)] {
         match &self.value {
             Value::Table(entries) => entries,
@@ -100,7 +99,7 @@ impl Tree {
         self.entries_mut()?.iter_mut().find(|(key, _)| key.name == name).map(|(_, value)| value)
     }
 
-    /// The table of this name, made where there is none.
+    /// Table of this name, which is added if there is none. Returns None if the value is not a table.
     fn section(&mut self, name: &str) -> Option<&mut Vec<(Key, Self)>> {
         let entries = self.entries_mut()?;
         let place = entries.iter().position(|(key, _)| key.name == name).unwrap_or_else(|| {
@@ -112,15 +111,15 @@ impl Tree {
     }
 }
 
-/// The ending of the name of a relative dimension's own part.
+/// Ending of the name of the own part of a relative dimension.
 const OWN: &str = ".own";
 
-/// A name as a formula writes it.
+/// Name in the form that formulas need, in backquotes if it is not plain.
 fn quoted(name: &str) -> String {
     if is_plain(name) { name.to_owned() } else { format!("`{name}`") }
 }
 
-/// A fault of a value that is of another kind.
+/// Fault of a value of the wrong kind.
 fn wrong_type(tree: &Tree, key: String, expected: &str) -> Fault {
     let found = match &tree.value {
         Value::Table(_) => "a table".to_owned(),

@@ -1,4 +1,4 @@
-//! `[processes]`: capabilities by name, at the dimensions and the processes of costs that name one.
+//! Expands `[processes]`: copies the capability of a named process to the dimensions and cost processes that name it.
 
 use std::ops::Range;
 
@@ -8,13 +8,12 @@ use crate::error::{Fault, Faults, StudyFault, fault};
 use crate::tree::Key;
 use sensitol_numeric::names::nearest;
 
-/// Keys of a process.
+/// Keys that a process may have.
 const KEYS: [&str; 7] = ["cp", "cpk", "sigma", "sigmas", "side", "drift", "distribution"];
-/// Keys that say how far a dimension spreads: one at the dimension itself takes the place of all of the process.
+/// Keys of the spread. One of them at the dimension replaces all of those of the process.
 const SPREADS: [&str; 4] = ["sigma", "sigmas", "cp", "cpk"];
 
-/// Gives every dimension and every process of a cost with a `process` the keys of that one which it does not have itself, and leaves the
-/// section out.
+/// Gives every dimension and every process of a cost with the key `process` the keys of that process which it lacks. Removes the section.
 pub(super) fn expand(expanded: &mut Expanded, data: &mut Data<'_>) -> Result<(), Faults> {
     let processes = match expanded.tree.get("processes") {
         Some(section) => read(section, data)?,
@@ -37,7 +36,7 @@ pub(super) fn expand(expanded: &mut Expanded, data: &mut Data<'_>) -> Result<(),
     faults.none()
 }
 
-/// Gives a line with a `process` the keys of that one which it does not have itself.
+/// Gives a line with the key `process` the keys of that process which it lacks.
 fn taken(line: &mut Tree, processes: &Processes, at: &str, faults: &mut Faults) {
     let Some(line) = line.entries_mut() else { return };
     let Some(place) = line.iter().position(|(key, _)| key.name == "process") else { return };
@@ -67,7 +66,7 @@ fn unknown(name: &str, span: Range<usize>, at: String, processes: &Processes) ->
     fault(span, at, StudyFault::UnknownWord { what: "process", found: name.to_owned(), nearest, known })
 }
 
-/// The line's own keys win.
+/// Copies keys to a line. Keys that the line has take precedence.
 fn merge(line: &mut Vec<(Key, Tree)>, keys: &[(Key, Tree)]) {
     let has = |line: &[(Key, Tree)], names: &[&str]| line.iter().any(|(key, _)| names.contains(&key.name.as_str()));
     let own = has(line, &SPREADS);
@@ -79,7 +78,7 @@ fn merge(line: &mut Vec<(Key, Tree)>, keys: &[(Key, Tree)]) {
     }
 }
 
-/// The section itself, or the file that it names.
+/// Reads the section, or the file that it names.
 fn read(section: &Tree, data: &mut Data<'_>) -> Result<Processes, Faults> {
     match &section.value {
         Value::Table(entries) => checked(entries),
@@ -93,7 +92,7 @@ fn read(section: &Tree, data: &mut Data<'_>) -> Result<Processes, Faults> {
             let tree = Tree::of_toml(&text).map_err(|fault| at(of_file(&fault)))?;
             let mut found = checked(tree.entries())
                 .map_err(|faults| Faults(faults.0.iter().map(|found| at(of_file(found))).collect()))?;
-            // Places in that file are no places of the study.
+            // Places in that file are not places in the study, so the section stands for them.
             found.iter_mut().flat_map(|(_, keys)| keys).for_each(|(key, value)| {
                 key.span = section.span.clone();
                 replace(value, &section.span);

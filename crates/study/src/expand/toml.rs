@@ -1,9 +1,9 @@
-//! A tree as a study file in TOML.
+//! Writes a tree as a study file in TOML.
 
 use super::{Origin, Tree, Value};
 use crate::write;
 
-/// The whole study: what stands alone first, then a section each with an entry a line.
+/// Text of the whole study: plain keys first, then the sections, each with one line for an entry.
 pub(super) fn written(tree: &Tree, origins: &[Origin], text: &str) -> String {
     let mut out = String::new();
     let is_section = |tree: &Tree| match &tree.value {

@@ -1,47 +1,47 @@
-//! The columns of a stack-up table, by their headers in English and German.
+//! Columns of a stack-up table, recognised by their headers in English and German.
 
 use super::sheet::Content;
 
-/// A column that means something.
+/// Meaning of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Role {
-    /// The name of a dimension.
+    /// Name of the dimension.
     Name,
-    /// The part that it belongs to.
+    /// Part of the dimension.
     Part,
-    /// Words about it.
+    /// Description of the dimension.
     Description,
-    /// Its drawing.
+    /// Number of the drawing.
     Drawing,
-    /// The revision of that.
+    /// Revision of the drawing.
     Revision,
-    /// The feature of the part, or its number on the drawing.
+    /// Feature of the part, or its number on the drawing.
     Feature,
-    /// Whether it adds or subtracts.
+    /// Sign of the dimension in the sum.
     Direction,
-    /// By what it is multiplied.
+    /// Factor of the dimension in the sum.
     Factor,
-    /// Its nominal value.
+    /// Nominal value.
     Nominal,
-    /// Its upper deviation.
+    /// Upper deviation.
     Upper,
-    /// Its lower deviation, with its sign.
+    /// Lower deviation with its sign.
     Lower,
-    /// Its lower deviation, which is negative without a sign too.
+    /// Lower deviation that is negative even without a sign.
     Minus,
-    /// Its tolerance in one cell.
+    /// Tolerance in one cell.
     Tolerance,
-    /// Its unit.
+    /// Unit.
     Unit,
-    /// How it is distributed.
+    /// Kind of distribution.
     Distribution,
-    /// Its process capability.
+    /// Process capability.
     Cp,
-    /// Its standard deviation.
+    /// Standard deviation.
     Sigma,
 }
 
-/// Every role with its name and its headers, as [`plain`] leaves them.
+/// Roles with their names and headers. Headers are in the form that [`plain`] gives.
 pub const ROLES: [(Role, &str, &[&str]); 17] = [
     (Role::Name, "name", &["name", "dimension", "bezeichnung", "mass", "masz", "massbezeichnung", "symbol", "id"]),
     (Role::Part, "part", &["part", "component", "bauteil", "teil", "komponente"]),
@@ -85,7 +85,7 @@ pub const ROLES: [(Role, &str, &[&str]); 17] = [
     (Role::Sigma, "sigma", &["sigma", "standard deviation", "standardabweichung", "s"]),
 ];
 
-/// A header without case, accents, and the unit in brackets after it, which comes second.
+/// Header in lower case without accents, and the unit in brackets behind it, if any.
 pub(crate) fn plain(header: &str) -> (String, Option<String>) {
     let (name, unit) = match header.split_once(['[', '(']) {
         Some((name, rest)) if rest.trim_end().ends_with([']', ')']) => {
@@ -109,17 +109,17 @@ pub(crate) fn plain(header: &str) -> (String, Option<String>) {
     (text.split_whitespace().collect::<Vec<_>>().join(" "), unit)
 }
 
-/// The role of a header, and the unit that it names.
+/// Role of a header and the unit in it. Returns None for an unknown header.
 pub(crate) fn role(header: &Content) -> Option<(Role, Option<String>)> {
     let Content::Text(text) = header else { return None };
     let (name, unit) = plain(text);
     ROLES.iter().find(|(_, _, headers)| headers.contains(&name.as_str())).map(|(role, ..)| (*role, unit))
 }
 
-/// The roles that are texts of a dimension, in the order of its keys.
+/// Roles of the texts of a dimension, in the order of its keys.
 pub(super) const LABELLED: [Role; 5] = [Role::Description, Role::Part, Role::Drawing, Role::Revision, Role::Feature];
 
-/// The role of this name.
+/// Role of this name. Returns None if there is none.
 pub fn named(name: &str) -> Option<Role> {
     ROLES.iter().find(|(_, known, _)| *known == name).map(|(role, ..)| *role)
 }

@@ -1,10 +1,10 @@
-//! Why a table cannot become a study.
+//! Reasons why a table cannot become a study.
 
-/// A fault with the cell that it is about, as a spreadsheet names it.
+/// A fault with the name of its cell in a spreadsheet.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{}{problem}", self.cell.as_ref().map(|cell| format!("{cell}: ")).unwrap_or_default())]
 pub struct ImportFault {
-    /// The cell; None where the fault has none.
+    /// Name of the cell; None if the fault has none.
     pub(crate) cell: Option<String>,
     /// The fault.
     pub problem: ImportProblem,
@@ -13,99 +13,99 @@ pub struct ImportFault {
 /// The faults of tables.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ImportProblem {
-    /// Nothing is in it.
+    /// The table is empty.
     #[error("the table is empty")]
     Empty,
-    /// No row names the columns that are needed.
+    /// No row names the required columns.
     #[error("no row names the columns: one is needed for the name of each dimension and one for its nominal value")]
     NoHeader,
-    /// Two columns of the same meaning.
+    /// Two columns with the same meaning.
     #[error("this column and {other} both hold the {role}")]
     Twice {
-        /// Their meaning.
+        /// Meaning of the columns.
         role: &'static str,
-        /// The cell of the other header.
+        /// Cell of the other header.
         other: String,
     },
-    /// A column is named that the table has not.
+    /// The table has no column of the requested name.
     #[error("there is no column `{header}`")]
     NoColumn {
-        /// As asked for.
+        /// Header that was asked for.
         header: String,
-        /// The columns that there are.
+        /// Headers of the table.
         known: Vec<String>,
     },
-    /// A cell that holds something else where a number belongs.
+    /// A cell with text in place of a number.
     #[error("`{text}` is not a number")]
     NoNumber {
-        /// The cell.
+        /// Text of the cell.
         text: String,
-        /// Whether a decimal comma is the reason.
+        /// True if a decimal comma is the reason.
         comma: bool,
     },
-    /// A date where something else belongs.
+    /// A date in place of another value.
     #[error("the cell holds a date: spreadsheets make one of 1-2")]
     Date,
-    /// The result of a formula that cannot be computed.
+    /// Error value of a spreadsheet formula.
     #[error("the cell holds the error {text}")]
     Error {
-        /// Such as #REF!.
+        /// The error, such as #REF!.
         text: String,
     },
-    /// A percentage where a number belongs.
+    /// A percentage in place of a number.
     #[error("`{text} %` is a percentage, where a number belongs")]
     Percent {
-        /// The percentage.
+        /// The percentage, without its sign.
         text: String,
     },
-    /// Two styles of numbers.
+    /// Two different decimal marks in one table.
     #[error("`{text}` has another decimal mark than {other}")]
     TwoMarks {
-        /// The cell.
+        /// Text of the cell.
         text: String,
-        /// The other cell.
+        /// Name of the other cell.
         other: String,
     },
-    /// A nominal value without a name.
+    /// A row with a nominal value but no name.
     #[error("the dimension of this row has no name")]
     NoName,
-    /// A name that stands twice.
+    /// A name that occurs twice.
     #[error("`{name}` stands in {other} already")]
     NameTwice {
         /// The name.
         name: String,
-        /// The other cell.
+        /// Name of the other cell.
         other: String,
     },
-    /// A tolerance in no form that is known.
+    /// A tolerance in an unknown form.
     #[error("`{text}` is not a tolerance")]
     NoTolerance {
-        /// The cell.
+        /// Text of the cell.
         text: String,
     },
-    /// A tolerance twice.
+    /// A tolerance that is given in two columns.
     #[error("the tolerance stands in {other} too")]
     ToleranceTwice {
-        /// The other cell.
+        /// Name of the other cell.
         other: String,
     },
-    /// One deviation without the other.
+    /// A deviation on one side only.
     #[error("the upper and the lower deviation belong together, and one of them is missing")]
     OneDeviation,
-    /// A word that is none of those that are known.
+    /// A word that is not one of the permitted ones.
     #[error("`{text}` is not a {what}")]
     Unknown {
-        /// The cell.
+        /// Text of the cell.
         text: String,
-        /// A direction or a distribution.
+        /// Kind of the word: direction or distribution.
         what: &'static str,
-        /// The words that are known.
+        /// Permitted words.
         known: &'static str,
     },
-    /// No row is a dimension.
+    /// No row has a nominal value.
     #[error("no row has a nominal value")]
     NoDimension,
-    /// All that is imported has no effect.
+    /// All factors are 0, so the characteristic would depend on nothing.
     #[error("every factor is 0: nothing is added up")]
     NoEffect,
 }
@@ -117,7 +117,7 @@ impl ImportFault {
 }
 
 impl ImportProblem {
-    /// The way out, where one can be named.
+    /// Advice for the user. Returns None if there is none.
     pub fn help(&self) -> Option<String> {
         let list = |known: &[String]| known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
         Some(match self {

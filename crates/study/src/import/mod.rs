@@ -1,4 +1,4 @@
-//! A stack-up table of a spreadsheet as a study: one row a dimension, and one characteristic that adds them up.
+//! Imports a stack-up table of a spreadsheet as a study. Each row is a dimension, and one characteristic adds them up.
 
 mod columns;
 mod fault;

@@ -1,29 +1,29 @@
-//! A sheet: cells by their row and column, as a spreadsheet names them.
+//! Cells of a sheet by row and column, with their names in a spreadsheet.
 
 use crate::table::{DELIMITERS, delimiter, records};
 
-/// A cell as a spreadsheet holds it.
+/// Content of a cell.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Content {
-    /// Nothing.
+    /// An empty cell.
     Empty,
-    /// Text, numbers too: their style belongs to the whole table.
+    /// Text. Numbers of a text file are also text, since their style follows from the whole table.
     Text(String),
-    /// A number of a workbook, and whether it is shown in percent.
+    /// A number of a workbook.
     Number {
-        /// As it is: 2 % are 0.02.
+        /// Value: 0.02 for 2 %.
         value: f64,
-        /// Whether 0.02 is shown as 2 %.
+        /// True if the cell shows 0.02 as 2 %.
         percent: bool,
     },
     /// A date or a time.
     Date,
-    /// The result of a formula that cannot be computed, such as #REF!.
+    /// Error value of a spreadsheet formula, such as #REF!.
     Error(String),
 }
 
 impl Content {
-    /// Text and plain numbers, for a column of words.
+    /// Text or plain number, for a column of words. Returns None for other cells.
     pub(super) fn words(&self) -> Option<String> {
         match self {
             Self::Text(text) => Some(text.clone()),
@@ -33,17 +33,17 @@ impl Content {
     }
 }
 
-/// The rows of a table that is to become a study.
+/// Rows of a table that becomes a study.
 #[derive(Debug, Clone, Default)]
 pub struct Sheet {
-    /// Every row with its number in the file, from 1.
+    /// Rows with their numbers in the file, from 1.
     pub(crate) rows: Vec<(u64, Vec<Content>)>,
-    /// Whether commas separate its columns, so that a comma in a cell is not a decimal one.
+    /// True if commas separate the columns, so that a comma in a cell is not a decimal one.
     pub(crate) commas_separate: bool,
 }
 
 impl Sheet {
-    /// Of text with tabs, semicolons or commas between the columns.
+    /// Sheet of a text with tabs, semicolons or commas between the columns.
     pub fn of_text(text: &str) -> Self {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let delimiter = delimiter(text, DELIMITERS);
@@ -56,7 +56,7 @@ impl Sheet {
     }
 }
 
-/// The name of a cell, such as B7: the column counted from 0, the row from 1.
+/// Name of a cell, such as B7. Columns count from 0, rows from 1.
 pub(crate) fn address(row: u64, column: usize) -> String {
     let (mut letters, mut left) = (String::new(), column + 1);
     while left > 0 {

@@ -1,4 +1,4 @@
-//! The rows of a table, and the study that they become.
+//! Reads the rows of a stack-up table and writes a study from them.
 
 use std::fmt::Write;
 
@@ -11,9 +11,9 @@ use crate::table::{NumberFault, Style};
 use sensitol::assembly::formula::is_plain;
 use sensitol_numeric::labels::LABELS;
 
-/// Rows in which the header is sought.
+/// Number of rows in which the header is searched for.
 const HEADER: usize = 30;
-/// Distributions by their names in tables.
+/// Words for distributions in tables, by the name of the kind in a study.
 const DISTRIBUTIONS: [(&str, &[&str]); 5] = [
     ("normal", &["normal", "gauss", "gaussian", "normalverteilung", "n"]),
     ("uniform", &["uniform", "rectangular", "gleich", "gleichverteilung", "rechteck", "r"]),
@@ -21,38 +21,40 @@ const DISTRIBUTIONS: [(&str, &[&str]); 5] = [
     ("beta", &["beta"]),
     ("trapezoidal", &["trapezoidal", "trapez", "trapezoid"]),
 ];
+/// Words for the direction of a dimension that is added.
 const PLUS: [&str; 8] = ["+", "+1", "1", "right", "rechts", "up", "plus", "add"];
+/// Words for the direction of a dimension that is subtracted.
 const MINUS: [&str; 7] = ["-", "-1", "left", "links", "down", "minus", "subtract"];
 
-/// A study that was made of a table.
+/// A study made from a table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Imported {
-    /// The study as TOML.
+    /// Text of the study as TOML.
     pub study: String,
-    /// Rows and columns that were left out, and assumptions, for the user.
+    /// Notes for the user: rows and columns that were left out, and assumptions.
     pub notes: Vec<String>,
 }
 
-/// A number with its cell.
+/// A number and the name of its cell.
 struct Figure {
     cell: String,
-    /// Empty of a number that a workbook holds as such.
+    /// Text of the cell; empty for a number of a workbook, which is not text.
     text: String,
     value: Option<f64>,
 }
 
-/// Numbers that are read together, because their style belongs to all of them.
+/// Numbers that are parsed together, since the style of decimals and thousands follows from all of them.
 #[derive(Default)]
 struct Figures(Vec<Figure>);
 
 impl Figures {
-    /// Keeps a number to be read later, by its place.
+    /// Keeps a text to be parsed later. Returns its index.
     fn keep(&mut self, cell: &str, text: &str) -> usize {
         self.0.push(Figure { cell: cell.to_owned(), text: text.to_owned(), value: None });
         self.0.len() - 1
     }
 
-    /// Keeps a number as it is.
+    /// Keeps a number of a workbook. Returns its index.
     fn keep_value(&mut self, cell: &str, value: f64) -> usize {
         self.0.push(Figure { cell: cell.to_owned(), text: String::new(), value: Some(value) });
         self.0.len() - 1
@@ -92,12 +94,12 @@ impl Figures {
     }
 }
 
-/// 0.02 are 2 %, without what rounding leaves.
+/// Percentage of a fraction: 0.02 is 2 %. Thirteen decimals of the mantissa remove the error of the product.
 fn in_percent(value: f64) -> f64 {
     format!("{:.13e}", 100.0 * value).parse().unwrap_or(100.0 * value)
 }
 
-/// A tolerance, its numbers by their places.
+/// Tolerance of a row. Its numbers are indices into [`Figures`].
 enum Band {
     None,
     Half(usize),
@@ -107,7 +109,7 @@ enum Band {
     Class(String),
 }
 
-/// A dimension as its row has it.
+/// Dimension of a row. Its numbers are indices into [`Figures`].
 struct Row {
     name: String,
     nominal: usize,
@@ -118,22 +120,22 @@ struct Row {
     cp: Option<usize>,
     unit: Option<String>,
     distribution: Option<&'static str>,
-    /// Its texts, in the order of their keys.
+    /// Texts for description, part, drawing, revision and feature, in this order.
     labels: [Option<String>; 5],
 }
 
-/// The columns of a table by their roles.
+/// Header row of a table: columns by their roles.
 struct Header {
     row: u64,
     columns: Vec<(Role, usize)>,
-    /// The unit that the header of the nominal value names.
+    /// Unit in the header of the nominal value; None if there is none.
     unit: Option<String>,
     unknown: Vec<String>,
-    /// Where the rows below begin, as a place in the sheet.
+    /// Index in the sheet of the first row below the header.
     next: usize,
 }
 
-/// Reads a table: `named` gives roles to headers that are not known, and the characteristic is called `output`.
+/// Reads a table. `named` gives roles to unknown headers. The characteristic gets the name `output`.
 pub fn import(sheet: &Sheet, named: &[(Role, String)], output: &str) -> Result<Imported, ImportFault> {
     let header = header(sheet, named)?;
     let mut figures = Figures::default();
@@ -163,6 +165,7 @@ pub fn import(sheet: &Sheet, named: &[(Role, String)], output: &str) -> Result<I
     if header.column(Role::Direction).is_none() && header.column(Role::Factor).is_none() {
         notes.push("no column has a direction or a factor: all dimensions are added".to_owned());
     }
+    // Numbers are parsed only now, since their style follows from all cells together.
     let values = figures.read(sheet.commas_separate)?;
     let fixed: Vec<&str> = rows
         .iter()
@@ -180,18 +183,18 @@ impl Header {
         self.columns.iter().find(|(known, _)| *known == role).map(|(_, column)| *column)
     }
 
-    /// The name of the cell of a column in a row.
+    /// Name of the cell of a role in a row, such as B7.
     fn cell(&self, role: Role, row: u64) -> String {
         address(row, self.column(role).unwrap_or(0))
     }
 }
 
-/// Whether a row names the columns that are needed.
+/// True if a row of the sheet names the required columns.
 pub fn has_header(sheet: &Sheet, named: &[(Role, String)]) -> bool {
     header(sheet, named).is_ok()
 }
 
-/// The first row in which name and nominal value have their columns.
+/// First row with columns for the name and the nominal value.
 fn header(sheet: &Sheet, named: &[(Role, String)]) -> Result<Header, ImportFault> {
     let none = |problem| ImportFault { cell: None, problem };
     if sheet.rows.is_empty() {
@@ -207,7 +210,7 @@ fn header(sheet: &Sheet, named: &[(Role, String)]) -> Result<Header, ImportFault
     };
     let found = sheet.rows.iter().take(HEADER).position(|(_, row)| holds(row, Role::Name) && holds(row, Role::Nominal));
     let Some(place) = found else {
-        // A name that was given and stands in no row is a slip.
+        // A header given by the user that stands in no row is most likely misspelt.
         let texts = |row: &[Content]| -> Vec<String> {
             row.iter()
                 .filter_map(|cell| if let Content::Text(text) = cell { Some(text.clone()) } else { None })
@@ -225,7 +228,7 @@ fn header(sheet: &Sheet, named: &[(Role, String)]) -> Result<Header, ImportFault
     for (column, cell) in content.iter().enumerate() {
         let Content::Text(text) = cell else { continue };
         let given = named.iter().find(|(_, header)| text.trim() == header).map(|(role, _)| (*role, None));
-        // A role that was given to another header is not taken by this one.
+        // A role that the user has given to another header is not taken by this one.
         let own = role(cell).filter(|(role, _)| !named.iter().any(|(given, _)| given == role));
         let Some((role, unit)) = given.or(own) else {
             header.unknown.push(text.clone());
@@ -271,7 +274,7 @@ fn row(header: &Header, line: u64, content: &[Content], figures: &mut Figures) -
         return Err(ImportFault::of(address(line, column), problem));
     }
     let name = text(Role::Name).ok_or_else(|| at(Role::Name, ImportProblem::NoName))?;
-    // A backquote ends a name in formulas.
+    // A backquote ends a name in formulas, so it is replaced.
     let name = name.replace('`', "'").split_whitespace().collect::<Vec<_>>().join(" ");
     let nominal = figures.keep_content(&header.cell(Role::Nominal, line), of(Role::Nominal))?;
     let nominal = nominal.ok_or_else(|| at(Role::Nominal, ImportProblem::NoDimension))?;

@@ -2,20 +2,20 @@
 
 use crate::table::clean;
 
-/// A tolerance as it is written, with its numbers as text: their style belongs to the whole table.
+/// A tolerance as written. Its numbers are text, since their style follows from the whole table.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Written {
-    /// Half the band.
+    /// Half-width of the band.
     Half(String),
     /// Two deviations, in any order.
     Two([String; 2]),
-    /// Half the band in percent of the nominal.
+    /// Half-width of the band in percent of the nominal.
     Percent(String),
-    /// A class of ISO 286.
+    /// Tolerance class of ISO 286.
     Class(String),
 }
 
-/// None where it is none of these.
+/// Tolerance in a cell. Returns None if it has none of these forms.
 pub(super) fn written(cell: &str) -> Option<Written> {
     let text: String = clean(cell).chars().filter(|c| !c.is_whitespace()).collect();
     let half = ["±", "+/-", "+-"].iter().find_map(|sign| text.strip_prefix(sign));

@@ -1,4 +1,4 @@
-//! Workbooks of spreadsheets: the values of a sheet's cells, those of formulas as they were last computed.
+//! Reads workbooks: the values of the cells of a sheet. Formulas give the values that were computed last.
 
 use std::io::Cursor;
 
@@ -7,51 +7,52 @@ use calamine::{DataRef, Reader, SheetType, SheetVisible, Xlsx, XlsxError};
 use super::sheet::{Content, Sheet};
 use sensitol_numeric::names::nearest;
 
-/// Cells that a sheet may have, with the empty ones before the last of each row.
+/// Greatest number of cells of a sheet, with the empty ones before the last of each row. It bounds the memory.
 const MOST: usize = 2_000_000;
-/// How files begin: workbooks and other archives, and what Excel wrote until 2003, which also wraps encrypted workbooks.
+/// First bytes of a zip archive, which workbooks are.
 const ARCHIVE: &[u8] = b"PK\x03\x04";
+/// First bytes of a compound file: the format of Excel until 2003, which also wraps encrypted workbooks.
 const COMPOUND: &[u8] = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1";
 
-/// Why a workbook cannot be read.
+/// Reasons why a workbook cannot be read.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum WorkbookFault {
-    /// It is encrypted.
+    /// The workbook is encrypted.
     #[error("the workbook is protected by a password")]
     Password,
-    /// A file of a spreadsheet in another format.
+    /// The file is a spreadsheet in another format.
     #[error("the file is {what}")]
     Format {
-        /// The format.
+        /// Name of the format.
         what: &'static str,
     },
-    /// Nothing that can be read.
+    /// The file cannot be read as a workbook.
     #[error("the workbook is damaged, or the file is not a workbook: {reason}")]
     Damaged {
-        /// The message of its reader.
+        /// Message of the reader.
         reason: String,
     },
-    /// No sheet of this name.
+    /// The workbook has no sheet of this name.
     #[error("there is no sheet `{name}`")]
     NoSheet {
-        /// As asked for.
+        /// Name of the sheet that was asked for.
         name: String,
-        /// Those that there are.
+        /// Names of the sheets.
         known: Vec<String>,
     },
-    /// No sheet with cells.
+    /// The workbook has no visible sheet with cells.
     #[error("the workbook has no visible sheet of cells")]
     NoCells,
-    /// More cells than a stack has.
+    /// The sheet has more cells than are permitted.
     #[error("the sheet `{name}` is larger than {MOST} cells")]
     TooLarge {
-        /// The sheet.
+        /// Name of the sheet.
         name: String,
     },
 }
 
 impl WorkbookFault {
-    /// The way out, where one can be named.
+    /// Advice for the user. Returns None if there is none.
     pub fn help(&self) -> Option<String> {
         Some(match self {
             Self::Password => "open it and save a copy without the password".to_owned(),
@@ -71,7 +72,7 @@ impl WorkbookFault {
     }
 }
 
-/// Whether a file is one of a spreadsheet program, rather than text.
+/// True if a file begins like one of a spreadsheet program.
 pub fn is_workbook(bytes: &[u8]) -> bool {
     bytes.starts_with(ARCHIVE) || bytes.starts_with(COMPOUND)
 }
@@ -84,7 +85,7 @@ pub fn workbook(
 ) -> Result<(String, Sheet), WorkbookFault> {
     let begins = |head: &[u8]| bytes.starts_with(head);
     let compound = begins(COMPOUND);
-    // An archive of OpenDocument names its type first.
+    // An OpenDocument archive holds its type in its first entry.
     let open_document = bytes.get(30..).is_some_and(|rest| rest.starts_with(b"mimetypeapplication/vnd.oasis"));
     let mut book: Xlsx<_> = Xlsx::new(Cursor::new(bytes)).map_err(|error| match error {
         XlsxError::Password => WorkbookFault::Password,
@@ -116,7 +117,7 @@ pub fn workbook(
     first.ok_or(WorkbookFault::NoCells)
 }
 
-/// The cells of a sheet as they come: a sheet with one cell in its last corner needs no more room than others.
+/// Reads the cells one by one. A sheet with a single cell in its last corner then takes no more memory than others.
 fn read(book: &mut Xlsx<Cursor<Vec<u8>>>, name: &str) -> Result<Sheet, WorkbookFault> {
     let mut reader = book.worksheet_cells_reader(name).map_err(|error| damaged(&error))?;
     let percent: Vec<bool> = (reader.styles().iter())
@@ -133,7 +134,7 @@ fn read(book: &mut Xlsx<Cursor<Vec<u8>>>, name: &str) -> Result<Sheet, WorkbookF
         if rows.last().is_none_or(|(last, _)| *last < line) {
             rows.push((line, Vec::new()));
         }
-        // Cells in disorder are those of no spreadsheet.
+        // Rows that go backwards do not occur in files of spreadsheet programs, so such a cell is left out.
         let place = rows.partition_point(|(other, _)| *other < line);
         let Some((_, cells)) = rows.get_mut(place).filter(|(other, _)| *other == line) else { continue };
         if cells.len() <= column {
@@ -166,7 +167,7 @@ fn content(cell: &DataRef<'_>, percent: bool) -> Content {
     }
 }
 
-/// Whether a format shows a number in percent: the sign outside of quoted text and not escaped.
+/// True if a number format shows percent: it has a percent sign that is neither quoted nor escaped.
 fn is_percent(format: &str) -> bool {
     let (mut quoted, mut escaped) = (false, false);
     for c in format.chars() {

@@ -1,4 +1,4 @@
-//! Tables that people write: their delimiters, and the styles of their numbers.
+//! Tables that people write: their delimiters, and the style of their numbers.
 
 mod number;
 mod text;
@@ -7,5 +7,5 @@ pub(crate) use number::clean;
 pub use number::{NumberFault, Style};
 pub use text::{delimiter, records};
 
-/// Between columns, in the order in which they are tried: a comma may be a decimal one.
+/// Delimiters between columns, in the order of trial. The comma is last, since it may be a decimal one.
 pub(crate) const DELIMITERS: [u8; 3] = [b'\t', b';', b','];

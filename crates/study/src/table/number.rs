@@ -1,41 +1,41 @@
-//! Numbers as spreadsheets write them: decimal points or commas, thousands apart, signs of typesetters.
+//! Numbers as spreadsheets write them: decimal points or commas, separators of thousands, typographic minus signs.
 //!
-//! The style belongs to a list of cells, a column or a file, because one cell alone may be read in two ways: `1.234` is 1.234, unless
-//! another cell shows that points separate thousands (`1.234,50`, `1.234.567`). A comma is a decimal one, unless it separates columns or
+//! The style belongs to a list of cells (a column or a file), because one cell alone may be read in two ways. `1.234` is 1.234, unless
+//! another cell shows that points separate thousands (`1.234,50`, `1.234.567`). A comma is a decimal comma, unless it separates columns or
 //! another cell shows that it separates thousands. A cell that contradicts the others is a fault.
 
-/// How the numbers of some cells are written.
+/// Style of the numbers in a list of cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Style {
-    /// The first cell that shows which mark is the decimal one, by its place; and whether that is the comma.
+    /// Index of the first cell that shows the decimal mark, and true if that mark is the comma. None if no cell shows it.
     shown: Option<(usize, bool)>,
-    /// Whether commas separate columns, so that one in a cell means nothing by itself.
+    /// True if commas separate columns, so that one within a cell has no meaning by itself.
     commas_separate: bool,
-    /// The first cell with one point, and with one comma, by their places.
+    /// Indices of the first cell with one point and of the first with one comma.
     seen: [Option<usize>; 2],
 }
 
-/// Why a cell is not a number.
+/// Reasons why a cell is not a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NumberFault {
-    /// It is none; whether a decimal comma in a table with commas between columns is the reason.
+    /// The cell is not a number.
     NoNumber {
-        /// Whether a comma is the reason.
+        /// True if the reason is a decimal comma in a table with commas between columns.
         comma: bool,
     },
-    /// It is infinite, or beyond a double.
+    /// The number is infinite or beyond the range of a double.
     NotFinite,
-    /// Its decimal mark is another one than that of the cell at this place.
+    /// The decimal mark differs from that of another cell.
     TwoMarks {
-        /// Whether its own is the comma.
+        /// True if the mark of this cell is the comma.
         comma: bool,
-        /// The other cell.
+        /// Index of the other cell.
         other: usize,
     },
 }
 
-/// A cell without the characters that mean nothing to a number: spaces that do not break, apostrophes between digits, and with the minus of
-/// typesetters as a hyphen.
+/// Cell without characters that have no meaning in a number. Non-breaking spaces and apostrophes between digits are removed, and a
+/// typographic minus becomes a hyphen.
 pub(crate) fn clean(cell: &str) -> String {
     let all: Vec<char> = cell.trim().chars().collect();
     let digit = |place: Option<usize>| place.and_then(|place| all.get(place)).is_some_and(char::is_ascii_digit);
@@ -48,7 +48,7 @@ pub(crate) fn clean(cell: &str) -> String {
     all.iter().enumerate().filter_map(kept).collect()
 }
 
-/// The digits between two marks of thousands are three, and one to three before the first.
+/// True if marks separate groups of three digits, the first of them of one to three.
 fn grouped(text: &str, mark: char) -> bool {
     let digits = text.trim_start_matches(['+', '-']);
     let mut groups = digits.split(mark);
@@ -57,13 +57,14 @@ fn grouped(text: &str, mark: char) -> bool {
         && groups.all(|group| group.len() == 3 && figures(group))
 }
 
-/// Whether marks of thousands stand before the decimal mark only, three digits apart.
+/// True if all marks of thousands stand before the decimal mark, three digits apart.
 fn fits(text: &str, decimal: char, mark: char) -> bool {
     let (before, after) = text.split_once(decimal).unwrap_or((text, ""));
     grouped(before, mark) && !after.contains(mark)
 }
 
-/// Whether a cell by itself shows that its decimal mark is the comma, or the point; None where it may be either, or no number at all.
+/// True if the cell by itself shows that its decimal mark is the comma, false if the point. Returns None if it may be either or is no
+/// number.
 fn shows(text: &str) -> Option<bool> {
     let count = |mark: char| text.matches(mark).count();
     let whole = |decimal: char, mark: char| fits(text, decimal, mark).then_some(decimal == ',');
@@ -77,7 +78,7 @@ fn shows(text: &str) -> Option<bool> {
 }
 
 impl Style {
-    /// Of these cells, of a table in which commas separate columns or do not.
+    /// Style of these cells. `commas_separate` is true if commas separate the columns of their table.
     pub fn of<'c>(cells: impl IntoIterator<Item = &'c str>, commas_separate: bool) -> Self {
         let mut style = Self { commas_separate, ..Self::default() };
         for (place, cell) in cells.into_iter().enumerate() {
@@ -94,7 +95,7 @@ impl Style {
         style
     }
 
-    /// The number in a cell at this place.
+    /// Number in the cell with this index.
     pub fn number(&self, place: usize, cell: &str) -> Result<f64, NumberFault> {
         let text = clean(cell);
         let has = |mark: char| text.contains(mark);
@@ -159,7 +160,7 @@ mod tests {
     fn contradictions_name_both_cells() {
         assert_eq!(read(&["0,5", "1.25"], false), Err((1, NumberFault::TwoMarks { comma: false, other: 0 })));
         assert_eq!(read(&["1.25", "0,5"], false), Err((1, NumberFault::TwoMarks { comma: true, other: 0 })));
-        // Either is a thousand and more, or one and a bit: nothing shows which.
+        // Each may be above a thousand or between one and two: nothing shows which.
         assert_eq!(read(&["1.234", "0,5"], false), Err((1, NumberFault::TwoMarks { comma: true, other: 0 })));
         assert_eq!(read(&["1.234,5", "1.25"], false), Err((1, NumberFault::TwoMarks { comma: false, other: 0 })));
         assert_eq!(read(&["1,234.5", "1.234,5"], false), Err((1, NumberFault::TwoMarks { comma: true, other: 0 })));

@@ -1,7 +1,7 @@
-//! Delimited text as rows of cells.
+//! Splits delimited text into rows of cells.
 
-/// The delimiter of a table: the first of the candidates that splits the header and the row after it alike, or else the header alone. A
-/// comma where none does: there is one column.
+/// Delimiter of a table: the first candidate that splits the header and the next row into the same number of cells, or else the header
+/// alone. Returns a comma if no candidate does, since there is one column then.
 pub fn delimiter(text: &str, candidates: [u8; 3]) -> u8 {
     let cells = |delimiter: u8| {
         let mut rows = records(text, delimiter).map(|(_, row)| row.len());
@@ -16,7 +16,7 @@ pub fn delimiter(text: &str, candidates: [u8; 3]) -> u8 {
     found.or_else(|| candidates.iter().find(|delimiter| splits(delimiter))).copied().unwrap_or(b',')
 }
 
-/// The rows of a text, each with its line, counted from 1. Blank lines are left out, and there are no comments.
+/// Rows of a text with their lines, counted from 1. Blank lines are skipped. There is no syntax for comments.
 pub fn records(text: &str, delimiter: u8) -> impl Iterator<Item = (u64, csv::StringRecord)> + '_ {
     let reader = csv::ReaderBuilder::new()
         .delimiter(delimiter)
@@ -24,6 +24,6 @@ pub fn records(text: &str, delimiter: u8) -> impl Iterator<Item = (u64, csv::Str
         .flexible(true)
         .trim(csv::Trim::All)
         .from_reader(text.as_bytes());
-    // UTF-8 in memory, with rows of any length, has no errors left.
+    // Reading UTF-8 from memory, with rows of any length, cannot fail.
     reader.into_records().filter_map(Result::ok).map(|row| (row.position().map_or(0, csv::Position::line), row))
 }

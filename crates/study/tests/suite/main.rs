@@ -1,4 +1,4 @@
-//! Studies as they are written.
+//! Tests of the format of studies.
 
 mod measured;
 mod scaling;

@@ -1,4 +1,4 @@
-//! Measured dimensions: their law, data files, outliers, and what the size of a sample does to the result.
+//! Measured dimensions: their distribution, data files, outliers, and the effect of the sample size on the result.
 
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ fn numbers(value: &serde_json::Value) -> Vec<f64> {
     value.as_array().unwrap().iter().map(|number| number.as_f64().unwrap()).collect()
 }
 
-/// Every sample of the oracle with its law.
+/// All samples of the oracle with their distributions.
 fn oracle() -> Vec<(serde_json::Value, Measured)> {
     let cases = data("measured.json").as_array().unwrap().clone();
     cases
@@ -35,13 +35,13 @@ fn oracle() -> Vec<(serde_json::Value, Measured)> {
 fn moments_and_quantiles_are_those_of_exact_arithmetic() {
     for (case, law) in oracle() {
         let of = |key: &str| case[key].as_f64().unwrap();
-        // A mean is rounded once; the deviations from it are not rounded with it.
+        // The mean is rounded once. The deviations from it do not share that rounding.
         relative(law.mean(), of("mean"), 3e-16);
         relative(law.sigma(), of("sigma"), 1e-15);
         let m = law.standard_moments();
         let found = [m.skewness, m.kurtosis(), m.m5, m.m6, m.m7, m.m8];
         for (order, (found, expected)) in found.into_iter().zip(numbers(&case["moments"])).enumerate() {
-            // Odd moments are differences of terms as large as the even one above them.
+            // Odd moments are differences of terms as large as the even moment above them.
             let scale = if order % 2 == 0 { [m.kurtosis(), m.m6, m.m8][order / 2] } else { 0.0 };
             close(found, expected, 2e-14, scale);
         }
@@ -52,7 +52,7 @@ fn moments_and_quantiles_are_those_of_exact_arithmetic() {
     }
 }
 
-/// The staircase: every value's own share, both tails, and both quantile functions at the very steps.
+/// A step function has the share of each value, both tails, and both quantile functions at the steps themselves.
 #[test]
 fn a_staircase_has_its_steps_where_the_values_are() {
     let law = Measured::new(&[3.0, 1.0, 2.0, 2.0, 5.0, 2.0, 1.0]).unwrap();
@@ -72,7 +72,7 @@ fn a_staircase_has_its_steps_where_the_values_are() {
 }
 
 proptest! {
-    /// `quantile` is the least value whose probability is enough, `upper_quantile` the least with no more above it.
+    /// `quantile` is the least value with at least this probability, `upper_quantile` the least with at most this probability above it.
     #[test]
     fn quantiles_are_the_least_values(values in prop::collection::vec(-5..5i32, 5..40), p in 0.0..1.0f64, n in 0..40u32) {
         let values: Vec<f64> = values.into_iter().map(f64::from).collect();
@@ -88,7 +88,7 @@ proptest! {
         }
     }
 
-    /// Moving and stretching values moves and stretches mean and sigma, and nothing else.
+    /// Shifted and scaled values change mean and sigma only.
     #[test]
     fn shape_has_no_unit(values in prop::collection::vec(-1.0..1.0f64, 5..60), power in -6..6i32, offset in -10.0..10.0f64) {
         let base = Measured::new(&values);
@@ -103,7 +103,7 @@ proptest! {
     }
 }
 
-/// Gauss rules of atoms integrate the atoms' moments, and with as many nodes as atoms they are the atoms.
+/// Gauss rules of atoms integrate the atoms' moments. A rule with as many nodes as atoms consists of the atoms.
 #[test]
 fn rules_of_atoms_are_exact() {
     for (case, law) in oracle() {
@@ -118,7 +118,7 @@ fn rules_of_atoms_are_exact() {
                 let exact: f64 =
                     counted.map(|(&u, &count)| f64::from(count) * power(u)).sum::<f64>() / sample.len() as f64;
                 let size: f64 = rule.mean(|u| u.abs().powi(degree));
-                // Nodes are good to some 1e-15, their degree-th power to 17 times that.
+                // Nodes are accurate to about 1e-15, and their powers to `degree` times that, 17 at most.
                 close(rule.mean(power), exact, 1e-12, size.max(1.0));
             }
         }
@@ -128,7 +128,7 @@ fn rules_of_atoms_are_exact() {
             close(*node, *u, 1e-12, 1.0);
         }
         assert!(whole.gauss_with_mean().is_none() || sample.values().len() > 5, "the atoms are all that there is");
-        // The same five points by way of the moments, where there are enough atoms for them.
+        // The same five points follow from the moments, if there are enough atoms.
         if sample.values().len() > 5 {
             let by_moments = Jacobi::from_moments(&law.standard_moments()).unwrap();
             for (a, b) in law.jacobi(4).gauss().nodes.iter().zip(by_moments.gauss().nodes) {
@@ -138,7 +138,7 @@ fn rules_of_atoms_are_exact() {
     }
 }
 
-/// A sample is drawn from its own values, each as often as the others.
+/// Resamples consist of the sample's own values, each with the same probability.
 #[test]
 fn resamples_are_of_the_values() {
     let law = Measured::new(&[1.0, 2.0, 2.0, 4.0]).unwrap();
@@ -153,7 +153,7 @@ fn resamples_are_of_the_values() {
     let mut counts = Vec::new();
     law.sample().draw(&mut rng, &mut counts);
     assert_eq!((counts.len(), counts.iter().sum::<u32>()), (3, 4));
-    // A resample counted as it was measured is the sample itself.
+    // A resample with the original counts is the sample itself.
     let same = law.reweighted(law.sample().counts());
     close(same.shift, 0.0, 1e-15, 1.0);
     relative(same.stretch, 1.0, 1e-15);
@@ -184,7 +184,7 @@ fn values_that_are_no_sample_are_refused() {
     assert!(edge(8.1).is_none());
 }
 
-/// By Simpson's rule in `t` with `z = sinh t`, so that a power tail falls off exponentially: good to 1e-11 here.
+/// Moment by Simpson's rule in `t` with `z = sinh t`, so that a power tail decays exponentially: accurate to 1e-11 here.
 fn integrated(law: &PearsonLaw, order: i32) -> f64 {
     let (mean, sigma) = (law.mean(), law.sigma());
     let steps = 40_000;
@@ -198,7 +198,7 @@ fn integrated(law: &PearsonLaw, order: i32) -> f64 {
     sum * 80.0 / f64::from(steps) / 3.0
 }
 
-/// One law of every type whose density is smooth at its ends, where Simpson's rule needs it.
+/// One distribution of each type with a density that is smooth at its ends, as Simpson's rule requires.
 #[test]
 fn moments_of_a_pearson_law_are_those_of_its_density() {
     for (skewness, excess) in
@@ -214,7 +214,7 @@ fn moments_of_a_pearson_law_are_those_of_its_density() {
         for (order, found) in (3..).zip(found) {
             close(found, integrated(&law, order), 1e-9, 1.0);
         }
-        // The recurrence in closed form against the one that follows from the moments.
+        // The closed form of the recurrence against the recurrence from the moments.
         let by_moments = Jacobi::from_moments(&m).unwrap().gauss();
         let rule = law.jacobi(4).gauss();
         for (a, b) in rule.nodes.iter().zip(by_moments.nodes) {
@@ -224,7 +224,7 @@ fn moments_of_a_pearson_law_are_those_of_its_density() {
             let expected = [1.0, 0.0, 1.0, found[0], found[1], found[2], found[3], found[4], found[5]][degree];
             close(law.jacobi(5).gauss().mean(|u| u.powi(degree as i32)), expected, 1e-11, m.m8);
         }
-        // Beyond the moments that are known by heart: degree 16 of nine nodes, where that moment exists.
+        // Degree 16 of nine nodes, beyond the moments in closed form, if that moment exists.
         if law.jacobi(9).order() == 9 {
             let sixteen = law.jacobi(9).gauss().mean(|u| u.powi(16));
             relative(sixteen, integrated(&law, 16), 1e-8);
@@ -232,7 +232,7 @@ fn moments_of_a_pearson_law_are_those_of_its_density() {
     }
 }
 
-/// Uniform, beta and gamma laws are members of the system: their moments in closed form.
+/// Uniform, beta and gamma distributions belong to the system. Their moments are known in closed form.
 #[test]
 fn known_members_have_their_moments() {
     let uniform = PearsonLaw::new(0.0, 1.0, 0.0, -1.2).unwrap();
@@ -268,7 +268,7 @@ fn a_fitted_law_has_the_moments_of_the_values() {
             let fit = fitted.measured().unwrap();
             let same = fit.reweighted(fit.sample().counts());
             relative(same.moments.m8, own.m8, 1e-11);
-            // A step of the last digit of x moves the probability by the density times that step.
+            // A step in the last digit of x moves the probability by the density times that step.
             let x = fitted.quantile(0.01);
             let last = f64::EPSILON * x.abs() * fitted.density(x).unwrap();
             close(fitted.cdf(x), 0.01, 1e-10 + last / 0.01, 0.0);
@@ -276,7 +276,7 @@ fn a_fitted_law_has_the_moments_of_the_values() {
     }
 }
 
-/// Samples follow the fitted law: Kolmogorov's statistic of 20 000 stays below its 1e-4 quantile.
+/// Samples follow the fitted distribution: Kolmogorov's statistic of 20 000 values stays below its 1e-4 quantile.
 #[test]
 fn samples_follow_the_fitted_law() {
     let law = PearsonLaw::new(1.0, 0.2, 0.8, 1.1).unwrap();
@@ -306,7 +306,8 @@ fn outliers_are_those_of_the_published_example() {
     assert_eq!(outliers(&[1.0, 2.0, 3.0, 90.0]), Vec::<usize>::new(), "too few to tell");
 }
 
-/// 1 % of clean samples are named, as promised, whatever their size: of 400, 4; 14 or more in one case of 15 000.
+/// Outliers are reported in 1 % of clean samples of any size. Of 400 samples these are 4. A count of 14 or more has the probability 1/15
+/// 000.
 #[test]
 fn clean_samples_are_rarely_named() {
     for (n, seed) in [(20, 1), (100, 2), (1000, 3)] {
@@ -326,7 +327,7 @@ fn problem(x: Dimension) -> Problem {
     Problem::new([x, Dimension::normal("z", 0.0, 3.0).unwrap()], both).unwrap()
 }
 
-/// Of 300 samples, in how many the interval of mean, sigma, skewness and kurtosis holds the truth, for both characteristics.
+/// Number of samples whose intervals hold the true mean, sigma, skewness and kurtosis, for both characteristics.
 fn coverage(truth: &PearsonLaw, n: usize, samples: usize) -> [[usize; 4]; 2] {
     let dimension = |law: Arc<dyn Distribution>| Dimension::distributed("x", 0.0, None, law).unwrap();
     let exact = analyze(&problem(dimension(Arc::new(truth.clone()))), &Method::Full.into()).unwrap();
@@ -350,8 +351,8 @@ fn coverage(truth: &PearsonLaw, n: usize, samples: usize) -> [[usize; 4]; 2] {
     held
 }
 
-/// The truth lies inside in the share that the documentation of `SamplingInterval` says, less four standard errors of a
-/// share of 100 samples: sigma of a curved characteristic of a skewed sample of 50 is the worst of them.
+/// The intervals hold the true value in the share that the documentation of `SamplingInterval` states, less four standard errors of a share
+/// of 100 samples. The worst case is sigma of a curved characteristic with a skewed sample of 50.
 #[test]
 fn intervals_cover_the_truth() {
     let mut cells = Vec::new();
@@ -381,7 +382,7 @@ fn intervals_cover_the_truth() {
     sensitol_testing::generated("docs/how-to/measured-data.md", "coverage", &table);
 }
 
-/// One measured dimension that is the characteristic: intervals against another implementation with 100 000 resamples.
+/// The characteristic is one measured dimension. The intervals are compared with another implementation with 100 000 resamples.
 #[test]
 fn intervals_are_those_of_another_implementation() {
     for (case, law) in oracle().into_iter().take(2) {
@@ -394,8 +395,8 @@ fn intervals_are_those_of_another_implementation() {
         {
             let expected = numbers(&case["bca"][name]);
             for (found, expected_end) in interval.unwrap().into_iter().zip(&expected) {
-                // The end of an interval from 1000 resamples scatters by some hundredths of its width, that of a kurtosis,
-                // far out in a long tail, by a tenth.
+                // The end of an interval from 1000 resamples scatters by some hundredths of its width. The end for a kurtosis, far out in a
+                // long tail, scatters by a tenth.
                 let far = if name == "kurtosis" { 0.3 } else { 0.1 };
                 assert!(
                     (found - expected_end).abs() <= far * (expected[1] - expected[0]),
@@ -407,7 +408,7 @@ fn intervals_are_those_of_another_implementation() {
 }
 
 proptest! {
-    /// A surrogate of moved inputs is the same function: with parts of any degree, and products dense or sparse.
+    /// A surrogate with moved inputs is the same function, with parts of any degree and with dense or sparse products.
     #[test]
     fn a_relocated_surrogate_is_the_same_function(
         numbers in prop::collection::vec(-1.0..1.0f64, 200),
@@ -432,12 +433,12 @@ proptest! {
             let products: f64 = surrogate.interactions.pairs().into_iter().map(|(j, k, a)| a * at[j] * at[k]).sum();
             surrogate.centre + own + products
         };
-        // Some hundred terms of up to 5^4.
+        // The sum has some hundred terms of up to 5^4.
         close(value(&surrogate.relocated(&moved), &v), value(&surrogate, &u), 1e-12, 1000.0);
     }
 }
 
-/// The moments of a resample by the surrogate are those of enumeration over the resampled values: a cubic with a product.
+/// Moments of a resample by the surrogate, a cubic with a product, equal those of enumeration over the resampled values.
 #[test]
 fn resampled_moments_are_those_of_enumeration() {
     let values = [1.0, 1.5, 2.0, 2.0, 2.5, 4.0, 4.5, 3.0];
@@ -491,7 +492,7 @@ fn empirical(values: &[f64]) -> Arc<dyn Distribution> {
     Arc::new(Measured::new(values).unwrap())
 }
 
-/// The same numbers for any number of threads; other numbers for another seed; none where nothing is measured.
+/// The numbers do not depend on the number of threads, but do on the seed. There are none without measured values.
 #[test]
 fn intervals_hang_on_the_seed_alone() {
     let problem = measured_problem(empirical);
@@ -517,7 +518,7 @@ fn intervals_hang_on_the_seed_alone() {
     assert!(low < kept && kept < high && 0.9 < low && high < 1.0, "{low} {kept} {high}");
     let cpk = gap.capability.unwrap().cpk.unwrap();
     assert!(sampling.cpk.unwrap()[0] < cpk && cpk < sampling.cpk.unwrap()[1]);
-    // `other` does not say what it depends on; a straight line to nothing leaves nothing open.
+    // `other` does not declare its dependencies. Its interval has no width, since it does not depend on measured values.
     let nothing = other.sampling.as_ref().map(|sampling| sampling.sigma.unwrap());
     assert!(nothing.is_none_or(|[low, high]| (high - low).abs() < 1e-12), "{nothing:?}");
     let known = Problem::new([Dimension::normal("x", 1.0, 0.1).unwrap()], Closure::scalar("y", |x| x[0])).unwrap();
@@ -525,11 +526,11 @@ fn intervals_hang_on_the_seed_alone() {
     assert_eq!((known.run.seed, &known.characteristics[0].sampling), (None, &None));
 }
 
-/// A fitted law whose resamples have infinite moments: a straight characteristic does not need them, a curved one does.
+/// A fitted distribution with infinite moments in some resamples. A straight characteristic does not need them, but a curved one does.
 #[test]
 fn resamples_without_moments_leave_their_intervals_unknown() {
     let fitted = |values: &[f64]| -> Arc<dyn Distribution> { Arc::new(PearsonLaw::fitted(values).unwrap()) };
-    // Five far values in sixty: a kurtosis near the limit beyond which the eighth moment is infinite.
+    // Five far values in sixty give a kurtosis near the limit beyond which the eighth moment is infinite.
     let mut values: Vec<f64> = (0..55).map(|i| f64::from(i % 11) - 5.0).collect();
     values.extend([-11.0, -10.0, 10.0, 11.0, 12.0]);
     let law = fitted(&values);
@@ -541,7 +542,7 @@ fn resamples_without_moments_leave_their_intervals_unknown() {
     assert!(straight.kurtosis.is_some() && straight.skewness.is_some());
     assert!(curved.mean.is_some() && curved.sigma.is_some());
     assert_eq!(curved.kurtosis, None);
-    // Linear: the fitted law and the values have the same four moments in every resample.
+    // For a straight characteristic the fitted distribution and the values have the same four moments in every resample.
     let x = Dimension::distributed("x", 0.0, None, empirical(&values)).unwrap();
     let same = Problem::new([x], Closure::new(["straight"], |x| [x[0]])).unwrap();
     let same = analyze(&same, &Method::SecondOrder.into()).unwrap().characteristics.remove(0).sampling.unwrap();
@@ -552,7 +553,7 @@ fn resamples_without_moments_leave_their_intervals_unknown() {
     }
 }
 
-/// Many dimensions with all their interactions get fewer resamples, and say so.
+/// Many dimensions with all their interactions get fewer resamples, and the result states their number.
 #[test]
 fn large_problems_are_resampled_less() {
     let values = numbers(&data("measured.json")[0]["values"]);
@@ -566,7 +567,7 @@ fn large_problems_are_resampled_less() {
     assert_eq!((resamples(20), resamples(160)), (1000, 731));
 }
 
-/// A folder with `d.csv` of this content and a study of one dimension by this line.
+/// Reads a study of one dimension with this line, in a folder with the file `d.csv`.
 fn read(csv: impl AsRef<[u8]>, line: &str) -> Result<Study, StudyError> {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("d.csv"), csv).unwrap();
@@ -605,7 +606,7 @@ fn tables_are_read_in_every_usual_form() {
         ),
         // The only column that holds numbers.
         (PLAIN, b"who,d\nMK,1.5\nMK,2.5\nJT,-3\nJT,0.25\nJT,1000\n"),
-        // Blank lines are nothing, empty cells are missing.
+        // Blank lines are skipped. Empty cells are missing values.
         (PLAIN, b"d;who\n\n1.5;a\nNA;a\n2.5;a\n;b\n-3;b\nnan;b\n0.25;b\n-;b\nn/a;b\n1000;b\n"),
         ("measured = \"d.csv\", model = \"empirical\"", b"\"d\"\n\"1.5\"\n2.5\n-3\n0.25\n1000\n"),
     ];
@@ -685,7 +686,7 @@ fn measured_dimensions_at_fault() {
     insta::assert_snapshot!(all.join("\n"));
 }
 
-/// Odd values give a warning with lines; none is dropped for it.
+/// Odd values give a warning with their lines. None of them is dropped.
 #[test]
 fn odd_values_are_named() {
     let mut table = String::from("n,d\n");
@@ -711,7 +712,7 @@ fn odd_values_are_named() {
     insta::assert_snapshot!(all.join("\n"));
 }
 
-/// The study's hash is that of the study and its data together, as `cat study.toml d.csv | sha256sum` prints it.
+/// The hash covers the study and its data, like the output of `cat study.toml d.csv | sha256sum`.
 #[test]
 fn the_hash_is_of_study_and_data() {
     use sha2::{Digest, Sha256};
@@ -724,7 +725,7 @@ fn the_hash_is_of_study_and_data() {
     }
 }
 
-/// From the file to the report: mean and sigma of a difference, by hand from the file's values.
+/// From the file to the report: mean and sigma of a difference, computed by hand from the file's values.
 #[test]
 fn the_example_is_analysed() {
     let path = repository("examples/measured-pin/study.toml");
@@ -748,10 +749,10 @@ fn the_example_is_analysed() {
     let cosine = one.sin() / one;
     let square = 0.5 + 0.25 * (2.0 * one).sin() / one;
     let hole = 0.0025f64.powi(2) * square + 10.0075f64.powi(2) * (square - cosine * cosine);
-    // The tilt moves the mean by 1e-5 of it, and has 2 % of the variance, which its parabola has to some 1e-3.
+    // The tilt moves the mean by a fraction of 1e-5. It gives 2 % of the variance, of which its parabola misses some 1e-3.
     relative(clearance.moments.unwrap().mean(), 10.0075 * cosine - mean, 1e-6);
     relative(clearance.moments.unwrap().variance(), hole + variance, 1e-4);
     let [low, high] = clearance.sampling.as_ref().unwrap().mean.unwrap();
-    // The standard error of the pin's mean is all that there is: 1.96 of it on either side, a little skewed.
+    // Only the standard error of the pin's mean contributes: 1.96 of it on either side, slightly skewed.
     relative(high - low, 2.0 * 1.96 * (variance / n).sqrt(), 0.15);
 }

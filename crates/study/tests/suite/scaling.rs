@@ -1,4 +1,4 @@
-//! How distributions follow a tolerance that is made narrower or wider.
+//! Distributions of dimensions whose tolerance is made narrower or wider.
 
 use sensitol_numeric::dimension::Dimension;
 use sensitol_testing::{close, dimension, fields, relative};

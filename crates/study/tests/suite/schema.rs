@@ -1,4 +1,4 @@
-//! The JSON Schema of study files, with an independent validator: it takes every study that there is and refuses wrong ones.
+//! The JSON Schema of study files with an independent validator: it accepts all studies of the repository and refuses invalid ones.
 
 use jsonschema::Validator;
 use sensitol_study::Study;
@@ -15,7 +15,7 @@ fn of_toml(text: &str) -> Value {
     toml::from_str(text).unwrap()
 }
 
-/// Every example, as TOML and written as JSON: what the schema takes, the reader takes too.
+/// Every example, as TOML and converted to JSON, is accepted by the schema and by the reader.
 #[test]
 fn every_example_is_valid() {
     let validator = validator();
@@ -24,7 +24,7 @@ fn every_example_is_valid() {
         let errors: Vec<String> = validator.iter_errors(&value).map(|error| error.to_string()).collect();
         assert!(errors.is_empty(), "{}: {errors:?}", path.display());
         Study::read(path).unwrap();
-        // As JSON among copies of the files that it names.
+        // Read as JSON, among copies of the files that it names.
         let root = tempfile::tempdir().unwrap();
         let beside = root.path().join("examples/copy");
         std::fs::create_dir_all(&beside).unwrap();
@@ -41,7 +41,7 @@ fn every_example_is_valid() {
 
 const REST: &str = "[characteristics]\ny = { formula = \"a\" }\n";
 
-/// Every form that a key has.
+/// All forms of a key.
 #[test]
 fn every_form_is_valid() {
     let validator = validator();
@@ -64,7 +64,7 @@ fn every_form_is_valid() {
     ] {
         let text = format!("\"$schema\" = \"study.schema.json\"\n[dimensions]\na = {dimension}\n{REST}");
         assert!(validator.is_valid(&of_toml(&text)), "{dimension}");
-        // There is no such file here, and `a` is two dimensions.
+        // The file does not exist, and a position declares two dimensions instead of `a`.
         if !dimension.contains("measured") && !dimension.contains("position") {
             Study::from_toml(&text, "study.toml").unwrap();
         }
@@ -98,7 +98,7 @@ fn every_section_is_valid() {
     Study::from_toml(text, "study.toml").unwrap();
 }
 
-/// A study that the schema refuses is refused by the reader.
+/// A study that the schema refuses is also refused by the reader.
 #[test]
 fn wrong_studies_are_invalid() {
     let validator = validator();
@@ -147,12 +147,12 @@ fn wrong_studies_are_invalid() {
         assert!(!validator.is_valid(&of_toml(&text)), "{text}");
         assert!(Study::from_toml(&text, "study.toml").is_err(), "{text}");
     }
-    // JSON has a null, which is no value of any key.
+    // JSON has a null, which is not a value of any key.
     let null = serde_json::json!({ "dimensions": { "a": { "nominal": null } }, "characteristics": { "y": { "formula": "a" } } });
     assert!(!validator.is_valid(&null) && Study::from_json(&null.to_string(), "study.json").is_err());
 }
 
-/// Whoever edits a study sees what a key is for: every one is described.
+/// Every key has a description, which editors show.
 #[test]
 fn every_key_is_described() {
     fn walk(value: &Value, path: &str) {
@@ -170,7 +170,7 @@ fn every_key_is_described() {
     walk(&sensitol_study::schema::schema(), "");
 }
 
-/// The default of the schema is the value of a study without the key.
+/// The default in the schema is the value of a study without the key.
 #[test]
 fn defaults_are_what_is_left_out() {
     let schema = sensitol_study::schema::schema();

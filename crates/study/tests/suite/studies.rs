@@ -1,4 +1,4 @@
-//! Study files: both formats, every form of a dimension, and every fault with its place and its help.
+//! Study files: both formats, every form of a dimension, and every fault with its place and help.
 
 use sensitol::{Method, analyze};
 use sensitol_study::Study;
@@ -42,7 +42,7 @@ fn tolerances_become_distributions() {
     assert_eq!((full.unit(), full.step(), full.tolerance()), (Some("mm"), Some(0.5), Some([-0.3, 0.3])));
 }
 
-/// Mean, sigma and half band of every kind, by hand.
+/// Mean, sigma and half-width of every kind, computed by hand.
 #[test]
 fn every_kind_of_distribution_is_written() {
     let figures = |line: &str| {
@@ -52,7 +52,7 @@ fn every_kind_of_distribution_is_written() {
     let root = f64::sqrt;
     let pi = std::f64::consts::PI;
     for (line, name, (mean, sigma, half)) in [
-        // 1 - 6 density(3)/P(|z| < 3) by mpmath.
+        // The factor 1 - 6 density(3)/P(|z| < 3) is from mpmath.
         (
             "tolerance = 0.3, distribution = \"truncated-normal\"",
             "truncated-normal",
@@ -124,7 +124,7 @@ fn every_kind_of_distribution_is_written() {
         close(found.2, sigma, 1e-12, 0.0);
         close(found.3, half, 1e-12, 0.0);
     }
-    // A tolerance that is set to 0 for once makes any dimension fixed.
+    // A tolerance set to 0 makes any dimension fixed.
     for kind in ["normal", "triangular", "arcsine", "u-shaped", "gamma", "exponential"] {
         let line = format!("{{ nominal = 10, tolerance = 0, distribution = \"{kind}\" }}");
         assert!(dimension(&line).unwrap().distribution().is_none(), "{kind}");
@@ -391,14 +391,14 @@ fn json_faults_have_their_place() {
     ] {
         assert!(Study::from_json(text, "s.json").is_err(), "{text}");
     }
-    // A formula's fault is found through the escapes of its string.
+    // The place of a formula's fault takes escapes of its string into account.
     let text =
         "{\"dimensions\": {\"a\": {\"nominal\": 1}}, \"characteristics\": {\"y\": {\"formula\": \"\\u0061 +\\t zz\"}}}";
     let error = Study::from_json(text, "s.json").err().unwrap();
     assert_eq!(&text[error.span.unwrap()], "zz");
 }
 
-/// A model's inputs by name, its nominal values, and formulas on top of its outputs.
+/// A model's inputs by name, its default nominal values, and formulas of its outputs.
 #[test]
 fn models_and_formulas_work_together() {
     let study = parse(
@@ -445,7 +445,7 @@ fn names_may_be_anything() {
     .unwrap();
     let found = analyze(&study.problem, &Method::Full.into()).unwrap().characteristics.remove(0);
     relative(found.nominal.unwrap(), 55.8, 1e-14);
-    // A model's own names may be what formulas reserve, as long as there are no formulas.
+    // Inputs of a model may have names that formulas reserve, if the study has no formulas.
     let reserved = parse("[dimensions]\npi = { nominal = 1 }\n[characteristics]\ny = { formula = \"`pi`\" }\n");
     assert!(reserved.is_err());
 }
@@ -475,7 +475,7 @@ fn unused_names_are_warnings() {
     assert_eq!(analysis.warnings.iter().map(|warning| warning.code()).collect::<Vec<_>>(), ["unused-dimension"]);
 }
 
-/// One point outside the domain of `acos`: which point, which value; the rest of the study survives.
+/// One point lies outside the domain of `acos`. The error names point and value, and the rest of the study is analysed.
 #[test]
 fn a_formula_that_leaves_its_domain_names_point_and_value() {
     let study = parse(

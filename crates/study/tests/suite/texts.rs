@@ -1,4 +1,4 @@
-//! Studies in memory: text with the files that it names, as a page in a browser or a script has them.
+//! Studies in memory: text with the files that it names, as a browser page or a script supplies them.
 
 use sensitol::{Method, analyze};
 use sensitol_study::Study;
@@ -9,13 +9,13 @@ fn file(path: &str) -> String {
     std::fs::read_to_string(repository(path)).unwrap()
 }
 
-/// The study of an example with its table, none of it on a disk under the names that it uses.
+/// The study of an example with its table. The names that it uses are not on the disk.
 fn pins() -> StudyText {
     StudyText::toml("pins.toml", file("examples/measured-pin/study.toml"))
         .with_file("pin.csv", file("examples/measured-pin/pin.csv"))
 }
 
-/// The same bytes are the same study, whether they come from a folder or from memory: every number is the same double.
+/// A study from a folder and one from the same bytes in memory agree: every number is the same double.
 #[test]
 fn text_and_files_are_one_study() {
     let read = Study::read(&repository("examples/measured-pin/study.toml")).unwrap();
@@ -26,14 +26,14 @@ fn text_and_files_are_one_study() {
     assert!(of(&text).is_some());
 }
 
-/// A study that is written anew still has its table.
+/// A rewritten study in memory still has its table.
 #[test]
 fn a_study_in_memory_is_written_anew() {
     let text = Study::from_text(pins()).unwrap();
     assert!(text.rewritten(&text.problem).unwrap().text.contains("measured = \"pin.csv\""));
 }
 
-/// A name that was not given is no file of the current folder: what is meant is named.
+/// A name that was not given is not searched in the current folder. The most similar given name is suggested.
 #[test]
 fn a_file_that_was_not_given_is_named() {
     let table = file("examples/measured-pin/pin.csv");
@@ -52,7 +52,7 @@ fn a_file_that_was_not_given_is_named() {
     assert!(matches!(problem(root), DataProblem::NotGiven { .. }));
 }
 
-/// Formats, parameters and faults are those of files.
+/// Text in memory has the formats, parameters and faults of files.
 #[test]
 fn text_is_read_as_files_are() {
     let json = r#"{ "dimensions": { "a": { "nominal": 1, "tolerance": 0.1 } },

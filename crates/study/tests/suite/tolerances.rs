@@ -1,4 +1,4 @@
-//! Every form of a tolerance in a study: fits, parts of the nominal, one-sided bands, positions; and the totals that bands make.
+//! All forms of a tolerance in a study (fits, parts of the nominal, one-sided bands, positions), and the totals of bands.
 
 use proptest::prelude::*;
 
@@ -20,7 +20,7 @@ fn a_fit_is_a_band() {
         relative(found.mean(), nominal + 0.5 * (lower + upper), 1e-15);
         relative(found.sigma(), (upper - lower) / 6.0, 1e-15);
     }
-    // 40 N7 is -8 / -33 um; what stands beside a fit acts as beside any band.
+    // 40 N7 is -8 / -33 um. Keys beside a fit act as beside any band.
     let bands = "nominal = 40, fit = \"N7\", unit = \"mm\"";
     let with = |rest: &str| dimension(&format!("{{ {bands}, {rest} }}")).unwrap();
     for (found, mean, sigma) in [
@@ -31,7 +31,7 @@ fn a_fit_is_a_band() {
         (with("distribution = \"uniform\""), 39.9795, 0.0125 / 3f64.sqrt()),
     ] {
         relative(found.mean(), mean, 1e-15);
-        // The digits of deviations between two numbers near 40.
+        // Rounding of deviations between two numbers near 40.
         relative(found.sigma(), sigma, 1e-12);
         assert_eq!(found.tolerance(), Some([-0.033, -0.008]));
     }
@@ -75,7 +75,7 @@ fn one_sided_bands() {
     }
 }
 
-/// All ways of giving sigma at once, on every form of a band: they agree, or it is an error that names two.
+/// All ways of giving sigma at once, on every form of a band: either they agree, or the error names two of them.
 #[test]
 fn sigma_in_all_ways_at_once() {
     let bands = [
@@ -151,7 +151,7 @@ fn tolerances_at_fault() {
     ]
     .map(line);
     let mut texts: Vec<&str> = lines.iter().map(String::as_str).collect();
-    // The names that a position declares are names as others are.
+    // The names that a position declares must be unique too.
     let taken = [
         "[dimensions]\nhole = { position = 0.2, nominal = [1, 2] }\nhole_x = { nominal = 1 }\n[characteristics]\ny = { formula = \"hole_x\" }\n",
         "[dimensions]\nhole_y = { nominal = 1 }\nhole = { position = 0.2, nominal = [1, 2] }\n[characteristics]\ny = { formula = \"hole_x\" }\n",
@@ -192,7 +192,7 @@ fn a_position_is_two_dimensions() {
     let analysis = analyze(&study.problem, &Method::Full.into()).unwrap();
     let [x, along, square] = &analysis.characteristics[..] else { panic!("three characteristics") };
     let half = |interval: Option<[f64; 2]>| interval.map(|[lower, upper]| 0.5 * (upper - lower)).unwrap();
-    // Differences of values near 100 and 4000 leave 1e-13 of them, of half widths near 1 and 10.
+    // Differences of values near 100 and 4000 have rounding errors of 1e-13 of these. The half-widths are near 1 and 10.
     close(half(x.worst_case), 0.1 + 0.05, 1e-11, 1.0);
     close(half(along.worst_case), 0.1 * 5.0 + 0.05 * 13.0 + 0.3, 1e-11, 1.0);
     close(along.rss.unwrap(), (0.5f64.powi(2) + 0.65f64.powi(2) + 0.3f64.powi(2)).sqrt(), 1e-11, 1.0);
@@ -205,7 +205,7 @@ fn a_position_is_two_dimensions() {
     close(half(square.worst_case), 0.1 * 2.0 * m2.sqrt(), 1e-9, 1.0);
 }
 
-/// A program that has `hole_x` and `hole_y` as inputs gets them as such.
+/// A program with the inputs `hole_x` and `hole_y` receives both coordinates.
 #[test]
 fn a_program_is_given_both_coordinates() {
     let folder = tempfile::tempdir().unwrap();
@@ -225,8 +225,8 @@ fn a_program_is_given_both_coordinates() {
 }
 
 proptest! {
-    /// The totals of a linear characteristic against their definitions, for any slopes, bands and zones: a zone's reach is the
-    /// greatest that any of its points has.
+    /// Totals of a linear characteristic equal their definitions, for any slopes, bands and zones. The reach of a zone is the greatest of
+    /// all its points.
     #[test]
     fn totals_of_a_linear_characteristic(
         slopes in proptest::collection::vec(-5.0f64..5.0, 5),
@@ -244,7 +244,7 @@ proptest! {
         let analysis = analyze(&Problem::new(dimensions, sum).unwrap(), &Method::SecondOrder.into()).unwrap();
         let found = &analysis.characteristics[0];
         let nominal = 2.0 * slopes[..3].iter().sum::<f64>() + slopes[3] + slopes[4];
-        // The greatest and least of every dimension's part; on the circle by a search of its edge.
+        // Greatest and least part of every dimension. For the circle they follow from a search of its edge.
         let on_edge = |turn: u32| {
             let angle = std::f64::consts::TAU * f64::from(turn) / 3600.0;
             radius * (slopes[3] * angle.cos() + slopes[4] * angle.sin())
@@ -266,7 +266,7 @@ proptest! {
     }
 }
 
-/// The estimated mean shift model written out: shifts of half a half band add up, the halves that are left as RSS.
+/// The estimated mean shift model, written out: shifts of half a half-width add up, and the remaining halves add as RSS.
 #[test]
 fn named_totals_of_a_published_kind() {
     let dimensions = [0.1, 0.2, 0.3].iter().enumerate();

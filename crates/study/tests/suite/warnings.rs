@@ -1,4 +1,4 @@
-//! Warnings: words, data and advice of every one.
+//! Warnings: text, data and advice of each.
 
 use std::collections::BTreeSet;
 
@@ -16,7 +16,7 @@ fn names(count: usize) -> Vec<String> {
     (0..count).map(|i| format!("d{i}")).collect()
 }
 
-/// At least one of every code, and of the cases that have words of their own.
+/// At least one warning of each code, and of the cases with a text of their own.
 fn every() -> Vec<Warning> {
     let (characteristic, dimension) = (|| text("gap"), || text("a"));
     let lost = |loss, dimensions: usize, others: usize| Warning::LostDerivative {
@@ -353,12 +353,12 @@ fn every_code_has_an_example_here() {
     assert_eq!(shown, Warning::CODES.iter().copied().collect());
 }
 
-/// The sentences of a text; what stands in backquotes, and the points of numbers, end none.
+/// Sentences of a text. Text in backquotes and decimal points do not end a sentence.
 fn sentences(text: &str) -> Vec<&str> {
     text.split_inclusive(". ").map(str::trim).collect()
 }
 
-/// `docs` of the language: one claim a sentence, at most 25 words, no private words.
+/// Rules for texts: one claim in a sentence, at most 25 words, no private words.
 #[test]
 fn warnings_are_short_sentences_of_plain_words() {
     const PRIVATE: [&str; 12] = [
@@ -394,7 +394,7 @@ fn warnings_are_short_sentences_of_plain_words() {
     }
 }
 
-/// In JSON: the keys that readers know, every field as data, and actions with their fields.
+/// JSON has the documented keys, every field as data, and actions with their fields.
 #[test]
 fn the_fields_are_data() {
     for warning in every() {
@@ -427,14 +427,14 @@ fn the_fields_are_data() {
     assert_eq!(serde_json::to_value(Advice::SmallerStep { dimension: None }).unwrap()["action"], "smaller-step");
 }
 
-/// Numbers that are not finite have no place in JSON, and are unknown there.
+/// Numbers that are not finite are null in JSON.
 #[test]
 fn what_is_not_finite_is_null() {
     let warning = Warning::NearSingular { unknown: text("phi"), condition: f64::INFINITY };
     assert_eq!(serde_json::to_value(&warning).unwrap()["data"]["condition"], serde_json::Value::Null);
 }
 
-/// The worst keeps its numbers, and the order is that of the first of each kind.
+/// The worst warning keeps its numbers. The order is that of the first warning of each kind.
 #[test]
 fn warnings_of_one_kind_become_one() {
     let kink = |characteristic: &str, dimension: &str, right| Warning::Kink {
@@ -468,7 +468,7 @@ fn warnings_of_one_kind_become_one() {
     assert_eq!(joined[3].dimension(), Some("c"));
 }
 
-/// Of a thousand dimensions two of which matter, one line.
+/// A thousand dimensions of which two matter give one line.
 #[test]
 fn a_thousand_dimensions_without_effect_are_one_warning() {
     let dimensions: String = (0..1000).map(|d| format!("d{d} = {{ nominal = 1, tolerance = 0.1 }}\n")).collect();

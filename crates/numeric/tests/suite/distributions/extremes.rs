@@ -1,4 +1,4 @@
-//! Distributions at the extremes of their parameters, against 150 digits; limits where one kind becomes another.
+//! Distributions at extreme parameters, compared with 150-digit results, and limits in which one kind becomes another.
 
 use std::sync::Arc;
 
@@ -34,8 +34,8 @@ fn built(kind: &str, p: &[f64]) -> Result<Arc<dyn Distribution>, DistributionErr
     })
 }
 
-/// Moments relative to their own size, odd ones to that of a skewness: closed forms keep the digits of an excess of 1e-8;
-/// where moments are sums, digits are lost beside 1 only.
+/// Moments relative to their own size, odd ones relative to a skewness. Closed forms keep the digits of an excess of 1e-8. Moments that are
+/// sums lose digits relative to 1 only.
 #[test]
 fn moments_and_recurrences_at_the_extremes() {
     for case in data("distributions.json").as_array().unwrap() {
@@ -61,14 +61,14 @@ fn moments_and_recurrences_at_the_extremes() {
         let jacobi = distribution.jacobi(9);
         let expected = Jacobi::new(numbers(&case["alpha"]), numbers(&case["beta"]));
         for (found, expected) in jacobi.gauss().nodes.iter().zip(expected.gauss().nodes) {
-            // Eigenvalues are good beside the largest of them.
+            // Eigenvalues are accurate relative to the largest of them.
             let far = jacobi.gauss().nodes[8].abs();
             assert!((found - expected).abs() <= 1e-11 * far.max(1.0), "{}: {found} for {expected}", about("node"));
         }
     }
 }
 
-/// Quantiles to 1e-12 sigma, or as far as the digits of the value go.
+/// Quantiles are accurate to 1e-12 sigma, or to the digits of the value.
 #[test]
 fn quantiles_at_the_extremes() {
     for case in data("distributions.json").as_array().unwrap() {
@@ -86,7 +86,7 @@ fn quantiles_at_the_extremes() {
     }
 }
 
-/// Two distributions that are the same: moments, and probabilities at every tenth of a sigma.
+/// Asserts that two distributions agree: moments, and probabilities at every tenth of a sigma.
 #[track_caller]
 fn same(a: &dyn Distribution, b: &dyn Distribution, tolerance: f64) {
     close(a.mean(), b.mean(), tolerance, a.sigma());
@@ -109,9 +109,9 @@ fn kinds_meet_at_their_limits() {
     same(&Trapezoidal::new(-1.0, 3.0, 1.0).unwrap(), &uniform, 1e-13);
     same(&Trapezoidal::new(-1.0, 3.0, 0.0).unwrap(), &Triangular::new(-1.0, 1.0, 3.0).unwrap(), 1e-13);
     same(&Beta::new(-1.0, 3.0, 2.0, 1.0).unwrap(), &Triangular::new(-1.0, 3.0, 3.0).unwrap(), 1e-12);
-    // A parent of 1e5 half bands is flat to 1e-10/2.
+    // A parent with a sigma of 1e5 half-widths is flat to 1e-10/2.
     same(&TruncatedNormal::new(-1.0, 3.0, 1.0, 2e5).unwrap(), &uniform, 1e-10);
-    // Beyond nine sigma lies 1e-19.
+    // The probability beyond nine sigma is 1e-19.
     let normal = Normal::new(1.0, 2.0 / 9.0).unwrap();
     same(&TruncatedNormal::new(-1.0, 3.0, 1.0, 2.0 / 9.0).unwrap(), &normal, 1e-13);
     same(&Weibull::with_shape(0.5, 2.0, 1.0).unwrap(), &Exponential::new(0.5, 2.0).unwrap(), 1e-12);
@@ -121,23 +121,23 @@ fn kinds_meet_at_their_limits() {
         &Rayleigh::new(0.5, 2.0).unwrap(),
         1e-12,
     );
-    // Without inexactness a rectangle: the variance differs by 1e-12 of it, the density at the ends over 1e-6 of the width.
+    // Without inexactness it is a rectangle: the variance differs by a fraction of 1e-12, the density at the ends over 1e-6 of the width.
     same(&CurvilinearTrapezoid::new(-1.0, 3.0, 2e-6).unwrap(), &uniform, 1e-6);
     // A million degrees of freedom have an excess kurtosis of 6e-6.
     same(&Student::new(1.0, 0.5, 1e6).unwrap(), &Normal::new(1.0, 0.5).unwrap(), 1e-5);
-    // Nearly normal ones differ from it by their skewness, 2e-6 and 3e-6.
+    // Nearly normal distributions differ from the normal one by their skewness, 2e-6 and 3e-6.
     let normal = Normal::new(1.0, 1e-6).unwrap();
     same(&Gamma::new(0.0, 1.0, 1e-6).unwrap(), &normal, 1e-5);
     same(&Lognormal::new(0.0, 1.0, 1e-6).unwrap(), &normal, 1e-5);
     same(&Beta::new(-1.0, 3.0, 1e9, 1e9).unwrap(), &Normal::new(1.0, 2.0 / (2e9f64 + 1.0).sqrt()).unwrap(), 1e-7);
-    // One part, or the same part twice, is no mixture.
+    // One part, or the same part twice, gives the distribution of the part.
     let part =
         |weight: f64| Part { name: "p".into(), weight, distribution: Arc::new(Gamma::new(0.0, 2.0, 1.0).unwrap()) };
     same(&Mixture::new(vec![part(3.0)]).unwrap(), &Gamma::new(0.0, 2.0, 1.0).unwrap(), 1e-12);
     same(&Mixture::new(vec![part(3.0), part(1.0)]).unwrap(), &Gamma::new(0.0, 2.0, 1.0).unwrap(), 1e-12);
 }
 
-/// Two normal machines, 2 d apart: kurtosis and cumulants in closed form.
+/// Two normal machines at a distance of 2 d: kurtosis and cumulants in closed form.
 #[test]
 fn a_mixture_of_two_normals() {
     for d in [1e-4, 0.3, 5.0] {
@@ -146,15 +146,15 @@ fn a_mixture_of_two_normals() {
         let mixture = Mixture::new(vec![part(10.0 - d), part(10.0 + d)]).unwrap();
         let v = 1.0 + d * d;
         relative(mixture.sigma(), v.sqrt(), 1e-13);
-        // The cumulants of +-d: -2 d^4, 16 d^6, -272 d^8.
+        // The cumulants of the two values +-d are -2 d^4, 16 d^6 and -272 d^8.
         let cumulants =
             [0.0, -2.0 * d.powi(4) / v.powi(2), 0.0, 16.0 * d.powi(6) / v.powi(3), 0.0, -272.0 * d.powi(8) / v.powi(4)];
         let expected = StandardMoments::from_cumulants(cumulants);
         for (found, expected) in fields(mixture.standard_moments()).into_iter().zip(fields(expected)) {
-            // The parts lie 10 +- d: d has lost the digits of that.
+            // The means are 10 +- d, so d has lost the digits of 10.
             close(found, expected, 1e-12, 1.0);
         }
-        // Far out is the nearer machine alone.
+        // Far out only the nearer machine matters.
         if d > 1.0 {
             relative(mixture.probability().unwrap().sf(10.0 + d + 6.0), 0.5 * 9.865_876_450_376_98e-10, 1e-12);
         }
@@ -194,7 +194,7 @@ fn impossible_shapes_are_refused() {
     insta::assert_snapshot!(lines.join("\n"));
 }
 
-/// A kind with parameters of every size.
+/// A kind with parameters of any size.
 fn anything() -> impl Strategy<Value = (&'static str, Vec<f64>)> {
     let logarithmic = |from: f64, to: f64| (from.ln()..to.ln()).prop_map(f64::exp);
     let band = (-10.0..10.0f64, logarithmic(1e-3, 1e3));
@@ -217,8 +217,8 @@ fn anything() -> impl Strategy<Value = (&'static str, Vec<f64>)> {
 }
 
 proptest! {
-    /// No NaN, moments that some distribution has, probabilities that rise and sum to 1, quantiles and samples inside the
-    /// support, a rule that has mean 0 and variance 1.
+    /// Properties of all distributions: no NaN, possible moments, probabilities that rise and sum to 1, quantiles and samples inside the
+    /// support, and a rule with mean 0 and variance 1.
     #[test]
     fn every_distribution_is_one(law in anything(), other in anything(), weight in 0.01..1.0f64) {
         let [law, other] = [law, other].map(|(kind, parameters)| built(kind, &parameters).unwrap());
@@ -248,8 +248,8 @@ proptest! {
                 for x in [whole.quantile(p), whole.upper_quantile(p)] {
                     prop_assert!(x >= lower && x <= upper, "{x} at {p}");
                 }
-                // Where the last digit of x moves the probability by more, p lies between the neighbours' values.
-                // Its digits are those of the band that it was computed from.
+                // If the last digit of x changes the probability by more, p lies between the values of the neighbours. The digits of x are
+                // those of the band that it was computed from.
                 let band = [mean, lower, upper].map(f64::abs).into_iter().filter(|end| end.is_finite()).fold(sigma, f64::max);
                 let (x, step) = (whole.quantile(p), 8.0 * f64::EPSILON * band);
                 let (low, high) = (whole.cdf(x - step), whole.cdf(x + step));

@@ -1,4 +1,4 @@
-//! Distributions: moments against integration of the density, Gauss rules, impossible parameters.
+//! Distributions: moments compared with integrals of the density, Gauss rules, and impossible parameters.
 
 mod drifting;
 mod extremes;
@@ -14,8 +14,7 @@ use sensitol_numeric::distribution::{
 use sensitol_testing::densities::{Case, cases};
 use sensitol_testing::{close, fields, relative};
 
-/// Values that may be compared by parts of their sizes: the moments of one distribution.
-/// The integrator is good to 1e-13 of the largest term.
+/// Moments of one distribution are compared relative to their sizes. The integrator is accurate to 1e-13 of the largest term.
 #[test]
 fn moments_are_those_of_the_density() {
     for case in cases() {
@@ -39,7 +38,7 @@ fn moments_are_those_of_the_density() {
     }
 }
 
-/// The distribution function is the integral of the density; quantiles invert it in both tails.
+/// The distribution function is the integral of the density. Quantiles invert it in both tails.
 #[test]
 fn probabilities_are_those_of_the_density() {
     for case in cases() {
@@ -60,16 +59,16 @@ fn probabilities_are_those_of_the_density() {
                 assert_eq!(law.cdf(x) + law.sf(x), 1.0, "{name} outside its support");
                 continue;
             }
-            // The rounding of x counts where the density is steep.
+            // The rounding of x matters where the density is steep.
             close(law.density(x).unwrap(), case.density(x), 1e-12, 1e-12 / sigma);
-            // The integral is good to 1e-13 of the whole, the tails of it no better.
+            // The integral is accurate to 1e-13 of the whole, in the tails too.
             close(law.cdf(x), case.integral([f64::NEG_INFINITY, x], |_| 1.0), 1e-12, 1.0);
             close(law.sf(x), case.integral([x, f64::INFINITY], |_| 1.0), 1e-12, 1.0);
         }
         for p in [1e-12, 1e-9, 1e-6, 1.35e-3, 0.1, 0.3, 0.5] {
             let (low, high) = (law.quantile(p), law.upper_quantile(p));
             assert!(lower <= low && low <= high && high <= upper, "{name}: {low} {high}");
-            // A step of the last digit of x moves the probability; next to a singular end by more than anything else.
+            // A step in the last digit of x moves the probability. Next to a singular end this is the largest error.
             let inverts = |x: f64, tail: &dyn Fn(f64) -> f64| {
                 let step = 4.0 * f64::EPSILON * x.abs().max(sigma);
                 let (a, b) = (tail(x - step), tail(x + step));
@@ -105,7 +104,7 @@ fn samples_follow_the_distribution() {
     }
 }
 
-/// The same generator gives the same values for ever: three of each distribution, to twelve digits.
+/// Values of a generator never change: three of each distribution, to twelve digits.
 #[test]
 fn samples_are_stable() {
     let sample = |case: &Case| {
@@ -117,7 +116,7 @@ fn samples_are_stable() {
     insta::assert_snapshot!(cases().iter().map(sample).collect::<Vec<_>>().join("\n"));
 }
 
-/// Tails of the normal law to the digits of mpmath 1.3 with 30 digits: `ncdf(-z)`.
+/// Tails of the normal distribution, `ncdf(-z)`, to the digits of mpmath 1.3 with 30 digits.
 #[test]
 fn the_normal_law_keeps_its_tails() {
     let law = Normal::new(0.0, 1.0).unwrap();
@@ -135,26 +134,26 @@ fn the_normal_law_keeps_its_tails() {
             (law.probability().unwrap().quantile(p), -z),
             (law.probability().unwrap().upper_quantile(p), z),
         ] {
-            // erfc of libm is good to 1 ulp, of an argument rounded to 1 ulp: z^2 ulp of the probability.
+            // The erfc of libm is accurate to 1 ulp, for an argument that is rounded to 1 ulp. This gives z^2 ulp of the probability.
             relative(found, expected, 2e-16 * (2.0 + z * z));
         }
     }
 }
 
-/// The recurrence and the moments are two descriptions of one distribution.
+/// The recurrence and the moments describe the same distribution.
 #[test]
 fn recurrence_and_moments_agree() {
     for case in cases() {
         let moments = case.distribution.standard_moments();
         let (known, derived) = (case.distribution.jacobi(4), Jacobi::from_moments(&moments).unwrap());
         for (a, b) in known.gauss().nodes.iter().zip(derived.gauss().nodes) {
-            // Moments determine nodes the worse, the longer the tail.
+            // The longer the tail, the less exactly moments determine the nodes.
             close(*a, b, 1e-12 * moments.m8.max(100.0).sqrt(), 1.0);
         }
     }
 }
 
-/// An n-point Gauss rule is exact up to degree 2n-1, the one with the mean among its nodes up to degree 2n-2.
+/// An n-point Gauss rule is exact up to degree 2n-1, and one with the mean among its nodes up to degree 2n-2.
 #[test]
 fn rules_integrate_polynomials_exactly() {
     for case in cases() {
@@ -172,7 +171,7 @@ fn rules_integrate_polynomials_exactly() {
             let Some(rule) = distribution.jacobi(order).gauss_with_mean() else { continue };
             assert_eq!(rule.nodes.len(), order + 1);
             assert!(rule.nodes.contains(&0.0));
-            // A node that must lie very far out takes digits from all others.
+            // A node very far out costs all others digits.
             let far = rule.nodes.iter().fold(1.0f64, |far, u| far.max(u.abs()));
             let gauss = distribution.jacobi(order + 1).gauss().nodes.iter().fold(1.0f64, |far, u| far.max(u.abs()));
             for degree in 0..=2 * order as i32 {
@@ -197,7 +196,7 @@ fn five_points_of_a_normal_are_gauss_hermite() {
     }
 }
 
-/// A distribution known by moments alone gives the rules of the distribution that they come from.
+/// A distribution known by moments only gives the rules of the distribution with these moments.
 #[test]
 fn moments_alone_determine_five_points() {
     let uniform = CentralMoments::new(0.0, [1.0 / 3.0, 0.0, 0.2, 0.0, 1.0 / 7.0, 0.0, 1.0 / 9.0]).unwrap();
@@ -211,7 +210,7 @@ fn moments_alone_determine_five_points() {
 
 #[test]
 fn few_atoms_have_few_nodes() {
-    // +-1 with equal probability, and -1, 0, 1 with probabilities 1/8, 3/4, 1/8.
+    // Values +-1 with equal probability, and -1, 0, 1 with the probabilities 1/8, 3/4, 1/8.
     let two = CentralMoments::new(5.0, [1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0]).unwrap();
     assert_eq!(two.jacobi(9).order(), 2);
     assert_eq!(two.jacobi(9).gauss().nodes, [-1.0, 1.0]);
@@ -244,7 +243,7 @@ fn impossible_parameters_are_refused() {
 }
 
 proptest! {
-    /// Sigma may be of any size: moments are scaled one power at a time.
+    /// Sigma may be of any size, since moments are scaled by one power at a time.
     #[test]
     fn central_moments_scale(power in -36..38i32) {
         let sigma = 10f64.powi(power);

@@ -1,4 +1,4 @@
-//! A law in another unit is the same law: a kilogram that is written in the mass of a proton, a metre in light years.
+//! Distributions in other units are the same, for extreme units too: a kilogram in proton masses, a metre in light years.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use sensitol_numeric::distribution::outliers::{extreme, outliers};
 
 use sensitol_testing::{close, relative};
 
-/// A law of every kind, with every length in this unit.
+/// A distribution of every kind, with all lengths in this unit.
 fn laws(unit: f64) -> Vec<Arc<dyn Distribution>> {
     let of = |lengths: &[f64]| lengths.iter().map(|length| unit * length).collect::<Vec<f64>>();
     let measured = of(&[10.0, 10.02, 9.99, 10.01, 10.03, 9.98, 10.0, 10.05]);
@@ -48,10 +48,10 @@ fn laws(unit: f64) -> Vec<Arc<dyn Distribution>> {
     ]
 }
 
-/// Powers of ten of every size: the ends of what is promised, and between them.
+/// Powers of ten of the unit: the ends of the supported range, and values in between.
 const POWERS: [i32; 11] = [-290, -200, -161, -100, -40, -3, 3, 61, 155, 200, 290];
 
-/// The rounding of a unit that is no power of two, of a parameter and of what follows from a difference of two.
+/// Rounding by a unit that is no power of two, in a parameter and in a difference of two.
 const ROUNDING: f64 = 1e-12;
 
 #[test]
@@ -66,7 +66,7 @@ fn a_law_in_another_unit_is_the_same_law() {
             relative(law.sigma() / unit, sigma, ROUNDING);
             let (found, wanted) = (law.standard_moments(), expected.standard_moments());
             for (found, wanted) in found.raw().into_iter().zip(wanted.raw()) {
-                // Of orders that a law does not have.
+                // Skips orders of moments that the distribution does not have.
                 if !wanted.is_nan() || !found.is_nan() {
                     close(found, wanted, 1e-9, 1.0);
                 }
@@ -92,7 +92,7 @@ fn a_law_in_another_unit_is_the_same_law() {
     }
 }
 
-/// The test of outliers counts in sigmas of the sample.
+/// The test of outliers measures in sigmas of the sample.
 #[test]
 fn an_outlier_is_one_in_every_unit() {
     let mut values: Vec<f64> = (0..40).map(|i| 10.0 + 0.01 * f64::from(i % 7)).collect();

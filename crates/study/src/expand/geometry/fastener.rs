@@ -1,4 +1,4 @@
-//! Fasteners: what is left of the play when holes are off their places, as a formula of a characteristic.
+//! Expands fasteners: the play that remains when holes are off their places, as the formula of a characteristic.
 
 use super::line::{Diameter, Part, literal, names, place, unit_of};
 use super::{Expanded, Shape, shape};
@@ -7,6 +7,7 @@ use crate::expand::{OWN, Origin, Tree, Value, quoted, wrong_type};
 use crate::tree::Key;
 use sensitol_numeric::names::nearest;
 
+/// Form of the key `fastener`, for faults.
 const EXPECTED: &str =
     "a table such as { kind = \"fixed\", hole = \"h\", pin = \"p\", places = [\"hole_place\", \"thread\"] }";
 
@@ -84,7 +85,7 @@ fn does_not_apply(frame: &Part<'_>, keys: &[&'static str], to: &str, instead: &'
     }
 }
 
-/// Two texts of a list.
+/// The two items of a list.
 fn two<'t>(frame: &Part<'t>, key: &str, path: &str, instead: &str) -> Result<[&'t Tree; 2], Fault> {
     let tree = frame.needed(key, instead)?;
     match &tree.value {
@@ -94,7 +95,7 @@ fn two<'t>(frame: &Part<'t>, key: &str, path: &str, instead: &str) -> Result<[&'
     }
 }
 
-/// The two positions.
+/// Names of the two positions.
 fn places(study: &Tree, frame: &Part<'_>, path: &str) -> Result<[String; 2], Fault> {
     let instead = "write the positions of the two features, such as places = [\"hole_place\", \"thread\"]";
     let [first, second] = two(frame, "places", path, instead)?;
@@ -115,7 +116,7 @@ fn places(study: &Tree, frame: &Part<'_>, path: &str) -> Result<[String; 2], Fau
     Ok([of(first)?, of(second)?])
 }
 
-/// The two holes that a bolt passes.
+/// The two holes that a bolt passes through.
 fn holes(study: &Tree, frame: &Part<'_>, path: &str) -> Result<[Diameter; 2], Fault> {
     let instead = "write the diameters of the two holes, such as holes = [\"d1\", \"d2\"]";
     let both = two(frame, "holes", path, instead)?;
@@ -135,7 +136,8 @@ fn holes(study: &Tree, frame: &Part<'_>, path: &str) -> Result<[Diameter; 2], Fa
     Ok([of(both[0])?, of(both[1])?])
 }
 
-/// By how much the threads' tilt adds to the deviation of their place: twice the projection by the depth.
+/// Factor by which the tilt of the threads adds to the deviation of their place: twice the projection divided by the depth. Returns None if
+/// neither is given.
 fn tilt(frame: &Part<'_>) -> Result<Option<String>, Fault> {
     match (frame.size("projection")?, frame.size("depth")?) {
         (None, None) => Ok(None),
@@ -151,7 +153,7 @@ fn tilt(frame: &Part<'_>) -> Result<Option<String>, Fault> {
     }
 }
 
-/// How far a position is off its own nominal place.
+/// Deviation of a position from its nominal place, as a formula.
 fn deviation(study: &Tree, frame: &Part<'_>, name: &str, axis: &str, unit: Option<&str>) -> Result<String, Fault> {
     let entry = study.get("dimensions").and_then(|section| section.get(name));
     let nominal = entry.and_then(|entry| entry.get("nominal")).and_then(place);
@@ -160,7 +162,7 @@ fn deviation(study: &Tree, frame: &Part<'_>, name: &str, axis: &str, unit: Optio
         let instead = format!("the tilt follows the deviation from the nominal place: write nominal of `{name}`");
         return Err(frame.at("places", StudyFault::MissingKey { key: "nominal".to_owned(), instead }));
     };
-    // Of a relative position only its own deviation tilts the threads.
+    // Only the own part of a relative position tilts the threads.
     let own = entry.is_some_and(|entry| entry.get("from").is_some());
     let own = quoted(&format!("{name}{}{axis}", if own { OWN } else { "" }));
     Ok(match nominal[usize::from(axis == "_y")] {

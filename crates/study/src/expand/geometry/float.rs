@@ -1,4 +1,4 @@
-//! Play between a hole and a pin: the float of one part in another, and of a part on a round pin and in a slot.
+//! Expands play between a hole and a pin: the float of one part in another, and of a part on a round pin and in a slot.
 
 use super::line::{Diameter, Line, Part};
 use super::plain::{Of, Plain, key, number, pair, text};
@@ -9,12 +9,12 @@ use crate::tree::Key;
 use sensitol::assembly::formula::Formula;
 use sensitol_numeric::labels::LABELS;
 
-/// Where the pin lies in the hole.
+/// Places of the pin in the hole.
 const LAWS: [&str; 6] = ["uniform", "contact", "+", "-", "disc", "rim"];
-/// The remedy for a key that play does not have.
+/// Text to write instead of a key that play does not have.
 const BESIDE: &str = "its law says how it varies: write law = \"contact\" or another in it";
 
-/// `ds = { float = { hole = "A", pin = "B", law = "uniform" } }`
+/// Plain lines of `ds = { float = { hole = "A", pin = "B", law = "uniform" } }`.
 pub(super) fn float(line: &Line<'_>) -> Result<Plain, Fault> {
     alone(line, "float")?;
     let expected = "a table such as { hole = \"A\", pin = \"B\" }";
@@ -46,7 +46,7 @@ pub(super) fn float(line: &Line<'_>) -> Result<Plain, Fault> {
     Ok(made)
 }
 
-/// `base = { locate = { hole = "H", pin = "P", slot = "S", pin2 = "Q", distance = 80 } }`
+/// Plain lines of `base = { locate = { hole = "H", pin = "P", slot = "S", pin2 = "Q", distance = 80 } }`.
 pub(super) fn locate(line: &Line<'_>) -> Result<Plain, Fault> {
     alone(line, "locate")?;
     let expected = "a table such as { hole = \"H\", pin = \"P\", slot = \"S\", pin2 = \"Q\", distance = 80 }";
@@ -78,19 +78,19 @@ pub(super) fn locate(line: &Line<'_>) -> Result<Plain, Fault> {
     Ok(made)
 }
 
-/// The name of a part of the line, as formulas write it.
+/// Name of a part of the line, in the form that formulas need.
 fn of(line: &Line<'_>, part: &str) -> String {
     quoted(&format!("{}.{part}", line.name()))
 }
 
-/// A band from -1 to 1.
+/// Keys of a dimension with a band from -1 to 1.
 fn unit_band(line: &Line<'_>, distribution: Option<&str>) -> Vec<(Key, Tree)> {
     let mut keys = vec![(key(line, "nominal"), number(line, 0.0)), (key(line, "tolerance"), number(line, 1.0))];
     keys.extend(distribution.map(|kind| (key(line, "distribution"), text(line, kind))));
     keys
 }
 
-/// The two coordinates of a disc or rim of radius 1.
+/// Adds the two coordinates of a disc or rim of radius 1.
 fn zone(made: &mut Plain, line: &Line<'_>, part: &str, law: &str) {
     let name = format!("{}.{part}", line.name());
     if law == "disc" {
@@ -109,16 +109,16 @@ fn zone(made: &mut Plain, line: &Line<'_>, part: &str, law: &str) {
     made.block(line, both, law);
 }
 
-/// A radial clearance.
+/// Radial clearance of a hole and a pin.
 struct Clearance {
     formula: String,
-    /// The names in it.
+    /// Names that the formula uses.
     names: Vec<String>,
-    /// Where the bands let the pin be the larger.
+    /// Sizes of which the pin may be the larger; None if the bands exclude that.
     closing: Option<Closing>,
 }
 
-/// The radial clearance of a hole and a pin, 0 where they touch if their bands allow that.
+/// Radial clearance of a hole and a pin. It is 0 if they touch, for bands that permit it.
 fn clearance(line: &Line<'_>, frame: &Part<'_>, keys: [&str; 2]) -> Result<Clearance, Fault> {
     let instead = ["the diameter of the hole, or the width of the slot", "the diameter of the pin"]
         .map(|what| format!("write {what}: a dimension, a number or a formula"));
@@ -131,7 +131,7 @@ fn clearance(line: &Line<'_>, frame: &Part<'_>, keys: [&str; 2]) -> Result<Clear
         return Err(frame.at(keys[0], StudyFault::NothingFloats { hole, pin }));
     }
     let difference = format!("{} - {}", hole.text, pin.text);
-    // A kink only where the bands themselves let the pin be larger than the hole.
+    // The maximum makes a kink, so it is only written if the bands let the pin be larger than the hole.
     let closes = match (band(&hole), band(&pin)) {
         (Some([least, _]), Some([_, greatest])) => least < greatest - ROUNDING * greatest.abs(),
         _ => false,
@@ -143,10 +143,10 @@ fn clearance(line: &Line<'_>, frame: &Part<'_>, keys: [&str; 2]) -> Result<Clear
     Ok(Clearance { formula, names, closing })
 }
 
-/// Relative difference of decimals that mean the same size.
+/// Relative difference up to which two sizes count as equal: decimals have rounding errors.
 const ROUNDING: f64 = 1e-12;
 
-/// Play has no band and no distribution of its own.
+/// Checks that play has no band and no distribution of its own.
 fn alone(line: &Line<'_>, element: &'static str) -> Result<(), Fault> {
     const NONE: [&str; 19] = [
         "nominal",

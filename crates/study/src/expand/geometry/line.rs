@@ -1,4 +1,4 @@
-//! A line of the study as it was written, and faults at its places.
+//! A line of the study as written, and faults at its places.
 
 use crate::decimal::{KEPT, decimal};
 use crate::error::{Fault, StudyFault, fault};
@@ -8,18 +8,18 @@ use sensitol::assembly::formula::{Formula, is_plain};
 use sensitol_numeric::names::nearest;
 use sensitol_numeric::unit::Unit;
 
-/// A line of `[dimensions]`, and the study around it.
+/// A line of `[dimensions]` with the study around it.
 pub(super) struct Line<'t> {
     pub(super) study: &'t Tree,
     pub(super) key: &'t Key,
     pub(super) entry: &'t Tree,
 }
 
-/// A table within a line, with the key that it stands at.
+/// A table within a line, with its full key.
 pub(super) struct Part<'t> {
     path: String,
     tree: &'t Tree,
-    /// Under `convert` numbers in formulas bear this unit.
+    /// Unit of its numbers in formulas; None unless units are converted.
     unit: Option<&'t str>,
 }
 
@@ -28,7 +28,7 @@ impl<'t> Line<'t> {
         &self.key.name
     }
 
-    /// The name that the study gives it: that of a relative dimension's own part is ours.
+    /// Name of the line in the study. The ending for the own part of a relative dimension is left out.
     pub(super) fn shown(&self) -> &'t str {
         self.name().strip_suffix(OWN).unwrap_or(self.name())
     }
@@ -37,24 +37,23 @@ impl<'t> Line<'t> {
         format!("dimensions.{}.{key}", self.shown())
     }
 
-    /// A fault at a key of the line.
     pub(super) fn at_key(&self, key: &str, found: StudyFault) -> Fault {
         let place = self.entry.entries().iter().find(|(known, _)| known.name == key);
         let span = place.map_or(self.key.span.clone(), |(known, _)| known.span.clone());
         fault(span, self.path(key), found)
     }
 
-    /// The value of a key that is there.
+    /// Value of a key that is known to exist.
     pub(super) fn value(&self, key: &str) -> &'t Tree {
         self.entry.get(key).unwrap_or(self.entry)
     }
 
-    /// A number that is there and not below 0: a zone, a length.
+    /// Number of a required key that is not negative: a zone or a length.
     pub(super) fn size(&self, key: &str) -> Result<f64, Fault> {
         size(self.value(key), self.path(key))
     }
 
-    /// The same, above 0; None where it is not there.
+    /// Value of `length`, which must be above 0. Returns None if it is not given.
     pub(super) fn length(&self) -> Result<Option<f64>, Fault> {
         let Some(tree) = self.entry.get("length") else { return Ok(None) };
         let value = size(tree, self.path("length"))?;
@@ -62,18 +61,18 @@ impl<'t> Line<'t> {
         if value > 0.0 { Ok(Some(value)) } else { Err(self.at_key("length", StudyFault::OutOfRange { value, range })) }
     }
 
-    /// The table of a key, which has none but these keys.
+    /// Table of a key, without other keys than `valid`.
     pub(super) fn table(&self, key: &'static str, valid: &[&str], expected: &str) -> Result<Part<'t>, Fault> {
         let unit = self.converted().then(|| self.unit()).flatten();
         Part::of(self.value(key), self.path(key), valid, expected, unit)
     }
 
-    /// The unit of its numbers, where it is a known one.
+    /// Unit of the line. Returns None if it has none or an unknown one.
     pub(super) fn unit(&self) -> Option<&'t str> {
         unit_of(self.entry)
     }
 
-    /// Whether numbers in formulas need units.
+    /// True if units are converted, so that numbers in formulas need units.
     pub(super) fn converted(&self) -> bool {
         matches!(self.study.get("units").map(|mode| &mode.value), Some(Value::Text(mode)) if mode == "convert")
     }
@@ -111,23 +110,23 @@ impl<'t> Part<'t> {
         fault(span, format!("{}.{key}", self.path), found)
     }
 
-    /// A fault of the table as a whole.
+    /// Fault of the table as a whole.
     pub(super) fn whole(&self, found: StudyFault) -> Fault {
         fault(self.tree.span.clone(), self.path.clone(), found)
     }
 
-    /// A key that must be there.
+    /// Value of a required key.
     pub(super) fn needed(&self, key: &str, instead: &str) -> Result<&'t Tree, Fault> {
         let missing = || self.whole(StudyFault::MissingKey { key: key.to_owned(), instead: instead.to_owned() });
         self.get(key).ok_or_else(missing)
     }
 
-    /// A number that is not below 0; None where it is not there.
+    /// Number that is not negative. Returns None if it is not given.
     pub(super) fn size(&self, key: &str) -> Result<Option<f64>, Fault> {
         self.get(key).map(|tree| size(tree, format!("{}.{key}", self.path))).transpose()
     }
 
-    /// A word of a list; None where it is not there.
+    /// Word out of a list. Returns None if it is not given.
     pub(super) fn word(&self, key: &str, what: &'static str, known: &[&'static str]) -> Result<Option<&'t str>, Fault> {
         let Some(tree) = self.get(key) else { return Ok(None) };
         match &tree.value {
@@ -141,7 +140,7 @@ impl<'t> Part<'t> {
         }
     }
 
-    /// The diameter of a feature as formulas write it: a name, a number or a formula.
+    /// Diameter of a feature in the form that formulas need: a name, a number or a formula.
     pub(super) fn diameter(&self, study: &Tree, key: &str, instead: &str) -> Result<Diameter, Fault> {
         let tree = self.needed(key, instead)?;
         let path = || format!("{}.{key}", self.path);
@@ -151,7 +150,7 @@ impl<'t> Part<'t> {
                 Ok(Diameter { text: literal(value, self.unit), formula: number(value) })
             }
             Value::Text(text) if is_plain(text) || names(study).contains(text) => {
-                // Names of a model's outputs are known to the model alone.
+                // The outputs of a model are not known here, so any plain name may be one.
                 if study.get("model").is_none() && !names(study).contains(text) {
                     let known = names(study);
                     let nearest = nearest(text, known.iter().map(String::as_str)).map(str::to_owned);
@@ -169,15 +168,15 @@ impl<'t> Part<'t> {
     }
 }
 
-/// A feature's diameter.
+/// Diameter of a feature.
 pub(super) struct Diameter {
-    /// As it stands in a formula.
+    /// Text of the diameter as a term of a formula.
     pub(super) text: String,
-    /// As a formula of its own, without units.
+    /// Text of the diameter as a formula of its own, without units.
     pub(super) formula: String,
 }
 
-/// The unit of an entry, where it is a known one.
+/// Unit of an entry. Returns None if it has none or an unknown one.
 pub(super) fn unit_of(entry: &Tree) -> Option<&str> {
     match entry.get("unit").map(|unit| &unit.value) {
         Some(Value::Text(unit)) => Some(unit.as_str()).filter(|unit| Unit::parse(unit).is_some()),
@@ -185,7 +184,7 @@ pub(super) fn unit_of(entry: &Tree) -> Option<&str> {
     }
 }
 
-/// Every name that a formula can use, but for those of a model.
+/// All names that a formula can use, except the outputs of a model.
 pub(super) fn names(study: &Tree) -> Vec<String> {
     let of = |section: &str| study.get(section).map_or(&[][..], Tree::entries);
     let dimensions = of("dimensions").iter().flat_map(|(key, entry)| {
@@ -217,13 +216,13 @@ fn size(tree: &Tree, path: String) -> Result<f64, Fault> {
     }
 }
 
-/// A number as formulas write it, without what rounding leaves of sums of decimals.
+/// Text of a number in a formula. Rounding errors of sums of decimals are removed.
 pub(super) fn number(value: f64) -> String {
     let value = decimal(value, KEPT);
     if value < 0.0 { format!("({value:?})") } else { format!("{value:?}") }
 }
 
-/// The same with its unit.
+/// Text of a number in a formula, with its unit.
 pub(super) fn literal(value: f64, unit: Option<&str>) -> String {
     match unit {
         Some(unit) => format!("{}[{unit}]", number(value)),
@@ -231,7 +230,7 @@ pub(super) fn literal(value: f64, unit: Option<&str>) -> String {
     }
 }
 
-/// Two numbers.
+/// The two coordinates of a place. Returns None for other values.
 pub(in crate::expand) fn place(tree: &Tree) -> Option<[f64; 2]> {
     match &tree.value {
         Value::Array(items) if items.len() == 2 => Some([as_number(&items[0])?, as_number(&items[1])?]),

@@ -1,13 +1,13 @@
-//! Geometric tolerances: what a feature control frame says, as dimensions, formulas and blocks.
+//! Expands geometric tolerances: a feature control frame becomes dimensions, formulas and blocks.
 //!
-//! | line | what stands for it |
+//! | line | plain lines |
 //! |---|---|
 //! | position with a bonus | coordinates on a zone of radius 1, times half the zone that the size leaves |
-//! | float | the same with the radial clearance |
+//! | float | likewise, with the radial clearance |
 //! | pin and slot | a float in the hole, one across the slot, and the rotation of both |
 //! | profile, orientation, form, eccentricity, symmetry | a band or a circular zone |
 //!
-//! A line with a fault is left out; all faults are told together.
+//! A line with a fault is left out. The faults of all lines are reported together.
 
 mod fastener;
 mod float;
@@ -26,7 +26,7 @@ use line::Line;
 use plain::Plain;
 use sensitol_numeric::labels::LABELS;
 
-/// The names that a line of `[dimensions]` declares.
+/// Names that a line of `[dimensions]` declares.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Shape {
     /// A number.
@@ -38,7 +38,7 @@ pub(super) enum Shape {
 }
 
 impl Shape {
-    /// The endings of these names.
+    /// Endings of the declared names.
     pub(super) fn axes(self) -> &'static [&'static str] {
         match self {
             Self::Scalar => &[""],
@@ -48,7 +48,7 @@ impl Shape {
     }
 }
 
-/// A key of a line that says what it is.
+/// Kind of geometric element, given by a key of the line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Element {
     Position,
@@ -80,19 +80,19 @@ const ELEMENTS: [(&str, Element); 16] = [
     ("symmetry", Element::Symmetry),
 ];
 
-/// Keys that say more of an element: which, of what, and what to do where it stands elsewhere.
+/// Further keys of elements: the key, the elements that it applies to, and the text to write if it stands elsewhere.
 const MORE: [(&str, &[Element], &str); 3] = [
     ("length", &[Element::Profile, Element::Orientation], "it belongs to a profile or an orientation"),
     ("axis", &[Element::Orientation], "it belongs to perpendicularity, parallelism or angularity"),
     ("side", &[Element::Form], "it belongs to flatness, straightness, roundness or cylindricity"),
 ];
 
-/// The elements of a line, in the order of the list above.
+/// Elements of a line, in the order of [`ELEMENTS`].
 fn elements(entry: &Tree) -> impl Iterator<Item = (&'static str, Element)> + '_ {
     ELEMENTS.iter().filter(|(key, _)| entry.get(key).is_some()).copied()
 }
 
-/// The shape of a line of `[dimensions]`.
+/// Shape of a line of `[dimensions]`.
 pub(super) fn shape(entry: &Tree) -> Shape {
     let is = |tree: Option<&Tree>, words: &[&str]| match tree.map(|tree| &tree.value) {
         Some(Value::Text(text)) => words.contains(&text.as_str()),
@@ -113,12 +113,12 @@ pub(super) fn shape(entry: &Tree) -> Shape {
     }
 }
 
-/// Whether a line can be measured from another: play is between two sizes, and has no nominal place.
+/// True if a line can be measured from another. Play is between two sizes and has no nominal place.
 pub(super) fn takes_from(entry: &Tree) -> bool {
     elements(entry).all(|(_, element)| !matches!(element, Element::Float | Element::Locate))
 }
 
-/// Writes the formulas of fasteners, which are characteristics of places that are not expanded yet.
+/// Writes the formulas of fasteners. They are characteristics of places that are not expanded yet.
 pub(super) fn fasteners(expanded: &mut Expanded) -> Result<(), Faults> {
     fastener::expand(expanded)
 }
@@ -179,7 +179,7 @@ pub(super) fn expand(expanded: &mut Expanded) -> Result<(), Faults> {
     Ok(())
 }
 
-/// A dimension that stands for a part of this line, with the line's texts.
+/// Adds the texts of a line to a dimension made from it.
 fn labelled(mut made: Tree, line: &Tree) -> Tree {
     let missing = |(key, _): &&(Key, Tree)| LABELS.contains(&key.name.as_str()) && made.get(&key.name).is_none();
     let labels: Vec<(Key, Tree)> = line.entries().iter().filter(missing).cloned().collect();
@@ -187,14 +187,14 @@ fn labelled(mut made: Tree, line: &Tree) -> Tree {
     made
 }
 
-/// Blocks of elements stand behind those of the study.
+/// Adds blocks of elements behind those of the study.
 fn add_blocks(tree: &mut Tree, blocks: Vec<Tree>) {
     if blocks.is_empty() {
         return;
     }
     match tree.get_mut("joint").map(|list| &mut list.value) {
         Some(Value::Array(list)) => list.extend(blocks),
-        // Anything but a list is a fault where it is read.
+        // Another value is a fault that is reported where it is read.
         Some(_) => {}
         None => {
             let list = Tree { span: 0..0, value: Value::Array(blocks) };
@@ -204,7 +204,7 @@ fn add_blocks(tree: &mut Tree, blocks: Vec<Tree>) {
     }
 }
 
-/// Pairs that interact stand behind those that the study names itself.
+/// Adds pairs with known products behind those that the study names.
 fn add_products(tree: &mut Tree, products: Vec<Tree>) {
     if products.is_empty() {
         return;
@@ -220,7 +220,7 @@ fn add_products(tree: &mut Tree, products: Vec<Tree>) {
     }
 }
 
-/// The plain lines of an element; None of a line that is plain itself.
+/// Plain lines of an element. Returns None if the line is plain already.
 fn plain(line: &Line<'_>) -> Result<Option<Plain>, Fault> {
     let mut found = elements(line.entry);
     let first = found.next();
@@ -229,7 +229,7 @@ fn plain(line: &Line<'_>) -> Result<Option<Plain>, Fault> {
         return Err(line.at_key(b, StudyFault::Conflict { a, b, why }));
     }
     for (key, of, instead) in MORE {
-        // The side of a form, or that of the mean of a plain line.
+        // The key `side` belongs to a form, or to the mean of a process in a plain line.
         let sign = |side: &Tree| matches!(&side.value, Value::Text(text) if text != "out");
         let process = key == "side" && first.is_none() && line.entry.get("side").is_some_and(sign);
         if line.entry.get(key).is_some() && !process && first.is_none_or(|(_, element)| !of.contains(&element)) {

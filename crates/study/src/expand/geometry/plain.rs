@@ -1,4 +1,4 @@
-//! The plain lines that stand for an element.
+//! Plain lines that replace a geometric element.
 
 use std::ops::Range;
 
@@ -7,26 +7,26 @@ use super::{Shape, shape};
 use crate::expand::{Closing, Tree, Value};
 use crate::tree::Key;
 
-/// Dimensions, formulas and blocks.
+/// Plain lines of one element: dimensions, formulas and blocks.
 #[derive(Default)]
 pub(super) struct Plain {
     pub(super) dimensions: Vec<(Key, Tree)>,
     pub(super) formulas: Vec<(Key, Tree)>,
     pub(super) blocks: Vec<Tree>,
-    /// Pairs of dimensions that interact.
+    /// Pairs of dimensions with known products.
     pub(super) products: Vec<Tree>,
-    /// Sizes whose bands can close the clearance.
+    /// Pairs of sizes whose bands overlap, so that the clearance may be 0.
     pub(super) closing: Vec<Closing>,
 }
 
-/// The unit of what is made.
+/// Unit of a dimension or formula of an element.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Of {
-    /// That of the line.
+    /// Unit of the line.
     Line,
-    /// Radians, where the line has a unit.
+    /// Radians if the line has a unit.
     Angle,
-    /// A plain number, which needs a unit where all are converted.
+    /// A plain number. It has a unit only if all units are converted.
     Plain,
 }
 
@@ -39,7 +39,6 @@ impl Plain {
         self.dimensions.push((named(line, name), table(line, keys)));
     }
 
-    /// Adds a formula.
     pub(super) fn formula(&mut self, line: &Line<'_>, name: String, of: Of, formula: String) {
         let formula = text(line, formula);
         let tree = match unit(line, of) {
@@ -49,7 +48,7 @@ impl Plain {
         self.formulas.push((named(line, name), tree));
     }
 
-    /// Adds the products of sizes that a formula names and places on a unit zone, where the sizes are dimensions.
+    /// Adds the products of the sizes in a formula and the places on a unit zone. Sizes that are not plain dimensions are left out.
     pub(super) fn product(&mut self, line: &Line<'_>, sizes: &[String], places: &[String]) {
         let dimensions = line.study.get("dimensions");
         let is_dimension = |name: &&String| {
@@ -61,7 +60,6 @@ impl Plain {
         }
     }
 
-    /// Adds a block of two dimensions.
     pub(super) fn block(&mut self, line: &Line<'_>, of: [String; 2], law: &str) {
         let of = list(line, of.into_iter().map(|name| text(line, name)).collect());
         self.blocks.push(table(line, vec![(key(line, "of"), of), (key(line, "law"), text(line, law))]));
@@ -112,7 +110,7 @@ fn table(line: &Line<'_>, keys: Vec<(Key, Tree)>) -> Tree {
     Tree { span: span(line), value: Value::Table(keys) }
 }
 
-/// The keys of a line but these.
+/// Keys of a line, without these.
 pub(super) fn others(line: &Line<'_>, but: &[&str]) -> Vec<(Key, Tree)> {
     let kept = |(key, _): &&(Key, Tree)| !but.contains(&key.name.as_str());
     line.entry.entries().iter().filter(kept).cloned().collect()

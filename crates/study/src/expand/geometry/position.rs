@@ -1,4 +1,4 @@
-//! A position whose zone follows the size of a feature: the bonus of maximum or least material.
+//! Expands a position whose zone depends on the size of a feature: the bonus of maximum or least material.
 
 use super::line::{Line, Part, literal};
 use super::plain::{Of, Plain, key, number, others, pair};
@@ -7,7 +7,7 @@ use crate::error::{Fault, StudyFault};
 use crate::expand::{Tree, Value, quoted, wrong_type};
 use sensitol_numeric::names::nearest;
 
-/// The plain lines of a position in a table; None of a plain zone.
+/// Plain lines of a position that is a table. Returns None for a plain zone.
 pub(super) fn plain(line: &Line<'_>) -> Result<Option<Plain>, Fault> {
     if !matches!(line.value("position").value, Value::Table(_)) {
         return Ok(None);
@@ -42,7 +42,7 @@ pub(super) fn plain(line: &Line<'_>) -> Result<Option<Plain>, Fault> {
         return Err(line.at_key(&found.name, StudyFault::DoesNotApply { key, to, instead }));
     }
     let unit = unit.filter(|_| line.converted());
-    // Of a hole the least material is the greatest size, of a pin the least.
+    // Least material is the greatest size of a hole and the least size of a pin.
     let (from, rises) = match (kind, at) {
         ("hole", "MMC") => (least, true),
         ("hole", _) => (greatest, false),
@@ -53,7 +53,7 @@ pub(super) fn plain(line: &Line<'_>) -> Result<Option<Plain>, Fault> {
     let departure = if rises { format!("{name} - {from}") } else { format!("{from} - {name}") };
     let own = line.unit().filter(|_| line.converted());
     let form = form(line, &frame)?;
-    // The mating envelope is smaller than a hole and larger than a pin by form and orientation, and never gives less than nothing.
+    // Form and orientation make the mating envelope of a hole smaller and that of a pin larger. The bonus is never negative.
     let bonus = match &form {
         Some(form) => format!("max(0, {departure} - {})", form.text),
         None => departure,
@@ -83,7 +83,7 @@ pub(super) fn plain(line: &Line<'_>) -> Result<Option<Plain>, Fault> {
     Ok(Some(made))
 }
 
-/// The feature whose size gives the bonus: `hole` or `pin`, and its name.
+/// Feature whose size gives the bonus: `hole` or `pin`, with its name. Returns None if there is none.
 fn feature<'t>(line: &Line<'t>, frame: &Part<'t>) -> Result<Option<(&'static str, &'t str)>, Fault> {
     let (key, tree) = match (frame.get("hole"), frame.get("pin")) {
         (Some(_), Some(_)) => {
@@ -108,7 +108,7 @@ fn feature<'t>(line: &Line<'t>, frame: &Part<'t>) -> Result<Option<(&'static str
     Ok(Some((key, name)))
 }
 
-/// How far form or orientation of the feature takes its mating envelope from its size; None where it is not said.
+/// Difference of the mating envelope from the size, by form or orientation of the feature. Returns None if it is not given.
 fn form(line: &Line<'_>, frame: &Part<'_>) -> Result<Option<Form>, Fault> {
     let Some(tree) = frame.get("form") else { return Ok(None) };
     let form = frame.diameter(line.study, "form", "")?;
@@ -122,15 +122,15 @@ fn form(line: &Line<'_>, frame: &Part<'_>) -> Result<Option<Form>, Fault> {
     Ok(Some(Form { text: form.text, name }))
 }
 
-/// The form that lessens a bonus.
+/// Form deviation that reduces a bonus.
 struct Form {
-    /// As it stands in a formula.
+    /// Text of the form in a formula.
     text: String,
-    /// The name of the dimension, if it is one.
+    /// Name of its dimension; empty if it is a number.
     name: String,
 }
 
-/// The nominal place, which must be there.
+/// Nominal place, which is required.
 fn nominal(line: &Line<'_>) -> Result<[f64; 2], Fault> {
     let Some(tree) = line.entry.get("nominal") else {
         let instead = "write the place on the drawing, such as nominal = [50.0, 30.0]".to_owned();

@@ -1,4 +1,4 @@
-//! From where to where the sizes of features go.
+//! Ranges of the sizes of features.
 
 use super::line::{Line, as_number, unit_of};
 use crate::de;
@@ -8,7 +8,7 @@ use crate::expand::Tree;
 use crate::file::DimensionEntry;
 use sensitol::assembly::formula::{Formula, FormulaSet, Meaning};
 
-/// Least and greatest size of a dimension, and its unit; None where it has no band. Faults of its line are told where it is
+/// Least and greatest size of a dimension, with its unit. Returns None if it has no band. Faults of its line are reported where the line is
 /// read.
 pub(super) fn limits<'t>(study: &'t Tree, name: &str) -> Option<([f64; 2], Option<&'t str>)> {
     let line = study.get("dimensions")?.get(name)?;
@@ -16,8 +16,7 @@ pub(super) fn limits<'t>(study: &'t Tree, name: &str) -> Option<([f64; 2], Optio
     Some((dimension::limits(&read.ok()?)?, unit_of(line)))
 }
 
-/// From where to where a formula of dimensions and constants goes, by interval arithmetic, in the unit of the line; None where that is
-/// unknown.
+/// Range of a formula of dimensions and constants by interval arithmetic, in the unit of the line. Returns None if it is unknown.
 pub(super) fn range(line: &Line<'_>, formula: &str) -> Option<[f64; 2]> {
     let study = line.study;
     let parsed = Formula::parse(formula).ok()?;
@@ -28,7 +27,7 @@ pub(super) fn range(line: &Line<'_>, formula: &str) -> Option<[f64; 2]> {
         let constant = study.get("constants").and_then(|constants| constants.get(name));
         match constant.map(|entry| entry.get("value").unwrap_or(entry)) {
             Some(value) => as_number(value).map(|value| [value; 2]),
-            // Numbers of other units are converted later.
+            // Sizes in other units are converted only later, so their range is unknown here.
             None => limits(study, name)
                 .filter(|(_, unit)| !line.converted() || *unit == line.unit())
                 .map(|(limits, _)| limits),

@@ -1,4 +1,4 @@
-//! Zones that are bands or circles: profile, orientation, form, eccentricity and symmetry.
+//! Expands zones that are bands or circles: profile, orientation, form, eccentricity and symmetry.
 
 use super::line::Line;
 use super::plain::{Of, Plain, key, number, others, pair};
@@ -6,7 +6,7 @@ use crate::decimal::{KEPT, decimal};
 use crate::error::{Fault, StudyFault};
 use crate::expand::{Value, wrong_type};
 
-/// Offset along the normal of a face; with `length` its tilt too, which shares the zone.
+/// Plain lines of a profile: the offset along the normal of a face, and with `length` its tilt, which shares the zone.
 pub(super) fn profile(line: &Line<'_>) -> Result<Plain, Fault> {
     without_band(line, "profile")?;
     let tree = line.value("profile");
@@ -50,7 +50,7 @@ pub(super) fn profile(line: &Line<'_>) -> Result<Plain, Fault> {
     Ok(made)
 }
 
-/// Perpendicularity, parallelism and angularity: an angle, or two of an axis.
+/// Plain lines of perpendicularity, parallelism and angularity: an angle, or two for an axis.
 pub(super) fn orientation(line: &Line<'_>, element: &'static str) -> Result<Plain, Fault> {
     without_band(line, element)?;
     let zone = line.size(element)?;
@@ -70,7 +70,7 @@ pub(super) fn orientation(line: &Line<'_>, element: &'static str) -> Result<Plai
     }
 }
 
-/// Flatness, straightness, roundness and cylindricity: half the zone on either side, or all of it outside.
+/// Plain lines of flatness, straightness, roundness and cylindricity: half the zone on either side, or all of it outside.
 pub(super) fn form(line: &Line<'_>, element: &'static str) -> Result<Plain, Fault> {
     without_band(line, element)?;
     let zone = line.size(element)?;
@@ -89,21 +89,21 @@ pub(super) fn form(line: &Line<'_>, element: &'static str) -> Result<Plain, Faul
     }
 }
 
-/// Runout, coaxiality and concentricity: where the axis lies, in a circle about the datum's.
+/// Plain lines of runout, coaxiality and concentricity: the place of the axis in a circle about the datum axis.
 pub(super) fn eccentricity(line: &Line<'_>, element: &'static str) -> Result<Plain, Fault> {
     without_band(line, element)?;
     let zone = line.size(element)?;
     Ok(circular(line, element, zone, Of::Line))
 }
 
-/// Half the zone on either side of the middle.
+/// Plain lines of a symmetry: half the zone on either side of the middle.
 pub(super) fn symmetry(line: &Line<'_>, element: &'static str) -> Result<Plain, Fault> {
     without_band(line, element)?;
     let zone = line.size(element)?;
     Ok(banded(line, element, [-0.5 * zone, 0.5 * zone], Of::Line))
 }
 
-/// One dimension with this band about its nominal, 0 unless the line has one.
+/// One dimension with this band about the nominal value, which is 0 by default.
 fn banded(line: &Line<'_>, element: &str, [lower, upper]: [f64; 2], of: Of) -> Plain {
     let tolerance = if lower == -upper { number(line, upper) } else { pair(line, [lower, upper]) };
     let mut keys = kept(line, element);
@@ -132,7 +132,7 @@ fn kept(line: &Line<'_>, element: &str) -> Vec<(crate::tree::Key, crate::expand:
     others(line, &[element, "length", "axis", "side", "unit"])
 }
 
-/// The zone is the band.
+/// Checks that the line has no other band: the zone is the band.
 fn without_band(line: &Line<'_>, element: &'static str) -> Result<(), Fault> {
     for b in ["tolerance", "limits", "fit"] {
         if line.entry.get(b).is_some() {
@@ -143,7 +143,7 @@ fn without_band(line: &Line<'_>, element: &'static str) -> Result<(), Fault> {
     Ok(())
 }
 
-/// A zone wider than the feature is long bounds no angle.
+/// Checks that the zone is not wider than the length of the feature. A wider one would bound no angle.
 fn below(line: &Line<'_>, zone: f64, length: f64) -> Result<(), Fault> {
     if zone <= length { Ok(()) } else { Err(line.at_key("length", StudyFault::LengthBelowZone { length, zone })) }
 }
