@@ -184,7 +184,6 @@ pub(crate) trait CharacteristicSections {
     /// Adds the distribution, its quantiles, and the yield within the limits.
     fn distribution(&self, section: &mut Section);
 
-    /// Adds the coverage intervals.
     fn covered(&self, section: &mut Section);
 
     /// Chart of the density, over the histogram of the model if there is one.

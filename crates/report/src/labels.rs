@@ -12,14 +12,13 @@ impl<'a, T: 'a> Columns<'a, T> {
     }
 }
 
-/// Name with its labels.
 type Labelled<'r> = (&'r str, &'r Labels);
 
 /// Longest description that a terminal shows, in characters.
 const SHORT: usize = 24;
 
 impl Report {
-    /// Table of the dimensions with labels, in the columns that are not empty. Returns None without labels. Those of a characteristic are
+    /// Table of the dimensions with labels, in the columns that are not empty. None if there are none. Those of a characteristic are
     /// in its section.
     pub(super) fn labels(&self) -> Option<Vec<Element>> {
         let all = self.dimensions.iter().map(|one| (one.name.as_str(), &one.labels));

@@ -82,7 +82,6 @@ impl SimulationReport {
 /// Estimate: its name, its value with its standard error, its interval.
 type Row = (&'static str, Option<Estimate>, Option<[f64; 2]>);
 
-/// Section on a simulated characteristic.
 pub(crate) trait SimulationSection {
     fn section(&self, warnings: &[WarningReport]) -> Section;
 

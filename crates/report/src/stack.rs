@@ -5,7 +5,8 @@
 //! its share                      (b_i T_i)^2 / sum       of the sum of squares
 //! ```
 //!
-//! A nonlinear characteristic has the table of its tangent at the means, with a note about it. The totals are those of [`CharacteristicAnalysis`](sensitol::CharacteristicAnalysis), each about its own middle.
+//! A nonlinear characteristic has the table of its tangent at the means, with a note about it.
+//! The totals are those of [`CharacteristicAnalysis`](sensitol::CharacteristicAnalysis), each about its own middle.
 
 use crate::worst_case::WorstCaseFigures;
 use std::fmt;

@@ -204,7 +204,6 @@ impl CharacteristicStatistics for CharacteristicAnalysis {
     }
 }
 
-/// Sensitivity with its dimension.
 type Row<'r> = (&'r Sensitivity, &'r DimensionReport);
 
 /// Dimension, or geometric element with those of its parts that have an effect here.

@@ -229,7 +229,7 @@ fn with_unit(name: &str, unit: Option<&str>) -> String {
 const ROWS: usize = 19;
 
 impl SweptReport {
-    /// Index of the value with the least yield. None without limits.
+    /// Index of the value with the least yield. None if there are no limits.
     fn worst(&self) -> Option<usize> {
         let known = self.points.iter().enumerate().filter_map(|(place, point)| Some((place, point.yield_?)));
         known.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(place, _)| place)
@@ -288,7 +288,7 @@ impl SweptReport {
         columns.table("sweep", &self.points)
     }
 
-    /// Sentence with the sources of the yields, or None without yields.
+    /// Sentence with the sources of the yields, or None if there are no yields.
     fn source(&self) -> Option<String> {
         let mut sources: Vec<&str> = self.points.iter().filter_map(|point| Some(point.yield_source?.words())).collect();
         sources.sort_unstable();

@@ -1,6 +1,7 @@
 //! Best known worst case of a characteristic, under the same name in every writer.
 //!
-//! Proven ends are rounded outward to the printed digits: no assembly lies beyond the numbers on the page. A linear worst case is not a bound, and is called linear.
+//! Proven ends are rounded outward to the printed digits: no assembly lies beyond the numbers on the page.
+//! A linear worst case is not a bound, and is called linear.
 
 use crate::document::number::{carried, outward};
 use crate::statistics::CharacteristicStatistics;
@@ -31,7 +32,7 @@ pub(super) struct KnownWorstCase {
 
 /// Worst-case figures of a characteristic.
 pub(crate) trait WorstCaseFigures {
-    /// Returns the best known worst case, or None without a slope.
+    /// Returns the best known worst case, or None if no slope is known.
     fn known_worst_case(&self) -> Option<KnownWorstCase>;
 
     /// Returns the worst case if it is proven: by bounds that are reached, or because nothing varies.

@@ -248,7 +248,6 @@ pub(crate) fn estimated(value: f64, error: Option<f64>) -> String {
     }
 }
 
-/// Formats a standard error.
 pub(crate) fn uncertainty(error: f64) -> String {
     significant(error, 2)
 }

@@ -57,7 +57,7 @@ impl Rejects {
         self.total().is_some_and(|rejected| self.bound(rejected).is_none())
     }
 
-    /// Formats the yield alone. Returns None without any limit.
+    /// Formats the yield alone. Returns None if there is no limit.
     pub(crate) fn yield_text(self) -> Option<String> {
         let rejected = self.total()?;
         if let Some(most) = self.bound(rejected) {
@@ -96,7 +96,7 @@ impl Rejects {
         [0, 1].map(|side| Some(format!("{} ppm", self.side(side)?)))
     }
 
-    /// Formats all rejects in parts per million. Returns None without any limit.
+    /// Formats all rejects in parts per million. Returns None if there is no limit.
     pub(crate) fn all_ppm(self) -> Option<String> {
         self.total().map(|rejected| self.ppm(rejected))
     }

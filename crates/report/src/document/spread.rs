@@ -88,7 +88,6 @@ impl Extent {
     }
 }
 
-/// A number at the axis.
 struct Tick {
     x: f64,
     label: String,
@@ -131,7 +130,6 @@ enum Side {
     After,
 }
 
-/// Label with its row.
 struct Label {
     class: &'static str,
     text: String,
@@ -183,7 +181,8 @@ impl Labels {
     }
 }
 
-/// Draws a figure with marks at the places within the drawn extent. Returns None without density and sample, or if the extent is zero.
+/// Draws a figure with marks at the places within the drawn extent. Returns None if there is neither
+/// density nor sample, or if the extent is zero.
 pub(super) fn figure(of: &SpreadChart) -> Option<String> {
     let drawn: Option<String> = FRAMES.iter().map(|frame| drawing(of, frame)).collect();
     let key = |class: &str, name: &str| format!("<li class=\"{class}\">{}</li>", escaped(name));

@@ -74,7 +74,6 @@ pub fn text(document: &Document, style: Style) -> String {
 /// Letter with its tone.
 type Letter = (char, Tone);
 
-/// Text under construction.
 struct Page {
     text: String,
     style: Style,

@@ -169,7 +169,7 @@ pub fn sweep_html(report: &SweepReport) -> String {
     page(&report.head, &report.run, &document, parts)
 }
 
-/// Sentence with the values at which the target is met and missed, or None without verdicts.
+/// Sentence with the values at which the target is met and missed, or None if there are no verdicts.
 fn along(one: &SweptReport, parameter: &str) -> Option<String> {
     let total = one.points.len();
     let of = |wanted: Verdict, word: &str| {

@@ -10,7 +10,6 @@ use sensitol::rare::RareCharacteristic;
 use sensitol::simulation::SimulatedCharacteristic;
 use sensitol_numeric::sampling::{Estimate, one_error};
 
-/// Figure with its error.
 pub(super) struct Row {
     characteristic: String,
     figure: &'static str,
@@ -102,7 +101,6 @@ pub(super) fn analysed(one: &CharacteristicAnalysis, simulated: Option<&Simulate
 /// The name of a figure, its value and its error.
 type Figure = (&'static str, Option<f64>, Option<f64>);
 
-/// Rows of a simulation.
 pub(super) fn simulated(one: &SimulatedCharacteristic) -> Vec<Row> {
     let row = |figure, value: String, error: Option<String>, beside| Row {
         characteristic: one.name().to_owned(),
@@ -127,7 +125,6 @@ pub(super) fn simulated(one: &SimulatedCharacteristic) -> Vec<Row> {
     moments.chain(yield_).collect()
 }
 
-/// Rows of rare events.
 pub(super) fn sought(one: &RareCharacteristic) -> Vec<Row> {
     let side = |(figure, of): (&'static str, Option<&sensitol::rare::Beyond>)| {
         let of = of?;

@@ -30,14 +30,13 @@ const NONE: f64 = 1e-9;
 pub(super) struct JudgedCharacteristic<'r> {
     name: &'r str,
     unit: Option<&'r str>,
-    /// Index of its section on the page. None without one.
+    /// Index of its section on the page. None if it has no section.
     place: Option<usize>,
     /// Number of warnings in that section.
     warned: usize,
     limits: [Option<f64>; 2],
     /// Line below the name, such as the value of a sweep.
     pub(super) at: String,
-    /// Target yield.
     pub(super) target: Option<f64>,
     /// Verdict on the target yield.
     pub(super) verdict: Option<Verdict>,
@@ -175,7 +174,7 @@ impl<'r> JudgedCharacteristic<'r> {
         }
     }
 
-    /// Findings of a sweep, at the value with the worst verdict and yield. Returns None without points.
+    /// Findings of a sweep, at the value with the worst verdict and yield. Returns None if there are no points.
     pub(super) fn swept(place: usize, one: &'r SweptReport, parameter: &str) -> Option<Self> {
         let rank = |point: &SweptPointReport| {
             let worst = point.requirements.iter().map(|judged| match judged.verdict {

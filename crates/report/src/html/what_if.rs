@@ -318,7 +318,7 @@ impl WhatIf {
         &self.characteristics
     }
 
-    /// Cost of the tolerances as analysed. None without costs, and an inner None if no process reaches the tolerances.
+    /// Cost of the tolerances as analysed. None if there are no costs, and an inner None if no process reaches the tolerances.
     pub(super) fn paid(&self) -> Option<Option<f64>> {
         (!self.costs.is_empty()).then_some(self.paid)
     }

@@ -65,7 +65,6 @@ fn pairs(rows: Vec<(&str, Value)>) -> DataTable {
         .table("", rows)
 }
 
-/// Table of the joint yield.
 fn joint(report: &Report) -> DataTable {
     let joint = report.analysis.joint.as_ref();
     let verdict = report.analysis.joint_requirement.as_ref().map(|judged| judged.verdict.name().to_owned());

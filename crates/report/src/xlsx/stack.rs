@@ -89,7 +89,7 @@ struct Figures {
     part: f64,
 }
 
-/// Returns the half-width in sigmas. Returns None without a band, or if the dimension does not vary.
+/// Returns the half-width in sigmas. Returns None if there is no band, or if the dimension does not vary.
 fn sigmas(row: &StackRow) -> Option<f64> {
     let [lower, upper] = row.dimension.tolerance?;
     (row.dimension.sigma > 0.0).then(|| 0.5 * (upper - lower) / row.dimension.sigma)
@@ -141,7 +141,6 @@ fn name_of_constant(rows: &[StackRow]) -> String {
     (1..).map(numbered).find(free).expect("numbers do not end")
 }
 
-/// Sheet under construction.
 struct Page<'w> {
     sheet: &'w mut Worksheet,
     columns: Vec<Of>,
