@@ -1,4 +1,4 @@
-//! The failures that no input may cause: panic, hang, or break a promise. Each target is a function of bytes.
+//! Fuzz targets: functions of bytes that must not panic, hang, or break a promise on any input.
 
 mod targets;
 

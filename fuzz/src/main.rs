@@ -1,6 +1,6 @@
-//! The driver for stable toolchains: `cargo run -p fuzz -- --seconds 60` mutates the corpora, `--replay` only replays them.
+//! Driver for stable toolchains: `cargo run -p fuzz -- --seconds 60` mutates the corpora, `--replay` only replays them.
 //!
-//! An input that breaks something is kept in `fuzz/findings/TARGET`, and the exit code is 1.
+//! An input that fails is kept in `fuzz/findings/TARGET`, and the exit code is 1.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -9,9 +9,9 @@ use fuzz::{TARGETS, Target};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-/// No input may take longer; unoptimised and on a busy machine an example of correlated dimensions takes a minute.
+/// Longest time for an input. Without optimisation, on a busy machine, an example of correlated dimensions takes a minute.
 const SLOW: Duration = Duration::from_secs(if cfg!(debug_assertions) { 120 } else { 20 });
-/// Pieces that parsers have a meaning for.
+/// Pieces of text with a meaning for the parsers.
 const WORDS: &[&str] = &[
     "[",
     "]",
@@ -121,7 +121,7 @@ fn main() {
     std::process::exit(i32::from(broken > 0));
 }
 
-/// The files of a target; of studies the project's own examples too.
+/// Returns the corpus of a target. For studies it includes the examples of the project.
 fn corpus(folder: &Path, name: &str) -> Vec<Vec<u8>> {
     let files = |path: PathBuf| -> Vec<PathBuf> {
         let entries = std::fs::read_dir(path).into_iter().flatten().flatten();
@@ -136,7 +136,7 @@ fn corpus(folder: &Path, name: &str) -> Vec<Vec<u8>> {
     paths.into_iter().filter_map(|path| std::fs::read(path).ok()).collect()
 }
 
-/// How many inputs were run, and how many of them broke something.
+/// Runs a target for some seconds. Returns the numbers of inputs and of failures.
 fn drive(target: &Target, corpus: &[Vec<u8>], seconds: u64, seed: u64, folder: &Path) -> (u64, u64) {
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed ^ target.name.len() as u64);
     let (begun, mut runs, mut broken) = (Instant::now(), 0, 0);
@@ -169,12 +169,12 @@ fn words(panic: &(dyn std::any::Any + Send)) -> String {
     text.or_else(|| panic.downcast_ref::<&str>().map(|text| (*text).to_owned())).unwrap_or_else(|| "a panic".to_owned())
 }
 
-/// FNV-1a.
+/// Hashes bytes by FNV-1a.
 fn hash(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
-/// An input of the corpus, a little other than it was.
+/// Returns an input of the corpus with random changes.
 fn mutated(corpus: &[Vec<u8>], rng: &mut Xoshiro256PlusPlus) -> Vec<u8> {
     let pick = |rng: &mut Xoshiro256PlusPlus| match corpus.len() {
         0 => Vec::new(),

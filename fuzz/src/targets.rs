@@ -1,4 +1,4 @@
-//! One function a surface. A broken promise is a panic.
+//! One function for each surface of the program. A broken promise is a panic.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -13,15 +13,15 @@ use sensitol::pearson::Pearson;
 use sensitol::{Options, analyze};
 use sensitol_study::Study;
 
-/// A surface and what is done to it.
+/// Surface of the program, with the function that checks it.
 pub struct Target {
-    /// Its name, and that of its corpus.
+    /// Name of the target and of its corpus.
     pub name: &'static str,
-    /// The function that an input is given to.
+    /// Function that receives an input.
     pub run: fn(&[u8]),
 }
 
-/// All of them.
+/// Every target.
 pub const TARGETS: [Target; 10] = [
     Target { name: "study_toml", run: study_toml },
     Target { name: "study_json", run: study_json },
@@ -39,7 +39,7 @@ fn text(bytes: &[u8]) -> Option<&str> {
     std::str::from_utf8(bytes).ok()
 }
 
-/// Numbers from bytes, any eight of them one.
+/// Reads a number from every eight bytes.
 fn numbers(bytes: &[u8]) -> Vec<f64> {
     bytes.as_chunks::<8>().0.iter().map(|chunk| f64::from_le_bytes(*chunk)).collect()
 }
@@ -54,7 +54,7 @@ fn study_json(bytes: &[u8]) {
     read(Study::from_json(text, "fuzz.json"));
 }
 
-/// A fault can be shown, with a place inside the text; a study that is read and small can be analysed.
+/// Checks that a fault can be printed and has a place inside the text, and that a small study can be analysed.
 fn read(study: Result<Study, sensitol_study::StudyError>) {
     match study {
         Err(error) => {
@@ -66,7 +66,7 @@ fn read(study: Result<Study, sensitol_study::StudyError>) {
             }
         }
         Ok(study) if study.files.is_empty() && study.problem.dimensions().len() <= 8 => {
-            // Verified, every study would be sampled at 45 000 points.
+            // No verification, which would sample every study at 45 000 points.
             let mut options = Options::from(sensitol::Method::SecondOrder);
             options.verify = Some(0);
             if let Ok(analysis) = analyze(&study.problem, &options) {
@@ -81,7 +81,7 @@ fn read(study: Result<Study, sensitol_study::StudyError>) {
     }
 }
 
-/// The value equals that of the derivatives' program, and lies in the interval over a box around the point.
+/// Checks that the value equals that of the derivative program, and lies within the bounds over a box around the point.
 fn formula(bytes: &[u8]) {
     let Some(text) = text(bytes) else { return };
     let Ok(formula) = Formula::parse(text) else { return };
@@ -120,7 +120,7 @@ fn measured_csv(bytes: &[u8]) {
     }
 }
 
-/// A program that answers with these bytes, whatever it is asked.
+/// Checks a program that answers every request with these bytes.
 fn protocol(bytes: &[u8]) {
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::write(folder.path().join("answers"), bytes).expect("a file");
@@ -134,7 +134,7 @@ fn protocol(bytes: &[u8]) {
     }
 }
 
-/// A file that is no journal is refused or read; it is never a panic, and never longer than before.
+/// Checks that a file that is not a journal is refused or read without a panic.
 fn journal(bytes: &[u8]) {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("answers.sensitol");
@@ -145,7 +145,7 @@ fn journal(bytes: &[u8]) {
     }
 }
 
-/// The law rises, its quantiles invert it, and its two tails are one.
+/// Checks that the distribution function rises, that quantiles invert it, and that both tails add up to one.
 fn pearson(bytes: &[u8]) {
     let [skewness, kurtosis, x, p, ..] = numbers(bytes)[..] else { return };
     let (skewness, kurtosis) = (skewness % 8.0, kurtosis % 80.0);
@@ -159,7 +159,7 @@ fn pearson(bytes: &[u8]) {
     assert!((below + above - 1.0).abs() < 1e-9, "{law:?} at {x}: {below} + {above}");
     assert!(law.cdf(x + 0.5) >= below - 1e-13, "{law:?} falls after {x}");
     let quantile = law.quantile(p);
-    // Near two points most of the probability may lie within one double of an end: the neighbours enclose it.
+    // Near two points, most of the probability may lie within one double of an end. The neighbours enclose it.
     let apart = 4.0 * f64::EPSILON * quantile.abs();
     let [low, high] = [quantile - apart, quantile + apart].map(|x| law.cdf(x));
     assert!(low - 1e-8 < p && p < high + 1e-8, "{law:?}: quantile of {p} is {quantile}, between {low} and {high}");
@@ -174,7 +174,7 @@ fn fits(bytes: &[u8]) {
     }
 }
 
-/// Words of a command line, one a line; where they name the study as STUDY, it is there.
+/// Checks a command line, one word a line. The word STUDY stands for the path of a study.
 fn command_line(bytes: &[u8]) {
     let Some(text) = text(bytes) else { return };
     let folder = tempfile::tempdir().expect("a folder");
@@ -186,7 +186,7 @@ fn command_line(bytes: &[u8]) {
     let place = study.display().to_string();
     let words: Vec<&str> = text.lines().filter(|word| harmless(word)).take(24).collect();
     let [command, rest @ ..] = &words[..] else { return };
-    // Those that end by themselves and write nowhere but where they are told to.
+    // Commands that end by themselves and write only to the given files.
     if !["analyze", "simulate", "compare", "allocate", "plan", "check", "sweep", "pearson"].contains(command) {
         return;
     }
@@ -199,7 +199,7 @@ fn command_line(bytes: &[u8]) {
     let _: ExitCode = sensitol_cli::run(all.into_iter().map(Into::into));
 }
 
-/// A table or a workbook is refused or becomes a study, which is read again.
+/// Checks that a table or a workbook is refused, or becomes a study that can be read.
 fn import(bytes: &[u8]) {
     let folder = tempfile::tempdir().expect("a folder");
     let at = |name: &str| folder.path().join(name).display().to_string();
@@ -211,7 +211,7 @@ fn import(bytes: &[u8]) {
     }
 }
 
-/// No word that writes elsewhere, and no number that asks for hours.
+/// True if a word neither names another file nor is a number that takes hours.
 fn harmless(word: &str) -> bool {
     let long = word.chars().filter(char::is_ascii_digit).count() > 4;
     let file = ["-o", "--out", "--csv", "--svg", "--html", "--xlsx", "--write", "--journal"]

@@ -5,13 +5,13 @@ use pyo3::types::PyDict;
 use sensitol_study::Error;
 use sensitol_study::StudyError;
 
-/// The exception of this name in `sensitol._errors`, with these attributes.
+/// Returns the exception of this name in `sensitol._errors`, with these attributes.
 fn exception(py: Python<'_>, name: &str, message: String, attributes: &Bound<'_, PyDict>) -> PyResult<PyErr> {
     let class = py.import("sensitol._errors")?.getattr(name)?;
     Ok(PyErr::from_value(class.call((message,), Some(attributes))?))
 }
 
-/// The faults of a study: message, place and help. A study that Python made has no file, line or column.
+/// Returns the faults of a study: message, place and help. A study made in Python has no file, line or column.
 pub(crate) fn of_study(py: Python<'_>, error: &StudyError, made_in_python: bool) -> PyErr {
     let build = || -> PyResult<PyErr> {
         let attributes = one(py, error, made_in_python)?;
@@ -32,7 +32,7 @@ fn help(error: &StudyError) -> Option<String> {
     error.help().or_else(|| (!advice.is_empty()).then(|| advice.join(" ")))
 }
 
-/// `file:line:column: key: fault (help)`, as far as it is known.
+/// Formats `file:line:column: key: fault (help)`, without the parts that are unknown.
 fn message(error: &StudyError, made_in_python: bool) -> String {
     let mut place = Vec::new();
     if !made_in_python {
@@ -59,7 +59,7 @@ fn one<'py>(py: Python<'py>, error: &StudyError, made_in_python: bool) -> PyResu
     Ok(attributes)
 }
 
-/// Any other failure, with the actions to take.
+/// Returns any other error with the actions to take.
 pub(crate) fn of_engine(py: Python<'_>, error: &Error, made_in_python: bool) -> PyErr {
     if let Error::Study(error) = error {
         return of_study(py, error, made_in_python);

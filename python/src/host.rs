@@ -1,4 +1,4 @@
-//! A Python callable as assembly function: its calls are passed to the thread that started the run.
+//! A Python callable as assembly function. Its calls go to the thread that started the run.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -7,62 +7,62 @@ use std::time::Instant;
 
 use sensitol::assembly::{AssemblyFunction, EvaluationError, Request, Responses, Run, Signature};
 
-/// Points to be evaluated.
+/// Request for the values of some points.
 pub(crate) struct Call {
-    /// The coordinates, a dimension after the other.
+    /// Values of all points for the first dimension, then for the next one.
     pub(crate) values: Vec<f64>,
-    /// How many points.
+    /// Number of points.
     pub(crate) rows: usize,
-    /// The outputs wanted.
+    /// Indices of the requested outputs.
     pub(crate) outputs: Vec<usize>,
-    /// Where the answer goes.
+    /// Channel for the answer. None is sent if the run is stopped.
     pub(crate) reply: SyncSender<Option<Answer>>,
 }
 
-/// The answers to a call; none where the run is stopped.
+/// Values of the points of a call.
 pub(crate) struct Answer {
-    /// An output after the other.
+    /// Values of all points for the first output, then for the next one.
     pub(crate) values: Vec<f64>,
-    /// Points without a value, and why.
+    /// Indices of points without a value, each with the reason.
     pub(crate) failed: Vec<(usize, String)>,
-    /// How many points were known from an earlier run.
+    /// Number of points known from an earlier run.
     pub(crate) reused: usize,
 }
 
-/// The messages from the threads of a run to the thread that started it.
+/// Message from the threads of a run to the thread that started it.
 pub(crate) enum Event<T> {
-    /// Points to be evaluated.
+    /// Request for the values of points.
     Call(Call),
-    /// The run is over.
+    /// End of the run.
     Done(T),
 }
 
-/// How long the points of a call should take where they are sent in portions: so often a stop is looked for, and progress is shown.
+/// Target time of a portion of points, in seconds. Between portions, signals are checked and progress is shown.
 const PORTION: f64 = 0.1;
 
-/// A model that another thread answers.
+/// Model that another thread evaluates.
 pub(crate) struct Host<T> {
     signature: Signature,
     events: Sender<Event<T>>,
-    /// Points of a portion; none where every block is sent as a whole.
+    /// Points of a portion. None if every block is sent as a whole.
     portion: Option<AtomicUsize>,
 }
 
 impl<T> Host<T> {
-    /// Of this signature. Where it is `cheap`, tens of thousands of evaluations go unnoticed; where it is `whole`, blocks are not cut: a
-    /// vectorized function could answer parts in other bits, and an executor wants everything at once.
+    /// Returns a host with this signature. A `cheap` model allows tens of thousands of evaluations. The blocks of a `whole` one are never
+    /// cut: a vectorized function may round differently on parts, and an executor needs all points at once.
     pub(crate) fn new(signature: Signature, (cheap, whole): (bool, bool), events: Sender<Event<T>>) -> Self {
         let portion = (!whole).then(|| AtomicUsize::new(1));
         Self { signature: Signature { costly: !cheap, cheap, ..signature }, events, portion }
     }
 
-    /// Sends these rows; whether they were answered.
+    /// Sends these rows and stores the answers. Returns false if the run was stopped.
     fn ask(&self, request: &Request<'_>, rows: Range<usize>, out: &mut Responses) -> bool {
         let points = request.points;
         let values = (0..points.dimensions()).flat_map(|d| &points.column(d)[rows.clone()]).copied().collect();
         let (reply, answer) = sync_channel(1);
         let call = Call { values, rows: rows.len(), outputs: request.outputs.to_vec(), reply };
-        // Whoever does not listen any more has stopped the run.
+        // A closed channel means that the run was stopped.
         if self.events.send(Event::Call(call)).is_err() {
             return false;
         }

@@ -1,4 +1,4 @@
-//! The law of a dimension, or of a fit: density, probabilities and quantiles of whole arrays.
+//! Distribution of a dimension or of a fit: density, probabilities and quantiles of whole arrays.
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -12,18 +12,18 @@ enum Of {
     Fit(Box<Pearson>),
 }
 
-/// A law of values.
+/// Distribution of a value.
 #[pyclass(frozen, module = "sensitol._core")]
 pub(crate) struct Law(Of);
 
 impl Law {
-    /// Of a dimension that varies.
+    /// Returns the distribution of a dimension, or None if it does not vary.
     pub(crate) fn of(dimension: &Dimension) -> Option<Self> {
         dimension.distribution().map(|_| Self(Of::Dimension(Box::new(dimension.clone()))))
     }
 }
 
-/// A function of a fitted law, at one value.
+/// Returns a function of a fitted distribution by its name.
 fn fitted(what: &str) -> Option<fn(&Pearson, f64) -> f64> {
     Some(match what {
         "pdf" => Pearson::pdf,
@@ -35,7 +35,7 @@ fn fitted(what: &str) -> Option<fn(&Pearson, f64) -> f64> {
     })
 }
 
-/// A function of the law of a dimension, at one value.
+/// Returns a function of a dimension's distribution by its name.
 fn known(what: &str) -> Option<fn(&dyn Probability, f64) -> f64> {
     Some(match what {
         "pdf" => |law, x| law.density(x).unwrap_or(f64::NAN),
@@ -49,14 +49,14 @@ fn known(what: &str) -> Option<fn(&dyn Probability, f64) -> f64> {
 
 #[pymethods]
 impl Law {
-    /// The member of the Pearson system with these moments.
+    /// Distribution of the Pearson system with these moments.
     #[staticmethod]
     fn pearson(mean: f64, sigma: f64, skewness: f64, kurtosis: f64) -> PyResult<Self> {
         let law = Pearson::new(mean, sigma, skewness, kurtosis);
         law.map(|law| Self(Of::Fit(Box::new(law)))).map_err(|error| PyValueError::new_err(error.to_string()))
     }
 
-    /// `pdf`, `cdf`, `sf`, `ppf` or `isf` at these numbers, eight bytes each; as many numbers.
+    /// Values of `pdf`, `cdf`, `sf`, `ppf` or `isf` at the numbers in `at`. Arguments and results are doubles of eight bytes each.
     fn values<'py>(&self, py: Python<'py>, what: &str, at: &[u8]) -> PyResult<Bound<'py, PyBytes>> {
         let unknown = || PyValueError::new_err(format!("a law has no function `{what}`"));
         let numbers = at.chunks_exact(8).map(|bytes| f64::from_ne_bytes(bytes.try_into().unwrap_or_default()));

@@ -1,7 +1,7 @@
 //! The engine as a Python module: `sensitol._core`, which the package `sensitol` wraps.
 //!
-//! Python runs on the thread that called, and nowhere else: the engine works on threads of its own, and passes every block of
-//! points to the caller, who evaluates it, looks for signals and shows progress.
+//! Python code runs only on the calling thread. The engine works on threads of its own and sends every block of points to the caller. The
+//! caller evaluates it, checks for signals and shows progress.
 
 mod errors;
 mod host;
@@ -15,13 +15,14 @@ use std::ffi::OsString;
 
 use pyo3::prelude::*;
 
-/// The command line, with the program's name first; the exit code. It listens to signals: for a process of its own.
+/// Runs the command line, with the program's name first, and returns the exit code. It installs signal handlers, so it needs a process of
+/// its own.
 #[pyfunction]
 fn run_cli(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
     py.detach(|| sensitol_cli::run_code(arguments))
 }
 
-/// The functions that the package `sensitol` wraps.
+/// Functions and classes that the package `sensitol` wraps.
 #[pymodule(gil_used = false)]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;

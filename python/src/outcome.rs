@@ -30,7 +30,7 @@ impl Outcome {
         self.0.svg(title)
     }
 
-    /// Its tables as CSV, by file name.
+    /// The tables of the report as CSV, by file name.
     fn tables(&self) -> Vec<(String, String)> {
         self.0.tables().into_iter().map(|file| (file.name, file.text)).collect()
     }
@@ -41,7 +41,7 @@ impl Outcome {
         self.0.study.as_deref()
     }
 
-    /// Why there is none.
+    /// The reason why there is no such study.
     #[getter]
     fn not_written(&self) -> Option<&str> {
         self.0.not_written.as_deref()

@@ -1,16 +1,16 @@
-//! Threads for the engine: a pool for each run, kept for the next one.
+//! Thread pools for the engine: one for each run, kept for the next one.
 //!
-//! Runs share no pool. A model may analyse another study, and the outer run holds a thread while it waits for that. Pools belong to a
-//! process: threads do not survive a fork, so a forked child leaves the pools that it inherited alone and makes its own.
+//! Runs share no pool: a model may analyse another study, and the outer run holds a thread while it waits. Pools belong to a process.
+//! Threads do not survive a fork, so a forked child ignores the inherited pools and makes its own.
 
 use std::sync::Mutex;
 
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 
-/// Pools that nothing uses, with their number of threads as asked for, and the process that made them.
+/// Idle pools with their requested number of threads, and the process that made them.
 static IDLE: Mutex<Idle> = Mutex::new(Idle { process: 0, pools: Vec::new() });
 
-/// Most pools that are kept.
+/// Most idle pools that are kept.
 const KEPT: usize = 4;
 
 struct Idle {
@@ -18,7 +18,7 @@ struct Idle {
     pools: Vec<(usize, ThreadPool)>,
 }
 
-/// A pool of one run. It is given back when the run is over.
+/// Pool of one run, which becomes idle when the run ends.
 pub(crate) struct Pool {
     threads: usize,
     process: u32,
@@ -26,14 +26,14 @@ pub(crate) struct Pool {
 }
 
 impl Pool {
-    /// Of so many threads; 0 for as many as the machine has processors.
+    /// Returns a pool with so many threads; 0 for one per processor.
     pub(crate) fn of(threads: usize) -> Result<Self, ThreadPoolBuildError> {
         let process = std::process::id();
         let mut pool = None;
-        // A fork may have come while another thread held the lock: then the list is out of reach for good.
+        // After a fork while another thread held the lock, the list is never available again.
         if let Ok(mut idle) = IDLE.try_lock() {
             if idle.process != process {
-                // Their threads are those of the parent: to end them would be to wait for threads that are not there.
+                // The threads exist in the parent only. Dropping the pools would wait for them forever.
                 std::mem::take(&mut idle.pools).into_iter().for_each(std::mem::forget);
                 idle.process = process;
             }
@@ -44,7 +44,7 @@ impl Pool {
         Ok(Self { threads, process, pool: Some(pool) })
     }
 
-    /// Does the work on one of its threads.
+    /// Runs work on a thread of the pool.
     pub(crate) fn spawn(&self, work: impl FnOnce() + Send + 'static) {
         if let Some(pool) = &self.pool {
             pool.spawn(work);

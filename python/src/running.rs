@@ -1,4 +1,4 @@
-//! A run: the engine works on a pool, and the thread that called evaluates points, looks for signals and shows progress.
+//! Runs: the engine works on a pool, while the calling thread evaluates points, checks for signals and shows progress.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -18,16 +18,16 @@ use sensitol_study::Study;
 use crate::host::{Answer, Call, Event};
 use crate::pools::Pool;
 
-/// How long the calling thread waits before it looks for signals.
+/// Time that the calling thread waits between two checks for signals.
 const TICK: Duration = Duration::from_millis(20);
 
-/// How a run ended; none where the engine panicked.
+/// Result of a run. None if the engine panicked.
 pub(crate) type Ended = Option<Result<TaskReport, Box<Error>>>;
 
-/// Why a run is to end.
+/// Conditions that end a run.
 #[derive(Default)]
 struct Stop {
-    /// Ctrl-C, or an exception of the model.
+    /// True after Ctrl-C or an exception of the model.
     asked: AtomicBool,
     deadline: Option<Instant>,
 }
@@ -41,7 +41,7 @@ impl Stop {
     }
 }
 
-/// How far a run is: points answered, and how many it will take; 0 where that is not known.
+/// Progress of a run: answered points, and expected points (0 if unknown).
 #[derive(Debug, Default)]
 struct Counter {
     points: AtomicU64,
@@ -55,19 +55,19 @@ impl Counter {
     }
 }
 
-/// The duties of the calling thread beside waiting.
+/// Tasks of the calling thread while it waits.
 pub(crate) struct Caller<'py> {
-    /// Evaluates blocks of points.
+    /// Function that evaluates blocks of points.
     pub(crate) model: Option<Bound<'py, PyAny>>,
-    /// Is told of points answered and expected.
+    /// Function that receives the answered and expected points.
     pub(crate) progress: Option<Bound<'py, PyAny>>,
-    /// Whether an interrupted run has a result all the same.
+    /// True if an interrupted run returns its results so far.
     pub(crate) partial: bool,
 }
 
-/// Does what is asked of a study. `events` hears the model of the study, and the end of the run from `ended`.
+/// Runs a command on a study. `events` receives the calls of the study's model, and the end of the run from `ended`.
 ///
-/// An exception of the model or of a signal ends the run and is raised as it is.
+/// An exception of the model or of a signal ends the run and is raised unchanged.
 pub(crate) fn run(
     py: Python<'_>,
     (study, asked): (Study, Asked),
@@ -92,8 +92,8 @@ pub(crate) fn run(
             Ok(found)
         };
         let result = catch_unwind(AssertUnwindSafe(work)).ok();
-        // Children of an external model end with the study, before the caller goes on; after Ctrl-C it does not wait for children that
-        // take their time to end.
+        // The processes of an external model end with the study, before the caller continues. After Ctrl-C the caller does not wait for
+        // slow ones.
         if stopped.asked.load(Ordering::Relaxed) {
             let _ = ended.send(Event::Done(result));
             return;
@@ -118,7 +118,7 @@ pub(crate) fn run(
                 if answer.is_some() {
                     counter.points.fetch_add(call.rows as u64, Ordering::Relaxed);
                 }
-                // Who asked may have been stopped meanwhile.
+                // The asking thread may have been stopped in the meantime.
                 let _ = call.reply.send(answer);
             }
             Err(RecvTimeoutError::Timeout) => {}
@@ -158,7 +158,7 @@ pub(crate) fn run(
     }
 }
 
-/// The model's answers to a block of points.
+/// Evaluates a block of points with the model.
 fn evaluated(py: Python<'_>, caller: &Caller<'_>, call: &Call) -> PyResult<Answer> {
     let Some(model) = &caller.model else {
         return Err(PyRuntimeError::new_err("a study without a model of Python asked for one"));

@@ -1,4 +1,4 @@
-//! A study as Python holds it: the text that it was read from, and what was found in it.
+//! A study on the side of Python: its text and its parsed content.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -21,7 +21,7 @@ use crate::law::Law;
 use crate::outcome::Outcome;
 use crate::running::{Caller, Ended, run};
 
-/// The first message to a model.
+/// Signature of the model and first message to it, once they are known.
 type Hello = Arc<Mutex<Option<(Signature, Greeting)>>>;
 
 /// The text of a study, with the files that it names.
@@ -32,14 +32,14 @@ pub(crate) struct Study {
     name: String,
     folder: PathBuf,
     files: BTreeMap<String, Vec<u8>>,
-    /// Whether the study was made of Python objects: its text is nobody's.
+    /// True if the study was made of Python objects, so that its text has no file.
     made_in_python: bool,
-    /// Whether a function of Python is the model, and whether that is cheap.
+    /// None if the model is not a Python function, else true if the function is cheap.
     hosted: Option<bool>,
-    /// Which of its configurations is meant.
+    /// Name of the selected configuration.
     configuration: Option<String>,
     described: String,
-    /// As they were found, with their laws.
+    /// Parsed dimensions, with their distributions.
     dimensions: Vec<sensitol::Dimension>,
 }
 
@@ -57,7 +57,7 @@ impl Study {
             let heard = Arc::clone(&hello);
             externals = externals.with_host(move |signature, greeting| {
                 *heard.lock().unwrap_or_else(PoisonError::into_inner) = Some((signature.clone(), greeting));
-                // Without a run nobody answers.
+                // Without a run there is no receiver, and a closed channel ends every call.
                 let events = events.clone().unwrap_or_else(|| channel().0);
                 Arc::new(Host::new(signature, (cheap, whole), events))
             });
@@ -73,7 +73,7 @@ impl Study {
     }
 }
 
-/// The description of a study for Python, as JSON.
+/// Returns a description of the study for Python, as JSON.
 fn described(study: &sensitol_study::Study, hello: &Hello) -> String {
     let dimension = |one: &sensitol::Dimension| {
         json!({
@@ -97,7 +97,7 @@ fn described(study: &sensitol_study::Study, hello: &Hello) -> String {
     .to_string()
 }
 
-/// The first message to a model, as JSON.
+/// Returns the first message to a model, as JSON.
 fn spoken(signature: &Signature, greeting: &Greeting) -> serde_json::Value {
     json!({
         "inputs": signature.inputs.iter().map(|input| &input.name).collect::<Vec<_>>(),
@@ -117,7 +117,7 @@ fn configured(externals: Externals, configuration: Option<&str>) -> Externals {
 
 #[pymethods]
 impl Study {
-    /// From text. `hosted` says that a function of Python is the model: None without one, and otherwise whether it is cheap.
+    /// Reads a study from text. `hosted` is None if the model is not a Python function, else true if the function is cheap.
     #[staticmethod]
     #[pyo3(signature = (text, toml, name, folder, files, made_in_python, hosted, configuration))]
     #[allow(clippy::too_many_arguments, reason = "the package alone calls it, by position")]
@@ -150,11 +150,11 @@ impl Study {
         Ok(Self { described: described(&parsed, &hello), dimensions: parsed.problem.dimensions().to_vec(), ..study })
     }
 
-    /// From a file.
+    /// Reads a study from a file.
     #[staticmethod]
     #[pyo3(signature = (path, hosted, configuration))]
     fn read(py: Python<'_>, path: PathBuf, hosted: Option<bool>, configuration: Option<String>) -> PyResult<Self> {
-        // The file is read once, and its text parsed again with the model: what it says is in the message either way.
+        // The file is read once. Its text is parsed again with the model, so that errors of the model appear in both cases.
         let mut externals = configured(Externals::default(), configuration.as_deref());
         if let Some(cheap) = hosted {
             externals = externals.with_host(move |signature, _| {
@@ -173,13 +173,13 @@ impl Study {
         &self.described
     }
 
-    /// The text that it was read from.
+    /// The text of the study.
     #[getter]
     fn text(&self) -> &str {
         &self.text
     }
 
-    /// The study as JSON, whatever it was written in.
+    /// The study as JSON, whatever its format is.
     fn as_json(&self, py: Python<'_>) -> PyResult<String> {
         let (parsed, _) = self
             .parsed(None, JournalPlace::Nowhere, None, true)
@@ -187,12 +187,13 @@ impl Study {
         Ok(parsed.as_json())
     }
 
-    /// The law of a dimension; None where it does not vary.
+    /// The distribution of a dimension, or None if it does not vary.
     fn law(&self, dimension: &str) -> Option<Law> {
         self.dimensions.iter().find(|one| one.name() == dimension).and_then(Law::of)
     }
 
-    /// Does what `asked` says. `make_model` gets the names of inputs and outputs as JSON, and makes what evaluates blocks of points.
+    /// Runs the command `asked`. `make_model` receives the names of inputs and outputs as JSON, and returns the function that evaluates
+    /// blocks of points.
     #[pyo3(signature = (asked, analysis, characteristics, make_model, progress, threads, seconds, journal, partial, whole))]
     #[allow(clippy::too_many_arguments, reason = "the package alone calls it, by position")]
     fn run<'py>(

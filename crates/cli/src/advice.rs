@@ -2,13 +2,13 @@
 
 use sensitol::warning::Advice;
 
-/// All advice in one line; None where there is none.
+/// Joins all advice in one line. Returns None if there is none.
 pub(super) fn help(advice: &[Advice]) -> Option<String> {
     let all: Vec<String> = advice.iter().map(words).collect();
     (!all.is_empty()).then(|| all.join("; "))
 }
 
-/// The advice as an option or a command where there is one, and otherwise in the words of the library.
+/// Returns the advice as an option or a command if there is one, else in the words of the library.
 fn words(advice: &Advice) -> String {
     match advice {
         Advice::UseMethod { methods } => {
@@ -42,7 +42,7 @@ fn words(advice: &Advice) -> String {
     }
 }
 
-/// A sentence as part of a line: without capital and full stop.
+/// Turns a sentence into a part of a line: without capital and full stop.
 fn phrase(sentence: &str) -> String {
     let mut letters = sentence.trim_end_matches('.').chars();
     letters.next().map(|first| first.to_lowercase().chain(letters).collect()).unwrap_or_default()

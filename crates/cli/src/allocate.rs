@@ -41,9 +41,9 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
     .with_confirm_or_default(&study.problem, asked.confirm);
     let task = task(&study, asked);
     let allocation = allocate(&study, &task, &options, asked.threads, &clock, look)?;
-    // An allocation that was stopped before the model confirmed it is shown and not written.
+    // An allocation that was stopped before the model confirmed it is printed, but not written to the study.
     let found = allocation.after.is_some() && allocation.status != Status::OutOfTime;
-    // Tolerances that cannot be written into the file can be shown all the same.
+    // A result that cannot be written into the study is still printed.
     let anew = if found { Some(study.rewritten(&allocation.problem)) } else { None };
     let table =
         anew.as_ref().and_then(|anew| anew.as_ref().ok()).map(|Rewritten { entries, replaced_fits, .. }| WrittenAnew {
@@ -76,7 +76,7 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
         return Ok(Exit::Interrupted);
     }
     let incomplete = allocation.before.characteristics.iter().any(|one| one.moments.is_none());
-    // Who asks for a confirmation wants to know that there is none.
+    // A confirmation that the user asked for and that fails decides the exit code.
     let refutes = ["confirmation-misses", "joint-confirmation-misses"];
     let refuted = report.warnings.iter().any(|warning| refutes.contains(&warning.code));
     let exit = match allocation.status {
@@ -90,7 +90,7 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
     Ok(confirmed(exit, &allocation.run))
 }
 
-/// Paths in a study start from its folder: in another one they would lead elsewhere.
+/// Refuses to write into another folder: relative paths in the study would lead elsewhere.
 fn stays_beside(path: &Path, study_path: &Path, study: &Study) -> Result<(), Failure> {
     let folder = |path: &Path| {
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -105,13 +105,13 @@ fn stays_beside(path: &Path, study_path: &Path, study: &Study) -> Result<(), Fai
     }
 }
 
-/// The tables of an allocation, a file each.
+/// Tables of an allocation, a CSV file each.
 const TABLES: [&str; 3] = ["tolerances", "requirements", "front"];
 
-/// Points of a chart where their number is not given.
+/// Default number of points of the front in a chart.
 const FRONT: usize = 12;
 
-/// The task of the study; with relative costs where it has none, unless nominal values alone are to move.
+/// Returns the task of the study. Without costs of its own it gets relative costs, unless only nominal values move.
 fn task(study: &Study, asked: &AllocateArgs) -> AllocationTask {
     let basis = asked.cost.map(|basis| match basis {
         CostArg::ToleranceUnit => CostBasis::ToleranceUnit,
@@ -139,7 +139,7 @@ fn allocate(
     let costly = study.problem.function().signature().costly;
     let asked = options.derivatives(&study.problem);
     let plan = costly.then(|| asked.method.procedure().plan(&study.problem, &asked)).transpose()?;
-    // At the tolerances before and at those found, at the least.
+    // Lower bound of the evaluations: one analysis at the tolerances before and one at those found.
     let bar = plan.map(|plan| Bar::new(2 * plan.cost().0, look.quiet));
     let show = |more: Progress| bar.iter().for_each(|bar| bar.show(more));
     let run = Run::to_the_end().stopping_when(&stop).abandoning_when(&interrupt::abandoned).showing(&show);

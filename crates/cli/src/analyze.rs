@@ -27,7 +27,7 @@ use sensitol_report::{
 };
 use sensitol_study::Study;
 
-/// `sensitol analyze` of one study.
+/// Runs `sensitol analyze` on one study.
 pub(super) fn run(path: &Path, asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
     let given = asked.points.as_deref().map(points::read).transpose()?.map(Arc::new);
     let study = read(path, asked.how.configuration.as_deref(), asked, given.clone(), look)?;
@@ -41,7 +41,7 @@ pub(super) fn run(path: &Path, asked: &AnalyzeArgs, look: Look) -> Result<Exit, 
     analyzed(&study, asked, beside, given.as_deref(), look, show)
 }
 
-/// The study as it is to be analysed.
+/// Reads the study with the options of the command line.
 pub(super) fn read(
     path: &Path,
     configuration: Option<&str>,
@@ -52,7 +52,7 @@ pub(super) fn read(
     let externals = study::configured(externals(asked.work.journal.as_deref(), look, given), configuration);
     let mut study = study::read_file(path, &asked.how, externals)?;
     study.options.seed = asked.seed.or(study.options.seed);
-    // A file of answers has those that the plan asks for.
+    // A file of answers covers the planned points only, so check points are off.
     let answers = asked.points.as_ref().map(|_| 0);
     study.options.verify = asked.verify.or(study.options.verify).or(answers);
     study.options.extremes |= asked.extremes;
@@ -64,7 +64,7 @@ pub(super) fn read(
     Ok(study)
 }
 
-/// The files of a report beside what is printed.
+/// Files of a report besides the printed text.
 pub(super) struct Beside {
     folder: Option<CsvFolder>,
     page: Option<Destination>,
@@ -73,7 +73,7 @@ pub(super) struct Beside {
 }
 
 impl Beside {
-    /// Opens them: tables in this folder, a page of this name.
+    /// Opens the CSV files in a folder and the page, before the analysis.
     pub(super) fn open(
         files: &mut Files,
         study: &Study,
@@ -108,7 +108,7 @@ pub(super) fn printed(report: &Report, asked: &AnalyzeArgs, look: Look) -> Strin
     }
 }
 
-/// Analyses a study, shows the report, writes its files, and tells of its warnings.
+/// Analyses a study, shows the report, writes its files, and prints its warnings.
 pub(super) fn analyzed(
     study: &Study,
     asked: &AnalyzeArgs,
@@ -155,7 +155,7 @@ pub(super) fn analyzed(
     Ok(confirmed(exit, &analysis.run))
 }
 
-/// Tells of points without an answer, and of answers to points that are not in the plan.
+/// Warns of points without an answer, and of answers to points that the plan does not contain.
 fn unmatched(given: &Table, written: Option<&Path>, look: Look) {
     let count = given.missing().len();
     if count > 0 {
@@ -168,6 +168,7 @@ fn unmatched(given: &Table, written: Option<&Path>, look: Look) {
     }
 }
 
+/// Runs the analysis with a progress bar for costly models.
 fn analyze(study: &Study, threads: Option<u16>, clock: &Clock, look: Look) -> Result<Analysis, Failure> {
     let stop = || clock.stop();
     let costly = study.problem.function().signature().costly;

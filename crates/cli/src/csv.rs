@@ -6,20 +6,20 @@ use super::failure::Failure;
 use super::output::Destination;
 use sensitol_report::CsvFile;
 
-/// A folder of files, each opened before the work and renamed when it is whole.
+/// Folder of CSV files, each opened before the analysis and renamed when it is complete.
 pub(super) struct CsvFolder(Vec<Destination>);
 
 impl CsvFolder {
-    /// For files of these names.
+    /// Opens files of these names.
     pub(super) fn open(folder: &Path, names: &[String]) -> Result<Self, Failure> {
         Self::make(folder)?;
         names.iter().map(|name| Destination::file(&folder.join(name))).collect::<Result<_, _>>().map(Self)
     }
 
-    /// Makes the folder where it is missing.
+    /// Creates the folder if it is missing.
     pub(super) fn make(folder: &Path) -> Result<(), Failure> {
         std::fs::create_dir_all(folder).map_err(|error| {
-            // The system's error for a file in the way depends on where in the path it is.
+            // The system's error for a file in the way depends on its position in the path.
             let in_the_way = folder.ancestors().find(|path| path.is_file());
             match in_the_way {
                 Some(file) => Failure::NoFolder { path: file.to_owned() },
@@ -28,7 +28,7 @@ impl CsvFolder {
         })
     }
 
-    /// The files, in the order of their names.
+    /// Writes the files, in the order of their names.
     pub(super) fn write(self, files: &[CsvFile]) -> Result<(), Failure> {
         self.0.into_iter().zip(files).try_for_each(|(file, table)| file.write(&table.text))
     }

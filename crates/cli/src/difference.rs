@@ -1,4 +1,4 @@
-//! `sensitol analyze OLD NEW --compare`: two revisions of a study beside each other.
+//! `sensitol analyze OLD NEW --compare`: two revisions of a study side by side.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use sensitol_report::csv::csv_tables;
 use sensitol_report::document::terminal::text;
 use sensitol_report::{DifferenceReport, Report, ToDocument};
 
-/// The tables that go to `--csv`.
+/// Tables that `--csv` writes.
 const TABLES: [&str; 3] = ["changes", "results", "contributions"];
 
 pub(super) fn run([old, new]: [&Path; 2], asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
@@ -31,13 +31,13 @@ pub(super) fn run([old, new]: [&Path; 2], asked: &AnalyzeArgs, look: Look) -> Re
     let folder: Option<CsvFolder> = files.folder(asked.csv.as_deref(), &tables)?;
     let (mut reports, mut exit): (Vec<Report>, _) = (Vec::new(), Exit::Done);
     for (study, name) in studies.iter().zip(&names) {
-        // The files of the difference are not those of the two reports.
+        // Only the difference has files. The two reports have none.
         let nothing = Beside::open(&mut files, study, None, None)?;
         let ended = analyzed(study, asked, nothing, None, look.of(name), |report| {
             reports.push(report.clone());
             Ok(())
         })?;
-        // The newer one is what is checked.
+        // `--check` applies to the newer study only: a miss of the older one does not count.
         exit = if ended == Exit::Missed && reports.len() == 1 { exit } else { exit.worse(ended) };
         if exit == Exit::Interrupted {
             return Ok(exit);

@@ -14,9 +14,9 @@ use sensitol::assembly::{Points, Request, Responses, Run};
 use sensitol::problem::Problem;
 use sensitol_study::{Externals, Study};
 
-/// The version of the protocol that is spoken here (`adapters/PROTOCOL.md`).
+/// Version of the protocol (`adapters/PROTOCOL.md`).
 const VERSION: u32 = 1;
-/// Points that may be sent ahead: those that arrive together are evaluated together.
+/// Most points that may be sent ahead. Points that arrive together are evaluated together.
 const WINDOW: usize = 256;
 /// Digits of the study's hash that are part of its version.
 const DIGITS: usize = 16;
@@ -71,17 +71,17 @@ struct Refusal {
     error: String,
 }
 
-/// The study as it is asked by one engine.
+/// Study with the names and units that one engine asked for.
 struct Session {
     problem: Problem,
-    /// The point that values of a request are written into.
+    /// Point with nominal values and constants, into which the values of a request are written.
     start: Vec<f64>,
-    /// For every value of a request the dimension that it is of; None for an optional name that the study does not have.
+    /// Index of the dimension of every value in a request. None for an optional name that the study does not have.
     columns: Vec<Option<usize>>,
 }
 
 pub(super) fn run(asked: &EvaluateArgs, look: Look) -> Result<Exit, Failure> {
-    // The engine that asks keeps the answers, and sends the nominal point as often as it wants to.
+    // The calling engine keeps the answers and checks repeatability, so journal and sentinels are off here.
     let externals = Externals { listener: listener(look), ..Externals::default() }.with_sentinels(false);
     let study = Study::read_with(&asked.study, externals)?;
     look.warn_all(&study.warnings);
@@ -121,7 +121,7 @@ pub(super) fn run(asked: &EvaluateArgs, look: Look) -> Result<Exit, Failure> {
     Ok(Exit::Done)
 }
 
-/// The lines that have arrived, one at the least; None at the end of the input.
+/// Returns the lines that have arrived, at least one. Returns None at the end of the input.
 fn together(input: &mut BufReader<impl Read>) -> Option<Vec<Vec<u8>>> {
     let mut lines = Vec::new();
     loop {
@@ -150,7 +150,7 @@ fn write(lines: &[impl Serialize]) -> Result<(), Failure> {
 }
 
 impl Session {
-    /// Fits the study to what an engine asks for; what an external model says of its version is added to that of the study.
+    /// Matches the study to the request of an engine. The version of an external model is appended to that of the study.
     fn open(study: Study, line: &[u8], version: &mut String) -> Result<Self, String> {
         let greeted: Greeted = serde_json::from_slice(line)
             .map_err(|error| format!("the first line is not that of protocol {VERSION}: {error}"))?;
@@ -193,13 +193,13 @@ impl Session {
         Ok(Self { problem, start, columns })
     }
 
-    /// An answer to every line that is a request.
+    /// Returns an answer to every line that is a request.
     fn answers(&self, lines: &[Vec<u8>]) -> Vec<Answer> {
         let fault = |id, error| Answer { id, y: None, errors: BTreeMap::new(), error: Some(error) };
         let mut answers = Vec::new();
         let mut requests: Vec<(u64, Vec<f64>)> = Vec::new();
         for line in lines {
-            // A line that is not a request, such as a cancellation, is for others.
+            // Lines that are not requests, such as cancellations, need no answer.
             let Ok(Asked { id: Some(id), x: Some(x) }) = serde_json::from_slice(line) else { continue };
             if x.len() != self.columns.len() {
                 answers

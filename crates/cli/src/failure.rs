@@ -1,4 +1,4 @@
-//! How a command ends.
+//! Exit codes and errors of a command.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -19,25 +19,24 @@ use sensitol_numeric::names::UnknownName;
 use sensitol_numeric::pearson::PearsonError;
 use sensitol_study::{RewriteError, StudyError};
 
-/// The exit codes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Exit {
-    /// Done, with warnings perhaps.
+    /// Done, possibly with warnings.
     Done = 0,
-    /// `--check`: a target is missed.
+    /// A target is missed, with `--check`.
     Missed = 1,
     /// The command line or the study is wrong.
     Usage = 2,
-    /// The model gave some asked characteristic no result.
+    /// The model gave no result for a requested characteristic.
     NoResult = 3,
-    /// No tolerances keep what is required, or they were not found in time.
+    /// No tolerances meet the requirements, or they were not found in time.
     NotAllocated = 4,
-    /// Ctrl-C.
+    /// Interrupted by Ctrl-C.
     Interrupted = 130,
 }
 
 impl Exit {
-    /// Of several studies the one that is to be heard: what is unknown is worse than a target that is known to be missed.
+    /// Returns the worse of two exit codes. An unknown result is worse than a target that is known to be missed.
     pub(super) fn worse(self, other: Self) -> Self {
         let rank = |exit: Self| match exit {
             Self::Done => 0,
@@ -52,7 +51,7 @@ impl Exit {
 }
 
 impl Exit {
-    /// Every exit code and what it says, for the manual.
+    /// Exit codes with their meaning, for the manual.
     pub(super) const ALL: [(Self, &'static str); 6] = [
         (Self::Done, "done, with warnings perhaps; a pipe that was closed"),
         (
@@ -80,7 +79,7 @@ impl From<Exit> for ExitCode {
     }
 }
 
-/// Why a command could not do its work.
+/// Error that ends a command.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum Failure {
     #[error(transparent)]
@@ -173,7 +172,7 @@ impl Failure {
         }
     }
 
-    /// The actions to take, where the library can name them.
+    /// Returns the actions to take, if the library knows any.
     fn advice(&self) -> Vec<Advice> {
         match self {
             Self::Method(error) | Self::Sweep(SweepError::Method(error)) => error.advice(),
@@ -185,12 +184,12 @@ impl Failure {
         }
     }
 
-    /// The message with its place in the file, or None where there is nothing to say.
+    /// Formats the message with its place in the file. Returns None if there is nothing to print.
     pub(super) fn render(&self) -> Option<String> {
         self.rendered(String::new())
     }
 
-    /// The same of one study of several, which it names.
+    /// Formats the message of one study of several, with its name.
     pub(super) fn render_of(&self, study: &str) -> Option<String> {
         self.rendered(format!("{study}: "))
     }
@@ -198,7 +197,7 @@ impl Failure {
     fn rendered(&self, of: String) -> Option<String> {
         match self {
             Self::ClosedPipe => None,
-            // It names its file by itself.
+            // Errors of a study name their file themselves.
             Self::Study(error) => {
                 let all: Vec<String> = std::iter::once(error).chain(&error.more).map(render).collect();
                 Some(all.join("\n\n"))
@@ -212,12 +211,12 @@ impl Failure {
     }
 }
 
-/// The text to write instead, or the action to take.
+/// Returns the text to write instead, or the action to take.
 fn help(error: &StudyError) -> Option<String> {
     error.help().or_else(|| advice::help(&error.fault.advice()))
 }
 
-/// Title, the lines of the file concerned with what is wrong underlined, and what to write instead.
+/// Formats an error of a study: title, the lines concerned with the fault underlined, and the text to write instead.
 fn render(error: &StudyError) -> String {
     let Some(span) = error.span.clone().filter(|_| !error.text.is_empty()) else {
         let place = if error.key.is_empty() { error.file.clone() } else { format!("{}: {}", error.file, error.key) };

@@ -1,4 +1,4 @@
-//! The files of a command: none that it reads is written, and none is written twice.
+//! Files of a command: no file that it reads is overwritten, and none is written twice.
 
 use std::path::{Path, PathBuf};
 
@@ -8,7 +8,7 @@ use super::failure::Failure;
 use super::output::Destination;
 use sensitol_study::{FileRole, JournalPlace, Study};
 
-/// The files that are read, and those that will be written, by the paths that links lead to.
+/// Paths that are read, and paths that will be written, with links resolved.
 #[derive(Debug, Default)]
 pub(super) struct Files {
     read: Vec<(PathBuf, &'static str)>,
@@ -16,14 +16,14 @@ pub(super) struct Files {
 }
 
 impl Files {
-    /// Of a command that reads this study, with its journal beside it unless another is named.
+    /// Files of a command that reads this study, with the given journal or the one beside the study.
     pub(super) fn of(path: &Path, study: &Study, journal: Option<&Path>) -> Self {
         let mut files = Self::default();
         files.study(path, study, journal);
         files
     }
 
-    /// Keeps a study and what it reads.
+    /// Protects a study and the files that it reads.
     pub(super) fn study(&mut self, path: &Path, study: &Study, journal: Option<&Path>) {
         self.reads(path, "the study itself");
         for file in &study.files {
@@ -37,22 +37,22 @@ impl Files {
         journal.iter().for_each(|journal| self.reads(journal, "the study's journal"));
     }
 
-    /// Keeps this file too.
+    /// Protects a file from being overwritten.
     pub(super) fn reads(&mut self, path: &Path, what: &'static str) {
         self.read.push((resolved(path), what));
     }
 
-    /// The file of `--output`, or stdout.
+    /// Opens the file of `--output`, or returns stdout.
     pub(super) fn output(&mut self, asked: &OutputArgs) -> Result<Destination, Failure> {
         asked.output.as_deref().map_or(Ok(Destination::Stdout), |path| self.open(path))
     }
 
-    /// The file of another option, where it is given.
+    /// Opens the file of another option, if it is given.
     pub(super) fn file(&mut self, path: Option<&Path>) -> Result<Option<Destination>, Failure> {
         path.map(|path| self.open(path)).transpose()
     }
 
-    /// The folder of `--csv`, where it is given, for files of these names.
+    /// Opens the folder of `--csv`, if it is given, for files of these names.
     pub(super) fn folder(&mut self, folder: Option<&Path>, names: &[String]) -> Result<Option<CsvFolder>, Failure> {
         let Some(folder) = folder else { return Ok(None) };
         names.iter().try_for_each(|name| self.claim(&folder.join(name)))?;
@@ -65,7 +65,7 @@ impl Files {
     }
 
     fn claim(&mut self, path: &Path) -> Result<(), Failure> {
-        // A terminal or /dev/null takes any number of reports.
+        // A terminal or /dev/null can take several reports.
         if std::fs::metadata(path).is_ok_and(|there| !there.is_file()) {
             return Ok(());
         }
@@ -81,7 +81,7 @@ impl Files {
     }
 }
 
-/// Where links lead, through the folder where the file is still to come.
+/// Resolves links. If the file does not exist yet, those of its folder are resolved.
 fn resolved(path: &Path) -> PathBuf {
     let within = || {
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));

@@ -75,7 +75,7 @@ pub(super) fn run(asked: &ImportArgs) -> Result<Exit, Failure> {
     imported.notes.iter().for_each(|note| text += &format!("# {}\n", one_line(note)));
     text += "\n";
     text += &imported.study;
-    // A study that cannot be analysed is told of here, and not when it is.
+    // The study is parsed here, so that errors appear at the import and not at the analysis.
     Study::from_toml(&text, &asked.output.as_deref().unwrap_or(Path::new("imported study")).display().to_string())?;
     destination.write(&text)?;
     Ok(Exit::Done)
@@ -85,7 +85,7 @@ fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// The table, and of a workbook the name of the sheet that holds it.
+/// Reads the table, and the name of its sheet if it is in a workbook.
 fn sheet(asked: &ImportArgs) -> Result<(Option<String>, Sheet), Failure> {
     let failed = |reason: String, help: Option<String>| Failure::Import { path: asked.table.clone(), reason, help };
     let mut bytes = Vec::new();

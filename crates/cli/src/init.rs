@@ -1,4 +1,4 @@
-//! `sensitol init`: a study to begin with, that runs as it is.
+//! `sensitol init`: a first study that runs unchanged.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ use sensitol_report::document::number::plain;
 use sensitol_study::Format;
 use sensitol_study::write::{inline, pair, quoted};
 
-/// The tolerance that a built-in model's inputs get, of their nominal value.
+/// Tolerance of the inputs of a built-in model, relative to their nominal value.
 const TOLERANCE: &str = "1%";
 
 const FORMULA: &str = r#"# A stack of three parts in a housing. Everything after a # is a comment.
@@ -39,7 +39,7 @@ housing = { model = "reciprocal", a = 1.0, b = 0.20, min = 0.02, max = 0.40 }   
 bearing = { model = "reciprocal", a = 2.0, b = 0.24, min = 0.01, max = 0.20 }
 "#;
 
-/// The text before the dimensions of a study whose model is a program.
+/// Returns a study whose model is a program.
 fn process(script: &str) -> String {
     format!(
         r#"# A model behind a program: it reads points as JSON lines and answers with values. {script} stands for what drives a CAD system.
@@ -117,7 +117,7 @@ pub(super) fn run(asked: &InitArgs) -> Result<Exit, Failure> {
     Ok(Exit::Done)
 }
 
-/// A path as a shell takes it.
+/// Quotes a path for a shell.
 fn shell(path: &Path) -> String {
     let text = path.display().to_string();
     let plain = |c: char| c.is_alphanumeric() || "_-./:+,@%".contains(c) || cfg!(windows) && c == '\\';
@@ -128,7 +128,7 @@ fn shell(path: &Path) -> String {
     }
 }
 
-/// `gap` and `gap.toml` both mean gap.toml.
+/// Returns the path of the study: `gap` and `gap.toml` both mean gap.toml.
 fn study_path(name: &str) -> PathBuf {
     let path = Path::new(name);
     match path.extension() {
@@ -137,7 +137,7 @@ fn study_path(name: &str) -> PathBuf {
     }
 }
 
-/// A study of a built-in model: every input that has a size varies by a percent, the others stay.
+/// Returns a study of a built-in model. Inputs with a unit and a nominal value other than 0 vary by a percent, the others are fixed.
 fn of_model(model: &Model) -> String {
     let mut text = format!("# {}\n# {}\n\n[model]\nbuiltin = \"{}\"\n\n", model.title, model.source, model.name);
     text += "[dimensions]\n# A percent each: replace it by what the drawing says. What is left out has the nominal value shown.\n";

@@ -1,7 +1,7 @@
-//! Ctrl-C: the first stops cleanly, the second gives up what is under way, the third leaves at once.
+//! Ctrl-C: the first one stops cleanly, the second one gives up running evaluations, the third one ends the process at once.
 //!
-//! SIGTERM and SIGHUP are heard as Ctrl-C is. Where no person watches a terminal, a scheduler kills after some 30 s whatever has not
-//! ended: the second and third step then follow by themselves.
+//! SIGTERM and SIGHUP act like Ctrl-C. Without a terminal, a scheduler kills a process that has not ended after some 30 s, so the second
+//! and third step then follow by themselves.
 
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -10,18 +10,20 @@ use std::time::Duration;
 use super::output::error;
 use sensitol::summary::StopReason;
 
-/// How long a run without a terminal waits for what is under way, and then for the report.
+/// Time that a run without a terminal waits for running evaluations.
 const PATIENCE: Duration = Duration::from_secs(10);
+/// Time that follows for the report.
 const LAST: Duration = Duration::from_secs(3);
 
+/// Number of interruptions so far.
 static PRESSED: AtomicUsize = AtomicUsize::new(0);
 
-/// Listens from now on. A process that cannot listen is interrupted as any other.
+/// Installs the handler. A process without it is interrupted like any other.
 pub(super) fn listen() {
     let _ = ctrlc::set_handler(|| match PRESSED.fetch_add(1, Ordering::SeqCst) {
         0 if !std::io::stderr().is_terminal() => {
             error("interrupted: waiting 10 s for what is under way");
-            // Without a thread to wait, what is under way is given up at once.
+            // If no thread can be started to wait, running evaluations are given up at once.
             if std::thread::Builder::new().spawn(hurry).is_err() {
                 PRESSED.fetch_max(2, Ordering::SeqCst);
             }
@@ -32,7 +34,7 @@ pub(super) fn listen() {
     });
 }
 
-/// Gives up what is under way after 10 s, and leaves 3 s later, whatever is done by then.
+/// Gives up running evaluations after 10 s, and ends the process 3 s later in any case.
 fn hurry() {
     std::thread::sleep(PATIENCE);
     PRESSED.fetch_max(2, Ordering::SeqCst);
@@ -40,17 +42,17 @@ fn hurry() {
     std::process::exit(130);
 }
 
-/// Why to stop, once the user said so.
+/// Returns the stop reason after an interruption.
 pub(super) fn reason() -> Option<StopReason> {
     stopped().then_some(StopReason::Interrupted)
 }
 
-/// Whether to stop.
+/// True if the run should stop.
 pub(super) fn stopped() -> bool {
     PRESSED.load(Ordering::SeqCst) > 0
 }
 
-/// Whether to give up what is under way too.
+/// True if running evaluations should be given up as well.
 pub(super) fn abandoned() -> bool {
     PRESSED.load(Ordering::SeqCst) > 1
 }

@@ -1,4 +1,4 @@
-//! `sensitol journal`: what is kept of external models.
+//! `sensitol journal`: the kept answers of external models.
 
 use std::collections::BTreeMap;
 use std::io::IsTerminal;
@@ -90,7 +90,7 @@ pub(super) fn run(asked: &JournalArgs, look: Look) -> Result<Exit, Failure> {
             let store = Store::open_existing(file)?;
             let model = chosen(&store, *model)?;
             let mut answers = store.answers(model.id)?;
-            // In order of the numbers, not of their bytes.
+            // Sorted by value, not by bytes.
             let order = |kept: &StoredAnswer| kept.point.clone();
             answers.sort_by(|a, b| order(a).partial_cmp(&order(b)).unwrap_or(std::cmp::Ordering::Equal));
             print(file, output, &table(&model, &answers)?)
@@ -119,7 +119,7 @@ fn print(journal: &Path, output: &OutputArgs, text: &str) -> Result<Exit, Failur
     Ok(Exit::Done)
 }
 
-/// Whether the user at the terminal agrees that so much is lost.
+/// Asks at the terminal before answers are deleted. Returns true if the user agrees.
 fn agreed(answers: usize) -> Result<bool, Failure> {
     let (mut said, stdin) = (String::new(), std::io::stdin());
     if !stdin.is_terminal() || !std::io::stderr().is_terminal() {
@@ -130,7 +130,7 @@ fn agreed(answers: usize) -> Result<bool, Failure> {
     Ok(["y", "yes"].contains(&said.trim().to_lowercase().as_str()))
 }
 
-/// The model of this number; the only one where none is named.
+/// Returns the model with this number. Without a number, the journal must hold a single model.
 fn chosen(store: &Store, number: Option<i64>) -> Result<KnownModel, Failure> {
     let mut models = store.models()?;
     match number {
@@ -147,7 +147,7 @@ fn chosen(store: &Store, number: Option<i64>) -> Result<KnownModel, Failure> {
     }
 }
 
-/// A row for each point: its dimensions, and a column and a reason for every output.
+/// Writes a row for each point: its dimensions, then the values of all outputs, then the errors of all outputs.
 fn table(model: &KnownModel, answers: &[StoredAnswer]) -> Result<String, Failure> {
     let mut outputs: Vec<&str> = answers.iter().map(|kept| kept.output.as_str()).collect();
     outputs.sort_unstable();
@@ -197,7 +197,7 @@ impl ModelReport {
         Self { id, since, points, values, errors, dimensions, identity }
     }
 
-    /// Adds the model below the earlier text.
+    /// Appends the model to the document.
     fn put(&self, document: &mut Document) {
         let word = |key: &str| match &self.identity[key] {
             serde_json::Value::String(text) => text.clone(),

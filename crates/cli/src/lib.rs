@@ -1,6 +1,6 @@
 //! The command line: the only place that prints.
 //!
-//! Results go to stdout; progress, warnings and errors to stderr. A closed pipe is not an error.
+//! Results go to stdout. Progress, warnings and errors go to stderr. A closed pipe is not an error.
 
 mod advice;
 mod allocate;
@@ -53,7 +53,7 @@ use failure::{Exit, Failure};
 pub use reference::{command, exit_codes};
 use sensitol_numeric::names::nearest;
 
-/// Prints what the command line itself has to say. Help and version are results, everything else is a usage error.
+/// Prints messages of the argument parser. Help and version are results, everything else is a usage error.
 fn told(error: clap::Error) -> Exit {
     if error.use_stderr() {
         output::usage(&error.render().ansi().to_string());
@@ -70,7 +70,7 @@ fn told(error: clap::Error) -> Exit {
     }
 }
 
-/// `help analize` names the nearest command, as `analize` does.
+/// Adds the nearest command to the error of `help analize`, as the parser does for `analize`.
 fn with_suggestion(mut error: clap::Error) -> clap::Error {
     let Some(ContextValue::String(found)) = error.get(ContextKind::InvalidSubcommand) else { return error };
     if error.get(ContextKind::SuggestedSubcommand).is_none() {
@@ -84,12 +84,13 @@ fn with_suggestion(mut error: clap::Error) -> clap::Error {
     error
 }
 
-/// Runs the command with these arguments, the program's name first, and says how it went.
+/// Runs the command with these arguments, the program's name first, and returns its exit code.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     run_code(arguments).into()
 }
 
-/// [`run`], with the exit code as a number: for who ends the process by other means than an [`ExitCode`].
+/// Runs the command as [`run`] does, and returns the exit code as a number, for callers that end the process in another way than by an
+/// [`ExitCode`].
 pub fn run_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
@@ -125,6 +126,7 @@ pub fn run_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Man => reference::man(),
         Command::Pearson(asked) => pearson::run(asked, style),
     };
+    // Errors that were not printed so far are printed here.
     let exit = result.unwrap_or_else(|failure| {
         if let Some(message) = failure.render() {
             output::error(&message);

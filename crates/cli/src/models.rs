@@ -50,12 +50,11 @@ pub(super) fn run(asked: &ModelsArgs, look: Look) -> Result<Exit, Failure> {
     Ok(Exit::Done)
 }
 
-/// The model of this name.
 pub(super) fn known(name: &str) -> Result<&'static Model, Failure> {
     Ok(name.parse::<&Model>()?)
 }
 
-/// The names of all, and what they are.
+/// Lists the names and titles of all models.
 fn list() -> Document {
     let widest = ALL.iter().map(|model| model.name.len()).max().unwrap_or(0);
     let mut document = Document::default();
@@ -63,7 +62,7 @@ fn list() -> Document {
     document
 }
 
-/// A model's description, its inputs, and its outputs.
+/// Describes a model, its inputs, and its outputs.
 fn document(model: &Model) -> Document {
     let mut document = Document::default();
     document.line(format!("{}: {}", model.name, model.title));

@@ -1,4 +1,4 @@
-//! Where text goes, and how it looks.
+//! Destinations of text, its colours, and its safety for a terminal.
 
 use std::borrow::Cow;
 use std::io::{ErrorKind, IsTerminal, Write};
@@ -16,27 +16,28 @@ use sensitol_numeric::names::{clean, is_hidden};
 use sensitol_report::WarningReport;
 use sensitol_report::document::{Detail, Style};
 
-/// Warnings of one code that are shown each, and names of the others that are shown.
+/// Most warnings with the same code that are printed in full.
 const EACH: usize = 3;
+/// Most names that the line for the other warnings lists.
 const NAMED: usize = 5;
 
-/// The user's choice of output.
+/// Options that set the look of all output.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Look<'s> {
     pub(super) color: ColorChoice,
     pub(super) quiet: bool,
     pub(super) verbose: bool,
-    /// The study that warnings are of, where there are several.
+    /// Name of the study that warnings concern, if there are several.
     pub(super) study: Option<&'s str>,
 }
 
 impl<'s> Look<'s> {
-    /// For what concerns one study of several.
+    /// Adds the name of the study that messages concern.
     pub(super) fn of(self, study: &'s str) -> Self {
         Self { study: Some(study), ..self }
     }
 
-    /// Of a report that goes there: a file has no colours, unless they are asked for always, and the usual width.
+    /// Returns the style of a report. A file has the default width, and colours only if they are always on.
     pub(super) fn style(self, asked: &OutputArgs) -> Style {
         let detail = if self.verbose { Detail::Full } else { Detail::Short };
         let (color, width) = match asked.output {
@@ -49,17 +50,17 @@ impl<'s> Look<'s> {
         Style { detail, unicode: self.color != ColorChoice::Never && utf8_locale(), color, width }
     }
 
-    /// Shows a warning and what to do about it.
+    /// Prints a warning and the advice on it.
     pub(super) fn warn(self, warning: &Warning) {
         self.tell(&WarningReport::of(warning));
     }
 
-    /// Shows warnings as [`tell_all`](Self::tell_all) does.
+    /// Prints warnings as [`tell_all`](Self::tell_all) does.
     pub(super) fn warn_all(self, warnings: &[Warning]) {
         self.tell_all(&warnings.iter().map(WarningReport::of).collect::<Vec<_>>());
     }
 
-    /// Shows the warnings of a report: of many of one code the first few, then how many more there are and what they concern.
+    /// Prints the warnings of a report. Of many with the same code it prints the first few, then the number and names of the others.
     pub(super) fn tell_all(self, warnings: &[WarningReport]) {
         let mut more: Vec<(&str, Vec<&str>)> = Vec::new();
         for (index, warning) in warnings.iter().enumerate() {
@@ -83,7 +84,7 @@ impl<'s> Look<'s> {
         }
     }
 
-    /// The same of a report.
+    /// Prints a warning of a report and the advice on it.
     fn tell(self, warning: &WarningReport) {
         self.line(warning.code, &warning.message, advice::help(&warning.advice));
     }
@@ -101,34 +102,34 @@ impl<'s> Look<'s> {
     }
 }
 
-/// Tells why nothing came of it.
+/// Prints an error.
 pub(super) fn error(message: &str) {
     to_stderr(&format!("{}\n", shown(message)));
 }
 
-/// Asks, and leaves the cursor behind the question.
+/// Prints a question and leaves the cursor behind it.
 pub(super) fn prompt(question: &str) {
     to_stderr(&shown(question));
 }
 
-/// The message of the parser of the command line: it repeats what was typed.
+/// Prints a message of the argument parser, which may repeat the user's input.
 pub(super) fn usage(message: &str) {
     to_stderr(&shown(message));
 }
 
-/// A line that a model wrote.
+/// Prints a line that a model wrote to stderr.
 pub(super) fn model_line(line: &str) {
     to_stderr(&format!("model: {}\n", clean(line)));
 }
 
-/// A stderr that is full or closed changes no result and no exit code.
+/// Writes to stderr. Errors are ignored: a full or closed stderr must not change results or the exit code.
 fn to_stderr(text: &str) {
     let mut stderr = anstream::stderr().lock();
     let _ = stderr.write_all(text.as_bytes()).and_then(|()| stderr.flush());
 }
 
-/// Own text with lines and colours of its own, in which names and texts of others stand: of what is hidden it keeps line breaks
-/// and the sequences that set colours.
+/// Makes text with line breaks and colours safe for a terminal: of the control characters, only line breaks and colour sequences stay.
+/// The text may contain names from studies and programs.
 fn shown(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     let mut rest = text;
@@ -159,13 +160,13 @@ pub(super) fn set_color(choice: ColorChoice) {
     .write_global();
 }
 
-/// That of the terminal where stdout is one, but no line is longer than people like to read, and none shorter than a number.
+/// Returns the width of the terminal, from 40 (for numbers) to 120 (for readability), or the default if stdout is not a terminal.
 fn terminal_width() -> usize {
     let size = terminal_size::terminal_size_of(std::io::stdout());
     size.map_or(Style::WIDTH, |(width, _)| usize::from(width.0).clamp(40, 120))
 }
 
-/// Whether the terminal expects UTF-8, as POSIX tells it; elsewhere it does.
+/// True if the locale is UTF-8. Always true on systems other than Unix.
 fn utf8_locale() -> bool {
     if !cfg!(unix) {
         return true;
@@ -176,14 +177,14 @@ fn utf8_locale() -> bool {
     locale.contains("utf-8") || locale.contains("utf8")
 }
 
-/// Where a result goes: opened before the work, so that a file that cannot be written costs no evaluation.
+/// Destination of a result. It is opened before the work, so that a file that cannot be written costs no evaluation.
 pub(super) enum Destination {
     Stdout,
-    /// Written under another name and renamed, so that no half result ever bears the name.
+    /// Written under a temporary name and renamed, so that no incomplete result has the final name.
     File {
         path: PathBuf,
     },
-    /// A pipe, a device or another special file is written to as it is.
+    /// Pipe, device or other special file, written to directly.
     Special {
         path: PathBuf,
         file: std::fs::File,
@@ -203,7 +204,7 @@ impl Destination {
         if path.is_dir() {
             return Err(unwritable(ErrorKind::IsADirectory.into()));
         }
-        // A link leads to the file that is meant, and stays.
+        // A link is followed, and stays a link.
         let target = std::fs::canonicalize(path);
         let path = target.as_deref().unwrap_or(path);
         if std::fs::metadata(path).is_ok_and(|there| !there.is_file()) {
@@ -220,12 +221,12 @@ impl Destination {
             return Err(Failure::Unwritable { path: path.to_owned(), error: protected });
         }
         remove_leftovers(folder);
-        // Tried now, so that a folder that cannot be written to costs no evaluation; nothing stays.
+        // A trial file shows at once if the folder is not writable. It is removed immediately.
         temporary(path).map_err(unwritable)?;
         Ok(Self::File { path: path.to_owned() })
     }
 
-    /// Writes these bytes as they are.
+    /// Writes bytes unchanged.
     pub(super) fn write_bytes(self, bytes: &[u8]) -> Result<(), Failure> {
         match self {
             Self::Stdout => {
@@ -253,15 +254,14 @@ impl Destination {
     }
 
     pub(super) fn write(self, text: &str) -> Result<(), Failure> {
-        // A file or a pipe gets every byte; a terminal would obey some of them.
+        // Files and pipes get the text unchanged. A terminal would execute control sequences in it.
         let terminal = matches!(self, Self::Stdout) && std::io::stdout().is_terminal();
         let text = if terminal { Cow::from(shown(text)) } else { Cow::from(text) };
         self.write_bytes(text.as_bytes())
     }
 }
 
-/// A file next to that of this path, with the mode of the one that it will replace; a new one is readable as the user's other
-/// files are.
+/// Creates a temporary file beside this path, with the mode of the file that it will replace. A new file gets the user's default mode.
 fn temporary(path: &Path) -> std::io::Result<TempPath> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
@@ -274,12 +274,12 @@ fn temporary(path: &Path) -> std::io::Result<TempPath> {
     Ok(file)
 }
 
-/// How a temporary file's name begins.
+/// Prefix of the names of temporary files.
 const TEMPORARY: &str = ".sensitol-";
-/// A temporary file is there for as long as writing it takes: one that is older belongs to a run that was killed.
+/// Age above which a temporary file counts as left over from a killed run. A file exists only while it is written.
 const LEFT_OVER: Duration = Duration::from_secs(3600);
 
-/// Removes what killed runs have left in a folder, as far as that is possible.
+/// Removes old temporary files from a folder. Errors are ignored.
 fn remove_leftovers(folder: &Path) {
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         let old = || entry.metadata().ok()?.modified().ok()?.elapsed().ok().filter(|age| *age > LEFT_OVER);
@@ -290,12 +290,12 @@ fn remove_leftovers(folder: &Path) {
     }
 }
 
-/// Without the temporary file's own name, which would only puzzle.
+/// Removes the temporary file's name from an error, because it would only confuse.
 fn bare(error: std::io::Error) -> std::io::Error {
     error.raw_os_error().map_or(error.kind().into(), std::io::Error::from_raw_os_error)
 }
 
-/// JSON for people and programs: indented, with a line break at its end.
+/// Formats a value as indented JSON with a final line break.
 pub(super) fn json(value: &impl serde::Serialize) -> String {
     let mut text = serde_json::to_string_pretty(value).expect("reports are plain data");
     text.push('\n');

@@ -1,9 +1,9 @@
-//! `--pairs`: strongest, adjacent, or names.
+//! Value of `--pairs`: strongest, adjacent, or names.
 
 use super::failure::Failure;
 use sensitol::method::Pairs;
 
-/// `A:B,C:D`, names with `:` or `,` in backquotes.
+/// Parses `strongest`, `adjacent` or `A:B,C:D`. Names with `:` or `,` are in backquotes.
 pub(super) fn parse(text: &str) -> Result<Pairs, Failure> {
     if let Ok(named) = text.parse::<Pairs>() {
         return Ok(named);

@@ -52,7 +52,7 @@ pub(super) fn run(asked: &PearsonArgs, look: Look) -> Result<Exit, Failure> {
     Ok(Exit::Done)
 }
 
-/// A line for everything asked; the law itself where nothing was.
+/// Prints a line for each requested value, or the distribution itself if none is requested.
 fn text(asked: &PearsonArgs, answers: &Answers, law: &Pearson, look: Look) -> String {
     let groups = [
         ("pdf", &asked.pdf, &answers.pdf),

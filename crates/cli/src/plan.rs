@@ -79,13 +79,13 @@ struct AxisReport {
     values: Vec<f64>,
 }
 
-/// Dimensions that are named beside their nodes.
+/// Most dimensions listed beside their nodes.
 const NAMED: usize = 8;
-/// The count of a plan without differences.
+/// Text for the count of a plan without differences.
 const EXACT: &str = "exact derivatives: the means, and the nominal values where they differ";
 
 pub(super) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
-    // Points that are written are answered elsewhere, and need no model.
+    // Points that are only written need no model that answers.
     let externals = Externals::default().with_unanswered(asked.write_points.is_some());
     let study = study::read(&asked.study, externals)?;
     let mut files = Files::of(&asked.study.study, &study, None);
@@ -160,7 +160,7 @@ fn axis(problem: &Problem, plan: &dyn Plan, d: usize) -> AxisReport {
     }
 }
 
-/// How many batches wait for each other, and how many workers can be busy.
+/// Formats the number of rounds and the size of the largest batch, which bounds the busy workers.
 fn rounds(report: &PlanReport) -> String {
     let (rounds, points) = (plural(report.rounds, "round", "rounds"), plural(report.largest_batch, "point", "points"));
     match report.range.is_some() || report.extremes {
@@ -171,7 +171,7 @@ fn rounds(report: &PlanReport) -> String {
 }
 
 impl PlanReport {
-    /// The text of the plan: how many evaluations, in which stages, and where along every dimension.
+    /// Builds the text of the plan: number of evaluations, stages, and nodes of every dimension.
     fn document(&self) -> Document {
         let mut document = Document::default();
         document.line(format!("{}: {}", self.method, self.about));
@@ -216,7 +216,7 @@ impl PlanReport {
         document
     }
 
-    /// Dimensions of one distribution share their nodes, up to rounding.
+    /// Lists the nodes. Dimensions whose printed nodes agree share a line.
     fn steps(&self, document: &mut Document) {
         let mut alike: Vec<(String, Vec<&str>)> = Vec::new();
         for dimension in self.dimensions.iter().filter(|dimension| !dimension.sigmas.is_empty()) {
@@ -238,7 +238,7 @@ impl PlanReport {
     }
 }
 
-/// Every point of a stage, a coordinate for every dimension.
+/// Returns every point of a stage with the values of all dimensions.
 fn rows(plan: &dyn Plan, stage: &Stage) -> Vec<Vec<f64>> {
     let centre = plan.centre();
     let row = |point: &Point| {

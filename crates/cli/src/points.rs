@@ -1,4 +1,4 @@
-//! Points that are evaluated elsewhere, as CSV: written without answers, read with them.
+//! Points for evaluation elsewhere, as CSV: written without answers, read with them.
 
 use std::collections::HashSet;
 use std::path::Path;
@@ -9,9 +9,9 @@ use sensitol::problem::Problem;
 use sensitol_report::document::csv::{guarded, unguarded};
 use sensitol_study::table::{NumberFault, Style, delimiter, records};
 
-/// A column for every input that the model is sent, a row for every point, every number to its last digit.
+/// Writes a column for every input of the model and a row for every point, in full precision.
 ///
-/// `points` are of the dimensions. Points that send the same numbers stand once.
+/// `points` hold values of the dimensions. Points with equal model inputs appear once.
 pub(super) fn table(problem: &Problem, points: &[Vec<f64>]) -> String {
     let of_dimensions = || problem.dimensions().iter().map(|dimension| dimension.name().to_owned()).collect();
     match problem.function().sent(&Points::from_rows(points)) {
@@ -26,7 +26,7 @@ pub(super) fn table(problem: &Problem, points: &[Vec<f64>]) -> String {
     }
 }
 
-/// Points of the model's own inputs, as [`table`] writes those of the dimensions.
+/// Writes points of the model's inputs in the format of [`table`].
 pub(super) fn of_model(problem: &Problem, points: &[Vec<f64>]) -> String {
     let nominal: Vec<f64> = problem.dimensions().iter().map(sensitol_numeric::dimension::Dimension::nominal).collect();
     let names = match problem.function().sent(&Points::from_rows(&[nominal])) {
@@ -45,10 +45,10 @@ fn written(names: Vec<String>, points: Vec<Vec<f64>>) -> String {
     String::from_utf8(writer.into_inner().expect("memory is always flushed")).expect("text and numbers are UTF-8")
 }
 
-/// The delimiters of points, in the order in which they are tried: files are written with commas.
+/// Delimiters in the order of trial. Written files use commas.
 const CANDIDATES: [u8; 3] = [b',', b';', b'\t'];
 
-/// Reads a table with a header, in English or German style. Empty cells are unknown; everything else is a finite number.
+/// Reads a table with a header, in English or German number format. Empty cells are unknown; all others must be finite numbers.
 pub(super) fn read(path: &Path) -> Result<Table, Failure> {
     let failed = |reason: String| Failure::Points { path: path.to_owned(), reason };
     let bytes = std::fs::read(path).map_err(|error| failed(error.to_string()))?;
@@ -73,7 +73,7 @@ pub(super) fn read(path: &Path) -> Result<Table, Failure> {
         for (place, &(row, cell)) in cells.iter().enumerate() {
             rows[row][index] = match style.number(place, cell) {
                 Ok(value) => Some(value),
-                // Texts in a column of errors are remarks.
+                // Text in a column of errors is a remark.
                 Err(_) if name.ends_with(" error") => None,
                 Err(found) => {
                     let why = match found {

@@ -68,7 +68,7 @@ struct StepReport {
 }
 
 pub(super) fn run(asked: &ProbeArgs, look: Look) -> Result<Exit, Failure> {
-    // Answers from a journal would prove nothing, and sentinels would hide what is looked for.
+    // Answers from a journal would prove nothing, and sentinels would hide the differences that the probe looks for.
     let externals = Externals { listener: listener(look), ..Externals::default() }.with_sentinels(false);
     let study = study::read(&asked.study, externals)?;
     let mut files = Files::of(&asked.study.study, &study, None);
@@ -142,7 +142,7 @@ impl ProbeReport {
         }
     }
 
-    /// The text of the probe: how fast the model is, how it passed every check, and of every characteristic which steps are safe.
+    /// Builds the text of the probe: speed of the model, result of every check, and safe steps for every characteristic.
     fn document(&self) -> Document {
         let mut document = Document::default();
         if let Some(AdapterReport { name, version, window }) = &self.adapter {

@@ -1,4 +1,4 @@
-//! A bar for evaluations that take time, on a terminal.
+//! Progress bars on a terminal.
 
 use std::sync::Mutex;
 use std::time::Duration;
@@ -8,14 +8,14 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use sensitol::assembly::Progress;
 use sensitol::simulation::Pace;
 
-/// How far the evaluations are. Invisible where stderr is not a terminal.
+/// Progress of evaluations. Invisible if stderr is not a terminal.
 pub(super) struct Bar {
     bar: ProgressBar,
     so_far: Mutex<Progress>,
 }
 
 impl Bar {
-    /// Of this many points, more if some have to be tried again.
+    /// Starts a bar for this many points. Repeated points make it longer.
     pub(super) fn new(points: usize, quiet: bool) -> Self {
         let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
         let bar = ProgressBar::with_draw_target(Some(points as u64), target);
@@ -34,7 +34,7 @@ impl Bar {
         so_far.reused += more.reused;
         let part = |count: usize, what: &str| if count == 0 { String::new() } else { format!(", {count} {what}") };
         self.bar.set_message(part(so_far.failed, "failed") + &part(so_far.reused, "known"));
-        // A search asks for more than was planned.
+        // A search may need more points than planned: the bar grows.
         if self.bar.length().is_some_and(|length| length < so_far.points as u64) {
             self.bar.set_length(so_far.points as u64);
         }
@@ -46,7 +46,7 @@ impl Bar {
     }
 }
 
-/// How far a simulation is. Invisible where stderr is not a terminal.
+/// Progress of a simulation. Invisible if stderr is not a terminal.
 pub(super) struct Samples {
     bar: ProgressBar,
 }

@@ -15,7 +15,7 @@ use sensitol_report::html::rare_html;
 use sensitol_report::{RareReport, csv_tables};
 use sensitol_study::Study;
 
-/// Points unless the user says otherwise, of a cheap model and of a costly one.
+/// Default number of points: cheap model, costly model.
 const SAMPLES: [u64; 2] = [10_000, 1000];
 
 pub(super) fn run(asked: &SimulateArgs, study: &Study, look: Look) -> Result<Exit, Failure> {

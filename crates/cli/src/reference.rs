@@ -1,4 +1,4 @@
-//! `sensitol completions` and `sensitol man`: made from what can be typed.
+//! `sensitol completions` and `sensitol man`, generated from the definition of the command line.
 
 use clap::CommandFactory;
 
@@ -12,7 +12,7 @@ pub(super) fn completions(asked: &CompletionsArgs) -> Result<Exit, Failure> {
     print(&script)
 }
 
-/// The command line as it is parsed: what the manual page and `docs/reference/commands.md` are made from.
+/// Definition of the command line, from which the manual page and `docs/reference/commands.md` are generated.
 ///
 /// ```
 /// let analyze = sensitol_cli::command().find_subcommand("analyze").cloned().unwrap();
@@ -24,7 +24,7 @@ pub fn command() -> clap::Command {
     command
 }
 
-/// Exit codes and what they say, in ascending order.
+/// Exit codes with their meaning, in ascending order.
 ///
 /// ```
 /// assert_eq!(sensitol_cli::exit_codes().next().unwrap().0, 0);
@@ -33,7 +33,7 @@ pub fn exit_codes() -> impl Iterator<Item = (u8, &'static str)> {
     Exit::ALL.into_iter().map(|(exit, meaning)| (exit as u8, meaning))
 }
 
-/// The environment variables that the program reads.
+/// Environment variables that the program reads, with their meaning.
 const ENVIRONMENT: [(&str, &str); 2] = [
     ("NO_COLOR", "when set, no colours where --color does not ask for them"),
     (
@@ -42,7 +42,7 @@ const ENVIRONMENT: [(&str, &str); 2] = [
     ),
 ];
 
-/// One page: the command, and every subcommand below it.
+/// Prints the manual as one page: the command, then every subcommand.
 pub(super) fn man() -> Result<Exit, Failure> {
     let mut page = Vec::new();
     let command = command();
@@ -72,7 +72,7 @@ pub(super) fn man() -> Result<Exit, Failure> {
     print(&page)
 }
 
-/// Text in which nothing is a request of roff.
+/// Escapes text for roff, so that no line of it is a request.
 fn roff(text: &str) -> String {
     let text = text.replace('\\', "\\e").replace('-', "\\-");
     if text.starts_with(['.', '\'']) { format!("\\&{text}") } else { text }

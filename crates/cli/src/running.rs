@@ -1,4 +1,4 @@
-//! The common part of the commands that evaluate: for how long, on how many threads, where answers are kept.
+//! Common parts of the commands that evaluate: time limit, threads, and journal.
 
 use std::path::Path;
 use std::sync::{Arc, Once};
@@ -16,14 +16,14 @@ use sensitol_numeric::verdict::{self, Judged, Verdict};
 use sensitol_report::About;
 use sensitol_study::{Externals, JournalPlace, Study};
 
-/// Since when a command runs, and for how long it may.
+/// Start time of a command, and its time limit.
 pub(super) struct Clock {
     begun: Instant,
     limit: Option<Duration>,
 }
 
 impl Clock {
-    /// From now on, for so many seconds; from now on Ctrl-C is heard too.
+    /// Starts the clock with a limit in seconds, and installs the handler of Ctrl-C.
     pub(super) fn start(seconds: Option<f64>) -> Self {
         interrupt::listen();
         start_threads();
@@ -31,26 +31,26 @@ impl Clock {
         Self { begun: Instant::now(), limit }
     }
 
-    /// Whether it has a limit.
+    /// True if there is a time limit.
     pub(super) fn limited(&self) -> bool {
         self.limit.is_some()
     }
 
-    /// Why to stop: the user said so, or the time is up.
+    /// Returns the stop reason: an interruption by the user, or the time limit.
     pub(super) fn stop(&self) -> Option<StopReason> {
         let over = || self.limit.is_some_and(|limit| self.begun.elapsed() >= limit);
         interrupt::reason().or_else(|| over().then_some(StopReason::TimeLimit))
     }
 
-    /// Warns of a run that ended early: why, and how much of what was planned it did.
+    /// Warns of a run that ended early, with the cause and the number of finished evaluations.
     pub(super) fn stopped(&self, run: &RunSummary, (done, planned): (u64, Option<u64>), counted: Counted, look: Look) {
-        // A run that was interrupted when all was done is reported as interrupted too.
+        // An interruption after the last evaluation is reported as well.
         let Some(cause) = interrupt::reason().or(run.stopped) else { return };
         let limit_s = self.limit.filter(|_| cause == StopReason::TimeLimit).map(|limit| limit.as_secs_f64());
         look.warn(&Warning::Stopped { cause, limit_s, done, planned, counted });
     }
 
-    /// The facts about the study that a report shows beside the results.
+    /// Returns the facts about the study that a report shows beside the results.
     pub(super) fn about(&self, study: &Study) -> About {
         About {
             title: study.title.clone(),
@@ -61,17 +61,17 @@ impl Clock {
     }
 }
 
-/// Where the answers of an external model are kept, and who hears it.
+/// Returns the settings of external models: journal, listener, and given answers.
 pub(super) fn externals(journal: Option<&Path>, look: Look, points: Option<Arc<Table>>) -> Externals {
     Externals { journal: JournalPlace::asked(journal), listener: listener(look), points, ..Externals::default() }
 }
 
-/// Who shows what an external program writes to stderr: the terminal, when all details are asked for.
+/// Returns a listener for the stderr lines of an external model, which prints them if `--verbose` is set.
 pub(super) fn listener(look: Look) -> Option<Listener> {
     look.verbose.then(|| Arc::new(|line: &str| output::model_line(line)) as Listener)
 }
 
-/// Where the system gives no more threads, everything is done by the one that there is.
+/// Falls back to a single thread if the system refuses to start more.
 fn start_threads() {
     static TRIED: Once = Once::new();
     TRIED.call_once(|| {
@@ -81,15 +81,15 @@ fn start_threads() {
     });
 }
 
-/// Does the work with as many threads as were asked for, on one of them: a thread beside them would hand every loop over and sleep until it is
-/// done, and keep memory of its own.
+/// Runs work on one of `threads` threads. A caller outside the pool would hand over every loop, sleep meanwhile, and keep memory of its
+/// own.
 pub(super) fn on_threads<T: Send>(threads: Option<u16>, work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
     let Some(threads) = threads else { return Ok(rayon::scope(|_| work())) };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build();
     Ok(pool.map_err(|error| Failure::Threads { threads, reason: error.to_string() })?.install(work))
 }
 
-/// That every answer could be kept: a run whose journal could not be written has no result.
+/// Checks that every answer was kept. A run whose journal could not be written has no result.
 pub(super) fn kept(problem: &Problem) -> Result<(), Failure> {
     match problem.function().account().and_then(|account| account.not_kept) {
         Some(reason) => Err(Failure::NotKept { reason }),
@@ -97,12 +97,12 @@ pub(super) fn kept(problem: &Problem) -> Result<(), Failure> {
     }
 }
 
-/// How a run ends that would end like this, were all its answers confirmed.
+/// Worsens an exit code if answers of the run are not confirmed.
 pub(super) fn confirmed(exit: Exit, run: &RunSummary) -> Exit {
     if run.unconfirmed() { exit.worse(Exit::NoResult) } else { exit }
 }
 
-/// How `--check` ends: a run that left planned points open says nothing, and everything that is required must be met.
+/// Exit code of `--check`: planned points that are left open give no result, and every requirement must be met.
 pub(super) fn checked(unfinished: bool, judged: impl IntoIterator<Item = Judged>) -> Exit {
     match verdict::worst(judged.into_iter().map(|one| one.verdict)) {
         _ if unfinished => Exit::NoResult,

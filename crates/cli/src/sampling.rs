@@ -1,4 +1,4 @@
-//! The runs of `sensitol simulate` with and without `--rare`.
+//! Runs of `sensitol simulate` with and without `--rare`.
 
 use std::sync::Mutex;
 use std::time::Duration;
@@ -15,15 +15,15 @@ use sensitol::simulation::Pace;
 use sensitol::warning::Warning;
 use sensitol_study::Study;
 
-/// A simulation that will take longer than this tells so.
+/// Expected time above which a simulation prints a warning.
 const LONG: Duration = Duration::from_secs(60);
 
-/// How the surrogate is analysed: as the study says, but for the method that is asked for.
+/// Returns the options of the surrogate: those of the study, with the method of the command line.
 pub(super) fn surrogate(study: &Study, asked: &SimulateArgs) -> Options {
     let mut options = study.options.clone();
     if let Some(method) = asked.method {
         options.method = method.0;
-        // The study's choice of pairs was made for its own method.
+        // The study's pairs belong to its own method.
         if method.0 != Method::SixN {
             (options.pairs, options.stencil) = (None, None);
         }
@@ -31,7 +31,7 @@ pub(super) fn surrogate(study: &Study, asked: &SimulateArgs) -> Options {
     options
 }
 
-/// Draws points, showing how far it is, and telling once when that will be long.
+/// Draws points with a progress bar, and warns once if the run will be long.
 pub(super) fn sampling<T: Send>(
     threads: Option<u16>,
     clock: &Clock,
@@ -42,7 +42,7 @@ pub(super) fn sampling<T: Send>(
     let told = Mutex::new(false);
     let pace = |pace: Pace| {
         bar.show(&pace);
-        // Who waits for years should know after a second.
+        // The warning comes after the first second, so that the user can stop a run that would take years.
         let Ok(mut told) = told.lock() else { return };
         let rest = Duration::try_from_secs_f64(pace.expected_s()).unwrap_or(Duration::MAX);
         if !*told && !clock.limited() && pace.elapsed > Duration::from_secs(1) && rest > LONG {

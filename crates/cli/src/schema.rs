@@ -19,9 +19,9 @@ pub(super) fn run(asked: &SchemaArgs) -> Result<Exit, Failure> {
     Ok(Exit::Done)
 }
 
-/// The schema of everything that `--json` prints, draft 2020-12: what each command prints stands below `$defs`, by its name.
+/// Returns the schema of all `--json` output, draft 2020-12, with one entry in `$defs` for each command.
 ///
-/// No key is left out, and there are no others.
+/// The schema lists every key and allows no others.
 fn reports() -> Value {
     let settings = SchemaSettings::draft2020_12().with(|settings| settings.contract = Contract::Serialize);
     let mut generator = settings.into_generator();
@@ -44,20 +44,20 @@ fn reports() -> Value {
     definitions.extend(commands.map(|(name, schema)| (name.to_owned(), schema)));
     let mut schema = value!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
-        // A name, not an address: reports of other versions have other schemas, and none is fetched.
+        // The identifier is a name and not an address: other versions have other schemas, and none is fetched.
         "$id": format!("urn:sensitol:report:{SCHEMA}"),
         "title": format!("Reports of sensitol, schema {SCHEMA}"),
         "anyOf": all,
         "$defs": definitions,
     });
     close(&mut schema);
-    // After `close`: a report within an entry is open, because the entry adds the name of its study.
+    // Added after `close`: a report within an entry stays open, because the entry adds the name of its study.
     schema["anyOf"].as_array_mut().expect("a list").push(value!({ "$ref": "#/$defs/analyze-several" }));
     schema["$defs"]["analyze-several"] = several_reports();
     schema
 }
 
-/// An array of entries, each a report or an error with the name of its study beside it.
+/// Schema of an array of entries: each is a report or an error, with the name of its study.
 fn several_reports() -> Value {
     let settings = SchemaSettings::draft2020_12().with(|settings| {
         settings.contract = Contract::Serialize;
@@ -75,7 +75,7 @@ fn of<T: JsonSchema>(generator: &mut SchemaGenerator) -> Value {
     generator.subschema_for::<T>().to_value()
 }
 
-/// Objects have the keys that are named and no others.
+/// Forbids unlisted keys in all objects.
 fn close(schema: &mut Value) {
     match schema {
         Value::Object(object) => {

@@ -1,4 +1,4 @@
-//! Several studies in one call: all of them are read before any is evaluated, and none is kept from its report by another.
+//! Several studies in one call: all are read before any is evaluated, and a failed study does not stop the others.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -20,7 +20,7 @@ use sensitol_report::document::terminal::text;
 use sensitol_report::{Budget, Report, Stack, budget_csv_of_studies, stack_csv_of_studies};
 use sensitol_study::{Externals, Study};
 
-/// Tells what is wrong with one study, and how it ended. Only an output that can no longer be printed to ends all.
+/// Prints the error of one study and returns its exit code. Only an output that cannot be written ends the whole call.
 pub(super) fn outcome(study: &str, result: Result<Exit, Failure>) -> Result<Exit, Failure> {
     match result {
         Err(failure @ (Failure::ClosedPipe | Failure::Stdout(_))) => Err(failure),
@@ -38,13 +38,13 @@ fn tell(study: &str, failure: &Failure) {
     }
 }
 
-/// A study, or one of its configurations.
+/// Study, or one of its configurations.
 struct Asked<'a> {
     path: &'a Path,
     configuration: Option<String>,
 }
 
-/// Every study, or every configuration of each.
+/// Lists every study, or every configuration of each.
 fn of_configurations<'a>(paths: &'a [PathBuf], asked: &AnalyzeArgs) -> Result<Vec<Asked<'a>>, Failure> {
     let named = asked.how.configuration.as_deref();
     let mut all = Vec::new();
@@ -53,7 +53,7 @@ fn of_configurations<'a>(paths: &'a [PathBuf], asked: &AnalyzeArgs) -> Result<Ve
             Some(ALL) => {
                 let configurations = Study::read(path)?.configurations;
                 if configurations.is_empty() {
-                    // The study's own error says that there is none.
+                    // Reading with the name `all` gives the error that the study has no configurations.
                     Study::read_with(path, Externals::default().with_configuration(ALL))?;
                 }
                 all.extend(configurations.into_iter().map(|name| Asked { path, configuration: Some(name) }));
@@ -64,7 +64,7 @@ fn of_configurations<'a>(paths: &'a [PathBuf], asked: &AnalyzeArgs) -> Result<Ve
     Ok(all)
 }
 
-/// `sensitol analyze` of several studies, or configurations.
+/// Runs `sensitol analyze` on several studies or configurations.
 pub(super) fn analyze(paths: &[PathBuf], asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
     let all = of_configurations(paths, asked)?;
     if asked.points.is_some() {
@@ -92,6 +92,7 @@ pub(super) fn analyze(paths: &[PathBuf], asked: &AnalyzeArgs, look: Look) -> Res
     let studies = (all.iter().zip(&names))
         .map(|(one, name)| read(one.path, one.configuration.as_deref(), asked, None, look.of(name)));
     let studies: Vec<Result<Study, Failure>> = studies.collect();
+    // Every faulty study is reported before the first evaluation.
     for (name, study) in names.iter().zip(&studies) {
         if let Err(failure) = study {
             tell(name, failure);
@@ -126,7 +127,7 @@ pub(super) fn analyze(paths: &[PathBuf], asked: &AnalyzeArgs, look: Look) -> Res
             printer.keep(row, report);
             printer.show(name, report)
         });
-        // Who has a report whose files could not be written has it all the same.
+        // A report whose files could not be written is still printed: the study counts as shown.
         if let (Err(failure), false) = (&result, printer.shown > shown) {
             printer.failed(name, failure.to_string());
         }
@@ -136,14 +137,14 @@ pub(super) fn analyze(paths: &[PathBuf], asked: &AnalyzeArgs, look: Look) -> Res
     Ok(exit)
 }
 
-/// The names of the studies' files: those of the studies, with their folders' where several have the same. No two are the same on
-/// any file system.
+/// Returns the base names of the studies' files: the study's name, with its folder's name if several have the same. No two of them agree
+/// on any file system.
 fn stems(paths: &[PathBuf]) -> Result<Vec<String>, Failure> {
     let text = |part: Option<&OsStr>| part.map(|part| part.to_string_lossy().into_owned()).unwrap_or_default();
     let own: Vec<String> = paths.iter().map(|path| text(path.file_stem())).collect();
     let same = |a: &String, b: &String| a.to_lowercase() == b.to_lowercase();
     let full = |(path, stem): (&PathBuf, &String)| {
-        // A study is named without its folder in that folder.
+        // The path is made absolute, so that a study in the current folder has a folder's name too.
         let folder = path.canonicalize().ok().and_then(|path| Some(text(path.parent()?.file_name())));
         match own.iter().filter(|other| same(other, stem)).count() {
             1 => stem.clone(),
@@ -160,10 +161,10 @@ fn stems(paths: &[PathBuf]) -> Result<Vec<String>, Failure> {
     Ok(stems)
 }
 
-/// A study that was read with its files open, or why it was not.
+/// Study with its open files, or the error.
 type Ready = Result<(Study, Beside), Failure>;
 
-/// Opens the files of every study that was read: what cannot be written costs no evaluation.
+/// Opens the files of every study, so that a file that cannot be written costs no evaluation.
 fn open(
     stems: &[String],
     studies: Vec<Result<Study, Failure>>,
@@ -190,7 +191,7 @@ fn open(
     stems.iter().zip(studies).map(of).collect()
 }
 
-/// The folder, made where it is missing; a name that ends as `one` file of that kind does is most likely meant as one.
+/// Creates the folder if it is missing. A name with the extension of a single file is refused, because it is probably a mistake.
 fn folder_of(
     path: &Path,
     flag: &'static str,
@@ -225,22 +226,22 @@ pub(super) enum Outcome {
     Failed { error: String },
 }
 
-/// Prints reports as they come where that can be, and all in the end where they are one value or one file.
+/// Prints reports one by one, or collects them if the output is a single value or file.
 struct Printer<'a> {
     asked: &'a AnalyzeArgs,
     look: Look<'a>,
-    /// None where reports are printed as they come.
+    /// Destination of collected reports. None if reports are printed one by one.
     destination: Option<Destination>,
     text: String,
     entries: Vec<Entry>,
     stacks: Vec<(String, Vec<Stack>)>,
     budgets: Vec<(String, Vec<Budget>)>,
-    /// Every configuration with its report, for the rows in the end.
+    /// Configurations with their reports, for the table at the end.
     rows: Vec<(String, Report)>,
     shown: usize,
 }
 
-/// The format of a table that is asked for in place of the report.
+/// Returns the format of a table that replaces the report.
 fn table(asked: &AnalyzeArgs) -> Option<StackArg> {
     asked.stack.or(asked.gum)
 }
@@ -285,19 +286,18 @@ impl<'a> Printer<'a> {
         }
     }
 
-    /// Keeps the report of a configuration for its row.
+    /// Keeps the report of a configuration for its row in the table.
     fn keep(&mut self, configuration: Option<&str>, report: &Report) {
         let shown = !self.asked.output.json && table(self.asked).is_none();
         self.rows.extend(configuration.filter(|_| shown).map(|name| (name.to_owned(), report.clone())));
     }
 
-    /// A study without report.
     fn failed(&mut self, name: &str, error: String) {
         let entry = Entry { study: name.to_owned(), outcome: Outcome::Failed { error } };
         self.entries.push(entry);
     }
 
-    /// Writes what was kept; where there is no report, what stands there stays.
+    /// Writes the collected output. If there is no report, an existing file stays unchanged.
     fn finish(mut self) -> Result<(), Failure> {
         if self.rows.len() > 1 {
             let rows = text(&Report::rows_of_all(&self.rows), self.look.style(&self.asked.output));

@@ -1,4 +1,4 @@
-//! Options that several commands have.
+//! Options that several commands share.
 
 use std::path::PathBuf;
 
@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::values::{DerivativesArg, MethodArg, SensitivitiesArg, StencilArg, count, part, positive};
 
-/// The heading of the options that say what is printed, and where.
+/// Help heading of the options on output.
 pub(super) const OUTPUT: &str = "Output";
 
 #[derive(Debug, Args)]

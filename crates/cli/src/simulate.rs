@@ -16,13 +16,13 @@ use sensitol_report::html::simulate_html;
 use sensitol_report::{SimulationReport, csv_tables};
 use sensitol_study::Study;
 
-/// Points unless the user says otherwise; where accuracy is wanted, as many as that takes.
+/// Default number of points. With a target error there is no such limit.
 const SAMPLES: u64 = 100_000;
 
-/// Base points of Sobol' indices unless the user says otherwise.
+/// Default number of base points for Sobol' indices.
 const SOBOL: u64 = 1 << 14;
 
-/// The tables of a simulation, a file each; the last one with Sobol' indices only.
+/// Tables of a simulation, a CSV file each. The last one exists with Sobol' indices only.
 const TABLES: [&str; 3] = ["estimates", "histogram", "sobol"];
 
 pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {

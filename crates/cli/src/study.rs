@@ -1,4 +1,4 @@
-//! A study as the command line changes it.
+//! Studies with the changes of the command line.
 
 use std::path::Path;
 
@@ -11,17 +11,17 @@ use sensitol::method::{DerivativeSource, Method};
 use sensitol::plan::Stencil;
 use sensitol_study::{Externals, Study};
 
-/// The word for every configuration of a study.
+/// Name that stands for every configuration of a study.
 pub(super) const ALL: &str = "all";
 
-/// Reads the study of which points are drawn.
+/// Reads a study for sampling.
 pub(super) fn read_sampled(asked: &SampledArgs, look: Look) -> Result<Study, Failure> {
     let externals = externals(asked.work.journal.as_deref(), look, None);
     let externals = configured(externals, asked.configuration.as_deref());
     asking(Study::read_with(&asked.study, externals)?, &asked.characteristics)
 }
 
-/// The same of a configuration, where one is named.
+/// Selects a configuration, if one is named.
 pub(super) fn configured(externals: Externals, name: Option<&str>) -> Externals {
     match name {
         Some(name) => externals.with_configuration(name),
@@ -29,7 +29,7 @@ pub(super) fn configured(externals: Externals, name: Option<&str>) -> Externals 
     }
 }
 
-/// The study, asking for these characteristics only, where any is named.
+/// Restricts the study to these characteristics, if any are named.
 fn asking(mut study: Study, characteristics: &[String]) -> Result<Study, Failure> {
     if !characteristics.is_empty() {
         study.problem = study.problem.only(characteristics)?;
@@ -37,12 +37,12 @@ fn asking(mut study: Study, characteristics: &[String]) -> Result<Study, Failure
     Ok(study)
 }
 
-/// Reads the study; what the command line says wins over its `[analysis]`.
+/// Reads a study. Options of the command line override its `[analysis]`.
 pub(super) fn read(asked: &StudyArgs, externals: Externals) -> Result<Study, Failure> {
     read_file(&asked.study, &asked.how, configured(externals, asked.how.configuration.as_deref()))
 }
 
-/// The same, in all configurations at once where `all` of them are asked for.
+/// Reads a study, in all configurations at once if `all` is named.
 pub(super) fn read_for_all(asked: &StudyArgs, externals: &dyn Fn() -> Externals) -> Result<Study, Failure> {
     if asked.how.configuration.as_deref() != Some(ALL) {
         return read(asked, externals());
@@ -50,7 +50,7 @@ pub(super) fn read_for_all(asked: &StudyArgs, externals: &dyn Fn() -> Externals)
     let study = Study::read_with(&asked.study, externals())?;
     let names = study.configurations.clone();
     if names.is_empty() {
-        // The study's own error says that there is none.
+        // Reading with the name `all` gives the error that the study has no configurations.
         Study::read_with(&asked.study, externals().with_configuration(ALL))?;
     }
     let of = |name: String| Ok((name.clone(), Study::read_with(&asked.study, externals().with_configuration(name))?));
@@ -58,12 +58,12 @@ pub(super) fn read_for_all(asked: &StudyArgs, externals: &dyn Fn() -> Externals)
     changed(study.in_configurations(&all)?, &asked.how)
 }
 
-/// The same of a file that stands for itself.
+/// Reads a study from a path of its own.
 pub(super) fn read_file(path: &Path, asked: &HowArgs, externals: Externals) -> Result<Study, Failure> {
     changed(Study::read_with(path, externals)?, asked)
 }
 
-/// The same for a sweep over this parameter.
+/// Reads a study for a sweep over a parameter.
 pub(super) fn read_sweeping(asked: &StudyArgs, externals: Externals, parameter: &str) -> Result<Study, Failure> {
     let externals = configured(externals, asked.how.configuration.as_deref());
     changed(Study::read_sweeping(&asked.study, externals, parameter)?, &asked.how)
@@ -74,11 +74,11 @@ fn changed(study: Study, asked: &HowArgs) -> Result<Study, Failure> {
     let options = &mut study.options;
     if let Some(method) = asked.method {
         options.method = method.0;
-        // The study's choice of pairs was made for its own method.
+        // The study's pairs belong to its own method.
         if method.0 != Method::SixN {
             (options.pairs, options.stencil) = (None, None);
         }
-        // So were its nodes, and steps.
+        // The same holds for its nodes and steps.
         let reduction = matches!(method.0, Method::DimensionReduction | Method::BivariateDimensionReduction);
         if !reduction {
             options.nodes = None;
@@ -112,7 +112,7 @@ fn changed(study: Study, asked: &HowArgs) -> Result<Study, Failure> {
             DerivativesArg::Exact => DerivativeSource::Exact,
             DerivativesArg::Difference => DerivativeSource::Difference,
         });
-        // Steps of the study were chosen for its differences.
+        // The study's step belongs to differences.
         if derivatives == DerivativesArg::Exact {
             options.step = asked.step;
         }

@@ -1,15 +1,15 @@
-//! Values of options: numbers, ranges and words.
+//! Parsers for values of options: numbers, ranges and words.
 
 use clap::ValueEnum;
 
-/// A parameter and its values.
+/// Parameter of a sweep with its values.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Over {
     pub(super) name: String,
     pub(super) values: Vec<f64>,
 }
 
-/// A dimension whose nominal value may move, and within which bounds.
+/// Dimension whose nominal value may move, with its bounds.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Movable {
     pub(super) name: String,
@@ -18,7 +18,7 @@ pub(super) struct Movable {
 
 pub(super) fn movable(text: &str) -> Result<Movable, String> {
     let form = || "it is NAME, or NAME=LOW:HIGH, such as shoulder=14.8:15.2".to_owned();
-    // A name may hold anything; numbers hold no `=`.
+    // Split at the last `=`: names may contain `=`, numbers cannot.
     let Some((name, range)) = text.rsplit_once('=') else {
         return Ok(Movable { name: text.to_owned(), bounds: None });
     };
@@ -34,7 +34,7 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
     number(text, |value| value.is_finite() && value > 0.0, "it must be a number above 0")
 }
 
-/// A part of something: 0.01, or 1 %.
+/// Parses a part of something, such as 0.01 or 1 %.
 pub(super) fn part(text: &str) -> Result<f64, String> {
     match text.trim().strip_suffix('%') {
         Some(percent) => positive(percent).map(|percent| percent / 100.0),
@@ -42,9 +42,9 @@ pub(super) fn part(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A count, as digits or as 1e6.
+/// Parses a count, such as 1000000 or 1e6.
 pub(super) fn whole(text: &str) -> Result<u64, String> {
-    /// Beyond it not every whole number is a double.
+    /// Limit up to which every whole number is a double.
     const MOST: f64 = (1u64 << 53) as f64;
     if let Ok(count) = text.trim().parse::<u64>() {
         return Ok(count);
@@ -55,7 +55,7 @@ pub(super) fn whole(text: &str) -> Result<u64, String> {
     }
 }
 
-/// Points of a sample.
+/// Parses the number of points of a sample.
 pub(super) fn samples(text: &str) -> Result<u64, String> {
     const MOST: u64 = 1 << 52;
     match whole(text)? {
@@ -64,12 +64,12 @@ pub(super) fn samples(text: &str) -> Result<u64, String> {
     }
 }
 
-/// Points of a sample, or 0 for no sample.
+/// Parses the number of points of a sample, or 0 for no sample.
 pub(super) fn samples_or_none(text: &str) -> Result<u64, String> {
     if whole(text)? == 0 { Ok(0) } else { samples(text) }
 }
 
-/// Evaluations, or points of a front.
+/// Parses a number of evaluations, or of points of a front.
 pub(super) fn count(text: &str) -> Result<usize, String> {
     usize::try_from(whole(text)?).map_err(|_| "it is too large".to_owned())
 }
@@ -90,11 +90,11 @@ fn number(text: &str, holds: fn(f64) -> bool, must: &str) -> Result<f64, String>
     }
 }
 
-/// Values of a sweep at most: more is a slip of the pen.
+/// Most values of a sweep: more are probably a typing error.
 const MOST_STEPS: usize = 10_000;
 
 pub(super) fn over(text: &str) -> Result<Over, String> {
-    // A name may hold anything; numbers hold no `=`.
+    // Split at the last `=`: names may contain `=`, numbers cannot.
     let form = || "it is NAME=FROM:TO:STEPS, such as theta=-180:180:73".to_owned();
     let (name, range) = text.rsplit_once('=').ok_or_else(form)?;
     let parts: Vec<&str> = range.split(':').collect();
@@ -110,7 +110,7 @@ pub(super) fn over(text: &str) -> Result<Over, String> {
         return Err("FROM and TO are the same value; `analyze` looks at one".to_owned());
     }
     let last = (steps - 1) as f64;
-    // Both ends to the last bit, and middles that are as round as their ends.
+    // Exact at both ends, and with little rounding error between them.
     let value = |step: usize| (from * (last - step as f64) + to * step as f64) / last;
     let values: Vec<f64> = (0..steps).map(value).collect();
     if values.iter().any(|value| !value.is_finite()) || values.windows(2).any(|pair| pair[0] == pair[1]) {
@@ -119,7 +119,7 @@ pub(super) fn over(text: &str) -> Result<Over, String> {
     Ok(Over { name: name.to_owned(), values })
 }
 
-/// The registered methods as values of an option.
+/// Registered methods as values of an option.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct MethodArg(pub(super) sensitol::method::Method);
 

@@ -1,6 +1,6 @@
 //! `sensitol workbench`: a page that edits and analyses studies in a browser.
 //!
-//! `web/build` makes the page, with the engine as WebAssembly in it. This command finds it and puts a study into it: the program
+//! `web/build` makes the page, which contains the engine as WebAssembly. This command finds the page and inserts a study. The program
 //! itself is built without WebAssembly.
 
 use std::collections::BTreeMap;
@@ -14,16 +14,16 @@ use super::files::Files;
 use super::output::{Destination, Look};
 use sensitol_study::{FileRole, Study};
 
-/// The name of the page, and of the variable that says where it is.
 const PAGE: &str = "workbench.html";
+/// Environment variable with the path of the page.
 const VARIABLE: &str = "SENSITOL_WORKBENCH";
-/// Where the study goes.
+/// Placeholder in the page for the study.
 const EMPTY: &str = "<script type=\"application/json\" id=\"study-data\">null</script>";
-/// The mark that says which engine is in a page.
+/// Mark of the engine's version in a page.
 const GENERATOR: &str =
     concat!("<meta name=\"generator\" content=\"sensitol ", env!("CARGO_PKG_VERSION"), " workbench\">");
 
-/// The data that the page opens.
+/// Data that the page opens.
 #[derive(Serialize)]
 struct Given {
     name: String,
@@ -47,13 +47,13 @@ pub(super) fn run(asked: &WorkbenchArgs, look: Look) -> Result<Exit, Failure> {
     }
     let destination: Destination = files.output(&output)?;
     let data = serde_json::to_string(&given).expect("texts are plain data");
-    // Nothing in a study ends the element in which it stands.
+    // Escaped, so that no text of a study ends the element around it.
     let data = data.replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026");
     destination.write(&page.replacen(EMPTY, &EMPTY.replace("null", &data), 1))?;
     Ok(Exit::Done)
 }
 
-/// A study as the page opens it: as TOML, with the measured values that it names.
+/// Returns the study for the page: its TOML text, and its files of measured values.
 fn given(path: &Path, study: &Study) -> Result<Given, Failure> {
     let cannot = |reason: &str| Failure::NotInPage { path: path.to_owned(), reason: reason.to_owned() };
     if study.problem.function().signature().costly {
@@ -71,7 +71,7 @@ fn given(path: &Path, study: &Study) -> Result<Given, Failure> {
     Ok(Given { name: format!("{stem}.toml"), text, files })
 }
 
-/// The page without a study.
+/// Reads the page without a study, and checks that it fits to this program.
 pub(super) fn page(named: Option<&Path>) -> Result<String, Failure> {
     let (path, sought) = match named {
         Some(path) => (Some(path.to_owned()), Vec::new()),
@@ -93,7 +93,8 @@ pub(super) fn page(named: Option<&Path>) -> Result<String, Failure> {
     Ok(text)
 }
 
-/// Where the page may be: as the environment says, beside the program, where packages share files, where `web/build` writes it.
+/// Returns the possible paths of the page: from the environment, beside the program, in the shared files of a package, and in the output
+/// of `web/build`.
 fn places() -> Vec<PathBuf> {
     let named = std::env::var_os(VARIABLE).map(PathBuf::from);
     let program = std::env::current_exe().and_then(std::fs::canonicalize).ok();

@@ -1,11 +1,11 @@
-//! Every input of the fuzz targets' corpora keeps its promises, on every `cargo test`: `fuzz/` looks for more of them.
+//! Replays the corpora of the fuzz targets on every `cargo test`. `fuzz/` searches for more inputs.
 
 #[path = "../../../fuzz/src/targets.rs"]
 mod targets;
 
 use std::path::{Path, PathBuf};
 
-/// The files of a folder, in order; none where it is missing.
+/// Returns the files of a folder in order, or none if the folder is missing.
 fn files(folder: PathBuf) -> Vec<PathBuf> {
     let mut files: Vec<PathBuf> =
         std::fs::read_dir(folder).into_iter().flatten().map(|entry| entry.unwrap().path()).collect();
@@ -13,7 +13,7 @@ fn files(folder: PathBuf) -> Vec<PathBuf> {
     files
 }
 
-/// Runs the corpus of a target. An input at which it panics names itself; the file is named here.
+/// Runs the corpus of a target. A target that panics prints its input; this function adds the file's name.
 fn replay(name: &str) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let target = targets::TARGETS.iter().find(|target| target.name == name).unwrap();
@@ -37,7 +37,7 @@ macro_rules! replayed {
             replay(stringify!($name));
         })*
 
-        /// A target without a test would not be replayed.
+        /// A target that is missing from the list would not be replayed.
         #[test]
         fn every_target_is_replayed() {
             assert_eq!(targets::TARGETS.map(|target| target.name), [$(stringify!($name)),*]);

@@ -85,10 +85,10 @@ pub struct AllocationReport {
     pub warnings: Vec<WarningReport>,
 }
 
-/// The study written anew, as far as a report shows it.
+/// Changed entries of a study after an allocation, ready for the report.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct WrittenAnew {
-    /// The entries that have changed.
+    /// TOML text of the dimensions that have changed.
     pub entries: String,
     /// Dimensions whose fit has become a plain tolerance.
     pub replaced_fits: Vec<String>,
@@ -169,7 +169,7 @@ pub(crate) struct ConfirmationReport {
 }
 
 impl AllocationReport {
-    /// The report of an allocation; `table` is the study written anew, where it can be.
+    /// Builds the report of an allocation. `table` holds the rewritten study entries; None if the study cannot be rewritten.
     pub fn of(problem: &Problem, allocation: &Allocation, table: Option<&WrittenAnew>, about: About) -> Self {
         let found = allocation.after.as_ref().unwrap_or(&allocation.before);
         let mut warnings: Vec<WarningReport> =
@@ -223,7 +223,7 @@ impl AllocationReport {
         }
     }
 
-    /// Without the interactions that hardly matter, before and after: what they make together stands in their place.
+    /// Drops the interactions that hardly matter, before and after. Their sum stays in the report.
     pub fn shortened(mut self) -> Self {
         for one in &mut self.characteristics {
             one.before.shorten();
@@ -233,7 +233,7 @@ impl AllocationReport {
     }
 }
 
-/// Names in place of indices.
+/// Adds the names of dimensions and characteristics to results that hold indices.
 struct Names<'p>(&'p Problem);
 
 impl Names<'_> {
@@ -241,7 +241,7 @@ impl Names<'_> {
         OfCharacteristic { characteristic: self.0.characteristics()[c].name().to_owned(), of: of.clone() }
     }
 
-    /// A joint yield is of all characteristics with limits.
+    /// Adds the names of the concerned characteristics: for a joint yield all that have limits.
     fn attainable(&self, one: &Attainable) -> OfCharacteristic<Attainable> {
         let all = self.0.characteristics().iter().filter(|one| one.limits().exist()).map(|one| one.name());
         match one.joint {

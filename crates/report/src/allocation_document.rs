@@ -24,23 +24,23 @@ use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::shape::finite;
 use sensitol_numeric::verdict::{Judged, Verdict};
 
-/// A smaller residual is rounding.
+/// Least printed KKT residual: smaller ones are rounding.
 const LEAST: f64 = 1e-12;
-/// Digits of a cost.
+/// Significant digits of a cost.
 const COST: usize = 5;
-/// Labels along the chart of the front: of more only every power of ten is there.
+/// Most labels on the yield axis of the front. With more, only powers of ten of the rejects are labelled.
 const LABELS: usize = 6;
-/// Dimensions that are named as the reason why a requirement cannot be kept.
+/// Most dimensions named as the reason why a requirement cannot be kept.
 const NAMED: usize = 5;
 
 impl AllocationReport {
-    /// The text of the allocation: what it came to, tolerances (table `tolerances`), requirements (table `requirements`),
-    /// characteristics, the front (table `front`), and what to paste into the study.
+    /// Builds the document: result and cost, tolerances (table `tolerances`), requirements (table `requirements`), characteristics, the
+    /// front (table `front`), and the entries to paste into the study.
     pub fn document(&self) -> Document {
         let mut document = Document::titled(self.head.title.as_deref());
         self.heading(&mut document.head);
         self.attainable.iter().for_each(|one| unattainable(&mut document.head, one, self.status == Status::Infeasible));
-        // Without tolerances that were found there is nothing to show of them, and CSV has the header all the same.
+        // If no tolerances were found, the table is hidden, but CSV still has its header.
         let mut tolerances = self.tolerances();
         if self.cost_after.is_none() {
             tolerances.view.clear();
@@ -140,7 +140,7 @@ impl AllocationReport {
             ));
         }
         let sampled = self.confirmation.as_ref().map_or(0, |confirmation| confirmation.samples);
-        // A round of the allocation may ask a program more than once.
+        // A round of the allocation may send several batches to an external model.
         let batches = self
             .run
             .evaluator
@@ -160,7 +160,7 @@ impl AllocationReport {
                 _ if self.proof.solver == Some(AllocationSolver::VerifiedSearch) => {
                     "; found by trials of the model"
                 }
-                // The tolerances before are the best that was found.
+                // An infinite residual means that the tolerances before are the best found: no claim of agreement then.
                 _ if self.proof.residual.is_some_and(f64::is_infinite) => "",
                 _ if self.confirmed && self.cost_after.is_some() => "; moments re-evaluated at the optimum: agree",
                 _ => "",
@@ -182,7 +182,7 @@ impl AllocationReport {
         match proof.residual {
             Some(residual) if residual.is_finite() => {
                 let closed = if proof.closed_form { ", Lagrange's solution in closed form" } else { "" };
-                // The next power of ten, and no more than doubles tell.
+                // The residual is rounded up to a power of ten, at least the rounding of doubles.
                 let within = 10f64.powi(libm::log10(residual.max(LEAST)).ceil() as i32);
                 page.line(format!("KKT residual below {within:.0e}{closed}"));
             }
@@ -234,9 +234,9 @@ impl AllocationReport {
             .table("tolerances", &self.tolerances)
     }
 
-    /// The savings where the bound of a tolerance gives way by a hundredth of it.
+    /// Adds the saving for each tolerance at its bound if that bound is moved by 1 % of the tolerance.
     fn bound_prices(&self, section: &mut Section) {
-        /// As many as fit a line.
+        /// Dimensions that fit on one line.
         const MOST: usize = 3;
         let mut priced: Vec<(&str, f64)> = (self.tolerances.iter())
             .filter_map(|one| Some((one.of.dimension.as_str(), 0.01 * one.of.of.after * one.of.of.bound_price?)))
@@ -251,7 +251,7 @@ impl AllocationReport {
         }
     }
 
-    /// The joint yield that is required.
+    /// Adds the required joint yield with the values before, after and sampled.
     fn joint_required(&self, section: &mut Section) {
         let Some(one) = &self.joint_requirement else { return };
         let of = |judged: &Judged| judged.value.and_then(finite).map_or("unknown".to_owned(), yielded);
@@ -267,13 +267,13 @@ impl AllocationReport {
         });
     }
 
-    /// The highest cost of a dimension.
+    /// Returns the highest cost of a dimension, before or after.
     fn paid(&self) -> f64 {
         let costs = self.tolerances.iter().flat_map(|one| [one.of.of.cost_before, one.of.of.cost_after]);
         costs.flatten().fold(0.0, f64::max)
     }
 
-    /// The cost of every dimension before and after.
+    /// Builds bars of the cost of every dimension before and after.
     fn costs(&self) -> Bars {
         let highest = self.paid();
         let part = |fill: Fill, cost: Option<f64>| {
@@ -283,7 +283,7 @@ impl AllocationReport {
         let row = |one: &AllocatedReport| {
             let Allocated { cost_before, cost_after, .. } = one.of.of;
             let mut parts = vec![part(Fill::Before, cost_before), part(Fill::Linear, cost_after)];
-            // The longer one below, so that both are seen.
+            // The longer bar is drawn first, so that both stay visible.
             parts.sort_by(|a, b| b.1[1].total_cmp(&a.1[1]));
             let text = format!("{} / {}", known(cost_before, money), known(cost_after, money));
             Bar { name: one.of.dimension.clone(), parts, text, remark: Line::default() }
@@ -324,7 +324,7 @@ impl AllocationReport {
                 let verdict = one.of.after.map(|after| after.verdict);
                 let value = verdict.map_or(Value::Empty, |verdict| Value::Text(Verdict::name(verdict).to_owned()));
                 let before = loud(one.of.before.verdict).and(" before");
-                // Where nothing was found there is only what was.
+                // Without a result after the allocation there is only the verdict before.
                 Cell::both(value, verdict.map_or(before.clone(), |verdict| loud(verdict).and(", ").and(before)))
             })
             .data("price_both", move |one| price(one, |price| price.both))
@@ -334,7 +334,7 @@ impl AllocationReport {
             .table("requirements", &self.requirements)
     }
 
-    /// The saving where a limit gives way by a step that people can picture.
+    /// Adds the shadow prices per step of a readable size: 1 um for mm, else a power of ten below sigma.
     fn prices(&self, section: &mut Section, price: &OfCharacteristic<ShadowPrice>) {
         let one = self.characteristics.iter().find(|one| one.name == price.characteristic);
         let unit = one.and_then(|one| one.unit.as_deref());
@@ -441,7 +441,7 @@ impl AllocationReport {
         }
     }
 
-    /// The front for people.
+    /// Table of the front for pages and terminals.
     fn front_table(&self) -> DataTable {
         type Row<'r> = (&'r FrontRequirement, Option<f64>);
         let rows = self.front.iter().filter_map(|point| Some((point.required.first()?, point.cost)));
@@ -461,7 +461,7 @@ impl AllocationReport {
             .table("", rows)
     }
 
-    /// The front for programs: a row for every dimension at every point.
+    /// Table of the front for CSV: a row for every dimension at every point.
     fn front_points(&self) -> DataTable {
         type Row<'r> = (u64, &'r FrontRequirement, Option<f64>, Option<(&'r str, f64)>);
         let rows = self.front.iter().enumerate().flat_map(|(place, point)| {
@@ -484,8 +484,8 @@ impl AllocationReport {
             .table("front", rows)
     }
 
-    /// The requirement across, by the digits of the rejects, or the Cpk; cost upwards. The open circle is what the tolerances
-    /// before keep and cost.
+    /// Plots cost over the requirement: the logarithm of the reject rate for a yield, the required value otherwise. The open circle shows
+    /// the requirement and the cost at the tolerances before.
     fn plot(&self) -> Plot {
         let front: Vec<(f64, f64, String)> = (self.front.iter())
             .filter_map(|point| {
@@ -569,7 +569,7 @@ fn required(requirement: Requirement) -> String {
     }
 }
 
-/// The value in the requirement's own measure.
+/// Formats a value in the measure of its requirement.
 fn measure(requirement: Requirement, value: f64) -> String {
     match requirement {
         Requirement::Yield(_) => yielded(value),
@@ -599,7 +599,7 @@ fn bound(bound: Bound) -> &'static str {
     }
 }
 
-/// Where a requirement lies along the chart, and its label.
+/// Returns the place of a requirement on the axis, and its label.
 fn placed(requirement: Requirement, required: f64) -> (f64, String) {
     match requirement {
         Requirement::Yield(_) => {
@@ -610,7 +610,8 @@ fn placed(requirement: Requirement, required: f64) -> (f64, String) {
     }
 }
 
-/// Round yields between two places of the chart: 90 %, 95 %, 98 %, 99 % and so on, or without those between powers of ten.
+/// Returns labelled round yields between two places of the axis: 90 %, 95 %, 98 %, 99 % and so on. If these are too many, only powers of
+/// ten of the rejects remain.
 fn round_yields(from: f64, to: f64) -> Vec<(f64, String)> {
     let rejected = (1..=12).flat_map(|decade| [1.0, 0.5, 0.2].map(|digit| digit * 10f64.powi(-decade)));
     let all: Vec<f64> = rejected.filter(|rejected| (from..=to).contains(&-libm::log10(*rejected))).collect();
@@ -618,19 +619,19 @@ fn round_yields(from: f64, to: f64) -> Vec<(f64, String)> {
     let decades: Vec<f64> = all.iter().filter(whole).copied().collect();
     let label = |rejected: f64| {
         let percent = 100.0 * rejected;
-        // As many decimals as the one digit of the rejects has.
+        // Decimals that show the single digit of the rejects.
         let decimals = (-libm::log10(percent * (1.0 + 1e-9)).floor()).max(0.0) as usize;
         (-libm::log10(rejected), format!("{:.decimals$} %", 100.0 - percent))
     };
     match (all.len() > LABELS && decades.len() > 1, all.is_empty()) {
         (true, _) => decades.into_iter().map(label).collect(),
-        // A front within less than a step: its ends.
+        // The front spans less than one step: label its ends.
         (false, true) => [from, to].map(|place| (place, share(libm::pow(10f64, -place)))).into(),
         (false, false) => all.into_iter().map(label).collect(),
     }
 }
 
-/// A tolerance as drawings have it.
+/// Formats a tolerance band as on drawings: `±` if it is symmetric, else both deviations.
 fn band(half: f64, deviations: Option<[f64; 2]>) -> String {
     let signed = |value: f64| format!("{}{}", if value >= 0.0 { "+" } else { "" }, significant(value, 4));
     match deviations {

@@ -1,4 +1,4 @@
-//! The report of an analysis as a document: the verdict first, then what there is to say of each characteristic.
+//! The report of an analysis as a document: the verdict first, then a section for every characteristic.
 
 use super::figures::{Figures, Named};
 use super::head::{self, findings};
@@ -34,20 +34,21 @@ use sensitol_numeric::sampling::one_error;
 const CONTRIBUTIONS: usize = 30;
 /// Dimensions that are named, rather than counted, in a sentence.
 const NAMED: usize = 8;
-/// The heading of the contributions.
+/// Heading of the contributions.
 pub(super) const SHARES: &str = "Contributions to the variance";
-/// A rejected share that the normal fit has wrong by more than this part is worth a line.
+/// Least relative difference of the reject rates, between the normal fit and the best source, that is worth a line.
 const DIFFERENT: f64 = 0.05;
-/// Parts per million below this are none.
+/// Reject rates below this, in ppm, count as zero.
 const LEAST_PPM: f64 = 1e-6;
 
 impl Report {
-    /// All it says, in the tables `characteristics`, `dimensions`, `sensitivities`, `interactions`, `quantiles` and `warnings`.
+    /// Builds the document with every table: `characteristics`, `dimensions`, `sensitivities`, `interactions`, `quantiles` and
+    /// `warnings`.
     pub fn document(&self) -> Document {
         self.with_pairs(usize::MAX)
     }
 
-    /// The same with the interactions that a page or a terminal shows, where not all are asked for.
+    /// Builds the document with only as many interactions as a page or a terminal shows.
     pub fn brief_document(&self) -> Document {
         self.with_pairs(SHOWN.max(SHOWN_ON_PAGE))
     }
@@ -121,7 +122,7 @@ impl Report {
             section.note("a contribution below 0 lowers the variance: it varies against the others");
         }
         one.pairs(&mut section, pairs);
-        // A page draws them.
+        // Pages draw the contributions as bars.
         let mut left = Vec::new();
         bars::left_out(one).into_iter().for_each(|words| left.note(words));
         section.aside(SHARES, left);
@@ -136,7 +137,7 @@ impl Report {
         section
     }
 
-    /// The source of slopes and curvatures, unless they are differences as everything else.
+    /// Returns a sentence on the source of slopes and curvatures, or None if all come from differences.
     fn source(&self, one: &CharacteristicAnalysis) -> Option<String> {
         let shown: Vec<_> = one.shown(&self.dimensions).map(|(row, _)| row).collect();
         let differences: Vec<String> = shown.iter().filter(|row| !row.exact).map(|row| short(&row.dimension)).collect();
@@ -157,7 +158,7 @@ impl Report {
         Some(format!("slopes and curvatures are exact{but}; {rest}"))
     }
 
-    /// The pairs that vary together, of dimensions that matter here.
+    /// Lists correlated pairs of dimensions that affect this characteristic.
     fn correlations(&self, one: &CharacteristicAnalysis, section: &mut Section) {
         let matters =
             |name: &String| one.sensitivities.iter().any(|row| row.dimension == *name && row.first != Some(0.0));
@@ -174,44 +175,44 @@ impl Report {
 
 /// Sections of the report of a characteristic.
 pub(crate) trait CharacteristicSections {
-    /// How the figures were verified, and what their errors rest on.
+    /// Adds the verification of the figures and the basis of their error estimates.
     fn errors(&self, section: &mut Section);
 
-    /// The extremes, whether they are proven, and where they are.
+    /// Adds the extremes, their places, and whether they are proven.
     fn extremes(&self, section: &mut Section);
 
-    /// Distribution, quantiles, and how they keep the limits.
+    /// Adds the distribution, its quantiles, and the yield within the limits.
     fn distribution(&self, section: &mut Section);
 
-    /// The intervals that hold a share of assemblies.
     fn covered(&self, section: &mut Section);
 
-    /// The density, over the sample of the model where there is one.
+    /// Chart of the density, over the histogram of the model if there is one.
     fn spread(&self, law: &Pearson, kind: &str) -> SpreadChart;
 
     fn quantile_data(&self) -> DataTable;
 
     fn kept(&self, section: &mut Section);
 
-    /// The rejects, with their error.
+    /// Reject rates with their error.
     fn rejects(&self) -> Rejects;
 
-    /// Whether the normal fit rejects visibly more or fewer, on either side.
+    /// True if the reject rate of the normal fit differs visibly on either side.
     fn differs(&self, normal: &Capability) -> bool;
 
-    /// The dimensions that vary or do something, with what they do.
+    /// Dimensions that vary or affect the characteristic, with their sensitivities.
     fn shown<'r>(
         &'r self,
         dimensions: &'r [DimensionReport],
     ) -> impl Iterator<Item = (&'r Sensitivity, &'r DimensionReport)>;
 
-    /// The contributions of the dimensions, strongest first.
+    /// Table of the contributions of the dimensions, strongest first.
     fn contributions(&self, dimensions: &[DimensionReport]) -> DataTable;
 
-    /// Dimensions that vary together, as one factor: without what they do to each other where the surface tells of each of them.
+    /// Adds the contributions of dimensions that vary together, each group as one factor. They are a detail unless the contributions come
+    /// from the model.
     fn together(&self, section: &mut Section);
 
-    /// Where contributions come from that are not the surface's.
+    /// Sentence on the source of the contributions if they do not come from the surface.
     fn of_model(&self, of: &SobolIndices) -> String;
 }
 
@@ -220,7 +221,7 @@ impl CharacteristicSections for CharacteristicAnalysis {
         let error = |error: Option<f64>| known(error, |error| significant(error, 2));
         match &self.verification {
             Some(found) => section.note(found.words()),
-            // Nothing is to be verified of what has no moments, or depends on nothing that varies.
+            // No remark if there are no moments, or if nothing that varies has an effect.
             None if self.mean().is_some() && !self.constant => section.note("not verified by the model"),
             None => {}
         }
@@ -300,7 +301,7 @@ impl CharacteristicSections for CharacteristicAnalysis {
 
     fn covered(&self, section: &mut Section) {
         let Some(of) = &self.coverage else { return };
-        /// By how much the shortest interval must be shorter to be worth a line.
+        /// Least relative difference of the shortest interval from that with equal tails that is worth a line.
         const NOTABLE: f64 = 0.01;
         let share = plain(100.0 * of.probability);
         let width = |[from, to]: [f64; 2]| to - from;
@@ -377,7 +378,7 @@ impl CharacteristicSections for CharacteristicAnalysis {
             inspected(section, of);
         }
         let mut detail = Vec::new();
-        // Of measured values they are performance indices, not those of a process in control.
+        // Indices of measured values are performance indices (Pp, Ppk), not those of a process in control (Cp, Cpk).
         let names = if self.sampling.is_some() { ["Pp", "Ppk"] } else { ["Cp", "Cpk"] };
         let indices = [of(|of| of.cp_percentile), of(|of| of.cpk_percentile)];
         let quantiles = join(names.into_iter().zip(indices).map(|(name, index)| named(name, index)).collect());
@@ -477,7 +478,7 @@ impl CharacteristicSections for CharacteristicAnalysis {
     }
 
     fn of_model(&self, of: &SobolIndices) -> String {
-        // An estimate below 0 is 0 within its error.
+        // A negative estimate is 0 within its error.
         let rest = of.interactions.map(|share| format!("{} %", percent(share.max(0.0))));
         match (of.source, rest) {
             (_, None) => {
@@ -493,9 +494,9 @@ impl CharacteristicSections for CharacteristicAnalysis {
     }
 }
 
-/// How far a drawn density is off, where that can be seen.
+/// Returns the error of a drawn density in words, empty if it is too small to be seen.
 fn accuracy(table: &[[f64; 3]]) -> String {
-    /// Of the peak: the width of a line.
+    /// Least visible error, as a part of the peak: the width of a line.
     const SEEN: f64 = 1e-3;
     let most = |of: fn(&[f64; 3]) -> f64| table.iter().map(of).filter(|x| x.is_finite()).fold(0.0, f64::max);
     let (peak, error) = (most(|row| row[1]), most(|row| row[2]));
@@ -505,7 +506,7 @@ fn accuracy(table: &[[f64; 3]]) -> String {
     }
 }
 
-/// The dimensions by the end of their bands, and the others by their values.
+/// Lists the dimensions at the lower and upper ends of their bands, then those in between with their values.
 fn words(extreme: &Extreme) -> Vec<String> {
     let of = |place: Place| extreme.at.iter().filter(move |at| at.place == place);
     let mut words = Vec::new();
@@ -523,7 +524,7 @@ fn words(extreme: &Extreme) -> Vec<String> {
     words
 }
 
-/// A distribution by itself: its type, its support, its density, its quantiles.
+/// Prints a Pearson distribution by itself: its type, support, density and quantiles.
 pub fn law_text(law: &Pearson, style: Style) -> String {
     let mut document = Document::default();
     let end = |end: f64| match end.is_finite() {
@@ -547,14 +548,14 @@ fn named(kind: &str) -> String {
     if kind == "normal" { kind.to_owned() } else { format!("Pearson {kind}") }
 }
 
-/// Quantiles beside one another, with their probabilities above.
+/// Table of quantiles side by side, with their probabilities above.
 fn quantile_table(law: &str, quantiles: &Quantiles, sigma: f64) -> DataTable {
     let row = |name: String, cell: &dyn Fn((&'static str, &f64)) -> Cell| -> [Cell; 8] {
         let mut cells = std::iter::once(Cell::text(name)).chain(quantiles.iter().map(cell));
         std::array::from_fn(|_| cells.next().unwrap_or_else(Cell::empty))
     };
     let probability = |(p, _): (&'static str, &f64)| {
-        // `0.00135` as `0.135 %`.
+        // Rounded, so that `0.00135` becomes `0.135 %`.
         Cell::number(p.parse::<f64>().ok(), |p| format!("{} %", plain((1e5 * p).round() / 1e3)))
     };
     DataTable::untitled([
@@ -563,7 +564,7 @@ fn quantile_table(law: &str, quantiles: &Quantiles, sigma: f64) -> DataTable {
     ])
 }
 
-/// Beside sigma, where nothing but zeros is 0.
+/// Formats a mean shift with the digits of sigma, or as `0` if all of them are zeros.
 fn rounded(shift: f64, sigma: f64) -> String {
     let text = beside(shift, sigma);
     if text.parse() == Ok(0.0) { "0".to_owned() } else { text }

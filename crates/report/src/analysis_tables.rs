@@ -12,7 +12,7 @@ use sensitol::method::ErrorEstimate;
 use sensitol_numeric::capability::{Capability, Law};
 
 impl Report {
-    /// A row for every characteristic: where it lies, its limits, and how it keeps them.
+    /// Builds the table `characteristics`: a row each, with moments, limits, capability and verdict.
     pub(super) fn verdicts(&self) -> DataTable {
         type Of<'r> = &'r CharacteristicAnalysis;
         let scaled = |one: &Of<'_>, value: Option<f64>, error: Option<f64>, unknown: &str| {
@@ -82,7 +82,7 @@ impl Report {
             .of_sections()
     }
 
-    /// The rows of several reports below each other, each with a name before it.
+    /// Joins the rows of several reports below each other, each with the name of its study in front.
     pub fn rows_of_all(reports: &[(String, Self)]) -> Document {
         let mut document = Document::default();
         let mut all: Option<DataTable> = None;
@@ -131,7 +131,7 @@ impl Report {
     }
 }
 
-/// A share of an inspection, where there is one.
+/// Returns a probability from the inspection risks, or None if there is no inspection.
 fn risk(one: &CharacteristicAnalysis, share: fn(&InspectionRisks) -> Option<EstimatedShare>) -> Option<f64> {
     Some(share(one.inspection.as_ref()?)?.value)
 }

@@ -1,4 +1,4 @@
-//! The ranges of a characteristic beside its limits, and what its contributions leave out.
+//! Bars of a characteristic's ranges beside its limits, and the variance that its contributions leave out.
 
 use super::figures::{Figures, Named};
 use super::worst_case::WorstCaseKind;
@@ -9,20 +9,20 @@ use crate::worst_case::WorstCaseFigures;
 use sensitol::analysis::CharacteristicAnalysis;
 use sensitol::extremes::Extremes;
 
-/// A part of the extent of all intervals that rounding may make.
+/// Rounding tolerance at a limit, as a part of the extent of all intervals.
 const ROUNDING: f64 = 1e-9;
-/// A limit farther off than this many extents would press everything together.
+/// Greatest distance of a drawn limit from the middle, in extents. A farther one would press everything else together.
 const FAR: f64 = 2.0;
-/// The bounds that interval arithmetic proves.
+/// Name of the bar of bounds that interval arithmetic proves.
 const BOUNDS: &str = "worst case, proven bounds";
 
-/// The part of the variance that the contributions leave, in words; None where that is nothing to speak of, or unknown.
+/// Returns the part of the variance that the contributions leave out, in words. Returns None if it is negligible or unknown.
 pub(super) fn left_out(one: &CharacteristicAnalysis) -> Option<String> {
     let left_out = one.left_out_share.filter(|share| *share > 0.5 * NEWS)?;
     Some(format!("{} % is left out by all of these", percent(left_out)))
 }
 
-/// The ranges below a density, each with its ends as they are shown: mean \u{b1} 3 sigma, RSS, and the worst case as well as it is known.
+/// Returns the ranges below a density, with their ends as printed: mean \u{b1} 3 sigma, RSS, and the best known worst case.
 pub(super) fn ranges(one: &CharacteristicAnalysis) -> Vec<(String, [f64; 2], [String; 2])> {
     let around = |middle: Option<f64>, reach: Option<f64>| {
         let ends = [middle? - reach?, middle? + reach?];
@@ -47,12 +47,12 @@ pub(super) fn ranges(one: &CharacteristicAnalysis) -> Vec<(String, [f64; 2], [St
     .collect()
 }
 
-/// Worst case, RSS and three sigma on one scale with the limits; None where there is no extent.
+/// Builds bars of worst case, RSS and three sigma on one scale with the limits. Returns None if there is no extent.
 pub(super) fn spans(one: &CharacteristicAnalysis) -> Option<Bars> {
     let around = |middle: Option<f64>, reach: Option<f64>| Some([middle? - reach?, middle? + reach?]);
     let found = one.extremes.as_ref();
     let proven = if found.is_some_and(Extremes::proven) { "extremes, proven" } else { "extremes found" };
-    // Unless the study says otherwise.
+    // The study may set other inflation factors than Bender's 1.5.
     let bender = one.rss.zip(one.inflated_rss).is_none_or(|(rss, inflated)| (inflated - 1.5 * rss).abs() <= 1e-9 * rss);
     let inflated = if bender { "RSS x 1.5 (Bender)" } else { "RSS x factors" };
     let intervals: Vec<(&str, [f64; 2])> = [

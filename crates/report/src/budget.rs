@@ -6,7 +6,7 @@
 //! expanded uncertainty             U = t_p(nu) u_c                         nu rounded down
 //! ```
 //!
-//! Of first order in the slopes at the means. The standard uncertainty of an input is its sigma, of a Student distribution its scale.
+//! First order in the slopes at the means. The standard uncertainty of an input is its sigma; for a Student distribution it is the scale.
 //! Source: JCGM 100:2008, 5.1.2, 5.2.2, 8 and G.4.1.
 
 use super::figures::{Figures, Named};
@@ -17,36 +17,36 @@ use sensitol::analysis::{CharacteristicAnalysis, Interaction};
 use sensitol_numeric::distribution::standard_normal;
 use sensitol_numeric::sampling::student_quantile;
 
-/// The share that an expanded uncertainty holds unless the study says otherwise.
+/// Probability that an expanded uncertainty holds unless the study sets `coverage`.
 const PROBABILITY: f64 = 0.95;
-/// The distribution whose standard uncertainty is its scale.
+/// Name of the distribution whose standard uncertainty is its scale.
 const STUDENT: &str = "student";
-/// A sigma this near to the combined uncertainty is the same.
+/// Relative difference below which sigma and the combined uncertainty count as equal.
 const SAME: f64 = 1e-3;
 
 /// The budget of one characteristic. Unknown values are None.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Budget {
-    /// The characteristic.
+    /// Name of the characteristic.
     pub characteristic: String,
-    /// Its unit.
+    /// Unit of the characteristic.
     pub unit: Option<String>,
-    /// Its mean.
+    /// Mean of the characteristic.
     pub estimate: Option<f64>,
-    /// The dimensions that vary and do something to it, in the study's order.
+    /// Dimensions that vary and affect the characteristic, in the study's order.
     pub rows: Vec<BudgetRow>,
     /// The combined standard uncertainty, of first order.
     pub combined: Option<f64>,
-    /// Effective degrees of freedom, infinite where all inputs have infinitely many; None where inputs are correlated.
+    /// Effective degrees of freedom, infinite if those of all inputs are infinite. None if inputs are correlated.
     pub degrees: Option<f64>,
-    /// The share that the expanded uncertainty holds.
+    /// Probability that the expanded uncertainty holds.
     pub probability: f64,
     /// The coverage factor: the quantile of Student's distribution with the degrees of freedom rounded down.
     pub factor: Option<f64>,
     /// The expanded uncertainty.
     pub expanded: Option<f64>,
-    /// Sigma of the analysis, which has curvature too.
+    /// Sigma of the analysis, which includes curvature and interactions.
     sigma: Option<f64>,
     correlated: bool,
 }
@@ -57,20 +57,20 @@ pub struct Budget {
 pub struct BudgetRow {
     /// The dimension.
     pub dimension: DimensionReport,
-    /// Its standard uncertainty.
+    /// Standard uncertainty of the dimension.
     pub uncertainty: f64,
-    /// Its degrees of freedom, infinite unless the study says otherwise.
+    /// Degrees of freedom of the standard uncertainty, infinite unless the study sets them.
     pub degrees: f64,
     /// The slope at the means.
     pub coefficient: Option<f64>,
-    /// Slope by uncertainty, without sign.
+    /// Slope times uncertainty, without sign.
     pub contribution: Option<f64>,
-    /// Its part of the sum of squares.
+    /// Part of the sum of squares of all contributions.
     pub share: Option<f64>,
 }
 
 impl Report {
-    /// The budgets of all its characteristics, for the `coverage` of the study, 0.95 unless given.
+    /// Budgets of all characteristics, for the `coverage` of the study, 0.95 unless given.
     pub fn budgets(&self) -> Vec<Budget> {
         self.analysis.characteristics.iter().map(|one| Budget::of(self, one)).collect()
     }
@@ -100,7 +100,7 @@ impl Budget {
             false => alone.zip(terms.as_ref()).map(|(alone, terms)| (alone * alone + together(terms)).max(0.0).sqrt()),
         };
         let degrees = combined.zip(terms.as_ref()).filter(|_| pairs.is_empty()).map(|(combined, terms)| {
-            // Relative to the whole, so that no fourth power leaves the range of numbers.
+            // Relative to the combined uncertainty, so that no fourth power overflows.
             let part = |(term, row): (&f64, &BudgetRow)| (term / combined).powi(4) / row.degrees;
             if combined > 0.0 { terms.iter().zip(&rows).map(part).sum::<f64>().recip() } else { f64::INFINITY }
         });
@@ -122,7 +122,7 @@ impl Budget {
     }
 }
 
-/// Whether it has a product with another: at the means its slope may be 0 all the same.
+/// True if the dimension has a product with another one. Its slope at the means may be 0 all the same.
 fn interacts(one: &CharacteristicAnalysis, dimension: &str) -> bool {
     let named = |pair: &Interaction<'_>| pair.dimensions.contains(&dimension);
     let with = |pair: Interaction<'_>| named(&pair) && pair.mixed.is_some_and(|mixed| mixed != 0.0);
@@ -143,7 +143,7 @@ impl BudgetRow {
     }
 }
 
-/// Half the width of the interval that holds a share of Student's distribution, in scales; None below one degree of freedom.
+/// Half the width of the interval that holds `probability` of Student's distribution, in scales. None below one degree of freedom.
 fn factor(probability: f64, degrees: f64) -> Option<f64> {
     let outside = 0.5 * (1.0 - probability);
     if degrees.is_infinite() {
@@ -153,18 +153,17 @@ fn factor(probability: f64, degrees: f64) -> Option<f64> {
     (whole >= 1.0).then(|| student_quantile(1.0 - outside, whole))
 }
 
-/// Rounded down, unless only rounding made it less than a whole number.
+/// Rounds down, but keeps a whole number that only rounding made smaller.
 fn whole(degrees: f64) -> f64 {
     const ROUNDING: f64 = 1e-9;
     (degrees * (1.0 + ROUNDING)).floor()
 }
 
-/// Budgets as a document: a section each, with the inputs and what they come to (together the table `budget`).
+/// Budgets as a document: a section each, with the inputs and the totals. Both tables together are the table `budget`.
 pub fn budget_document(budgets: &[Budget]) -> Document {
     Document { sections: budgets.iter().map(Budget::section).collect(), ..Document::default() }
 }
 
-/// The result of a budget.
 enum Total {
     Combined,
     Expanded,
@@ -180,7 +179,7 @@ impl Budget {
         if let (Some(estimate), Some(expanded)) = (self.estimate, self.expanded) {
             let unit = self.unit.as_deref().map(|unit| format!(" {unit}")).unwrap_or_default();
             let half = significant(expanded, 3);
-            // The estimate to the last digit of its uncertainty.
+            // The estimate is printed to the last digit of its uncertainty.
             let middle = match half.split_once('.') {
                 _ if half.contains('e') => plain(estimate),
                 decimals => format!("{estimate:.*}", decimals.map_or(0, |(_, digits)| digits.len())),
@@ -210,7 +209,7 @@ impl Budget {
         plain(100.0 * self.probability)
     }
 
-    /// The inputs, and what they come to; in CSV they are one table.
+    /// Tables of the inputs and of the totals. In CSV they are one table.
     pub(super) fn tables(&self) -> [DataTable; 2] {
         let scale = self.combined.unwrap_or(0.0);
         let scaled = |value: Option<f64>| Cell::number(value, |value| beside(value, scale));

@@ -122,7 +122,7 @@ impl CompareReport {
     pub fn document(&self) -> Document {
         let mut document = Document::titled(self.head.title.as_deref());
         let (reference, samples, beside) = (self.reference_method, self.reference_samples, head::beside(&self.run));
-        // All methods of a program ask together: how often, and for how much, is what a cluster is sized by.
+        // Methods share their requests to an external model. The total of points and batches shows the size that a cluster needs.
         let all = self.run.evaluator.map_or(String::new(), |_| format!("; all: {}", head::evaluations(&self.run)));
         document.line(format!("reference: {reference} with {samples} points{all}{beside}"));
         document.gap();
@@ -165,7 +165,7 @@ impl ComparedReport {
 
     fn table(&self) -> DataTable {
         let error = |off: Option<f64>, own: Option<f64>, factor: f64| {
-            // Below two standard errors of the reference, these.
+            // Errors below two standard errors of the reference are printed as `<` and these two errors.
             let own = own.map(|own| RESOLVED * own);
             Cell::number(off, |off| match own {
                 Some(own) if off <= own => format!("<{}", brief(own * factor)),
@@ -208,8 +208,8 @@ impl ComparedReport {
             .table("comparison", &self.methods)
     }
 
-    /// Evaluations against error. Open circles are methods whose error the reference does not resolve; the dashed line is what it
-    /// resolves; the line joins the methods that no other beats.
+    /// Plot of error over evaluations. Open circles are methods whose error the reference does not resolve, below the dashed line. The
+    /// solid line joins the methods that no other method beats.
     fn plot(&self) -> Plot {
         let floor = self.methods.first().map_or(0.0, |method| method.error_vs_reference.floor());
         let point = |method: &MethodReport| {
@@ -241,7 +241,7 @@ impl ComparedReport {
     }
 }
 
-/// An error with two digits.
+/// Formats an error with two digits.
 fn brief(value: f64) -> String {
     if value == 0.0 || (1e-3..1e4).contains(&value) { significant(value, 2) } else { format!("{value:.0e}") }
 }

@@ -1,4 +1,5 @@
-//! Every field of every result is in its report: who adds one and forgets the report does not compile, or fails here.
+//! Tests that every field of every result is in its report. A new field that is missing from them does not compile, one that is missing
+//! from the report fails.
 
 use serde_json::{Value, to_value};
 
@@ -17,7 +18,7 @@ use sensitol::sweep::{Sweep, sweep};
 use sensitol_numeric::characteristic::{Characteristic, SpecLimits};
 use sensitol_numeric::requirement::Requirement;
 
-/// Takes a result apart, all of its fields by name, and seeks each in the JSON by its pointer.
+/// Destructures a result by all of its field names, and looks up each in the JSON by its pointer.
 macro_rules! complete {
     ($json:expr, $value:expr => $type:ident { $($field:ident: $pointer:literal),* $(,)? }) => {
         let $type { $($field: _),* } = $value;
@@ -48,7 +49,7 @@ fn run_of(json: &Value, run: &RunSummary) {
 }
 
 fn characteristic(json: &Value, one: &CharacteristicAnalysis) {
-    // Fields that sampling, resampling, searching and fitting left are null here, and there all the same.
+    // Keys of figures from sampling, resampling, search and fit are present here too, as null.
     complete!(json, one => CharacteristicAnalysis {
         characteristic: "/name", nominal: "/nominal", moments: "/kurtosis", sampled: "/surrogate_sampling",
         model_sampled: "/model_sampling", surface_law: "/surface_law", density: "", curved: "", yield_source: "/yield_source", pearson: "/pearson_fit", unfinished: "/unfinished", without_value: "/without_value",
@@ -87,7 +88,7 @@ fn an_analysis_is_all_in_its_report() {
     let found = analyze(&problem(), &Method::Full.into()).unwrap();
     let json = json(&Report::of(&problem(), &found, About::default()));
     run_of(&json, &found.run);
-    // The surface is for pages that try other tolerances.
+    // The surface is not in the JSON: it is for pages that try other tolerances.
     complete!(json, &found => Analysis {
         method: "/method", varying: "/varying", run: "/evaluations", characteristics: "/characteristics/0",
         joint: "/joint_yield", joint_interval: "/joint_yield_interval", joint_requirement: "/joint_requirement",
@@ -101,7 +102,7 @@ fn samples_are_all_in_their_reports() {
     let found = simulate(&problem(), &SimulationOptions { samples: 2000, ..SimulationOptions::default() }).unwrap();
     let of = json(&SimulationReport::of(&problem(), &found, About::default()));
     run_of(&of, &found.run);
-    // Doubts are told of as warnings.
+    // Doubts are in the report as warnings.
     complete!(of, &found => Simulation {
         sampler: "/sampler", run: "/evaluations", samples: "/samples", surrogate_evaluations: "/surrogate_evaluations",
         reached: "/reached", non_repeatable: "/warnings", joint: "/joint_yield", joint_requirement: "/joint_requirement",
@@ -130,7 +131,7 @@ fn samples_are_all_in_their_reports() {
     });
 }
 
-/// Whoever writes a result by itself finds what the report has, key by key; warnings too, where the study has none.
+/// Serialises a result by itself: each key has the value that it has in the report, warnings included.
 #[test]
 fn a_result_is_written_as_in_its_report() {
     fn same(result: &impl Serialize, report: &impl Serialize) {
@@ -191,7 +192,7 @@ fn an_allocation_is_all_in_its_report() {
     let found = allocate(&problem(), &task, &AllocationOptions::default()).unwrap();
     let json = json(&AllocationReport::of(&problem(), &found, None, About::default()));
     run_of(&json, &found.run);
-    // The problem found is the tolerances, and the study that is written.
+    // The found problem appears as tolerances and as the rewritten study.
     complete!(json, &found => Allocation {
         status: "/status", problem: "/tolerances", before: "/characteristics/0/before", after: "/characteristics/0/after",
         confirmed: "/confirmed", cost_before: "/cost_before", cost_after: "/cost_after", tolerances: "/tolerances/1",

@@ -1,4 +1,4 @@
-//! The tabular parts of reports as files of CSV.
+//! CSV files of the tables in reports.
 
 use super::Report;
 use super::budget::Budget;
@@ -7,27 +7,27 @@ use super::stack::{Stack, stack_document};
 use crate::document::csv::{csv, joined};
 use crate::document::{DataTable, Document};
 
-/// The tables of an analysis but for the stacks.
+/// Tables of an analysis, except the stacks.
 const TABLES: [&str; 6] = ["dimensions", "characteristics", "sensitivities", "interactions", "quantiles", "warnings"];
 
-/// Bytes of a characteristic's name in a file name, of the 255 that a file name has.
+/// Most bytes of a characteristic's name in a file name. File systems allow 255 in all.
 const LONGEST: usize = 100;
 
 /// One file: its name and its text.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CsvFile {
-    /// A name that is safe on every file system, `sensitivities.csv`.
+    /// Name that is safe on every file system, such as `sensitivities.csv`.
     pub name: String,
-    /// The whole table.
+    /// Text of the whole table.
     pub text: String,
 }
 
-/// The tables of a document by their names.
+/// Writes the tables of these names in a document, a file each.
 pub fn csv_tables(document: &Document, names: &[&str]) -> Vec<CsvFile> {
     names.iter().map(|name| CsvFile { name: format!("{name}.csv"), text: csv(document, name) }).collect()
 }
 
-/// The tables of a report: `dimensions.csv`, `characteristics.csv`, `sensitivities.csv`, `interactions.csv`, `quantiles.csv`,
+/// Writes the tables of a report: `dimensions.csv`, `characteristics.csv`, `sensitivities.csv`, `interactions.csv`, `quantiles.csv`,
 /// `warnings.csv`, and `stack-NAME.csv` for every characteristic.
 pub fn csv_files(report: &Report) -> Vec<CsvFile> {
     let names = csv_file_names(report.analysis.characteristics.iter().map(|one| one.name()));
@@ -37,13 +37,13 @@ pub fn csv_files(report: &Report) -> Vec<CsvFile> {
     names.into_iter().zip(tables.chain(stacks)).map(|(name, text)| CsvFile { name, text }).collect()
 }
 
-/// The names of the files that [`csv_files`] makes of a report on these characteristics.
+/// Names of the files that [`csv_files`] writes for a report on these characteristics.
 pub fn csv_file_names<'n>(characteristics: impl IntoIterator<Item = &'n str>) -> Vec<String> {
     TABLES.iter().map(|name| format!("{name}.csv")).chain(stack_file_names(characteristics)).collect()
 }
 
-/// `stack-NAME.csv`: letters, digits, `-`, `_` and `.` stay, everything else is `_`; names that would be the same where case does
-/// not count have a number.
+/// Returns `stack-NAME.csv` for each name. Letters, digits, `-`, `_` and `.` stay, everything else becomes `_`. Names that differ only in
+/// case get a number.
 fn stack_file_names<'n>(characteristics: impl IntoIterator<Item = &'n str>) -> Vec<String> {
     let mut taken: Vec<String> = Vec::new();
     let safe = |c: char| if c.is_alphanumeric() || ['-', '_', '.'].contains(&c) { c } else { '_' };
@@ -61,13 +61,13 @@ fn stack_file_names<'n>(characteristics: impl IntoIterator<Item = &'n str>) -> V
     taken
 }
 
-/// Stacks as one table: dimensions and totals of every characteristic, by `row`. Of a total, `nominal` is the middle, and `lower`
-/// and `upper` are its half width as deviations.
+/// Writes stacks as one table: dimensions and totals of every characteristic, told apart by the column `row`. In a total, `nominal` is
+/// the middle, and `lower` and `upper` are the half-width as deviations.
 pub fn stack_csv(stacks: &[Stack]) -> String {
     csv(&stack_document(stacks), "stack")
 }
 
-/// Budgets of one or several studies as one table, with the study's name in front where there are several.
+/// Writes the budgets of one or several studies as one table. Several studies add a first column with the study's name.
 pub fn budget_csv_of_studies(studies: &[(String, Vec<Budget>)]) -> String {
     let several = studies.len() > 1;
     let tables: Vec<(&str, DataTable)> = studies
@@ -77,7 +77,7 @@ pub fn budget_csv_of_studies(studies: &[(String, Vec<Budget>)]) -> String {
     joined(tables.iter().map(|(study, table)| (several.then_some(["study", *study]), table)))
 }
 
-/// The stacks of several studies as one table, with the study's name before the columns of [`stack_csv`].
+/// Writes the stacks of several studies as one table, with the study's name before the columns of [`stack_csv`].
 pub fn stack_csv_of_studies(studies: &[(String, Vec<Stack>)]) -> String {
     let tables: Vec<(&str, DataTable)> = studies
         .iter()

@@ -1,4 +1,4 @@
-//! Two revisions of a study: which inputs changed, and what that did to results and contributions.
+//! Two revisions of a study: changed inputs, and the resulting changes of figures and contributions.
 
 use serde::Serialize;
 
@@ -10,7 +10,7 @@ use sensitol::analysis::CharacteristicAnalysis;
 use sensitol_numeric::capability::Capability;
 use sensitol_numeric::verdict::Verdict;
 
-/// A share of the variance that moves by less than this is not worth a line.
+/// Least change of a share of the variance that is worth a line.
 const SEEN: f64 = 0.005;
 
 /// Two analyses beside each other. An unknown figure is null, never 0.
@@ -87,7 +87,7 @@ pub(crate) struct SharePair {
 }
 
 impl DifferenceReport {
-    /// Of two reports, the older one first, with the names of their studies.
+    /// Compares two reports, the older one first, with the names of their studies.
     pub fn of([old, new]: [&Report; 2], studies: [String; 2]) -> Self {
         let about = About { title: new.head.title.clone(), sha256: new.head.study_sha256.clone(), ..About::default() };
         let mut changes = dimensions(old, new);
@@ -102,7 +102,7 @@ impl DifferenceReport {
         }
     }
 
-    /// The document. Its tables: `changes`, `results` and `contributions`.
+    /// Builds the document with the tables `changes`, `results` and `contributions`.
     pub(crate) fn document(&self) -> Document {
         let mut document = Document::titled(self.head.title.as_deref());
         let [old, new] = &self.studies;
@@ -206,7 +206,7 @@ fn section(one: &Compared) -> Section {
     section
 }
 
-/// A figure with the digits that its error leaves.
+/// Formats a figure with the digits that its error supports.
 fn figure(name: &str, value: f64, error: Option<f64>, sigma: f64) -> String {
     match name {
         "yield" => yielded(value),
@@ -218,7 +218,7 @@ fn figure(name: &str, value: f64, error: Option<f64>, sigma: f64) -> String {
     }
 }
 
-/// The dimensions by name: those that differ, are new, or are gone.
+/// Lists the dimensions that differ, are new, or are gone, matched by name.
 fn dimensions(old: &Report, new: &Report) -> Vec<Changed> {
     let mut found = Vec::new();
     let whole = |of: &DimensionReport| {
@@ -238,7 +238,7 @@ fn dimensions(old: &Report, new: &Report) -> Vec<Changed> {
         differ("nominal", [one, other].map(|of| Some(plain(of.nominal))));
         differ("tolerance", [one, other].map(|of| of.tolerance.map(band)));
         differ("distribution", [one, other].map(|of| of.distribution.map(str::to_owned)));
-        // A sigma that follows from the tolerance is said by that.
+        // A sigma that follows from a changed tolerance or distribution is not listed on its own.
         if one.tolerance == other.tolerance && one.distribution == other.distribution {
             differ("sigma", [one, other].map(|of| Some(plain(of.sigma))));
             if one.nominal == other.nominal {
@@ -255,7 +255,6 @@ fn dimensions(old: &Report, new: &Report) -> Vec<Changed> {
     found
 }
 
-/// Limits and targets that differ.
 fn asked(old: &Report, new: &Report) -> Vec<Changed> {
     let mut found = Vec::new();
     for one in &old.analysis.characteristics {
@@ -315,7 +314,7 @@ fn compared(old: &Report, new: &Report) -> Vec<Compared> {
         .collect()
 }
 
-/// The share of the variance of each dimension, before and after, where that has moved.
+/// Shares of the variance of each dimension, before and after, that have moved by `SEEN` or more.
 fn shares(both: &[Option<CharacteristicAnalysis>; 2]) -> Vec<SharePair> {
     let share = |one: &CharacteristicAnalysis, name: &str| {
         let row = one.sensitivities.iter().find(|row| row.dimension == name)?;

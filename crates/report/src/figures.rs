@@ -1,4 +1,4 @@
-//! The figures that documents ask of every result of a characteristic.
+//! Figures that documents need from every result of a characteristic.
 
 use sensitol::analysis::{CharacteristicAnalysis, DerivativeOrigin, Interaction, Missing};
 use sensitol::rare::RareCharacteristic;
@@ -8,7 +8,7 @@ use sensitol_numeric::characteristic::Characteristic;
 use sensitol_numeric::moments::Moments;
 use sensitol_numeric::sampling::Estimate;
 
-/// A result of one characteristic.
+/// Access to the characteristic of a result: name, unit, limits, target.
 pub(super) trait Named {
     fn characteristic(&self) -> &Characteristic;
 
@@ -65,7 +65,7 @@ impl Named for RareCharacteristic {
     }
 }
 
-/// The figures of a result; None where they are unknown.
+/// Figures of a result. None if they are unknown.
 pub(super) trait Figures {
     fn mean(&self) -> Option<f64>;
     fn sigma(&self) -> Option<f64>;
@@ -142,17 +142,17 @@ impl Figures for SimulatedCharacteristic {
 
 /// Figures of the fitted distribution of a characteristic.
 pub(crate) trait FittedFigures {
-    /// The distribution that has its moments; None where there is none.
+    /// Returns the distribution with the moments of the characteristic, or None if there is none.
     fn fitted(&self) -> Option<&Law>;
 
-    /// The number of interactions whose points were evaluated, and of those that the formula gives: not those that a stopped run left
-    /// open, nor those that were estimated.
+    /// Counts the interactions with evaluated points or exact values. Those that a stopped run left open and screened guesses do not
+    /// count.
     fn examined(&self) -> usize;
 
-    /// The interactions that were estimated.
+    /// Interactions that are only screened guesses.
     fn screened(&self) -> impl Iterator<Item = Interaction<'_>>;
 
-    /// Its quantiles: by the law of its surface, where there is one, by the Pearson fit elsewhere.
+    /// Returns the quantiles: of the surface distribution if there is one, else of the Pearson fit.
     fn quantiles(&self) -> Option<Quantiles>;
 }
 
@@ -179,7 +179,7 @@ impl FittedFigures for CharacteristicAnalysis {
     }
 }
 
-/// The names of quantiles as estimates.
+/// Names of the quantiles in the list of estimates.
 pub(super) const QUANTILES: [&str; 7] = [
     "quantile 0.00135",
     "quantile 0.01",

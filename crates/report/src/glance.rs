@@ -1,4 +1,4 @@
-//! Every characteristic in one line, before all else: where it lies, what it keeps, and the verdict.
+//! Summary with one line for every characteristic: moments, Cpk, yield and verdict.
 
 use super::figures::Named;
 use super::requirement::loud;
@@ -10,7 +10,7 @@ use sensitol::simulation::SimulatedCharacteristic;
 use sensitol_numeric::sampling::Estimate;
 use sensitol_numeric::verdict::{Judged, worst};
 
-/// A characteristic in words.
+/// Line of a characteristic, as text.
 pub(super) struct Glance<'r> {
     name: &'r str,
     unit: Option<&'r str>,
@@ -22,7 +22,7 @@ pub(super) struct Glance<'r> {
 }
 
 impl<'r> Glance<'r> {
-    /// Of a sample: as many digits as its standard errors carry.
+    /// Summary of a simulation, with the digits that its standard errors support.
     pub(super) fn sampled(one: &'r SimulatedCharacteristic) -> Self {
         let text = |of: Option<Estimate>, error| known(of.map(|of| of.value), |value| estimated(value, error));
         let [of_mean, of_sigma] = one.errors();
@@ -41,7 +41,7 @@ impl<'r> Glance<'r> {
         }
     }
 
-    /// Of rare events: the yield with its interval.
+    /// Summary of rare events: the yield with its interval.
     pub(super) fn sought(one: &'r RareCharacteristic) -> Self {
         let interval = one.yield_interval.map(|ends| ends.map(yielded));
         let interval = interval.map_or_else(String::new, |[low, high]| format!(", {low} to {high}"));
@@ -57,18 +57,18 @@ impl<'r> Glance<'r> {
     }
 }
 
-/// The worst verdict of all requirements; where there is one target yield only, that one.
+/// Returns the worst verdict of all requirements, empty if there is none.
 pub(super) fn verdict(judged: &[Judged]) -> Line {
     worst(judged.iter().map(|one| one.verdict)).map_or_else(Line::default, loud)
 }
 
-/// The table, for terminals: pages have the verdict and its gauges in its place.
+/// Table for terminals. Pages show the verdict and its gauges instead.
 pub(super) fn table<'r>(all: impl IntoIterator<Item = Glance<'r>>) -> DataTable {
     let all: Vec<Glance<'_>> = all.into_iter().collect();
     let any = |of: fn(&Glance<'_>) -> bool| all.iter().any(of);
     let (moments, cpk) = (any(|one| !one.mean.is_empty()), any(|one| one.cpk.is_some()));
     let (limited, judged) = (any(|one| !one.yield_.is_empty()), any(|one| !one.verdict.text().is_empty()));
-    // Figures stand below one another at their right ends.
+    // Values without a number keep figures right-aligned.
     let figure = |text: &str| Cell::both(Value::Number(None), text);
     Columns::default()
         .terminal(true, "", |one: &&Glance<'_>| Cell::name(one.name))

@@ -34,8 +34,7 @@ impl Head {
     }
 }
 
-/// The facts of a run beside its evaluations, as the end of a line: what was known, sent again and lost, and why it ended
-/// early.
+/// Returns facts of a run for the end of a line: known, repeated and failed points, and the stop reason.
 pub(super) fn beside(run: &RunSummary) -> String {
     let some = |count: u64, text: String| if count > 0 { text } else { String::new() };
     let stopped = run.stopped.map_or(String::new(), |reason| format!(", stopped by {reason}"));
@@ -45,8 +44,8 @@ pub(super) fn beside(run: &RunSummary) -> String {
         + &stopped
 }
 
-/// Evaluations of an external program, and in how many rounds: every round waits for the answers of the one before, so that workers
-/// beyond the points of a round stay idle. Models of this process are left without: nothing there waits.
+/// Formats the evaluations, with the number of rounds if the model is external. Every round waits for the answers of the round before, so
+/// workers beyond the points of a round stay idle. A model in this process has no such waits.
 pub(super) fn evaluations(run: &RunSummary) -> String {
     let evaluations = plural(run.evaluations as usize, "evaluation", "evaluations");
     match run.evaluator {
@@ -55,17 +54,17 @@ pub(super) fn evaluations(run: &RunSummary) -> String {
     }
 }
 
-/// In how many rounds points were sent.
+/// Formats the number of rounds in which points were sent.
 pub(super) fn rounds(run: &RunSummary) -> String {
     plural(run.stages as usize, "round", "rounds")
 }
 
-/// The seed of a run, where there is one, as a part of a line.
+/// Formats the seed of a run for the end of a line, empty if there is none.
 pub(super) fn seed(run: &RunSummary) -> String {
     run.seed.map_or(String::new(), |seed| format!(", seed {seed}"))
 }
 
-/// The warnings about a characteristic, or those about no one of them.
+/// Returns the warnings whose characteristic (None for the whole study) `about` accepts.
 pub(super) fn findings(all: &[WarningReport], about: impl Fn(Option<&str>) -> bool) -> Vec<Element> {
     let found = |one: &WarningReport| {
         let actions = one.advice.iter().map(ToString::to_string).collect();

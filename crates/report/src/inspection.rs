@@ -1,10 +1,10 @@
-//! The risks of an inspection, in words.
+//! Risks of an inspection, in words.
 
 use crate::document::number::{known, limits, plain, significant};
 use crate::document::{Blocks, Section};
 use sensitol::analysis::{EstimatedShare, InspectionRisks};
 
-/// The parts that an inspection accepts and rejects wrongly.
+/// Adds the shares of parts that an inspection accepts and rejects wrongly.
 pub(super) fn inspected(section: &mut Section, of: &InspectionRisks) {
     let gauge = format!("inspection with gauge sigma {}", plain(of.gauge));
     let Some(guard) = of.guard else {
@@ -27,9 +27,9 @@ pub(super) fn inspected(section: &mut Section, of: &InspectionRisks) {
     ));
 }
 
-/// A share of parts: in percent, or per million where few.
+/// Formats a share of parts in percent, or in parts per million if it is small.
 fn risk(share: f64) -> String {
-    /// From here on percent are read more easily.
+    /// Least share that is printed in percent.
     const FEW: f64 = 1e-3;
     match share {
         share if share > 0.0 && share < FEW => format!("{} ppm", significant(1e6 * share, 3)),

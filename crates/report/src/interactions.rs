@@ -1,4 +1,4 @@
-//! The interactions of a characteristic: how many are known and how, what they make, and the strongest.
+//! Interactions of a characteristic: number, sum and strongest ones.
 
 use super::figures::Named;
 use super::statistics::{derivative, part};
@@ -9,20 +9,20 @@ use crate::figures::FittedFigures;
 use crate::statistics::CharacteristicStatistics;
 use sensitol::analysis::{CharacteristicAnalysis, DerivativeOrigin, Interaction, VerificationKind};
 
-/// Interactions that a terminal shows unless all are asked for.
+/// Most interactions on a terminal unless all are asked for.
 pub(super) const SHOWN: usize = 2;
-/// Interactions that a page shows.
+/// Most interactions on a page.
 pub(super) const SHOWN_ON_PAGE: usize = 24;
 
-/// The interactions of a characteristic, as parts of a document.
+/// Parts of a document on the interactions of a characteristic.
 pub(crate) trait InteractionSections {
-    /// Whether a dimension or an interaction has a printed contribution below 0, as only what varies together has.
+    /// True if a dimension or an interaction has a printed contribution below 0. Only correlated dimensions have such contributions.
     fn has_negative_contributions(&self) -> bool;
 
-    /// Adds the interactions: how many are known, what they make, and the strongest.
+    /// Adds the number of known interactions, their sum and the strongest ones.
     fn pairs(&self, section: &mut Section, pairs: usize);
 
-    /// How many interactions are known and how, and what they make; and what was estimated of the others.
+    /// Sentence with the number of known interactions, their sum, and the sum of the screened guesses.
     fn interactions_in_words(&self, possible: usize, examined: usize) -> String;
 
     fn interaction_table(&self, rows: usize) -> DataTable;

@@ -1,25 +1,25 @@
-//! Texts beside the names of dimensions and characteristics: columns for programs, and a table for people.
+//! Labels beside the names of dimensions and characteristics: columns for programs, and a table for readers.
 
 use super::Report;
 use crate::document::{Cell, Columns, DataTable, Element};
 use sensitol_numeric::labels::{LABELS, Labels};
 
 impl<'a, T: 'a> Columns<'a, T> {
-    /// A column for each text, for programs.
+    /// Adds a column for each label, for programs.
     pub(super) fn labels(self, of: fn(&T) -> &Labels) -> Self {
         (0..LABELS.len())
             .fold(self, |columns, place| columns.data(LABELS[place], move |row| Cell::optional(of(row).texts()[place])))
     }
 }
 
-/// A name with its texts.
 type Labelled<'r> = (&'r str, &'r Labels);
 
-/// Letters of a description that a terminal has room for.
+/// Longest description that a terminal shows, in characters.
 const SHORT: usize = 24;
 
 impl Report {
-    /// The dimensions that have such texts, in the columns that are not empty; None where none has. Those of a characteristic stand in its section.
+    /// Table of the dimensions with labels, in the columns that are not empty. None if there are none. Those of a characteristic are
+    /// in its section.
     pub(super) fn labels(&self) -> Option<Vec<Element>> {
         let all = self.dimensions.iter().map(|one| (one.name.as_str(), &one.labels));
         let rows: Vec<Labelled<'_>> = all.filter(|(_, labels)| !labels.is_empty()).collect();
@@ -31,7 +31,7 @@ impl Report {
             let cell = move |row: &Labelled<'_>| Cell::optional(row.1.texts()[place]);
             match longest(place) {
                 None => columns,
-                // A description is as long as its writer likes.
+                // Descriptions may be long.
                 Some(long) if place == 0 && long > SHORT => columns.page(LABELS[place], cell),
                 Some(_) => columns.shown(LABELS[place], cell),
             }

@@ -1,4 +1,4 @@
-//! Reports of results: a versioned value with serde, and the document that it is for people.
+//! Reports of results: a versioned value with serde, and its document for readers.
 
 #![cfg_attr(not(test), deny(clippy::disallowed_methods))]
 
@@ -69,7 +69,7 @@ use sensitol_numeric::correlation::Pair;
 use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::labels::Labels;
 
-/// The version of the JSON report's shape.
+/// Version of the JSON report's structure.
 pub const SCHEMA: u32 = 2;
 
 /// The report of an analysis, as `--json` prints it. Unknown values are null, never 0.
@@ -139,26 +139,26 @@ pub struct WarningReport {
     pub(crate) at: Vec<f64>,
 }
 
-/// The facts about the study that a report shows beside the analysis.
+/// Facts about the study that a report shows beside the analysis.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct About {
-    /// The study's title.
+    /// Title of the study.
     pub title: Option<String>,
     /// SHA-256 of the study file.
     pub sha256: String,
     /// Warnings of the study itself.
     pub warnings: Vec<Warning>,
-    /// The cells of the title block of pages: name and text.
+    /// Cells of the title block of pages: name and text.
     pub block: Vec<(&'static str, String)>,
 }
 
 impl Report {
-    /// The report of an analysis.
+    /// Builds the report of an analysis, with a copy of it.
     pub fn of(problem: &Problem, analysis: &Analysis, about: About) -> Self {
         Self::keeping(problem, analysis.clone(), about)
     }
 
-    /// The same without a copy: half a million interactions have a million names.
+    /// Builds the report without a copy of the analysis: half a million interactions have a million names.
     pub fn keeping(problem: &Problem, analysis: Analysis, about: About) -> Self {
         Self {
             head: Head::of("analyze", &about),
@@ -169,13 +169,13 @@ impl Report {
         }
     }
 
-    /// Without the interactions that hardly matter: what they make together stands in their place.
+    /// Drops the interactions that hardly matter. Their sum stays in the report.
     pub fn shortened(self) -> Self {
         Self { analysis: self.analysis.shortened(), ..self }
     }
 }
 
-/// Every pair that is not 0.
+/// Returns every correlated pair whose coefficient is not 0.
 fn correlation(problem: &Problem) -> Vec<Pair> {
     let Some(correlation) = problem.correlation() else { return Vec::new() };
     let name = |&d: &usize| problem.dimensions()[d].name().to_owned();
@@ -203,7 +203,7 @@ impl DimensionReport {
         }
     }
 
-    /// Its tolerance as drawings have it.
+    /// Formats the tolerance as on drawings.
     fn tolerance(&self) -> String {
         match self.tolerance {
             Some(ends) => band(ends),
@@ -214,6 +214,7 @@ impl DimensionReport {
 }
 
 impl WarningReport {
+    /// Builds the report of a warning.
     pub fn of(warning: &Warning) -> Self {
         Self {
             code: warning.code(),
@@ -227,7 +228,6 @@ impl WarningReport {
     }
 }
 
-/// The fields of a warning.
 fn fields(warning: &Warning) -> serde_json::Map<String, serde_json::Value> {
     match serde_json::to_value(warning.data()) {
         Ok(serde_json::Value::Object(fields)) => fields,

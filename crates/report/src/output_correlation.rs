@@ -1,4 +1,4 @@
-//! How characteristics vary together, for people.
+//! Correlations and joint yield of characteristics, for readers.
 
 use crate::document::number::{short, unsigned_zero, yielded};
 use crate::document::rejects::Rejects;
@@ -9,10 +9,10 @@ use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::sampling::one_error;
 use sensitol_numeric::verdict::Judged;
 
-/// Correlations that are said; a file has all.
+/// Most correlations in the sentence. The table has all.
 const TOGETHER: usize = 6;
 
-/// The strongest correlations of characteristics.
+/// Sentence with the strongest correlations of characteristics, or None if all are unknown.
 pub(super) fn together(correlations: &[OutputCorrelation]) -> Option<String> {
     let mut known: Vec<(f64, &OutputCorrelation)> =
         correlations.iter().filter_map(|one| Some((one.value?, one))).collect();
@@ -27,7 +27,7 @@ pub(super) fn together(correlations: &[OutputCorrelation]) -> Option<String> {
     (!said.is_empty()).then(|| format!("correlation of characteristics: {}{more}", said.join(", ")))
 }
 
-/// All correlations of characteristics.
+/// Table of all correlations of characteristics.
 pub(super) fn together_table(correlations: &[OutputCorrelation]) -> DataTable {
     Columns::default()
         .data("first", |one: &&OutputCorrelation| Cell::text(&one.between[0]))
@@ -37,25 +37,25 @@ pub(super) fn together_table(correlations: &[OutputCorrelation]) -> DataTable {
         .table("characteristic_correlation", correlations)
 }
 
-/// A coefficient of correlation with the decimals that its error carries, three of them at most.
+/// Formats a correlation with the decimals that its error supports, at most three.
 fn coefficient(value: f64, error: Option<f64>) -> String {
     let decimals =
         error.filter(|error| *error > 0.0).map_or(3, |error| (-libm::log10(error).floor()).clamp(1.0, 3.0) as usize);
     unsigned_zero(format!("{value:.decimals$}"))
 }
 
-/// The share that keeps all limits at once, with its target.
+/// Sentence with the joint yield, its error, and the target.
 pub(super) fn all_limits(yield_: &str, error: &str, requirement: Option<&Judged>) -> String {
     let target = requirement.map_or_else(String::new, |judged| {
         let Requirement::Yield(target) = judged.requirement else { return String::new() };
-        // Without the digits that a product by 100 adds.
+        // Rounded, because the product by 100 adds digits.
         let percent = (1e11 * target).round() / 1e9;
         format!("; target {percent} %: {}", judged.verdict.name())
     });
     format!("all limits at once: yield {yield_}, {error}{target}")
 }
 
-/// The same of a share with its 95 % interval.
+/// Sentence with a joint yield that has a 95 % interval.
 pub(super) fn all_limits_within(share: &YieldEstimate, requirement: Option<&Judged>) -> String {
     let error = one_error(share.value, share.interval);
     let text = Rejects::all(1.0 - share.value, Some(error)).yield_text().unwrap_or_else(|| yielded(share.value));

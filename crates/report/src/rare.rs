@@ -38,7 +38,7 @@ pub struct RareReport {
 }
 
 impl RareReport {
-    /// The report of rare events.
+    /// Builds the report of rare events.
     pub fn of(problem: &Problem, found: &RareEvents, about: About) -> Self {
         Self {
             head: Head::of("simulate", &about),
@@ -51,12 +51,11 @@ impl RareReport {
     }
 }
 
-/// Dimensions of a design point that are shown: those that move farthest.
+/// Most dimensions of a design point that are shown: those that move farthest.
 const SHOWN: usize = 6;
 
 impl RareReport {
-    /// The text of the search for rare events: every probability with its interval (table `rare`), and the assembly in which it
-    /// most likely comes about.
+    /// Builds the document: every probability with its interval (table `rare`), and its design point.
     pub fn document(&self) -> Document {
         let found = &self.found;
         let mut document = Document::titled(self.head.title.as_deref());
@@ -79,10 +78,10 @@ impl RareReport {
     }
 }
 
-/// A side of the limits: `below` or `above`, and what lies there.
+/// Side of the limits: `below` or `above`, and its result.
 type Side<'r> = (&'static str, &'r Beyond);
 
-/// Section of the report of a characteristic with rare rejects.
+/// Section on a characteristic with rare rejects.
 pub(crate) trait RareSection {
     fn section(&self, dimensions: &[DimensionReport]) -> Section;
 
@@ -155,7 +154,7 @@ fn ppm(value: f64) -> String {
     significant(1e6 * value, 3)
 }
 
-/// A design point in sigmas off the means, farthest first.
+/// Formats a design point in sigmas off the means, farthest dimensions first.
 fn farthest(point: &DesignPoint, dimensions: &[DimensionReport]) -> String {
     let mut moved: Vec<(f64, String)> = (dimensions.iter().zip(&point.values))
         .filter(|(dimension, _)| dimension.sigma > 0.0)

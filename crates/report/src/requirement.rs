@@ -1,4 +1,4 @@
-//! The requirement in the words of every document.
+//! Requirements in the words of every document.
 
 use crate::document::number::{known, significant, target_yield};
 use crate::document::{Line, Tone};
@@ -6,7 +6,8 @@ use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::shape::finite;
 use sensitol_numeric::verdict::{Judged, Verdict};
 
-/// In a line each: what there is, what is required, and the verdict. A target yield is left out, which stands beside the yield.
+/// Returns a line for each requirement: the value, the required one, and the verdict. The target yield is left out, because it stands
+/// beside the yield.
 pub(super) fn lines(judged: Vec<Judged>) -> impl Iterator<Item = Line> {
     judged.into_iter().filter_map(|one| {
         let number = |value: f64| significant(value, 4);
@@ -21,7 +22,7 @@ pub(super) fn lines(judged: Vec<Judged>) -> impl Iterator<Item = Line> {
     })
 }
 
-/// A verdict in its tone; a missed target is to be seen at once, with colours or without.
+/// Returns a verdict in its tone. A missed target is in capitals, to stand out without colours.
 pub(super) fn loud(verdict: Verdict) -> Line {
     match verdict {
         Verdict::Met => Line::toned("met", Tone::Good),
@@ -30,7 +31,7 @@ pub(super) fn loud(verdict: Verdict) -> Line {
     }
 }
 
-/// The target yield and whether it is met, after the yield; empty without a target.
+/// Returns the target yield with its verdict, to follow the yield; empty without a target.
 pub(super) fn judged(target: Option<f64>, verdict: Option<Verdict>) -> Line {
     let Some((target, verdict)) = target.zip(verdict) else { return Line::default() };
     Line::from(format!(", target {}: ", target_yield(target))).and(loud(verdict))

@@ -1,13 +1,13 @@
-//! The uncertainty by the size of measured samples, for people.
+//! Uncertainty from the size of measured samples, for readers.
 
 use crate::document::number::{beside, index, shape, share, short};
 use crate::document::{Blocks, Cell, DataTable, Section};
 use sensitol_numeric::sampling::SamplingInterval;
 
-/// Samples that are named, rather than counted, in a sentence.
+/// Most samples that a sentence lists by name.
 const SAMPLES: usize = 3;
 
-/// The samples with their sizes.
+/// Lists the samples with their sizes.
 pub(super) fn samples(interval: &SamplingInterval) -> String {
     let named = interval.samples.iter().take(SAMPLES);
     let named: Vec<String> = named.map(|(name, count)| format!("{count} values of {}", short(name))).collect();
@@ -16,7 +16,7 @@ pub(super) fn samples(interval: &SamplingInterval) -> String {
     format!("{}{more}", named.join(", "))
 }
 
-/// Intervals beside one another, below what they belong to: a characteristic with this sigma, and with limits or without.
+/// Adds intervals side by side for a characteristic with sigma `scale`, those of yield and Cpk only if it is `limited`.
 pub(super) fn sampled(section: &mut Section, interval: &SamplingInterval, scale: f64, limited: bool) {
     let level = 100.0 * interval.level;
     let resampled = interval.resamples > 0;
@@ -35,7 +35,7 @@ pub(super) fn sampled(section: &mut Section, interval: &SamplingInterval, scale:
         let mut cells = when(true, first.0, value(first.1));
         cells.extend(when(shapes, second.0, range(second.1, &shape)));
         cells.extend(when(limited, third.0, third.1));
-        // As many cells in each row: those without a figure are empty.
+        // Every row has the same number of cells; cells without a figure are empty.
         cells.resize(6, String::new());
         <[String; 6]>::try_from(cells).unwrap_or_default()
     };

@@ -1,4 +1,4 @@
-//! The report of a simulation: the names of an analysis, each number with its standard error.
+//! The report of a simulation: the same names as in an analysis, each number with its standard error.
 
 use serde::Serialize;
 
@@ -42,7 +42,7 @@ pub struct SimulationReport {
 }
 
 impl SimulationReport {
-    /// The report of a simulation.
+    /// Builds the report of a simulation.
     pub fn of(problem: &Problem, simulation: &Simulation, about: About) -> Self {
         Self {
             head: Head::of("simulate", &about),
@@ -54,14 +54,13 @@ impl SimulationReport {
     }
 }
 
-/// Inputs whose Sobol' indices a terminal shows.
+/// Most inputs whose Sobol' indices a terminal shows.
 const FACTORS: usize = 8;
-/// Fewer intervals make no picture.
+/// Fewest intervals of a histogram that is drawn.
 const INTERVALS: usize = 5;
 
 impl SimulationReport {
-    /// The text of the simulation: every number with its standard error (table `estimates`), and the histogram (table
-    /// `histogram`).
+    /// Builds the document: every number with its standard error (table `estimates`), and the histogram (table `histogram`).
     pub fn document(&self) -> Document {
         let mut document = Document::titled(self.head.title.as_deref());
         let Simulation { sampler, run, samples, characteristics, .. } = &self.simulation;
@@ -80,29 +79,28 @@ impl SimulationReport {
     }
 }
 
-/// An estimate: its name, its value with its standard error, its interval.
+/// Estimate: its name, its value with its standard error, its interval.
 type Row = (&'static str, Option<Estimate>, Option<[f64; 2]>);
 
-/// Section of the report of a simulated characteristic.
 pub(crate) trait SimulationSection {
     fn section(&self, warnings: &[WarningReport]) -> Section;
 
     fn kept(&self, section: &mut Section, yield_: YieldEstimate);
 
-    /// Moments on the left, quantiles on the right.
+    /// Table with moments on the left and quantiles on the right.
     fn brief_estimates(&self) -> DataTable;
 
     fn estimates(&self) -> DataTable;
 
-    /// Sobol' indices with their 95 % intervals (table `sobol`), the strongest first.
+    /// Adds Sobol' indices with their 95 % intervals (table `sobol`), the strongest first.
     fn sobol(&self, section: &mut Section);
 
     fn histogram_table(&self) -> DataTable;
 
-    /// The sample, and the Pearson curve of its own moments.
+    /// Adds the histogram with the Pearson curve of the sample's moments.
     fn picture(&self, section: &mut Vec<Element>);
 
-    /// The distribution of the sample's own moments.
+    /// Returns the Pearson distribution with the sample's moments.
     fn own_law(&self) -> Option<Pearson>;
 }
 
@@ -145,7 +143,7 @@ impl SimulationSection for SimulatedCharacteristic {
         self.picture(&mut picture);
         match self.indices {
             None => section.blocks.extend(picture),
-            // The indices that were asked for need the room.
+            // Sobol' indices take the space of the picture, which becomes a detail.
             Some(_) => section.detail(picture),
         }
         section

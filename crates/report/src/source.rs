@@ -1,22 +1,22 @@
-//! The source of the yield, in words.
+//! Source of the yield, in words.
 
 use super::figures::Figures;
 use crate::document::number::{significant, unrejected};
 use sensitol::analysis::{CharacteristicAnalysis, YieldSource};
 use sensitol_numeric::capability::Capability;
 
-/// The Pearson fit is named beside the yield where it has more than this part of what is rejected wrong.
+/// Least relative difference of the reject rate of the Pearson fit that is worth mentioning.
 const DIFFERENT: f64 = 0.01;
 
-/// An error of the yield below this is that of the arithmetic.
+/// Greatest error of the yield that counts as rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// The source of the yield, its error, and the Pearson fit where that says something else.
+/// Sentence with the source of the yield, its error, and the Pearson fit if that differs.
 pub(super) fn source(one: &CharacteristicAnalysis) -> Option<String> {
     let source = one.yield_source?;
     let error = one.error_estimate.as_ref().and_then(|estimate| estimate.yield_);
     let error = match (source, error) {
-        // Beside measured samples a rounding says nothing.
+        // Rounding is negligible compared with the uncertainty of measured samples.
         (_, Some(error)) if one.sampling.is_some() && error < ROUNDING => String::new(),
         (_, Some(error)) if error > 0.0 => format!(", ± {} %", significant(100.0 * error, 2)),
         (YieldSource::Proof, _) | (_, Some(_)) => String::new(),

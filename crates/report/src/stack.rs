@@ -1,12 +1,12 @@
-//! The classic stack-up table of a characteristic: what every dimension contributes, and the usual totals side by side.
+//! The classic stack-up table of a characteristic: the contribution of every dimension, and the usual totals side by side.
 //!
 //! ```text
 //! contribution of a dimension    |b_i| T_i               b_i: direction or slope, T_i: half band, or three sigma without one
 //! its share                      (b_i T_i)^2 / sum       of the sum of squares
 //! ```
 //!
-//! A characteristic that is not linear has the table of its tangent at the means, and the table says so. Totals: as
-//! [`CharacteristicAnalysis`](sensitol::CharacteristicAnalysis) defines them, each about its own middle.
+//! A nonlinear characteristic has the table of its tangent at the means, with a note about it.
+//! The totals are those of [`CharacteristicAnalysis`](sensitol::CharacteristicAnalysis), each about its own middle.
 
 use crate::worst_case::WorstCaseFigures;
 use std::fmt;
@@ -21,26 +21,28 @@ use sensitol::analysis::DerivativeOrigin;
 use sensitol::analysis::{CharacteristicAnalysis, Sensitivity};
 use sensitol::method::Method;
 
-/// A slope this near to 1 or -1 is a direction.
+/// Greatest deviation of a slope from 1 or -1 that still is a direction.
 const DIRECTION: f64 = 1e-9;
+/// Sigmas on either side in place of a tolerance, and in the totals by moments.
 const SIGMAS: f64 = 3.0;
-/// A part of a half width that rounding may make.
+/// Rounding tolerance at a limit, as a part of the half-width.
 const ROUNDING: f64 = 1e-9;
 
 /// The stack of one characteristic. Unknown values are None.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stack {
-    /// The characteristic.
+    /// Name of the characteristic.
     pub characteristic: String,
-    /// Its unit.
+    /// Unit of the characteristic.
     pub unit: Option<String>,
-    /// Its limits.
+    /// Lower and upper limit.
     pub limits: [Option<f64>; 2],
-    /// The dimensions that do something to it, in the study's order.
+    /// Dimensions that affect the characteristic, in the study's order.
     pub rows: Vec<StackRow>,
-    /// The ways of adding it up, in the order of [`TotalKind`]. Of few dimensions the inflated RSS may exceed the worst case.
+    /// Totals in the order of [`TotalKind`], except the proven worst case, which is last. For few dimensions the inflated RSS may exceed
+    /// the worst case.
     pub totals: Vec<StackTotal>,
-    /// The notes that are needed to read it.
+    /// Notes for reading the table.
     pub notes: Vec<StackNote>,
 }
 
@@ -49,102 +51,102 @@ pub struct Stack {
 pub struct StackRow {
     /// The dimension.
     pub dimension: DimensionReport,
-    /// Lower and upper deviation from the nominal that are stacked: the tolerance, or three sigma about the mean.
+    /// Lower and upper deviation from the nominal in the stack: the tolerance, or three sigma about the mean.
     pub deviations: [f64; 2],
-    /// The slope at the mean: 1 and -1 are directions.
+    /// Slope at the mean; 1 and -1 are directions.
     pub slope: Option<f64>,
-    /// Slope by half band, without sign.
+    /// Slope times half-width, without sign.
     pub contribution: Option<f64>,
-    /// Its part of the sum of squares.
+    /// Part of the sum of squares of all contributions.
     pub share: Option<f64>,
     pub(super) direction: String,
 }
 
-/// One way of adding a stack up.
+/// One way to add up a stack.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StackTotal {
-    /// Which.
+    /// Kind of the total.
     pub kind: TotalKind,
-    /// The middle of the interval.
+    /// Middle of the interval.
     pub middle: Option<f64>,
-    /// Half its width.
+    /// Half-width of the interval.
     pub half_width: Option<f64>,
 }
 
-/// The ways of adding a stack up.
+/// Ways to add up a stack.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TotalKind {
-    /// Everything at its worst end, where it is proven that slopes tell all of it.
+    /// Worst case by slopes, for a characteristic that is proven to be linear.
     WorstCase,
-    /// The same by slopes alone, which is not a bound.
+    /// Worst case by slopes alone, which is not a bound.
     LinearWorstCase,
-    /// The proven worst case of a characteristic that is not linear; the last of all.
+    /// Proven worst case of a nonlinear characteristic.
     ProvenWorstCase,
     /// Root of the sum of squares.
     Rss,
-    /// 1.5 times that, or by the factors of the study.
+    /// RSS times 1.5, or by the factors of the study.
     InflatedRss,
-    /// RSS with every mean off by half its half band, or by the shifts of the study.
+    /// RSS with every mean shifted by half of its half-width, or by the shifts of the study.
     MeanShiftRss,
-    /// Three effective sigmas of processes whose means are off.
+    /// Three effective sigmas of processes with shifted means.
     SixSigma,
-    /// Three sigma about the mean, of the moments without curvature.
+    /// Three sigma about the mean, from moments without curvature.
     FirstOrder,
-    /// Three sigma about the mean, of the moments.
+    /// Three sigma about the mean, from moments with curvature.
     SecondOrder,
 }
 
-/// A note that is needed to read a stack.
+/// Note for reading a stack.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum StackNote {
-    /// It is not linear.
+    /// The characteristic is nonlinear.
     Curved {
-        /// The share of the variance that curvature and interactions have.
+        /// Share of the variance from curvature and interactions.
         share: f64,
-        /// How far curvature moves the mean.
+        /// Shift of the mean by curvature.
         mean_shift: f64,
     },
-    /// The method takes it as linear.
+    /// The method assumes that the characteristic is linear.
     NotExamined,
-    /// It has no curvature, and these many interactions were not examined.
+    /// There is no curvature, but some interactions were not examined.
     InteractionsNotExamined {
-        /// How many.
+        /// Number of interactions that were not examined.
         count: usize,
     },
-    /// Parts of the squared RSS that are no contributions to the variance.
+    /// Shares in the squared RSS differ from the contributions to the variance.
     SharesOfRss,
-    /// Dimensions whose slope is not known.
+    /// Some dimensions have no known slope.
     SlopeUnknown {
-        /// The dimensions.
+        /// Names of the dimensions.
         dimensions: Vec<String>,
     },
-    /// Dimensions that stand with three sigma, for they have no tolerance band.
+    /// Some dimensions use three sigma, because they have no tolerance band.
     ThreeSigma {
-        /// The dimensions.
+        /// Names of the dimensions.
         dimensions: Vec<String>,
     },
-    /// Dimensions that do not vary and whose slope was not asked for.
+    /// Some dimensions do not vary, and their slope was not requested.
     Fixed {
-        /// The dimensions.
+        /// Names of the dimensions.
         dimensions: Vec<String>,
     },
-    /// Dimensions that vary together.
+    /// Some dimensions are correlated.
     Correlated {
-        /// The dimensions.
+        /// Names of the dimensions.
         dimensions: Vec<String>,
     },
-    /// Coordinates of one circular zone.
+    /// Some dimensions are coordinates of one circular zone.
     Zone {
-        /// Its name.
+        /// Name of the zone.
         zone: String,
-        /// The coordinates.
+        /// Names of the coordinates.
         dimensions: Vec<String>,
     },
 }
 
 impl Report {
-    /// The stacks of all its characteristics.
+    /// Stacks of all characteristics of the report.
     pub fn stacks(&self) -> Vec<Stack> {
         self.analysis.characteristics.iter().map(|one| Stack::of(self, one)).collect()
     }
@@ -156,7 +158,7 @@ impl Stack {
         let rows = pairs().filter(|(row, dimension)| matters(row, dimension));
         let mut rows: Vec<StackRow> =
             rows.map(|(sensitivity, dimension)| StackRow::of(sensitivity, dimension)).collect();
-        // Of the sum of squares, which is the squared RSS unless dimensions are correlated; unknown where one slope is.
+        // Root of the sum of squares. It equals the RSS unless dimensions are correlated, and is unknown if one slope is.
         let alone: Option<f64> = one
             .rss
             .and(rows.iter().map(|row| row.contribution).try_fold(0.0, |sum, part| Some(libm::hypot(sum, part?))));
@@ -164,6 +166,7 @@ impl Stack {
             row.share =
                 row.contribution.zip(alone).map(|(part, all)| if all == 0.0 { 0.0 } else { (part / all).powi(2) });
         }
+        // The six-sigma total stands before that of the moments. A proven worst case of its own stands last.
         let first_order = [Method::Rss, Method::WorstCase].contains(&report.analysis.method);
         let worst_case = one.worst_case.map(|[lower, upper]| 0.5 * (upper - lower));
         let proven = one.proven_worst_case();
@@ -198,9 +201,9 @@ impl Stack {
         }
     }
 
-    /// Whether the interval of a total lies within the limits, and reaches them at most; None where it or every limit is unknown.
+    /// True if the interval of a total lies within the limits or just reaches them. None if the interval is unknown, or without limits.
     pub fn keeps(&self, total: &StackTotal) -> Option<bool> {
-        // A stack that just reaches a limit keeps it: what rounding adds is not an excess.
+        // Rounding must not turn a stack that just reaches a limit into an excess.
         let slack = ROUNDING * total.half_width? + 8.0 * f64::EPSILON * total.middle?.abs();
         let [from, to] = total.interval().map(|[from, to]| [from + slack, to - slack])?;
         match self.limits {
@@ -211,7 +214,7 @@ impl Stack {
 }
 
 impl StackTotal {
-    /// From where to where it goes.
+    /// Returns the ends of the total's interval.
     pub(crate) fn interval(&self) -> Option<[f64; 2]> {
         let (middle, half) = (self.middle?, self.half_width?);
         Some([middle - half, middle + half])
@@ -219,7 +222,7 @@ impl StackTotal {
 }
 
 impl TotalKind {
-    /// Its name for people.
+    /// Returns the name of the total for readers.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::WorstCase => "worst case",
@@ -251,13 +254,13 @@ impl StackRow {
     }
 }
 
-/// Whether a dimension belongs into the table: it varies and is not known to do nothing, or is known to do something.
+/// True if a dimension belongs into the table: its effect is known, or it varies and its effect is unknown.
 fn matters(row: &Sensitivity, dimension: &DimensionReport) -> bool {
     let idle = row.first == Some(0.0) && row.second.unwrap_or(0.0) == 0.0;
     !idle && (dimension.sigma > 0.0 || row.first.is_some())
 }
 
-/// `+`, `-`, or the slope where it is neither 1 nor -1.
+/// Formats the direction: `+`, `-`, or the slope if it is neither 1 nor -1.
 fn direction(row: &Sensitivity) -> String {
     let Some(slope) = row.first else { return UNKNOWN.to_owned() };
     let rounding = row.rounding.map_or(0.0, |[first, _]| 2.0 * first);
@@ -309,7 +312,7 @@ fn notes(report: &Report, one: &CharacteristicAnalysis, rows: &[StackRow]) -> Ve
     notes
 }
 
-/// Whether a contribution to the variance is another part than that of the squared RSS, as they are printed.
+/// True if a printed contribution to the variance differs from the printed share in the squared RSS.
 fn has_other_contributions(one: &CharacteristicAnalysis, rows: &[StackRow]) -> bool {
     let apart = |row: &StackRow| {
         let of_variance = one.sensitivities.iter().find(|of| of.dimension == row.dimension.name).and_then(part);
@@ -318,7 +321,7 @@ fn has_other_contributions(one: &CharacteristicAnalysis, rows: &[StackRow]) -> b
     rows.iter().any(apart)
 }
 
-/// The note on the characteristic's being linear; a derivative that rounding alone can make counts as none.
+/// Returns the note on linearity. Derivatives within their rounding errors count as 0.
 fn shape(one: &CharacteristicAnalysis, rows: &[StackRow]) -> Option<StackNote> {
     let real = |value: Option<f64>, rounding: Option<f64>| match (value, rounding) {
         (Some(value), Some(rounding)) => value.abs() > 2.0 * rounding,
@@ -385,7 +388,7 @@ impl fmt::Display for StackNote {
     }
 }
 
-/// Stacks as a document: a section each, with what dimensions contribute and the totals (together the table `stack`).
+/// Stacks as a document: a section each, with contributions and totals. Both tables together are the table `stack`.
 pub fn stack_document(stacks: &[Stack]) -> Document {
     Document { sections: stacks.iter().map(Stack::section).collect(), ..Document::default() }
 }
@@ -405,7 +408,7 @@ impl Stack {
         section
     }
 
-    /// Whether nothing says that the characteristic is not linear.
+    /// True if no note contradicts that the characteristic is linear.
     pub(super) fn straight(&self) -> bool {
         let bent = |note: &StackNote| {
             matches!(
@@ -416,14 +419,14 @@ impl Stack {
         !self.rows.is_empty() && !self.notes.iter().any(bent)
     }
 
-    /// The contributions of dimensions, and the totals. In CSV they are one table: of a total, `nominal` is the middle, and
-    /// `lower` and `upper` are its half width as deviations.
+    /// Tables of the contributions and of the totals. In CSV they are one table. In a total, `nominal` is the middle, and `lower` and
+    /// `upper` are the half-width as deviations.
     pub(super) fn tables(&self) -> [DataTable; 2] {
         let scale = self.totals.iter().filter_map(|total| total.half_width).fold(0.0, f64::max);
         let scaled = |value: Option<f64>| Cell::number(value, |value| beside(value, scale));
         let shown_end = move |total: &StackTotal, end: usize| {
             let interval = total.interval();
-            // No assembly lies beyond what is printed.
+            // Ends of a proven worst case are rounded outward, so that no assembly lies beyond the printed numbers.
             let proven = matches!(total.kind, TotalKind::WorstCase | TotalKind::ProvenWorstCase);
             match interval.filter(|_| proven) {
                 Some(ends) => Cell::both(Value::Number(Some(ends[end])), outward(ends, scale, None)[end].clone()),

@@ -1,4 +1,4 @@
-//! One characteristic at a glance: its statistics with their errors beside the intervals, and who contributes most.
+//! Statistics of a characteristic with their errors, its intervals, and its strongest contributors.
 
 use super::DimensionReport;
 use super::figures::Figures;
@@ -9,25 +9,25 @@ use sensitol::analysis::{CharacteristicAnalysis, IndexSource, Sensitivity};
 use sensitol::method::{ErrorEstimate, ErrorSource};
 use sensitol_numeric::names::element;
 
-/// Contributors that a terminal names.
+/// Most contributors on a terminal.
 const CONTRIBUTORS: usize = 6;
-/// Rows of statistics that a terminal shows: the linear worst case beside a proven one comes after.
+/// Most rows of statistics on a terminal. The linear worst case beside a proven one is in a further row.
 const ROWS: usize = 6;
-/// Of sigma: bounds that are not reached and a linear worst case nearer than this are the same.
+/// Greatest difference, in sigmas, of bounds from the linear worst case that hides the bounds.
 const SAME: f64 = 1e-3;
-/// Sigmas on either side that stand for the band of a dimension without a tolerance.
+/// Sigmas on either side in place of the band of a dimension without a tolerance.
 const BAND: f64 = 3.0;
-/// Interactions of one dimension that are worth a column, by the variance.
+/// Least share of the variance by a dimension's interactions that is worth a column.
 const TOTAL: f64 = 0.01;
-/// A second derivative or a slope within this many of its rounding errors is 0.
+/// Derivatives within so many of their rounding errors count as 0.
 const ROUNDINGS: f64 = 2.0;
 
-/// A figure as it is shown, with no more decimals than its error carries.
+/// Figure as it is printed, with no more decimals than its error supports.
 pub(super) struct Shown {
     name: &'static str,
     value: Option<f64>,
     pub(super) text: String,
-    /// `±` what, or `exact`; empty where that is not known.
+    /// Error as `± ...` or `exact`; empty if it is unknown.
     pub(super) error: String,
 }
 
@@ -40,22 +40,23 @@ impl Shown {
 
 /// Statistics and contributors of a characteristic.
 pub(crate) trait CharacteristicStatistics {
-    /// Nominal value, mean, the distance between the two, sigma, skewness and kurtosis.
+    /// Returns nominal value, mean, mean shift, sigma, skewness and kurtosis.
     fn first_figures(&self) -> [Shown; 6];
 
-    /// The unit by which its numbers are rounded.
+    /// Scale that sets the printed digits: sigma, or the RSS if sigma is 0.
     fn scale(&self) -> f64;
 
-    /// Statistics on the left, intervals on the right.
+    /// Adds the statistics on the left and the intervals on the right.
     fn statistics(&self, section: &mut Section);
 
-    /// Whether its contributions are those of the model, in place of a surface that is not trusted.
+    /// True if the contributions come from points of the model, because the surface is not trusted.
     fn is_of_model(&self) -> bool;
 
-    /// Whether a dimension does visibly more together with others than by itself.
+    /// True if the interactions of a dimension add visibly to its contribution.
     fn has_totals(&self) -> bool;
 
-    /// The strongest contributors, each with its own spread and what it does here. The parts of a geometric element are one.
+    /// Table of the strongest contributors, each with its own spread and its effect here. The parts of a geometric element are one
+    /// contributor.
     fn contributors(&self, dimensions: &[DimensionReport]) -> DataTable;
 }
 
@@ -96,7 +97,7 @@ impl CharacteristicStatistics for CharacteristicAnalysis {
         let scale = self.scale();
         let estimate = self.error_estimate.as_ref();
         let [mean_error, sigma_error] = [estimate.and_then(|of| of.mean), estimate.and_then(|of| of.sigma)];
-        // Of an end k sigmas from the mean.
+        // Error of an end that is k sigmas from the mean.
         let end_error = |k: f64| mean_error.zip(sigma_error).map(|(mean, sigma)| libm::hypot(mean, k * sigma));
         let interval = |ends: Option<[f64; 2]>, error: Option<f64>| {
             let ends = ends.map(|ends| ends.map(|end| carried(end, scale, error)));
@@ -110,13 +111,13 @@ impl CharacteristicStatistics for CharacteristicAnalysis {
         let text = |[low, high]: &[String; 2]| Cell::text(format!("{low} .. {high}"));
         let proven = self.proven_worst_case();
         let linear = ("linear worst case", interval(self.worst_case, None));
-        // A linear model that tells the same needs no row of its own.
+        // A linear worst case with the same printed ends needs no row of its own.
         let (worst, linear) = match &proven {
             Some(proven) if self.is_shown_as_linear(proven) => (("worst case", text(&proven.texts)), None),
             Some(proven) => (("proven worst case", text(&proven.texts)), Some(linear)),
             None => (linear, None),
         };
-        // Beyond slopes, and not proven to be reached.
+        // Proven bounds that may not be reached, shown if they differ from the linear worst case.
         let within = (self.bounds.as_ref().filter(|_| self.extremes.is_none() && proven.is_none()))
             .map(|bounds| bounds.bounds)
             .filter(|within| !self.worst_case.is_some_and(|linear| same([*within, linear])));
@@ -148,7 +149,7 @@ impl CharacteristicStatistics for CharacteristicAnalysis {
     }
 
     fn has_totals(&self) -> bool {
-        // Contributions of a linear method stand beside no indices of the model.
+        // A linear method has contributions of its own, which indices of the model do not complete.
         if self.indices.as_ref().is_some_and(|of| of.source != IndexSource::Surface) && !self.is_of_model() {
             return false;
         }
@@ -165,7 +166,7 @@ impl CharacteristicStatistics for CharacteristicAnalysis {
                 None => all.push(Contributor { name, parts: vec![row] }),
             }
         }
-        // Those that do nothing here are no contributors.
+        // Parts of an element without effect here are dropped if another part has one.
         for one in &mut all {
             if one.parts.iter().any(does) {
                 one.parts.retain(does);
@@ -195,7 +196,7 @@ impl CharacteristicStatistics for CharacteristicAnalysis {
             })
             .shown("effect", move |one| shown(one.alone().and_then(effect), |effect| significant(effect, 3)))
             .shown("contrib. %", move |one| shown(one.part(), percent))
-            // A column more does not fit into 80: the details have it.
+            // One more column exceeds 80 columns; the details have it.
             .shown_if(self.is_of_model() && self.has_totals(), "total %", move |one| shown(one.total(), percent))
             .table("", all.iter())
             .seen(view)
@@ -203,44 +204,43 @@ impl CharacteristicStatistics for CharacteristicAnalysis {
     }
 }
 
-/// A sensitivity, and the dimension that it is of.
 type Row<'r> = (&'r Sensitivity, &'r DimensionReport);
 
-/// A dimension, or a geometric element with the parts of it that do something here.
+/// Dimension, or geometric element with those of its parts that have an effect here.
 struct Contributor<'r> {
     name: &'r str,
     parts: Vec<Row<'r>>,
 }
 
 impl<'r> Contributor<'r> {
-    /// The one part that there is.
+    /// Returns the single part, or None if there are several.
     fn alone(&self) -> Option<&Row<'r>> {
         if let [row] = &self.parts[..] { Some(row) } else { None }
     }
 
-    /// The share of the variance; None where a part's is unknown.
+    /// Share of the variance. None if a part has an unknown share.
     fn part(&self) -> Option<f64> {
         self.parts.iter().map(|row| part(row.0)).sum()
     }
 
-    /// The share with every interaction; None of an element of several parts, whose own interactions would count twice.
+    /// Share with every interaction. None for an element of several parts, whose interactions would count twice.
     fn total(&self) -> Option<f64> {
         self.alone().and_then(|row| total(row.0))
     }
 
-    /// The order of rows.
+    /// Sort key of the rows.
     fn size(&self) -> f64 {
         self.alone().map_or_else(|| self.part().unwrap_or(-1.0), |row| size(row.0))
     }
 }
 
-/// Whether a dimension does something here; by the model, where the surface is not trusted, its interactions may be all of it.
+/// True if a dimension has an effect here. If the surface is not trusted, its effect may consist of interactions alone.
 fn does(row: &Row<'_>) -> bool {
     let of_model = total(row.0).filter(|_| row.0.linear_share.is_none());
     part(row.0) != Some(0.0) || effect(row) != Some(0.0) || of_model.is_some_and(|total| total > 0.0)
 }
 
-/// How far the characteristic moves where this dimension alone goes to the end of its band that moves it more, by slope and curvature.
+/// Greatest shift of the characteristic if this dimension alone goes to an end of its band, by slope and curvature.
 fn effect((row, dimension): &(&Sensitivity, &DimensionReport)) -> Option<f64> {
     let ends = match dimension.tolerance {
         Some(ends) => ends.map(|end| dimension.nominal + end - dimension.mean),
@@ -250,31 +250,31 @@ fn effect((row, dimension): &(&Sensitivity, &DimensionReport)) -> Option<f64> {
     Some(ends.map(|t| (t * (first + 0.5 * second * t)).abs()).into_iter().fold(0.0, f64::max))
 }
 
-/// Whether a dimension varies, or does something without.
+/// True if a dimension varies, or has an effect without varying.
 pub(super) fn matters(row: &Sensitivity, dimension: &DimensionReport) -> bool {
     dimension.sigma > 0.0 || row.first.is_some_and(|first| first != 0.0)
 }
 
-/// The share of the variance of a dimension by itself, by slope and curvature; by the model where its surface is not trusted. None where
+/// Share of the variance of a dimension alone, by slope and curvature, or by the model if the surface is not trusted. Returns None if
 /// neither is known.
 pub(super) fn part(row: &Sensitivity) -> Option<f64> {
     let of_surface = row.linear_share.map(|linear| linear + row.curvature_share.unwrap_or(0.0));
-    // An estimate below 0 is 0 within its error; a covariance below 0 is one.
+    // A negative estimate is 0 within its error. A negative covariance is real, and stays.
     of_surface.or(row.first_order.map(|index| index.value.max(0.0)))
 }
 
-/// The same with every interaction in which it has a part.
+/// Share of the variance with every interaction of the dimension.
 pub(super) fn total(row: &Sensitivity) -> Option<f64> {
     row.total.map(|index| index.value)
 }
 
-/// By what rows are ordered: of the model with its interactions, which may be all that a dimension does.
+/// Sort key of a row: by the model with interactions, because they may be the whole effect of a dimension.
 pub(super) fn size(row: &Sensitivity) -> f64 {
     let of_model = total(row).filter(|_| row.linear_share.is_none());
     of_model.or(part(row)).unwrap_or(-1.0)
 }
 
-/// A derivative to so many digits; within its own rounding error it is shown as 0.
+/// Formats a derivative with `digits` digits, or as 0 if it lies within its rounding error.
 pub(super) fn derivative(value: Option<f64>, rounding: Option<f64>, digits: usize) -> String {
     match (value, rounding) {
         (None, _) => UNKNOWN.to_owned(),

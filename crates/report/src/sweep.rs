@@ -1,4 +1,4 @@
-//! The report of a sweep: as data.
+//! The report of a sweep.
 
 use crate::analysis_document::CharacteristicSections;
 use std::collections::BTreeMap;
@@ -125,7 +125,7 @@ pub struct SweptPointReport {
 }
 
 impl SweepReport {
-    /// The report of a sweep of this problem.
+    /// Builds the report of a sweep of this problem.
     pub fn of(problem: &Problem, sweep: &Sweep, about: About) -> Self {
         let dimension = &problem.dimensions()[sweep.dimension];
         let characteristics = problem.characteristics().iter().enumerate().map(|(c, one)| SweptReport {
@@ -154,8 +154,7 @@ impl SweepReport {
 }
 
 impl SweepReport {
-    /// The text of the sweep: for every characteristic a chart, and a table (`sweep`) with a row for every value of the
-    /// parameter.
+    /// Builds the document: for every characteristic a chart, and a table (`sweep`) with a row for every value of the parameter.
     pub fn document(&self) -> Document {
         let mut document = Document::titled(self.head.title.as_deref());
         document.line(format!(
@@ -173,7 +172,7 @@ impl SweepReport {
         document
     }
 
-    /// Every characteristic in one line: where its mean goes, and its worst value.
+    /// Table with one line for every characteristic: the range of its mean, and its worst value.
     fn glance(&self) -> DataTable {
         let all = &self.characteristics;
         let limited = all.iter().any(|one| one.points.iter().any(|point| point.yield_.is_some()));
@@ -226,17 +225,17 @@ fn with_unit(name: &str, unit: Option<&str>) -> String {
     unit.map_or(name.to_owned(), |unit| format!("{name} [{unit}]"))
 }
 
-/// Values of the parameter that a terminal shows.
+/// Most values of the parameter on a terminal.
 const ROWS: usize = 19;
 
 impl SweptReport {
-    /// The place of the value with the least yield; None without limits.
+    /// Index of the value with the least yield. None if there are no limits.
     fn worst(&self) -> Option<usize> {
         let known = self.points.iter().enumerate().filter_map(|(place, point)| Some((place, point.yield_?)));
         known.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(place, _)| place)
     }
 
-    /// The table for a terminal: mean, sigma and band at evenly spaced values, and at the worst one.
+    /// Table for a terminal: mean, sigma and band at evenly spaced values, and at the worst one.
     fn brief(&self, parameter: &str) -> Vec<Element> {
         let table = self.table(parameter).without(&["nominal", "50 %"]);
         let count = table.rows.len();
@@ -289,7 +288,7 @@ impl SweptReport {
         columns.table("sweep", &self.points)
     }
 
-    /// The sources of the yields, where there are any.
+    /// Sentence with the sources of the yields, or None if there are no yields.
     fn source(&self) -> Option<String> {
         let mut sources: Vec<&str> = self.points.iter().filter_map(|point| Some(point.yield_source?.words())).collect();
         sources.sort_unstable();
@@ -297,7 +296,7 @@ impl SweptReport {
         (!sources.is_empty()).then(|| format!("yields by {}", sources.join(", or by ")))
     }
 
-    /// Mean, nominal value and the band of all but 0.27 %, over the parameter.
+    /// Plot of mean, nominal value and band of all but 0.27 % over the parameter.
     fn plot(&self, parameter: String) -> Plot {
         let over = |value: fn(&SweptPointReport) -> Option<f64>| {
             self.points.iter().map(|point| (point.at, value(point))).collect::<Vec<_>>()
@@ -328,7 +327,8 @@ impl SweptReport {
     }
 }
 
-/// Those of the study, then those of the analyses: of one kind about one thing, the first with the number of values.
+/// Returns the warnings of the study, then those of the analyses. Analyses with the same kind of warning about the same subject share the
+/// first one, with the number of values.
 fn warnings(sweep: &Sweep, parameter: &str, about: &About) -> Vec<WarningReport> {
     let mut kinds: BTreeMap<(usize, &str), (WarningReport, Vec<f64>)> = BTreeMap::new();
     let mut order: Vec<(&'static str, Option<String>, Option<String>)> = Vec::new();
@@ -385,7 +385,7 @@ impl SweptPointReport {
         self.rejects
     }
 
-    /// The ends of the band in which all but 0.27 % lie; None where they are unknown.
+    /// Ends of the band that holds all but 0.27 %. None if they are unknown.
     pub(crate) fn band(&self) -> Option<[f64; 2]> {
         let all = self.quantiles.0;
         Some([all[0]?, all[6]?])

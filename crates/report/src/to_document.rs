@@ -3,8 +3,7 @@
 use super::{AllocationReport, CompareReport, DifferenceReport, RareReport, Report, SimulationReport, SweepReport};
 use crate::document::Document;
 
-/// A report that can be shown to people.
-///
+/// A report that can be shown to readers.
 /// ```
 /// use sensitol_report::{About, Report, ToDocument, markdown};
 /// use sensitol::{Closure, Dimension, Method, Problem, analyze};
@@ -15,15 +14,15 @@ use crate::document::Document;
 /// # Ok::<(), sensitol::Error>(())
 /// ```
 pub trait ToDocument {
-    /// The sections, tables and charts of the report. [`text`](super::text), [`csv`](super::csv), [`markdown`](super::markdown) and
-    /// [`svg`](super::svg) write it. No evaluation.
+    /// Builds the sections, tables and charts of the report. [`text`](super::text), [`csv`](super::csv), [`markdown`](super::markdown)
+    /// and [`svg`](super::svg) write it. Nothing is evaluated.
     fn document(&self) -> Document;
 
-    /// The report as one page of HTML, which needs no network and loads nothing. No evaluation.
+    /// Writes the report as one page of HTML, which needs no network and loads nothing. Nothing is evaluated.
     fn html(&self) -> String;
 }
 
-/// Passes on to the report's own functions.
+/// Implements the trait by the report's own functions.
 macro_rules! to_document {
     ($($report:ident by $html:path),* $(,)?) => {
         $(impl ToDocument for $report {
@@ -38,7 +37,7 @@ macro_rules! to_document {
     };
 }
 
-/// The page of an analysis, with nothing to try.
+/// Writes the page of an analysis without a what-if.
 fn analysis_html(report: &Report) -> String {
     super::html::analyze_html(report, None)
 }

@@ -1,47 +1,47 @@
-//! The worst case of a characteristic as well as it is known, under the name that it has earned in every writer.
+//! Best known worst case of a characteristic, under the same name in every writer.
 //!
-//! Proven ends are rounded outward to the digits that are shown: no assembly lies beyond the numbers that a reader sees. A linear worst case
-//! is not a bound, and is called linear.
+//! Proven ends are rounded outward to the printed digits: no assembly lies beyond the numbers on the page.
+//! A linear worst case is not a bound, and is called linear.
 
 use crate::document::number::{carried, outward};
 use crate::statistics::CharacteristicStatistics;
 use sensitol::analysis::CharacteristicAnalysis;
 
-/// Totals that differ by a smaller part are the same but for the order of sums.
+/// Greatest relative difference of totals that the order of sums may cause.
 const SAME: f64 = 1e-9;
 
-/// How the worst case is known.
+/// Origin of the worst case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum WorstCaseKind {
-    /// No assembly lies beyond, and some reach it.
+    /// Proven bounds that some assemblies reach.
     Proven,
-    /// The ends are those of a search, which proves nothing.
+    /// Ends found by a search, which proves nothing.
     Found,
-    /// By slopes alone.
+    /// Ends by slopes alone.
     Linear,
 }
 
-/// The worst case as well as it is known.
+/// Best known worst case.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct KnownWorstCase {
     pub(super) kind: WorstCaseKind,
     pub(super) ends: [f64; 2],
-    /// The ends as they are shown.
+    /// Ends as they are printed.
     pub(super) texts: [String; 2],
 }
 
-/// The worst case of a characteristic, as well as it is known.
+/// Worst-case figures of a characteristic.
 pub(crate) trait WorstCaseFigures {
-    /// The worst case as well as it is known; None without a slope.
+    /// Returns the best known worst case, or None if no slope is known.
     fn known_worst_case(&self) -> Option<KnownWorstCase>;
 
-    /// The worst case where it is proven: by bounds that values reach, or because nothing varies.
+    /// Returns the worst case if it is proven: by bounds that are reached, or because nothing varies.
     fn proven_worst_case(&self) -> Option<KnownWorstCase>;
 
-    /// Whether a proven worst case is that of the linear model, in the digits that are shown.
+    /// True if a proven worst case has the same printed ends as the linear one.
     fn is_shown_as_linear(&self, proven: &KnownWorstCase) -> bool;
 
-    /// Whether a proven worst case is that of the linear model but for rounding.
+    /// True if a proven worst case equals the linear one except for rounding.
     fn is_linear(&self, proven: &KnownWorstCase) -> bool;
 
     fn shown_ends(&self, ends: [f64; 2]) -> [String; 2];

@@ -1,11 +1,11 @@
-//! Answers to a page.
+//! Responses of the server to a page.
 
 use std::io::{Cursor, Write};
 
 use serde_json::json;
 use tiny_http::{Header, Request, Response, StatusCode};
 
-/// An answer that is there as a whole.
+/// Response that is sent as a whole.
 pub(super) struct Answer {
     status: u16,
     kind: &'static str,
@@ -14,7 +14,7 @@ pub(super) struct Answer {
 
 const JSON: &str = "application/json; charset=utf-8";
 
-/// Nothing is kept, nothing is guessed, and the address with its token goes to no other site.
+/// Headers of every response: no caching, no guessing of types, and no address with the token to other sites.
 const HEADERS: [(&str, &str); 5] = [
     ("Cache-Control", "no-store"),
     ("X-Content-Type-Options", "nosniff"),
@@ -32,12 +32,12 @@ impl Answer {
         Self { status: 200, kind: JSON, text }
     }
 
-    /// Nothing has changed.
+    /// Response without content: nothing has changed.
     pub(super) fn nothing() -> Self {
         Self { status: 204, kind: JSON, text: String::new() }
     }
 
-    /// Why not, for the page to show.
+    /// Refusal with a reason that the page shows.
     pub(super) fn refused(status: u16, why: &str) -> Self {
         Self { status, kind: JSON, text: json!({ "refused": why }).to_string() }
     }
@@ -46,7 +46,7 @@ impl Answer {
         Self::refused(404, "there is nothing at this address")
     }
 
-    /// A page that does not wait any more misses nothing.
+    /// Sends the response. A page that is gone is not an error.
     pub(super) fn send(self, request: Request) {
         let headers = HEADERS.iter().copied().chain([("Content-Type", self.kind)]);
         let headers = headers.map(|(name, value)| Header::from_bytes(name, value).expect("headers are ASCII"));
@@ -62,13 +62,13 @@ impl Answer {
     }
 }
 
-/// Lines that are sent as they come, each in a chunk of its own: HTTP/1.1, section 7.1 of RFC 9112.
+/// Response in lines, each sent at once in a chunk of its own: HTTP/1.1, section 7.1 of RFC 9112.
 pub(super) struct Lines {
     writer: Box<dyn Write + Send>,
 }
 
 impl Lines {
-    /// Begins the answer; None where the page is gone.
+    /// Begins the response. Returns None if the page is gone.
     pub(super) fn begin(request: Request) -> Option<Self> {
         let mut writer = request.into_writer();
         let mut head =
@@ -81,7 +81,7 @@ impl Lines {
         Some(Self { writer })
     }
 
-    /// Whether the page still hears.
+    /// Sends a line. Returns false if the page is gone.
     pub(super) fn line(&mut self, text: &str) -> bool {
         let sent = write!(self.writer, "{:x}\r\n{text}\n\r\n", text.len() + 1).and_then(|()| self.writer.flush());
         sent.is_ok()

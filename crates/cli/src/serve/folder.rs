@@ -1,4 +1,4 @@
-//! The studies of a folder: listed, read, saved, watched. Nothing outside it is touched.
+//! The studies of a folder: listed, read, saved, watched. Files outside it are never touched.
 
 use std::io::Write;
 use std::path::{Component, Path, PathBuf};
@@ -13,16 +13,19 @@ use crate::failure::Failure;
 use crate::interrupt;
 use sensitol_study::{Externals, Study, StudyText};
 
-/// How deep folders of folders are searched, and how many studies are listed.
+/// Greatest depth of searched subfolders.
 const DEEPEST: usize = 4;
+/// Most studies that are listed.
 const MOST: usize = 1000;
-/// How long a page waits for a change, and how often the file is looked at.
+/// Longest wait for a change of a file.
 const WAIT: Duration = Duration::from_secs(20);
+/// Interval between two looks at the file.
 const LOOK: Duration = Duration::from_millis(200);
 
 pub(super) struct Folder {
-    /// Without links.
+    /// Path of the folder, with links resolved.
     root: PathBuf,
+    /// Path as the user gave it.
     asked: PathBuf,
 }
 
@@ -36,17 +39,18 @@ impl Folder {
         Ok(Self { root, asked: asked.to_owned() })
     }
 
-    /// As it was asked for.
+    /// Returns the path as the user gave it.
     pub(super) fn shown(&self) -> String {
         self.asked.display().to_string()
     }
 
-    /// Its own name.
+    /// Returns the last part of the path.
     pub(super) fn name(&self) -> String {
         self.root.file_name().map_or_else(|| self.shown(), |name| name.to_string_lossy().into_owned())
     }
 
-    /// The file of this name, `/` between folders: none outside the folder, by whatever links, and none but a study.
+    /// Returns the path of the named file, with `/` between folders. Files outside the folder, also by links, and files that are not
+    /// studies are refused.
     pub(super) fn place(&self, query: &Query) -> Result<PathBuf, Answer> {
         let name = query.get("path").ok_or_else(|| Answer::refused(400, "no study is named"))?;
         let path = Path::new(name);
@@ -69,7 +73,7 @@ impl Folder {
         }
     }
 
-    /// Files that are studies by their ending and their content, by name.
+    /// Lists files that are studies by extension and content, sorted by name.
     pub(super) fn list(&self) -> Answer {
         let mut found = Vec::new();
         self.collect(&self.root, 0, &mut found);
@@ -78,7 +82,7 @@ impl Folder {
     }
 
     fn collect(&self, folder: &Path, depth: usize, found: &mut Vec<String>) {
-        // An entry that cannot be read is not listed.
+        // Entries that cannot be read are not listed.
         for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
             let path = entry.path();
             let hidden = entry.file_name().to_string_lossy().starts_with('.');
@@ -96,7 +100,7 @@ impl Folder {
         }
     }
 
-    /// The text of a study as TOML, and what it is known by.
+    /// Returns the text of a study as TOML, with its hash.
     pub(super) fn read(&self, query: &Query) -> Answer {
         let path = match self.place(query) {
             Ok(path) => path,
@@ -110,7 +114,7 @@ impl Folder {
         if path.extension().is_some_and(|ending| ending == "toml") {
             return Answer::json(json!({ "name": name, "text": text, "hash": known }).to_string());
         }
-        // A study of JSON is shown, and saved anew, as TOML.
+        // A JSON study is shown as TOML, and saved as a new file.
         let folder = path.parent().unwrap_or(&self.root);
         match Study::from_text(StudyText::json(name, &text).in_folder(folder).with_externals(Externals::default())) {
             Ok(study) => {
@@ -121,7 +125,7 @@ impl Folder {
         }
     }
 
-    /// Writes a study, unless the file is not the one that the page has read.
+    /// Writes a study, unless the file has changed since the page read it.
     pub(super) fn save(&self, query: &Query, text: &str) -> Answer {
         let path = match self.place(query) {
             Ok(path) if path.extension().is_some_and(|ending| ending == "toml") => path,
@@ -133,7 +137,7 @@ impl Folder {
         if !overwrite && there.as_deref() != query.get("hash").filter(|hash| !hash.is_empty()) {
             return Answer::refused(409, "the file is not the one that was opened: another program has changed it");
         }
-        // Whole or not at all.
+        // The file is renamed into place, so that it is never incomplete.
         let folder = path.parent().unwrap_or(&self.root);
         let written = tempfile::NamedTempFile::new_in(folder).and_then(|mut file| {
             file.write_all(text.as_bytes())?;
@@ -148,7 +152,7 @@ impl Folder {
         }
     }
 
-    /// Waits until the file is another one than the page knows; nothing after a while.
+    /// Waits until the file differs from the page's version. Returns an empty answer after a while.
     pub(super) fn changed(&self, query: &Query) -> Answer {
         let path = match self.place(query) {
             Ok(path) => path,
@@ -170,7 +174,7 @@ fn hash(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Whether this is a study, right or wrong: it asks for characteristics.
+/// True if the file looks like a study, valid or not: it contains characteristics.
 fn is_study(path: &Path) -> bool {
     let named = |name: &str| std::fs::read_to_string(path).is_ok_and(|text| text.contains(name));
     match path.extension().and_then(|ending| ending.to_str()) {

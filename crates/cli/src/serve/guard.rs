@@ -1,4 +1,4 @@
-//! Who is answered: who knows the token, asks this address by its own name, and is this page.
+//! Access control: a request needs the token, the server's own address as host, and an origin that is the page itself.
 
 use std::net::SocketAddr;
 
@@ -6,7 +6,7 @@ use tiny_http::Request;
 
 use super::answer::Answer;
 
-/// Bytes of a token: 2^128 of them are too many to try.
+/// Length of a token in bytes: 2^128 values are too many to try.
 const TOKEN: usize = 16;
 
 pub(super) struct Guard {
@@ -14,10 +14,10 @@ pub(super) struct Guard {
     at: SocketAddr,
 }
 
-/// A question, and its subject.
+/// Request with its name and parameters.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Query {
-    /// The last part of the address.
+    /// Last part of the address, which names the request.
     pub(super) what: String,
     given: Vec<(String, String)>,
 }
@@ -29,7 +29,7 @@ impl Query {
 }
 
 impl Guard {
-    /// With a token from the system's random numbers.
+    /// Draws a token from the system's random numbers.
     pub(super) fn new(at: SocketAddr) -> Result<Self, String> {
         let mut bytes = [0; TOKEN];
         getrandom::fill(&mut bytes)
@@ -37,13 +37,12 @@ impl Guard {
         Ok(Self { token: bytes.iter().map(|byte| format!("{byte:02x}")).collect(), at })
     }
 
-    /// Where a browser finds the page.
+    /// Returns the address of the page for a browser.
     pub(super) fn address(&self) -> String {
         format!("http://{}/{}/", self.at, self.token)
     }
 
-    /// The question, where the one who asks may: a page of another site knows no token, and sends an origin or a host that are
-    /// not this server's.
+    /// Returns the query if the request is allowed. A page of another site has no token, and its origin or host is not this server's.
     pub(super) fn admits(&self, request: &Request) -> Result<Query, Answer> {
         let header = |name: &'static str| {
             let found = request.headers().iter().find(|header| header.field.equiv(name));
@@ -69,23 +68,23 @@ impl Guard {
         Ok(Query { what: what.to_owned(), given })
     }
 
-    /// Whether this is how a browser names this server: a name that another site's DNS points here is not.
+    /// True if the host is an address of this server. A foreign name that DNS points here is refused.
     fn is_own(&self, host: &str) -> bool {
         let port = self.at.port();
         host == self.at.to_string()
             || (self.at.ip().is_loopback() && host == format!("localhost:{port}"))
-            // Of every address of the machine the one that was asked for is not known.
+            // The server listens on all addresses of the machine: any IP address with the right port is accepted.
             || (self.at.ip().is_unspecified()
                 && host.parse::<SocketAddr>().is_ok_and(|address| address.port() == port))
     }
 }
 
-/// In a time that does not depend on where they differ.
+/// Compares in a time that does not depend on the position of a difference.
 fn same(a: &[u8], b: &[u8]) -> bool {
     a.len() == b.len() && a.iter().zip(b).fold(0, |differs, (a, b)| differs | (a ^ b)) == 0
 }
 
-/// Without `%20` and the like; None where that is not UTF-8.
+/// Decodes percent signs such as `%20`. Returns None if the result is not UTF-8.
 fn decoded(text: &str) -> Option<String> {
     let mut bytes = Vec::with_capacity(text.len());
     let mut rest = text.as_bytes();

@@ -1,8 +1,7 @@
-//! `sensitol serve`: the workbench over a folder of studies, run by this program.
+//! `sensitol serve`: the workbench over a folder of studies, with the engine of this program.
 //!
-//! The page is that of `sensitol workbench`. It opens and saves studies of the folder, hears when a file changes, and has the engine of
-//! this program: external models run too. Only who knows the token in the address is answered, and nothing outside the folder is read
-//! or written.
+//! The page is that of `sensitol workbench`. It opens and saves studies of the folder, follows changes of files, and can run external
+//! models. Only requests with the token are answered, and no file outside the folder is read or written.
 
 mod answer;
 mod folder;
@@ -26,21 +25,20 @@ use answer::Answer;
 use folder::Folder;
 use guard::Guard;
 
-/// How often the server looks whether it is to end.
+/// Interval at which the server checks for an interruption.
 const TICK: Duration = Duration::from_millis(200);
-/// The longest text that a page sends.
+/// Longest text of a request, in bytes.
 const LONGEST: u64 = 16 << 20;
-/// Where the page says whose it is.
+/// Placeholder in the page for the data of the server.
 const ALONE: &str = "<script type=\"application/json\" id=\"server-data\">null</script>";
-/// The policy of a page that asks no network.
+/// Beginning of the policy of a page without network.
 const OFFLINE: &str = "default-src 'none';";
 
-/// The parts that every request needs.
 struct Served {
     page: String,
     folder: Folder,
     guard: Guard,
-    /// Requests that are under way.
+    /// Number of running requests.
     active: AtomicUsize,
 }
 
@@ -63,7 +61,7 @@ pub(super) fn run(asked: &ServeArgs) -> Result<Exit, Failure> {
         .write(&format!("The workbench over {shown}: {}\n{warning}Ctrl-C ends it.\n", guard.address()))?;
     let served = Arc::new(Served { page, folder, guard, active: AtomicUsize::new(0) });
     while !interrupt::stopped() {
-        // A connection that broke says nothing of the next one.
+        // A failed connection does not affect the next one.
         let Ok(Some(request)) = server.recv_timeout(TICK) else { continue };
         let served = Arc::clone(&served);
         served.active.fetch_add(1, Ordering::SeqCst);
@@ -72,14 +70,14 @@ pub(super) fn run(asked: &ServeArgs) -> Result<Exit, Failure> {
             served.active.fetch_sub(1, Ordering::SeqCst);
         });
     }
-    // Runs hear the interruption too, and end with what they have.
+    // Running requests see the interruption as well, and end with their results so far.
     while served.active.load(Ordering::SeqCst) > 0 && !interrupt::abandoned() {
         std::thread::sleep(TICK);
     }
     Ok(Exit::Done)
 }
 
-/// The page that knows that it is served, and may ask this server and no other.
+/// Adds the folder's name to the page, and allows requests to this server only.
 fn with_server(page: &str, folder: &str) -> Result<String, Failure> {
     if !page.contains(ALONE) || !page.contains(OFFLINE) {
         return Err(Failure::OldPage);
@@ -117,7 +115,7 @@ impl Served {
     }
 }
 
-/// The text that a page sends with its question.
+/// Reads the text of a request.
 fn body(request: &mut Request) -> Result<String, Answer> {
     let mut bytes = Vec::new();
     let read = request.as_reader().take(LONGEST + 1).read_to_end(&mut bytes);

@@ -1,4 +1,4 @@
-//! Runs of a study that a page asks for.
+//! Runs of a study for a page.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -18,10 +18,10 @@ use sensitol::summary::StopReason;
 use sensitol_report::task::{Task, TaskPlace};
 use sensitol_study::{Externals, JournalPlace};
 
-/// How often a page is asked whether it still listens.
+/// Interval between two empty lines that show if the page still listens.
 const BEAT: Duration = Duration::from_millis(500);
 
-/// A study in keys of JSON, or its faults.
+/// Returns a study in keys of JSON, or its faults.
 pub(super) fn keys(folder: &Folder, query: &Query, told: &str) -> Answer {
     match asked(folder, query, told) {
         Ok((task, path)) => {
@@ -32,7 +32,7 @@ pub(super) fn keys(folder: &Folder, query: &Query, told: &str) -> Answer {
     }
 }
 
-/// Does a task, telling the page how far it is; ends it when the page has gone.
+/// Runs a task and reports progress to the page. The run ends if the page is gone.
 pub(super) fn run(folder: &Folder, query: &Query, told: &str, request: Request) {
     let (task, path) = match asked(folder, query, told) {
         Ok(asked) => asked,
@@ -52,7 +52,7 @@ pub(super) fn run(folder: &Folder, query: &Query, told: &str, request: Request) 
         ended.or_else(interrupt::reason)
     };
     let abandon = || gone.load(Ordering::SeqCst) || interrupt::abandoned();
-    // Expected points come once; of costly models the answered ones follow.
+    // The expected number comes first. Costly models report their answered points separately.
     let expected = Mutex::new(0);
     let counted = |answered: u64, points: u64| {
         *expected.lock().unwrap_or_else(PoisonError::into_inner) = points;
@@ -77,7 +77,7 @@ pub(super) fn run(folder: &Folder, query: &Query, told: &str, request: Request) 
         });
         let found = catch_unwind(AssertUnwindSafe(|| task.run(&place, &counted)));
         done.store(true, Ordering::SeqCst);
-        // A quick run does not wait for the next beat.
+        // The thread is woken, so that a quick run does not wait for the next beat.
         beats.thread().unpark();
         found
     });
@@ -86,7 +86,7 @@ pub(super) fn run(folder: &Folder, query: &Query, told: &str, request: Request) 
     lines.into_inner().unwrap_or_else(PoisonError::into_inner).end();
 }
 
-/// The task of a page, and the study's file.
+/// Returns the task of a page, and the path of its study.
 fn asked(folder: &Folder, query: &Query, told: &str) -> Result<(Task, PathBuf), Answer> {
     let task = Task::read(told).map_err(|error| Answer::refused(400, &error.to_string()))?;
     Ok((task, folder.place(query)?))

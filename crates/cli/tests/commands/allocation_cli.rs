@@ -1,4 +1,4 @@
-//! `allocate` on the command line, `[costs]` and `require` in studies, and studies written anew.
+//! `allocate` on the command line, `[costs]` and `require` in studies, and rewritten studies.
 
 use std::path::Path;
 
@@ -58,11 +58,11 @@ fn an_allocation_prints_json_tables_and_a_chart() {
     assert_eq!(read("front.csv").lines().count(), 1 + 7 * 2 * 10);
     let chart = std::fs::read_to_string(svg).unwrap();
     assert!(chart.starts_with("<svg") && chart.trim_end().ends_with("</svg>"));
-    // Seven points and the present state.
+    // Seven points of the front and the present tolerances.
     assert_eq!(chart.matches("<circle").count(), 8);
 }
 
-/// Only the numbers concerned change; what was written gives the same again, with the requirement kept.
+/// Only the tolerances change. The rewritten study gives the same result, with the requirement met.
 #[test]
 fn a_study_written_anew_is_the_same_but_for_its_tolerances() {
     let folder = tempfile::tempdir().unwrap();
@@ -83,16 +83,16 @@ fn a_study_written_anew_is_the_same_but_for_its_tolerances() {
         };
         assert_eq!(skeleton(&old), skeleton(&new));
         let second = json(&["allocate", &written, "--json"]);
-        // Six digits, cut off: what is there is kept, and nearly free of charge.
+        // Tolerances are written with six digits, cut off. The written ones meet the requirement at nearly the same cost.
         assert_eq!(second["requirements"][0]["verdict_before"], "met", "{study}");
         let cost = |report: &Value, key: &str| report[key].as_f64().unwrap();
         relative(cost(&second, "cost_before"), cost(&first, "cost_after"), 1e-5);
-        // The uncertainty of the yield is that of a sample, which is another where the search begins elsewhere.
+        // The error of the yield comes from a sample, which depends on the start of the search.
         relative(cost(&second, "cost_after"), cost(&first, "cost_after"), 1e-4);
     }
 }
 
-/// Every form of a tolerance, in both formats: the study written anew says what was found.
+/// Every form of a tolerance, in both formats: the rewritten study contains the result.
 #[test]
 fn every_form_of_a_tolerance_is_written_anew() {
     let folder = tempfile::tempdir().unwrap();
@@ -131,14 +131,14 @@ fn every_form_of_a_tolerance_is_written_anew() {
             let (study, written) = (at(&folder, &format!("a.{extension}")), at(&folder, &format!("b.{extension}")));
             std::fs::write(&study, &text).unwrap();
             let report = json(&["allocate", &study, "--json", "--write", &written]);
-            // A shape that changes with its tolerance, and a mean that moves with it, leave no proof.
+            // There is no proof for a shape that changes with its tolerance, or for a mean that moves with it.
             let status = report["status"].as_str().unwrap();
             assert!(["optimal", "local-optimum"].contains(&status), "{name}: {report}");
             let new = std::fs::read_to_string(&written).unwrap();
             let again = sensitol_study::Study::read(Path::new(&written)).unwrap();
             let analysis = sensitol::analyze(&again.problem, &again.options).unwrap();
             let sigma = analysis.characteristics[0].moments.unwrap().sigma();
-            // A last digit of difference is that of another order of summing.
+            // The last digit may differ because of the order of summation.
             assert!(sigma <= 0.011 * (1.0 + 1e-13) && sigma > 0.011 * (1.0 - 2e-5), "{name}: {sigma}\n{new}");
             assert!(extension == "json" || new.contains("# kept\n") && new.contains(" # kept too\n"), "{new}");
             let fits = report["warnings"].as_array().unwrap().iter().filter(|one| one["code"] == "fit-replaced");
@@ -147,7 +147,7 @@ fn every_form_of_a_tolerance_is_written_anew() {
     }
 }
 
-/// A nominal value of the model is written where it moves; one that stands there is replaced.
+/// A changed nominal value of a model's input is written as a new entry, and an existing entry is replaced.
 #[test]
 fn nominal_values_are_written_too() {
     let folder = tempfile::tempdir().unwrap();
@@ -185,11 +185,11 @@ fn what_cannot_be_kept_is_exit_4_with_a_report() {
     let report: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(report["status"], "infeasible");
     assert_eq!(report["attainable"]["characteristic"], "gap");
-    // 0.0065 by those without a cost and 4 times 0.0005, of 0.0079.
+    // Of the 0.0079, dimensions without a cost use 0.0065 and four others at least 0.0005 each.
     relative(report["attainable"]["best"].as_f64().unwrap(), 0.0085 / 0.0079, 1e-9);
     assert!(report["cost_after"].is_null() && report["characteristics"][0]["after"].is_null());
     assert!(!Path::new(&written).exists());
-    // Too little even without those that have a cost.
+    // The limits are too narrow even without the dimensions that have a cost.
     std::fs::write(&study, text.replace("lower = 0.0049, upper = 0.0349", "lower = 0.014, upper = 0.0258")).unwrap();
     let output = run(&["allocate", &study]);
     assert!(output.starts_with("exit 4"), "{output}");
@@ -206,7 +206,7 @@ fn wrong(text: &str, more: &[&str]) -> String {
     run(&arguments).replace(folder.path().to_str().unwrap(), "")
 }
 
-/// One clear error each, exit 2, and nothing else.
+/// Each mistake gives one clear error, exit code 2, and no other output.
 #[test]
 fn wrong_costs_and_requirements_are_refused() {
     let study = |dimension: &str, costs: &str, characteristic: &str| {
@@ -295,11 +295,11 @@ fn wrong_wishes_are_refused() {
         })
         .collect();
     insta::assert_snapshot!("allocate-wrong-wishes", all.join("\n"));
-    // A dimension that is known by moments keeps what it has, and the others are chosen beside it.
+    // A dimension known by its moments keeps them, and the other dimensions are chosen around it.
     assert!(wrong(known, &[]).starts_with("exit 0"));
 }
 
-/// Paths in a study start from its folder: written into another one it would name files that are not there.
+/// Paths in a study start from its folder. In another folder they would name missing files.
 #[test]
 fn a_study_with_files_stays_in_its_folder() {
     let folder = tempfile::tempdir().unwrap();
@@ -318,7 +318,7 @@ fn a_study_with_files_stays_in_its_folder() {
     let error = String::from_utf8(refused.stderr).unwrap();
     assert_eq!((refused.status.code(), refused.stdout.len()), (Some(2), 0), "{error}");
     assert!(error.contains("the study names `data.csv`") && !Path::new(&at("sub/new.toml")).exists(), "{error}");
-    // Beside the study, or with a path that means the same everywhere, it is written and can be read.
+    // A study is written if its folder stays the same, or if its paths are absolute.
     assert_eq!(write("new.toml").status.code(), Some(0));
     std::fs::write(at("study.toml"), text(&at("data.csv"))).unwrap();
     assert_eq!(write("sub/new.toml").status.code(), Some(0));
@@ -327,7 +327,7 @@ fn a_study_with_files_stays_in_its_folder() {
     }
 }
 
-/// `--time` ends it with what is known, exit 4.
+/// `--time` ends the run with the results so far and exit code 4.
 #[test]
 fn a_time_that_is_too_short_is_exit_4() {
     let output = sensitol(&["allocate", ENGINE, "--time", "1e-9", "--json"]).output().unwrap();
@@ -336,8 +336,8 @@ fn a_time_that_is_too_short_is_exit_4() {
     assert_eq!(output.status.code(), Some(4), "{output:?}");
 }
 
-/// A program that answers in two configurations at once: the tolerances are those of the formula, every configuration is asked at every point,
-/// and a second run finds all answers in the journal.
+/// A program in two configurations at once. The tolerances equal those of the formula, and every configuration is evaluated at every
+/// point. A second run finds all answers in the journal.
 #[test]
 fn a_program_is_allocated_in_all_configurations() {
     const PLAY: &str = r#"
@@ -373,11 +373,11 @@ for line in sys.stdin:
     };
     let [found, known] = ["program.toml", "formula.toml"].map(run);
     let cost = |report: &serde_json::Value| report["cost_after"].as_f64().unwrap();
-    // Differences of a linear program and exact slopes: roundings of values near 0.1 beside steps of 0.01.
+    // Differences of a linear program against exact slopes: rounding of values near 0.1 over steps of 0.01.
     relative(cost(&found), cost(&known), 1e-6);
     assert_eq!(found["evaluations"].as_u64().unwrap() % 2, 0, "every configuration is asked");
     let again = run("program.toml");
-    // The nominal point of every program is held against the journal.
+    // The nominal point of every program is compared with the journal.
     assert_eq!(again["evaluations"], 2);
     assert_eq!(cost(&again), cost(&found));
 }

@@ -1,4 +1,4 @@
-//! An allocation and `analyze --check` of what it wrote say the same: where derivatives follow the model, and where they do not.
+//! An allocation and `analyze --check` of the study that it wrote agree, with and without derivatives that follow the model.
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -26,12 +26,12 @@ fn allocated(study: &Study) -> Allocation {
     allocate(&study.problem, &study.allocation_task(), &options).unwrap()
 }
 
-/// Whether a study keeps everything that `--check` asks.
+/// True if a study meets every requirement that `--check` tests.
 fn keeps(study: &Study) -> bool {
     is_kept(&study.problem, study)
 }
 
-/// The same of a problem, as the study would have it analysed.
+/// True if a problem meets every requirement, analysed with the options of the study.
 fn is_kept(problem: &Problem, study: &Study) -> bool {
     let found = analyze(problem, &study.options).unwrap();
     let own = found.characteristics.iter().flat_map(|one| one.requirements());
@@ -42,8 +42,8 @@ fn is_done(status: Status) -> bool {
     matches!(status, Status::Optimal | Status::LocalOptimum | Status::AlmostOptimal)
 }
 
-/// Costs within 1 % above those of quadrature: yields are required of the lower end of their intervals. They cannot be lower, but for two
-/// standard errors of a yield.
+/// Costs are at most 1 % above those from quadrature, because the lower end of the yield's interval must meet the requirement. They are
+/// not lower, except by two standard errors of a yield.
 #[test]
 fn searches_end_near_the_right_cost() {
     let of = |(name, case): (&String, &Value)| {
@@ -59,7 +59,7 @@ fn searches_end_near_the_right_cost() {
     cases().iter().collect::<Vec<_>>().into_par_iter().for_each(of);
 }
 
-/// A study that the random numbers make: what it computes, what its dimensions are, what is required, and what tolerances cost.
+/// Returns a random study: formula, dimensions, requirements and costs.
 fn random(rng: &mut Xoshiro256PlusPlus) -> String {
     const FORMULAS: [(&str, f64); 7] = [
         ("a - b - c", 1.0),
@@ -120,8 +120,8 @@ fn random(rng: &mut Xoshiro256PlusPlus) -> String {
     }
 }
 
-/// Never dearer than what it began with, where that keeps everything; never without a result then; and where it says that everything is kept,
-/// the tolerances that it found do.
+/// The result is never more expensive than a start that meets every requirement, and there always is a result then. Tolerances with the
+/// status that every requirement is met do meet them.
 #[test]
 fn an_allocation_is_never_worse_than_its_start() {
     const CASES: u64 = 16;
@@ -154,12 +154,12 @@ fn an_allocation_is_never_worse_than_its_start() {
     };
     let all: Vec<[u64; 3]> = (0..CASES).into_par_iter().map(of).collect();
     let [kept, done, almost] = [0, 1, 2].map(|place| all.iter().map(|case| case[place]).sum::<u64>());
-    // The cases are no foregone conclusions.
+    // Both outcomes occur among the cases.
     assert!(kept > CASES / 4 && kept < CASES, "{kept} of {CASES} starts keep everything");
     assert!(done >= kept && almost > 0 && almost < done, "{done} are done, {almost} of them by trials");
 }
 
-/// The command line, which rounds what it writes: its exit code is that of `analyze --check` on that file.
+/// The command line rounds the tolerances that it writes: its exit code equals that of `analyze --check` on that file.
 #[test]
 fn the_written_study_passes_its_check() {
     let folder = tempfile::tempdir().unwrap();
@@ -187,10 +187,10 @@ fn the_written_study_passes_its_check() {
     }
 }
 
-/// What `require` takes the place of is asked by `--check` too, and kept.
+/// A target yield beside a `require` is tested by `--check` as well, and met.
 #[test]
 fn a_target_yield_beside_a_requirement_is_kept_too() {
-    // Sigma alone would let a and b be three times as wide.
+    // The required sigma alone would allow three times as wide tolerances of a and b.
     let text = "[dimensions]\na = { nominal = 1, tolerance = 0.05 }\nb = { nominal = 0, tolerance = 0.05 }\n[characteristics]\n\
                 y = { formula = \"a + b\", upper = 1.15, target_yield = 0.999, require = { sigma = 0.08 } }\n[costs]\n\
                 a = { model = \"reciprocal\", b = 0.1 }\nb = { model = \"reciprocal\", b = 0.1 }\n";
@@ -204,13 +204,13 @@ fn a_target_yield_beside_a_requirement_is_kept_too() {
         found.requirements
     );
     assert!(keeps(&read(&study.rewritten(&found.problem).unwrap().text)));
-    // 0.15 are 3.0902 sigmas of a normal distribution: both half bands are 3 (0.15/3.0902)/sqrt 2.
+    // 0.15 equals 3.0902 sigmas of a normal distribution: both half-widths are 3 (0.15/3.0902)/sqrt 2.
     let right = 2.0 * 0.1 / (3.0 * 0.15 / 3.090_232_306 / 2f64.sqrt());
     let cost = found.cost_after.unwrap();
     assert!(cost < 1.01 * right && cost > right * (1.0 - 1e-6), "{cost} for {right}");
 }
 
-/// A list of which the study's own tolerance is none, between two: where no process keeps more for less, the study stays as it is.
+/// A list of processes on both sides of the study's own tolerance. If no process keeps the limits for less, the study stays unchanged.
 #[test]
 fn a_start_that_nothing_undercuts_stays() {
     let text = "[dimensions]\na = { nominal = 0, tolerance = 0.05 }\n[characteristics]\n\

@@ -1,8 +1,8 @@
-//! Text reports in brief: every characteristic in one line first, then no more than 25 lines of each, within 80 columns.
+//! Short text reports: first a line for every characteristic, then at most 25 lines for each, within 80 columns.
 
 use super::command::sensitol;
 
-/// Lines of a characteristic unless all is asked for.
+/// Most lines of a characteristic unless everything is asked for.
 const MOST: usize = 25;
 
 fn text(arguments: &[&str]) -> String {
@@ -11,7 +11,7 @@ fn text(arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// The parts of a report, each from a line at the margin, below an empty one, to the next.
+/// Splits a report into parts. Each begins with a line at the margin below an empty line.
 fn parts(report: &str) -> Vec<Vec<&str>> {
     let (mut parts, mut before): (Vec<Vec<&str>>, &str) = (Vec::new(), "head");
     for line in report.lines() {
@@ -54,7 +54,7 @@ fn the_verdict_comes_first_and_a_characteristic_fits_a_screen() {
     }
 }
 
-/// All rows of a long sweep are there where all is asked for, and in CSV; in brief the worst one is.
+/// A long sweep has all rows with -v and in CSV. The short report contains the worst one.
 #[test]
 fn a_long_sweep_is_thinned() {
     let folder = tempfile::tempdir().unwrap();

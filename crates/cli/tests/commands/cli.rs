@@ -24,7 +24,7 @@ fn analyze_prints_the_report() {
     );
 }
 
-/// Everything but the time, which nobody can know beforehand.
+/// The whole output except the times, which differ between runs.
 #[test]
 fn analyze_prints_json() {
     let output =
@@ -51,7 +51,7 @@ fn plan_says_what_would_be_evaluated() {
     insta::assert_snapshot!("models", run(&["models"]) + &run(&["models", "engine-balance"]));
 }
 
-/// The reports of the alternatives to derivatives, and their gaps.
+/// Reports of the alternatives to derivatives, with their gaps.
 #[test]
 fn alternatives_are_reported() {
     let clearance = "examples/shaft-and-bore/study.toml";
@@ -60,7 +60,7 @@ fn alternatives_are_reported() {
     }
 }
 
-/// The search is counted, its points depend on the answers, and the report says where the extremes are.
+/// The search of the extremes is counted, its points depend on the answers, and the report names the places of the extremes.
 #[test]
 fn extremes_are_reported() {
     let thermal = "examples/thermal-clearance/study.toml";
@@ -85,7 +85,7 @@ fn extremes_are_reported() {
     assert!(searched.contains("  extremes  0.040856 .. 0.408908  proven, "), "{searched}");
 }
 
-/// Wrong input: one error that says what, where and what to write instead; nothing on stdout; exit 2.
+/// Wrong input gives one error with fault, place and remedy, nothing on stdout, and exit code 2.
 #[test]
 fn wrong_input() {
     let folder = tempfile::tempdir().unwrap();
@@ -161,7 +161,7 @@ fn wrong_input() {
     insta::assert_snapshot!("wrong-input", all);
 }
 
-/// A probe of the example passes; one of a model that fails says what is wrong, and exits with 1.
+/// A probe of the example passes. A probe of a failing model names the fault and exits with 1.
 #[test]
 fn probe_answers_by_the_exit_code() {
     let output = sensitol(&["probe", "examples/external-python/study.toml", "--json"]).output().unwrap();
@@ -193,7 +193,7 @@ fn pearson_is_a_calculator() {
     let asked = ["--mean", "1", "--sf", "0,3", "--cdf", "-1,1e-3", "--upper-quantile", "1e-9,0", "--json"];
     let output = sensitol(&[&exponential[..], &asked[..]].concat()).output().unwrap();
     let answers: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-    // In the order asked; the exponential by hand.
+    // Answers in the order of the options; the exponential distribution by hand.
     let [sf, cdf, quantile] = ["sf", "cdf", "upper_quantile"].map(|name| answers[name].as_array().unwrap().clone());
     let close = |found: &serde_json::Value, expected: f64| (found.as_f64().unwrap() / expected - 1.0).abs() < 1e-13;
     assert!(sf[0] == 1.0 && close(&sf[1], (-3.0f64).exp()));
@@ -202,7 +202,7 @@ fn pearson_is_a_calculator() {
     assert_eq!((answers["type"].as_str(), &answers["support"]), (Some("III"), &serde_json::json!([0.0, null])));
 }
 
-/// `--check`: 0 when every target is met, 1 when one is missed, and the report all the same.
+/// `--check` exits with 0 if every target is met and with 1 if one is missed. The report is printed in both cases.
 #[test]
 fn check_answers_by_the_exit_code() {
     let folder = tempfile::tempdir().unwrap();
@@ -223,12 +223,12 @@ fn check_answers_by_the_exit_code() {
     let (missed, report) = code(", target_yield = 0.999", &["--json"]);
     let report: serde_json::Value = serde_json::from_str(&report).unwrap();
     assert_eq!((missed, &report["characteristics"][0]["met"]), (1, &false.into()));
-    // Nothing to check is no success; neither is a characteristic without target beside one that misses its own.
+    // Nothing to check is an error, even if another characteristic misses its target.
     assert_eq!(code("", &[]).0, 2);
     assert_eq!(code(", target_yield = 0.999", &["--kc", "z"]).0, 2);
 }
 
-/// A characteristic without result: the report is printed all the same, and the exit code is 3.
+/// A characteristic without result: the report is printed anyway, and the exit code is 3.
 #[test]
 fn a_characteristic_without_result() {
     let folder = tempfile::tempdir().unwrap();
@@ -256,7 +256,7 @@ fn files_are_written_whole_or_not_at_all() {
     assert!(output.status.success() && output.stdout.is_empty());
     let report: serde_json::Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
     assert_eq!(report["evaluations"], 61);
-    // The file stays as it was when the command fails, and no other file is left behind.
+    // A failing command leaves the file unchanged and no other file behind.
     let output = sensitol(&["analyze", ENGINE, "--budget", "3", "-o", to]).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert_eq!(serde_json::from_slice::<serde_json::Value>(&std::fs::read(&path).unwrap()).unwrap(), report);
@@ -266,7 +266,7 @@ fn files_are_written_whole_or_not_at_all() {
         let mode = std::os::unix::fs::PermissionsExt::mode(&std::fs::metadata(&path).unwrap().permissions());
         assert_eq!(mode & 0o444, 0o444 & mode, "as readable as the user's other files");
         assert_ne!(mode & 0o044, 0, "not private");
-        // A link stays one, and leads to what is new; a device stays a device, and a full one is an error.
+        // A link stays a link, and its target is new. A device stays a device, and a full one is an error.
         let link = folder.path().join("link.json");
         std::os::unix::fs::symlink(&path, &link).unwrap();
         let output =
@@ -282,7 +282,8 @@ fn files_are_written_whole_or_not_at_all() {
     }
 }
 
-/// No option writes over what the command reads, by whatever path, nor two of them the same file; nothing is evaluated then.
+/// No option overwrites a file that the command reads, by whatever path, and no two options write the same file. Nothing is evaluated
+/// then.
 #[test]
 fn what_is_read_is_never_written() {
     let folder = tempfile::tempdir().unwrap();
@@ -338,7 +339,7 @@ fn what_is_read_is_never_written() {
         );
         assert!(!Path::new(&twice).exists());
     }
-    // Tables of --csv are files as others are.
+    // Tables of --csv are protected files as well.
     std::fs::rename(&csv, at("sweep.csv")).unwrap();
     std::fs::write(&study, text.replace("data.csv", "sweep.csv")).unwrap();
     let here = folder.path().to_str().unwrap();
@@ -347,7 +348,7 @@ fn what_is_read_is_never_written() {
     assert_eq!(std::fs::read_to_string(at("sweep.csv")).unwrap(), data);
 }
 
-/// The points of a stage as exact numbers, a column per dimension.
+/// The points of a stage are exact numbers, with a column per dimension.
 #[test]
 fn points_can_be_written() {
     let folder = tempfile::tempdir().unwrap();
@@ -363,7 +364,7 @@ fn points_can_be_written() {
     assert!((moved - (0.05 - 2.856_970_013_872_806 * 0.0001 / 3.0)).abs() < 1e-16);
 }
 
-/// A study whose answers come from elsewhere names no model: its points are written, and their answers read.
+/// A study with answers from elsewhere has no model: its points are written, and their answers are read.
 #[test]
 fn points_need_no_model() {
     let folder = tempfile::tempdir().unwrap();
@@ -397,11 +398,11 @@ fn points_need_no_model() {
     };
     let full = ["--method", "full", "--json", "--verify", "0"];
     let answered = result(&[&["analyze", &path("open.toml"), "--points", &path("answers.csv")][..], &full].concat());
-    // Of a product of independent inputs: a² s² + b² s² + s⁴.
+    // Product of independent inputs: a² s² + b² s² + s⁴.
     let sigma = (0.1_f64.powi(2) * (1.0 + 4.0) + 0.1_f64.powi(4)).sqrt();
     assert!((answered[0][0] - 2.0).abs() < 1e-12 && (answered[0][1] - sigma).abs() < 1e-9, "{answered:?}");
     assert_eq!(answered[1], result(&[&["analyze", &path("written.toml")][..], &full].concat())[1]);
-    // Without answers the formula is missing, and without an open characteristic the answers answer nothing.
+    // Without answers the formula is missing. Answers are an error if no characteristic is open.
     let error = |arguments: &[&str]| String::from_utf8(sensitol(arguments).output().unwrap().stderr).unwrap();
     assert!(error(&["analyze", &path("open.toml")]).contains("`formula` is missing"));
     let nothing = error(&["analyze", &path("written.toml"), "--points", &path("answers.csv")]);
@@ -420,7 +421,7 @@ fn a_closed_pipe_is_no_error() {
     }
 }
 
-/// Escape sequences go to terminals alone, unless they are asked for.
+/// Escape sequences go to terminals only, unless they are always on.
 #[test]
 fn colours_are_for_terminals() {
     let coloured = |arguments: &[&str], set: &[(&str, &str)]| {
@@ -434,7 +435,7 @@ fn colours_are_for_terminals() {
     assert!(!coloured(&warns, &[("NO_COLOR", "1")]));
 }
 
-/// A name is plain, whatever word it is: the page differs from that of other names of the same length in the names alone.
+/// A name that equals a verdict has no colour: the page differs from that of other names of the same length in the names only.
 #[test]
 fn names_that_are_verdicts_are_plain() {
     let folder = tempfile::tempdir().unwrap();
@@ -477,7 +478,7 @@ fn names_that_are_verdicts_are_plain() {
     assert!(coloured > 0, "verdicts are coloured all the same");
 }
 
-/// Verdicts have a colour on a terminal, and where colours are asked for; never in a file or a pipe otherwise.
+/// Verdicts have a colour on a terminal and with `--color always`, never in a file or a pipe otherwise.
 #[test]
 fn verdicts_are_coloured() {
     let folder = tempfile::tempdir().unwrap();
@@ -498,11 +499,11 @@ fn verdicts_are_coloured() {
     assert!(always("analyze", 0.9999).contains(&format!("%: {red}")));
     assert!(always("analyze", 0.99).contains(&format!("%: {green}")));
     assert!(always("simulate", 0.9999).contains(red) && always("simulate", 0.99).contains(green));
-    // 99.865 % of the assemblies: a hundred points cannot tell whether 99 % are reached.
+    // 99.865 % of the assemblies: a hundred points cannot decide if 99 % are reached.
     let few = stdout(&["simulate", &study(0.99), "--samples", "100", "--color", "always"]);
     assert!(few.contains(&format!("{yellow}inconclusive")), "{few}");
     assert!(always("allocate", 0.99).starts_with("\u{1b}[32moptimal\u{1b}[0m: cost"));
-    // The colours are all that is added.
+    // Colours are the only addition.
     let plain = stdout(&["analyze", &study(0.9999)]);
     assert!(!plain.contains('\u{1b}'));
     let bare = |text: String| {
@@ -515,7 +516,7 @@ fn verdicts_are_coloured() {
     }
 }
 
-/// Counts as people write them, and parts in percent.
+/// Counts may have exponents, and parts may be in percent.
 #[test]
 fn numbers_may_be_written_short() {
     let json = |arguments: &[&str]| -> serde_json::Value {
@@ -530,7 +531,7 @@ fn numbers_may_be_written_short() {
     );
 }
 
-/// Help that cannot be printed is an error, as any result is.
+/// Help that cannot be printed is an error, like any other result.
 #[test]
 #[cfg(target_os = "linux")]
 fn help_into_a_full_device_is_an_error() {
@@ -570,7 +571,7 @@ fn no_line_is_too_long() {
     }
 }
 
-/// Thirty dimensions fit a page: the contributions in order, the rest counted.
+/// Thirty dimensions fit on a page: the contributions in order, the rest as a sum.
 #[test]
 fn many_dimensions_stay_readable() {
     let folder = tempfile::tempdir().unwrap();
@@ -582,7 +583,7 @@ fn many_dimensions_stay_readable() {
     std::fs::write(&study, format!("[dimensions]\n{dimensions}[characteristics]\nstack = {{ formula = \"{sum}\" }}\n"))
         .unwrap();
     let report = run(&["analyze", study.to_str().unwrap(), "-q"]);
-    // Of the sum of 1/k^2 to 40 the terms from 7 on are 7.95 %.
+    // Of the sum of 1/k^2 to 40, the terms from 7 on make 7.95 %.
     assert!(report.contains("  and 34 more with 7.95 % together; -v shows all"), "{report}");
     let rows: Vec<&str> = report.lines().filter(|line| line.starts_with("  part_")).collect();
     assert_eq!((rows.len(), rows[0].split_whitespace().next()), (6, Some("part_0")));
@@ -605,7 +606,7 @@ fn names_cannot_disturb_the_terminal() {
     assert!(!printed.contains('\u{1b}') && !printed.contains('\r') && !printed.contains("one\ntwo"), "{printed:?}");
 }
 
-/// `--time` ends an analysis that would take longer, with what is known.
+/// `--time` ends a longer analysis with the results so far.
 #[test]
 fn time_is_kept() {
     let folder = tempfile::tempdir().unwrap();
@@ -637,7 +638,7 @@ fn studies_run_from_any_folder() {
     assert!(output.status.success() && output.stderr.is_empty());
 }
 
-/// On a narrow terminal a report takes more lines and says the same: no line is wider, and no number is lost.
+/// On a narrow terminal a report takes more lines with the same content: no line is too wide, and no number is lost.
 #[test]
 fn reports_fit_their_width() {
     for name in ["stacked-blocks", "engine-balance", "first-study"] {
@@ -661,12 +662,12 @@ fn reports_fit_their_width() {
     }
 }
 
-/// The cells of a line of a table: two spaces or more part them.
+/// Splits a line of a table into cells at two spaces or more.
 fn cells(line: &str) -> Vec<&str> {
     line.split("  ").map(str::trim).filter(|cell| !cell.is_empty()).collect()
 }
 
-/// Numbers with many digits, or with exponents: at every width a value stands right of its own label, as it does where there is room for all.
+/// Numbers with many digits or with exponents: at every width, a value stands to the right of its own label, as on a wide terminal.
 #[test]
 fn values_stand_beside_their_labels_at_every_width() {
     let study = sensitol_study::Study::read(&repository("tests/data/any-size/wide-numbers.toml")).unwrap();
@@ -696,7 +697,7 @@ fn values_stand_beside_their_labels_at_every_width() {
             let page = of(width);
             let page = page.split("\ndiff").nth(1).unwrap();
             for &label in labels {
-                // A label that gives way keeps its ends.
+                // A shortened label keeps both ends.
                 let names = |cell: &str| match cell.split_once('…') {
                     Some((head, tail)) => label.starts_with(head) && label.ends_with(tail),
                     None => cell == label,

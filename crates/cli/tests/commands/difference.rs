@@ -1,4 +1,4 @@
-//! `analyze OLD NEW --compare`: what changed from one revision to the next.
+//! `analyze OLD NEW --compare`: changes from one revision to the next.
 
 use serde_json::Value;
 
@@ -20,7 +20,7 @@ fn folder() -> tempfile::TempDir {
     folder
 }
 
-/// Sigmas of sums of normals are roots of sums of squares: 0.1 and 0.1, then 0.1/3 and 0.1.
+/// Sigmas of sums of normal dimensions are roots of sums of squares: 0.1 and 0.1, then 0.1/3 and 0.1.
 #[test]
 fn inputs_results_and_contributions_are_compared() {
     let folder = folder();
@@ -80,7 +80,7 @@ fn a_study_beside_itself_has_not_changed() {
     assert!(text.contains("unchanged") && !text.contains("contribution of"), "{text}");
 }
 
-/// The newer study is the one that is checked.
+/// `--check` applies to the newer study.
 #[test]
 fn the_second_study_is_checked() {
     let folder = folder();

@@ -1,4 +1,4 @@
-//! The table of exit codes: every code is met by a command, and every page that names one says the same.
+//! Table of exit codes: every code results from a command, and every page that names one agrees with the table.
 
 use std::collections::BTreeMap;
 use std::process::Stdio;
@@ -8,7 +8,7 @@ use sensitol_testing::repository;
 
 const DIMENSION: &str = "[dimensions]\na = { nominal = 10, tolerance = 0.3 }\n";
 
-/// The exit code of a command on a study of this text, `STUDY` among its words.
+/// Returns the exit code of a command on a study with this text. `STUDY` among its words stands for the path.
 fn code(words: &[&str], characteristic: &str, more: &str) -> i32 {
     let folder = tempfile::tempdir().unwrap();
     let study = folder.path().join("study.toml");
@@ -18,7 +18,7 @@ fn code(words: &[&str], characteristic: &str, more: &str) -> i32 {
     sensitol(&words).output().unwrap().status.code().unwrap()
 }
 
-/// A run that is interrupted once it shows that it works.
+/// Interrupts a run after it has begun to evaluate, and returns its exit code.
 fn interrupted() -> i32 {
     let folder = tempfile::tempdir().unwrap();
     let script = repository("tests/children/storm.py").display().to_string();
@@ -35,7 +35,7 @@ fn interrupted() -> i32 {
         .stderr(Stdio::null())
         .spawn()
         .unwrap();
-    // The model's file says that the run has come so far.
+    // The model's file shows that the run has begun.
     while std::fs::read_dir(&folder).unwrap().count() < 2 {
         assert!(run.try_wait().unwrap().is_none(), "it ended by itself");
         std::thread::sleep(std::time::Duration::from_millis(5));
@@ -69,7 +69,7 @@ fn every_exit_code_is_met() {
     assert_eq!(met, table, "a code without a case, or a case without a code");
 }
 
-/// The man page and the reference are made from the table; other pages name its codes in sentences, each with its own word.
+/// The manual page and the reference are generated from the table. Other pages name its codes in sentences, each with its own word.
 #[test]
 fn every_page_names_the_same_codes() {
     let words = BTreeMap::from([

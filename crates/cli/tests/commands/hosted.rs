@@ -1,5 +1,4 @@
-//! The interface of a calling program to studies: a function of its own as the model, keys of `[analysis]`, folders, the exit
-//! code.
+//! Interface for calling programs: a function as the model, keys of `[analysis]`, folders, and the exit code.
 
 use std::sync::{Arc, Mutex};
 
@@ -40,13 +39,13 @@ fn a_function_answers_what_no_formula_says() {
     assert_eq!(told.1.nominal, [25.02, 24.98]);
     assert_eq!(told.1.constants, [("k".to_owned(), 1000.0)]);
     let found = analyze(&study.problem, &study.options).unwrap();
-    // Two normal dimensions of sigmas tolerance/3.
+    // Two normal dimensions whose sigmas are tolerance/3.
     let sigma = (0.01f64.powi(2) + 0.02f64.powi(2)).sqrt() / 3.0;
     let got = found.characteristics[1].moments.unwrap().sigma();
     assert!((got / (1000.0 * sigma) - 1.0).abs() < 1e-9, "{got}");
 }
 
-/// Without the function the characteristic has neither formula nor model.
+/// Without the function, the characteristic has neither formula nor model.
 #[test]
 fn the_same_study_without_a_function_is_wrong() {
     let error = Study::from_toml(GAP, "gap.toml").unwrap_err();
@@ -64,7 +63,7 @@ fn a_function_stands_in_place_of_a_program_and_not_of_a_built_in_model() {
     assert!(error.to_string().contains("leave out [model], or the function"), "{error}");
 }
 
-/// A study that an allocation writes is read again, with the function.
+/// A study that an allocation writes can be read again, with the function.
 #[test]
 fn a_study_with_a_function_is_written_anew() {
     let study = hosted(GAP).unwrap();
@@ -115,7 +114,7 @@ fn measured_values_are_sought_in_the_folder_that_is_named() {
     assert!((study.problem.dimensions()[0].mean() - 8.0).abs() < 1e-12);
 }
 
-/// A study as JSON is the same study, in the same order.
+/// A study converted to JSON is the same study, in the same order.
 #[test]
 fn a_study_of_toml_is_one_of_json() {
     let text = include_str!("../../../../examples/shaft-and-bore/study.toml");

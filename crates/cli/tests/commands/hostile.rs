@@ -1,4 +1,4 @@
-//! Hostile names and starved systems: what reaches a terminal, a full stderr, a protected file, a process without memory or threads.
+//! Hostile names and starved systems: text on a terminal, a full stderr, a protected file, a process without memory or threads.
 
 use std::io::Read;
 use std::os::unix::fs::PermissionsExt;
@@ -19,10 +19,10 @@ fn study(folder: &tempfile::TempDir, name: &str, text: &str) -> PathBuf {
 const PLAIN: &str =
     "[dimensions]\na = { nominal = 10, tolerance = 0.3 }\n[characteristics]\ngap = { formula = \"a\", lower = 9.8 }\n";
 
-/// The command in a shell with this limit or redirection, `$0` being the program.
+/// Runs the command in a shell with this limit or redirection; `$0` is the program.
 fn in_shell(script: &str, arguments: &[&str]) -> Output {
     let program = sensitol(&[]).get_program().to_owned();
-    // As `sensitol`, whoever runs the tests.
+    // The path of the program becomes `$0` of the script.
     Command::new("bash").arg("-c").arg(script).arg(program).args(arguments).env("LC_ALL", "C.UTF-8").output().unwrap()
 }
 
@@ -42,8 +42,8 @@ fn names_that_are_not_seen_are_refused() {
     );
 }
 
-/// Titles, units and a model's stderr are texts of others: no escape sequence of theirs reaches the terminal, on any stream of any
-/// command, colours on or off.
+/// Titles, units and the stderr of a model are foreign text: none of their escape sequences reaches the terminal, on any stream of any
+/// command, with colours on or off.
 #[test]
 fn nothing_moves_the_cursor() {
     let folder = tempfile::tempdir().unwrap();
@@ -78,7 +78,7 @@ fn nothing_moves_the_cursor() {
     }
 }
 
-/// The exit code is the documented one, and stdout is whole, whatever becomes of stderr.
+/// Exit code and stdout are unaffected by a stderr that fails.
 #[test]
 fn a_stderr_that_takes_nothing_changes_nothing() {
     let folder = tempfile::tempdir().unwrap();
@@ -104,7 +104,7 @@ fn a_full_stdout_is_one_line_and_exit_2() {
     assert!(said.contains("cannot write to standard output") && said.lines().count() == 1, "{said}");
 }
 
-/// Without memory: one line and exit 2, or the whole report; never a panic.
+/// Without memory there is one line and exit code 2, or the whole report, but never a panic.
 #[test]
 fn little_memory_is_no_panic() {
     let folder = tempfile::tempdir().unwrap();
@@ -116,7 +116,7 @@ fn little_memory_is_no_panic() {
     }
 }
 
-/// Overwriting keeps the mode; a protected file stays; nothing else is left in the folder.
+/// Overwriting keeps the mode, a protected file stays, and no other file is left in the folder.
 #[test]
 fn files_keep_their_mode_and_protection() {
     let folder = tempfile::tempdir().unwrap();
@@ -148,7 +148,7 @@ fn a_killed_run_leaves_no_file() {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // It works as soon as it shows progress.
+    // The run works as soon as it shows progress.
     let mut first = [0];
     let _ = child.stderr.as_mut().unwrap().read(&mut first);
     child.kill().unwrap();
@@ -157,7 +157,7 @@ fn a_killed_run_leaves_no_file() {
     assert_eq!(left, ["a.toml"]);
 }
 
-/// All faults that do not follow from each other, in the order of the file, no more than twenty.
+/// All independent faults in the order of the file, at most twenty.
 #[test]
 fn all_faults_at_once() {
     let folder = tempfile::tempdir().unwrap();
@@ -203,7 +203,7 @@ fn slips_are_told_what_was_meant() {
     insta::assert_snapshot!("slips", faults(&texts.iter().map(String::as_str).collect::<Vec<_>>()));
 }
 
-/// A formula of 100 kB is cut in messages, and shown at its place only.
+/// A formula of 100 kB is cut in messages, and shown only around the fault.
 #[test]
 fn long_formulas_make_short_messages() {
     let folder = tempfile::tempdir().unwrap();
@@ -220,7 +220,7 @@ fn long_formulas_make_short_messages() {
     }
 }
 
-/// The leftovers of a killed run go when the next one writes there; files that another run is writing at the moment stay.
+/// The temporary files of a killed run disappear when the next run writes there. Files that another run is writing stay.
 #[test]
 fn leftovers_go_at_the_next_start() {
     let folder = tempfile::tempdir().unwrap();
@@ -235,7 +235,7 @@ fn leftovers_go_at_the_next_start() {
     assert_eq!([old, young, other, report].map(|file| file.exists()), [false, true, true, true]);
 }
 
-/// Units of different kinds in a sum: one warning for all formulas; converted ones are no news.
+/// Units of different kinds in a sum give one warning for all formulas. Converted units give none.
 #[test]
 fn sums_of_different_units_warn() {
     let text = "[dimensions]\na = { nominal = 1, unit = \"mm\" }\nphi = { nominal = 1, unit = \"deg\" }\n[formulas]\nboth = \"a + phi\"\n\
@@ -254,7 +254,7 @@ fn sums_of_different_units_warn() {
     assert_eq!(parse(&alike).unwrap().warnings, []);
 }
 
-/// Many warnings of one code are three, and the names of the others; --verbose tells each.
+/// Many warnings with one code: three are printed, then the names of the others. --verbose prints all.
 #[test]
 fn warnings_of_one_code_are_counted() {
     let folder = tempfile::tempdir().unwrap();
@@ -282,7 +282,7 @@ fn warnings_of_one_code_are_counted() {
     }
 }
 
-/// Of any size a result is right: never infinite, never unknown, and never 0 in place of it.
+/// Results are right at any size: never infinite or unknown, and never 0 instead.
 #[test]
 fn results_that_overflow_say_so() {
     let folder = tempfile::tempdir().unwrap();
@@ -309,7 +309,7 @@ fn results_that_overflow_say_so() {
             assert!(!said.contains("panicked"), "{command:?} {size}: {said}");
             assert!(!said.contains("warning[overflow]"), "{command:?} {size}: {said}");
         }
-        // By b = a = 10: sigma is sqrt(2) of 10 times a tenth, times the size.
+        // At a = b = 10, sigma is sqrt(2) times 10 times a tenth, times the size.
         let output = sensitol(&["simulate", &path, "--samples", "200", "--json"]).output().unwrap();
         let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
         let sigma = report["characteristics"][0]["sigma"].as_f64().unwrap() / size.parse::<f64>().unwrap();

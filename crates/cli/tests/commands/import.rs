@@ -47,7 +47,7 @@ fn tables_become_studies() {
     let german = imported(GERMAN, &[]).unwrap();
     assert_eq!(figures(&german), figures(&BY_HAND.replace("SHAFT", "tolerance = [0, 0.03]")));
     assert!(german.contains("row 5 has no nominal value and was left out: Summe"), "{german}");
-    // Tabs, as a spreadsheet copies cells, and a comma as the decimal mark in them.
+    // Tabs between cells and decimal commas, as copied from a spreadsheet.
     assert_eq!(figures(&imported(&GERMAN.replace(';', "\t"), &[]).unwrap()), figures(&german));
 }
 
@@ -56,11 +56,11 @@ fn factors_units_and_names_are_kept() {
     let table = "id;factor;nominal;tol\na b;2;10;0,02 %\nc;-0,5;1.234,5;1,5\n";
     let text = imported(table, &["--name", "play"]).unwrap();
     let [mean, sigma, ..] = figures(&text);
-    // 2 x 10 - 0.5 x 1234.5, and half bands of 0.002 and 1.5, each three sigma.
+    // 2 x 10 - 0.5 x 1234.5. The half-widths are 0.002 and 1.5, each three sigma.
     assert!((mean - (20.0 - 617.25)).abs() < 1e-9, "{text}");
     assert!((sigma - (2.0f64 * 0.002).hypot(0.5 * 1.5) / 3.0).abs() < 1e-12, "{text}");
     assert!(text.contains("play = { formula = \"2*`a b` - 0.5*c\" }"), "{text}");
-    // Two deviations of one sign stay as they are; a column may have any header.
+    // Two deviations of one sign stay unchanged. The header of a column is free.
     let table = "name\tIst\tupper deviation\tlower deviation\nd\t25\t+0,041\t0,020\n";
     let text = imported(table, &["--column", "nominal=Ist"]).unwrap();
     assert!(text.contains("tolerance = [0.02, 0.041]") && text.contains("all dimensions are added"), "{text}");
@@ -109,7 +109,7 @@ fn a_file_is_written_once() {
     assert!(error.contains("save it as .xlsx or as CSV in UTF-8"), "{error}");
 }
 
-/// Points that were calculated in a German spreadsheet come back with semicolons and decimal commas.
+/// Points with semicolons and decimal commas, as a German spreadsheet writes them, are read.
 #[test]
 fn points_are_read_in_both_styles() {
     let folder = tempfile::tempdir().unwrap();

@@ -12,21 +12,21 @@ fn within(folder: &Path, arguments: &[&str]) -> Output {
     sensitol(arguments).current_dir(folder).output().unwrap()
 }
 
-/// Done, or what it said.
+/// Returns stdout if the command succeeded, else panics with its stderr.
 #[track_caller]
 fn done(output: &Output) -> String {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8(output.stdout.clone()).unwrap()
 }
 
-/// The study that `init` writes is right, runs as it is, and does what it says is next.
+/// The study of `init` is valid and runs unchanged, and its printed next commands work.
 #[test]
 fn every_first_study_runs() {
     let folder = tempfile::tempdir().unwrap();
     let said = done(&within(folder.path(), &["init"]));
     assert_eq!(said, "written: study.toml\nnext: sensitol analyze study.toml\n      sensitol allocate study.toml\n");
     done(&within(folder.path(), &["check", "study.toml"]));
-    // The tutorial shows why.
+    // The tutorial explains the missed target.
     assert!(done(&within(folder.path(), &["analyze", "study.toml"])).contains("target 99.730 %: MISSED"));
     assert_eq!(within(folder.path(), &["analyze", "study.toml", "--check"]).status.code(), Some(1));
     assert!(done(&within(folder.path(), &["allocate", "study.toml"])).starts_with("local-optimum: cost"));
@@ -44,7 +44,7 @@ fn every_first_study_runs() {
     }
 }
 
-/// The next command can be typed as it stands.
+/// The printed next command can be typed unchanged.
 #[test]
 fn a_name_with_a_space_is_quoted() {
     let folder = tempfile::tempdir().unwrap();
@@ -56,7 +56,7 @@ fn a_name_with_a_space_is_quoted() {
     done(&within(folder.path(), &["probe", "cad gap.toml"]));
 }
 
-/// Nothing that is there is lost, and nothing is half written.
+/// No existing file is overwritten, and none is left incomplete.
 #[test]
 fn what_is_there_stays() {
     let folder = tempfile::tempdir().unwrap();

@@ -18,7 +18,7 @@ fn run(arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// A folder with studies of these texts, `0.toml` and so on.
+/// Writes studies with these texts as `0.toml` and so on, and returns their paths.
 fn studies(texts: &[&str]) -> (tempfile::TempDir, Vec<String>) {
     let folder = tempfile::tempdir().unwrap();
     let write = |(place, text): (usize, &&str)| {
@@ -46,7 +46,7 @@ fn reports_show_labels_and_numbers_stay() {
     let expected = ["bored <after> assembly, \"100 %\"", "housing", "4711", "B", "12"];
     for (key, text) in KEYS.into_iter().zip(expected) {
         assert_eq!(with["dimensions"][0][key], json!(text));
-        // A label that was not written is left out, and so old reports stay what they were.
+        // A missing label is left out, so that old reports stay unchanged.
         assert!(with["dimensions"][1].get(key).is_none() && without["dimensions"][0].get(key).is_none());
     }
     assert_eq!(with["characteristics"][0]["description"], json!("axial play"));
@@ -60,14 +60,14 @@ fn reports_show_labels_and_numbers_stay() {
         }
     }
     assert_eq!(with, without);
-    // Text: below the characteristic, and all of them with -v.
+    // In the text report a label stands below the characteristic; -v prints all labels.
     let short = run(&["analyze", &paths[0], "-m", "full", "--color", "never"]);
     assert!(short.contains("\n  axial play, drawing 4700\n") && !short.contains("4711"), "{short}");
     let long = run(&["analyze", &paths[0], "-m", "full", "--color", "never", "-v"]);
     let row = long.lines().find(|line| line.contains("4711")).unwrap_or_else(|| panic!("{long}"));
     assert_eq!(row.split_whitespace().collect::<Vec<_>>(), ["housing", "depth", "housing", "4711", "B", "12"]);
     assert!(!run(&["analyze", &paths[1], "-m", "full", "--color", "never", "-v"]).contains("drawing"));
-    // The page, where what a text holds is no markup, and CSV.
+    // The page, in which no label is markup, and CSV.
     let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     run(&["analyze", &paths[0], "-m", "full", "--html", &at("page.html"), "--csv", &at("tables")]);
     let page = std::fs::read_to_string(at("page.html")).unwrap();
@@ -94,13 +94,13 @@ fn written_studies_keep_labels() {
         let all = report["dimensions"].as_array().unwrap().iter();
         all.filter(|one| one[key] == text).map(|one| one["name"].as_str().unwrap().to_owned()).collect()
     };
-    // Both coordinates of a position, the one input of a play, and the own part of a relative dimension.
+    // Both coordinates of a position, the single input of a play, and the own part of a relative dimension.
     assert_eq!(of("feature", "7").len(), 2, "{expanded}");
     assert_eq!(of("drawing", "4711"), of("feature", "7"));
     assert_eq!((of("part", "cover").len(), of("description", "play").len()), (1, 1), "{expanded}");
     assert_eq!((of("revision", "C"), of("feature", "9")), (vec!["t".to_owned()], vec!["x2.own".to_owned()]));
     assert_eq!(report["characteristics"][0]["part"], json!("all"));
-    // A study that allocate writes.
+    // A study that `allocate` writes.
     let costs = "[costs]\n\"housing depth\" = { model = \"reciprocal\", a = 1, b = 0.1, min = 0.02, max = 0.2 }\n";
     std::fs::write(
         &paths[1],

@@ -1,4 +1,4 @@
-//! The most memory that a run holds. The kernel counts it: `tests/children/peak.py`.
+//! Peak memory of a run, as the kernel counts it: `tests/children/peak.py`.
 
 use std::path::Path;
 use std::process::Command;
@@ -6,9 +6,9 @@ use std::process::Command;
 use sensitol::Method;
 use sensitol_testing::repository;
 
-/// In kilobytes: 200 MB, of which the program itself takes some 20 in a test build.
+/// Greatest peak memory, in kilobytes: 200 MB, of which the program itself takes some 20 in a test build.
 const ENOUGH: u64 = 200_000;
-/// Dimensions of a study as large as is promised.
+/// Dimensions of the largest study that is promised to work.
 const MANY: usize = 1000;
 
 /// A study of many dimensions whose characteristic has every interaction.
@@ -21,7 +21,7 @@ fn study(folder: &Path) -> String {
     path.display().to_string()
 }
 
-/// Exit code and peak in kilobytes.
+/// Returns the exit code and the peak memory in kilobytes.
 fn peak(arguments: &[&str]) -> (i32, u64) {
     let output = Command::new("python3")
         .arg(repository("tests/children/peak.py"))
@@ -34,7 +34,7 @@ fn peak(arguments: &[&str]) -> (i32, u64) {
     (code.parse().unwrap(), kilobytes.parse().unwrap())
 }
 
-/// A method that would evaluate more than a million points says so before it has made any of them.
+/// A method that would need more than a million points is refused before any of them exists.
 #[test]
 fn a_plan_of_a_thousand_dimensions_is_small() {
     let folder = tempfile::tempdir().unwrap();
@@ -49,11 +49,11 @@ fn a_plan_of_a_thousand_dimensions_is_small() {
             _ => panic!("{method}: exit {code}"),
         }
     }
-    // 3^n points, 16 for every pair, and the corners of a response surface. Of the others `plan` says what they would cost.
+    // 3^n points, 16 for every pair, and the corners of a response surface. For the other methods `plan` prints the cost.
     assert_eq!(refused, ["bivariate-dimension-reduction", "three-point", "response-surface"]);
 }
 
-/// `--budget` lifts the limit, and the plan stays small.
+/// `--budget` lifts the limit, and the plan still takes little memory.
 #[test]
 fn a_plan_above_the_limit_is_small_too() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! How characteristics vary together, and what interval arithmetic says of them without being asked.
+//! Correlations of characteristics, and bounds by interval arithmetic that need no option.
 
 use sensitol::{Analysis, Closure, Dimension, Method, Problem, analyze};
 use sensitol_study::Study;
@@ -17,14 +17,14 @@ fn of(characteristics: &str, verify: Option<usize>) -> Analysis {
     analyze(&study.problem, &options).unwrap()
 }
 
-/// `Var(u + u v) = 2`, `Var(v + 2 u v + u^2) = 7`, and of the products of their terms only `E[u v 2 u v] = 2` is not 0.
+/// `Var(u + u v) = 2` and `Var(v + 2 u v + u^2) = 7`. Of the products of their terms, only `E[u v 2 u v] = 2` is not 0.
 #[test]
 fn quadratics_correlate_as_by_hand() {
     let exact = 2.0 / 14f64.sqrt();
     let text = "p = { formula = \"u + u*v\" }\nq = { formula = \"v + 2*u*v + u^2\" }\n";
     let proven = &of(text, None).correlations[0];
     assert_eq!(proven.between, ["p", "q"].map(str::to_owned));
-    // A dozen roundings of numbers near 1; the error says so, because the formulas' degree proves the surfaces.
+    // Error of a dozen roundings of numbers near 1. It is that small because the formulas' degree proves the surfaces.
     assert!((proven.value.unwrap() - exact).abs() < 1e-14 && proven.error.unwrap() < 1e-14, "{proven:?}");
     let unasked = &of(text, Some(0)).correlations[0];
     assert!((unasked.value.unwrap() - exact).abs() < 1e-14 && unasked.error.is_none(), "{unasked:?}");
@@ -40,7 +40,7 @@ fn kinked_characteristics_are_asked_themselves() {
     assert!((found.value.unwrap() - exact).abs() < 3.0 * error && error < 0.01, "{found:?} for {exact}");
 }
 
-/// A constant is correlated with nothing; one characteristic has no other.
+/// A constant has no correlation, and a single characteristic has no other to be correlated with.
 #[test]
 fn what_is_not_known_is_null() {
     let still = &of("p = { formula = \"u\" }\nq = { formula = \"7\" }\n", None).correlations;
@@ -48,7 +48,7 @@ fn what_is_not_known_is_null() {
     assert!(of("p = { formula = \"u\" }\n", None).correlations.is_empty());
 }
 
-/// A characteristic and its own multiples, of any unit and sign: 1 and -1.
+/// A characteristic and its multiples, with any unit and sign, have correlation 1 or -1.
 #[test]
 fn multiples_are_wholly_correlated() {
     let dimensions = [Dimension::normal("u", 3.0, 0.3).unwrap(), Dimension::normal("v", 5.0, 0.6).unwrap()];
@@ -63,21 +63,20 @@ fn multiples_are_wholly_correlated() {
     }
 }
 
-/// `u^2` over ± 3 sigma lies between 0 and 9, where the slope at the mean says that nothing moves at all.
+/// `u^2` over ± 3 sigma lies between 0 and 9. The slope at the mean is 0, which would mean no variation at all.
 #[test]
 fn bounds_of_a_formula_cost_nothing() {
     let found = of("p = { formula = \"u^2\" }\n", None);
     let one = &found.characteristics[0];
     let bounds = one.bounds.as_ref().unwrap();
     assert!(bounds.proven && bounds.bounds[0] <= 0.0 && bounds.bounds[1] >= 9.0, "{bounds:?}");
-    // To a thousandth of sigma, sqrt 2.
+    // Within a thousandth of sigma, which is sqrt 2.
     assert!(bounds.bounds[0] > -0.0015 && bounds.bounds[1] < 9.0015, "{bounds:?}");
     assert_eq!(one.worst_case, Some([0.0; 2]));
     assert!(of("p = { formula = \"u^2\" }\n", Some(0)).characteristics[0].bounds.is_none());
 }
 
-/// A position lies within its circle: `3 x + 4 y` reaches 5 radii, and
-/// the corners of the box about the circle, at 7, are no worst case.
+/// A position lies within its circle: `3 x + 4 y` reaches 5 radii. The corners of the box around the circle would give 7.
 #[test]
 fn corners_of_the_box_of_a_circle_are_no_worst_case() {
     let text = "[dimensions]\nhole = { nominal = [0, 0], position = 0.2 }\n\
@@ -86,14 +85,14 @@ fn corners_of_the_box_of_a_circle_are_no_worst_case() {
     let one = analyze(&study.problem, &study.options).unwrap().characteristics.remove(0);
     let bounds = one.bounds.as_ref().unwrap();
     let [least, most] = one.worst_case.unwrap();
-    // Five radii of 0.1, each end within the roundings of the proof.
+    // Five radii of 0.1, with each end within the rounding of the proof.
     assert_eq!([least, most], [-0.5, 0.5]);
     assert!(bounds.proven && bounds.bounds[0] <= least && bounds.bounds[1] >= most, "{bounds:?} {least} {most}");
     assert!(bounds.bounds[0] > least - 1e-12 && bounds.bounds[1] < most + 1e-12, "{bounds:?}");
 }
 
-/// The worst case by slopes is named as linear beside a kink or a curvature, with the proven one below it; where both are the same it is
-/// the worst case, and without bounds it is the linear one again.
+/// Beside a kink or a curvature, the worst case by slopes is named linear, with the proven one below it. If both agree there is a single
+/// worst case, and without bounds it is named linear again.
 #[test]
 fn a_linear_worst_case_is_named_as_linear() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,11 +1,11 @@
-//! Every probability that any command tells is one, whatever the study: in [0, 1], never NaN and never infinite.
+//! Every probability in any output lies in [0, 1], and is never NaN or infinite.
 
 use serde_json::Value;
 
 use super::command::sensitol;
 
-/// Studies on which sums and ratios of probabilities went wrong, or might: limits on the far side of the means and out of reach, a value that
-/// jumps, one without a value in places, a heavy tail, nothing that varies, a target at the very end.
+/// Studies for which sums and ratios of probabilities were wrong or might be: limits on the far side of the means and out of reach, a
+/// value with a jump, one that is undefined at some points, a heavy tail, no variation, a target at the very end.
 const STUDIES: [(&str, &str); 7] = [
     ("far-side", "gap = { formula = \"b - a\", lower = 12, upper = 14, target_yield = 0.5 }"),
     ("out-of-reach", "gap = { formula = \"a + b + 1000\", lower = 0, upper = 1034, target_yield = 0.999999 }"),
@@ -19,7 +19,7 @@ const STUDIES: [(&str, &str); 7] = [
     ),
 ];
 
-/// Bodies of the calls, of which every one gets the study, `--json` and, where it has one, a folder for CSV.
+/// Arguments of the calls. Each call also gets the study and `--json`, and a folder for CSV if the flag is true.
 const CALLS: [(&[&str], bool); 6] = [
     (&["analyze"], true),
     (&["simulate", "--samples", "3000"], true),
@@ -36,7 +36,7 @@ fn study(characteristics: &str) -> String {
     )
 }
 
-/// A name that tells a probability, and what it is measured in.
+/// Returns the unit of a key that holds a probability, or None for other keys.
 fn scale(key: &str) -> Option<f64> {
     match key {
         "yield" | "target_yield" | "yield_interval" | "yield_bounds" | "probability" | "valid_share" => Some(1.0),
@@ -45,7 +45,7 @@ fn scale(key: &str) -> Option<f64> {
     }
 }
 
-/// Every number below `value` lies between 0 and `most`; in a figure with its error, the figure does.
+/// Checks that every number below `value` lies between 0 and `most`. In a figure with an error, only the figure is checked.
 fn within(value: &Value, most: f64, at: &str) {
     match value {
         Value::Number(number) => {
@@ -65,7 +65,7 @@ fn check(value: &Value, at: &str) {
         Value::Object(fields) => {
             for (key, field) in fields {
                 let at = format!("{at}.{key}");
-                // Standard errors and estimates of errors carry the names of what they belong to.
+                // Standard errors and error estimates have the names of the figures that they belong to.
                 if key.contains("error") {
                     continue;
                 }
@@ -86,7 +86,7 @@ fn check(value: &Value, at: &str) {
     }
 }
 
-/// No word of it is what a double prints that is not a number.
+/// Checks that no word is the text of a double that is not a finite number.
 fn finite(text: &str, at: &str) {
     let odd = |word: &&str| matches!(word.trim_matches(['-', '+']).to_lowercase().as_str(), "nan" | "inf" | "infinity");
     let word = text.split(|c: char| !(c.is_alphanumeric() || "-+.".contains(c))).find(odd);
@@ -110,7 +110,7 @@ fn every_probability_is_one() {
                 all.extend(["--csv", tables.to_str().unwrap()]);
             }
             let output = sensitol(&all).output().unwrap();
-            // 1, 3 and 4 are results too: a target that is missed, one that nothing keeps, a part of what was asked for.
+            // Codes 1, 3 and 4 are results too: a missed target, a partial result, an infeasible requirement.
             let code = output.status.code().unwrap();
             let errors = String::from_utf8(output.stderr).unwrap();
             assert!(code <= 4 && !errors.contains("panicked"), "{at}: {code} {errors}");

@@ -1,4 +1,4 @@
-//! The findings of a probe on models that behave, drift, flip, and hiss.
+//! Findings of a probe for models that behave well, drift, flip, or have noise.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -17,7 +17,6 @@ fn scalar(function: impl Fn(&[f64]) -> f64 + Send + Sync + 'static) -> Probe {
     of(Closure::scalar("y", function))
 }
 
-/// The checks that failed.
 fn failed(probe: &Probe) -> Vec<&'static str> {
     probe.checks.iter().filter(|check| matches!(check.verdict, Finding::Failed(_))).map(|check| check.what).collect()
 }
@@ -28,15 +27,15 @@ fn a_model_that_behaves_passes() {
     assert!(found.passed(), "{:?}", found.checks);
     assert_eq!((found.run.evaluations, found.adapter.is_none()), (2 * 2 + 55, true));
     assert_eq!(found.characteristics[0].nominal, Some(6.0));
-    // A rounding error of 6 is 9e-16: its noise is of that size, if it shows at all.
+    // A rounding error of 6 is 9e-16. Its noise is of that size, if it is visible at all.
     assert!(found.characteristics[0].noise.is_none_or(|noise| noise < 1e-14));
-    // A symmetric parabola has no slope, and reacts all the same.
+    // A symmetric parabola has no slope, but it reacts.
     let parabola = scalar(|x| (x[0] - 3.0).powi(2));
     assert!(parabola.passed());
     assert_eq!(parabola.characteristics[0].silent, ["x1"]);
 }
 
-/// Noise of a known size: a hash of the coordinates, uniform with sigma 1e-6.
+/// Noise of known size: a hash of the coordinates, uniform with sigma 1e-6.
 #[test]
 fn noise_is_measured() {
     let hiss = |x: &[f64]| {
@@ -48,21 +47,21 @@ fn noise_is_measured() {
     };
     let found = scalar(move |x| x[0] - 2.0 * x[1] + hiss(x));
     assert!(found.passed(), "{:?}", found.checks);
-    // Nine values tell a standard deviation to a factor of two or so.
+    // Nine values give a standard deviation within a factor of about two.
     let noise = found.characteristics[0].noise.unwrap();
     assert!((2e-7..5e-6).contains(&noise), "{noise}");
-    // A step of h sigmas changes y by 0.1 h for x0: the noise is a thousandth of that at 1e-2.
+    // A step of h sigmas changes y by 0.1 h for x0. The noise is a thousandth of that at h = 1e-2.
     let step = found.characteristics[0].least_step[0].unwrap();
     assert!((step / (noise / 0.1 / 1e-3) - 1.0).abs() < 1e-3, "{step}");
 }
 
 #[test]
 fn models_that_remember_are_found_out() {
-    // A drift with every point.
+    // Drift with every point.
     let count = AtomicUsize::new(0);
     let drift = scalar(move |x| x[0] + 1e-3 * count.fetch_add(1, Ordering::Relaxed) as f64);
     assert!(failed(&drift).contains(&"the same point twice has the same values"), "{:?}", drift.checks);
-    // A mirrored solution from some point on.
+    // Mirrored solution from some point on.
     let mirrored = AtomicBool::new(false);
     let flip = scalar(move |x| {
         if x[0] > 3.2 {
@@ -71,7 +70,7 @@ fn models_that_remember_are_found_out() {
         if mirrored.load(Ordering::Relaxed) { -x[0] } else { x[0] }
     });
     assert!(failed(&flip).contains(&"the nominal values are the same after other points"), "{:?}", flip.checks);
-    // Poisoned by a point at which it fails.
+    // A failed point changes the later answers.
     let poisoned = std::sync::Arc::new(AtomicBool::new(false));
     let (seen, kept) = (std::sync::Arc::clone(&poisoned), poisoned);
     let function = refusing(
@@ -88,7 +87,7 @@ fn models_that_remember_are_found_out() {
 #[test]
 fn models_without_values_or_reaction_fail() {
     let none = of(refusing(|x| x[0], |_| true));
-    // Nothing else is asked, and nothing is said of what was not seen.
+    // No further point is evaluated, and no other check has a verdict.
     assert_eq!((failed(&none), none.run.evaluations), (vec!["the nominal dimensions have values"], 1));
     assert!(none.checks[1..].iter().all(|check| check.verdict == Finding::NotChecked), "{:?}", none.checks);
     assert!(!none.passed());
@@ -96,10 +95,10 @@ fn models_without_values_or_reaction_fail() {
     assert_eq!(failed(&mute), ["every characteristic reacts to some dimension"]);
 }
 
-/// A point of the plan without a value is named: few of them are a doubt, many a fault, and a check without values is none.
+/// Points of the plan without a value are named. Few of them are a doubt, many are a fault. A check without any values has no verdict.
 #[test]
 fn points_without_values_are_named() {
-    // x0 has the mean 3 and sigma 0.1, of which only the step up and, of the scattered points, some reach beyond.
+    // x0 has mean 3 and sigma 0.1. Only the step up and some of the scattered points reach beyond.
     let verdict =
         |found: &Probe, what: &str| found.checks.iter().find(|check| check.what == what).unwrap().verdict.clone();
     let within = "every point within the tolerances has values";
@@ -109,9 +108,9 @@ fn points_without_values_are_named() {
     assert!(one.passed() && failed(&one).is_empty());
     let half = of(refusing(|x| x[0] * x[1], |x| x[0] > 3.0));
     let Finding::Failed(fault) = verdict(&half, within) else { panic!("{:?}", half.checks) };
-    // Four of the nine points on the line and a step are above, and some of the scattered points: five are named.
+    // Four of the nine points on the line, a step, and some of the scattered points lie above. Five are named.
     assert!(fault.matches("x0 = ").count() == 5 && fault.contains("; and "), "{fault}");
-    // Values at the nominal dimensions alone: neither order nor reaction can be told.
+    // With values at the nominal dimensions only, neither order nor reaction can be checked.
     let lonely = of(refusing(|x| x[0], |x| x[0] != 3.0 || x[1] != 2.0));
     for what in ["the order of the points does not matter", "every characteristic reacts to some dimension"] {
         assert_eq!(verdict(&lonely, what), Finding::NotChecked);
@@ -122,7 +121,7 @@ fn points_without_values_are_named() {
     assert_eq!((evaluations(&problem), half.run.evaluations), (59, 59));
 }
 
-/// A program by what it does at a point `x`, behind a study of one dimension with sigma 1/30, and what a command says of it.
+/// Runs a command on a study of one dimension with sigma 1/30, whose model executes `does` at the point `x`.
 fn program(does: &str, arguments: &[&str]) -> (Option<i32>, String, String) {
     let folder = tempfile::tempdir().unwrap();
     let script = format!(
@@ -137,11 +136,11 @@ fn program(does: &str, arguments: &[&str]) -> (Option<i32>, String, String) {
     std::fs::write(&study, text).unwrap();
     let output = sensitol(&[&[arguments[0], study.to_str().unwrap()], &arguments[1..]].concat()).output().unwrap();
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    // Long lines go on in the next one.
+    // Joins long lines that were wrapped.
     (output.status.code(), text(output.stdout).replace("\n    ", " "), text(output.stderr))
 }
 
-/// A model that crashes beyond 1.7 sigma is told of, by the point and by how it ended.
+/// A model that crashes beyond 1.7 sigma is reported, with the point and the exit status.
 #[test]
 fn a_program_that_crashes_at_a_point_is_told_of() {
     let crashes = "if 70.057 < x < 71: sys.exit(3)";
@@ -152,7 +151,7 @@ fn a_program_that_crashes_at_a_point_is_told_of() {
     assert_eq!(code, Some(0));
 }
 
-/// A model that prints among its answers: one point is asked, nothing is called good, and the error says what to do.
+/// A model that prints between its answers: one point is evaluated, no check passes, and the error names the remedy.
 #[test]
 fn a_program_that_prints_is_told_where_to() {
     let prints = "print('rebuilding', flush=True)";
@@ -171,8 +170,8 @@ fn a_program_that_prints_is_told_where_to() {
     assert!(code == Some(3) && error.contains(hint), "{error}");
 }
 
-/// Answers that differ in their last digits are a doubt; where the difference is near what the tolerances move, they are a fault. Noise
-/// of that size is one too, and so is a jump at the nominal dimensions.
+/// Answers that differ in the last digits are a doubt. If the difference is close to the effect of the tolerances, it is a fault. So is
+/// noise of that size, or a jump at the nominal dimensions.
 #[test]
 fn noise_is_judged_by_what_the_tolerances_move() {
     let verdict =
@@ -180,11 +179,11 @@ fn noise_is_judged_by_what_the_tolerances_move() {
     let (twice, noise) = ("the same point twice has the same values", "noise is small beside what the tolerances move");
     let hiss = |size: f64| {
         let count = AtomicUsize::new(0);
-        // Multiples of the golden ratio: as good as random, and never the same.
+        // Multiples of the golden ratio are as good as random and never repeat.
         let next = move || (count.fetch_add(1, Ordering::Relaxed) as f64 * 0.618_033_988_749_894_9).fract() - 0.5;
         scalar(move |x| x[0] - 2.0 * x[1] + size * next())
     };
-    // A good CAD body repeats to some 1e-13; the tolerances move this by about 2.
+    // A good CAD body repeats to some 1e-13. The tolerances move this model by about 2.
     let good = hiss(1e-11);
     assert!(matches!(verdict(&good, twice), Finding::Doubtful(_)), "{:?}", good.checks);
     assert!(good.passed(), "{:?}", good.checks);
@@ -196,7 +195,7 @@ fn noise_is_judged_by_what_the_tolerances_move() {
     assert!(matches!(verdict(&jump, noise), Finding::Failed(_)) && !jump.passed(), "{:?}", jump.checks);
 }
 
-/// Restarts are counted and named, by a probe and by every other command.
+/// Restarts are counted and reported, by a probe and by every other command.
 #[test]
 fn restarts_are_told_of() {
     let folder = tempfile::tempdir().unwrap();
@@ -207,7 +206,7 @@ fn restarts_are_told_of() {
     let fresh = || drop(std::fs::remove_file(&died));
     let (code, text, _) = program(&crashes, &["probe"]);
     let line = text.lines().find(|line| line.contains("its processes go on running")).unwrap();
-    // The point of the crash is lost here, as the helper tries nothing again.
+    // The point of the crash is lost here, because the helper never retries.
     assert!(code == Some(1) && line.starts_with("  WARN  ") && line.contains("no licence"), "{text}");
     for command in [
         &["analyze", "--method", "full", "--journal", "none", "--json"][..],

@@ -1,4 +1,4 @@
-//! Rare events against what is known of them by other routes.
+//! Rare events against results from other methods.
 
 use sensitol::assembly::Run;
 use sensitol::correlation::Pair;
@@ -14,7 +14,6 @@ use sensitol_testing::{Asked, data, refusing, relative, repository, standard};
 
 const SEEDS: u64 = 100;
 
-/// The standard normal survival function.
 fn tail(z: f64) -> f64 {
     0.5 * libm::erfc(z / 2f64.sqrt())
 }
@@ -30,21 +29,22 @@ fn found(problem: &Problem, samples: u64, seed: u64, method: Method) -> RareEven
         .unwrap()
 }
 
-/// Both sides of the first characteristic.
+/// Returns both sides of the first characteristic.
 fn sides(found: &RareEvents) -> [Option<Beyond>; 2] {
     [found.characteristics[0].below.clone(), found.characteristics[0].above.clone()]
 }
 
-/// The estimates of a probability by a hundred seeds.
+/// Estimates of a probability with a hundred seeds.
 #[derive(Debug, Default)]
 struct Record {
     covered: usize,
-    /// Means over the seeds: of the relative standard error, and of the interval's width relative to the truth.
+    /// Mean of the relative standard error over the seeds.
+    /// Mean of the interval's width over the seeds, relative to the truth.
     error: f64,
     width: f64,
 }
 
-/// For each side that has a truth.
+/// Returns a record for each side that has a known truth.
 fn records(problem: &Problem, samples: u64, method: Method, truth: [Option<f64>; 2]) -> [Record; 2] {
     let mut records = [Record::default(), Record::default()];
     for seed in 0..SEEDS {
@@ -62,14 +62,14 @@ fn records(problem: &Problem, samples: u64, method: Method, truth: [Option<f64>;
     records
 }
 
-/// Of a hundred 95 % intervals 90 or more hold the truth: fewer than 90 are 1 in 40 if they are right.
+/// At least 90 of a hundred 95 % intervals contain the truth. Fewer have probability 1/40 if the intervals are right.
 #[track_caller]
 fn holds(record: &Record) {
     assert!(record.covered >= 90, "{record:?}");
 }
 
-/// Engine balance with F limited 4.5 sigma above and below its mean, by itself and both together. The truth is a sample by
-/// another program (tests/data), known to a tenth of a percent.
+/// Engine balance with F limited 4.5 sigma above and below its mean, on one side and on both. The truth is a sample by another program
+/// (tests/data) with an error of a tenth of a percent.
 #[test]
 fn the_engine_beyond_four_and_a_half_sigma() {
     let study = Study::read(&repository("examples/engine-balance/study.toml")).unwrap();
@@ -80,7 +80,7 @@ fn the_engine_beyond_four_and_a_half_sigma() {
     let tails = data("engine-balance-tails.json");
     let truth = ["below", "above"].map(|side| tails[side]["probability"].as_f64().unwrap());
     let both = limited(force.clone(), Some(ends[0]), Some(ends[1]));
-    // 91 of the surrogate: N = 9 of the ten dimensions have a part in F.
+    // The surrogate takes 91 evaluations: N = 9 of the ten dimensions affect F.
     assert_eq!(found(&both, 409, 1, Method::Full).run.evaluations, 500);
     for record in records(&both, 409, Method::Full, truth.map(Some)) {
         holds(&record);
@@ -92,14 +92,14 @@ fn the_engine_beyond_four_and_a_half_sigma() {
     assert!(record.error < 0.035, "{record:?}");
 }
 
-/// A product of two lognormals, which is one: `exp(s z)`. The probability beyond `exp(+-s k)` is that of k sigma.
+/// A product of two lognormal variables is lognormal: `exp(s z)`. The probability beyond `exp(+-s k)` is that of k sigma.
 fn lognormal(s: f64, k: f64) -> Problem {
     let y = Closure::scalar("y", move |x| (0.6 * s * x[0]).exp() * (0.8 * s * x[1]).exp());
     limited(Problem::new(standard(2), y).unwrap(), Some((-s * k).exp()), Some((s * k).exp()))
 }
 
-/// Slopes only say that the upper limit is twice as far as it is, which the model on the way there puts right. Curvatures
-/// without interactions look for it in the wrong direction: intervals become wide, and hold a little less than they say.
+/// Slopes alone place the upper limit twice as far away as it is, which points of the model on the way correct. Curvatures without
+/// interactions give a wrong direction: intervals are wide, and contain the truth slightly less often than stated.
 #[test]
 fn a_poor_surrogate_costs_accuracy_and_not_truth() {
     for (s, k) in [(0.15, 4.5), (0.5, 4.5), (0.5, 3.0)] {
@@ -115,8 +115,8 @@ fn a_poor_surrogate_costs_accuracy_and_not_truth() {
     }
 }
 
-/// `sqrt(x^2 + y^2 + z^2)` of normal x, y, z is Maxwell's law, and `x y` beyond 12 has two design points, on the diagonal:
-/// its probability is `2 int phi(x) Phi(-12/x) dx`, here by the trapezoidal rule, which converges faster than any power.
+/// `sqrt(x^2 + y^2 + z^2)` of normal x, y, z has Maxwell's distribution. `x y` beyond 12 has two design points, on the diagonal. Its
+/// probability is `2 int phi(x) Phi(-12/x) dx`, here by the trapezoidal rule, which converges faster than any power.
 #[test]
 fn several_places_at_once() {
     let norm = Closure::scalar("y", |x| (x[0] * x[0] + x[1] * x[1] + x[2] * x[2]).sqrt());
@@ -134,8 +134,8 @@ fn several_places_at_once() {
     assert!(record.error < 0.05, "{record:?}");
 }
 
-/// Sums whose tails are known: three exponentials beyond 25 (Erlang), three uniforms within 0.03 of their greatest sum
-/// (a corner of the cube: `d^3/6`), correlated normals (a normal).
+/// Sums with known tails: three exponentials beyond 25 (Erlang), three uniforms within 0.03 of their greatest sum (a corner of the cube:
+/// `d^3/6`), correlated normals (a normal).
 #[test]
 fn any_distribution_and_correlation() {
     let sum = || Closure::scalar("y", |x: &[f64]| x.iter().sum());
@@ -157,7 +157,7 @@ fn any_distribution_and_correlation() {
     check(limited(problem, None, Some(5.0 * 3.2f64.sqrt())), tail(5.0));
 }
 
-/// Where plain sampling can see it too, both agree, and the report says that it would have done.
+/// For an event that plain sampling can resolve, both methods agree, and the report states that plain sampling would have sufficed.
 #[test]
 fn it_agrees_with_plain_sampling() {
     let problem = lognormal(0.5, 2.0);
@@ -170,14 +170,14 @@ fn it_agrees_with_plain_sampling() {
         // Four standard errors of the difference.
         assert!((estimate.value - share).abs() < 4.0 * error, "{estimate:?} {share}");
     }
-    // Half of all assemblies: nothing is rare.
+    // Half of all assemblies: the event is not rare.
     let half = limited(Problem::new(standard(1), Closure::scalar("y", |x| x[0])).unwrap(), None, Some(0.0));
     let [_, above] = sides(&found(&half, 1000, 1, Method::Full));
     let above = above.unwrap();
     assert!(above.interval[0] < 0.5 && 0.5 < above.interval[1] && above.plain_samples.unwrap() < 1100.0, "{above:?}");
 }
 
-/// A line of two normals: the design point is where calculus has it.
+/// A linear characteristic of two normals: the design point equals that of calculus.
 #[test]
 fn the_design_point_is_the_most_likely_one() {
     let dimensions = [
@@ -189,8 +189,8 @@ fn the_design_point_is_the_most_likely_one() {
     let problem = limited(Problem::new(dimensions, y).unwrap(), None, Some(7.75));
     let [_, above] = sides(&found(&problem, 200, 1, Method::Full));
     let point = above.unwrap().design_point.unwrap();
-    // sigma^2 = 0.1^2 + (0.4/3)^2 = (1/6)^2: the limit is 4.5 sigma away, shared out as the variances are; the crossing is
-    // looked for in steps of 0.02.
+    // sigma^2 = 0.1^2 + (0.4/3)^2 = (1/6)^2. The limit is 4.5 sigma away, distributed in proportion to the variances. The crossing is
+    // searched in steps of 0.02.
     relative(point.distance, 4.5, 0.02);
     for (value, expected) in point.values.iter().zip([10.0 + 0.75 * 0.36, 5.0 - 0.75 * 0.64, 2.0]) {
         assert!((value - expected).abs() < 0.01, "{point:?}");
@@ -205,7 +205,7 @@ fn the_number_of_threads_and_the_scale_change_nothing() {
         pool.install(|| sides(&found(&problem, 3000, 3, Method::Full)))
     };
     assert_eq!(with(1), with(3));
-    // A power of two changes no digit.
+    // A power of two as scale changes no digit.
     let y = |scale: f64| Closure::scalar("y", move |x: &[f64]| scale * (0.3 * x[0]).exp());
     let of = |scale: f64| {
         let problem = limited(Problem::new(standard(1), y(scale)).unwrap(), None, Some(4.0 * scale));
@@ -214,7 +214,7 @@ fn the_number_of_threads_and_the_scale_change_nothing() {
     assert_eq!(of(1.0), of(2f64.powi(100)));
 }
 
-/// Every evaluation is asked for once and counted: the surrogate's, those on the way to the limit, those drawn.
+/// Every evaluation is requested once and counted: those of the surrogate, those on the way to the limit, and the samples.
 #[test]
 fn every_evaluation_is_counted() {
     let asked = Asked::default();
@@ -222,11 +222,11 @@ fn every_evaluation_is_counted() {
     let found = found(&limited(problem, None, Some(15.0)), 300, 1, Method::Full);
     assert_eq!((found.surrogate_evaluations, found.run.evaluations), (7, 307));
     assert!(found.samples < 300 && found.run.stopped.is_none());
-    // The distance of a place may be one of the stations of a second look.
+    // The distance of a place may coincide with a point of a second search.
     assert!((300..=307).contains(&asked.distinct()), "{}", asked.distinct());
 }
 
-/// It goes on until the standard errors are as wanted, and says whether they are.
+/// Sampling continues until the standard errors are as wanted, and the result states if they are.
 #[test]
 fn until_it_is_known_that_well() {
     let problem = lognormal(0.15, 4.5);
@@ -244,7 +244,7 @@ fn until_it_is_known_that_well() {
     assert!(reached == Some(false) && !stopped && worst > 0.001, "{worst}");
 }
 
-/// Points without a value may lie beyond or not.
+/// Points without a value may lie beyond the limit or not.
 #[test]
 fn failed_points_bound_the_probability() {
     let model = refusing(|x| x[0] + x[1], |x| x[0] - x[1] > 1.5);
@@ -253,11 +253,11 @@ fn failed_points_bound_the_probability() {
     let one = &found.characteristics[0];
     assert!(one.failed > 0 && one.error.is_some() && found.run.failed >= one.failed, "{one:?}");
     let above = one.above.clone().unwrap();
-    // The sum and the difference are independent.
+    // Sum and difference are independent.
     let lost = tail(1.5 / 2f64.sqrt());
     let truth = tail(4.0) * (1.0 - lost);
     assert!(above.interval[0] < truth && truth < above.interval[1], "{above:?}");
-    // Whatever they are, what is beyond is at least what was seen, and at most that and all that was lost.
+    // The bounds hold for any values of the failed points: at least the observed probability, at most that and all failed points.
     assert!(above.bounds[0] == above.probability.unwrap().value && above.bounds[1] > tail(4.0), "{above:?}");
     assert!(above.bounds[1] < truth + 1.5 * lost, "{above:?}");
 }
@@ -268,7 +268,7 @@ fn it_stops_when_told_to() {
     let run = Run::to_the_end().stopping_when(&|| Some(StopReason::Requested));
     let found = rare_with(&problem, &RareOptions::default(), &run, &|_| {}).unwrap();
     assert!(found.run.stopped.is_some() && found.samples == 0 && sides(&found) == [None, None]);
-    // After the surrogate and some points, what is known is told.
+    // After the surrogate and some points, the results so far are reported.
     let seen = std::sync::atomic::AtomicUsize::new(0);
     let later = || (seen.fetch_add(1, std::sync::atomic::Ordering::Relaxed) > 40).then_some(StopReason::TimeLimit);
     let run = Run::to_the_end().stopping_when(&later);
@@ -291,7 +291,7 @@ fn what_cannot_be_sought_is_refused() {
         let error = rare(&problem, &options.clone().with_until(wanted)).unwrap_err();
         assert!(matches!(error, RareError::Simulation(SimulationError::Wanted { .. })), "{error}");
     }
-    // Nothing varies: nothing is known of it, and nothing is made up.
+    // Nothing varies: the result is None.
     let still = limited(Problem::new(standard(1), Closure::scalar("y", |_| 4.0)).unwrap(), None, Some(5.0));
     assert_eq!(sides(&rare(&still, &options).unwrap()), [None, None]);
     let nowhere =
@@ -300,7 +300,7 @@ fn what_cannot_be_sought_is_refused() {
         rare(&nowhere, &options).unwrap_err(),
         RareError::Simulation(SimulationError::NoSurrogate { .. })
     ));
-    // So far out that no double knows its probability: no point lies there, and that is said.
+    // The limit is so far away that no double holds its probability. No point lies there, and the result states it.
     let far = rare(&limited(line(), None, Some(60.0)), &options).unwrap();
     let [_, above] = sides(&far);
     assert!(above.clone().is_some_and(|above| above.probability.is_none() && above.interval[0] == 0.0), "{above:?}");
@@ -335,8 +335,8 @@ fn the_command_reports_it() {
     assert_eq!(table.lines().count(), 3);
 }
 
-/// Limits on the far side of the means: nearly everything lies below the lower one. The rest is known by its own estimate, not as
-/// the rest of one.
+/// Limits on the far side of the means: nearly everything lies below the lower one. The remainder has an estimate of its own, not 1 minus
+/// another one.
 #[test]
 fn limits_on_the_far_side() {
     let function = Closure::scalar("gap", |x: &[f64]| 0.3 * x[0] + 0.4 * x[1]);
@@ -353,11 +353,11 @@ fn limits_on_the_far_side() {
         let below = one.below.as_ref().unwrap();
         assert!(below.probability.unwrap().value <= 1.0 && below.interval[1] <= 1.0 && below.hits > 0, "{below:?}");
     }
-    // 20 seeds of 95 % intervals: fewer than 16 are 1 in 400.
+    // 20 seeds of 95 % intervals: fewer than 16 have probability 1/400.
     assert!(held >= 16, "{held}");
 }
 
-/// Weights of 1e-250, whose squares no double has: estimates beyond 27 sigma are bounds, and the yield is that of the other side.
+/// Weights of 1e-250, whose squares underflow: estimates beyond 27 sigma are bounds, and the yield is that of the other side.
 #[test]
 fn a_limit_that_is_out_of_reach_is_a_bound() {
     let line = || Problem::new(standard(1), Closure::scalar("y", |x| x[0])).unwrap();
@@ -371,8 +371,8 @@ fn a_limit_that_is_out_of_reach_is_a_bound() {
         let [low, high] = one.yield_interval.unwrap();
         assert!(low <= 1.0 - tail(4.0) && 1.0 - tail(4.0) <= high, "{low} {high}");
     }
-    // A limit of nature, 100 sigma away. Forty of the explored points are six times as wide: a half-space that none of
-    // them meets is 6 Phi^-1(0.025^(1/40)) = 8.1 sigma away at least, 3e-16.
+    // A physical limit 100 sigma away. Forty of the explored points have six times the spread. A half-space that none of them meets is at
+    // least 6 Phi^-1(0.025^(1/40)) = 8.1 sigma away, which has probability 3e-16.
     let size = Problem::new([Dimension::normal("size", 10.0, 0.3).unwrap()], Closure::scalar("y", |x| x[0])).unwrap();
     let natural = found(&limited(size, Some(0.0), Some(10.4)), 500, 1, Method::Full);
     let one = &natural.characteristics[0];
@@ -381,10 +381,10 @@ fn a_limit_that_is_out_of_reach_is_a_bound() {
     let [low, high] = one.yield_interval.unwrap();
     assert!(low <= 1.0 - tail(4.0) && 1.0 - tail(4.0) <= high && 1.0 - low < 2.0 * tail(4.0), "{low} {high}");
     assert!(one.yield_.is_some_and(|value| low <= value && value <= high));
-    // Where the surrogate reaches the limit, the bound says so.
+    // If the surrogate reaches the limit, the bound is that of the surrogate's points.
     let [below, _] = sides(&found(&limited(line(), Some(-28.0), None), 500, 1, Method::Full));
     assert!(below.clone().is_some_and(|below| below.hits > 0 && below.interval == [0.0, 1e-150]), "{below:?}");
-    // 20 sigma out there is an estimate, with finite figures.
+    // At 20 sigma there is an estimate, with finite figures.
     let [below, _] = sides(&found(&limited(line(), Some(-20.0), None), 500, 1, Method::Full));
     let (below, truth) = (below.unwrap(), tail(20.0));
     assert!(below.interval[0] <= truth && truth <= below.interval[1], "{below:?}");

@@ -1,4 +1,4 @@
-//! The rejects of each side of the limits by themselves: intervals of their own counts, and proofs of one side.
+//! Rejects on each side of the limits: intervals from their own counts, and proofs for one side.
 
 use assert_cmd::Command;
 use sensitol::simulation::{Sampler, SimulationOptions, simulate};
@@ -28,7 +28,8 @@ fn interval(of: &serde_json::Value, side: &str) -> [f64; 2] {
     [ends[0].as_f64().unwrap(), ends[1].as_f64().unwrap()]
 }
 
-/// A product of positive parts is not below 0, however much of it is above its upper limit: in text and JSON, by analysis and by samples.
+/// A product of positive parts is never below 0, however much of it exceeds its upper limit: in text and JSON, by analysis and by
+/// samples.
 #[test]
 fn a_side_is_proven_where_the_other_is_not() {
     let above = data("discrete.json")["one-sided-proof"]["ppm_above"].as_f64().unwrap();
@@ -45,7 +46,8 @@ fn a_side_is_proven_where_the_other_is_not() {
     }
 }
 
-/// x(1 - x) is at most 1/4 and x^2 at least 0: the one by branch and bound over a bounded part, the other over an unbounded one.
+/// x(1 - x) is at most 1/4 and x^2 at least 0. The first is proven by branch and bound over a bounded part, the second over an unbounded
+/// one.
 #[test]
 fn proofs_of_one_side_need_neither_bounds_of_both_nor_bounded_parts() {
     let text = "[dimensions]\nx = { nominal = 0.5, tolerance = 0.5, distribution = \"uniform\" }\nz = { nominal = 0, tolerance = 1 }\n\
@@ -68,7 +70,7 @@ fn proofs_of_one_side_need_neither_bounds_of_both_nor_bounded_parts() {
     }
 }
 
-/// No more than 2.5 % of all samples leave a share beyond either end of its interval: none of 100,000 is fewer than 37 ppm.
+/// In at most 2.5 % of all samples the share lies beyond either end of its interval. None of 100,000 means fewer than 37 ppm.
 #[test]
 fn a_side_has_the_interval_of_its_own_count() {
     let limits = SpecLimits::new(Some(-6.0), Some(1.4)).unwrap();
@@ -79,7 +81,7 @@ fn a_side_has_the_interval_of_its_own_count() {
     assert!(below[0] == 0.0 && (below[1] - 36.888e-6).abs() < 1e-9, "{below:?}");
     // sf(1.4) = 0.0807567.
     assert!(above[0] < 0.080_756_7 && 0.080_756_7 < above[1] && above[1] - above[0] < 0.004, "{above:?}");
-    // Of 500 points 1.35 are beyond three sigma: 300 samples miss the share 15 times on average, and 31 times in one of 10,000 cases.
+    // Of 500 points, 1.35 lie beyond three sigma. 300 samples miss the share 15 times on average, and 31 times with probability 1/10,000.
     let tail = 1.349_898e-3;
     for sampler in [Sampler::Random, Sampler::Sobol] {
         let limits = SpecLimits::new(Some(-3.0), Some(1.4)).unwrap();
@@ -95,7 +97,7 @@ fn a_side_has_the_interval_of_its_own_count() {
     }
 }
 
-/// A surface beside the model changes what is known of the yield, and the sides are known as well.
+/// A surface as control variate changes the interval of the yield, and each side has an interval of its own.
 #[test]
 fn a_side_beside_a_surrogate_has_its_own_interval() {
     let limits = SpecLimits::new(Some(-4.5), Some(1.4)).unwrap();
@@ -106,15 +108,15 @@ fn a_side_beside_a_surrogate_has_its_own_interval() {
     let found = simulate(&problem, &wish).unwrap();
     let [below, above] = found.characteristics[0].reject_intervals.map(Option::unwrap);
     let share = found.characteristics[0].above.unwrap();
-    // None of 4096 points: at most 0.09 %. The yield is off by far more, because of the other side.
+    // None of 4096 points: at most 0.09 %. The error of the yield is far larger, because of the other side.
     assert!(below[0] == 0.0 && below[1] < 1.5e-3, "{below:?}");
     assert!(above[0] < share && share < above[1] && above[1] < 1.5 * above[0], "{above:?} {share}");
 }
 
-/// The interval of a side that the model's sample knows by its strata holds what is in the tail, and none where there is nothing.
+/// The interval of a side from a stratified sample of the model contains the tail probability. It is small for an empty side.
 #[test]
 fn a_side_of_weighted_points_has_an_effective_count() {
-    // The larger of two normal variables is beyond 2.5 for 1 - cdf(2.5)^2 = 1.2381 % of all, and below -6 for 1e-18.
+    // The larger of two normal variables exceeds 2.5 with probability 1 - cdf(2.5)^2 = 1.2381 %, and is below -6 with 1e-18.
     let text = "[dimensions]\na = { nominal = 0, tolerance = 3 }\nb = { nominal = 0, tolerance = 3 }\n\
                 [characteristics]\ny = { formula = \"max(a, b)\", lower = -6, upper = 2.5 }\n";
     let problem = Study::from_text(StudyText::toml("study.toml", text)).unwrap().problem;
@@ -123,16 +125,16 @@ fn a_side_of_weighted_points_has_an_effective_count() {
         let options = Options::from(Method::SecondOrder).with_seed(seed);
         let found = analyze(&problem, &options).unwrap();
         let [below, above] = found.characteristics[0].reject_intervals.map(Option::unwrap);
-        // As none of the 32 768 points of the core: 3.7 of them.
+        // Equivalent to none of the 32 768 points of the core: 3.7 of them.
         assert!(below[0] == 0.0 && below[1] > 0.0 && below[1] < 2e-4, "{below:?}");
         held += u32::from(above[0] <= 0.012_380_8 && 0.012_380_8 <= above[1]);
         assert!(above[1] - above[0] < 2e-3, "{above:?}");
     }
-    // Of twenty intervals of 95 % sixteen fail to hold in one of 3000 cases.
+    // Sixteen or fewer of twenty 95 % intervals contain the truth with probability 1/3000.
     assert!(held >= 17, "{held}");
 }
 
-/// Every value of a sweep has the intervals of its sides.
+/// Every value of a sweep has the intervals of its two sides.
 #[test]
 fn a_sweep_has_the_intervals_of_its_sides() {
     let found = json(&["sweep", PROOF, "--over", "a=0.5:0.7:3", "--json"]);

@@ -37,7 +37,7 @@ fn a_simulation_prints_estimates_with_standard_errors() {
     assert!(one["standard_error"]["quantiles"]["0.5"].as_f64().unwrap() > 0.0);
 }
 
-/// With no value to be expected beyond a quantile, it is not the least one of the sample.
+/// If no value of the sample is expected beyond a quantile, the quantile is unknown, and not the least value of the sample.
 #[test]
 fn quantiles_beyond_a_small_sample_are_unknown() {
     let report = json(&["simulate", BLOCKS, "--samples", "13", "--json"]);
@@ -47,7 +47,7 @@ fn quantiles_beyond_a_small_sample_are_unknown() {
         .map(|p| one["distribution"]["quantiles"][p].is_f64())
         .collect();
     assert_eq!(known, [false, false, false, true, false, false, false]);
-    // Twenty values have one beyond five percent on average, without a standard error as yet; the histogram stays.
+    // Twenty values have one beyond five percent on average. The quantile has no standard error then. The histogram is still there.
     let report = json(&["simulate", BLOCKS, "--samples", "2e1", "--json"]);
     let one = &report["characteristics"][0];
     assert!(one["distribution"]["quantiles"]["0.05"].is_f64() && one["standard_error"]["quantiles"]["0.05"].is_null());
@@ -57,7 +57,7 @@ fn quantiles_beyond_a_small_sample_are_unknown() {
     assert_eq!(line.split_whitespace().collect::<Vec<_>>(), ["quantile", "0.00135", "-", "-"]);
 }
 
-/// A costly model's answers are kept: the second run asks for nothing.
+/// Answers of a costly model are kept: the second run evaluates almost nothing.
 #[test]
 fn samples_of_programs_are_journaled() {
     let folder = tempfile::tempdir().unwrap();
@@ -65,7 +65,7 @@ fn samples_of_programs_are_journaled() {
     let arguments = ["simulate", PYTHON, "--samples", "300", "--json", "--journal", journal.to_str().unwrap()];
     let (first, second) = (json(&arguments), json(&arguments));
     assert_eq!((&first["cached"], &second["cached"]), (&0.into(), &300.into()));
-    // The nominal point, asked again by the sentinel, is all that the second run evaluates.
+    // The second run evaluates only the nominal point, which the sentinel repeats.
     assert!(second["evaluations"].as_u64().unwrap() <= 2, "{}", second["evaluations"]);
     assert_eq!(first["characteristics"][0]["mean"], second["characteristics"][0]["mean"]);
 }
@@ -84,7 +84,7 @@ fn a_comparison_measures_every_method() {
     assert_eq!(named("monte-carlo 1000")["evaluations"], 1000);
     let error = |name: &str| named(name)["error_vs_reference"]["overall"].as_f64().unwrap();
     assert!(error("full") < error("rss") && error("full") < error("monte-carlo 100"));
-    // The cheapest is on the front, and no method that is both dearer and worse than another.
+    // The cheapest method is on the front. A method that is both dearer and worse than another is not.
     assert_eq!(methods[0]["evaluations"], 17);
     assert!(methods.iter().any(|method| method["evaluations"] == 17 && method["pareto"] == true));
     assert_eq!(named("monte-carlo 100")["pareto"], false);
@@ -98,16 +98,16 @@ fn a_comparison_measures_every_method() {
     assert!(chart.contains(">monte-carlo 1000<"));
 }
 
-/// The output of the program, without seconds.
+/// The output of the program, with the seconds left out.
 #[test]
 fn a_comparison_is_a_table() {
     let text = run(&["compare", BLOCKS, "--samples", "65536", "--budget", "5000", "--threads", "1"]);
     let seconds = |word: &str| word.parse::<f64>().is_ok();
     let line = |line: &str| {
         let words: Vec<&str> = line.split_whitespace().collect();
-        // Method, points, two times: the times are anybody's.
+        // Columns are method, points, and two times, which differ between runs.
         let times = words.iter().position(|word| seconds(word)).filter(|_| words.len() > 7 && !line.contains("points"));
-        // These names have a number of points in themselves, and are shortened where the page is narrow.
+        // These names contain a number of points, and are shortened on a narrow page.
         let sampled = words.first().is_some_and(|name| name.starts_with("monte") || *name == "sobol");
         let kept = words.iter().enumerate().map(|(i, word)| match times {
             Some(first) if !sampled && (i == first + 1 || i == first + 2) => "T",
@@ -127,8 +127,8 @@ fn a_comparison_of_a_program_shares_its_points() {
     let report = json(&["compare", PYTHON, "--samples", "200", "--json", "--journal", journal.to_str().unwrap()]);
     let methods = report["characteristics"][0]["methods"].as_array().unwrap();
     let named = |name: &str| methods.iter().find(|method| method["method"] == name).unwrap();
-    // Points that rss has evaluated are not evaluated again for the others. It alone had the nominal point once more, as a
-    // sentinel, and seven answers replayed by walks of four evaluations.
+    // Points that rss has evaluated are reused by the other methods. Only rss has the nominal point once more as a sentinel, and seven
+    // answers replayed by walks of four evaluations.
     assert_eq!((&named("rss")["evaluations"], &named("second-order")["evaluations"]), (&46.into(), &17.into()));
     assert!(named("second-order")["cached"].as_u64().unwrap() >= 17);
     assert!(named("second-order")["evaluation_s"].as_f64().unwrap() > 0.0);
@@ -170,7 +170,7 @@ fn wrong_wishes() {
     ] {
         let mut text = hide(run(arguments));
         if arguments[0] == "compare" && arguments[1] == nowhere {
-            // Its seconds are anybody's.
+            // The seconds differ between runs.
             let kept = |line: &&str| ["exit", "---", "warning"].iter().any(|start| line.starts_with(start));
             text = text.lines().filter(kept).collect::<Vec<_>>().join("\n");
         }
@@ -179,7 +179,7 @@ fn wrong_wishes() {
     insta::assert_snapshot!("wrong-wishes", all);
 }
 
-/// In how many rounds a program was asked is what a cluster is sized by: `analyze`, `compare` and `allocate` print what their JSON has.
+/// The number of rounds determines the useful size of a cluster: `analyze`, `compare` and `allocate` print it as in their JSON.
 #[test]
 fn the_rounds_of_a_program_are_printed() {
     let folder = tempfile::tempdir().unwrap();
@@ -207,7 +207,7 @@ fn the_rounds_of_a_program_are_printed() {
     }
 }
 
-/// The system's library rounds otherwise where it has no FMA. Hidden from it, every figure stays the same.
+/// The system's mathematical library rounds differently without FMA. With FMA hidden from it, every figure stays the same.
 #[cfg(all(target_os = "linux", target_env = "gnu", target_arch = "x86_64"))]
 #[test]
 fn figures_are_the_same_on_every_processor() {
@@ -252,7 +252,7 @@ logarithms = { formula = "hypot(a, b)*log10(a + b) + ln(c)*exp(a)", upper = 0 }
     }
 }
 
-/// The control variate of `simulate`, with its reduction.
+/// Control variate of `simulate`, with its reduction of the standard errors.
 #[test]
 fn simulate_reports_its_control_variate() {
     let study = repository("examples/engine-balance/study.toml");
@@ -266,7 +266,7 @@ fn simulate_reports_its_control_variate() {
     assert_eq!(report["evaluations"].as_u64().unwrap(), 2000 + surrogate);
     let control = &report["characteristics"][0]["control"];
     assert_eq!((control["method"].as_str(), control["evaluations"].as_u64()), (Some("six-n"), Some(surrogate)));
-    // The study's method, whose interactions are the strongest ten; every one of them explains more.
+    // The study's method examines the ten strongest interactions. Method full examines all and explains more.
     let strongest = control["reduction"]["sigma"].as_f64().unwrap();
     let json = run(&["--control-variate", "--method", "full", "--json"]).success().get_output().stdout.clone();
     let report: serde_json::Value = serde_json::from_slice(&json).unwrap();
@@ -278,6 +278,6 @@ fn simulate_reports_its_control_variate() {
     let plain = run(&["--json"]).success().get_output().stdout.clone();
     let plain: serde_json::Value = serde_json::from_slice(&plain).unwrap();
     assert!(plain["surrogate_evaluations"].is_null() && plain["characteristics"][0]["control"].is_null());
-    // A method of nothing is a mistake.
+    // `--method` without a surrogate is an error.
     run(&["--method", "full"]).failure().code(2);
 }

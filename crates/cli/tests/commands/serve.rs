@@ -1,4 +1,4 @@
-//! `sensitol serve`: a folder of studies, for a page that knows the token. The page's use of it is tested in a browser.
+//! `sensitol serve`: a folder of studies for a page with the token. The page itself is tested in a browser.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::{SocketAddr, TcpStream};
@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 
 use super::command::sensitol;
 
-/// As much of a page as the command looks at.
+/// Parts of a page that the command checks.
 const PAGE: &str = concat!(
     "<!DOCTYPE html>\n<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'x'\">\n",
     "<meta name=\"generator\" content=\"sensitol ",
@@ -35,7 +35,6 @@ impl Drop for Server {
     }
 }
 
-/// The answer.
 struct Answer {
     status: u16,
     head: String,
@@ -49,7 +48,7 @@ impl Answer {
 }
 
 impl Server {
-    /// With these files in its folder.
+    /// Starts a server over a folder with these files.
     fn with(files: &[(&str, &str)]) -> Self {
         let folder = tempfile::tempdir().unwrap();
         std::fs::create_dir(folder.path().join("studies")).unwrap();
@@ -77,7 +76,7 @@ impl Server {
         self.folder.path().join("studies")
     }
 
-    /// Sends a request, the host first, and leaves the answer to be read.
+    /// Sends a request with the host first, and returns the stream for the response.
     fn ask(&self, method: &str, path: &str, headers: &[&str], body: &str) -> TcpStream {
         let mut stream = TcpStream::connect(self.at).unwrap();
         let host = format!("Host: {}", self.at);
@@ -114,13 +113,13 @@ impl Server {
         self.answer("PUT", &self.at(what), &[], text)
     }
 
-    /// The lines of a run but the empty ones, which only ask whether the page is still there.
+    /// Returns the lines of a run except empty ones, which only test if the page is still there.
     fn run(&self, path: &str, task: &Value) -> Vec<Value> {
         let mut stream = self.ask("POST", &self.at(&format!("run?path={path}")), &[], &task.to_string());
         let mut text = String::new();
         stream.read_to_string(&mut text).unwrap();
         let chunks = text.split_once("\r\n\r\n").unwrap().1;
-        // Chunks are lines; their lengths stand alone on lines of their own.
+        // Each chunk is one line. Lengths of chunks are on lines of their own.
         chunks
             .split("\r\n")
             .filter(|line| line.starts_with('{'))
@@ -150,7 +149,7 @@ fn only_the_page_itself_is_answered() {
     for path in ["/", "/studies", "/00000000000000000000000000000000/studies", "//studies"] {
         refused(path, &[], "needs the token");
     }
-    // A name that another site's DNS points at this machine; a page of another site that knows the address.
+    // A foreign name that DNS points at this machine, and a page of another site with the right address.
     refused(&studies, &["Host: evil.example"], "not that of this server");
     refused(&studies, &["Origin: http://evil.example"], "another site");
     refused(&studies, &["Origin: null"], "another site");
@@ -185,7 +184,7 @@ fn studies_of_the_folder_are_opened_and_saved() {
     let saved = server.put(&format!("study?path=gap.toml&hash={hash}"), &changed);
     assert_eq!(saved.status, 200, "{}", saved.body);
     assert_eq!(std::fs::read_to_string(server.studies().join("gap.toml")).unwrap(), changed);
-    // The page knows the old content: it is told, and the file stays.
+    // The page has the old content: the save is refused, and the file stays.
     let conflict = server.put(&format!("study?path=gap.toml&hash={hash}"), STUDY);
     assert_eq!(conflict.status, 409, "{}", conflict.body);
     assert_eq!(server.put("study?path=gap.toml&hash=", STUDY).status, 409);
@@ -193,7 +192,7 @@ fn studies_of_the_folder_are_opened_and_saved() {
     assert_eq!(server.put(&format!("study?path=gap.toml&hash={hash}&overwrite=yes"), STUDY).status, 200);
     assert_eq!(server.put("study?path=new.toml&hash=", STUDY).status, 200);
     assert_eq!(std::fs::read_to_string(server.studies().join("new.toml")).unwrap(), STUDY);
-    // Nothing is left beside what was saved.
+    // No other file is left beside the saved one.
     assert_eq!(std::fs::read_dir(server.studies()).unwrap().count(), 5);
 }
 
@@ -232,7 +231,7 @@ fn nothing_outside_the_folder_is_touched() {
     assert_eq!(long.status, 413, "{}", long.body);
 }
 
-/// The engine is that of the command line.
+/// A run has the engine of the command line.
 #[test]
 fn a_run_is_that_of_the_command_line() {
     let server = Server::with(&[("gap.toml", STUDY)]);
@@ -258,7 +257,7 @@ fn a_run_is_that_of_the_command_line() {
     assert_eq!(server.answer("POST", &server.at("run?path=gap.toml"), &[], "no JSON").status, 400);
 }
 
-/// A program that counts its points in a file and takes its time.
+/// Program that counts its points in a file and takes its time.
 const PROGRAM: &str = r#"
 import json, sys, time
 for line in sys.stdin:
@@ -291,13 +290,13 @@ fn external_models_run_in_their_folder_and_end_with_the_page() {
     let last = found.last().unwrap();
     let report: Value =
         serde_json::from_str(last["found"]["json"].as_str().unwrap_or_else(|| panic!("{last}"))).unwrap();
-    // Twelve times a third of 0.1, in squares.
+    // Root of the sum of twelve squares of 0.1/3.
     let sigma = report["characteristics"][0]["sigma"].as_f64().unwrap();
     assert!((sigma - 0.1 / 3.0 * 12f64.sqrt()).abs() < 1e-9, "{sigma}");
     assert!(found.iter().any(|line| line["answered"].as_u64() > Some(0)), "{found:?}");
     assert!(folder.join("gap.journal.sqlite").exists());
 
-    // A page that is closed ends the run of some 150 points more.
+    // Closing the page ends the run, which would have some 150 more points.
     let before = points();
     let stream = server.ask("POST", &server.at("run?path=in%2Fgap.toml"), &[], &task("full").to_string());
     let begun = Instant::now();
@@ -307,7 +306,7 @@ fn external_models_run_in_their_folder_and_end_with_the_page() {
     drop(stream);
     let settled = || {
         let now = points();
-        // Twenty times as long as a point takes.
+        // Twenty times the duration of a point.
         std::thread::sleep(Duration::from_secs(1));
         (points() == now).then_some(now)
     };

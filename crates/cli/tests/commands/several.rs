@@ -1,4 +1,4 @@
-//! Several studies in one call of `analyze` and `check`: every one has its report, whatever becomes of the others.
+//! Several studies in one call of `analyze` and `check`: each has its report, independently of the others.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use sensitol_testing::repository;
 const CLEARANCE: &str = "examples/shaft-and-bore/study.toml";
 const BLOCKS: &str = "examples/stacked-blocks/study.toml";
 
-/// Exit code, stdout, stderr.
+/// Returns exit code, stdout and stderr.
 fn parts(arguments: &[&str]) -> (i32, String, String) {
     let output = sensitol(arguments).output().unwrap();
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
@@ -22,7 +22,7 @@ fn json(arguments: &[&str]) -> (i32, Value) {
     (code, serde_json::from_str(&printed).unwrap_or_else(|error| panic!("{error}: {printed}")))
 }
 
-/// A study of this name with one characteristic `y`, and its path.
+/// Writes a study with one characteristic `y`, and returns its path.
 fn study(folder: &Path, name: &str, formula: &str, more: &str) -> String {
     let path = folder.join(name);
     let text = format!(
@@ -47,7 +47,7 @@ fn reports_follow_each_other() {
     insta::assert_snapshot!("several-markdown", markdown);
 }
 
-/// The output of one call for a study is that of a call of its own, in JSON too.
+/// The output for a study equals that of a call of its own, in JSON too.
 #[test]
 fn a_report_is_that_of_a_call_of_its_own() {
     let alone = [CLEARANCE, BLOCKS].map(|study| parts(&["analyze", study]).1);
@@ -60,14 +60,14 @@ fn a_report_is_that_of_a_call_of_its_own() {
         let (_, mut own) = json(&["analyze", study, "--json"]);
         let mut report = report.clone();
         assert_eq!(report.as_object_mut().unwrap().remove("study").unwrap(), study);
-        // Nobody knows beforehand how long it takes.
+        // Times differ between runs.
         (report["wall_s"], own["wall_s"]) = (Value::Null, Value::Null);
         (report["in_model_s"], own["in_model_s"]) = (Value::Null, Value::Null);
         assert_eq!(report, own);
     }
 }
 
-/// One that fails, at reading or later, does not keep the others; the worst is the exit code, and every error has its name.
+/// A study that fails, at reading or later, does not stop the others. The exit code is the worst one, and every error names its study.
 #[test]
 fn the_worst_is_the_exit_code() {
     let folder = tempfile::tempdir().unwrap();
@@ -103,7 +103,7 @@ fn the_worst_is_the_exit_code() {
         assert_eq!((&report["study"], report["error"].is_string()), (&study.into(), failed));
         assert_eq!(report["characteristics"].is_array(), !failed);
     }
-    // A characteristic that only one of them has, and a budget that suffices for one.
+    // Only one study has the characteristic, and only one fits the budget.
     let (code, text, error) = parts(&["analyze", &good, CLEARANCE, "--kc", "clearance"]);
     assert!(code == 2 && text.starts_with(&format!("==> {CLEARANCE}")), "{text}");
     assert!(error.starts_with(&format!("error: {good}: ")), "{error}");
@@ -139,11 +139,11 @@ fn files_are_written_for_every_study() {
     }
     let whole = std::fs::read_to_string(&file).unwrap();
     assert_eq!(whole, parts(&studies).1);
-    // A folder that is there is taken; where nothing can be done nothing is written.
+    // An existing folder is used. If every study fails, nothing is written.
     assert_eq!(parts(&["analyze", &gap, &play, "--html", &html]).0, 0);
     let (code, ..) = parts(&["analyze", "nowhere.toml", "elsewhere.toml", "-o", &file]);
     assert_eq!((code, std::fs::read_to_string(&file).unwrap()), (2, whole));
-    // One table of the stacks, each row with its study.
+    // The stacks are one table, with the study's name in each row.
     let (_, stacks, _) = parts(&["analyze", &gap, &play, "--stack", "csv"]);
     let own = [&gap, &play].map(|study| parts(&["analyze", study, "--stack", "csv"]).1);
     let mut expected = format!("study,{}\n", own[0].lines().next().unwrap());
@@ -153,7 +153,7 @@ fn files_are_written_for_every_study() {
     assert_eq!(stacks, expected);
 }
 
-/// Studies of one name in several folders have their folders' names too.
+/// Studies of the same name in several folders get the folders' names too.
 #[test]
 fn pages_of_one_name_have_their_folders() {
     let folder = tempfile::tempdir().unwrap();
@@ -168,7 +168,7 @@ fn pages_of_one_name_have_their_folders() {
     assert_eq!((code, names(&pages).join(" ")), (0, "alone.html gear-study.html pump-Study.html".to_owned()));
 }
 
-/// A file that cannot be written, or would be written twice, is reported before anything is evaluated.
+/// A file that cannot be written, or would be written twice, is reported before any evaluation.
 #[test]
 fn wrong_calls_evaluate_nothing() {
     let folder = tempfile::tempdir().unwrap();
@@ -199,7 +199,7 @@ fn wrong_calls_evaluate_nothing() {
     assert_eq!(names(folder.path()), ["below", "gap.toml", "play.toml"], "nothing is left behind");
 }
 
-/// Of two external models the second is not begun once the first was interrupted; every answer is kept.
+/// The second of two external models does not start after the first one was interrupted. Every answer is kept.
 #[cfg(unix)]
 #[test]
 fn an_interrupt_ends_the_whole_call() {
@@ -229,7 +229,7 @@ fn an_interrupt_ends_the_whole_call() {
     assert!(String::from_utf8(output.stderr).unwrap().contains(&format!("warning[stopped]: {}: ", shown[1])));
 }
 
-/// Readers that have seen enough are no error, and end the call.
+/// A reader that closes the pipe ends the call without an error.
 #[test]
 fn a_closed_pipe_ends_the_call() {
     let mut command = sensitol(&["analyze", CLEARANCE, BLOCKS]);

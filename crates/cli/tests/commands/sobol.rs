@@ -24,7 +24,7 @@ fn ishigami() -> String {
     std::fs::read_to_string(sensitol_testing::repository(ISHIGAMI)).unwrap()
 }
 
-/// The indices of a case: of every input first order and total.
+/// Returns first order and total index of every input in a case.
 fn exact(name: &str) -> Vec<[f64; 2]> {
     let case = case(name);
     let list =
@@ -36,7 +36,7 @@ fn of(one: &CharacteristicAnalysis) -> Vec<[Option<EstimatedShare>; 2]> {
     one.sensitivities.iter().map(|row| [row.first_order, row.total]).collect()
 }
 
-/// Three of its errors reach the truth; the error is one that is of use.
+/// Checks that three errors reach the truth, and that the error is small enough to be `useful`.
 #[track_caller]
 fn reaches(found: Option<EstimatedShare>, truth: f64, useful: f64) {
     let found = found.unwrap();
@@ -45,7 +45,7 @@ fn reaches(found: Option<EstimatedShare>, truth: f64, useful: f64) {
     assert!(error <= useful, "{found:?}");
 }
 
-/// Five standard errors: 1 of 2 million; 1e-9 where nothing scatters.
+/// Checks an estimate within five standard errors (1 in 2 million), plus 1e-9 for estimates without scatter.
 #[track_caller]
 fn estimates(found: IndexEstimate, truth: f64, useful: f64) {
     assert!((found.value - truth).abs() <= 5.0 * found.standard_error + 1e-9, "{found:?} for {truth}");
@@ -53,7 +53,7 @@ fn estimates(found: IndexEstimate, truth: f64, useful: f64) {
     assert!(found.interval[0] <= found.value && found.value <= found.interval[1]);
 }
 
-/// y = a + a b of standard normal inputs: half of the variance is a's, the other half that of both.
+/// y = a + a b of standard normal inputs: a alone has half of the variance, a and b together the other half.
 #[test]
 fn a_surface_has_its_indices_for_nothing() {
     let text = "[dimensions]\na = { nominal = 0, tolerance = 3 }\nb = { nominal = 0, tolerance = 3 }\nc = { nominal = 1, tolerance = 3 }\n\
@@ -61,18 +61,18 @@ fn a_surface_has_its_indices_for_nothing() {
     let found = analysed(text, Method::Full);
     let [y, z] = &found.characteristics[..] else { panic!("two") };
     assert_eq!(y.indices.as_ref().unwrap().source, IndexSource::Surface);
-    // The formula proves its surface: errors are none, and roundings those of a few sums.
+    // The formula proves its surface: there are no errors except the rounding of a few sums.
     for (found, truth) in of(y).into_iter().zip([[0.5, 1.0], [0.0, 0.5], [0.0, 0.0]]) {
         found.into_iter().zip(truth).for_each(|(found, truth)| reaches(found, truth, 0.0));
     }
     assert!((y.indices.as_ref().unwrap().interactions.unwrap() - 0.5).abs() < 1e-12);
-    // (1 + c)^2 has the variance 4 + 2, and a 1 beside it.
+    // (1 + c)^2 has the variance 4 + 2, and a adds 1.
     for (found, truth) in of(z).into_iter().zip([1.0 / 7.0, 0.0, 6.0 / 7.0]) {
         found.into_iter().for_each(|found| reaches(found, truth, 0.0));
     }
 }
 
-/// Var(a + b + a c) = 3 + 1 with a correlation of one half: a and b are one factor, which has three quarters alone.
+/// Var(a + b + a c) = 3 + 1 with correlation 1/2. a and b are one factor, with three quarters of the variance alone.
 #[test]
 fn dimensions_that_vary_together_are_one_factor() {
     let text = "[dimensions]\na = { nominal = 0, tolerance = 3 }\nb = { nominal = 0, tolerance = 3 }\nc = { nominal = 0, tolerance = 3 }\n\
@@ -88,7 +88,7 @@ fn dimensions_that_vary_together_are_one_factor() {
     assert_eq!([a, b], [[None; 2]; 2]);
     reaches(c[0], 0.0, 1e-9);
     reaches(c[1], 0.25, 1e-9);
-    // The same by exchanging both at once.
+    // The same indices by exchanging both dimensions at once.
     let options = SimulationOptions::default().with_samples(100).with_sobol(1 << 14);
     let sampled = simulate(&study.problem, &options).unwrap();
     let [of_both, of_c] = &sampled.characteristics[0].indices.as_ref().unwrap()[..] else { panic!("two factors") };
@@ -99,7 +99,7 @@ fn dimensions_that_vary_together_are_one_factor() {
     }
 }
 
-/// Columns of measured rows are a factor too: of a + b with b = a, all of the variance is that of both.
+/// Columns of measured rows are one factor too: for a + b with b = a it has all of the variance.
 #[test]
 fn zones_and_rows_are_one_factor() {
     let text = "[dimensions]\nx = { nominal = 0, tolerance = 1 }\ny = { nominal = 0, tolerance = 1 }\nw = { nominal = 0, tolerance = 1.5 }\n\
@@ -107,7 +107,7 @@ fn zones_and_rows_are_one_factor() {
     let study = parse(text).unwrap();
     let found = analyze(&study.problem, &Method::Full.into()).unwrap();
     let factor = &found.characteristics[0].indices.as_ref().unwrap().factors[0];
-    // x + y is one input of slope sqrt 2, variance 2/4 of a unit disc; w has (1.5/3)^2.
+    // x + y acts as one input of slope sqrt 2, with variance 2/4 of a unit disc. w has (1.5/3)^2.
     reaches(factor.first_order, 0.5 / 0.75, 1e-9);
     reaches(factor.total, 0.5 / 0.75, 1e-9);
 }
@@ -121,7 +121,7 @@ fn indices_by_simulation_have_their_closed_forms() {
         estimates(found.first_order, truth[0], 0.01);
         estimates(found.total, truth[1], 0.01);
     }
-    // 1000 points, and 2^14 (3 + 2) more.
+    // 1000 points, and 2^14 (3 + 2) in addition.
     assert_eq!(found.run.evaluations, 1000 + 5 * (1 << 14));
     let a = ["0", "1", "4.5", "9", "99", "99", "99", "99"];
     let part = |j: usize| format!("(abs(4*x{j} - 2) + {})/(1 + {})", a[j], a[j]);
@@ -136,8 +136,8 @@ fn indices_by_simulation_have_their_closed_forms() {
     }
 }
 
-/// The surface of Ishigami's function gives x3 nothing, and that of a clearance in a random direction ranks the wrong way round: what is
-/// not trusted is not shown, by whatever method, and the model's indices stand in its place.
+/// The surface of Ishigami's function gives x3 no contribution, and that of a clearance in a random direction gives a wrong order.
+/// Contributions of an untrusted surface are not shown by any method. The indices of the model replace them.
 #[test]
 fn shares_of_a_surface_that_is_not_trusted_are_never_shown() {
     let share = case("random-direction-float")["exact"]["share of edge"].as_f64().unwrap();
@@ -151,7 +151,7 @@ fn shares_of_a_surface_that_is_not_trusted_are_never_shown() {
             assert!(!one.sensitivities.iter().any(shown) && one.left_out_share.is_none(), "{method}");
             assert!(one.interactions.iter().all(|pair| pair.share.is_none()), "{method}");
             for (found, truth) in of(one).into_iter().zip(&truth) {
-                // 65 536 points: the design's largest error of 312 indices was 0.026.
+                // 65 536 points. The largest error of 312 indices was 0.026 when the method was designed.
                 found.into_iter().zip(truth).for_each(|(found, &truth)| reaches(found, truth, 0.03));
             }
         }
@@ -161,7 +161,7 @@ fn shares_of_a_surface_that_is_not_trusted_are_never_shown() {
     assert!(row("x3").contains("24."), "{text}");
 }
 
-/// A costly model is not asked again: its sample has the first orders by ranks, with errors, and no totals.
+/// A costly model is not evaluated again: its sample gives first-order indices by ranks, with errors and without totals.
 #[test]
 fn costly_samples_have_first_orders_by_ranks() {
     let study = parse(&ishigami()).unwrap();
@@ -173,17 +173,17 @@ fn costly_samples_have_first_orders_by_ranks() {
     assert_eq!(one.indices.as_ref().unwrap().source, IndexSource::Ranks);
     for ([first, total], [truth, _]) in of(one).into_iter().zip(exact("ishigami")) {
         assert_eq!(total, None);
-        // Some hundred points: a standard error of a tenth.
+        // Some hundred points have a standard error of a tenth.
         reaches(first, truth, 0.15);
     }
-    // The rest belongs to x1 and x3 together.
+    // The rest of the variance belongs to x1 and x3 together.
     let left = one.indices.as_ref().unwrap().interactions.unwrap();
     let error = of(one).iter().filter_map(|[first, _]| first.unwrap().error).fold(0.0, f64::hypot);
     assert!((left - 0.2437).abs() < 3.0 * error, "{left}");
 }
 
-/// Of 200 random samples of 500 points each, nine in ten first orders lie within two errors: 95 % but for the jackknife's own scatter, of
-/// which the binomial standard error is 0.016.
+/// Nine in ten first-order indices of 200 random samples (500 points) lie within two errors. This is 95 % except for the jackknife's
+/// own scatter; the binomial standard error is 0.016.
 #[test]
 fn errors_of_ranks_are_honest() {
     let truth = exact("ishigami");
@@ -202,7 +202,7 @@ fn errors_of_ranks_are_honest() {
         }
     }
     assert!(within * 10 >= all * 9, "{within} of {all}");
-    // The bias is of the order of 1/n; the scatter of a mean of 200 is 0.004.
+    // The bias is of the order of 1/n. The mean of 200 samples scatters by 0.004.
     sum.iter().zip(&truth).for_each(|(mean, truth)| assert!((mean - truth[0]).abs() < 0.02, "{sum:?}"));
     assert_eq!(rank_first(&[1.0; 4], &[1.0; 4]), None);
     assert_eq!(rank_first(&[1.0; 40], &[2.0; 40]), None);

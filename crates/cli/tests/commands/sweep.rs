@@ -1,4 +1,4 @@
-//! Sweeps: against analyses one by one, gathered into batches; the command with its files and wrong input.
+//! Sweeps against single analyses, gathered into batches; the command with its files and wrong input.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
@@ -11,7 +11,7 @@ use sensitol_study::Study;
 
 use super::command::{run, sensitol};
 
-/// The product of two, with the batches that it was asked for.
+/// Product of two dimensions that records its batches.
 struct Counted {
     inner: Closure,
     batches: Arc<Mutex<Vec<usize>>>,
@@ -39,7 +39,7 @@ fn problem() -> (Problem, Arc<Mutex<Vec<usize>>>) {
     (Problem::new(dimensions, Counted { inner, batches: Arc::clone(&batches) }).unwrap(), batches)
 }
 
-/// A yield of nearly all is not all: as many digits as the rejects have, and a bound where they are fewer than one in a thousand million.
+/// A yield of nearly 100 % is not printed as 100 %: it has as many digits as the rejects, and is a bound below 1e-9 rejects.
 #[test]
 fn nearly_all_is_not_all() {
     let folder = tempfile::tempdir().unwrap();
@@ -54,7 +54,7 @@ fn nearly_all_is_not_all() {
     assert!(nothing.contains("  100\n"), "{nothing}");
 }
 
-/// The same bits as analyses one by one, for every method, in one batch for each stage.
+/// A sweep gives the same bits as single analyses, for every method, in one batch for each stage.
 #[test]
 fn a_sweep_is_its_analyses() {
     let (problem, batches) = problem();
@@ -89,7 +89,7 @@ fn a_sweep_is_its_analyses() {
     }
 }
 
-/// A characteristic without a value at some of the parameter's is unknown there, and known elsewhere.
+/// A characteristic without a value at one value of the parameter is unknown there only.
 #[test]
 fn a_failing_value_costs_only_itself() {
     let function = Closure::fallible(["y"], |x: &[f64]| {
@@ -206,7 +206,7 @@ fn wrong_input() {
     assert!(text.starts_with("exit 2") && text.contains("make it a dimension without tolerance"), "{text}");
 }
 
-/// An input of a built-in model that the study does not mention can be swept, and its answers do not depend on threads.
+/// An input of a built-in model that the study does not list can be swept, and the results do not depend on threads.
 #[test]
 fn inputs_of_models_and_threads() {
     let engine = "examples/engine-balance/study.toml";

@@ -1,4 +1,4 @@
-//! One verdict: a run that was stopped has none, intervals decide it, and every command says the same of a study.
+//! Verdicts: a stopped run has none, intervals decide them, and every command agrees on a study.
 
 use std::path::Path;
 
@@ -15,7 +15,7 @@ use serde_json::Value;
 use super::command::sensitol;
 use sensitol_testing::{relative, repository};
 
-/// `y = 60 (b - 2)(c - 3) + a` behind a child that takes `seconds` for every interaction's points, as a study.
+/// Returns a study of `y = 60 (b - 2)(c - 3) + a` with a child that takes `seconds` for every point of an interaction.
 fn slow(folder: &Path, seconds: f64) -> String {
     let script = folder.join("model.py");
     let program = format!(
@@ -39,7 +39,7 @@ fn slow(folder: &Path, seconds: f64) -> String {
     study.to_str().unwrap().to_owned()
 }
 
-/// Cut short after the axes, sigma would be 0.1 and the yield 0.9999994; all of it has 0.608 and 0.662.
+/// A run that is stopped after the axes would give sigma 0.1 and yield 0.9999994. The complete run gives 0.608 and 0.662.
 #[test]
 fn a_stopped_run_says_so_and_meets_nothing() {
     let folder = tempfile::tempdir().unwrap();
@@ -54,7 +54,7 @@ fn a_stopped_run_says_so_and_meets_nothing() {
     relative(done["characteristics"][0]["sigma"].as_f64().unwrap(), 0.37f64.sqrt(), 1e-9);
     assert_eq!(done["characteristics"][0]["verdict"], "missed");
 
-    // Six points of two seconds, and three seconds for all: however fast the machine is, it is not done.
+    // Six points of two seconds with a limit of three seconds: no machine is fast enough.
     slow(folder.path(), 2.0);
     let short = sensitol(&["analyze", &study, "--json", "--time", "3", "--html", &page]).args(more).output().unwrap();
     let report: Value = serde_json::from_slice(&short.stdout).unwrap();
@@ -66,7 +66,7 @@ fn a_stopped_run_says_so_and_meets_nothing() {
     assert!(String::from_utf8(text.stdout).unwrap().contains(", stopped by the time limit"));
 }
 
-/// The same in the library, stopped when all axes are known and the interactions are not.
+/// In the library, a run that is stopped after the axes has no verdict either.
 #[test]
 fn what_was_not_evaluated_is_no_failure() {
     let asked = std::sync::Arc::new(std::sync::atomic::AtomicUsize::new(0));
@@ -83,7 +83,7 @@ fn what_was_not_evaluated_is_no_failure() {
     let problem = Problem::new(dimensions, model).unwrap().asking([y]).unwrap();
     let whole = analyze(&problem, &Method::Full.into()).unwrap();
     assert_eq!((whole.run.stopped, whole.characteristics[0].unfinished), (None, false));
-    // Cheap models are asked block by block: the strongest pairs come in a second stage, after the first look at `stop`.
+    // Cheap models are evaluated in blocks: the strongest pairs come in a second stage, after the first check of `stop`.
     asked.store(0, order);
     let stop = || (asked.load(order) >= 7).then_some(StopReason::TimeLimit);
     let cut = analyze_with(&problem, &Method::SixN.into(), &Run::to_the_end().stopping_when(&stop)).unwrap();
@@ -99,7 +99,7 @@ fn what_was_not_evaluated_is_no_failure() {
         |pair: sensitol::analysis::Interaction<'_>| pair.missing == Some(sensitol::analysis::Missing::NotEvaluated);
     assert!(one.interactions.iter().all(missing), "{:?}", one.interactions);
 
-    // A sample that was stopped has estimates, and no verdict.
+    // A stopped sample has estimates, but no verdict.
     let never = || Some(StopReason::Interrupted);
     let wish = SimulationOptions::default().with_samples(1000);
     let sample = simulate_with(&problem, &wish, &Run::to_the_end().stopping_when(&never), &|_| {}).unwrap();
@@ -114,7 +114,7 @@ fn json(arguments: &[&str]) -> (i32, Value) {
     (output.status.code().unwrap(), report)
 }
 
-/// Every requirement of every characteristic with its verdict, of a report of `analyze` or `simulate`.
+/// Returns every requirement of every characteristic with its verdict, from a report of `analyze` or `simulate`.
 fn verdicts(report: &Value) -> Vec<(String, String, String)> {
     let word = |value: &Value| value.as_str().unwrap().to_owned();
     let of = |one: &Value| {
@@ -125,8 +125,7 @@ fn verdicts(report: &Value) -> Vec<(String, String, String)> {
     report["characteristics"].as_array().unwrap().iter().flat_map(of).collect()
 }
 
-/// The results of `allocate` for the tolerances that it has found are those of `analyze` for the study that it writes, and
-/// `simulate` contradicts none of them.
+/// The results of `allocate` equal those of `analyze` on the study that it writes, and `simulate` contradicts none of them.
 #[test]
 fn allocate_analyze_and_simulate_say_the_same() {
     let folder = tempfile::tempdir().unwrap();
@@ -154,8 +153,8 @@ fn allocate_analyze_and_simulate_say_the_same() {
         let simulated = verdicts(&simulated);
         for one in &found {
             assert!(analyzed.contains(one), "{study}: {one:?} of {analyzed:?}");
-            // A sample may decide what the errors of an analysis leave open, or leave open what lies as near its target as an optimum
-            // does: 0.006 % beside the 0.03 % of 100 000 points. It never refutes what was decided.
+            // A sample may decide a verdict that is inconclusive by analysis, and may be inconclusive close to the target: an optimum is
+            // within 0.006 %, and 100 000 points have an error of 0.03 %. It never refutes a decided verdict.
             let sampled = simulated.iter().find(|other| (&other.0, &other.1) == (&one.0, &one.1)).unwrap();
             assert!(
                 one.2 == "inconclusive" || sampled.2 == "inconclusive" || sampled.2 == one.2,
@@ -167,7 +166,7 @@ fn allocate_analyze_and_simulate_say_the_same() {
     }
 }
 
-/// A Cpk that is required counts for `--check`, beside a target yield that is met.
+/// `--check` tests a required Cpk in addition to a target yield that is met.
 #[test]
 fn everything_required_is_checked() {
     let folder = tempfile::tempdir().unwrap();
@@ -181,7 +180,7 @@ fn everything_required_is_checked() {
         let path = path.to_str().unwrap();
         [json(&["analyze", path, "--check", "--json"]), json(&["simulate", path, "--check", "--json"])]
     };
-    // 0.4 by 3 x 0.1 is 1.333.
+    // 0.4/(3 x 0.1) is 1.333.
     for (require, codes) in
         [("require = { cpk = 1.2 }", 0), ("require = { cpk = 1.5 }", 1), ("require = { sigma = 0.09 }", 1)]
     {
@@ -190,18 +189,18 @@ fn everything_required_is_checked() {
         }
     }
     let [(analyzed, _), (simulated, report)] = of("require = \"worst-case\"");
-    // A sample knows nothing of a worst case.
+    // A sample gives no worst case.
     assert_eq!((analyzed, simulated), (0, 1));
     assert_eq!(report["characteristics"][0]["requirements"][1]["verdict"], "inconclusive");
 }
 
-/// The middle of the linear model is what rss lies about, in an analysis as in an allocation.
+/// RSS is centred on the middle of the linear model, in an analysis and in an allocation.
 #[test]
 fn rss_lies_about_the_middle() {
     let band = Dimension::normal("a", 0.0, 0.3).unwrap();
     let y = Characteristic::new("y").with_limits(SpecLimits::new(Some(-1.0), Some(0.5)).unwrap());
     let y = y.with_requirement(Requirement::Rss).unwrap();
-    // Curvature moves the mean by 0.1, and not the middle: 0.3 of 0.5 and not of 0.4.
+    // Curvature moves the mean by 0.1, but not the middle: RSS uses 0.3 of 0.5, not of 0.4.
     let problem = Problem::new([band], Closure::scalar("y", |x| x[0] + 10.0 * x[0] * x[0])).unwrap();
     let found = analyze(&problem.asking([y]).unwrap(), &Method::Full.into()).unwrap();
     let [judged] = found.characteristics[0].requirements()[..] else { panic!() };

@@ -1,4 +1,4 @@
-//! `sensitol workbench`: a study goes into the page that web/build makes. The page itself is tested in a browser.
+//! `sensitol workbench`: a study is inserted into the page of web/build. The page itself is tested in a browser.
 
 use std::path::Path;
 use std::process::Output;
@@ -6,7 +6,7 @@ use std::process::Output;
 use super::command::sensitol;
 use sensitol_testing::repository;
 
-/// As much of a page as the command looks at.
+/// Parts of a page that the command checks.
 const PAGE: &str = concat!(
     "<!DOCTYPE html>\n<meta name=\"generator\" content=\"sensitol ",
     env!("CARGO_PKG_VERSION"),
@@ -25,7 +25,7 @@ fn refused(folder: &Path, arguments: &[&str], said: &str) {
     assert!(error.contains(said), "{error}");
 }
 
-/// The page holds the study's own text with the files that it names, and nothing in it ends its element.
+/// The page holds the study's text and its files, and no text ends the element around it.
 #[test]
 fn a_study_goes_into_the_page() {
     let folder = tempfile::tempdir().unwrap();
@@ -45,7 +45,7 @@ fn a_study_goes_into_the_page() {
     assert_eq!(found["name"], "study.toml");
     let (name, content) = found["files"].as_object().unwrap().iter().next().unwrap();
     assert_eq!(content, &std::fs::read_to_string(example.parent().unwrap().join(name)).unwrap());
-    // A study of JSON is written as TOML, which means the same.
+    // A JSON study is inserted as equivalent TOML.
     let hostile = r#"{ "title": "</script><b>", "dimensions": { "a": { "nominal": 1, "tolerance": 0.1 } }, "characteristics": { "y": { "formula": "2*a" } } }"#;
     std::fs::write(folder.path().join("hostile.json"), hostile).unwrap();
     let found = given(&["hostile.json"]);

@@ -14,7 +14,7 @@ use serde_json::Value;
 use super::command::sensitol;
 use sensitol_testing::{close, repository};
 
-/// Stdout and stderr of a call that ends with this code.
+/// Returns stdout and stderr of a call that must end with this code.
 fn run(code: i32, arguments: &[&str]) -> [String; 2] {
     let output = sensitol(arguments).args(["--color", "never"]).output().unwrap();
     let [out, error] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
@@ -22,7 +22,7 @@ fn run(code: i32, arguments: &[&str]) -> [String; 2] {
     [out, error]
 }
 
-/// A workbook in this folder whose first sheet is filled by `fill`.
+/// Writes a workbook whose first sheet is filled by `fill`.
 fn made(folder: &Path, name: &str, fill: impl FnOnce(&mut Worksheet)) -> String {
     let mut book = Workbook::new();
     fill(book.add_worksheet());
@@ -66,7 +66,7 @@ fn a_workbook_becomes_a_study() {
         );
         row(sheet, 3, &["housing depth", "housing", "4711", "7", "1", "84.6", "0.1", ""]);
         row(sheet, 4, &["lip", "cover", "", "", "-", "", "+0,05/-0,02", "uniform"]);
-        // The value of a formula as it was computed last.
+        // Last computed value of a formula.
         sheet.write_formula(4, 5, Formula::new("=8/2").set_result("4")).unwrap();
         row(sheet, 5, &["gear", "", "", "", "-1", "18.5", "", ""]);
         sheet.write_number_with_format(5, 6, 0.002, &Format::new().set_num_format("0.0%")).unwrap();
@@ -81,11 +81,11 @@ fn a_workbook_becomes_a_study() {
                    gear = { nominal = 18.5, tolerance = \"0.2 %\", unit = \"mm\" }\nshaft = { nominal = 62, fit = \"H7\", unit = \"mm\" }\n\
                    [characteristics]\ngap = { formula = \"`housing depth` - lip - gear - shaft\", unit = \"mm\" }\n";
     assert_eq!(figures(&study), figures(by_hand), "{study}");
-    // The same, typed and saved in LibreOffice with German headers.
+    // The same table, typed and saved in LibreOffice with German headers.
     let german = imported(repository("tests/data/workbooks/libreoffice.xlsx").to_str().unwrap(), &[]);
     assert_eq!(figures(&german), figures(by_hand), "{german}");
     assert!(german.contains("row 6 has no nominal value and was left out: Summe"), "{german}");
-    // From stdin, where the file has no name.
+    // From stdin the table has no file name.
     let bytes = std::fs::read(&path).unwrap();
     let output =
         assert_cmd::Command::new(env!("CARGO_BIN_EXE_sensitol")).args(["import", "-"]).write_stdin(bytes).output();
@@ -156,8 +156,8 @@ fn faults_of_workbooks_name_their_cell() {
     insta::assert_snapshot!(all.join("\n"));
 }
 
-/// A compound file with the directory of an encrypted workbook ([MS-CFB] 2.2 to 2.6, [MS-OFFCRYPTO] 2.3): a table of sectors, a directory
-/// of three entries, and eight sectors of the package, which are empty here.
+/// Returns a compound file with the directory of an encrypted workbook ([MS-CFB] 2.2 to 2.6, [MS-OFFCRYPTO] 2.3): a table of sectors, a
+/// directory of three entries, and eight empty sectors of the package.
 fn encrypted() -> Vec<u8> {
     let [free, end, table] = [0xffff_ffff_u32, 0xffff_fffe, 0xffff_fffd];
     let mut file = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1".to_vec();
@@ -213,10 +213,10 @@ fn files_that_are_no_workbook_are_refused() {
     ] {
         let [_, error] = run(2, &[&["import", path.as_str()], more.as_slice()].concat());
         assert!(words.iter().all(|word| error.contains(word)), "{path}: {error}");
-        // One error, and nothing of how the program is made.
+        // One error, without details of the program.
         assert!(error.lines().count() <= 4 && !error.contains("panicked"), "{error}");
     }
-    // A cell in the last corner takes no room for the empty ones before it.
+    // A single cell in the last corner takes no memory for the empty ones before it.
     let corner = made(folder.path(), "corner.xlsx", |sheet| {
         row(sheet, 0, &["name", "nominal"]);
         row(sheet, 1, &["a", "10"]);
@@ -232,7 +232,7 @@ const STACK: &str = "title = \"=1+1\"\n[about]\npart = \"Gearbox\"\n[dimensions]
                      ring = { nominal = 2, sigma = 0.02, unit = \"mm\" }\nshim = { nominal = 0.5, unit = \"mm\" }\n\
                      [characteristics]\nplay = { formula = \"`housing depth` - lip - 2*gear - ring - shim\", unit = \"mm\", lower = 40.7, upper = 41.4, target_yield = 0.99 }\n";
 
-/// A report as JSON and as a workbook.
+/// Writes a report as JSON and as a workbook.
 fn reported(folder: &Path, study: &str) -> (Value, Xlsx<std::io::BufReader<std::fs::File>>, String) {
     let at = |name: &str| folder.join(name).to_str().unwrap().to_owned();
     std::fs::write(at("study.toml"), study).unwrap();
@@ -240,7 +240,7 @@ fn reported(folder: &Path, study: &str) -> (Value, Xlsx<std::io::BufReader<std::
     (serde_json::from_str(&json).unwrap(), open_workbook(at("report.xlsx")).unwrap(), at("report.xlsx"))
 }
 
-/// The rows of a sheet as objects by the headers of its first row, with numbers, text and nothing.
+/// Returns the rows of a sheet as pairs of header and cell.
 fn objects(book: &mut Xlsx<std::io::BufReader<std::fs::File>>, sheet: &str) -> Vec<Vec<(String, Data)>> {
     let range = book.worksheet_range(sheet).unwrap();
     let mut rows = range.rows();
@@ -248,7 +248,7 @@ fn objects(book: &mut Xlsx<std::io::BufReader<std::fs::File>>, sheet: &str) -> V
     rows.map(|row| header.iter().cloned().zip(row.iter().cloned()).collect()).collect()
 }
 
-/// The content of a cell of a column.
+/// Returns the cell of a column.
 fn cell(row: &[(String, Data)], column: &str) -> Data {
     row.iter().find(|(name, _)| name == column).unwrap_or_else(|| panic!("no column {column}")).1.clone()
 }
@@ -263,7 +263,7 @@ fn a_workbook_is_the_report() {
         "warnings have a sheet where there are some: {:?}",
         json["warnings"]
     );
-    // Numbers are written with all their digits: not one is lost.
+    // Numbers are written with all their digits.
     let same = |found: Data, expected: &Value| match (&found, expected) {
         (Data::Empty, Value::Null) => true,
         (Data::Float(found), Value::Number(expected)) => Some(*found) == expected.as_f64(),
@@ -301,7 +301,7 @@ fn a_workbook_is_the_report() {
             assert!(same(cell(row, column), &expected[column]), "{column}: {row:?}");
         }
     }
-    // A text that looks like a formula is text, in the title and in a part; formulas stand on the stack alone.
+    // Text that looks like a formula is written as text, in the title and in a part. Only the stack has formulas.
     assert_eq!(cell(&inputs[0], "part"), Data::String("=HYPERLINK(A1)".to_owned()));
     for sheet in ["Results", "Contributions", "Joint", "Inputs", "Study"] {
         assert!(book.worksheet_formula(sheet).unwrap().used_cells().next().is_none(), "{sheet}");
@@ -312,7 +312,7 @@ fn a_workbook_is_the_report() {
     assert!(same(of("study_sha256"), &json["study_sha256"]));
 }
 
-/// The number in a cell of a row that begins with this name.
+/// Returns the number in a column of the row that begins with this name.
 fn total(book: &mut Xlsx<std::io::BufReader<std::fs::File>>, sheet: &str, name: &str, column: &str) -> f64 {
     let range = book.worksheet_range(sheet).unwrap();
     let is = |data: &Data, text: &str| matches!(data, Data::String(found) if found == text);
@@ -332,10 +332,10 @@ fn the_stack_has_formulas_with_their_values() {
     let number = |pointer: &str| one.pointer(pointer).unwrap().as_f64().unwrap();
     let formulas: Vec<String> =
         book.worksheet_formula("Stack").unwrap().used_cells().map(|cell| cell.2.clone()).collect();
-    // Four dimensions of six formulas each, a constant of two, five totals of four, and Cpk.
+    // Four dimensions with six formulas each, a constant with two, five totals with four, and Cpk.
     assert!(formulas.len() == 47 && formulas.iter().any(|formula| formula.contains("SUMSQ")), "{formulas:?}");
     let [low, high] = [number("/worst_case/linear/0"), number("/worst_case/linear/1")];
-    // Sums of five numbers below 100, in another order: some units in the last place.
+    // Sums of five numbers below 100 in another order: some units in the last place.
     const CLOSE: f64 = 1e-13;
     let mut is =
         |row: &str, column: &str, expected: f64| close(total(&mut book, "Stack", row, column), expected, CLOSE, 100.0);
@@ -348,9 +348,9 @@ fn the_stack_has_formulas_with_their_values() {
     is("second order, 3 sigma", "half band", 3.0 * number("/sigma"));
     is("Cpk", "middle", number("/cpk"));
     is("gear", "standard dev", 0.01);
-    // A third of the range of a uniform distribution by sqrt 3.
+    // Uniform distribution: a third of the range times sqrt 3.
     is("lip", "standard dev", 0.035 / 3f64.sqrt());
-    // The shim does not vary, and is what is left.
+    // The shim does not vary, and makes the remainder.
     is("constant", "nominal", -0.5);
 }
 
@@ -363,7 +363,7 @@ fn what_a_sheet_cannot_compute_is_a_number() {
     let (json, mut book, _) = reported(folder.path(), study);
     assert_eq!(book.sheet_names()[..3], ["Stack a_b__1_", "Stack sum", "Stack A_B__1_ 2"]);
     let number = |place: usize, key: &str| json["characteristics"][place][key].as_f64().unwrap();
-    // The product bends: its tangent is live, its moments are those of the report.
+    // The product is nonlinear: the tangent has formulas, the moments are those of the report.
     let sheet = "Stack a_b__1_";
     close(
         total(&mut book, sheet, "first order, 3 sigma", "half band"),
@@ -372,7 +372,7 @@ fn what_a_sheet_cannot_compute_is_a_number() {
         1.0,
     );
     assert_eq!(total(&mut book, sheet, "second order, 3 sigma, as reported", "half band"), 3.0 * number(0, "sigma"));
-    // The sum varies more than its parts alone.
+    // The sum varies more than its parts would independently.
     assert_eq!(total(&mut book, "Stack sum", "rss, as reported", "half band"), number(1, "rss"));
     let worst = total(&mut book, "Stack sum", "worst case", "half band");
     close(worst, 0.8, 1e-13, 1.0);
@@ -405,12 +405,12 @@ fn a_stack_goes_round() {
     let second = std::fs::read_to_string(at("second.toml")).unwrap();
     let keys = |text: &str| text.lines().filter(|line| !line.starts_with('#')).map(str::to_owned).collect::<Vec<_>>();
     assert_eq!(keys(&first), keys(&second));
-    // And with a sigma of its own, without a band, and fixed.
+    // A dimension with a sigma of its own, one without a band, and a fixed one.
     let study = STACK.replace("=HYPERLINK(A1)", "housing");
     let (_, _, book) = reported(folder.path(), &study);
     let again = imported(&book, &["--name", "play"]);
     for (found, expected) in figures(&again).into_iter().zip(figures(&study)) {
-        // Sums in the same order; the formula is written otherwise.
+        // Sums in the same order; the formula has another form.
         close(found, expected, 1e-14, 100.0);
     }
 }
@@ -435,7 +435,7 @@ fn workbooks_are_written_as_other_files_are() {
     assert!(error.contains("x.xlsx") && !Path::new(&at("x.xlsx")).exists(), "{error}");
     let [_, error] = run(2, &["analyze", &at("a.toml"), "--xlsx", &at("nowhere/x.xlsx")]);
     assert!(error.contains("there is no folder"), "{error}");
-    // Nothing is left over beside the file.
+    // No temporary file is left beside the workbook.
     run(0, &["analyze", &at("a.toml"), "--xlsx", &at("x.xlsx")]);
     let left = std::fs::read_dir(folder.path())
         .unwrap()

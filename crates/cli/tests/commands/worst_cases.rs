@@ -1,11 +1,11 @@
-//! Worst cases that a terminal shows, beside the extremes of the model.
+//! Worst cases as printed on a terminal, against the extremes of the model.
 
 use sensitol_study::Study;
 use sensitol_testing::{among, random_points, repository, vertices};
 
 use super::command::sensitol;
 
-/// The worst case that a terminal shows, and its name.
+/// Returns the printed worst cases with their names.
 fn shown(study: &str) -> Vec<(String, [f64; 2])> {
     let mut command = sensitol(&["analyze", "-q", study]);
     let output = command.output().unwrap();
@@ -21,8 +21,8 @@ fn shown(study: &str) -> Vec<(String, [f64; 2])> {
     text.lines().filter_map(of).collect()
 }
 
-/// Proven ends are rounded outward: nothing lies beyond the printed numbers, which are off by a digit at most. A linear worst case beside a
-/// product is not conservative, and not shown.
+/// Proven ends are rounded outward: no value lies beyond the printed numbers, which differ by a digit at most. A linear worst case of a
+/// product is not conservative, and is not shown.
 #[test]
 fn printed_ends_are_proven() {
     let study = Study::read(&repository("tests/data/worst-case-label.toml")).unwrap();
@@ -31,13 +31,13 @@ fn printed_ends_are_proven() {
     let names: Vec<&str> = shown.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(names, ["worst case", "proven worst case"], "a linear one, and one that is not");
     for ((name, [low, high]), [least, greatest]) in shown.iter().zip(corners) {
-        // What rounding moves by a millionth of the last digit is not outside.
+        // A difference of a millionth of the last digit is rounding.
         assert!(*low <= least + 1e-13 && greatest <= high + 1e-13, "{name}: {low} .. {high}, {least} .. {greatest}");
         assert!(least - low <= 1.01e-7 && high - greatest <= 1.01e-7, "{name}: {low} .. {high}, {least} .. {greatest}");
     }
 }
 
-/// The same of formulas at random points, at any scale.
+/// Formulas at random points, at any scale: no value lies beyond the printed ends.
 #[test]
 fn no_value_lies_beyond_printed_ends() {
     let folder = tempfile::tempdir().unwrap();
@@ -58,7 +58,7 @@ fn no_value_lies_beyond_printed_ends() {
             assert!(name.ends_with("worst case") && name != "linear worst case", "{name}");
             let slack = 1e-9 * scale;
             assert!(*low <= least + slack && greatest <= high + slack, "{text}{low} .. {high}, {least} .. {greatest}");
-            // Corners are the extremes of these: no more than two units of the last of five digits of sigma.
+            // The extremes of these formulas are at corners. The ends differ by at most two units of the last of five digits of sigma.
             assert!(
                 least - low <= 4e-5 * scale && high - greatest <= 4e-5 * scale,
                 "{text}{low} .. {high}, {least} .. {greatest}"

@@ -1,4 +1,4 @@
-//! The book of the documentation: its summary has every page, and the pages without console blocks show what is run elsewhere.
+//! The book of the documentation: its summary lists every page, and pages without console blocks show code that runs in other tests.
 
 use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
@@ -13,7 +13,7 @@ fn read(path: &str) -> String {
     std::fs::read_to_string(repository(path)).unwrap()
 }
 
-/// A path without `..`.
+/// Removes `..` from a path.
 fn normal(path: &Path) -> PathBuf {
     let mut normal = PathBuf::new();
     for part in path.components() {
@@ -41,7 +41,7 @@ fn the_book_has_every_page() {
     assert!(missing.is_empty(), "{SUMMARY} does not name {missing:?}");
 }
 
-/// The version of mdBook stands in one place, and the gate installs it from there.
+/// The version of mdBook is defined in one place, from which the gate installs it.
 #[test]
 fn the_gate_builds_the_book() {
     assert!(read(".ci/run").contains("docs/book/build --install"));
@@ -50,13 +50,13 @@ fn the_gate_builds_the_book() {
     assert_eq!(pinned, 1);
 }
 
-/// The blocks of a page in this language.
+/// Returns the blocks of a page in this language.
 fn blocks(page: &str, language: &str) -> Vec<String> {
     let fence = format!("```{language}\n");
     page.split(&fence).skip(1).map(|rest| rest.split("```").next().unwrap().to_owned()).collect()
 }
 
-/// Every block of the page for Rust is an example of rustdoc, which `cargo test` runs.
+/// Every block of the page on Rust is also an example of rustdoc, which `cargo test` runs.
 #[test]
 fn examples_in_rust_are_those_of_rustdoc() {
     let examples: BTreeSet<String> = ["src/lib.rs", "crates/study/src/lib.rs", "crates/report/src/to_document.rs"]
@@ -68,7 +68,7 @@ fn examples_in_rust_are_those_of_rustdoc() {
                 let line = line.strip_prefix("//!").or_else(|| line.strip_prefix("///"))?;
                 Some(line.strip_prefix(' ').unwrap_or(line))
             });
-            // Hidden lines are those that begin with a hash.
+            // Lines that begin with a hash are hidden.
             comments.filter(|line| !line.starts_with("# ")).collect::<Vec<_>>().join("\n")
         })
         .collect();
@@ -80,7 +80,7 @@ fn examples_in_rust_are_those_of_rustdoc() {
     }
 }
 
-/// The study that is refused stands in a folder of its own, because every study of an example can be read.
+/// The refused study is in a folder of its own, because every study of an example must be readable.
 #[test]
 fn the_page_on_units_shows_what_check_says() {
     let folder = tempfile::tempdir().unwrap();

@@ -17,7 +17,7 @@ use super::command::sensitol;
 use sensitol_testing::{generated, repository};
 
 const PAGE: &str = "docs/published-cases.md";
-/// The beginnings that a verdict may have; the page says what each one means.
+/// Allowed beginnings of a verdict, which the page explains.
 const VERDICTS: [&str; 6] = ["reproduced", "explained", "refuted", "not recoverable", "misprint", "ours"];
 
 #[test]
@@ -97,8 +97,8 @@ fn report(command: &str) -> Value {
     serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("sensitol {command}: {error}"))
 }
 
-/// The number at a place such as `F/sensitivities/R/first`; `H_req#5/nominal` is at the value 5 of a sweep,
-/// `@correlation/R/X` that of two characteristics, and `@report/cost_after` is sought from the root of the report.
+/// Returns the number at a place such as `F/sensitivities/R/first`. `H_req#5/nominal` is at the value 5 of a sweep, `@correlation/R/X` is
+/// the correlation of two characteristics, and `@report/cost_after` starts at the root of the report.
 fn found(report: &Value, place: &str) -> Option<f64> {
     if let Some(pair) = place.strip_prefix("@correlation/") {
         let between: Vec<&str> = pair.split('/').collect();
@@ -120,7 +120,7 @@ fn found(report: &Value, place: &str) -> Option<f64> {
         };
         if let Some(value) = value {
             let value: f64 = value.parse().ok()?;
-            // The steps of a sweep are rounded.
+            // Values of a sweep have rounding errors.
             let close =
                 |point: &&Value| point["at"].as_f64().is_some_and(|at| (at - value).abs() <= 1e-9 * value.abs());
             at = at["points"].as_array()?.iter().find(close)?;
@@ -129,7 +129,7 @@ fn found(report: &Value, place: &str) -> Option<f64> {
     at.as_f64()
 }
 
-/// The value of a formula of values: those of sensitol itself.
+/// Evaluates a formula of values with sensitol itself.
 fn calculated(formula: &str, values: &[(String, f64)]) -> Option<f64> {
     let constants: String = values.iter().map(|(name, value)| format!("{name} = {value:e}\n")).collect();
     let text = format!(
@@ -142,7 +142,7 @@ fn calculated(formula: &str, values: &[(String, f64)]) -> Option<f64> {
     out.value(0, 0)
 }
 
-/// A text with its values filled in.
+/// Fills values into a text.
 fn filled(text: &str, values: &[(String, f64)]) -> String {
     let mut parts = text.split('{');
     let mut filled = parts.next().unwrap().to_owned();
@@ -155,7 +155,7 @@ fn filled(text: &str, values: &[(String, f64)]) -> String {
     filled
 }
 
-/// Charts of the page are what their commands draw: `sensitol ... --svg docs/figures/NAME.svg` stands with each.
+/// Charts of the page equal the output of their commands: `sensitol ... --svg docs/figures/NAME.svg` stands with each.
 #[test]
 fn charts_are_drawn_by_their_commands() {
     let page = std::fs::read_to_string(repository(PAGE)).unwrap();

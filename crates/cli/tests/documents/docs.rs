@@ -13,7 +13,7 @@ use super::reference;
 use super::report_reference;
 use sensitol_testing::{INSTALLED, data, generated, repository};
 
-/// Console blocks of the README, the documents and every example, run from the repository's root; none leaves anything out.
+/// Console blocks of the README, the documents and every example, run from the repository's root. None of them is shortened.
 #[test]
 fn console_blocks_are_real() {
     for document in documents() {
@@ -33,7 +33,7 @@ fn read(path: &str) -> String {
     std::fs::read_to_string(repository(path)).unwrap()
 }
 
-/// The first block of this language in a Markdown file.
+/// Returns the first block of this language in a Markdown file.
 fn block<'t>(text: &'t str, language: &str) -> &'t str {
     let start = text.find(&format!("```{language}\n")).unwrap() + language.len() + 4;
     &text[start..start + text[start..].find("```").unwrap()]
@@ -46,7 +46,7 @@ fn the_study_in_the_readme_is_the_example() {
     assert_eq!(study.lines().count(), 6, "the README promises six lines");
 }
 
-/// The table of evaluations against errors.
+/// Table of evaluations against errors.
 #[test]
 fn the_measured_table_is_measured() {
     generated("docs/methods.md", "measured", &measured());
@@ -58,7 +58,7 @@ fn the_reference_of_study_files_is_generated() {
     page("docs/reference/study-file.md", "the_reference_of_study_files_is_generated", &reference::study_file());
 }
 
-/// Every command and option, from what is parsed.
+/// Every command and option, from the parser.
 #[test]
 fn the_reference_of_commands_is_generated() {
     page("docs/reference/commands.md", "the_reference_of_commands_is_generated", &reference::commands());
@@ -70,7 +70,7 @@ fn the_reference_of_reports_is_generated() {
     page("docs/reference/json-report.md", "the_reference_of_reports_is_generated", &report_reference::json_report());
 }
 
-/// A document is what was generated now.
+/// Checks that a document equals the generated text, or writes it.
 fn page(document: &str, test: &str, text: &str) {
     if std::env::var_os("SENSITOL_UPDATE_DOCS").is_some() {
         std::fs::write(repository(document), text).unwrap();
@@ -85,7 +85,7 @@ fn page(document: &str, test: &str, text: &str) {
     );
 }
 
-/// A method of the papers: its name there, seconds on their computer, and what it is here.
+/// Method of the papers: its name there, seconds on their computer, and the corresponding method here.
 struct Published {
     name: &'static str,
     seconds: Option<f64>,
@@ -97,8 +97,8 @@ enum Ours {
     MonteCarlo(u64),
 }
 
-/// The trade of evaluations against accuracy beside the times of Table 7 of the stacked-blocks paper, whose computer time is
-/// that of the CAD system: a time there is a number of evaluations here.
+/// Evaluations against accuracy, beside the times of Table 7 of the stacked-blocks paper. Its computer time is that of the CAD system, so
+/// a time there corresponds to a number of evaluations here.
 #[test]
 fn the_trade_beside_the_paper_is_measured() {
     let method = |name, seconds, method| Published { name, seconds, ours: Ours::Method(method) };
@@ -207,12 +207,12 @@ fn measured() -> String {
     table
 }
 
-/// An error to its first digit, and what is below the reference's own error as that.
+/// Formats an error with its first digit. Values below the reference's own error are printed as that bound.
 fn one_digit(error: f64) -> String {
     if error < 1e-8 { "<1e-8".to_owned() } else { format!("{error:.0e}") }
 }
 
-/// The examples that the suite leaves to `tests/adapters/run` are shown there.
+/// Examples that only `tests/adapters/run` executes are shown there.
 #[test]
 fn examples_that_need_an_installation_are_run_elsewhere() {
     let scripts = ["freecad", "spreadsheet", "opencascade", "um_bridge", "octave", "fmi", "cluster"]
@@ -234,7 +234,7 @@ fn every_example_is_described() {
     }
 }
 
-/// Every document of the repository, by its path in it.
+/// Returns the paths of all documents in the repository.
 pub fn documents() -> Vec<String> {
     let examples = std::fs::read_dir(repository("examples")).unwrap();
     let of_example = |folder: std::io::Result<std::fs::DirEntry>| {
@@ -263,14 +263,14 @@ pub fn documents() -> Vec<String> {
     own.into_iter().chain(pages).chain(examples.map(of_example)).collect()
 }
 
-/// The Markdown files of a folder.
+/// Returns the Markdown files of a folder.
 fn pages(folder: &str) -> Vec<String> {
     let files = std::fs::read_dir(repository(folder)).unwrap();
     let names = files.map(|file| file.unwrap().file_name().into_string().unwrap());
     names.filter(|name| name.ends_with(".md")).map(|name| format!("{folder}/{name}")).collect()
 }
 
-/// The index names every page.
+/// The index lists every page.
 #[test]
 fn the_index_has_every_page() {
     let index = read("docs/README.md");
@@ -280,7 +280,7 @@ fn the_index_has_every_page() {
     }
 }
 
-/// Every code of a warning has its entry, and every entry is of a code.
+/// Every warning code has an entry, and every entry has a code.
 #[test]
 fn every_warning_is_explained() {
     let codes: BTreeSet<&str> = Warning::CODES.iter().copied().collect();

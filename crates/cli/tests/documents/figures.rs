@@ -1,5 +1,5 @@
-//! Figures in the sentences of the documents are those that the program finds now: each sentence is written here with its
-//! figures left out, filled in, and sought on its page.
+//! Figures in sentences of the documents equal the present results. Each sentence is written here without its figures, filled in, and
+//! searched on its page.
 
 use sensitol::simulation::{SimulationOptions, simulate};
 use serde_json::Value;
@@ -11,13 +11,13 @@ const TUTORIAL: &str = "docs/tutorial.md";
 const TRUST: &str = "docs/how-to/trust-a-result.md";
 const MEASURED: &str = "docs/how-to/measured-data.md";
 
-/// The JSON that a command prints.
+/// Returns the JSON that a command prints.
 fn json(arguments: &[&str]) -> Value {
     let output = sensitol(&[arguments, &["--json", "-q"]].concat()).output().unwrap();
     serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{arguments:?}: {error}"))
 }
 
-/// The first characteristic of a report.
+/// Returns the first characteristic of a report.
 fn first(arguments: &[&str]) -> Value {
     json(arguments)["characteristics"][0].clone()
 }
@@ -80,7 +80,7 @@ fn the_tutorial_reads_its_output_right() {
     says(TUTORIAL, &format!("the error of that yield is {error:.3} %."));
 }
 
-/// The requirements of the first study, the costs of its tolerances, and the model's answers on them.
+/// Requirements of the first study, costs of its tolerances, and results of the model for them.
 #[test]
 fn the_tutorials_requirements_were_tried() {
     let study = std::fs::read_to_string(repository("examples/first-study/study.toml")).unwrap();
@@ -120,11 +120,11 @@ fn the_tails_are_those_of_the_studies() {
     };
     let model = format!("{}, {}", of_rare("below", 0), of_rare("above", 1));
     says(TRUST, &format!("| {own} | {} |", others.replace("{}", &model)));
-    // By sampling of another program, as `tests/data/two-suppliers.info.json` tells.
+    // Sampled by another program, as described in `tests/data/two-suppliers.info.json`.
     let (own, others) = analyzed("examples/two-suppliers/study.toml");
     let truth = ppm(&sensitol_testing::data("two-suppliers.json"));
     says(TRUST, &format!("| {own} | {} |", others.replace("{}", &truth)));
-    // A thousand good points: Clopper and Pearson's bound, as `simulate` has it.
+    // A thousand good points: Clopper and Pearson's bound, as in `simulate`.
     let least = 100.0 * 0.025_f64.powf(1e-3);
     says(TRUST, &format!("A yield of 100 % in 1000 points means above {least:.1} %, no more."));
     let study = sensitol_study::Study::read(&repository("examples/thermal-clearance/study.toml")).unwrap();

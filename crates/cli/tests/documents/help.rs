@@ -1,5 +1,5 @@
-//! The command line as a whole: every command has its help, an example that can be typed, and an error with its exit code;
-//! completions load and the manual page is set without a warning.
+//! The whole command line: every command has its help, an example that can be typed, and an error with its exit code. Completions load,
+//! and the manual page is typeset without a warning.
 
 use std::collections::BTreeSet;
 use std::io::Write;
@@ -10,7 +10,7 @@ use super::command::{run, sensitol};
 use super::reference::{all, examples};
 use sensitol_testing::repository;
 
-/// The words of every command: `["journal", "show"]`.
+/// Returns the words of every command, such as `["journal", "show"]`.
 fn commands() -> Vec<Vec<String>> {
     let words = |command: &clap::Command| -> Vec<String> {
         command.get_bin_name().unwrap().split(' ').skip(1).map(str::to_owned).collect()
@@ -18,7 +18,7 @@ fn commands() -> Vec<Vec<String>> {
     all(&sensitol_cli::command()).iter().map(words).collect()
 }
 
-/// Says on the terminal, whatever is captured, that something could not be tested.
+/// Prints on the terminal, even if output is captured, that something could not be tested.
 #[expect(clippy::explicit_write, reason = "what eprintln! says is not shown when a test passes")]
 pub fn skipped(what: &str) {
     writeln!(std::io::stderr(), "SKIPPED: {what}").unwrap();
@@ -39,7 +39,7 @@ fn every_command_has_help() {
     insta::assert_snapshot!("help-of-journal", run(&["journal", "--help"]));
 }
 
-/// `-h` has the options of every day and fits a window; `--help` has all of them, with more to say.
+/// `-h` lists the common options and fits into a window. `--help` lists all of them, with longer texts.
 #[test]
 fn short_help_fits_a_window() {
     for words in commands() {
@@ -48,7 +48,7 @@ fn short_help_fits_a_window() {
             let output = sensitol(&arguments).env("COLUMNS", "100").output().unwrap();
             String::from_utf8(output.stdout).unwrap().lines().count()
         });
-        // The lines of a terminal that takes the height of a common screen.
+        // Lines of a terminal with the height of a common screen.
         assert!(short <= 60, "{words:?}: {short} lines");
         assert!(short < long || long <= 60, "{words:?}: {short} lines and {long}");
     }
@@ -57,7 +57,7 @@ fn short_help_fits_a_window() {
     assert!(short.contains("see more with '--help'"), "{short}");
 }
 
-/// One mistake that is likely with each command: exit code 2, nothing on stdout.
+/// One likely mistake for each command: exit code 2, nothing on stdout.
 #[test]
 fn every_command_refuses_what_is_wrong() {
     let wrong: &[&[&str]] = &[
@@ -104,7 +104,7 @@ fn every_command_refuses_what_is_wrong() {
     }
 }
 
-/// Every example is of its command, can be parsed, and names files of the repository where it names any of `examples`.
+/// Every example belongs to its command and can be parsed. Files below `examples` that it names exist.
 #[test]
 fn every_command_has_an_example_that_can_be_typed() {
     for command in all(&sensitol_cli::command()) {
@@ -113,7 +113,7 @@ fn every_command_has_an_example_that_can_be_typed() {
         assert!(!lines.is_empty(), "{name} has no `Examples:`");
         for line in lines {
             assert!(line.starts_with(name), "{name}: {line}");
-            // The line as a shell reads it: only our own commands are parsed, without their redirection.
+            // Split as a shell does. Only commands of this program are parsed, without their redirection.
             for part in line.split(" && ").flat_map(|part| part.split(" | ")) {
                 let own = part.split(" > ").next().unwrap();
                 let words: Vec<&str> = own.split_whitespace().collect();
@@ -129,7 +129,7 @@ fn every_command_has_an_example_that_can_be_typed() {
     }
 }
 
-/// The output of this shell for a script that is given on the command line, with the completions of its kind in its folder.
+/// Returns the output of a shell for a script on the command line, with the completions for this shell in its folder.
 fn shell(folder: &Path, name: &str, arguments: &[&str]) -> Option<String> {
     let output = sensitol(&["completions", name]).output().unwrap();
     assert!(output.status.success());
@@ -167,7 +167,7 @@ fn the_manual_page_is_set_without_a_warning() {
     if !installed("groff") {
         return skipped("the setting of the manual page: groff is not installed");
     }
-    // Plain text: no overstriking, no escapes.
+    // Plain text without overstriking and escapes.
     let mut groff = Command::new("groff")
         .args(["-man", "-ww", "-Tutf8", "-P-cbou"])
         .stdin(Stdio::piped())
@@ -193,7 +193,7 @@ fn the_manual_page_is_set_without_a_warning() {
     ] {
         assert!(set.lines().any(|line| line == section), "{section}: {set}");
     }
-    // Lines are set to one width: spaces between words do not count.
+    // Lines are justified: spaces between words do not count.
     let words = set.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(words.contains("The open, CAD-agnostic parametric tolerance engine"), "{set}");
 }

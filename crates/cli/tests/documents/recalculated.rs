@@ -17,7 +17,7 @@ const STUDY: &str = "[dimensions]\ndepth = { nominal = 84.6, tolerance = 0.1, un
                      gear = { nominal = 18.5, tolerance = 0.0625, sigma = 0.01, unit = \"mm\" }\nring = { nominal = 2, sigma = 0.02, unit = \"mm\" }\n\
                      [characteristics]\nplay = { formula = \"depth - lip - 0.5*gear - ring\", unit = \"mm\", lower = 68.9, upper = 69.6 }\n";
 
-/// Formulas are computed when a file is opened, whatever values it has.
+/// Setting of LibreOffice to compute formulas when a file is opened, whatever values it has.
 const ALWAYS: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 <oor:items xmlns:oor="http://openoffice.org/2001/registry" xmlns:xs="http://www.w3.org/2001/XMLSchema" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance">
 <item oor:path="/org.openoffice.Office.Calc/Formula/Load"><prop oor:name="OOXMLRecalcMode" oor:op="fuse"><value>0</value></prop></item>
@@ -46,7 +46,7 @@ fn converted(file: &Path, format: &str) -> std::path::PathBuf {
     made
 }
 
-/// The number in this column of the row that begins with this name.
+/// Returns the number in a column of the row that begins with this name.
 fn cell(path: &Path, name: &str, column: &str) -> f64 {
     let mut book: Xlsx<_> = open_workbook(path).unwrap();
     let range = book.worksheet_range("Stack").unwrap();
@@ -60,7 +60,7 @@ fn cell(path: &Path, name: &str, column: &str) -> f64 {
     }
 }
 
-/// Every total of the sheet against the only characteristic of a report.
+/// Compares every total of the sheet with the only characteristic of a report.
 #[track_caller]
 fn same(path: &Path, report: &Value) {
     let one = &report["characteristics"][0];
@@ -93,7 +93,7 @@ fn libreoffice_computes_the_same_stack() {
     };
     let as_it_was = report(STUDY);
     same(&at("stack.xlsx"), &as_it_was);
-    // As text, in which an input can be changed: both deviations of a dimension, of which the formulas know.
+    // Saved as text, in which an input can be changed: both deviations of a dimension.
     let flat = converted(&at("stack.xlsx"), "fods");
     let text = std::fs::read_to_string(&flat).unwrap();
     std::fs::write(at("stack.fods"), &text).unwrap();
@@ -101,7 +101,7 @@ fn libreoffice_computes_the_same_stack() {
     let changed = text
         .replace("office:value=\"0.0625\"", "office:value=\"0.1875\"")
         .replace("office:value=\"-0.0625\"", "office:value=\"-0.1875\"");
-    // Input and result of the half band.
+    // Input and result of the half-width.
     assert!(text.matches("\"0.0625\"").count() >= 2 && changed != text);
     std::fs::write(at("stack.fods"), changed).unwrap();
     same(&converted(&at("stack.fods"), "xlsx"), &report(&STUDY.replace("0.0625", "0.1875")));

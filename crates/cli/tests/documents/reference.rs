@@ -1,4 +1,4 @@
-//! The pages of `docs/reference` that are made from the program: study files from their schema, commands from what is parsed.
+//! Pages of `docs/reference` that are generated from the program: study files from their schema, commands from the parser.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -8,7 +8,7 @@ use sensitol_study::Study;
 use sensitol_testing::{example_studies, repository};
 use serde_json::Value;
 
-/// A cell of a table: no line ends, no bars.
+/// Removes line ends and bars, which a cell of a table cannot have.
 fn cell(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ").replace('|', "\\|")
 }
@@ -17,7 +17,7 @@ fn code(text: &str) -> String {
     format!("`{text}`")
 }
 
-/// The study that stands on top of the page.
+/// Study shown on top of the page.
 const SHOWN: &str = "examples/stacked-blocks/study.toml";
 
 /// `docs/reference/study-file.md`.
@@ -56,10 +56,10 @@ pub fn study_file() -> String {
     page.text.trim_end().to_owned() + "\n"
 }
 
-/// Three examples at most that have this section.
+/// Lists at most three examples that have this section.
 fn in_use(section: &str) -> String {
     let mut studies = example_studies();
-    // The main study of an example before its variants.
+    // The main study of an example comes before its variants.
     studies.sort_by_key(|(folder, path)| (folder.clone(), !path.ends_with("study.toml"), path.clone()));
     let has = |path: &std::path::Path| {
         let text = std::fs::read_to_string(path).unwrap();
@@ -77,11 +77,11 @@ fn in_use(section: &str) -> String {
     format!("In use: {}.\n\n", links.join(", "))
 }
 
-/// The tables of keys, as they are found.
+/// Tables of keys, in the order in which they are found.
 struct Keys<'s> {
     defs: &'s Value,
     text: String,
-    /// The values that have been shown, and where.
+    /// Values that have been shown, with their headings.
     done: Vec<(&'s Value, String)>,
 }
 
@@ -93,7 +93,7 @@ impl<'s> Keys<'s> {
         }
     }
 
-    /// The tables with keys of their own that a value may be, or consist of.
+    /// Returns the tables with keys that a value may be, or consist of.
     fn objects(&self, value: &'s Value) -> Vec<&'s Value> {
         let value = self.resolved(value);
         if value.get("properties").is_some() {
@@ -105,7 +105,7 @@ impl<'s> Keys<'s> {
         parts.chain(within).flat_map(|part| self.objects(part)).collect()
     }
 
-    /// The keys below a value, and what stands below them.
+    /// Writes the keys below a value, then the tables below these.
     fn section(&mut self, value: &'s Value, path: &str) {
         let objects = self.objects(value);
         if objects.is_empty() {
@@ -136,10 +136,10 @@ impl<'s> Keys<'s> {
         }
     }
 
-    /// Where a value's keys stand, when they do: its tables are those of a value that has been shown.
+    /// Returns the heading under which a value's keys are already shown, if its tables equal those of an earlier value.
     fn place(&self, value: &Value) -> Option<&str> {
         let same = |one: &Value| {
-            // Descriptions of the keys differ; what may stand there does not.
+            // Keys may have different descriptions with the same content.
             let bare = |value: &Value| {
                 let mut value = value.clone();
                 value.as_object_mut().unwrap().remove("description");
@@ -150,7 +150,7 @@ impl<'s> Keys<'s> {
         self.done.iter().find(|(one, _)| same(one)).map(|(_, path)| path.as_str())
     }
 
-    /// A table of keys.
+    /// Writes a table of keys.
     fn keys(&mut self, object: &'s Value, path: &str) {
         if let Some(one_of) = object["oneOf"].as_array() {
             let keys: Vec<String> = one_of.iter().map(|form| code(form["required"][0].as_str().unwrap())).collect();
@@ -172,7 +172,7 @@ impl<'s> Keys<'s> {
         self.text.push('\n');
     }
 
-    /// Tables that differ by their kind: who has which keys, and what these are.
+    /// Writes tables that differ by their kind: the keys of each kind, then the meaning of the keys.
     fn kinds(&mut self, kinds: &[&'s Value]) {
         self.text += "| kind | keys beside `kind` |\n|---|---|\n";
         let mut all: BTreeMap<&str, &Value> = BTreeMap::new();
@@ -192,13 +192,13 @@ impl<'s> Keys<'s> {
         self.text.push('\n');
     }
 
-    /// Its meaning, in its own words or those of its type.
+    /// Returns the description of a value, or that of its type.
     fn about(&self, value: &'s Value) -> String {
         let own = value["description"].as_str().or_else(|| self.resolved(value)["description"].as_str());
         own.unwrap_or_else(|| panic!("no description: {value}")).to_owned()
     }
 
-    /// The values that may stand there.
+    /// Returns the values that a key may have.
     fn kind(&self, value: &'s Value) -> String {
         let value = self.resolved(value);
         if let Some(forms) = value["anyOf"].as_array().or_else(|| value["allOf"].as_array()) {
@@ -284,12 +284,12 @@ pub fn commands() -> String {
     page
 }
 
-/// The lines of text as paragraphs of a document.
+/// Joins the lines of each paragraph.
 fn paragraphs(text: &str) -> String {
     text.split("\n\n").map(cell).collect::<Vec<_>>().join("\n\n")
 }
 
-/// Every command that does something, in the order of the help.
+/// Returns every command that does something, in the order of the help.
 pub fn all(command: &Command) -> Vec<Command> {
     let mut found = Vec::new();
     for one in command.get_subcommands().filter(|one| one.get_name() != "help") {
@@ -301,7 +301,7 @@ pub fn all(command: &Command) -> Vec<Command> {
     found
 }
 
-/// The lines below `Examples:` in a command's help.
+/// Returns the lines below `Examples:` in a command's help.
 pub fn examples(command: &Command) -> Vec<String> {
     let text = command.get_after_help().map(|text| text.to_string()).unwrap_or_default();
     let lines =
@@ -309,7 +309,7 @@ pub fn examples(command: &Command) -> Vec<String> {
     lines.unwrap_or_default()
 }
 
-/// The meaning of an option, and its default: `[default: ..]` within the help, or the parser's.
+/// Returns the meaning of an option and its default: `[default: ..]` within the help, or the parser's default.
 fn help(one: &Arg) -> (String, String) {
     let text = one.get_long_help().or(one.get_help()).unwrap().to_string();
     let of_parser: Vec<String> = one.get_default_values().iter().map(|value| code(value.to_str().unwrap())).collect();
@@ -323,7 +323,7 @@ fn help(one: &Arg) -> (String, String) {
     }
 }
 
-/// A table of options; words that have a meaning of their own are left to the page's end.
+/// Writes a table of options. Words with a meaning of their own are explained at the end of the page.
 fn options<'a>(
     page: &mut String,
     arguments: impl Iterator<Item = &'a Arg>,

@@ -1,4 +1,4 @@
-//! `docs/reference/json-report.md`, made from the schema of reports.
+//! `docs/reference/json-report.md`, generated from the schema of reports.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -14,14 +14,14 @@ const INTRODUCTION: &str = "# JSON reports\n\n\
     - Several studies in one call give a list: each report has the key `study`, or it is `{ \"study\": .., \"error\": .. }`.\n\
     - Exit codes are those of the text report: [commands](commands.md).\n\n";
 
-/// The page.
+/// Returns the text of the page.
 pub fn json_report() -> String {
     let output = sensitol(&["schema", "--report"]).output().unwrap();
     let schema: Value = serde_json::from_slice(&output.stdout).unwrap();
     let mut page = Page { defs: &schema["$defs"], text: INTRODUCTION.to_owned(), done: Vec::new() };
     for command in schema["anyOf"].as_array().unwrap() {
         let name = name(command).unwrap();
-        // The same reports once more, in a list.
+        // The list of several reports contains no new keys.
         if name == "analyze-several" {
             continue;
         }
@@ -36,7 +36,7 @@ pub fn json_report() -> String {
     page.text.trim_end().to_owned() + "\n"
 }
 
-/// The target of a reference.
+/// Returns the target of a reference.
 fn name(value: &Value) -> Option<&str> {
     value["$ref"].as_str().map(|path| path.strip_prefix("#/$defs/").unwrap())
 }
@@ -44,7 +44,7 @@ fn name(value: &Value) -> Option<&str> {
 struct Page<'s> {
     defs: &'s Value,
     text: String,
-    /// Tables of keys that have been shown, and their headings.
+    /// Tables of keys that have been shown, with their headings.
     done: Vec<(Vec<&'s Value>, String)>,
 }
 
@@ -56,14 +56,14 @@ impl<'s> Page<'s> {
         value
     }
 
-    /// The alternatives that a value is one of.
+    /// Returns the alternatives of a value.
     fn forms(&self, value: &'s Value) -> Vec<&'s Value> {
         let value = self.resolved(value);
         let parts = ["anyOf", "oneOf", "allOf"].iter().find_map(|key| value[*key].as_array());
         parts.map_or(vec![value], |parts| parts.iter().flat_map(|part| self.forms(part)).collect())
     }
 
-    /// The objects with keys of their own that a value may be, or is a list of.
+    /// Returns the objects with keys that a value may be, or is a list of.
     fn objects(&self, value: &'s Value) -> Vec<&'s Value> {
         let mut found = Vec::new();
         for form in self.forms(value) {
@@ -76,7 +76,7 @@ impl<'s> Page<'s> {
         found
     }
 
-    /// A table of the keys that these objects have, and then the tables of those that are objects themselves.
+    /// Writes a table of the keys of these objects, then the tables of keys that are objects themselves.
     fn section(&mut self, objects: &[&'s Value], path: &str) {
         let mut keys: BTreeMap<&str, Vec<&'s Value>> = BTreeMap::new();
         for object in objects {
@@ -109,7 +109,7 @@ impl<'s> Page<'s> {
         }
     }
 
-    /// The first paragraph of a description, in the words of JSON.
+    /// Returns the first paragraph of a description, with JSON words.
     fn about(&self, value: &'s Value) -> String {
         let text = value["description"].as_str().or_else(|| self.resolved(value)["description"].as_str());
         let text = text.unwrap_or_default().split("\n\n").next().unwrap();
@@ -117,7 +117,7 @@ impl<'s> Page<'s> {
         without_links(&words).replace("None", "null").replace('|', "\\|")
     }
 
-    /// The types that one of these values may have.
+    /// Returns the types that one of these values may have.
     fn kind(&self, values: &[&'s Value]) -> String {
         let mut kinds: Vec<String> = Vec::new();
         for form in values.iter().copied().flat_map(|value| self.forms(value)) {
@@ -160,13 +160,13 @@ impl<'s> Page<'s> {
     }
 }
 
-/// The anchor of a heading, as code hosts and mdBook make it.
+/// Returns the anchor of a heading in the form of code hosts and mdBook.
 fn anchor(heading: &str) -> String {
     let kept = heading.to_lowercase().replace(' ', "-");
     kept.chars().filter(|letter| letter.is_alphanumeric() || "-_".contains(*letter)).collect()
 }
 
-/// Links of rustdoc lead nowhere here: their text stays.
+/// Replaces links of rustdoc, which have no target here, by their text.
 fn without_links(text: &str) -> String {
     let mut left = text;
     let mut plain = String::new();

@@ -10,10 +10,10 @@ use std::process::Command;
 use super::reference::all;
 use sensitol_testing::repository;
 
-/// Clears the screen, sets the window's title, rings, goes back, turns the direction; C1 codes do so in one character.
+/// Text that clears the screen, sets the window's title, rings, moves back and turns the direction. C1 codes do so in one character.
 const HOSTILE: &str = "\u{1b}[2J\u{1b}]0;title\u{7}\u{8}\u{202e}\u{2066}\u{9b}2J\u{9d}x\u{9c}";
 
-/// The output of a command on a terminal.
+/// Returns the output of a command on a terminal.
 fn shown(folder: &Path, arguments: &[&str]) -> String {
     let output = Command::new("python3")
         .arg(repository("tests/children/on_terminal.py"))
@@ -29,7 +29,7 @@ fn shown(folder: &Path, arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// The first thing that is no colour and no move of a progress bar within its own lines.
+/// Returns the first sequence that is neither a colour nor a move of a progress bar within its own lines.
 fn obeyed(shown: &str) -> Option<String> {
     let mut rest = shown;
     while let Some(c) = rest.chars().next() {
@@ -37,7 +37,7 @@ fn obeyed(shown: &str) -> Option<String> {
         if let Some(after) = rest.strip_prefix("\u{1b}[") {
             let parameters = after.trim_start_matches(|c: char| c.is_ascii_digit() || matches!(c, ';' | '?'));
             let last = parameters.chars().next()?;
-            // Colours, the cursor of a bar: clear the line (K), up and down (A, B), to a column (G), shown or hidden (h, l).
+            // Allowed: colours, and the cursor of a bar: clear the line (K), up and down (A, B), to a column (G), shown or hidden (h, l).
             if !matches!(last, 'm' | 'K' | 'A' | 'B' | 'G' | 'h' | 'l') {
                 return Some(rest.chars().take(8).collect());
             }
@@ -53,7 +53,7 @@ fn obeyed(shown: &str) -> Option<String> {
     None
 }
 
-/// TOML's own escapes.
+/// Escapes every letter for TOML.
 fn escaped(text: &str) -> String {
     text.chars().map(|c| format!("\\u{:04X}", c as u32)).collect()
 }
@@ -79,14 +79,14 @@ fn no_command_obeys_a_name() {
          gap = {{ formula = \"a + sqrt(a - 9.8)\", lower = 9, require = {{ cpk = 0.5 }}, unit = \"{hidden}\" }}\n\
          [costs]\na = {{ model = \"reciprocal\", b = 1 }}\n"
     );
-    // A name that no message may repeat as it is.
+    // A name that must not appear unchanged in any message.
     let bad = format!("{texts}[characteristics]\n\"y{hidden}\" = {{ formula = \"a + `{hidden}`\" }}\n");
     let json =
         format!("{{\"title\": \"{hidden}\", \"dimensions\": {{\"a{hidden}\": {{\"nominal\": 1}}}}, \"{hidden}\": 1}}");
     std::fs::write(at("good.toml"), &good).unwrap();
     std::fs::write(at("bad.toml"), bad).unwrap();
     std::fs::write(at("bad.json"), json).unwrap();
-    // A model that greets, fails and writes to stderr with the same.
+    // A model that sends the same text as greeting, as failure and on stderr.
     let said = serde_json::to_string(HOSTILE).unwrap();
     std::fs::write(
         at("model.py"),
@@ -102,7 +102,7 @@ fn no_command_obeys_a_name() {
         "{texts}[characteristics]\ngap = {{ lower = 9 }}\n[model]\ncommand = [\"python3\", \"model.py\", \"{hidden}\"]\nretries = 0\n"
     );
     std::fs::write(at("model.toml"), model).unwrap();
-    // A file whose own name is hostile: what a shell's `*.toml` hands over.
+    // A file with a hostile name, as the `*.toml` of a shell returns it.
     let file = format!("{}.toml", HOSTILE.replace('/', ""));
     std::fs::write(at(&file), &good).unwrap();
     let option = format!("--{HOSTILE}");

@@ -1,11 +1,11 @@
-//! Plain words: patterns that make readers read twice stay out of what users see first, and do not spread elsewhere.
+//! Plain words: sentence patterns that need a second reading do not occur in first pages, and do not spread elsewhere.
 
 use std::path::{Path, PathBuf};
 
 use assert_cmd::Command;
 use sensitol_testing::repository;
 
-/// A pattern, why it is one, and how often it may still stand in documents and comments: a change lowers the number, and none raises it.
+/// Pattern with its reason, and the most occurrences in documents and comments. Changes may lower the number, never raise it.
 struct Pattern {
     name: &'static str,
     why: &'static str,
@@ -37,7 +37,7 @@ const WHAT: usize = 6;
 const NOBODY: usize = 0;
 const IS_NO: usize = 17;
 
-/// Sentences and comments that begin with `What` and are no questions.
+/// Counts sentences and comments that begin with `What` and are not questions.
 fn what(text: &str) -> usize {
     let mut found = 0;
     for (at, _) in text.match_indices("What ") {
@@ -49,7 +49,7 @@ fn what(text: &str) -> usize {
     found
 }
 
-/// The first pages of a new user.
+/// First pages of a new user.
 const FIRST: [&str; 6] = [
     "README.md",
     "docs/commands.md",
@@ -91,8 +91,8 @@ fn the_readme_is_short() {
     assert!(install <= 10, "line {install}");
 }
 
-/// The default report of a characteristic takes 25 lines at most, and no line is wider than 80 columns, in every example of formulas and
-/// built-in models.
+/// In every example of formulas and built-in models, the default report of a characteristic takes at most 25 lines, of at most 80
+/// columns.
 #[test]
 fn default_reports_are_short() {
     let mut wide = Vec::new();
@@ -106,7 +106,7 @@ fn default_reports_are_short() {
             .output()
             .unwrap();
         let report = String::from_utf8(output.stdout).unwrap();
-        // A section begins at the margin and ends where the next one does.
+        // A section begins at the margin and ends at the next one.
         let mut section = Vec::new();
         for line in report.lines() {
             if !line.starts_with(' ') && !line.is_empty() {
@@ -131,7 +131,7 @@ fn the_patterns_do_not_spread() {
     for pattern in &PATTERNS {
         let count: usize = texts.iter().map(|text| (pattern.found)(text)).sum();
         assert!(count <= pattern.most, "{}: {count} of at most {}: {}", pattern.name, pattern.most, pattern.why);
-        // A number that is far too large holds nothing.
+        // A number that is far too large would permit new occurrences.
         assert!(count + 20 >= pattern.most, "{}: {count}; lower the number from {}", pattern.name, pattern.most);
     }
 }
@@ -140,7 +140,7 @@ fn walk(folder: &Path, texts: &mut Vec<String>) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path: PathBuf = entry.unwrap().path();
         if path.ends_with("docs/reference/tuning.md") {
-            // It repeats comments that stand in `src`.
+            // The page repeats comments of `src`.
             continue;
         }
         if path.is_dir() {

@@ -1,4 +1,4 @@
-//! Models that remember the points before: no wrong number without a word. The child is `tests/children/flips.c`.
+//! Models that remember earlier points: no wrong number without a warning. The child is `tests/children/flips.c`.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -13,7 +13,7 @@ use sensitol_external::journal::Journaled;
 use super::command::sensitol;
 use sensitol_testing::{child_in_c, repository};
 
-/// Seeds of every kind of model.
+/// Number of seeds for every kind of model.
 const SEEDS: usize = 40;
 const DIMENSIONS: usize = 4;
 
@@ -21,7 +21,7 @@ fn process(mode: &str, seed: usize) -> Process {
     with(mode, seed, true)
 }
 
-/// Without sentinels, which would hide what a probe looks for.
+/// Returns a model without sentinels, which would hide the differences that a probe looks for.
 fn probed(mode: &str, seed: usize) -> Process {
     with(mode, seed, false)
 }
@@ -33,7 +33,7 @@ fn with(mode: &str, seed: usize, sentinels: bool) -> Process {
     Process::new(Signature::of_names(names, ["y"]), greeting, settings)
 }
 
-/// The report of a method on a model: sigma, and the codes of its warnings.
+/// Report of a method on a model: sigma, and the codes of its warnings.
 struct Said {
     sigma: Option<f64>,
     codes: Vec<&'static str>,
@@ -41,7 +41,7 @@ struct Said {
 
 impl Said {
     fn of(mode: &str, seed: usize, method: Method) -> Self {
-        // A tenth is a sigma, as the child has it.
+        // A tenth is one sigma, as in the child.
         let dimension = |d: usize| Dimension::normal(format!("x{d}"), 1.0, 0.3).unwrap();
         let problem = Problem::new((0..DIMENSIONS).map(dimension), process(mode, seed)).unwrap();
         let Ok(analysis) = analyze(&problem, &method.into()) else { return Self { sigma: None, codes: Vec::new() } };
@@ -53,13 +53,13 @@ impl Said {
         ["branch-flip", "not-repeatable"].iter().any(|code| self.codes.contains(code))
     }
 
-    /// Whether sigma is that of the right assembly: the same arithmetic at the same points.
+    /// True if sigma is that of the right assembly, from the same arithmetic at the same points.
     fn right(&self, plain: &Self) -> bool {
         self.sigma.zip(plain.sigma).is_some_and(|(found, expected)| (found - expected).abs() <= 1e-9 * expected)
     }
 }
 
-/// The other assembly after a long way, until the next long way: the answers come out right, and the report says so.
+/// A long move leads to the other assembly until the next long move. The answers are corrected, and the report contains a warning.
 #[test]
 fn flips_are_found_and_mended() {
     for mode in ["toggle", "pairs"] {
@@ -82,7 +82,7 @@ fn flips_are_found_by_other_plans() {
     }
 }
 
-/// A model that is another one with every point has no number that could be trusted.
+/// A model that changes with every point has no trusted number.
 #[test]
 fn a_drift_is_never_silent() {
     for seed in 0..SEEDS {
@@ -91,7 +91,7 @@ fn a_drift_is_never_silent() {
     }
 }
 
-/// Errors at random in 3 of 100 answers: wherever they reach the result they are named.
+/// Random errors in 3 of 100 answers: whenever they affect the result, they are named.
 #[test]
 fn random_flips_are_never_silent() {
     let mut silent = 0;
@@ -99,12 +99,12 @@ fn random_flips_are_never_silent() {
         let (plain, said) = (Said::of("plain", seed, Method::Full), Said::of("random", seed, Method::Full));
         silent += usize::from(!said.right(&plain) && !said.warns());
     }
-    // Each run has 21 answers, half of the runs none that is wrong. A wrong one is several sigma off, so that it is among the
-    // seven that are replayed; a replay that is wrong in the same way is rarer than one run in 200.
+    // Each run has 21 answers, and half of the runs have no wrong one. A wrong answer is several sigma off, so that it is among the seven
+    // replayed ones. A replay that is wrong in the same way is rarer than one run in 200.
     assert!(silent <= 1, "{silent} of {SEEDS}");
 }
 
-/// Functions without a memory, however curved, and with a jump: nothing is said of a memory, and no value is changed.
+/// Functions without memory, however curved, and with a jump: no warning about memory, and no changed value.
 #[test]
 fn functions_raise_no_alarm() {
     for mode in ["smooth", "jump", "plain"] {
@@ -115,7 +115,8 @@ fn functions_raise_no_alarm() {
     }
 }
 
-/// Seven answers are replayed, each in three steps from the nominal point; more of many, as many as are asked for, or none.
+/// Seven answers are replayed, each in three steps from the nominal point. Many answers need more replays. A given number is used, 0 for
+/// none.
 #[test]
 fn what_a_replay_costs() {
     let extra = |points: usize, verify: Option<usize>| {
@@ -130,7 +131,8 @@ fn what_a_replay_costs() {
         assert!((0..points).all(|row| out.value(row, 0).is_some()) && out.non_repeatable().is_empty());
         out.extra()
     };
-    // Without any, sentinels alone: one at the end, and one for every 64 points of a window of four. However answers come.
+    // Without replays there are only sentinels: one at the end, and one for every 64 points of a window of four, in any order of the
+    // answers.
     let [of_20, of_400] = [20, 400].map(|points| extra(points, Some(0)));
     assert_eq!([of_20, of_400], [1, 7]);
     assert_eq!(extra(20, None) - of_20, 7 * 4);
@@ -138,7 +140,7 @@ fn what_a_replay_costs() {
     assert_eq!(extra(400, None) - of_400, (20 + 2) * 4);
 }
 
-/// `probe` fails what an analysis would have to mend, and nothing else.
+/// `probe` fails for models whose answers an analysis would have to correct, and for no others.
 #[test]
 fn a_probe_fails_models_that_flip() {
     for (mode, passes) in [("toggle", false), ("plain", true), ("smooth", true), ("jump", true)] {
@@ -152,7 +154,7 @@ fn a_probe_fails_models_that_flip() {
     }
 }
 
-/// Sums and products by `child.py`, whose first process says something else; `verify` answers are replayed.
+/// Returns a model of sums and products by `child.py`, whose first process answers wrongly. `verify` answers are replayed.
 fn first_lies(mode: &str, folder: &std::path::Path, verify: Option<usize>) -> Process {
     let script = repository("tests/children/child.py").display().to_string();
     let seen = folder.join("seen").display().to_string();
@@ -168,7 +170,7 @@ fn sums(process: &dyn AssemblyFunction, a: impl Iterator<Item = usize>) -> Respo
     out
 }
 
-/// Steps of 0.4 sigmas never take the model to its other assembly, the check points do: what they find out is said too.
+/// Steps of 0.4 sigmas never lead to the other assembly, but check points do: their finding is reported too.
 #[test]
 fn flips_of_check_points_are_told() {
     let dimension = |d: usize| Dimension::normal(format!("x{d}"), 1.0, 0.3).unwrap();
@@ -181,7 +183,7 @@ fn flips_of_check_points_are_told() {
     assert!(codes(12).contains(&"branch-flip"), "{:?}", codes(12));
 }
 
-/// A flip that is found in a later batch puts the answers of earlier ones to the test: the wrong one is named, and nothing else.
+/// A flip found in a later batch causes a check of earlier answers: the wrong one is named, and no other.
 #[test]
 fn a_late_flip_looks_back() {
     let folder = tempfile::tempdir().unwrap();
@@ -197,7 +199,7 @@ fn a_late_flip_looks_back() {
     assert_eq!(process.account().unwrap().counts.unconfirmed, 1);
 }
 
-/// A study of a model that drifts: its figures are not to be relied on, and the exit code says so without `--check`.
+/// A study of a drifting model: its figures are unreliable, and the exit code is 3 even without `--check`.
 #[test]
 fn what_nothing_confirms_ends_with_3() {
     let run = |mode: &str, more: &[&str]| {
@@ -225,12 +227,12 @@ fn what_nothing_confirms_ends_with_3() {
         assert_eq!((code, &report["evaluator"]["unconfirmed"]), (Some(0), &0.into()), "{more:?}: {error}");
         assert_eq!(report["evaluator"]["crashes"], 0);
     }
-    // All answers of this one are right in the end, by fresh processes.
+    // All answers are right in the end, by fresh processes.
     let (code, report, error) = run("toggle", &["analyze", "--method", "full"]);
     assert_eq!((code, &report["evaluator"]["unconfirmed"]), (Some(0), &0.into()), "{error}");
 }
 
-/// A batch that ended before its check is checked by the next run: by the nominal point and two replays of four evaluations.
+/// A batch that ended before its check is checked by the next run, by the nominal point and two replays of four evaluations.
 #[test]
 fn a_stage_that_was_not_checked_is_checked_when_it_is_used() {
     let folder = tempfile::tempdir().unwrap();
@@ -252,13 +254,13 @@ fn a_stage_that_was_not_checked_is_checked_when_it_is_used() {
         model.evaluate(&Request::values(&Points::from_rows(&rows), &[0, 1]), &run, &mut out);
         assert_eq!(answered.load(Ordering::Relaxed), 20);
     };
-    // One that is honest: its answers are used, after nine evaluations, and after one from then on.
+    // An honest model: its answers are used after nine evaluations, and after one from then on.
     ended(&model("good", "a"));
     let again = sums(&model("good", "a"), 2..22);
     assert_eq!((again.count_reused(), again.extra()), (20, 1 + 2 * 4 - 20));
     let again = sums(&model("good", "a"), 2..22);
     assert_eq!((again.count_reused(), again.extra()), (20, 1 - 20));
-    // One whose first process was astray: its answers are forgotten, and evaluated again.
+    // A model whose first process was wrong: its answers are discarded and evaluated again.
     ended(&model("first-lies", "b"));
     let again = sums(&model("first-lies", "b"), 2..22);
     assert_eq!(again.count_reused(), 0);
@@ -268,8 +270,8 @@ fn a_stage_that_was_not_checked_is_checked_when_it_is_used() {
     assert!((0..20).all(|row| last.value(row, 0) == Some((row + 4) as f64)));
 }
 
-/// A jump just above a nominal value, as two pads of a CAD body have that become flush: every method of differences names it with the
-/// dimension and the value at which it is, and none says so of functions that are smooth, however curved.
+/// A jump just above a nominal value, as in a CAD body with two pads that become flush. Every method of differences names it with
+/// dimension and value, and none reports one for smooth functions, however curved.
 #[test]
 fn a_jump_beside_the_nominal_point_is_named() {
     for method in [Method::Rss, Method::SecondOrder, Method::Full, Method::Classic] {
@@ -281,7 +283,7 @@ fn a_jump_beside_the_nominal_point_is_named() {
             let Some(Warning::Discontinuity { dimension, at: Some([from, to]), .. }) = jump else {
                 panic!("{method:?} {seed}: {:?}", analysis.warnings)
             };
-            // Two hundredths of a sigma above the nominal value: 1.002. The last interval is a part in 64 of three sigma or less.
+            // Two hundredths of a sigma above the nominal value: 1.002. The last interval is at most 1/64 of three sigma.
             assert!(dimension == "x0" && (*from..=*to).contains(&1.002) && to - from <= 0.3 / 64.0, "{jump:?}");
         }
     }

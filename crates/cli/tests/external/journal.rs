@@ -1,4 +1,4 @@
-//! The answers of external models are never lost: killed runs, shared journals, full disks, broken files, Ctrl-C.
+//! Answers of external models are never lost: killed runs, shared journals, full disks, broken files, Ctrl-C.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -14,7 +14,7 @@ use sensitol_external::journal::store::{Store, StoredAnswer};
 use sensitol_external::journal::{JournalFault, Journaled};
 use sensitol_testing::{interrupt, repository};
 
-/// A study behind a slow child, in a folder of its own.
+/// Study with a slow child, in a folder of its own.
 struct Slow {
     folder: tempfile::TempDir,
     workers: usize,
@@ -22,7 +22,7 @@ struct Slow {
 }
 
 impl Slow {
-    /// Of `n` dimensions: `full` evaluates n² + n points and the nominal one.
+    /// Returns a study of `n` dimensions: `full` evaluates n² + n points and the nominal one.
     fn new(n: usize, seconds: f64, workers: usize, window: usize) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let counter = folder.path().join("count").display().to_string();
@@ -36,7 +36,7 @@ impl Slow {
         Self { folder, workers, window }
     }
 
-    /// With a cost for every tolerance and something to keep.
+    /// Adds a cost for every tolerance, and a requirement.
     fn with_costs(self) -> Self {
         let (study, n) = (self.path("study.toml"), 4);
         let text =
@@ -65,13 +65,13 @@ impl Slow {
         self.command(more).output().unwrap()
     }
 
-    /// Evaluations that the children have done in all runs, of the nominal point excepted.
+    /// Counts the evaluations of the children in all runs, without those of the nominal point.
     fn evaluations(&self) -> usize {
         std::fs::metadata(self.path("count")).map_or(0, |file| file.len() as usize)
     }
 }
 
-/// A report without what tells one run from another.
+/// Returns a report without the values that differ between runs.
 fn result(output: &Output) -> serde_json::Value {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let mut report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
@@ -91,16 +91,16 @@ fn nothing_is_evaluated_twice() {
     let study = Slow::new(5, 0.0, 2, 4);
     let first = study.run(&[]);
     assert_eq!((field(&first, "cached"), study.evaluations()), (0, 30));
-    // One more for each child that was asked whether it still answers as it did.
+    // One more evaluation for each child that a sentinel checked.
     assert!((32..=33).contains(&field(&first, "evaluations")));
-    // The nominal point alone is asked again.
+    // Only the nominal point is evaluated again.
     let second = study.run(&[]);
     assert_eq!((field(&second, "evaluations"), field(&second, "cached"), study.evaluations()), (1, 31, 30));
     assert_eq!(result(&first), result(&second));
-    // A smaller method needs nothing new where its nodes are the same.
+    // A smaller method needs no new points if its nodes are the same.
     let axes = study.run(&["--method", "second-order"]);
     assert_eq!((field(&axes, "evaluations"), field(&axes, "cached")), (1, 11));
-    // Without a journal all is evaluated, and nothing is left behind.
+    // Without a journal everything is evaluated, and no file is left behind.
     study.run(&["--journal", "none"]);
     assert_eq!(study.evaluations(), 60);
     let elsewhere = study.path("elsewhere.sqlite");
@@ -108,7 +108,7 @@ fn nothing_is_evaluated_twice() {
     assert_eq!((study.evaluations(), elsewhere.is_file()), (90, true));
 }
 
-/// Another tolerance keeps the nodes that stay, another constant or file makes another model.
+/// Another tolerance reuses the unchanged nodes. Another constant or file makes another model.
 #[test]
 fn answers_belong_to_their_model() {
     let study = Slow::new(3, 0.0, 1, 1);
@@ -120,7 +120,7 @@ fn answers_belong_to_their_model() {
         study.evaluations() - before
     };
     assert_eq!(evaluated(&text), 12);
-    // One dimension's nodes move: its two, and four of the six corners of pairs.
+    // The nodes of one dimension move: its two, and four of the six corners of pairs.
     assert_eq!(evaluated(&text.replacen("tolerance = 0.1", "tolerance = 0.2", 1)), 6);
     assert_eq!(evaluated(&text.replace("[dimensions]", "[constants]\ng = 1.0\n[dimensions]")), 12);
     std::fs::write(study.path("part.txt"), "one").unwrap();
@@ -129,18 +129,18 @@ fn answers_belong_to_their_model() {
     assert_eq!(evaluated(&with_file), 0);
     std::fs::write(study.path("part.txt"), "two").unwrap();
     assert_eq!(evaluated(&with_file), 12);
-    // And the first is still known.
+    // The first model's answers are still known.
     assert_eq!(evaluated(&text), 0);
 }
 
-/// `kill -9` of the engine at twenty random moments: the result is that of an undisturbed run, and only what was under way
-/// was evaluated twice.
+/// `kill -9` of the engine at twenty random moments: the result is that of an undisturbed run, and only points under way are evaluated
+/// twice.
 #[test]
 fn killed_runs_go_on_where_they_were() {
     let study = Slow::new(13, 0.02, 2, 2);
     let begun = Instant::now();
     let undisturbed = result(&study.run(&["--journal", "none"]));
-    // Moments up to two fifths of a whole run: starts that take their time, and answers, on a slow machine too.
+    // Moments up to two fifths of a whole run, which covers slow starts and answers on a slow machine too.
     let latest = (begun.elapsed().as_millis() * 2 / 5) as u64;
     let before = study.evaluations();
     assert_eq!(before, 182);
@@ -155,15 +155,15 @@ fn killed_runs_go_on_where_they_were() {
     }
     let resumed = study.run(&[]);
     assert_eq!(result(&resumed), undisturbed);
-    // A child of a killed engine ends when it finds its stdin closed; until then it finishes what it has.
+    // A child of a killed engine ends when its stdin is closed. Until then it finishes its points.
     std::thread::sleep(Duration::from_millis(200));
     let evaluations = study.evaluations() - before;
     assert!(evaluations <= 182 + kills * study.workers * study.window, "{evaluations}");
     assert!(field(&resumed, "cached") > 0, "some of it was kept");
 }
 
-/// An answer that a sentinel puts in doubt does not stay in the file: the point that flips the model flips the fresh child too,
-/// and is asked again by every run; all others are kept as they were answered in the end.
+/// A doubtful answer does not stay in the journal. The point that flips the model also flips the fresh child, so every run evaluates it
+/// again. All other answers are kept in their final form.
 #[test]
 fn doubtful_answers_are_not_kept() {
     let folder = tempfile::tempdir().unwrap();
@@ -194,7 +194,7 @@ fn doubtful_answers_are_not_kept() {
     assert_eq!((first.count_reused(), second.count_reused()), (0, 4));
 }
 
-/// Two runs at once on one journal: both are right, and no point is evaluated twice.
+/// Two simultaneous runs on one journal: both are right, and no point is evaluated twice.
 #[test]
 fn runs_share_a_journal() {
     let study = Slow::new(6, 0.02, 1, 1);
@@ -205,7 +205,7 @@ fn runs_share_a_journal() {
     assert_eq!(field(&study.run(&[]), "evaluations"), 1);
 }
 
-/// A run that was killed leaves its claim behind, on this machine or another one: nobody waits for it for long.
+/// A killed run leaves its claim behind, on this machine or another one. Other runs do not wait long for it.
 #[test]
 fn a_claim_of_the_dead_holds_nobody_up() {
     let study = Slow::new(3, 0.0, 1, 1);
@@ -220,7 +220,7 @@ fn a_claim_of_the_dead_holds_nobody_up() {
     assert_eq!(result(&study.run(&[])), result(&study.run(&["--journal", "none"])));
 }
 
-/// A model that depends on something that the study does not name, which has changed: the nominal point tells, and nothing old is used.
+/// A model that depends on something outside the study, which has changed: the nominal point shows it, and no old answer is used.
 #[test]
 fn a_model_that_changed_is_noticed() {
     let folder = tempfile::tempdir().unwrap();
@@ -244,9 +244,9 @@ fn a_model_that_changed_is_noticed() {
         let warned = String::from_utf8(output.stderr).unwrap().contains("[outdated-journal]");
         (sigma, report["cached"].as_u64().unwrap(), warned)
     };
-    // Sigmas are a third of the tolerances; the sum is linear.
+    // Sigmas are a third of the tolerances, and the sum is linear.
     let sigma = (0.01f64 + 0.04).sqrt() / 3.0;
-    // The model's value at the nominal point now is known when the plan comes to it.
+    // The model's present value at the nominal point is known before the plan needs it.
     for (factor, cached, warns) in [(1.0, 0, false), (1.0, 7, false), (2.0, 1, true), (2.0, 7, false)] {
         let found = run(&factor.to_string());
         // Rounding of sums of 15 over differences of 0.1.
@@ -255,7 +255,7 @@ fn a_model_that_changed_is_noticed() {
     }
 }
 
-/// A commit reaches the disk where that is asked for.
+/// A commit reaches the disk if the option for it is set.
 #[test]
 fn a_journal_may_be_durable() {
     let folder = tempfile::tempdir().unwrap();
@@ -267,7 +267,7 @@ fn a_journal_may_be_durable() {
     assert!(!store.is_durable());
 }
 
-/// A journal of the first version, without stages and claims, is read and goes on.
+/// A journal of the first version, without stages and claims, can be read and continued.
 #[test]
 fn an_older_journal_goes_on() {
     let study = Slow::new(3, 0.0, 1, 1);
@@ -279,7 +279,7 @@ fn an_older_journal_goes_on() {
     assert_eq!((field(&again, "evaluations"), field(&again, "cached"), study.evaluations()), (1, 13, 12));
 }
 
-/// A journal that many open at the very beginning is one journal for all of them.
+/// A journal that many processes open at the very beginning is one journal for all of them.
 #[test]
 fn a_journal_may_be_made_by_many_at_once() {
     for _ in 0..20 {
@@ -298,14 +298,15 @@ fn a_journal_may_be_made_by_many_at_once() {
     }
 }
 
-/// A disk that is full: what was known and what was answered is in the report or in the file, and the error says why it ended.
+/// Full disk: known and new answers are in the report or in the file, and the error names the cause.
 #[test]
 #[cfg(unix)]
 fn a_full_disk_is_an_error_that_loses_nothing() {
     let study = Slow::new(12, 0.0, 1, 1);
     study.run(&["--method", "second-order"]);
     assert_eq!(study.evaluations(), 24);
-    // Files may grow to 100 blocks of 512 bytes or 1024, by the shell: the index has 32 KiB, the log of so many commits more; the signal that tells of it is ignored.
+    // The shell limits files to 100 blocks of 512 or 1024 bytes. The index has 32 KiB, and the log of so many commits is larger. The
+    // signal that announces the limit is ignored.
     let engine = study.command(&[]);
     let line: Vec<String> = std::iter::once(engine.get_program())
         .chain(engine.get_args())
@@ -314,13 +315,13 @@ fn a_full_disk_is_an_error_that_loses_nothing() {
     let script = format!("trap '' XFSZ; ulimit -f 100; exec {}", line.join(" "));
     let full = Command::new("sh").args(["-c", &script]).output().unwrap();
     let error = String::from_utf8_lossy(&full.stderr).into_owned();
-    // No result of what was not kept, whatever the model did: one line says why.
+    // Without kept answers there is no result: one line names the cause.
     assert_eq!(full.status.code(), Some(2), "{error}");
     assert!(full.stdout.is_empty(), "{}", String::from_utf8_lossy(&full.stdout));
     assert!(error.contains("disk") && error.contains("the same command goes on from there"), "{error}");
     assert_eq!(error.trim_end().lines().count(), 1, "{error}");
     assert!(study.evaluations() < 24 + 132);
-    // With room again, what was kept is there.
+    // With space again, the kept answers are there.
     let before = study.evaluations();
     let again = study.run(&[]);
     let reused = field(&again, "cached");
@@ -339,19 +340,19 @@ fn files_that_are_no_journals() {
         error.fault
     };
     assert_eq!(fault("text", &b"[dimensions]\n".repeat(100)), JournalFault::NotAJournal);
-    // A database of somebody else.
+    // A database of another program.
     let other = folder.path().join("other.sqlite");
     let connection = rusqlite::Connection::open(&other).unwrap();
     connection.execute_batch("CREATE TABLE parts (name TEXT)").unwrap();
     drop(connection);
     assert_eq!(Store::open(&other).err().unwrap().fault, JournalFault::NotAJournal);
-    // One that a later version wrote.
+    // A journal written by a later version.
     let later = folder.path().join("later.sqlite");
     drop(Store::open(&later).unwrap());
     rusqlite::Connection::open(&later).unwrap().pragma_update(None, "user_version", 99).unwrap();
     assert_eq!(Store::open(&later).err().unwrap().fault, JournalFault::Later { found: 99 });
     assert_eq!(Store::open_existing(Path::new("nowhere.sqlite")).err().unwrap().fault, JournalFault::Missing);
-    // A broken one: what is wrong is said, and the file stays for who can mend it.
+    // A broken journal: the error names the fault, and the file stays for repair.
     let broken = folder.path().join("broken.sqlite");
     let mut store = Store::open(&broken).unwrap();
     let model = store.model("{}", &["x".to_owned()]).unwrap();
@@ -369,7 +370,7 @@ fn files_that_are_no_journals() {
     );
 }
 
-/// Doubles come back as they were, and what has no value keeps its reason.
+/// Doubles are read back exactly, and a failed point keeps its reason.
 #[test]
 fn answers_are_kept_exactly() {
     let folder = tempfile::tempdir().unwrap();
@@ -390,7 +391,7 @@ fn answers_are_kept_exactly() {
     assert_eq!((store.models().unwrap()[0].values, store.models().unwrap()[0].errors), (5, 1));
 }
 
-/// Ctrl-C stops cleanly: what is known is reported, what was evaluated is kept, the exit code is 130.
+/// Ctrl-C stops cleanly: results so far are reported, all answers are kept, and the exit code is 130.
 #[test]
 #[cfg(unix)]
 fn ctrl_c_keeps_everything() {
@@ -409,14 +410,14 @@ fn ctrl_c_keeps_everything() {
     assert_eq!((field(&resumed, "cached") as usize, study.evaluations()), (done + 1, 182));
 }
 
-/// An allocation that is interrupted at any time: everything evaluated is kept, and no file is written or left behind.
+/// An allocation that is interrupted at any time keeps all answers, and writes no file and leaves none behind.
 #[test]
 #[cfg(unix)]
 fn ctrl_c_ends_an_allocation() {
     let study = Slow::new(4, 0.02, 1, 1).with_costs();
     let written = study.path("new.toml").display().to_string();
     let arguments = ["--write", &written];
-    // Within the first analysis, and within the one at the tolerances found.
+    // During the first analysis, and during the one at the tolerances found.
     for enough in [10, 30] {
         let engine = study.doing("allocate", &arguments).spawn().unwrap();
         while study.evaluations() < enough {
@@ -437,12 +438,12 @@ fn ctrl_c_ends_an_allocation() {
     assert_eq!(resumed.status.code(), Some(0), "{resumed:?}");
     let report: serde_json::Value = serde_json::from_slice(&resumed.stdout).unwrap();
     assert_eq!((&report["status"], &report["confirmed"]), (&"local-optimum".into(), &true.into()));
-    // The nominal point is kept too, and not counted: once, as all rounds have it.
+    // The nominal point is kept too, but counted once, because all rounds share it.
     assert!(report["cached"].as_u64().unwrap() as usize > done, "{done} {}", report["cached"]);
     assert!(Path::new(&written).exists());
 }
 
-/// The second Ctrl-C does not wait for an evaluation that takes a minute.
+/// The second Ctrl-C does not wait for an evaluation of a minute.
 #[test]
 #[cfg(unix)]
 fn ctrl_c_twice_gives_up_what_is_under_way() {
@@ -462,7 +463,7 @@ fn ctrl_c_twice_gives_up_what_is_under_way() {
     assert!(begun.elapsed() < Duration::from_secs(20), "it did not wait for the minute");
 }
 
-/// The command of the journal: what is known, as text and as a table, and how to be rid of it.
+/// The command `journal`: content as text and as a table, and deletion.
 #[test]
 fn the_journal_can_be_read() {
     let study = Slow::new(2, 0.0, 1, 1);
@@ -486,7 +487,7 @@ fn the_journal_can_be_read() {
     assert_eq!(journal(&["export", &file, "--model", "7"]).0, 2);
     assert_eq!(journal(&["show", "nowhere.sqlite"]).0, 2);
     assert_eq!(journal(&["forget"]).0, 2);
-    // Nobody at a terminal: what took hours is not forgotten by a slip, nor written over.
+    // Without a terminal, answers that took hours are neither deleted by mistake nor overwritten.
     let (code, asked) = journal(&["forget", &file]);
     assert!(code == 2 && asked.contains("7 answers would be forgotten") && asked.contains("--yes"), "{asked}");
     let (code, kept) = journal(&["export", &file, "-o", &file]);
@@ -497,7 +498,7 @@ fn the_journal_can_be_read() {
     assert_eq!(study.evaluations(), 12);
 }
 
-/// Points evaluated elsewhere: written, answered by somebody, and read; nothing is started, and what does not match is named.
+/// Points evaluated elsewhere: written, answered and read. No process starts, and rows that do not match are named.
 #[test]
 fn points_may_be_evaluated_elsewhere() {
     let study = Slow::new(3, 0.0, 1, 1);
@@ -524,19 +525,19 @@ fn points_may_be_evaluated_elsewhere() {
     let all = sensitol(&["analyze", "--json", "--points", &answered]);
     assert_eq!((field(&all, "evaluations"), field(&all, "cached"), study.evaluations()), (0, 13, 0));
     assert_eq!(result(&all)["characteristics"], result(&study.run(&[]))["characteristics"]);
-    // Fifteen digits, as a spreadsheet keeps them, and a point of somebody else.
+    // Fifteen digits, as in a spreadsheet, and a point that the plan does not contain.
     write(99, 14, "9,9,9,1\n");
     let rounded = sensitol(&["analyze", "--points", &answered]);
     let error = String::from_utf8_lossy(&rounded.stderr).into_owned();
     assert!(rounded.status.success() && error.contains("unmatched-points") && error.contains("line 15"), "{error}");
-    // Some are missing.
+    // Some answers are missing.
     write(9, 17, "");
     let counted = sensitol(&["analyze", "--json", "--points", &answered]);
     assert_eq!((field(&counted, "evaluations"), field(&counted, "cached")), (0, 9));
     let few = sensitol(&["analyze", "--points", &answered]);
     let error = String::from_utf8_lossy(&few.stderr).into_owned();
     assert!(error.contains("4 points have no answer") && error.contains("no answer is given"), "{error}");
-    // Tables that are none.
+    // Tables that are invalid.
     let refused = |table: &str| {
         std::fs::write(&answered, table).unwrap();
         let output = sensitol(&["analyze", "--points", &answered]);
@@ -547,11 +548,11 @@ fn points_may_be_evaluated_elsewhere() {
     assert!(refused("x0,x1,x2,x0\n1,2,3,4\n").contains("column `x0` stands twice"));
     assert!(refused("x0,x1,x2,y\n1,2,3,many\n").contains("line 2, column `y`: `many` is not a finite number"));
     assert!(refused("x0,x1,x2,y\n1,2\n").contains("answers.csv"));
-    // A column that is not the characteristic's is not silently nothing.
+    // A column that does not match the characteristic is an error.
     assert!(refused("x0,x1,x2,Y\n1,2,3,4\n").contains("no column `y`; there is `Y`"));
     assert!(refused("x0,x1,x2,weight\n1,2,3,4\n").contains("no column `y`"));
     assert!(refused("x0,x1,x3,y\n1,2,3,4\n").contains("no column `x2`; there is `x"));
-    // Points that nobody has answered are points all the same.
+    // Points without any matching answer are counted as points.
     std::fs::write(&answered, "x0,x1,x2,y\n9,9,9,1\n").unwrap();
     let none = sensitol(&["analyze", "--points", &answered]);
     let error = String::from_utf8_lossy(&none.stderr).into_owned();
@@ -560,8 +561,8 @@ fn points_may_be_evaluated_elsewhere() {
     assert!(counts[0] >= 13 && counts[0] == counts[1], "{error}");
 }
 
-/// Stage after stage evaluated elsewhere: what is missing is written, answered and appended, until nothing is; nothing is
-/// sampled that nobody asked for, and the result is that of the function.
+/// All stages evaluated elsewhere: missing points are written, answered and appended until none is missing. There is no sampling, and the
+/// result is that of the function.
 #[test]
 fn all_stages_may_be_evaluated_elsewhere() {
     let folder = tempfile::tempdir().unwrap();
@@ -614,18 +615,18 @@ fn all_stages_may_be_evaluated_elsewhere() {
         assert!(rounds < 30, "it comes to an end");
     };
     assert!(rounds >= 1, "one stage was not all of it");
-    // All that was asked for was of use, and no row is of a point that nobody asked for.
+    // All requested points were used, and no row belongs to a point that was not requested.
     assert_eq!(field(&last, "cached") as usize, table.len() - 1);
-    // Exactly, by hand: b (exp(0.4 a) + c) with independent factors, a normal of mean 1 and sigma 0.2, b of 2 and 0.2, c uniform.
+    // Exact by hand: b (exp(0.4 a) + c) with independent factors: a normal with mean 1 and sigma 0.2, b normal with 2 and 0.2, c uniform.
     let (first, second) = (0.4032f64.exp(), 0.8128f64.exp());
     let mean = 2.0 * (first + 3.0);
     let sigma = (4.04 * (second + 6.0 * first + 9.12) - mean * mean).sqrt();
     let report: serde_json::Value = serde_json::from_slice(&last.stdout).unwrap();
     let of = |key: &str| report["characteristics"][0][key].as_f64().unwrap();
-    // Five points of each dimension and every pair leave out products of three and of higher powers.
+    // Five points of each dimension and every pair leave out products of three and higher powers.
     assert!((of("mean") - mean).abs() < 1e-4 * sigma, "{} {mean}", of("mean"));
     assert!((of("sigma") - sigma).abs() < 1e-3 * sigma, "{} {sigma}", of("sigma"));
-    // It is of --points, and writes over nothing.
+    // `--write-missing` requires --points, and overwrites nothing.
     assert_eq!(sensitol(&["analyze", &at("elsewhere.toml"), "--write-missing", &next]).0.status.code(), Some(2));
     let onto = sensitol(&[&analyze[..], &["--write-missing", &answers]].concat());
     assert!(
@@ -635,7 +636,7 @@ fn all_stages_may_be_evaluated_elsewhere() {
     );
 }
 
-/// A study that is moved with its program and its journal is the same study: paths start from its folder.
+/// A study that is moved with its program and its journal is the same study, because paths start from its folder.
 #[test]
 fn a_study_may_be_moved() {
     let folder = tempfile::tempdir().unwrap();
@@ -654,7 +655,7 @@ fn a_study_may_be_moved() {
     assert_eq!(field(&run(&here), "cached"), 0);
     std::fs::rename(&here, &there).unwrap();
     let moved = run(&there);
-    // Seven points of the method and twelve that check it.
+    // Seven points of the method and twelve check points.
     assert_eq!((field(&moved, "evaluations"), field(&moved, "cached")), (1, 7 + 12));
     // Another program is another model.
     let script = there.join("gap.py");

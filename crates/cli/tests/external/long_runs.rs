@@ -1,5 +1,5 @@
-//! Messages that programs may send beside their answers: heartbeats, starts, places, windows that grow, points that are taken
-//! back. The child is `tests/children/flips.c`, in another language than the SDK.
+//! Messages that programs may send besides answers: heartbeats, starts, places, growing windows, withdrawn points. The child is
+//! `tests/children/flips.c`, in another language than the SDK.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
@@ -28,7 +28,7 @@ fn at(model: &Process, a: &[f64], run: &Run<'_>) -> Responses {
     out
 }
 
-/// The answers of a child that does nothing but answer, for the same seed.
+/// Returns the answers of a child without further messages, for the same seed.
 fn plain(seed: &str, a: &[f64]) -> Vec<Option<f64>> {
     let out = at(&model(settings("plain", seed)), a, &Run::to_the_end());
     (0..a.len()).map(|row| out.value(row, 0)).collect()
@@ -38,7 +38,7 @@ fn points(count: usize) -> Vec<f64> {
     (0..count).map(|i| 1.0 + 0.01 * i as f64).collect()
 }
 
-/// Points that wait in the program's own queue are not late while it says that it is alive.
+/// Points in the program's own queue are not late as long as it sends heartbeats.
 #[test]
 fn a_queue_is_no_delay() {
     let a = points(10);
@@ -49,7 +49,7 @@ fn a_queue_is_no_delay() {
     assert_eq!((model.account().unwrap().counts.starts, model.account().unwrap().counts.timeouts), (1, 0));
 }
 
-/// A point that has started has its own clock, whatever its program says of being alive.
+/// A started point has a time limit of its own, even if its program sends heartbeats.
 #[test]
 fn a_heartbeat_saves_no_point_that_hangs() {
     let model = model(settings("silent", "1").with_timeout(Duration::from_millis(500)));
@@ -59,7 +59,7 @@ fn a_heartbeat_saves_no_point_that_hangs() {
     assert_eq!(model.account().unwrap().counts.timeouts, 1);
 }
 
-/// A program that takes points back loses one that hangs, and nothing else.
+/// A program that accepts withdrawals loses only the point that hangs.
 #[test]
 fn a_point_that_hangs_is_taken_back() {
     let mut a = points(20);
@@ -76,8 +76,8 @@ fn a_point_that_hangs_is_taken_back() {
     assert_eq!((model.account().unwrap().counts.starts, model.account().unwrap().counts.timeouts), (1, 1));
 }
 
-/// After a crash of a program whose points do not share its fate, all of them go out again and none is charged; its places are
-/// known, and each is asked for the nominal point.
+/// After a crash of a program whose points are independent, all points under way are sent again, and none counts as failed. Its places
+/// are known, and each of them evaluates the nominal point.
 #[test]
 fn places_and_a_crash() {
     let folder = tempfile::tempdir().unwrap();
@@ -89,7 +89,7 @@ fn places_and_a_crash() {
     let model = model(settings);
     let a = points(60);
     let out = at(&model, &a, &Run::to_the_end());
-    // Coefficients follow the second argument as a number, which a path has not: 0.
+    // Coefficients follow the second argument as a number. A path is not a number, which gives 0.
     assert_eq!((0..a.len()).map(|row| out.value(row, 0)).collect::<Vec<_>>(), plain("0", &a));
     let account = model.account().unwrap();
     assert_eq!(
@@ -97,18 +97,18 @@ fn places_and_a_crash() {
         (2, 1, 0, 0),
         "{account:?}"
     );
-    // The points under way are sent again: the child read and answered what it had before it died.
+    // The points under way are sent again. The child read and answered some before it died.
     assert!((1..=8).contains(&account.counts.retried), "{account:?}");
     assert!(account.counts.lost_s > 0.0 && account.last.unwrap().to_string().contains("exit code 9"));
     let places: Vec<&str> = account.places.keys().map(String::as_str).collect();
     assert_eq!(places, ["east", "west"]);
-    // Each point is answered once, and at the end each place answers the nominal one, which counts as well.
+    // Each point is answered once. At the end each place answers the nominal point, which counts as well.
     let (points, seconds) = account.places.values().fold((0, 0.0), |(p, s), (points, cost)| (p + points, s + cost));
     assert!(points >= 62 && seconds == 0.25 * points as f64, "{points} {seconds}");
     assert!(notes.lock().unwrap().iter().any(|note| note == "at east"));
 }
 
-/// A stop takes back what has not started; an answer that comes all the same disturbs nothing, and the program lives on.
+/// A stop withdraws points that have not started. Late answers to them are ignored, and the program stays alive.
 #[test]
 fn a_stop_takes_points_back() {
     let model = model(settings("takes", "3"));
@@ -128,7 +128,7 @@ fn a_stop_takes_points_back() {
     assert_eq!((model.account().unwrap().counts.starts, model.account().unwrap().counts.garbage), (1, 0));
 }
 
-/// One of many points under way crashes the child every time: halves find it, and the others are answered.
+/// One of many points under way crashes the child every time. Halving the set finds it, and the others are answered.
 #[test]
 fn halves_find_the_culprit() {
     let script = repository("tests/children/child.py").display().to_string();
@@ -143,30 +143,30 @@ fn halves_find_the_culprit() {
     for (row, &a) in a.iter().enumerate() {
         assert_eq!(out.value(row, 0), (row != 13).then_some(a + 2.0), "row {row}");
     }
-    // 64 are six halvings; the first crash, the culprit alone and its one retry come to it.
+    // 64 points need six halvings. The first crash, the culprit alone and its single retry come in addition.
     let account = model.account().unwrap();
     assert!(account.counts.crashes <= 6 + 3 && account.counts.starts == account.counts.crashes + 1, "{account:?}");
 }
 
-/// Processes with this text in their command line.
+/// Returns the processes with this text in their command line.
 #[cfg(target_os = "linux")]
 fn living(text: &str) -> usize {
     let entries = std::fs::read_dir("/proc").into_iter().flatten().flatten();
     let told = |path: std::path::PathBuf| std::fs::read(path).unwrap_or_default();
     let named = |entry: &std::fs::DirEntry| {
         let command = String::from_utf8_lossy(&told(entry.path().join("cmdline"))).replace('\0', " ");
-        // A process that is gone but for its number has no command line.
+        // A zombie process has no command line.
         command.contains(text)
     };
     entries.filter(named).count()
 }
 
-/// A run whose model is busy with a point that never ends, and has started a process of its own.
+/// A run whose model is busy with an endless point, and has started a process of its own.
 #[cfg(target_os = "linux")]
 struct Busy {
     _folder: tempfile::TempDir,
     run: std::process::Child,
-    /// A word in the command lines of the model and of what it started.
+    /// Word in the command lines of the model and of the process that it started.
     word: String,
 }
 
@@ -207,7 +207,7 @@ impl Busy {
     }
 }
 
-/// Waits for what is sure to come, on however busy a machine.
+/// Waits for an event that is certain to come, however busy the machine is.
 #[cfg(target_os = "linux")]
 fn until(what: &str, mut is: impl FnMut() -> bool) {
     let begun = std::time::Instant::now();
@@ -217,7 +217,7 @@ fn until(what: &str, mut is: impl FnMut() -> bool) {
     }
 }
 
-/// `kill -9` of the engine takes a busy model with it, and what that started.
+/// `kill -9` of the engine ends a busy model and the process that it started.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_killed_engine_leaves_nothing_behind() {
@@ -227,7 +227,7 @@ fn a_killed_engine_leaves_nothing_behind() {
     busy.is_gone();
 }
 
-/// SIGTERM without a terminal waits a while for a point that never ends, then gives it up and says that it was interrupted.
+/// SIGTERM without a terminal waits a while for an endless point, then gives it up and reports the interruption.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_scheduler_need_not_kill() {

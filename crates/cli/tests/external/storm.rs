@@ -13,11 +13,11 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use sensitol_external::journal::store::Store;
 use sensitol_testing::repository;
 
-/// Signals without `SENSITOL_STORM`: each of the four three times.
+/// Number of signals without `SENSITOL_STORM`: each of the four kinds three times.
 const SIGNALS: usize = 12;
-/// How long a process may take to end. A run without a terminal waits 10 s for what is under way, which here takes milliseconds.
+/// Longest time for a process to end. A run without a terminal waits 10 s for running evaluations, which take milliseconds here.
 const PATIENCE: Duration = Duration::from_secs(60);
-/// Dimensions: the method `full` evaluates `2n + 2n(n - 1) + 1` points.
+/// Number of dimensions: the method `full` evaluates `2n + 2n(n - 1) + 1` points.
 const DIMENSIONS: usize = 9;
 
 struct Storm {
@@ -55,14 +55,14 @@ impl Storm {
         run.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap()
     }
 
-    /// The processes that said who they are and still run the script.
+    /// Returns the processes that reported their id and still run the script.
     fn children(&self) -> Vec<u32> {
         let names = std::fs::read_dir(self.path("children")).unwrap().map(|entry| entry.unwrap().file_name());
         let pids = names.filter_map(|name| name.to_str()?.parse().ok());
         pids.filter(|&pid| runs_script(pid)).collect()
     }
 
-    /// The files of reports, tables and pages, and temporary ones.
+    /// Returns the files of reports, tables and pages, and temporary ones.
     fn written(&self) -> BTreeMap<String, Vec<u8>> {
         let mut files = BTreeMap::new();
         for folder in [self.folder.path().to_owned(), self.path("tables")] {
@@ -78,7 +78,7 @@ impl Storm {
     }
 }
 
-/// Whether a process is alive and one of ours: its number may have been given to another by now.
+/// True if a process is alive and belongs to the test: its number may have been reused.
 fn runs_script(pid: u32) -> bool {
     let said = Command::new("ps").args(["-o", "stat=,args=", "-p", &pid.to_string()]).output().unwrap();
     let text = String::from_utf8_lossy(&said.stdout).trim().to_owned();
@@ -97,13 +97,13 @@ fn ended(run: &mut Child) -> bool {
     false
 }
 
-/// Every file is whole: it parses, or ends as such a file does.
+/// Checks that a file is complete: it parses, or ends properly.
 fn whole(name: &str, bytes: &[u8]) -> bool {
     let text = std::str::from_utf8(bytes).unwrap_or_default();
     match Path::new(name).extension().and_then(|ending| ending.to_str()) {
         Some("json") => serde_json::from_str::<serde_json::Value>(text).is_ok(),
         Some("html") => text.trim_end().ends_with("</html>"),
-        // A table may have no rows, as that of the warnings; one that is in no section of the report is empty.
+        // A table may have no rows, such as that of the warnings, and is empty if no section has it.
         Some("csv") => text.is_empty() || text.ends_with('\n'),
         _ => false,
     }
@@ -114,7 +114,7 @@ fn no_signal_breaks_anything() {
     let signals = std::env::var("SENSITOL_STORM").ok().and_then(|text| text.parse().ok()).unwrap_or(SIGNALS);
     let storm = Storm::new();
     let journal = storm.path("study.journal.sqlite");
-    // How long an undisturbed run takes here, so that signals come at every stage of one.
+    // Duration of an undisturbed run, so that signals come at every stage of one.
     let begun = Instant::now();
     assert!(ended(&mut storm.run("analyze")));
     let latest = begun.elapsed().as_millis() as u64 * 6 / 5;
@@ -125,7 +125,7 @@ fn no_signal_breaks_anything() {
     for round in 0..signals {
         let (signal, number) = [("INT", 2), ("TERM", 15), ("HUP", 1), ("KILL", 9)][round % 4];
         let command = ["analyze", "simulate"][round / 4 % 2];
-        // Every third signal meets a journal that is not there yet.
+        // Every third signal comes before the journal exists.
         if round % 3 == 0 {
             for entry in std::fs::read_dir(storm.folder.path()).unwrap().map(Result::unwrap) {
                 if entry.file_name().to_string_lossy().contains("journal") {
@@ -141,13 +141,13 @@ fn no_signal_breaks_anything() {
         let after = rng.random_range(0..latest);
         let what = format!("SIG{signal} after {after} ms of {command}, round {round}");
         std::thread::sleep(Duration::from_millis(after));
-        // A run that has ended hears nothing.
+        // A run that has ended gets no signal.
         let _ =
             Command::new("kill").args([&format!("-{signal}"), &run.id().to_string()]).stderr(Stdio::null()).status();
         assert!(ended(&mut run), "{what}: it does not end");
         let output = run.wait_with_output().unwrap();
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        // Done before, interrupted, or hit before anything listened.
+        // The run was finished, interrupted, or hit before it installed its handler.
         let by = output.status.signal();
         assert!(
             matches!(output.status.code(), Some(0 | 130)) || by == Some(number),
@@ -161,7 +161,7 @@ fn no_signal_breaks_anything() {
             std::thread::sleep(Duration::from_millis(10));
         }
         for (name, bytes) in storm.written() {
-            // Only a killed process cannot clear up behind itself.
+            // Only a killed process cannot remove its temporary files.
             if name.starts_with(".sensitol-") && by == Some(9) {
                 std::fs::remove_file(storm.path(&name))
                     .or_else(|_| std::fs::remove_file(storm.path("tables").join(&name)))
@@ -178,7 +178,7 @@ fn no_signal_breaks_anything() {
             assert!(Store::open(&journal).is_ok(), "{what}: {:?}", Store::open(&journal).err());
         }
     }
-    // The journal is right after the storm.
+    // The journal is valid after all signals.
     assert!(ended(&mut storm.run("analyze")));
     assert_eq!(report()["characteristics"], expected);
 }

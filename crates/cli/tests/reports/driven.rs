@@ -1,4 +1,4 @@
-//! Formulas that drive the inputs of a model: built-in ones by name, programs by `[model] inputs`.
+//! Formulas that drive the inputs of a model: of built-in ones by name, of programs by `[model] inputs`.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use sensitol::{Analysis, Dimension, Method, Options, Problem, analyze};
 use sensitol_study::Study;
 use sensitol_testing::{analysed, case, close, faults, parse, relative, repository};
 
-/// The values of the first characteristics at one point of the dimensions.
+/// Returns the values of the first characteristics at one point of the dimensions.
 fn at(study: &Study, point: &[f64]) -> Vec<Option<f64>> {
     let outputs: Vec<usize> = (0..study.problem.characteristics().len()).collect();
     let mut out = Responses::open(1, outputs.len());
@@ -25,8 +25,8 @@ fn at(study: &Study, point: &[f64]) -> Vec<Option<f64>> {
 const FIXED_SUM: &str = "[model]\nbuiltin = \"dual-mass-flywheel\"\n[dimensions]\nJ2 = { nominal = 0.04, tolerance = 0.002 }\n\
                          [constants]\nk = 327.844\n[formulas]\nJ1 = \"0.33 - J2\"\n[characteristics]\nn_crit_DMF = {}\n";
 
-/// The slope by hand, with J1 = J - J2: n/2 (1/J1 - 1/J2); were J1 fixed it would be another. The step of `full` is sqrt(3) sigma, and
-/// its fourth-order remainder a part of 1e-3 of the slope: (sigma/J2)^2.
+/// The slope by hand, with J1 = J - J2: n/2 (1/J1 - 1/J2). With a fixed J1 it would differ. The step of `full` is sqrt(3) sigma, with a
+/// fourth-order remainder below 1e-3 of the slope: (sigma/J2)^2.
 #[test]
 fn a_formula_drives_an_input_of_a_built_in_model() {
     let case = case("flywheel-fixed-sum");
@@ -45,8 +45,8 @@ fn a_formula_drives_an_input_of_a_built_in_model() {
     relative(first(&free), exact("slope J2 with J1 fixed"), 2e-3);
 }
 
-/// A formula of the outputs, a formula of a formula, and constants drive alike: the same study with J1 as a dimension at the same
-/// value answers the same to the last digit.
+/// A formula of the outputs, a formula of a formula, and constants as inputs. The study with J1 as a dimension of the same value gives
+/// the same digits.
 #[test]
 fn driven_inputs_are_what_their_formulas_say() {
     let chained = FIXED_SUM.replace("J1 = \"0.33 - J2\"", "total = \"0.3 + J2 - 0.01\"\nJ1 = \"total - J2 + 0*k\"");
@@ -58,7 +58,7 @@ fn driven_inputs_are_what_their_formulas_say() {
     assert_eq!(at(&chained, &[0.045]), at(&plain, &[0.045, j1]));
 }
 
-/// A point at which the driving formula has no value costs that point, with the formula's reason.
+/// A point at which the driving formula has no value fails with the formula's reason.
 #[test]
 fn a_formula_without_a_value_is_a_point_without_one() {
     let study = parse(&FIXED_SUM.replace("0.33 - J2", "sqrt(0.04 - J2) + 0.29")).unwrap();
@@ -119,7 +119,7 @@ fn what_cannot_drive_is_said() {
     ]));
 }
 
-/// A study of a child that counts what it is asked, with two inputs that three dimensions and a constant drive.
+/// Returns a study of a child that counts its requests. Three dimensions and a constant drive its two inputs.
 fn counting(folder: &Path) -> String {
     let (script, counter) = (repository("tests/children/counting.py"), folder.join("count"));
     format!(
@@ -131,9 +131,9 @@ fn counting(folder: &Path) -> String {
     )
 }
 
-/// The child answers gap + 2 k + 3 c + 0.01 gap k: with k = 2 its slopes are 1.02 along a, -1.02 along b, 3 along c. The nominal point,
-/// 6 points along the axes and 6 of the pairs make the plan of `full`; a - b is the same for a up and b down, and for both up the nominal
-/// one, so that fewer are sent.
+/// The child answers gap + 2 k + 3 c + 0.01 gap k. With k = 2 its slopes are 1.02 along a, -1.02 along b, 3 along c. The plan of `full`
+/// has the nominal point, 6 points along the axes and 6 of the pairs. a - b is equal for a up and for b down, and nominal for both up, so
+/// that fewer points are sent.
 #[test]
 fn a_program_is_sent_what_its_inputs_name_and_each_point_once() {
     let folder = tempfile::tempdir().unwrap();
@@ -157,17 +157,17 @@ fn a_program_is_sent_what_its_inputs_name_and_each_point_once() {
     // Differences of a linear model: rounding of values of 12 over steps of 0.1.
     [1.02, -1.02, 3.0].into_iter().enumerate().for_each(|(index, exact)| close(slope(index), exact, 1e-12, 1.0));
     let sent = counted();
-    // Steps of one sigma are exact in doubles. The gap is up or down, with c up or down: 2 + 2 along the axes; pairs of a and b make a
-    // gap of 0 or of 2 steps; pairs of a or b with c are both up or both down: 2 + 2.
+    // Steps of one sigma are exact in doubles. Axes: the gap up or down, and c up or down: 2 + 2. Pairs of a and b have a gap of 0 or of
+    // 2 steps. Pairs of a or b with c are both up or both down: 2 + 2.
     assert!(sent < 12, "{sent} points sent");
     let evaluations = report["evaluations"].as_u64().unwrap();
-    // The nominal point, and again at the end of the batch.
+    // The nominal point, once more at the end of the batch.
     assert_eq!(evaluations, sent + 2, "what is sent is what is counted");
     run();
     assert_eq!(counted(), sent, "what was sent once is known");
 }
 
-/// `plan --write-points` writes what the program is sent.
+/// `plan --write-points` writes the inputs of the program.
 #[test]
 fn points_are_written_as_they_are_sent() {
     let folder = tempfile::tempdir().unwrap();
@@ -181,7 +181,7 @@ fn points_are_written_as_they_are_sent() {
     assert_eq!(lines.next(), Some("gap,k,c"));
     let rows: Vec<Vec<f64>> = lines.map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect()).collect();
     assert!(rows.contains(&vec![6.0, 2.0, 1.0]) && rows.iter().all(|row| row[1] == 2.0), "{text}");
-    // With their answers they are an analysis: the same model by hand.
+    // With answers to them the analysis gives the result of the same model by hand.
     let answered: String =
         std::iter::once("gap,k,c,y\n".to_owned())
             .chain(rows.iter().map(|x| {
@@ -196,7 +196,7 @@ fn points_are_written_as_they_are_sent() {
     close(report["characteristics"][0]["sensitivities"][1]["first"].as_f64().unwrap(), -1.02, 1e-12, 1.0);
 }
 
-/// A costly product of its two inputs, which counts what it is asked and has no value where its first input is greater than `most`.
+/// Returns a costly product of its two inputs. It counts its requests, and has no value if its first input exceeds `most`.
 struct Product {
     signature: Signature,
     asked: Arc<AtomicUsize>,
@@ -226,7 +226,8 @@ fn narrow(tolerance: f64) -> (Problem, Arc<AtomicUsize>) {
     driving(tolerance, f64::INFINITY, [&names[0..6].join(" + "), &names[6..12].join(" + ")])
 }
 
-/// Twelve dimensions that drive the two inputs of a costly model by these formulas; `z` is twice the product of the inputs.
+/// Returns a problem of twelve dimensions that drive the two inputs of a costly model by these formulas. `z` is twice the product of the
+/// inputs.
 fn driving(tolerance: f64, most: f64, [p, q]: [&str; 2]) -> (Problem, Arc<AtomicUsize>) {
     let asked = Arc::new(AtomicUsize::new(0));
     let signature = Signature { costly: true, ..Signature::of_names(["p", "q"], ["y"]) };
@@ -244,13 +245,13 @@ fn driving(tolerance: f64, most: f64, [p, q]: [&str; 2]) -> (Problem, Arc<Atomic
     (Problem::new(dimensions, Composite::new(parts).unwrap()).unwrap(), asked)
 }
 
-/// Where the model has no value at a point of its inputs, the dimensions are fitted over, which says where; what was spent before counts.
-/// Where only check points have none, that is said too.
+/// If the model has no value at a point of its inputs, the fit is over the dimensions, with a warning that names the point. Points
+/// evaluated before count. If only check points have no value, there is a warning too.
 #[test]
 fn points_without_a_value_are_said_whatever_the_side() {
     let names: Vec<String> = (0..12).map(|i| format!("x{i}")).collect();
     let (sum, rest) = (names[0..6].join(" + "), names[6..12].join(" + "));
-    // The sum p has sigma 0.245: its upper node lies at 6.42.
+    // The sum p has sigma 0.245: its upper node is at 6.42.
     let codes = |analysis: &Analysis| analysis.warnings.iter().map(|warning| warning.code()).collect::<Vec<_>>();
     let (problem, asked) = driving(0.3, 6.3, [&sum, &rest]);
     let analysis = analyze(&problem, &Options::from(Method::Full).with_verify(0)).unwrap();
@@ -262,8 +263,8 @@ fn points_without_a_value_are_said_whatever_the_side() {
     assert_eq!(codes(&analysis), ["domain-edge-within"]);
 }
 
-/// A built-in model too: twelve dimensions drive its two inputs, and the speed is sqrt(k/J1 + k/J2) but for a factor, whose variance by the
-/// slopes of the two is that by the slopes of the twelve. `auto` samples such a model as ever.
+/// A built-in model too: twelve dimensions drive its two inputs, and the speed is sqrt(k/J1 + k/J2) times a constant. Its variance by the
+/// slopes of the two equals that by the slopes of the twelve. `auto` samples such a model as usual.
 #[test]
 fn few_inputs_of_a_built_in_model_are_the_narrower_side() {
     let name = |side: &str, i: usize| format!("{side}{i}");
@@ -285,20 +286,20 @@ fn few_inputs_of_a_built_in_model_are_the_narrower_side() {
     assert_eq!(full.cost(&problem).unwrap().evaluations, 7);
     let found = analyze(&problem, &full).unwrap();
     assert_eq!((found.run.evaluations, found.varying), (7, 12));
-    // The same by hand: each of the two is normal with sqrt(6) times the sigma of a part.
+    // By hand: each of the two inputs is normal with sqrt(6) times the sigma of a part.
     let sigma = 6f64.sqrt() * 0.0001;
     let two =
         study("", &format!("J1 = {{ nominal = 0.3, sigma = {sigma} }}\nJ2 = {{ nominal = 0.042, sigma = {sigma} }}\n"));
     let plain = analyze(&parse(&two).unwrap().problem, &full).unwrap();
     let moments = |analysis: &Analysis| analysis.characteristics[0].moments.unwrap();
-    // The moments of the inputs are those of 8192 Sobol' points.
+    // The moments of the inputs come from 8192 Sobol' points.
     relative(moments(&found).mean(), moments(&plain).mean(), 1e-6);
     relative(moments(&found).sigma(), moments(&plain).sigma(), 1e-3);
     assert!(Options::from(Method::Auto).cost(&problem).unwrap().evaluations > 12);
 }
 
-/// Inputs that vary nearly alike, and exactly alike, are fitted along their principal axes: 7 evaluations for two axes, 3 for one, where
-/// 157 were. By hand: of a normal p of mean 6 and variance v, p^2 has the variance 144 v + 2 v^2, p r with another such r 72 v + v^2, and
+/// Inputs that are nearly or fully correlated are fitted along their principal axes: 7 evaluations for two axes, 3 for one, instead of
+/// 157. By hand, for normal p of mean 6 and variance v, p^2 has the variance 144 v + 2 v^2. With another such r, p r has 72 v + v^2, and
 /// the covariance of both is 72 v.
 #[test]
 fn inputs_that_vary_alike_are_fitted_along_their_axes() {
@@ -319,16 +320,16 @@ fn inputs_that_vary_alike_are_fitted_along_their_axes() {
         assert_eq!(asked.load(Ordering::Relaxed) as u64, evaluations);
         let found = &analysis.characteristics[0];
         let moments = found.moments.unwrap();
-        // The surface is exact; its coefficients are differences of values near 72 over steps of 0.4, along an axis whose sigma is 0.002 of
-        // the other's.
+        // The surface is exact. Its coefficients are differences of values near 72 over steps of 0.4, along an axis whose sigma is 0.002
+        // of the other's.
         relative(moments.sigma(), variance.sqrt(), 1e-7);
         relative(moments.mean(), mean, 1e-11);
         close(found.sensitivities[3].first.unwrap(), slope, 1e-6, 1.0);
     }
 }
 
-/// The surface is fitted over the two inputs: 7 evaluations in the place of 157. With p and q of mean 6 and sigma s, 2 p q has the variance
-/// 4 (2 36 s^2 + s^4).
+/// The surface is fitted over the two inputs: 7 evaluations instead of 157. With p and q of mean 6 and sigma s, 2 p q has the variance 4
+/// (2 36 s^2 + s^4).
 #[test]
 fn few_inputs_of_a_model_are_the_narrower_side() {
     let (problem, asked) = narrow(0.3);
@@ -340,14 +341,14 @@ fn few_inputs_of_a_model_are_the_narrower_side() {
     let found = &analysis.characteristics[0];
     let square = 6.0 * 0.1f64.powi(2);
     let moments = found.moments.unwrap();
-    // The surface is exact; its coefficients are differences of values near 36 over steps of 0.25.
+    // The surface is exact. Its coefficients are differences of values near 36 over steps of 0.25.
     relative(moments.sigma(), (4.0 * (72.0 * square + square * square)).sqrt(), 1e-9);
     relative(moments.mean(), 72.0, 1e-12);
     close(found.sensitivities[3].first.unwrap(), 12.0, 1e-8, 1.0);
-    // Check points ask the model itself, and find the surface right.
+    // Check points evaluate the model itself, and confirm the surface.
     let verified = analyze(&problem, &Method::Full.into()).unwrap();
     assert!(verified.run.evaluations > 7 && verified.run.evaluations <= 7 + 12, "{}", verified.run.evaluations);
-    // Twelve points leave a part of the variance open, whatever they say.
+    // Twelve points always leave a part of the variance unverified.
     let share = verified.characteristics[0].verification.as_ref().unwrap().left.unwrap();
     assert!(share < 1e-4, "{share}");
     // Other methods too: 2 m + 1.

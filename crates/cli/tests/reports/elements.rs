@@ -1,4 +1,4 @@
-//! Short forms of a study: relative dimensions, configurations, and the expanded study that stands for them.
+//! Short forms of a study: relative dimensions, configurations, and the expanded study.
 
 use assert_cmd::Command;
 
@@ -7,7 +7,7 @@ use sensitol_study::Study;
 use sensitol_study::{Externals, StudyText};
 use sensitol_testing::{analysed, case, close, faults, parse};
 
-/// Study, and the same written out: every figure is the same to the last digit.
+/// Compares a study with its expanded form: every figure agrees to the last digit.
 #[track_caller]
 pub fn same_as_expanded(text: &str, method: Method) {
     let study = parse(text).unwrap_or_else(|error| panic!("{error}"));
@@ -30,7 +30,7 @@ pub fn same_as_expanded(text: &str, method: Method) {
 const CHAIN: &str = "[dimensions]\nx1 = { nominal = 20, tolerance = 0.05 }\nx2 = { nominal = 40, tolerance = 0.05, from = \"x1\" }\n\
                      x3 = { nominal = 30, tolerance = 0.05, from = \"x2\" }\n";
 
-/// Three dimensions in a row, two from a common face, and one: 0.15, 0.10, 0.05 on either side.
+/// Three dimensions in a row, two from a common face, and one: tolerances 0.15, 0.10, 0.05.
 #[test]
 fn chains_baselines_and_direct_dimensions() {
     let case = case("chain-baseline-direct");
@@ -64,7 +64,7 @@ fn chains_baselines_and_direct_dimensions() {
     );
 }
 
-/// Angles from crank to crank. The reference is a sample of four million: within two of its own standard errors.
+/// Angles from crank to crank. The reference is a sample of four million points: within two of its own standard errors.
 #[test]
 fn consecutive_cranks() {
     let case = case("engine-consecutive-cranks");
@@ -96,7 +96,7 @@ fn consecutive_cranks() {
     same_as_expanded(&text, Method::SixN);
 }
 
-/// A datum's shift is shared by a pattern: the pitch does not feel it.
+/// A pattern shares a datum shift, which cancels in the pitch.
 #[test]
 fn a_shared_shift_cancels_in_a_pitch() {
     let text = "[dimensions]\nshift = { nominal = 0, tolerance = 0.3 }\nh1 = { nominal = [10, 0], position = 0.2, from = \"h0\" }\n\
@@ -111,7 +111,7 @@ fn a_shared_shift_cancels_in_a_pitch() {
     same_as_expanded(&text, Method::SecondOrder);
 }
 
-/// Costs and correlations of a relative dimension are those of its own part.
+/// Costs and correlations of a relative dimension apply to its own part.
 #[test]
 fn costs_and_correlations_belong_to_the_own_part() {
     let text = format!(
@@ -144,7 +144,7 @@ fn configurations_set_nominals_and_constants() {
     assert_eq!(nominals(&written)[0], (20.0, 0.2));
     let small = configured(SIZES, "small").unwrap();
     assert_eq!(nominals(&small)[0], (10.0, 0.1));
-    // Constants too: 3*10 + 5 + 2 less half of h7 of 5 mm, 0.012/2.
+    // Constants too: 3*10 + 5 + 2, minus half of h7 of 5 mm, 0.012/2.
     let mean = analyze(&small.problem, &Method::SecondOrder.into()).unwrap().characteristics[0].moments.unwrap().mean();
     close(mean, 37.0 - 0.006, 1e-12, 1.0);
     let large = configured(SIZES, "large").unwrap();
@@ -155,7 +155,7 @@ fn configurations_set_nominals_and_constants() {
     assert_eq!(nominals(&again), nominals(&large));
 }
 
-/// A table of sizes: the first column is the name, and an empty cell leaves what the study says.
+/// A table of sizes: the first column is the name. An empty cell keeps the value of the study.
 #[test]
 fn configurations_stand_in_a_file() {
     let text = SIZES.split("[configurations]").next().unwrap().to_owned() + "[configurations]\nfile = \"sizes.csv\"\n";

@@ -1,4 +1,4 @@
-//! Geometric tolerances: what each line stands for, its exact moments, and what is wrong with a line.
+//! Geometric tolerances: the inputs that each line stands for, its exact moments, and faults of a line.
 
 use sensitol::distribution::{Distribution, Jacobi, StandardMoments, TwoValues};
 
@@ -8,7 +8,7 @@ use sensitol_study::Study;
 use super::elements::same_as_expanded;
 use sensitol_testing::{analysed, case, close, faults, parse, relative};
 
-/// Variance and kurtosis of the first characteristic, by methods that examine no pairs, some and all.
+/// Returns variance and kurtosis of the first characteristic by methods that examine no pairs, some and all.
 fn moments(text: &str) -> Vec<(f64, f64)> {
     let of = |method: Method| {
         let moments = analysed(text, method).characteristics[0].moments.unwrap();
@@ -21,18 +21,18 @@ fn moments(text: &str) -> Vec<(f64, f64)> {
 fn holds(text: &str, exact: &serde_json::Value) {
     let of = |key: &str| exact[key].as_f64().unwrap();
     for (variance, kurtosis) in moments(text) {
-        // The surface is the formula itself: rounding of products of some hundreds of terms.
+        // The surface equals the formula: rounding of products of some hundreds of terms.
         relative(variance, of("variance"), 1e-11);
         relative(kurtosis, of("kurtosis"), 1e-11);
     }
     let auto = analysed(text, Method::Auto).characteristics[0].moments.unwrap();
-    // Of sigma `auto` promises 1 %; where it has not examined every pair its moments may be those of 41984 points of the formula, whose
-    // kurtosis has an error of some thousandths.
+    // `auto` promises 1 % of sigma. If it has not examined every pair, its moments may come from 41984 points of the formula, with an
+    // error of some thousandths in the kurtosis.
     relative(auto.sigma(), of("variance").sqrt(), 1e-2);
     relative(auto.kurtosis().unwrap(), of("kurtosis"), 2e-2);
 }
 
-/// The proven worst case of a characteristic.
+/// Returns the proven worst case of a characteristic.
 #[track_caller]
 fn worst(text: &str) -> [f64; 2] {
     let analysis = analysed(text, Method::SecondOrder);
@@ -47,20 +47,20 @@ fn study(lines: &str, formula: &str) -> String {
 
 const BONUS: &str = "D = { nominal = 10.1, tolerance = 0.1 }\nh = { nominal = [50, 30], position = { zone = 0.2, hole = \"D\", at = \"MMC\" } }";
 
-/// The place of a hole whose zone is 0.2 at maximum material, with a bonus of 0.1 on average: moments in closed form. Size and place
-/// interact, and no method leaves that out.
+/// Position of a hole whose zone is 0.2 at maximum material, with a bonus of 0.1 on average: moments in closed form. Size and position
+/// interact, and every method includes that.
 #[test]
 fn a_bonus_widens_the_scatter() {
     holds(&study(BONUS, "h_x - 50"), &case("bonus-coordinate")["exact"]);
     holds(&study(BONUS, "h_y"), &case("bonus-coordinate")["exact"]);
-    // Nothing is evaluated for the pair: 2 N + 1 points.
+    // The pair needs no further evaluation: 2 N + 1 points.
     let analysis = analysed(&study(BONUS, "h_x"), Method::SecondOrder);
     assert_eq!(analysis.run.evaluations, 5);
     same_as_expanded(&study(BONUS, "h_x + 2*h_y"), Method::SecondOrder);
     same_as_expanded(&study(BONUS, "h_x + 2*h_y"), Method::Auto);
 }
 
-/// The same with a place that is spread evenly over the zone: E xi^2 = 1/4, E xi^4 = 1/8 of a disc's coordinate.
+/// Position spread evenly over the zone: for a disc's coordinate, E xi^2 = 1/4 and E xi^4 = 1/8.
 #[test]
 fn a_bonus_of_a_place_spread_evenly() {
     let even = BONUS.replace("} }", "}, distribution = \"uniform\" }");
@@ -75,8 +75,8 @@ fn a_bonus_of_a_place_spread_evenly() {
     same_as_expanded(&study(&even, "h_x + 2*h_y"), Method::SecondOrder);
 }
 
-/// Virtual and resultant condition of a hole 10.0 .. 10.2 and a pin 9.8 .. 10.0, position 0.1 at maximum material: where the surface lies
-/// in the worst case, size and bonus together.
+/// Virtual and resultant condition of a hole 10.0 .. 10.2 and a pin 9.8 .. 10.0, position 0.1 at maximum material: the worst-case place
+/// of the surface from size and bonus together.
 #[test]
 fn boundaries_of_features_with_a_bonus() {
     let exact = |kind: &str, index: usize| case("boundaries")["exact"][kind][index].as_f64().unwrap();
@@ -86,36 +86,36 @@ fn boundaries_of_features_with_a_bonus() {
         );
         worst(&study(&lines, formula))
     };
-    // Bounds are outward rounded, and ends of boxes are within a thousandth of sigma.
+    // Bounds are rounded outward, and ends of boxes are within a thousandth of sigma.
     let near = |found: f64, expected: f64| close(found, expected, 1e-9, 1.0);
     near(feature("hole", "[10.0, 10.2]", "MMC", "D - 2*h_x")[0], exact("hole", 0));
     near(feature("hole", "[10.0, 10.2]", "MMC", "D + 2*h_x")[1], exact("hole", 1));
     near(feature("pin", "[9.8, 10.0]", "MMC", "D + 2*h_y")[1], exact("pin", 0));
     near(feature("pin", "[9.8, 10.0]", "MMC", "D - 2*h_y")[0], exact("pin", 1));
-    // At least material it is the other way round: the zone is 0.1 where the hole is largest.
+    // At least material it is the reverse: the zone is 0.1 if the hole is largest.
     near(feature("hole", "[10.0, 10.2]", "LMC", "D + 2*h_x")[1], 10.3);
     near(feature("hole", "[10.0, 10.2]", "LMC", "D - 2*h_x")[0], 9.7);
     near(feature("pin", "[9.8, 10.0]", "LMC", "D - 2*h_x")[0], 9.7);
-    // Regardless of size the zone does not follow it.
+    // Regardless of feature size, the zone is independent of the size.
     near(feature("hole", "[10.0, 10.2]", "RFS", "D - 2*h_x")[0], 9.9);
     near(feature("hole", "[10.0, 10.2]", "RFS", "D + 2*h_x")[1], 10.3);
 }
 
-/// In both directions at once the worst case is that of the zone at its widest: half of 0.2 + 0.2 along the length of the slope.
+/// In both directions at once the worst case is that of the widest zone: half of 0.2 + 0.2 along the length of the slope.
 #[test]
 fn the_worst_case_of_a_zone_with_a_bonus() {
     let text = study(BONUS, "3*h_x + 4*h_y");
     let sigma = analysed(&text, Method::SecondOrder).characteristics[0].moments.unwrap().sigma();
     let [least, greatest] = worst(&text);
-    // Proven to a thousandth of sigma, and never on the inside.
+    // Proven to a thousandth of sigma, and never inside.
     assert!((269.0 - least) / sigma < 1e-3 && least <= 269.0, "{least}");
     assert!((greatest - 271.0) / sigma < 1e-3 && greatest >= 271.0, "{greatest}");
-    // The linear one holds the size at its mean.
+    // The linear worst case holds the size at its mean.
     let linear = analysed(&text, Method::SecondOrder).characteristics[0].worst_case.unwrap();
     close(linear[1], 270.75, 1e-9, 1.0);
 }
 
-/// One of two values: moments of a coin, and a staircase.
+/// A distribution of two values: moments of a coin, and a step function.
 #[test]
 fn two_values_alike() {
     let coin = TwoValues::new(1.0, 4.0).unwrap();
@@ -133,7 +133,7 @@ fn two_values_alike() {
     assert_eq!((written.mean(), written.sigma()), (3.5, 1.5));
 }
 
-/// The zone of a pin 11.2 .. 11.8 with position 0.5 at maximum material, at three sizes, as printed.
+/// Zone of a pin 11.2 .. 11.8 with position 0.5 at maximum material, at three sizes, as printed.
 #[test]
 fn the_zone_that_a_size_leaves() {
     let case = case("bonus-pin");
@@ -146,8 +146,8 @@ fn the_zone_that_a_size_leaves() {
     }
 }
 
-/// A hole measured .502, of .499 at maximum material, leaves a bonus of .003, and .001 where it is out of perpendicularity by .002: a
-/// zone of .016, as printed. Form never makes the zone smaller than it is.
+/// A hole of measured size .502, with .499 at maximum material, has a bonus of .003, or .001 if it is out of perpendicularity by .002: a
+/// zone of .016, as printed. Form never makes the zone smaller than stated.
 #[test]
 fn form_lessens_a_bonus() {
     let case = case("bonus-envelope");
@@ -171,13 +171,13 @@ fn form_lessens_a_bonus() {
     // The greatest hole with the best form: half of .015 and .006.
     close(worst(&study(&lines(", form = \"t\""), "h_x"))[1], 0.0105, 1e-9, 1.0);
     same_as_expanded(&study(&lines(", form = \"t\""), "h_x"), Method::SecondOrder);
-    // A pin out of form is thicker: 11.8 less 11.5 less 0.1.
+    // A pin with a form error acts as a thicker one: 11.8 minus 11.5 minus 0.1.
     let pin = "P = { nominal = 11.5, limits = [11.2, 11.8] }\nh = { nominal = [0, 0], position = { zone = 0.5, pin = \"P\", at = \"MMC\", form = 0.1 } }";
     let found = analysed(&study(pin, "`h.zone` + 0*h_x"), Method::SecondOrder);
     close(found.characteristics[0].nominal.unwrap(), 0.7, 1e-12, 1.0);
 }
 
-/// A pitch between two holes that share a datum shift: the shift cancels, and what is left is twice half of 0.2 + 0.1 on either side.
+/// A pitch between two holes that share a datum shift: the shift cancels. Twice half of 0.2 + 0.1 remains on either side.
 #[test]
 fn the_worst_case_of_a_pitch_is_proven() {
     let lines = "bore = { limits = [40.0, 40.025] }\nspigot = { limits = [39.95, 39.975] }\n\
@@ -187,12 +187,12 @@ fn the_worst_case_of_a_pitch_is_proven() {
     let [lower, upper] = worst(&study(lines, "r_x - l_x"));
     close(lower, 69.7, 1e-9, 1.0);
     close(upper, 70.3, 1e-9, 1.0);
-    // Beside another factor the shift does not cancel: half of it is left, at most (40.025 - 39.95)/4 with the least shift of the zones.
+    // With another factor the shift does not cancel: half of it remains, at most (40.025 - 39.95)/4 with the least shift of the zones.
     let [lower, upper] = worst(&study(lines, "2*r_x - l_x - r_x/2 - 0.5*r_x + A_x/2"));
     close(upper - lower, 0.6 + 0.0375, 1e-9, 1.0);
 }
 
-/// A bonus that is capped widens no further.
+/// A bonus at its cap widens the zone no further.
 #[test]
 fn a_bonus_is_capped() {
     let capped = BONUS.replace("at = \"MMC\"", "at = \"MMC\", most = 0.05");
@@ -203,7 +203,7 @@ fn a_bonus_is_capped() {
     same_as_expanded(&study(&capped, "h_x"), Method::Auto);
 }
 
-/// Radial clearance normal about 0.05 with sigma 0.008: a hole and a pin, each a share of the variance.
+/// Radial clearance, normal about 0.05 with sigma 0.008: a hole and a pin each have a share of the variance.
 fn play(law: &str) -> String {
     // 2 c = A - B: sigma 0.016 = hypot(0.0096, 0.0128).
     format!(
@@ -225,7 +225,7 @@ fn floats_have_exact_moments() {
     }
 }
 
-/// Pressed to one side, the clearance itself remains.
+/// Float of parts that are pressed to one side: the clearance itself.
 #[test]
 fn a_float_that_is_always_on_one_side() {
     for (law, sign) in [("+", 1.0), ("-", -1.0)] {
@@ -237,7 +237,7 @@ fn a_float_that_is_always_on_one_side() {
     }
 }
 
-/// Sizes as numbers and formulas; a kink only where the bands let the pin be the larger.
+/// Sizes as numbers and formulas, with a kink only if the bands allow a pin that is larger than the hole.
 #[test]
 fn clearances_of_numbers_and_formulas() {
     let float = |sizes: &str| {
@@ -272,7 +272,7 @@ fn a_part_on_a_pin_and_in_a_slot() {
     relative(moments(&text)[0].0, exact("variance of rotation"), 1e-11);
     close(worst(&text)[1], exact("worst case"), 1e-9, 1e-3);
     same_as_expanded(&text, Method::SecondOrder);
-    // A hole 60 along x and 20 along y of the pin: moved and turned by the part, 60 rot along y and -20 rot along x.
+    // A hole 60 along x and 20 along y from the pin. The part moves and turns it: 60 rot along y and -20 rot along x.
     let hole = "hole = { nominal = [60, 20], position = 0.2, from = \"base\" }";
     for (output, lever, own) in [("hole_x", -20.0, "base_x"), ("hole_y", 60.0, "base_y")] {
         let related =
@@ -305,7 +305,7 @@ fn offset_and_tilt_share_a_profile() {
     same_as_expanded(&study(line, "face + 30*face_tilt"), Method::SecondOrder);
 }
 
-/// Bands and circles, as the frames say.
+/// Bands and circles as stated by the frames.
 #[test]
 fn zones_are_bands_and_circles() {
     let dimension = |line: &str, index: usize| {
@@ -351,8 +351,8 @@ fn zones_are_bands_and_circles() {
     }
 }
 
-/// The formulas of ASME Y14.5, appendix B, fasteners of 6 in holes of 6.44: nothing is left in the worst case at 0.44 floating, 0.22 fixed,
-/// and 0.18 with 0.26.
+/// Formulas of ASME Y14.5, appendix B, for fasteners of 6 in holes of 6.44: the worst case uses all clearance at 0.44 floating, 0.22
+/// fixed, and 0.18 with 0.26.
 #[test]
 fn fasteners_of_asme() {
     let play = |fastener: &str, zones: [f64; 2]| {
@@ -369,18 +369,19 @@ fn fasteners_of_asme() {
     let printed = |name: &str| case(name)["printed"]["T"]["value"].as_f64().unwrap();
     let floating = "{ kind = \"floating\", holes = [\"H\", \"H\"], pin = \"F\", places = [\"a\", \"b\"] }";
     let fixed = "{ kind = \"fixed\", hole = \"H\", pin = \"F\", places = [\"a\", \"b\"] }";
-    // The search ends at the corners of two zones that lie against each other: rounding of a sum of six digits.
+    // The search ends at the corners of two opposed zones: rounding of a sum of six digits.
     let t = printed("fastener-floating");
     close(play(floating, [t, t]), 0.0, 1e-6, 1.0);
     let t = printed("fastener-fixed");
     close(play(fixed, [t, t]), 0.0, 1e-6, 1.0);
     close(play(fixed, [0.18, 0.26]), 0.0, 1e-6, 1.0);
-    // A stud that stands out by 10 of threads 14 deep: the second zone counts 1 + 2*10/14 times.
+    // A stud that stands out by 10 with threads 14 deep: the second zone counts 1 + 2*10/14 times.
     let tilted = fixed.replace("] }", "], projection = 10, depth = 14 }");
     close(play(&tilted, [0.18, 0.26 / (1.0 + 20.0 / 14.0)]), 0.0, 1e-6, 1.0);
 }
 
-/// The one-way clutch of Chase as a loop, with form at the roller's contacts: an angle of 7.018 degrees as printed, slopes by hand.
+/// The one-way clutch of Chase as a loop, with form errors at the roller's contacts: an angle of 7.018 degrees as printed, slopes by
+/// hand.
 #[test]
 fn form_in_a_loop() {
     let text = "[dimensions]\na = { nominal = 27.645, tolerance = 0.0125 }\nc = { nominal = 11.43, tolerance = 0.01 }\ne = { nominal = 50.8, tolerance = 0.0125 }\n\
@@ -398,12 +399,12 @@ fn form_in_a_loop() {
     let form = &case["exact"]["slopes of form at hub and ring contact"];
     let expected = [&slopes[0], &slopes[1], &slopes[2], &form[0], &form[1]].map(of);
     for (row, expected) in one.sensitivities.iter().zip(expected) {
-        // A ring that comes nearer acts as a shorter e.
+        // A ring that moves closer acts as a shorter e.
         relative(row.first.unwrap().abs(), expected.abs(), 1e-9);
     }
 }
 
-/// With `units = "convert"` what is made has units too.
+/// Generated inputs have units too, with `units = "convert"`.
 #[test]
 fn elements_are_converted() {
     let text = "units = \"convert\"\n[dimensions]\nD = { nominal = 0.4, tolerance = 0.004, unit = \"in\" }\nP = { nominal = 10, tolerance = 0.05, unit = \"mm\" }\n\
@@ -412,17 +413,18 @@ fn elements_are_converted() {
                 [characteristics]\ny = { formula = \"h_x + ds + 40[mm]*sin(p)\", unit = \"mm\" }\n";
     let nominal = analysed(text, Method::SecondOrder).characteristics[0].nominal.unwrap();
     close(nominal, 50.0, 1e-12, 1.0);
-    // Half the zone of 0.2 and a bonus of 0.004 in on average, 1/3 sigma a coordinate; a float of (10.16 - 10)/2, uniform; 0.1 along 40.
+    // Half the zone of 0.2 and a mean bonus of 0.004 in, with 1/3 as sigma of each coordinate; a uniform float of (10.16 - 10)/2; 0.1
+    // along 40.
     let place = ((0.2f64 + 0.1016).powi(2) + (0.1016f64 / 3.0).powi(2)) / 36.0;
     let clearance = (0.08f64.powi(2) + ((0.1016f64 / 3.0).powi(2) + (0.05f64 / 3.0).powi(2)) / 4.0) / 3.0;
-    // Size widens both: their common part is a product of two places, each of mean 0. The sine's third order is a millionth.
+    // The size widens both: their common part is a product of two positions with mean 0. The sine's third order is a millionth.
     let tilt = (40.0 * (0.1f64 / 40.0) / 3.0).powi(2);
     let variance = analysed(text, Method::Full).characteristics[0].moments.unwrap().variance();
     relative(variance, place + clearance + tilt, 1e-4);
     same_as_expanded(text, Method::SecondOrder);
 }
 
-/// The parts of an element are one contributor of a report, and each for itself with all details.
+/// The parts of an element are one contributor of a report, and are listed singly with -v.
 #[test]
 fn reports_name_the_element() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,5 +1,5 @@
-//! Pages of HTML: nothing in them that was not meant, nothing that asks for a network, and a what-if that computes what the
-//! engine computes. The tests that need a browser are in `tests/browser`.
+//! HTML pages: no unintended content, no network, and a what-if that computes the results of the engine. Tests that need a browser are in
+//! `tests/browser`.
 
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -21,7 +21,7 @@ use serde_json::{Value, json};
 use super::command::{run, sensitol};
 use sensitol_testing::repository;
 
-/// Every name and text that a study can have, as an attacker would write it.
+/// Every name and text of a study, as an attacker would write it.
 const HOSTILE: &str = r##"
 title = "<svg onload=alert(1)> & \"quotes\""
 [dimensions]
@@ -31,7 +31,7 @@ title = "<svg onload=alert(1)> & \"quotes\""
 "<!--<script>" = { formula = "`<img src=x onerror=alert(2)>`*`</script><script>alert(3)</script>`", unit = "</style>", lower = 48, upper = 52, target_yield = 0.9 }
 "##;
 
-/// Distributions of every kind that follows its tolerance, bands that are not symmetric, and a function of second degree.
+/// Distributions of every kind that scales with its tolerance, asymmetric bands, and a function of second degree.
 const MIXED: &str = r##"
 [dimensions]
 a = { nominal = 10, tolerance = [-0.1, 0.3] }
@@ -50,7 +50,7 @@ z = { formula = "a - b + c - w" , upper = 4.5 }
 method = "full"
 "##;
 
-/// No products: inputs of every kind in lines, parabolas and more.
+/// Sums only: inputs of every kind as linear, quadratic and higher terms, without products.
 const SUMS: &str = r##"
 [dimensions]
 a = { nominal = 10, tolerance = [-0.1, 0.3] }
@@ -67,7 +67,7 @@ uniforms = { formula = "b + e", upper = 5.2 }
 method = "full"
 "##;
 
-/// Products of inputs that are not normal, with one that is: the page counts points.
+/// Products of inputs that are not normal with a normal one: the page counts points.
 const PRODUCTS: &str = r##"
 [dimensions]
 a = { nominal = 10, tolerance = 0.3, distribution = "uniform" }
@@ -100,7 +100,7 @@ fn page(study: &Study) -> String {
     analysed(study, &study.options).1
 }
 
-/// The contents that a page may have: one style and at most one script and its data, all known to the policy, and no address.
+/// Checks the allowed content of a page: one style, at most one script with its data, all listed in the policy, and no address.
 fn is_closed(page: &str) {
     assert!(page.starts_with("<!DOCTYPE html>"));
     let policy = page.split("Content-Security-Policy\" content=\"").nth(1).unwrap().split('"').next().unwrap();
@@ -133,7 +133,7 @@ fn hostile_names_are_text() {
     }
     assert_eq!(page.matches("</script>").count(), 2);
     assert_eq!(page.matches("</style>").count(), 1);
-    // They are still there to be read.
+    // The texts are still readable.
     assert!(page.contains("&lt;img src=x onerror=alert(2)&gt;"), "the name is shown");
 
     let simulation = sensitol::simulation::simulate(&study.problem, &Default::default()).unwrap();
@@ -150,7 +150,7 @@ fn hostile_names_are_text() {
     }
 }
 
-/// A name leads to the section about it, and slopes say whether they are differences: those of formulas are exact.
+/// A name links to its section. Slopes are marked if they are differences; those of formulas are exact.
 #[test]
 fn pages_lead_to_what_they_name() {
     let exact = page(&example("fit-and-stack"));
@@ -161,7 +161,7 @@ fn pages_lead_to_what_they_name() {
     assert!(page(&example("engine-balance")).contains(" ≈</td>"));
 }
 
-/// The largest page: every pair of 200 dimensions, each product another number.
+/// The largest page: every pair of 200 dimensions, with distinct products.
 #[test]
 fn two_hundred_dimensions_stay_below_two_megabytes() {
     let mut text = "[dimensions]\n".to_owned();
@@ -179,7 +179,7 @@ fn two_hundred_dimensions_stay_below_two_megabytes() {
     std::fs::write(cases().join("two-hundred.html"), page).unwrap();
 }
 
-/// A usual study is a small page: 22 dimensions and 3 characteristics below 300 kB.
+/// A typical study gives a small page: 22 dimensions and 3 characteristics below 300 kB.
 #[test]
 fn a_usual_page_is_small() {
     let mut text = "[dimensions]\n".to_owned();
@@ -196,7 +196,7 @@ fn a_usual_page_is_small() {
     assert!(page.len() < 300_000, "{} bytes", page.len());
 }
 
-/// What cannot be tried is named, with its reason.
+/// Dimensions that cannot be changed are named with the reason.
 #[test]
 fn what_cannot_be_tried_is_said() {
     let mixed = page(&study(MIXED));
@@ -210,7 +210,7 @@ fn what_cannot_be_tried_is_said() {
     assert!(zone.contains("stays as it is: a coordinate of a circular zone"), "a position stays");
 }
 
-/// `--html` writes a page beside what is printed, and nothing where it cannot.
+/// `--html` writes a page in addition to the printed report, and no page after a failure.
 #[test]
 fn the_command_line_writes_pages() {
     let folder = tempfile::tempdir().unwrap();
@@ -239,7 +239,7 @@ fn the_command_line_writes_pages() {
         let of_folder = run(&[call, &["--html", folder.path().to_str().unwrap()]].concat());
         assert!(of_folder.starts_with("exit 2") && of_folder.contains("cannot be written"), "{of_folder}");
     }
-    // Every dimension with a cost has a bar of what was, and one of what is.
+    // Every dimension with a cost has a bar of the old cost and one of the new cost.
     let page = std::fs::read_to_string(path("allocate.html")).unwrap();
     let bars = |class: &str| page.matches(&format!("<rect class=\"{class}\"")).count();
     assert!(bars("was") > 0 && bars("was") == bars("linear"), "{page}");
@@ -247,8 +247,8 @@ fn the_command_line_writes_pages() {
     assert!(page.contains("importance sampling") && page.contains("most likely above"), "{page}");
 }
 
-/// Every page has the parts of a review: the verdict first, how sure it is, terms; warnings stand below the figure that they concern,
-/// and never at the end.
+/// Every page has the parts of a review: the verdict first, the errors of the figures, and terms. Warnings stand below the figure that
+/// they concern, and never at the end.
 #[test]
 fn pages_of_all_commands_have_the_same_parts() {
     let folder = tempfile::tempdir().unwrap();
@@ -297,12 +297,12 @@ b = { model = "reciprocal", a = 1.0, b = 0.1, min = 0.01, max = 0.5 }
             page.contains("<dd>Cover &lt;7&gt;</dd>") && page.contains("<dd>C</dd>"),
             "the title block of {command}"
         );
-        // Below every printed page, where nothing of a name is style.
+        // Footer of every printed page, in which no part of a name acts as style.
         assert!(page.contains("content: \"Cover \\3c 7\\3e \\2c  revision C\\2c  study "), "{command}");
         if command != "allocate" {
             assert!(page.contains("gap misses its target"), "{command}");
         }
-        // Of those who analyse.
+        // Of the commands that analyse.
         if command == "sweep" || command == "allocate" {
             let (warning, summary) = (at("unused-dimension"), at("<h2 id=\"summary\""));
             assert!(warning < summary, "{command}: a warning of the whole study stands below the verdict");
@@ -310,7 +310,7 @@ b = { model = "reciprocal", a = 1.0, b = 0.1, min = 0.01, max = 0.5 }
     }
 }
 
-/// The front of yields has round numbers below it, whatever yields were asked for.
+/// The axis of yields on the front has round numbers, for any required yields.
 #[test]
 fn ticks_of_a_front_are_round() {
     let folder = tempfile::tempdir().unwrap();
@@ -322,7 +322,7 @@ fn ticks_of_a_front_are_round() {
         drawing.split("<text").filter_map(|text| text.split('>').nth(1)?.strip_suffix(" %</text")).collect();
     assert!(ticks.len() > 1, "{drawing}");
     for tick in ticks {
-        // 100 less one digit of 1, 2 or 5.
+        // 100 minus a single digit of 1, 2 or 5.
         let rejected = 100.0 - tick.parse::<f64>().unwrap();
         let digit = rejected / 10f64.powf((rejected.log10() + 1e-9).floor());
         assert!([1.0, 2.0, 5.0, 10.0].iter().any(|round| (digit - round).abs() < 1e-6), "{tick}");
@@ -334,14 +334,14 @@ fn study_title(path: &str) -> String {
     title.replace('&', "&amp;")
 }
 
-/// Where the pages and settings stand that `tests/browser` tries again.
+/// Returns the folder of the pages and settings that `tests/browser` uses.
 fn cases() -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("html");
     std::fs::create_dir_all(&folder).unwrap();
     folder
 }
 
-/// Factors of the tolerance and shifts of the mean, as many as the page has dimensions; those that stay are left alone.
+/// Random factors of the tolerance and shifts of the mean for every dimension. Fixed dimensions stay unchanged.
 fn settings(study: &Study, analysis: &Analysis, rng: &mut Xoshiro256PlusPlus) -> (Value, Vec<Relocation>) {
     let dimensions = analysis.surface.varying.iter().map(|&d| &study.problem.dimensions()[d]);
     let (given, moved) = dimensions
@@ -352,7 +352,7 @@ fn settings(study: &Study, analysis: &Analysis, rng: &mut Xoshiro256PlusPlus) ->
                 true => (1.0, 0.0),
                 false => (10f64.powf(rng.random_range(-1.0..0.5)), dimension.half_band() * rng.random_range(-1.0..1.0)),
             };
-            // By the dimension's own idea of another tolerance.
+            // By the dimension's own rule for another tolerance.
             let scaled = if stays { dimension.clone() } else { dimension.scaled(factor).unwrap().unwrap() };
             let (mean, sigma) = (dimension.mean(), dimension.sigma());
             let to = Relocation { shift: (scaled.mean() + shift - mean) / sigma, stretch: scaled.sigma() / sigma };
@@ -362,14 +362,14 @@ fn settings(study: &Study, analysis: &Analysis, rng: &mut Xoshiro256PlusPlus) ->
     (Value::Array(given), moved)
 }
 
-/// The results of the engine for every characteristic.
+/// Returns the results of the engine for every characteristic.
 fn engine(study: &Study, analysis: &Analysis, moved: &[Relocation], by_law: bool) -> Value {
     let one = |c: usize| {
         let found = analysis.surface.at(c, moved)?;
         let (moments, limits) = (found.moments, study.problem.characteristics()[c].limits());
         let law = Law::fit(&moments).ok();
         let capability = law.map(|law| Capability::of(&law, moments.mean(), moments.sigma(), limits));
-        // Of the surface: both shares with the errors that are stated for them.
+        // Surface distribution: both reject rates with their stated errors.
         let surface = if by_law { law_at(&study.problem, &analysis.surface, c, moved)?.ok() } else { None };
         let figure = |figure: LawFigure| json!([figure.value, figure.error]);
         let below = limits.lower().and_then(|y| Some(figure(surface.as_ref()?.below(y))));
@@ -384,7 +384,7 @@ fn engine(study: &Study, analysis: &Analysis, moved: &[Relocation], by_law: bool
     Value::Array((0..study.problem.characteristics().len()).map(|c| json!(one(c))).collect())
 }
 
-/// The studies whose what-if is tried: interactions, curvature, quartics through a rule, all kinds of distribution.
+/// Studies whose what-if is tested: interactions, curvature, quartics through a rule, all kinds of distribution.
 fn tried() -> Vec<(&'static str, Study, Options)> {
     let with = |name: &'static str, study: Study, method: Option<Method>| {
         let options = method.map_or_else(|| study.options.clone(), Options::from);
@@ -416,7 +416,7 @@ fn by_node(page: &str, settings: &Value, name: &str) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// Costs of every model, a list of processes, dimensions that share one, and one without a cost.
+/// Costs by every model, a list of processes, dimensions that share one, and a dimension without cost.
 const PRICED: &str = r##"
 [dimensions]
 a = { nominal = 10, tolerance = 0.1 }
@@ -437,7 +437,7 @@ f = { processes = [{ name = "mill", tolerance = 0.06, cost = 1.0 }, { name = "gr
 y = { formula = "a + b - c + d - e - f - free", lower = 7, upper = 11, target_yield = 0.9 }
 "##;
 
-/// The cost of the copied study by the engine, which reads tolerances and costs anew: two ways to the same sums, equal to rounding.
+/// The cost of the copied study by the engine, which reads tolerances and costs again, equals that of the page except for rounding.
 #[test]
 fn costs_follow_the_tolerances() {
     if !node() {
@@ -457,7 +457,7 @@ fn costs_follow_the_tolerances() {
         let groups = pasted.costs.iter();
         let expected: Option<f64> =
             groups.map(|group| group.cost_to_hold(group.tightest_member(&pasted.problem))).sum();
-        // The cost of a tolerance that no process holds is infinite to the script, and null in JSON.
+        // A tolerance that no process reaches has infinite cost in the script, and null in JSON.
         match (found["cost"].as_f64(), expected) {
             (Some(found), Some(expected)) => {
                 assert!((found / expected - 1.0).abs() < 1e-11, "{found}, not {expected}: {text}")
@@ -470,7 +470,7 @@ fn costs_follow_the_tolerances() {
     assert!(!self::page(&study(MIXED)).contains("Cost of the tolerances"), "no cost where there is none");
 }
 
-/// The verdict comes first: what misses its target, by how much, on which side, and why; a gauge and a shape for each; the title block.
+/// The verdict comes first: missed targets with number, side and cause, a gauge and a shape for each, and the title block.
 #[test]
 fn the_verdict_comes_first() {
     let text = r##"
@@ -490,7 +490,7 @@ sum = { formula = "a + b", lower = 14, upper = 18, target_yield = 0.99 }
     let study = study(text);
     assert_eq!(study.about[0], ("Part", "Cover <7>".to_owned()));
     let about = About { block: study.about.clone(), sha256: study.sha256.clone(), ..About::default() };
-    // Without the sample that verifies it, which has an error of its own.
+    // Without the verification sample, which has an error of its own.
     let analysis = analyze(&study.problem, &study.options.clone().with_verify(0)).unwrap();
     let page = analyze_html(&Report::of(&study.problem, &analysis, about), None);
     for cell in
@@ -498,8 +498,8 @@ sum = { formula = "a + b", lower = 14, upper = 18, target_yield = 0.99 }
     {
         assert!(page.contains(cell), "{cell}");
     }
-    // sigma = sqrt(0.1^2 + (0.1/3)^2) = 0.10541: 0.2 below the mean is 1.8974 of it, beyond which a normal distribution has 28889.8 ppm, and 1.05 ppm above the
-    // other limit.
+    // sigma = sqrt(0.1^2 + (0.1/3)^2) = 0.10541. The lower limit is 0.2 or 1.8974 sigma below the mean, beyond which a normal
+    // distribution has 28889.8 ppm. Above the other limit are 1.05 ppm.
     let verdict = page.split("id=\"verdict\"").nth(1).unwrap().split("</section>").next().unwrap();
     assert!(
         verdict.contains(
@@ -511,11 +511,11 @@ sum = { formula = "a + b", lower = 14, upper = 18, target_yield = 0.99 }
     assert!(verdict.contains("sum meets its target with fewer than 0.001 ppm."), "{verdict}");
     assert_eq!(verdict.matches("class=\"gauge\"").count(), 3, "two characteristics and both together");
     assert!(verdict.contains("st missed\"") && verdict.contains("st met\""), "{verdict}");
-    // The limit, what lies beyond it, and ranges are in the density, drawn twice.
+    // The limit, the rejects beyond it, and the ranges are in the density, which is drawn twice.
     for (label, drawn) in [
-        // And once in the panel of its tail.
+        // Once more in the panel of its tail.
         (">lower 3.8<", 3),
-        // And once in the facts.
+        // Once more in the facts.
         (">28890 ppm<", 3),
         (">mean \u{b1} 3\u{3c3}<", 4),
         (">RSS</text>", 4),
@@ -531,7 +531,7 @@ sum = { formula = "a + b", lower = 14, upper = 18, target_yield = 0.99 }
     assert!(page.contains("id=\"terms\""));
 }
 
-/// The cells of every row of the contributions, without markup.
+/// Returns the cells of every row of the contributions, without markup.
 fn drivers(page: &str) -> Vec<Vec<String>> {
     let table = page.split("<table class=\"drivers\">").nth(1).unwrap().split("</table>").next().unwrap();
     let text = |cell: &str| {
@@ -547,7 +547,8 @@ fn drivers(page: &str) -> Vec<Vec<String>> {
     .collect()
 }
 
-/// A contribution has its sigma and its reach in the unit of the characteristic, with no more digits than errors carry.
+/// A contribution has its sigma and its slope times half tolerance in the unit of the characteristic, with the digits that errors
+/// support.
 #[test]
 fn contributions_have_their_sigma_and_reach() {
     let text = r##"
@@ -559,7 +560,7 @@ idle = { nominal = 1, tolerance = 0.1 }
 [characteristics]
 gap = { formula = "a - b + c + 0*idle", unit = "mm", upper = 5.5 }
 "##;
-    // Variances 0.0100, 0.0025 and 0.0016 of 0.0141; half bands 0.3 and 0.15, and none of `c`.
+    // Variances 0.0100, 0.0025 and 0.0016 of 0.0141. The half-widths are 0.3 and 0.15; `c` has none.
     let exact = page(&study(text));
     let rows: Vec<String> = drivers(&exact).iter().map(|row| row.join(" | ")).collect();
     let expected = [
@@ -568,16 +569,16 @@ gap = { formula = "a - b + c + 0*idle", unit = "mm", upper = 5.5 }
         "c |  | 11.35 % | 100.00 % | 0.0400 | -",
     ];
     assert_eq!(rows, expected);
-    // As far down as the sum has come.
+    // The step goes down to the running sum of the row.
     assert!(exact.contains("d=\"M0.00 0H70.92V32\"") && exact.contains("d=\"M88.65 0H100.00V32\""));
     assert!(exact.contains("Less than 0.005 % of the variance each: idle."), "said of which there is no row");
     assert!(exact.contains(">sigma, mm</th>") && exact.contains(">slope × half tolerance, mm</th>"));
 }
 
-/// The variance that no contribution explains has a row: how much it is, or that this is unknown.
+/// The variance that no contribution explains has a row with its size, or with the note that it is unknown.
 #[test]
 fn what_is_not_resolved_has_a_row() {
-    // sin has a third power, which no second-order surface has.
+    // sin has a third power, which a second-order surface cannot have.
     let text = r##"
 [dimensions]
 a = { nominal = 0, tolerance = 1.5 }
@@ -595,14 +596,14 @@ y = { formula = "sin(a) + b" }
     let left = analysis.characteristics[0].verification.as_ref().and_then(|of| of.left).expect("a formula is sampled");
     let known = known.expect("a surface that misses something leaves it");
     assert!((known[2].trim_end_matches(" %").parse::<f64>().unwrap() / 100.0 - left).abs() < 1e-4, "{known:?} {left}");
-    // Within 2 sqrt(S U) + U: the error's second digit is the last one.
+    // Error within 2 sqrt(S U) + U: its second digit is the last one printed.
     let share = &rows[0][2];
     assert!(share.trim_end_matches(" %").split('.').nth(1).is_none_or(|decimals| decimals.len() < 2), "{share}");
     let (_, unknown, _) = row(&Options::from(Method::Rss).with_verify(0));
     assert_eq!(unknown.expect("slopes alone leave what is unknown")[2..5], ["-", "-", "-"]);
 }
 
-/// Dimensions stand in one table, whatever they are for; what is folded is still in the page.
+/// All dimensions are in one table. Folded rows are still in the page.
 #[test]
 fn dimensions_stand_in_one_table() {
     let section = |page: &str| {
@@ -611,7 +612,7 @@ fn dimensions_stand_in_one_table() {
     let two = section(&page(&example("stacked-blocks")));
     assert_eq!(two.matches("<table").count(), 1, "{two}");
     assert!(two.contains(">slope</th>") && !two.contains("<details"), "{two}");
-    // 14 dimensions, of which two do less than the others, and 8 sums of them.
+    // 14 dimensions, of which two have less effect than the others, and 8 sums of them.
     let mut text = "[dimensions]\n".to_owned();
     for i in 0..14 {
         let tolerance = if i == 3 || i == 5 { 0.01 } else { 0.1 };
@@ -636,7 +637,7 @@ fn dimensions_stand_in_one_table() {
     assert_eq!(many.matches("<td class=\"n\">0.08</td>").count(), 2 * 8);
 }
 
-/// The joint effects of two dimensions stand in a map below the effects of each alone.
+/// Joint effects of two dimensions are in a map below the effects of each alone.
 #[test]
 fn interactions_are_a_map() {
     let text = r##"
@@ -646,7 +647,7 @@ b = { nominal = 0, tolerance = 3 }
 [characteristics]
 y = { formula = "a + b + a*b" }
 "##;
-    // Variances 1, 1 and 1: a third each, of means 0.
+    // Variances 1, 1 and 1: a third each, with means 0.
     let page = page(&study(text));
     let map = page.split("<table class=\"map\">").nth(1).unwrap().split("</table>").next().unwrap();
     assert_eq!(map.matches(">33.33</td>").count(), 3, "{map}");
@@ -656,7 +657,7 @@ y = { formula = "a + b + a*b" }
     assert!(!self::page(&straight).contains("class=\"map\""), "nothing is joint in a sum");
 }
 
-/// Where a surrogate is not trusted and the model is sampled, the density lies over the sample.
+/// If a surrogate is not trusted and the model is sampled, the density is drawn over the sample.
 #[test]
 fn a_sample_of_the_model_is_drawn() {
     let text = r##"
@@ -672,7 +673,7 @@ y = { formula = "max(a, b)", lower = -2, upper = 3 }
     let sampled = analysis.characteristics[0].model_sampled.as_ref().expect("a kink is sampled");
     let histogram = sampled.histogram.as_ref().unwrap();
     assert_eq!(histogram.counts.iter().sum::<u64>(), sampled.samples);
-    // Drawn for wide and for narrow pages.
+    // Drawn twice, for wide and for narrow pages.
     assert_eq!(page.matches("<rect class=\"bin").count(), 2 * histogram.counts.len());
     assert!(page.contains("<rect class=\"bin out\""), "what lies outside the limits is told apart");
     assert!(
@@ -681,11 +682,11 @@ y = { formula = "max(a, b)", lower = -2, upper = 3 }
     );
 }
 
-/// Settings at which shares that the page counts are compared.
+/// Number of settings for which counted reject rates are compared.
 const COUNTED: usize = 24;
 
-/// The script and the engine at 200 random settings of every study. Both round each step once, in other orders: skewness and
-/// kurtosis are sums of terms that cancel, and probabilities far out multiply the errors of sigma by the squared distance.
+/// Script and engine at 200 random settings of every study. Both round each step once, in different orders. Skewness and kurtosis are
+/// sums of terms that cancel, and probabilities far out multiply the errors of sigma by the squared distance.
 #[test]
 fn the_page_computes_what_the_engine_computes() {
     if !node() {
@@ -697,7 +698,7 @@ fn the_page_computes_what_the_engine_computes() {
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(20_261_121);
         let (given, moved): (Vec<Value>, Vec<_>) = (0..200).map(|_| settings(&study, &analysis, &mut rng)).unzip();
         let answer = by_node(&page, &Value::Array(given), name);
-        // The law of a tree takes the engine half a second: of settings whose changes the page counts at points some are enough.
+        // The surface distribution of a tree takes the engine half a second: if the page counts points, some settings are enough.
         let by =
             |found: &Value, by: &str| found["characteristics"].as_array().unwrap().iter().any(|one| one["by"] == by);
         let found = answer["found"].as_array().unwrap().iter();
@@ -723,14 +724,14 @@ fn the_page_computes_what_the_engine_computes() {
             }
         }
     }
-    // Sums and products of normal inputs by a contour; products of others are counted, and compared as well.
-    // Without limits, as the engine's forces are, nothing is asked of a law.
+    // Sums and products of normal inputs use a contour. Products of other inputs are counted, and compared as well. Without limits, such
+    // as for the engine's forces, no distribution is needed.
     assert_eq!(by_law, ["stacked-blocks", "stacked-blocks-auto", "four-bar", "measured-pin", "mixed", "sums"]);
     assert!(worst > 0.0, "something was compared");
     assert!(worst < 1e-9, "{worst:e}");
 }
 
-/// The largest difference, each by what it is a part of.
+/// Returns the largest relative difference, each with its own scale.
 fn compared(found: &Value, expected: &Value, what: &str) -> f64 {
     let sigma = expected["sigma"].as_f64().unwrap();
     let off = |key: &str, found: &Value, expected: &Value, scale: f64| match (found.as_f64(), expected.as_f64()) {
@@ -750,7 +751,7 @@ fn compared(found: &Value, expected: &Value, what: &str) -> f64 {
         match found["by"].as_str().unwrap() {
             "pearson" => worst = worst.max(off(key, &found[key], &expected[key], 1e-6)),
             "points" => {
-                // Without that limit; and the law of a tree has no figure far out in a few settings of 200.
+                // There is no such limit, or the distribution of a tree gives no figure far out, in a few settings of 200.
                 if found[key].is_null() && expected["surface"][key].is_null() || expected["surface"][key][0].is_null() {
                     continue;
                 }
@@ -761,10 +762,10 @@ fn compared(found: &Value, expected: &Value, what: &str) -> f64 {
                     (own - value).abs() <= stated + error,
                     "{what}: {key} is {own} ± {stated:e}, the engine says {value}"
                 );
-                // Four standard errors, where all of some 30,000 points change sides.
+                // Four standard errors if all of some 30,000 points change sides.
                 assert!(stated <= 0.025, "{what}: {stated:e}");
             }
-            // Two inversions along other contours: within the errors that both state, and these are small.
+            // Two inversions along different contours agree within the errors that both state, which are small.
             _ => match (found[key].as_f64(), expected["surface"][key].as_array()) {
                 (None, None) => {}
                 (Some(own), Some(engine)) => {
@@ -788,7 +789,7 @@ fn compared(found: &Value, expected: &Value, what: &str) -> f64 {
     worst
 }
 
-/// Unchanged settings show the engine's own shares to the last digit, also where changes are counted.
+/// Unchanged settings show the engine's own reject rates to the last digit, also if changes are counted.
 #[test]
 fn an_unchanged_what_if_is_the_verdict() {
     if !node() {
@@ -805,8 +806,8 @@ fn an_unchanged_what_if_is_the_verdict() {
     }
 }
 
-/// The copied text is a study's section: pasted, it analyses to what the page showed. Exactly so where the surrogate is the
-/// function, which it is of second degree; the bound is what differences of values near 160 leave of a kurtosis.
+/// The copied text is a section of a study: pasted, it gives the results of the page. They are exact if the surrogate equals the
+/// function, which has second degree. The bound comes from differences of values near 160 in a kurtosis.
 #[test]
 fn what_is_copied_analyses_to_the_same() {
     if !node() {

@@ -14,7 +14,7 @@ use statrs::distribution::{ContinuousCDF, Normal};
 use super::command::{run, sensitol};
 use sensitol_testing::{case, costly, faults, parse};
 
-/// A normal part of this sigma about 0, limits and inspection as written.
+/// Returns a study of a normal part with this sigma about 0, with limits and inspection as written.
 fn study(sigma: f64, rest: &str) -> String {
     format!(
         "[dimensions]\nx = {{ nominal = 0, tolerance = {} }}\n[characteristics]\ny = {{ formula = \"x\", {rest} }}\n",
@@ -31,7 +31,7 @@ fn value(of: Option<EstimatedShare>) -> f64 {
     of.unwrap().value
 }
 
-/// Twelve printed values, to the 1e-6 percent that they are asserted to.
+/// Twelve printed values, to the 1e-6 percent that the source states.
 #[test]
 fn tables_of_rp_19_are_reproduced() {
     let case = case("rp19");
@@ -47,7 +47,7 @@ fn tables_of_rp_19_are_reproduced() {
         for (found, key) in [(found.false_accept, "false accept %"), (found.bad_among_accepted, "of the accepted %")] {
             let (expected, tolerance) = printed(key, row);
             assert!((100.0 * value(found) - expected).abs() <= tolerance, "{found:?} for {expected}");
-            // The formula proves its surface, whose law is exact.
+            // The formula proves its surface, whose distribution is exact.
             assert!(found.unwrap().error.unwrap() < 1e-9, "{found:?}");
         }
     }
@@ -63,7 +63,7 @@ fn deavers_example_has_both_risks() {
     assert!((value(found.false_reject) - exact("false reject")).abs() < 1e-9);
     let accepted = 0.9544997361036416 - exact("false reject") + exact("false accept");
     assert!((value(found.accepted) - accepted).abs() < 1e-9);
-    // A guard that is solved for, and then given, is the same.
+    // A guard band that was solved for gives the same result if it is given.
     let solved = inspected(
         &study(4.0, "lower = -8, upper = 8, gauge = 1, guard = { false_accept = 0.001 }"),
         &Method::Full.into(),
@@ -81,19 +81,19 @@ fn a_perfect_gauge_makes_no_mistake() {
     let found = inspected(&study(1.0, "upper = 1, gauge = 0"), &Method::Full.into());
     assert_eq!((value(found.false_accept), value(found.false_reject)), (0.0, 0.0));
     assert_eq!(found.acceptance, [None, Some(1.0)]);
-    // The guard rejects what lies between 0.5 and 1.
+    // The guard band rejects parts between 0.5 and 1.
     let found = inspected(&study(1.0, "upper = 1, gauge = 0, guard = 0.5"), &Method::Full.into());
     let between = Normal::standard().cdf(1.0) - Normal::standard().cdf(0.5);
     assert!(value(found.false_accept) == 0.0 && (value(found.false_reject) - between).abs() < 1e-9);
-    // A part that does not vary lies a sigma of the gauge below its limit: one reading of six rejects it.
+    // A fixed part lies one sigma of the gauge below its limit: one reading of six rejects it.
     let fixed = "[dimensions]\nx = { nominal = 1 }\nw = { nominal = 0, tolerance = 1 }\n[characteristics]\ny = { formula = \"2*x\", upper = 2.1, gauge = 0.1 }\nz = { formula = \"w\" }\n";
     let found = inspected(fixed, &Method::Full.into());
-    // statrs knows the tails to 1e-10.
+    // statrs computes the tails to 1e-10.
     assert!((value(found.false_reject) - Normal::standard().cdf(-1.0)).abs() < 1e-9, "{found:?}");
 }
 
-/// Parts and readings drawn one by one: a million of each of a product of two inputs and of a clearance with a kink, whose surface is not
-/// trusted, so that the model's sample has the say; the same at check points of a costly model.
+/// Parts and readings drawn one by one, a million each, for a product of two inputs and for a clearance with a kink. The surface of the
+/// clearance is not trusted, so the figures come from the model's sample. A costly model uses its check points.
 #[test]
 fn risks_are_those_of_parts_and_readings() {
     let two = "[dimensions]\na = { nominal = 0, tolerance = 3 }\nb = { nominal = 1, tolerance = 2, distribution = \"uniform\" }\n";
@@ -121,7 +121,7 @@ fn risks_are_those_of_parts_and_readings() {
             for (found, count) in [(found.false_accept, accepted), (found.false_reject, rejected)] {
                 let (truth, found) = (count as f64 / n as f64, found.unwrap());
                 let scatter = (truth / n as f64).sqrt();
-                // Three errors of the estimate, three of a million draws.
+                // Three errors of the estimate, and three of a million draws.
                 let error = found.error.unwrap();
                 assert!((found.value - truth).abs() <= 3.0 * (error + scatter), "{formula}: {found:?} for {truth}");
             }
@@ -129,7 +129,7 @@ fn risks_are_those_of_parts_and_readings() {
     }
 }
 
-/// Of a normal part by evenly spread and by random points, beside the integrals of its law: within three errors, which are small.
+/// A normal part by quasi-random and by random points, against the integrals of its distribution: within three errors, which are small.
 #[test]
 fn samples_have_the_risks() {
     for (sampler, useful) in [(Sampler::Sobol, 0.02), (Sampler::Random, 0.1)] {
@@ -153,8 +153,8 @@ fn samples_have_the_risks() {
     }
 }
 
-/// A guard that is solved for keeps the wanted share among the points of the sample; points on a limit keep it; a perfect gauge accepts
-/// nothing bad.
+/// A solved guard band keeps the wanted share among the points of the sample. Points on a limit lie within it. A perfect gauge accepts no
+/// bad part.
 #[test]
 fn samples_solve_for_a_guard() {
     let simulated = |text: &str| {
@@ -164,7 +164,7 @@ fn samples_solve_for_a_guard() {
     let wanted = study(0.02, "lower = -0.03, upper = 0.03, gauge = 0.005, guard = { false_accept = 0.001 }");
     let (found, exact) = (simulated(&wanted), inspected(&wanted, &Method::Full.into()));
     assert!(value(found.false_accept) <= 0.001, "{found:?}");
-    // Some hundred points of 20,000 are bad and near the limits.
+    // Some hundred of 20,000 points are bad and near the limits.
     assert!((found.guard.unwrap() / exact.guard.unwrap() - 1.0).abs() < 0.05, "{found:?} {exact:?}");
     assert_eq!(
         simulated(&study(0.02, "lower = -1e-6, upper = 1e-6, gauge = 0.005, guard = { false_accept = 1e-9 }")).guard,

@@ -1,4 +1,4 @@
-//! Measured columns whose rows belong together, joint yields and their target.
+//! Measured columns with common rows, joint yields and their target.
 
 use assert_cmd::Command;
 use rand::{RngExt, SeedableRng};
@@ -24,7 +24,7 @@ fn codes(text: &str, files: &[(&str, &str)]) -> Vec<String> {
     read(text, files).unwrap().warnings.iter().map(|warning| warning.code().to_owned()).collect()
 }
 
-/// Bores and pins of 60 assemblies that wear together: correlated by 0.99 or so.
+/// Returns bores and pins of 60 assemblies that wear together: correlation of about 0.99.
 fn lot() -> (String, Vec<[f64; 2]>) {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(7);
     let mut rows = Vec::new();
@@ -39,8 +39,8 @@ fn lot() -> (String, Vec<[f64; 2]>) {
 const PAIR: &str = "[dimensions]\nbore = { measured = \"lot.csv\", column = \"bore\" }\npin = { measured = \"lot.csv\", column = \"pin\" }\n\
                     [characteristics]\nplay = { formula = \"bore - pin\" }\n";
 
-/// The variance of the difference is that of the differences, row by row: exact in a linear characteristic. Taken for independent, it is
-/// the sum of both.
+/// The variance of the difference is that of the differences row by row, exactly so in a linear characteristic. For independent columns
+/// it would be the sum of both.
 #[test]
 fn columns_of_one_file_are_the_same_parts() {
     let (csv, rows) = lot();
@@ -51,7 +51,7 @@ fn columns_of_one_file_are_the_same_parts() {
     let play: Vec<f64> = rows.iter().map(|[a, b]| a - b).collect();
     let files = [("lot.csv", csv.as_str())];
     let sigma = |text: &str| analysed(text, &files).characteristics[0].moments.unwrap().sigma();
-    // A difference of variances a hundred times as large: their rounding.
+    // Rounding in a difference of variances that are a hundred times as large.
     relative(sigma(PAIR), variance(&play).sqrt(), 1e-9);
     let apart = PAIR.replace("column = \"pin\" }", "column = \"pin\", joint = false }");
     let of = |column: usize| variance(&rows.iter().map(|row| row[column]).collect::<Vec<_>>());
@@ -73,7 +73,7 @@ fn rows_with_a_missing_cell_are_left_out_of_all() {
     assert!(missing.contains("line 5"), "{missing}");
 }
 
-/// Two files whose rows a serial number joins, in another order and with one part that only one of them has.
+/// Two files joined by a serial number, in different orders, with one part that only one of them has.
 #[test]
 fn serial_numbers_join_files() {
     let (csv, rows) = lot();
@@ -93,8 +93,8 @@ fn serial_numbers_join_files() {
     assert!(codes(text, &files).contains(&"unmatched-rows".to_owned()));
 }
 
-/// Five simultaneous readings of GUM H.2: the law of propagation over their rows. A part's sigma is u sqrt(5) sqrt(4/5) = 2 u, as each row has
-/// the probability 1/5.
+/// Five simultaneous readings of GUM H.2: the law of propagation over their rows. The sigma of a part is u sqrt(5) sqrt(4/5) = 2 u,
+/// because each row has the probability 1/5.
 #[test]
 fn readings_of_gum_h2() {
     let case = case("gum-h2");
@@ -137,7 +137,7 @@ fn sums_with_a_common_term() {
     let analysis = analysed(text, &[]);
     let exact = |key: &str| case["exact"][key].as_f64().unwrap();
     close(analysis.characteristics[0].moments.unwrap().sigma(), exact("sigma"), 1e-12, 1.0);
-    // Of sampled points of the model: the error that it says itself, and three of them.
+    // Correlation from points of the model: within three of its stated errors.
     let correlation = &analysis.correlations[0];
     assert!(
         (correlation.value.unwrap() - 0.5).abs() <= 3.0 * correlation.error.unwrap_or(0.0) + 1e-9,
@@ -147,7 +147,7 @@ fn sums_with_a_common_term() {
     assert!((joint.value - exact("P(Y1 < 0 and Y2 < 0)")).abs() <= 3.0 * joint.error + 1e-4, "{joint:?}");
 }
 
-/// The target for all characteristics at once is seen by --check, in JSON and in the text.
+/// The target of the joint yield counts for --check, and is printed in JSON and text.
 #[test]
 fn a_joint_yield_has_a_target() {
     let folder = tempfile::tempdir().unwrap();
@@ -210,7 +210,7 @@ fn wrong_joint_data_is_said() {
     );
 }
 
-/// Two independent characteristics: their joint yield is the product, by points of the model as by importance sampling.
+/// Two independent characteristics: their joint yield is the product, by points of the model and by importance sampling.
 #[test]
 fn samples_know_the_joint_yield() {
     let text = |limit: f64| {
@@ -228,7 +228,7 @@ fn samples_know_the_joint_yield() {
         assert!(joint.interval[0] <= exact && exact <= joint.interval[1], "{joint:?}");
         assert!(joint.interval[1] - joint.interval[0] < 0.01, "{joint:?}");
         assert_eq!(found.joint_requirement.unwrap().verdict, Verdict::Met);
-        // y with z, y with w, z with w.
+        // Correlations of y with z, y with w, z with w.
         for (one, exact) in found.correlations.iter().zip([0.0, 0.5f64.sqrt(), 0.5f64.sqrt()]) {
             assert!((one.value.unwrap() - exact).abs() <= 3.0 * one.error.unwrap(), "{one:?}");
         }

@@ -1,4 +1,4 @@
-//! The output of `--json` follows `sensitol schema --report`.
+//! The output of `--json` matches `sensitol schema --report`.
 
 use serde_json::{Value, json};
 
@@ -9,7 +9,7 @@ fn printed(arguments: &[&str]) -> Value {
     serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{arguments:?}: {error}: {output:?}"))
 }
 
-/// A validator of what one command prints.
+/// Returns a validator for the output of one command.
 fn validator(schema: &Value, command: &str) -> jsonschema::Validator {
     let mut one = schema.clone();
     one.as_object_mut().unwrap().remove("anyOf");
@@ -50,7 +50,7 @@ fn every_report_keeps_its_schema() {
             validator.iter_errors(&report).map(|error| format!("{}: {error}", error.instance_path())).collect();
         assert!(wrong.is_empty(), "{arguments:?}: {wrong:#?}");
     }
-    // The schema tells wrong from right: a key less, a key more, a number that is text.
+    // The schema rejects faults: a missing key, an additional key, a number as text.
     let validator = validator(&schema, "analyze");
     let report = printed(&["analyze", GAP, "--json"]);
     let changed = |change: &dyn Fn(&mut Value)| {
@@ -65,7 +65,7 @@ fn every_report_keeps_its_schema() {
     assert!(!changed(&|report| report["characteristics"][0]["sigma"] = json!("0.1")));
 }
 
-/// Eleven thousand interactions of one size: ten thousand are listed, the sum of all stays, and `--verbose` lists every one.
+/// Eleven thousand equal interactions: ten thousand are listed, the sum of all is kept, and `--verbose` lists every one.
 #[test]
 fn interactions_that_hardly_matter_are_one_sum() {
     let folder = tempfile::tempdir().unwrap();
@@ -73,7 +73,7 @@ fn interactions_that_hardly_matter_are_one_sum() {
     let n = 150;
     let dimensions: String = (0..n).map(|i| format!("x{i} = {{ nominal = 0, tolerance = 0.3 }}\n")).collect();
     let sum = (0..n).map(|i| format!("x{i}")).collect::<Vec<_>>().join(" + ");
-    // The square of a sum has every interaction, each the same.
+    // The square of a sum has every interaction, all equal.
     let text = format!("[dimensions]\n{dimensions}[characteristics]\ny = {{ formula = \"{sum} + ({sum})^2\" }}\n");
     std::fs::write(&study, text).unwrap();
     let study = study.to_str().unwrap();

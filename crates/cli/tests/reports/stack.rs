@@ -1,4 +1,4 @@
-//! Stack-up tables and CSV files: what stands in them, and that programs can read it.
+//! Stack-up tables and CSV files: their content, and that programs can read it.
 
 use std::path::Path;
 use std::process::Command;
@@ -16,7 +16,7 @@ fn report(text: &str, options: impl Into<Options>) -> Report {
     Report::of(&study.problem, &analysis, About::default())
 }
 
-/// Exit code, stdout and stderr.
+/// Returns exit code, stdout and stderr.
 fn run(arguments: &[&str]) -> (i32, String, String) {
     let mut command = Command::new(assert_cmd::cargo::cargo_bin!("sensitol"));
     let output = command.args(arguments).current_dir(repository("")).env("LC_ALL", "C.UTF-8").output().unwrap();
@@ -24,7 +24,7 @@ fn run(arguments: &[&str]) -> (i32, String, String) {
     (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
 }
 
-/// Rows of cells, read as anybody's program would.
+/// Returns rows of cells, as read by an independent CSV reader.
 fn read(text: &str) -> Vec<Vec<String>> {
     let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(text.as_bytes());
     let rows = reader.records().map(|row| row.unwrap().iter().map(str::to_owned).collect());
@@ -41,7 +41,7 @@ ring = { nominal = 1.5, tolerance = 0.03, unit = "mm" }
 gap = { formula = "housing - bearing - spacer - 2*ring", unit = "mm", lower = 18.7, upper = 19.42 }
 "#;
 
-/// Worked by hand: half bands 0.1, 0.05, 0.05 and twice 0.03; the middles are off by 0.1 and 0.05.
+/// Values by hand: half-widths 0.1, 0.05, 0.05 and twice 0.03. The band middles differ from the nominals by 0.1 and 0.05.
 #[test]
 fn a_linear_stack_by_hand() {
     let stack = report(GAP, Method::Full).stacks().remove(0);
@@ -52,7 +52,7 @@ fn a_linear_stack_by_hand() {
     let squares: f64 = contributions.iter().map(|part| part * part).sum();
     assert_eq!(stack.rows.len(), 4);
     for ((row, slope), contribution) in stack.rows.iter().zip(slopes).zip(contributions) {
-        // Differences of values near 60 over steps of 0.01 keep 1e-12.
+        // Differences of values near 60 over steps of 0.01 are accurate to 1e-12.
         close(row.slope.unwrap(), slope, 1e-11, 1.0);
         relative(row.contribution.unwrap(), contribution, 1e-11);
         relative(row.share.unwrap(), contribution * contribution / squares, 1e-11);
@@ -81,7 +81,7 @@ fn a_linear_stack_by_hand() {
     );
 }
 
-/// A worst case that ends at a limit keeps it, whatever the last bits say: 25 H7/g6 has 0.007 to 0.041 of clearance.
+/// A worst case that ends exactly at a limit is within it, whatever the last bits are: 25 H7/g6 has a clearance of 0.007 to 0.041.
 #[test]
 fn a_stack_that_reaches_its_limit_keeps_it() {
     let fit = |lower: f64, upper: f64| {
@@ -97,7 +97,7 @@ fn a_stack_that_reaches_its_limit_keeps_it() {
     assert_eq!(fit(0.007, 0.040_999_9), Some(false));
 }
 
-/// Facts that a table cannot show stand below it.
+/// Facts that a table cannot show are in notes below it.
 #[test]
 fn notes_say_what_a_stack_leaves_out() {
     let notes = |study: &str, options: Options| report(study, options).stacks().remove(0).notes;
@@ -106,7 +106,7 @@ fn notes_say_what_a_stack_leaves_out() {
         format!("[dimensions]\n{dimensions}\n[characteristics]\ny = {{ formula = \"{formula}\" }}\n")
     };
     let two = "a = { nominal = 3, tolerance = 0.3 }\nb = { nominal = 2, tolerance = 0.3 }";
-    // A parabola: curvature 1 at sigma 0.1 moves the mean by 0.01 and has 2 (0.01)^2 of the variance.
+    // A parabola with curvature 1 at sigma 0.1 moves the mean by 0.01 and has 2 (0.01)^2 of the variance.
     match &notes(&with(two, "a^2 + b"), full())[..] {
         [StackNote::Curved { share, mean_shift }] => {
             relative(*mean_shift, 0.01, 1e-9);
@@ -114,7 +114,7 @@ fn notes_say_what_a_stack_leaves_out() {
         }
         other => panic!("{other:?}"),
     }
-    // The interaction has a part of the variance, and none of the squared RSS.
+    // The interaction is a part of the variance, but not of the squared RSS.
     match &notes(&with(two, "a*b"), full())[..] {
         [StackNote::Curved { share, mean_shift }, StackNote::SharesOfRss] => {
             relative(*share, 1e-4 / (0.04 + 0.09 + 1e-4), 1e-9);
@@ -141,7 +141,7 @@ fn notes_say_what_a_stack_leaves_out() {
     let shown: Vec<&str> = stack.rows.iter().map(|row| row.dimension.name.as_str()).collect();
     assert_eq!((shown, stack.rows[1].contribution), (vec!["a", "f", "hole_x"], Some(0.0)));
     relative(stack.rows[0].contribution.unwrap(), 0.3, 1e-11);
-    // Without a slope no total is known, and none is made up.
+    // Without a slope the totals are unknown.
     let lost = report(
         &with("a = { nominal = -1, tolerance = 0.1 }\nb = { nominal = 2, tolerance = 0.1 }", "sqrt(a) + b"),
         full(),
@@ -152,7 +152,7 @@ fn notes_say_what_a_stack_leaves_out() {
     assert!(stack_csv(&[stack]).contains("y,total,rss,,,,,,,,,,\n"), "unknown is an empty cell");
 }
 
-/// Every number of the CSV files is the one of the JSON report, to the last bit.
+/// Every number of the CSV files equals that of the JSON report, to the last bit.
 #[test]
 fn csv_and_json_say_the_same() {
     let study = Study::read(&repository("examples/stacked-blocks/study.toml")).unwrap();
@@ -263,7 +263,8 @@ fn stacks_are_printed() {
         let (code, printed, _) = run(&["analyze", study, "--stack", format, "-m", "full"]);
         assert_eq!(code, 0);
         if format == "csv" {
-            // The last digits are those of a machine: a header, dimensions and five totals of each, and the proven worst case of the curved one.
+            // The last digits depend on the machine, so only rows are counted: a header, dimensions and five totals of each, and the
+            // proven worst case of the nonlinear one.
             assert_eq!(read(&printed).len(), 1 + (4 + 5) + (2 + 5) + (2 + 6));
         } else {
             insta::assert_snapshot!(format!("stack-{format}"), printed);
@@ -299,14 +300,14 @@ fn csv_files_are_written() {
     let all = ["characteristics", "dimensions", "interactions", "quantiles", "sensitivities", "stack-gap", "warnings"];
     assert_eq!(written(&to), all.map(|name| format!("{name}.csv")));
     let before = std::fs::read_to_string(to.join("characteristics.csv")).unwrap();
-    // A run that fails leaves the earlier files, and nothing else.
+    // A failing run leaves the earlier files unchanged, and no other file.
     let (code, _, _) = run(&["analyze", blocks, "--csv", shown, "--budget", "3"]);
     assert_eq!((code, written(&to).len()), (2, 7));
     assert_eq!(std::fs::read_to_string(to.join("characteristics.csv")).unwrap(), before);
     let (code, json, _) = run(&["analyze", blocks, "--csv", shown, "--json", "--method", "rss"]);
     assert!(code == 0 && serde_json::from_str::<serde_json::Value>(&json).is_ok());
     assert_ne!(std::fs::read_to_string(to.join("characteristics.csv")).unwrap(), before);
-    // A file in the way, at the end of the path or within it.
+    // A file in the place of a folder, at the end of the path or within it.
     let file = to.join("characteristics.csv");
     for wrong in [file.clone(), file.join("below")] {
         let (code, nothing, error) = run(&["analyze", blocks, "--csv", wrong.to_str().unwrap()]);

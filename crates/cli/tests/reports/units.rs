@@ -1,11 +1,11 @@
-//! Units of formulas: warned of, checked, converted; the model's border; literals with units.
+//! Units of formulas: warnings, checks and conversion; units of models; numbers with units.
 
 use sensitol::Method;
 use sensitol::assembly::{Points, Request, Responses, Run};
 use sensitol_study::Study;
 use sensitol_testing::{analysed, close, example_studies, faults, parse, relative};
 
-/// mm, in and degrees in one formula.
+/// Formula that mixes mm, in and degrees.
 const MIXED: &str = "[dimensions]\narm = { nominal = 118, tolerance = 0.4, unit = \"mm\" }\nshim = { nominal = 0.625, tolerance = 0.003, unit = \"in\" }\n\
                      tilt = { nominal = 14, tolerance = 0.25, unit = \"deg\" }\n[characteristics]\n\
                      h = { formula = \"arm*sin(tilt) + shim + 0.5[mm]\", unit = \"mm\" }\n";
@@ -22,7 +22,7 @@ fn at_nominal(study: &Study) -> f64 {
     out.value(0, 0).unwrap()
 }
 
-/// By hand: 118 sin 14° + 0.625 · 25.4 + 0.5.
+/// Value by hand: 118 sin 14° + 0.625 · 25.4 + 0.5.
 #[test]
 fn conversion_gives_the_value_by_hand() {
     let study = parse(&mode("convert", MIXED)).unwrap();
@@ -30,19 +30,19 @@ fn conversion_gives_the_value_by_hand() {
     let exact = 118.0 * 14f64.to_radians().sin() + 0.625 * 25.4 + 0.5;
     // A few products and a quotient by a factor more than by hand.
     relative(at_nominal(&study), exact, 4e-15);
-    // Slopes stay in the study's own units: mm for an inch, mm for a degree.
+    // Slopes keep the study's units: mm per inch, mm per degree.
     let text = mode("convert", MIXED);
     let analysis = analysed(&text, Method::SecondOrder);
     let slope = |index: usize| analysis.characteristics[0].sensitivities[index].first.unwrap();
     relative(slope(1), 25.4, 1e-9);
     relative(slope(2), 118.0 * 14f64.to_radians().cos() * 1f64.to_radians(), 1e-5);
-    // The numbers as written, where nothing is converted.
+    // Without conversion, the numbers are taken as written.
     let raw = 118.0 * 14f64.sin() + 0.625 + 0.5;
     relative(at_nominal(&parse(&mode("labels", MIXED)).unwrap()), raw, 4e-15);
     relative(at_nominal(&parse(MIXED).unwrap()), raw, 4e-15);
 }
 
-/// Formulas with units of their own, constants and unknowns with units, loops in degrees: the same as by hand in millimetres.
+/// Formulas, constants and unknowns with units, and loops in degrees: the same results as by hand in millimetres.
 #[test]
 fn conversion_follows_formulas_constants_unknowns_and_loops() {
     let text = "units = \"convert\"\n[constants]\nE = { value = 205, unit = \"GPa\" }\n[dimensions]\nA = { nominal = 100, tolerance = 1, unit = \"mm^2\" }\n\
@@ -58,7 +58,7 @@ fn conversion_follows_formulas_constants_unknowns_and_loops() {
     relative(at_nominal(&parse(text).unwrap()), 50.0 / 25.4, 1e-12);
 }
 
-/// The border of a built-in model in m and rad: mm and degrees are converted, or else an error.
+/// A built-in model in m and rad: mm and degrees are converted, or are an error.
 #[test]
 fn inputs_of_a_model_are_converted_or_refused() {
     let text = |units: &str| {
@@ -68,7 +68,7 @@ fn inputs_of_a_model_are_converted_or_refused() {
     };
     let plain = text("").replace("nominal = 78, tolerance = 0.1, unit = \"mm\"", "nominal = 0.078, tolerance = 0.0001");
     let sigma = |text: &str| analysed(text, Method::SecondOrder).characteristics[1].moments.unwrap().sigma();
-    // A linear input: the same differences but for rounding.
+    // A linear input: the same differences except for rounding.
     relative(sigma(&text("units = \"convert\"\n")), sigma(&plain), 1e-9);
     for units in ["", "units = \"check\"\n"] {
         let error = parse(&text(units)).unwrap_err().to_string();
@@ -126,7 +126,7 @@ fn units_that_do_not_go_together_are_faults() {
     ]));
 }
 
-/// A warning with its place by default; numbers that may hide a unit are silent, and so is what has no unit.
+/// The default is a warning with its place. Plain numbers, which may hide a unit, and names without a unit give none.
 #[test]
 fn units_that_do_not_go_together_warn() {
     let warnings = |text: &str| {
@@ -154,14 +154,14 @@ fn units_that_do_not_go_together_warn() {
     assert!(unknown[1].starts_with("[unknown-unit] Nothing is known of the unit `turns`."), "{unknown:?}");
 }
 
-/// `2[mm]` is a number everywhere.
+/// `2[mm]` is allowed wherever a number is.
 #[test]
 fn numbers_with_units_are_numbers() {
     let text = "[dimensions]\na = { nominal = 3, tolerance = 0.1, unit = \"mm\" }\n[characteristics]\ny = { formula = \"2[mm]*a + 25.4[mm/in]^2 - -1[mm]\" }\n";
     close(at_nominal(&parse(text).unwrap()), 6.0 + 25.4 * 25.4 + 1.0, 1e-15, 1.0);
 }
 
-/// Every example declares its units and passes `check`.
+/// Every example has units and passes `check`.
 #[test]
 fn every_example_passes_check() {
     let mut without = Vec::new();
@@ -193,7 +193,7 @@ fn every_example_passes_check() {
     assert!(without.is_empty(), "dimensions without a unit:\n{}", without.join("\n"));
 }
 
-/// A program that says its own units.
+/// Program that states its own units.
 const PROGRAM: &str = r#"
 import json, sys
 for line in sys.stdin:
@@ -227,11 +227,11 @@ fn the_units_of_a_program_are_held_against_the_study() {
     for mode in ["warn", "convert"] {
         let (code, error) = run(r#"{"y": "N"}"#, mode, "mm");
         assert!(code == Some(2) && error.contains("they measure different things; write `y` in N"), "{error}");
-        // Another zero is no factor.
+        // Units with another zero cannot be converted by a factor.
         let (code, error) = run(r#"{"a": "K"}"#, mode, "degC");
         assert!(code == Some(2) && error.contains("write `a` in K"), "{error}");
     }
-    // The same unit, another spelling of one; no unit that is known; nothing that is a unit at all.
+    // The same unit, another spelling of one, an unknown unit, and values that are not units.
     for units in
         [r#"{"a": "mm", "y": "mm"}"#, r#"{"a": "furlong"}"#, r#"{"b": "in"}"#, "{}", "None", "[1, 2]", r#"{"a": 3}"#]
     {
@@ -242,7 +242,7 @@ fn the_units_of_a_program_are_held_against_the_study() {
     assert_eq!(run(r#"{"a": "in"}"#, "labels", "mm").0, Some(0));
 }
 
-/// A program in inches and radians, with derivatives: the height of an arm of length `arm` that is tilted by `tilt`, on a shim.
+/// Program in inches and radians with derivatives: the height of an arm of length `arm`, tilted by `tilt`, on a shim.
 const IMPERIAL: &str = r#"
 import json, math, sys
 for line in sys.stdin:
@@ -258,8 +258,8 @@ for line in sys.stdin:
         print(json.dumps({"id": told["id"], "y": [y], "dy": [[slopes[name] for name in names]]}), flush=True)
 "#;
 
-/// The same study three times: of a program in other units, of a formula in the study's units, and of the program with numbers as they
-/// are, which must not find the answers of the first in the journal.
+/// Three studies: a program in other units, a formula in the study's units, and the program with unconverted numbers. The last one must
+/// not find the answers of the first in the journal.
 #[test]
 fn a_program_in_other_units_is_converted() {
     let folder = tempfile::tempdir().unwrap();
@@ -281,7 +281,7 @@ fn a_program_in_other_units_is_converted() {
             [run("study.toml", "convert", program, method), run("formula.toml", "convert", formula, method)];
         for key in ["nominal", "mean", "sigma"] {
             let of = |report: &serde_json::Value| report["characteristics"][0][key].as_f64().unwrap();
-            // Second differences of the program lose half of the digits; the formula's are exact.
+            // Second differences of the program lose half of the digits. Those of the formula are exact.
             relative(of(&found), of(&known), if key == "nominal" { 1e-14 } else { 1e-6 });
         }
     }
@@ -290,7 +290,7 @@ fn a_program_in_other_units_is_converted() {
     relative(nominal, 80.0 * 30.0_f64.sin() + 4.0, 1e-14);
 }
 
-/// An output of a built-in model in another unit: the characteristic, and every formula that uses its name, have the unit asked for.
+/// Output of a built-in model in another unit: the characteristic, and every formula that uses its name, have the requested unit.
 #[test]
 fn outputs_of_built_in_models_are_converted() {
     let study = |mode: &str, unit: &str, half: &str| {
@@ -312,7 +312,7 @@ fn outputs_of_built_in_models_are_converted() {
     for (unit, factor) in [("kN", 1e-3), ("lbf", 1.0 / 4.4482216152605)] {
         let found = analysed(&study("convert", unit, "N"));
         for figure in 0..4 {
-            // A product more than in N; differences of the model lose some digits of its slopes.
+            // One product more than in N. Differences of the model lose some digits of its slopes.
             relative(found[0][figure], own[0][figure] * factor, 1e-9);
             relative(found[1][figure], own[1][figure], 1e-9);
         }
@@ -323,7 +323,7 @@ fn outputs_of_built_in_models_are_converted() {
     assert!(refused.contains("the output `F` of the model engine-balance is in N, unit says m"), "{refused}");
 }
 
-/// Dimensions in the units of a case, and a characteristic of this formula and unit.
+/// Returns a study of dimensions with the units of a case, and a characteristic of this formula and unit.
 fn with_units(inputs: &serde_json::Value, formula: &str, unit: Option<&str>) -> String {
     let dimensions: String = (inputs.as_object().unwrap().iter())
         .map(|(name, unit)| format!("{name} = {{ nominal = 2, tolerance = 0.001, unit = {unit} }}\n"))
@@ -332,7 +332,7 @@ fn with_units(inputs: &serde_json::Value, formula: &str, unit: Option<&str>) -> 
     format!("[dimensions]\n{dimensions}[characteristics]\ny = {{ formula = \"{formula}\"{unit} }}\n")
 }
 
-/// The printed factors of NIST SP 811, and formulas that are right, wrong or doubtful by definition.
+/// Printed factors of NIST SP 811, and formulas that are right, wrong or doubtful by definition.
 #[test]
 fn factors_and_formulas_of_the_sources() {
     let factors = sensitol_testing::case("units-sp811");
@@ -342,7 +342,7 @@ fn factors_and_formulas_of_the_sources() {
             "[dimensions]\na = {{ nominal = 1, tolerance = 0.1, unit = \"{from}\" }}\n[characteristics]\ny = {{ formula = \"a\", unit = \"{to}\" }}\n"
         );
         let found = at_nominal(&parse(&mode("convert", &text)).unwrap());
-        // Seven digits are printed; the exact factor is a quotient of two doubles.
+        // Seven digits are printed. The exact factor is a quotient of two doubles.
         close(found, printed["value"].as_f64().unwrap(), printed["tolerance"].as_f64().unwrap(), 1.0);
         relative(found, factors["exact"][pair].as_f64().unwrap(), 1e-15);
     }

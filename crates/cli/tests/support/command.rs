@@ -1,4 +1,4 @@
-//! The command `sensitol`, run by tests.
+//! The command `sensitol` for tests.
 
 use sensitol_testing::repository;
 use std::process::Command;
@@ -6,14 +6,14 @@ use std::process::Command;
 /// Study of the four-cylinder engine.
 pub const ENGINE: &str = "examples/engine-balance/study.toml";
 
-/// A command of the program, run at the repository's root in a UTF-8 locale.
+/// Returns a command that runs the program at the repository's root in a UTF-8 locale.
 pub fn sensitol(arguments: &[&str]) -> Command {
     let mut command = Command::new(assert_cmd::cargo::cargo_bin!("sensitol"));
     command.args(arguments).current_dir(repository("")).env("LC_ALL", "C.UTF-8").env_remove("NO_COLOR");
     command
 }
 
-/// Exit code, stdout and stderr in one text.
+/// Returns exit code, stdout and stderr as one text.
 pub fn run(arguments: &[&str]) -> String {
     let output = sensitol(arguments).output().unwrap();
     let part = |name: &str, bytes: &[u8]| match String::from_utf8(bytes.to_vec()).unwrap() {
@@ -24,7 +24,7 @@ pub fn run(arguments: &[&str]) -> String {
     format!("exit {code}\n{}{}", part("stdout", &output.stdout), part("stderr", &output.stderr))
 }
 
-/// To twelve digits: the last ones are those of a machine's logarithm.
+/// Rounds numbers to twelve digits, because the last ones depend on the machine's logarithm.
 pub fn rounded(value: &mut serde_json::Value) {
     match value {
         serde_json::Value::Number(number) if number.is_f64() => {

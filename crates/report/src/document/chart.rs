@@ -7,167 +7,167 @@ use sensitol_numeric::pearson::Pearson;
 /// A drawing.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Chart {
-    /// Values over others.
+    /// Curves and points over an axis.
     Plot(Plot),
-    /// How a value is distributed.
+    /// Distribution of a value.
     Spread(Box<SpreadChart>),
-    /// Amounts beside one another.
+    /// Bars side by side.
     Bars(Bars),
 }
 
-/// Amounts beside one another, on one scale from 0 to 100.
+/// Bars on one scale from 0 to 100.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Bars {
-    /// The caption, for readers who do not see the bars.
+    /// Caption, for readers who do not see the bars.
     pub caption: String,
-    /// The bars.
+    /// Rows, a bar each.
     pub rows: Vec<Bar>,
-    /// Places marked on every bar.
+    /// Positions of the limits, marked on every bar.
     pub marks: Vec<f64>,
-    /// The meaning of the fills.
+    /// Meaning of each fill.
     pub legend: Vec<(Fill, &'static str)>,
 }
 
 /// A bar of several parts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bar {
-    /// The name of its row.
+    /// Name of the row.
     pub name: String,
-    /// Its parts: fill, beginning and width.
+    /// Parts of the bar: fill, and its beginning and width.
     pub parts: Vec<(Fill, [f64; 2])>,
-    /// The amount.
+    /// Printed amount.
     pub text: String,
-    /// The remark on it.
+    /// Remark beside the amount.
     pub remark: Line,
 }
 
-/// How a part of a bar is filled.
+/// Fill of a part of a bar.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fill {
     /// The amount itself.
     Linear,
     /// An interval within the limits.
     Span,
-    /// An interval that exceeds them.
+    /// An interval that exceeds the limits.
     Over,
     /// The amount before.
     Before,
 }
 
-/// How a value is distributed: a density, a histogram, or one over the other.
+/// Distribution of a value: a density, a histogram, or one over the other.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SpreadChart {
-    /// The density.
+    /// Pearson density.
     pub law: Option<Pearson>,
-    /// A better one, as `[value, density]` at evenly spaced places; `law` is then a thin line beside it.
+    /// More accurate density as `[value, density]` at evenly spaced values. `law` is then a thin line beside it.
     pub curve: Option<Vec<[f64; 2]>>,
-    /// The histogram.
+    /// Histogram of a sample.
     pub bins: Option<Histogram>,
-    /// Whether a terminal shows the histogram, rather than the density.
+    /// True if a terminal shows the histogram instead of the density.
     pub sampled: bool,
     /// Lower and upper limit.
     pub limits: [Option<f64>; 2],
-    /// The rejects beyond each limit, in words.
+    /// Text of the rejects beyond each limit.
     pub rejects: [Option<String>; 2],
-    /// Ranges below the axis of a page: name, ends, and the ends as they are shown.
+    /// Ranges below the axis of a page: name, ends, and the ends as printed.
     pub ranges: Vec<(String, [f64; 2], [String; 2])>,
-    /// Its value at the nominal dimensions.
+    /// Value at the nominal dimensions.
     pub nominal: Option<f64>,
     /// Places that are marked on pages: value, kind (`mean` or `quantile`), name.
     pub places: Vec<(f64, &'static str, &'static str)>,
-    /// The standard deviation, by which numbers are rounded.
+    /// Standard deviation, which sets the printed digits.
     pub sigma: f64,
-    /// The label, for readers who do not see the chart.
+    /// Label, for readers who do not see the chart.
     pub label: String,
-    /// The text below it.
+    /// Text below the chart.
     pub words: String,
 }
 
-/// Values over others.
+/// Curves and points over a horizontal axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plot {
-    /// The subject.
+    /// Subject of the plot.
     pub name: String,
-    /// Across.
+    /// Horizontal axis.
     pub x: PlotAxis,
-    /// Upwards.
+    /// Vertical axis.
     pub y: PlotAxis,
     /// The layers, drawn one over the other.
     pub layers: Vec<Layer>,
-    /// The meaning of its lines and points, below it on a page.
+    /// Meaning of the lines and points, printed below the plot on a page.
     pub words: String,
 }
 
-/// An axis. It reaches over everything that is drawn.
+/// An axis. It extends over everything that is drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlotAxis {
     /// The label of the axis.
     pub label: String,
-    /// Its scale.
+    /// Linear or logarithmic scale.
     pub scale: PlotScale,
-    /// Where numbers stand beside it; round ones where there are none.
+    /// Values with their labels; if empty, round numbers are chosen.
     pub ticks: Vec<(f64, String)>,
 }
 
 /// The scale of an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PlotScale {
-    /// Even steps, with this part of the extent as margin.
+    /// Even steps. The number is the margin, as a part of the extent.
     Linear(f64),
     /// Whole powers of ten.
     Decades,
 }
 
-/// Something that is drawn.
+/// A drawn element of a plot.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Layer {
-    /// An area between two values, open where they are unknown.
+    /// An area between two values, with a gap if they are unknown.
     Band(Vec<(f64, Option<[f64; 2]>)>),
-    /// A line, broken where its value is unknown.
+    /// A line, with a gap if its value is unknown.
     Curve(Vec<(f64, Option<f64>)>, Stroke),
     /// Circles.
     Points(Vec<PlotPoint>),
-    /// A dashed line across, named beside the chart.
+    /// A dashed horizontal line, with a name beside the chart.
     Mark(f64, &'static str),
-    /// A name beside the chart.
+    /// A name beside the chart, at this height.
     End(f64, &'static str),
 }
 
-/// How a line is drawn.
+/// Kind of line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stroke {
     /// The main curve.
     Strong,
     /// The lines that join points.
     Thin,
-    /// The curve to compare with.
+    /// The curve to compare with, dotted.
     Dotted,
 }
 
-/// A circle.
+/// A circle of a plot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlotPoint {
-    /// Its place.
+    /// Horizontal and vertical value.
     pub at: [f64; 2],
-    /// The name beside it; empty where it has none.
+    /// Name beside the circle; empty for none.
     pub name: String,
-    /// The text that a pointer shows; empty for none.
+    /// Text shown under the mouse pointer; empty for none.
     pub tip: String,
-    /// Whether it is to be looked at.
+    /// True if the point is emphasised.
     pub strong: bool,
-    /// Whether it is filled.
+    /// True if the circle is filled.
     pub filled: bool,
 }
 
 impl PlotAxis {
-    /// An axis with round numbers.
+    /// Returns an axis with round numbers.
     pub fn new(label: impl Into<String>, scale: PlotScale) -> Self {
         Self { label: label.into(), scale, ticks: Vec::new() }
     }
 }
 
 impl Plot {
-    /// All values along the horizontal axis (0) or the vertical one (1) that are drawn.
+    /// Returns all drawn values along the horizontal axis (0) or the vertical one (1).
     pub(super) fn values(&self, axis: usize) -> Vec<f64> {
         let of = |layer: &Layer| -> Vec<f64> {
             match (layer, axis) {

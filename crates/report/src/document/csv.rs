@@ -1,10 +1,10 @@
-//! Tables as CSV: a header, a row per thing, numbers with full precision; unknown is an empty cell.
+//! Tables as CSV: a header, then a row for each thing. Numbers have full precision, unknown values are empty cells.
 //!
-//! RFC 4180, but for line ends without carriage return.
+//! RFC 4180, except that lines end without a carriage return.
 
 use super::{Cell, DataTable, Document, Element, Value};
 
-/// All tables of this name in a document as one: they have the same columns.
+/// Writes all tables of this name in a document as one table. They must have the same columns.
 pub fn csv(document: &Document, name: &str) -> String {
     let tables: Vec<&DataTable> = document
         .all()
@@ -16,7 +16,7 @@ pub fn csv(document: &Document, name: &str) -> String {
     joined(tables.iter().map(|table| (None, *table)))
 }
 
-/// Tables with the same columns as one, each row behind the words of its table: the name of that column and its cell.
+/// Joins tables with the same columns. An optional pair adds a first column to the rows of a table: heading and cell.
 pub fn joined<'t>(tables: impl IntoIterator<Item = (Option<[&'t str; 2]>, &'t DataTable)>) -> String {
     let mut text = String::new();
     for (lead, table) in tables {
@@ -46,15 +46,15 @@ fn cell(cell: &Cell) -> String {
     }
 }
 
-/// A text that begins with one of these is a formula to a spreadsheet.
+/// First characters of a text that a spreadsheet takes for a formula.
 const FORMULA: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
 
-/// Text that a spreadsheet would take for a formula begins with an apostrophe.
+/// Puts an apostrophe before a text that a spreadsheet would take for a formula.
 pub fn guarded(text: &str) -> String {
     if text.starts_with(FORMULA) { format!("'{text}") } else { text.to_owned() }
 }
 
-/// A text before it was [`guarded`].
+/// Returns a text as it was before [`guarded`].
 pub fn unguarded(text: &str) -> &str {
     text.strip_prefix('\'').filter(|text| text.starts_with(FORMULA)).unwrap_or(text)
 }
@@ -63,12 +63,12 @@ fn quoted(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
 }
 
-/// The shortest decimals that are this double again.
+/// Prints the shortest decimal that reads back as the same double.
 fn number(value: f64) -> String {
     if !value.is_finite() {
         return String::new();
     }
-    // Without the sign of a zero.
+    // Adding 0.0 removes the sign of a negative zero.
     let text = format!("{:?}", value + 0.0);
     text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
 }
@@ -78,8 +78,7 @@ mod tests {
     use super::super::{Columns, Section};
     use super::*;
 
-    /// The tables of one name follow one another below one header; numbers keep every digit and their sign, and text is not a
-    /// formula.
+    /// Tables of one name follow each other below one header. Numbers keep every digit and their sign, and no text is a formula.
     #[test]
     fn tables_of_one_name_are_one() {
         let table = |name: &'static str, value: f64| {

@@ -1,13 +1,13 @@
-//! Documents as fragments of HTML: the page around them has the style sheet that their classes stand in.
+//! Documents as fragments of HTML. The page around them holds the style sheet for their classes.
 
 use super::svg::{escaped, figure};
 use super::{Bar, Bars, Cell, Chart, DataTable, Document, Element, Fill, Flow, Line, Section, Tone, spread};
 use sensitol_numeric::names::clean;
 
-/// A table of a sweep with more rows is folded.
+/// Most rows of a sweep's table that is shown unfolded.
 const FOLDED: usize = 6;
 
-/// The parts before all sections.
+/// Writes the part before all sections as the summary.
 pub fn head(document: &Document) -> String {
     format!(
         "<section aria-labelledby=\"summary\">\n<h2 id=\"summary\">Summary</h2>\n{}</section>\n",
@@ -15,7 +15,7 @@ pub fn head(document: &Document) -> String {
     )
 }
 
-/// A section for every section.
+/// Writes the sections, each as a `<section>`.
 pub fn sections(document: &Document) -> String {
     document.sections.iter().enumerate().map(|(index, one)| section(index, one)).collect()
 }
@@ -36,7 +36,7 @@ fn section(index: usize, section: &Section) -> String {
     )
 }
 
-/// Bars in the rows of a table.
+/// Writes bars as the rows of a table.
 fn bars(bars: &Bars) -> String {
     let class = |fill: Fill| match fill {
         Fill::Linear => "linear",
@@ -44,7 +44,7 @@ fn bars(bars: &Bars) -> String {
         Fill::Over => "over",
         Fill::Before => "was",
     };
-    // Amounts of several kinds fill the height; intervals leave room for the marks, and are remarked on.
+    // Bars with a legend fill the height of the row. Intervals leave space for the limit marks and have a remark column.
     let (kind, place) = match bars.legend.is_empty() {
         true => ("spans", "y=\"2\" height=\"6\""),
         false => ("pareto", "height=\"10\""),
@@ -78,7 +78,7 @@ fn bars(bars: &Bars) -> String {
     text
 }
 
-/// Blocks with the first figure before all others, below it the warnings that they begin with, which concern it, and the facts beside both.
+/// Writes blocks with the first figure first. The leading warnings concern the figure and stand below it, the facts beside both.
 fn figure_first(all: &[Element], id: &str) -> String {
     let found = all.iter().take_while(|block| matches!(block, Element::Finding(_))).count();
     let (findings, rest) = all.split_at(found);
@@ -107,7 +107,7 @@ fn figure_first(all: &[Element], id: &str) -> String {
     facts.to_owned() + &findings + &blocks(rest)
 }
 
-/// Blocks one after the other; findings beside one another are one list.
+/// Writes blocks one after the other. Adjacent findings become one list.
 pub fn blocks(blocks: &[Element]) -> String {
     let mut text = String::new();
     for part in blocks.chunk_by(|a, b| matches!((a, b), (Element::Finding(_), Element::Finding(_)))) {
@@ -151,7 +151,7 @@ fn block(block: &Element) -> String {
     }
 }
 
-/// Text in which what has a tone stands out.
+/// Writes text with marked tones.
 fn toned(line: &Line) -> String {
     let span = |span: &super::Span| {
         let text = escaped(&clean(&span.text));
@@ -165,18 +165,18 @@ fn toned(line: &Line) -> String {
     line.0.iter().map(span).collect()
 }
 
-/// A table with the columns that pages show; the first names its row unless it is a number.
+/// Writes a table with the columns that pages show. The first cell of a row is its heading unless it is a number.
 pub fn table(table: &DataTable) -> String {
     let places = table.places(|column| column.page);
     if table.view.is_empty() || places.is_empty() || table.most[1] == 0 {
         return String::new();
     }
     let class = |place: usize| if table.right(place) { " class=\"n\"" } else { "" };
-    // A table that is wider than the window can be moved by keys.
+    // A table that is wider than the window can be scrolled by keys.
     let mut text = "<div class=\"wide\" tabindex=\"0\"><table>\n".to_owned();
     if places.iter().any(|&place| !table.columns[place].heading.is_empty()) {
         let title = |&place: &usize| match table.columns[place].heading {
-            // Nothing to be read as the title of a column.
+            // An empty heading must not be read out as the title of a column.
             "" => "<td></td>".to_owned(),
             heading => format!("<th scope=\"col\"{}>{}</th>", class(place), escaped(heading)),
         };
@@ -196,7 +196,7 @@ pub fn table(table: &DataTable) -> String {
         text += &format!("<tr>{}</tr>\n", places.iter().enumerate().map(cell).collect::<String>());
     }
     text += "</tbody></table></div>\n";
-    // Of many values a chart says more: the numbers are there for those who ask, and on paper.
+    // The chart says more than many rows: the numbers stay available for readers who open them, and on paper.
     if table.name == "sweep" && table.view.len() > FOLDED {
         let rows = table.view.len();
         return format!("<details class=\"fold\"><summary>The {rows} values as a table</summary>\n{text}</details>\n");

@@ -1,11 +1,12 @@
-//! Names beside the points of a chart, none over another.
+//! Names beside the points of a chart, placed without overlap.
 
-/// Width of a letter and height of a line, generously, at a font size of 12.
+/// Width of a letter at a font size of 12, on the generous side.
 pub(super) const LETTER: f64 = 6.9;
+/// Height of a line at a font size of 12, on the generous side.
 const LINE: f64 = 13.0;
-/// Of a point's circle.
+/// Radius of a point's circle.
 const RADIUS: f64 = 5.0;
-/// Points closer than this are one to the eye.
+/// Points closer than this look like one point and share a label.
 const SAME: f64 = 3.0;
 
 /// A rectangle: left, right, above, below.
@@ -19,20 +20,21 @@ impl Space {
     }
 }
 
-/// Where a name stands.
+/// Position of a name.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Label {
     pub(super) text: String,
-    /// The end of the text that is nearer to the point, on its base line.
+    /// End of the text that is nearer to the point.
     pub(super) x: f64,
+    /// Base line of the text.
     pub(super) y: f64,
-    /// Whether the text ends there; otherwise it begins there.
+    /// True if the text ends at `x`; otherwise it begins there.
     pub(super) ends: bool,
-    /// Whether it is too far off to be seen as the point's own without a line.
+    /// True if the text is so far away that it needs a line to its point.
     pub(super) far: bool,
-    /// The point.
+    /// Position of the point.
     pub(super) of: [f64; 2],
-    /// The first of the points that it names.
+    /// Index of the first of the points that it names.
     pub(super) point: usize,
 }
 
@@ -44,9 +46,9 @@ impl Label {
     }
 }
 
-/// Labels for points within `[left, right, above, below]`: beside their point where there is room, else as near as may be.
-/// Points in one place share a label, and the first has the first choice. Nothing is put where another text is
-/// `held`; a name without room lies over others where `all` are wanted, and is left out elsewhere.
+/// Places labels for points within `[left, right, above, below]`, beside their point if there is space, else as near as possible. Points
+/// in one place share a label. Earlier points choose first. No label covers the rectangles `held`. A name without space overlaps others
+/// if `all` is set, and is left out otherwise.
 pub(super) fn placed(points: &[([f64; 2], &str)], within: [f64; 4], held: &[[f64; 4]], all: bool) -> Vec<Label> {
     let near = |a: [f64; 2], b: [f64; 2]| libm::hypot(a[0] - b[0], a[1] - b[1]) < SAME;
     let mut named: Vec<(usize, String)> = Vec::new();
@@ -63,7 +65,7 @@ pub(super) fn placed(points: &[([f64; 2], &str)], within: [f64; 4], held: &[[f64
         .into_iter()
         .filter_map(|(point, text)| {
             let [x, y] = points[point].0;
-            // Beside the point, and then farther and farther up and down.
+            // Candidates: beside the point, then farther and farther up and down.
             let levels = [-5.0, 13.0].into_iter().chain((1..12).flat_map(|i| {
                 let off = f64::from(i) * LINE;
                 [-5.0 - off, 13.0 + off]
@@ -113,10 +115,10 @@ mod tests {
         for (i, one) in labels.iter().enumerate() {
             assert!(labels[i + 1..].iter().all(|other| !one.space().meets(&other.space())), "{one:?}");
         }
-        // One alone stands to the right, above its point.
+        // A single label stands to the right, above its point.
         let alone = placed(&points[..1], WITHIN, &[], true);
         assert_eq!((alone[0].x, alone[0].y, alone[0].ends, alone[0].far), (107.0, 195.0, false, false));
-        // At the right edge there is no room but to the left.
+        // At the right edge the label fits only on the left.
         assert!(placed(&[([700.0, 200.0], "monte-carlo 100000")], WITHIN, &[], true)[0].ends);
     }
 

@@ -3,7 +3,7 @@
 use super::{DataTable, Document, Element};
 use sensitol_numeric::names::clean;
 
-/// A document: its title as a heading, a heading for every section, tables with the columns that pages show.
+/// Writes a document: its title as a heading, a heading for every section, tables with the columns that pages show.
 pub fn markdown(document: &Document) -> String {
     let mut text = String::new();
     if let Some(title) = &document.title {
@@ -52,7 +52,7 @@ fn tabled(table: &DataTable) -> String {
     text + "\n"
 }
 
-/// The text with the marks of Markdown escaped.
+/// Escapes the marks of Markdown.
 fn escaped(text: &str) -> String {
     let mut escaped = String::new();
     for c in clean(text).chars() {

@@ -1,7 +1,7 @@
-//! A report as a document: what it says, apart from how it is shown.
+//! A report as a document: its content, apart from the format.
 //!
-//! A command fills a [`Document`] once. A writer shows it: [`terminal`], [`csv`], [`markdown`], [`html`] or [`svg`]. Every piece of text and
-//! every cell carries a [`Tone`], so that a writer colours by meaning, not by the words that it finds.
+//! A command fills a [`Document`] once. A writer prints it: [`terminal`], [`csv`], [`markdown`], [`html`] or [`svg`]. Every piece of text
+//! and every cell carries a [`Tone`], so that a writer colours by meaning, not by the words in the text.
 
 mod chart;
 pub mod csv;
@@ -25,14 +25,14 @@ pub use terminal::{Detail, Style};
 /// The meaning of a piece of text for the reader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Tone {
-    /// Nothing in particular.
+    /// Neutral.
     #[default]
     Plain,
-    /// As it should be.
+    /// Good, such as a requirement that is met.
     Good,
-    /// Neither shown to be good nor to be bad.
+    /// Neither good nor bad for certain, such as an inconclusive verdict.
     Doubtful,
-    /// Not as it should be.
+    /// Bad, such as a requirement that is missed.
     Bad,
 }
 
@@ -41,100 +41,100 @@ pub enum Tone {
 pub struct Span {
     /// The text.
     pub text: String,
-    /// Its tone.
+    /// Tone of the text.
     pub tone: Tone,
 }
 
-/// A line of text: pieces, each in its tone.
+/// Line of text, as pieces with a tone each.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Line(pub Vec<Span>);
 
-/// How a line that is too long for the page goes on.
+/// Treatment of a line that is too long for the terminal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Flow {
-    /// In the next line, indented by four, where a space allows it.
+    /// Breaks at spaces. The next line is indented by four.
     Folded,
-    /// In the next line; a percent sign stays with its number.
+    /// Breaks at spaces. A percent sign stays with its number.
     Wrapped,
-    /// It stays as it is, to be copied.
+    /// Never breaks, so that the text can be copied.
     Verbatim,
 }
 
-/// A paragraph.
+/// Paragraph of text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Paragraph {
     /// The text.
     pub line: Line,
-    /// Spaces before it in a terminal.
+    /// Indentation in a terminal, in spaces.
     pub indent: usize,
-    /// How it is broken into lines.
+    /// Rule for line breaks.
     pub flow: Flow,
 }
 
-/// Words after a title, shortened to a few lines unless everything is shown.
+/// Words after a title, cut to a few lines unless everything is asked for.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct List {
-    /// The words of the list.
+    /// Title before the words.
     pub title: String,
-    /// The words; one that ends with `;` ends a group.
+    /// Words. One that ends with `;` ends a group.
     pub words: Vec<String>,
 }
 
-/// Something that the reader should know of a result: a warning, and what to do about it.
+/// Notice for the reader of a result: a warning, and the actions to take.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Notice {
     /// The code of the warning.
     pub code: &'static str,
-    /// The event, and its meaning.
+    /// Event and its meaning.
     pub message: String,
-    /// The actions to take.
+    /// Actions to take.
     pub actions: Vec<String>,
-    /// How serious it is.
+    /// Severity.
     pub tone: Tone,
 }
 
-/// A part that only pages have.
+/// Part that only pages have.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Aside {
-    /// Its heading; empty for none.
+    /// Heading; empty for none.
     pub title: &'static str,
     /// The content.
     pub blocks: Vec<Element>,
 }
 
-/// A part of a document.
+/// Element of a document.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Element {
     /// An empty line in a terminal.
     Gap,
-    /// Text.
+    /// Paragraph of text.
     Paragraph(Paragraph),
-    /// Additions on pages, for which a terminal has no room.
+    /// Additions on pages for which a terminal has no space.
     Aside(Aside),
-    /// Details for pages, and for a terminal where everything is asked for.
+    /// Details for pages, and for a terminal if everything is asked for.
     Detail(Vec<Element>),
-    /// The text of a terminal in place of the details.
+    /// Text of a terminal in place of the details.
     Brief(Vec<Element>),
     /// Words after a title.
     List(List),
     /// A table.
     Table(DataTable),
-    /// A drawing.
+    /// Chart.
     Chart(Chart),
-    /// HTML that is drawn already, of which only pages know.
+    /// Finished HTML, only for pages.
     Markup(String),
-    /// A warning. Terminals have it from stderr.
+    /// A warning. Terminals print it on stderr instead.
     Finding(Notice),
 }
 
-/// The part of a document on one thing.
+/// Section of a document on one subject.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Section {
-    /// The thing, by the name that it has in the study.
+    /// Name of the subject in the study.
     pub name: String,
-    /// Its unit.
+    /// Unit of the subject.
     pub unit: Option<String>,
-    /// The words after the name and the unit.
+    /// Words after the name and the unit.
     pub words: String,
     /// The content.
     pub blocks: Vec<Element>,
@@ -143,34 +143,34 @@ pub struct Section {
 /// A document.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Document {
-    /// Its title.
+    /// Title of the study.
     pub title: Option<String>,
-    /// The text before its sections.
+    /// Blocks before the sections.
     pub head: Vec<Element>,
-    /// Its sections; the first may be about everything, without a name.
+    /// Sections. The first may have no name if it concerns everything.
     pub sections: Vec<Section>,
 }
 
 impl Paragraph {
-    /// A line below what it belongs to.
+    /// Returns an indented line below the line that it belongs to.
     pub(crate) fn note(line: impl Into<Line>) -> Self {
         Self { line: line.into(), indent: 2, flow: Flow::Folded }
     }
 }
 
 impl Line {
-    /// A line of one piece.
+    /// Returns a line of one piece.
     pub fn toned(text: impl Into<String>, tone: Tone) -> Self {
         Self(vec![Span { text: text.into(), tone }])
     }
 
-    /// The line with more after it.
+    /// Appends text to the line.
     pub fn and(mut self, more: impl Into<Line>) -> Self {
         self.0.extend(more.into().0);
         self
     }
 
-    /// The whole text.
+    /// Returns the whole text without tones.
     pub(crate) fn text(&self) -> String {
         self.0.iter().map(|span| span.text.as_str()).collect()
     }
@@ -186,64 +186,64 @@ impl<T: Into<String>> From<T> for Line {
     }
 }
 
-/// A document or a part of it, to which blocks are added one after the other.
+/// Builder of a document or a part of it: each method appends a block.
 pub trait Blocks {
-    /// The blocks so far.
+    /// Returns the blocks so far.
     fn blocks(&mut self) -> &mut Vec<Element>;
 
-    /// An empty line.
+    /// Adds an empty line.
     fn gap(&mut self) {
         self.blocks().push(Element::Gap);
     }
 
-    /// A line at the margin.
+    /// Adds a line at the margin.
     fn line(&mut self, line: impl Into<Line>) {
         self.blocks().push(Element::Paragraph(Paragraph { line: line.into(), indent: 0, flow: Flow::Folded }));
     }
 
-    /// A line below what it belongs to.
+    /// Adds an indented line below the line that it belongs to.
     fn note(&mut self, line: impl Into<Line>) {
         self.blocks().push(Element::Paragraph(Paragraph::note(line)));
     }
 
-    /// Text of any length, this far from the margin.
+    /// Adds text of any length, indented by `indent` spaces.
     fn wrapped(&mut self, indent: usize, line: impl Into<Line>) {
         self.blocks().push(Element::Paragraph(Paragraph { line: line.into(), indent, flow: Flow::Wrapped }));
     }
 
-    /// Words after a title.
+    /// Adds words after a title.
     fn list(&mut self, title: &str, words: Vec<String>) {
         self.blocks().push(Element::List(List { title: title.to_owned(), words }));
     }
 
-    /// Blocks for pages only, below a heading unless that is empty.
+    /// Adds blocks for pages only, below a heading unless `title` is empty.
     fn aside(&mut self, title: &'static str, blocks: Vec<Element>) {
         self.blocks().push(Element::Aside(Aside { title, blocks }));
     }
 
-    /// Blocks for pages, and for terminals where everything is asked for.
+    /// Adds blocks for pages, and for a terminal if everything is asked for.
     fn detail(&mut self, blocks: Vec<Element>) {
         self.blocks().push(Element::Detail(blocks));
     }
 
-    /// Blocks for a terminal where not everything is asked for.
+    /// Adds blocks for a terminal if not everything is asked for.
     fn brief(&mut self, blocks: Vec<Element>) {
         self.blocks().push(Element::Brief(blocks));
     }
 
-    /// A line for pages only.
+    /// Adds a line for pages only.
     fn remark(&mut self, line: impl Into<Line>) {
         let mut blocks = Vec::new();
         Blocks::line(&mut blocks, line);
         self.aside("", blocks);
     }
 
-    /// A table.
+    /// Adds a table.
     fn table(&mut self, table: DataTable) {
         self.blocks().push(Element::Table(table));
     }
 
-    /// A drawing.
+    /// Adds a chart.
     fn chart(&mut self, chart: Chart) {
         self.blocks().push(Element::Chart(chart));
     }
@@ -268,19 +268,19 @@ impl Blocks for Vec<Element> {
 }
 
 impl Section {
-    /// An empty section about this.
+    /// Returns an empty section about a subject.
     pub fn of(name: &str, unit: Option<&str>) -> Self {
         Self { name: name.to_owned(), unit: unit.map(str::to_owned), ..Self::default() }
     }
 }
 
 impl Document {
-    /// An empty document of this title.
+    /// Returns an empty document with a title.
     pub(crate) fn titled(title: Option<&str>) -> Self {
         Self { title: title.map(str::to_owned), ..Self::default() }
     }
 
-    /// All blocks, in order, with those of the details.
+    /// Iterates over all blocks in order, those inside details included.
     pub(crate) fn all(&self) -> impl Iterator<Item = &Element> {
         let blocks = self.head.iter().chain(self.sections.iter().flat_map(|section| &section.blocks));
         blocks.flat_map(|block| match block {

@@ -1,27 +1,27 @@
-//! Numbers and names for people: rounded to what they are worth, the sign for what is unknown, and what is too small to be shown.
+//! Numbers and names for people: rounded to the digits that carry information, with signs for unknown and for negligible values.
 
 use sensitol_numeric::names::{clean, shortened_to};
 
-/// In place of what is unknown.
+/// Printed in place of an unknown value.
 pub const UNKNOWN: &str = "-";
 
-/// Names longer than this are shortened in their middle.
+/// Greatest length of a name in characters. Longer ones are shortened in the middle.
 const NAME: usize = 30;
 
-/// Shares of the variance below this are not shown one by one.
+/// Least share of the variance that is shown on its own.
 pub(crate) const NEWS: f64 = 1e-4;
 
-/// A power of ten, just so: the last digit of `libm::pow` may be another one, and a label would show it.
+/// Returns the exact power of ten. The last digit of `libm::pow` may differ, which a label would show.
 pub(crate) fn power_of_ten(exponent: f64) -> f64 {
     format!("1e{exponent}").parse().unwrap_or_else(|_| libm::pow(10.0, exponent))
 }
 
-/// A count with what is counted.
+/// Formats a count with its noun in singular or plural.
 pub fn plural(count: usize, one: &str, many: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { many })
 }
 
-/// A yield in percent, with three digits of what is rejected.
+/// Formats a yield in percent, with three significant digits of the reject rate.
 pub(crate) fn share(rejected: f64) -> String {
     let percent = 100.0 * rejected;
     if percent <= 0.0 {
@@ -36,7 +36,7 @@ pub(crate) fn share(rejected: f64) -> String {
     }
 }
 
-/// As many decimals as show `digits` significant digits of `scale`; None where that takes an exponent.
+/// Returns the decimals that show `digits` significant digits of `scale`, or None if that needs an exponent.
 pub(crate) fn decimals(scale: f64, digits: i32) -> Option<usize> {
     if scale == 0.0 || !scale.is_finite() {
         return Some(0);
@@ -45,12 +45,12 @@ pub(crate) fn decimals(scale: f64, digits: i32) -> Option<usize> {
     usize::try_from((digits - 1 - magnitude).max(0)).ok().filter(|&decimals| decimals <= 9)
 }
 
-/// `digits` significant digits, with an exponent where the number is very large or very small.
+/// Formats `digits` significant digits, with an exponent if the number is very large or very small.
 pub fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
-    // Rounded first, so that 0.9999999 counts as 1.
+    // The rounded text gives the magnitude, so that 0.9999999 counts as 1.
     let rounded = format!("{value:.*e}", digits - 1);
     let magnitude: i32 = rounded.split_once('e').and_then(|(_, exponent)| exponent.parse().ok()).unwrap_or(0);
     if !(-4..9).contains(&magnitude) {
@@ -60,16 +60,16 @@ pub fn significant(value: f64, digits: usize) -> String {
     format!("{value:.decimals$}")
 }
 
-/// The number as it was written in the study, within reason.
+/// Formats a number as the study has it, to at most eight digits if it is long.
 pub fn plain(value: f64) -> String {
     let text = format!("{value}");
-    // A tolerance computed from limits has a tail of rounding errors that the study does not write.
+    // A tolerance computed from limits ends in rounding errors that the study does not contain.
     let text = if text.len() > 10 { trimmed(&significant(value, 8)) } else { text };
     let exponent = shortened(&format!("{value:e}"));
     if exponent.len() + 2 < text.len() { exponent } else { text }
 }
 
-/// A mean beside its sigma: as many digits as sigma has five of.
+/// Formats a mean beside its sigma, with the decimals that show five digits of sigma.
 pub(crate) fn beside(value: f64, sigma: f64) -> String {
     match decimals(sigma, 5) {
         Some(decimals) if value.abs() < 1e9 => unsigned_zero(format!("{value:.decimals$}")),
@@ -77,17 +77,18 @@ pub(crate) fn beside(value: f64, sigma: f64) -> String {
     }
 }
 
-/// The significant digits of a number beside its sigma, where decimals do not show it.
+/// Returns the significant digits of a number beside its sigma, used if it needs an exponent.
 fn digits_beside(value: f64, sigma: f64) -> usize {
     let ratio = libm::log10((value / sigma).abs().max(1.0)).floor();
     if ratio.is_finite() { (ratio as usize + 5).min(17) } else { 6 }
 }
 
-/// The ends of an interval that no value leaves, shown as [`carried`] and rounded outward: no value lies beyond the printed numbers.
+/// Formats the ends of a proven interval as [`carried`] does, but rounded outward: no value lies beyond the printed numbers.
 ///
-/// An end within a millionth of the last digit of a printed number is that number: the rounding of a sum moves nothing outward by a digit.
+/// An end within a millionth of the last digit of a printed number is printed as that number. The rounding of a sum thus moves no end by
+/// a digit.
 pub(crate) fn outward(ends: [f64; 2], sigma: f64, error: Option<f64>) -> [String; 2] {
-    /// A part of the last digit.
+    /// Tolerance for rounding, as a part of the last digit.
     const ROUNDING: f64 = 1e-6;
     let shown = |value: f64, sign: f64| {
         let last = match (decimals(sigma, 5), of_error(error)) {
@@ -97,13 +98,13 @@ pub(crate) fn outward(ends: [f64; 2], sigma: f64, error: Option<f64>) -> [String
             _ if value == 0.0 => 0.0,
             _ => power_of_ten(libm::log10(value.abs()).floor() - digits_beside(value, sigma) as f64 + 1.0),
         };
-        // To the nearest from half a digit farther out is outward.
+        // Adding half a digit before rounding to the nearest rounds outward.
         carried(value + sign * (0.5 - ROUNDING) * last, sigma, error)
     };
     [shown(ends[0], -1.0), shown(ends[1], 1.0)]
 }
 
-/// `-0.00` says no more than `0.00`.
+/// Prints `-0.00` as `0.00`.
 pub(crate) fn unsigned_zero(text: String) -> String {
     match text.strip_prefix('-') {
         Some(zero) if zero.chars().all(|c| c == '0' || c == '.') => zero.to_owned(),
@@ -111,7 +112,7 @@ pub(crate) fn unsigned_zero(text: String) -> String {
     }
 }
 
-/// A share in percent.
+/// Formats a share in percent.
 pub(crate) fn percent(share: f64) -> String {
     match 100.0 * share {
         nothing if nothing.abs() < 1e-12 => "0".to_owned(),
@@ -120,7 +121,7 @@ pub(crate) fn percent(share: f64) -> String {
     }
 }
 
-/// Without the zeros at the end of a mantissa.
+/// Removes zeros at the end of a mantissa.
 fn shortened(text: &str) -> String {
     match text.split_once('e') {
         Some((mantissa, exponent)) => format!("{}e{exponent}", trimmed(mantissa)),
@@ -136,7 +137,7 @@ fn trimmed(text: &str) -> String {
     }
 }
 
-/// A share in percent with no more decimals than its error carries, and how many these are.
+/// Formats a share in percent with no more decimals than its error supports. Returns the number of decimals too.
 pub(crate) fn percent_within(share: f64, error: Option<f64>) -> (String, usize) {
     match of_error(error.map(|error| 100.0 * error)) {
         Some(decimals) if decimals < 2 => (unsigned_zero(format!("{:.decimals$}", 100.0 * share)), decimals),
@@ -144,7 +145,7 @@ pub(crate) fn percent_within(share: f64, error: Option<f64>) -> (String, usize) 
     }
 }
 
-/// A number to so many significant digits, or to those that its error carries.
+/// Formats a number with `digits` significant digits, or fewer if its error supports only those.
 pub(crate) fn within(value: f64, digits: usize, error: Option<f64>) -> String {
     match (decimals(value, digits as i32), of_error(error)) {
         (Some(own), Some(of_error)) if of_error < own => unsigned_zero(format!("{value:.of_error$}")),
@@ -152,56 +153,56 @@ pub(crate) fn within(value: f64, digits: usize, error: Option<f64>) -> String {
     }
 }
 
-/// A name on one line that does not push everything else off it.
+/// Returns a name on one line, shortened if it is long.
 pub(crate) fn short(name: &str) -> String {
     shortened_to(&clean(name), NAME)
 }
 
-/// A number, or the sign for unknown.
+/// Formats a number, or returns the sign for unknown.
 pub fn known(value: Option<f64>, show: impl FnOnce(f64) -> String) -> String {
     value.map_or(UNKNOWN.to_owned(), show)
 }
 
-/// Skewness and kurtosis.
+/// Formats a skewness or kurtosis.
 pub(crate) fn shape(value: f64) -> String {
     shape_with(value, None)
 }
 
-/// As many decimals as show two digits of an error; None where it is unknown, or none.
+/// Returns the decimals that show two digits of an error, or None if it is unknown or 0.
 fn of_error(error: Option<f64>) -> Option<usize> {
     decimals(error.filter(|error| *error > 0.0 && error.is_finite())?, 2)
 }
 
-/// Skewness and kurtosis with no more decimals than their error carries.
+/// Formats a skewness or kurtosis with no more decimals than its error supports.
 pub(crate) fn shape_with(value: f64, error: Option<f64>) -> String {
     let decimals = of_error(error).map_or(4, |of_error| of_error.min(4));
     unsigned_zero(format!("{value:.decimals$}"))
 }
 
-/// Cp, Cpk and the like.
+/// Formats a capability index such as Cp or Cpk.
 pub(crate) fn index(value: f64) -> String {
     unsigned_zero(format!("{value:.3}"))
 }
 
-/// Fewer rejects than this share are not told apart: no law of a dimension is known so far out.
+/// Least distinguishable reject rate: no distribution of a dimension is known so far out.
 pub(super) const FEWEST: f64 = 1e-9;
 
-/// A yield that was found, in percent, by itself.
+/// Formats a computed yield in percent.
 pub(crate) fn yielded(yield_: f64) -> String {
     unrejected(1.0 - yield_)
 }
 
-/// The yield where so many are rejected.
+/// Formats the yield that belongs to a reject rate.
 pub(crate) fn unrejected(rejected: f64) -> String {
     if rejected > 0.0 && rejected < FEWEST { "> 99.9999999 %".to_owned() } else { share(rejected) }
 }
 
-/// A yield that was asked for, in percent.
+/// Formats a required yield in percent.
 pub(crate) fn target_yield(yield_: f64) -> String {
     share(1.0 - yield_)
 }
 
-/// Limits in words.
+/// Formats limits in words.
 pub(crate) fn limits(lower: Option<f64>, upper: Option<f64>) -> String {
     match (lower, upper) {
         (None, None) => String::new(),
@@ -211,14 +212,14 @@ pub(crate) fn limits(lower: Option<f64>, upper: Option<f64>) -> String {
     }
 }
 
-/// A value beside its sigma with no more decimals than its error carries: the error's second digit is the last one.
+/// Formats a value beside its sigma with no more decimals than its error supports. The last decimal is the error's second digit.
 pub(crate) fn carried(value: f64, sigma: f64, error: Option<f64>) -> String {
     match (decimals(sigma, 5), of_error(error)) {
         (Some(of_sigma), Some(of_error)) if of_error < of_sigma && value.abs() < 1e9 => {
             unsigned_zero(format!("{value:.of_error$}"))
         }
         (of_sigma, _) if of_sigma.is_none() || value.abs() >= 1e9 => {
-            // With an exponent, down to the second digit of the error.
+            // The exponent form has digits down to the second digit of the error.
             let known = error.filter(|error| *error > 0.0 && error.is_finite());
             let carried = known.map(|error| libm::log10(value.abs()).floor() - libm::log10(error).floor() + 2.0);
             let digits = digits_beside(value, sigma);
@@ -228,14 +229,14 @@ pub(crate) fn carried(value: f64, sigma: f64, error: Option<f64>) -> String {
     }
 }
 
-/// A number as a sample of this standard error knows it: two digits of the error.
+/// Formats a number with a standard error, down to the second digit of the error.
 pub(crate) fn estimated(value: f64, error: Option<f64>) -> String {
     match error {
         Some(error) if error > 0.0 && error.is_finite() => {
             let decimals = 1.0 - libm::log10(error).floor();
             let tiny = decimals > 15.0 && value.abs().max(error) < 1e-4;
             if tiny || value.abs() >= 1e15 {
-                // With an exponent, down to the second digit of the error.
+                // The exponent form has digits down to the second digit of the error.
                 let digits = 2.0 + libm::log10((value / error).abs().max(1.0)).floor();
                 return significant(value, digits.min(17.0) as usize);
             }
@@ -247,12 +248,11 @@ pub(crate) fn estimated(value: f64, error: Option<f64>) -> String {
     }
 }
 
-/// A standard error.
 pub(crate) fn uncertainty(error: f64) -> String {
     significant(error, 2)
 }
 
-/// The ends of a tolerance band as drawings have them.
+/// Formats the ends of a tolerance band as on drawings.
 pub(crate) fn band([lower, upper]: [f64; 2]) -> String {
     if lower == -upper {
         return format!("± {}", plain(upper));

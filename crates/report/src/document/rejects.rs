@@ -1,41 +1,41 @@
-//! Yields and rejects, with the digits that their error carries and no more.
+//! Yields and reject rates, printed with the digits that their error supports.
 
 use super::number::{FEWEST, power_of_ten, share, significant};
 
-/// Significant digits of parts per million, at most.
+/// Most significant digits of parts per million.
 const DIGITS: i32 = 4;
-/// Errors that an interval of 95 % reaches to either side.
+/// Half-width of a 95 % interval, in errors.
 const REACH: f64 = 2.0;
 
-/// The shares of assemblies beyond the limits, and the error of all of it.
+/// Reject rates beyond the limits, with one error for their sum.
 ///
-/// The first digit of the error is the last one printed. Rejects below half of what the interval of two errors allows are not told
-/// apart from none: then the interval's end is printed as a bound, the yield rounded down and the rejects rounded up. So are rejects
-/// fewer than any law tells. The rejects of one side have the interval of their own, where that is known.
+/// The last printed digit is the first digit of the error. A reject rate below two errors is not distinguishable from zero. It is printed
+/// as a bound, the end of its interval: the yield is rounded down and the rejects are rounded up. The same holds for rates below
+/// `FEWEST`, which no distribution resolves. The rejects of one side use an interval of their own if it is known.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Rejects {
-    /// Share below the lower limit.
+    /// Reject rate below the lower limit.
     below: Option<f64>,
-    /// Share above the upper limit.
+    /// Reject rate above the upper limit.
     above: Option<f64>,
-    /// One error of the sum; None where it is unknown.
+    /// Standard error of the sum. None if it is unknown.
     error: Option<f64>,
-    /// The 95 % interval of either side; None where it is unknown.
+    /// 95 % interval of each side. None if it is unknown.
     intervals: [Option<[f64; 2]>; 2],
 }
 
 impl Rejects {
-    /// Shares from 0 to 1.
+    /// Takes reject rates from 0 to 1.
     pub(crate) fn new(below: Option<f64>, above: Option<f64>, error: Option<f64>) -> Self {
         Self { below, above, error: error.filter(|error| *error > 0.0 && error.is_finite()), intervals: [None; 2] }
     }
 
-    /// With the 95 % intervals of the rejects below and above.
+    /// Adds the 95 % intervals of the rejects below and above.
     pub(crate) fn within(self, intervals: [Option<[f64; 2]>; 2]) -> Self {
         Self { intervals, ..self }
     }
 
-    /// Of all limits together.
+    /// Takes the reject rate of all limits together.
     pub(crate) fn all(rejected: f64, error: Option<f64>) -> Self {
         Self::new(None, Some(rejected), error)
     }
@@ -45,19 +45,19 @@ impl Rejects {
         Some((self.below.unwrap_or(0.0) + self.above.unwrap_or(0.0)).clamp(0.0, 1.0))
     }
 
-    /// Where the rejects are not told apart from none: the most that the interval allows.
+    /// Returns the greatest reject rate that the interval allows, or None if the rejects are distinguishable from zero.
     fn bound(self, rejected: f64) -> Option<f64> {
         let reach = REACH * self.error.unwrap_or(0.0);
         let few = rejected > 0.0 && rejected < FEWEST;
         (few || rejected < reach).then_some((rejected + reach).clamp(FEWEST, 1.0))
     }
 
-    /// Whether the rejects are told apart from none, so that figures that follow from their number mean something.
+    /// True if the rejects are distinguishable from zero, so that figures derived from their number are meaningful.
     pub(crate) fn are_resolved(self) -> bool {
         self.total().is_some_and(|rejected| self.bound(rejected).is_none())
     }
 
-    /// The yield by itself; None without any limit.
+    /// Formats the yield alone. Returns None if there is no limit.
     pub(crate) fn yield_text(self) -> Option<String> {
         let rejected = self.total()?;
         if let Some(most) = self.bound(rejected) {
@@ -67,11 +67,11 @@ impl Rejects {
         let Some(error) = self.error else { return Some(exact) };
         let decimals = decimals(100.0 * error);
         let shorter = format!("{:.decimals$} %", 100.0 * (1.0 - rejected));
-        // Rejects have three digits at most, however small their error.
+        // Rejects have at most three digits, however small their error is.
         Some(if shorter.len() < exact.len() { shorter } else { exact })
     }
 
-    /// The yield with its error, or as a bound. An error that the printed digits do not show is left out.
+    /// Formats the yield with its error, or as a bound. The error is left out if the printed digits do not show it.
     pub(crate) fn with_error(self) -> Option<String> {
         let text = self.yield_text()?;
         let decimals = text.trim_end_matches(" %").split_once('.').map_or(0, |(_, decimals)| decimals.len());
@@ -80,7 +80,7 @@ impl Rejects {
         Some(error.map_or(text.clone(), |error| format!("{text} ± {}", significant(100.0 * error, 1))))
     }
 
-    /// The yield with the rejects on either side in brackets.
+    /// Formats the yield with the rejects on either side in brackets.
     pub(crate) fn text(self) -> Option<String> {
         let yield_ = self.yield_text()?;
         let sides = match self.total().and_then(|rejected| self.bound(rejected)) {
@@ -91,29 +91,30 @@ impl Rejects {
         Some(format!("{yield_} ({sides})"))
     }
 
-    /// The rejects below and above, each where there is a limit.
+    /// Formats the rejects below and above, each None if there is no such limit.
     pub(crate) fn by_side(self) -> [Option<String>; 2] {
         [0, 1].map(|side| Some(format!("{} ppm", self.side(side)?)))
     }
 
-    /// All rejects, in parts per million; None without any limit.
+    /// Formats all rejects in parts per million. Returns None if there is no limit.
     pub(crate) fn all_ppm(self) -> Option<String> {
         self.total().map(|rejected| self.ppm(rejected))
     }
 
-    /// The rejects on either side, in parts per million.
+    /// Formats the rejects on either side in parts per million.
     pub(crate) fn sides(self) -> String {
         let side = |(side, name): (usize, &str)| Some(format!("{} ppm {name}", self.side(side)?));
         let sides: Vec<String> = [(0, "below"), (1, "above")].into_iter().filter_map(side).collect();
         sides.join(", ")
     }
 
-    /// The rejects below (0) or above (1) in parts per million: by their own interval, and by the error of all where there is none.
+    /// Formats the rejects below (0) or above (1) in parts per million, by their own interval if it is known, else by the error of the
+    /// sum.
     fn side(self, side: usize) -> Option<String> {
         let share = [self.below, self.above][side]?;
         let Some([low, high]) = self.intervals[side] else { return Some(self.ppm(share)) };
         let few = share > 0.0 && share < FEWEST;
-        // As two errors that reach beyond none: the interval is wider than twice the share.
+        // The interval is wider than twice the share: two errors reach below zero.
         if few || share < 0.5 * (high - low) {
             return Some(format!("< {}", parts(high.clamp(FEWEST, 1.0))));
         }
@@ -129,38 +130,38 @@ impl Rejects {
     }
 }
 
-/// Parts per million with the digits that an error carries.
+/// Formats parts per million with the digits that an error supports.
 fn carried(share: f64, error: Option<f64>) -> String {
     let (ppm, exact) = (1e6 * share, significant(1e6 * share, DIGITS as usize));
     let Some(error) = error else { return exact };
-    // As many digits of the share as stand before the error's second one.
+    // The last printed digit of the share is the first digit of the error.
     let digits = libm::log10(ppm).floor() - libm::log10(1e6 * error).floor() + 1.0;
     if digits >= f64::from(DIGITS) { exact } else { rounded(ppm, digits.max(1.0) as usize) }
 }
 
-/// So many decimals that the first digit of the error is the last one.
+/// Returns the decimals whose last digit is the first digit of the error.
 fn decimals(error: f64) -> usize {
     (-libm::log10(error).floor()).clamp(0.0, 12.0) as usize
 }
 
-/// Digits beyond the significant ones are zeros.
+/// Rounds to so many significant digits. Further digits before the decimal point become zeros.
 fn rounded(value: f64, digits: usize) -> String {
     let text = format!("{value:.*e}", digits - 1);
     text.parse().map_or(text, |value: f64| significant(value, digits))
 }
 
-/// Parts per million, rounded up to two digits.
+/// Formats parts per million, rounded up to two digits.
 fn parts(share: f64) -> String {
     significant(upwards(1e6 * share, 2), 2)
 }
 
 fn upwards(value: f64, digits: i32) -> f64 {
     let unit = power_of_ten(libm::log10(value).floor() + 1.0 - f64::from(digits));
-    // A value that is a multiple but for rounding stays what it is.
+    // A multiple of the unit, except for rounding errors, stays unchanged.
     (value / unit - 1e-9).ceil() * unit
 }
 
-/// `> 99.997 %`: the yield that is left where so many are rejected at most, rounded down at the first digit of the rejects.
+/// Formats the least yield for a greatest reject rate, rounded down, as `> 99.997 %`.
 fn at_least(most: f64) -> String {
     let percent = 100.0 * upwards(most, 2);
     let decimals = decimals(percent);
@@ -186,7 +187,7 @@ mod tests {
 
     #[test]
     fn rejects_that_the_interval_does_not_tell_from_none_are_a_bound() {
-        // The design's own example: fewer than 15 ppm are above 99.998 %.
+        // Example from the design: fewer than 15 ppm mean more than 99.998 %.
         assert_eq!(text(0.0, 0.1, Some(7.4)), "> 99.998 % (< 15 ppm)");
         assert_eq!(text(0.0, 0.1692, Some(14.9)), "> 99.997 % (< 30 ppm)");
         assert_eq!(text(2e5, 1e5, Some(4e5)), "unknown");
@@ -205,7 +206,7 @@ mod tests {
         assert_eq!(Rejects::all(1e-12, Some(1e-13)).with_error().unwrap(), "> 99.9999999 %");
     }
 
-    /// None of 100,000 below, 8 % above: the bound of the one side is its own. Where a proof excludes a side, it has none.
+    /// None of 100,000 points below, 8 % above. Each side has its own bound. A side that a proof excludes has no bound.
     #[test]
     fn a_side_has_the_bound_of_its_own_count() {
         let all = Rejects::new(Some(0.0), Some(0.08), Some(4e-4));
@@ -213,13 +214,13 @@ mod tests {
         let within = |below: [f64; 2]| all.within([Some(below), Some([0.0792, 0.0808])]).sides();
         assert_eq!(within([0.0, 36.9e-6]), "< 37 ppm below, 80000 ppm above");
         assert_eq!(within([0.0, 0.0]), "0 ppm below, 80000 ppm above");
-        // Of one point the interval is wider than it is large.
+        // One point: the interval is wider than the share.
         let one = Rejects::new(Some(1e-5), None, Some(1e-5)).within([Some([0.25e-6, 55.7e-6]), None]);
         assert_eq!(one.sides(), "< 56 ppm below");
     }
 
     proptest::proptest! {
-        /// Whatever is printed lies within an error's first digit of what is known, and a bound on its safe side.
+        /// The printed value lies within the first digit of the error, and a bound lies on its safe side.
         #[test]
         fn what_is_printed_holds(rejected in 1e-9..0.999_f64, error in 1e-12..0.3_f64) {
             let text = Rejects::all(rejected, Some(error)).yield_text().unwrap();
@@ -229,7 +230,7 @@ mod tests {
                     let high = (rejected + REACH * error).min(1.0);
                     proptest::prop_assert!(number <= 100.0 * (1.0 - high) + 1e-9, "{text}");
                 } else {
-                    // Half a unit of the last digit: no more than half the error, or of the third digit of the rejects.
+                    // Tolerance: half a unit of the last digit, at most half the error or of the third digit of the rejects.
                     let room = 50.0 * error + 0.6 * rejected + 1e-9;
                     proptest::prop_assert!((number - 100.0 * (1.0 - rejected)).abs() <= room, "{text}");
                 }

@@ -1,41 +1,41 @@
-//! A density in a few lines of text, with the limits marked, and a histogram of bars.
+//! Density as a few lines of text with marked limits, and histogram of bars.
 
 use super::number::{beside, plain, significant};
 use super::{Cell, Columns, DataTable};
 use sensitol::simulation::Histogram;
 use sensitol_numeric::pearson::Pearson;
 
-/// Characters of the longest bar of a histogram.
+/// Length of the longest bar of a histogram, in characters.
 const BAR: usize = 50;
 
-/// Columns of the picture, where there is room.
+/// Greatest width of the picture, in columns.
 const COLUMNS: usize = 64;
-/// Its lines.
+/// Height of the picture, in lines.
 const LINES: usize = 5;
-/// The picture reaches from this quantile to its counterpart,
+/// Probability of the quantile at each end of the picture.
 const TAIL: f64 = 2e-4;
-/// and to limits that lie no farther outside than this part of its width.
+/// Greatest distance of a limit that extends the picture, as a part of its width.
 const OUTSIDE: f64 = 0.6;
-/// An eighth of a line, two eighths and so on.
+/// Characters that fill a line by eighths.
 const BLOCKS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
-/// A third of a line, two thirds, a whole one.
+/// Characters that fill a line by thirds.
 const PLAIN: [char; 4] = [' ', '.', ':', '#'];
 
-/// Draws the density between its extreme quantiles, limits included where they are near.
+/// Draws the density between its extreme quantiles, extended to limits that are near.
 pub(super) fn sketch(law: &Pearson, limits: [Option<f64>; 2], width: usize, unicode: bool) -> Vec<String> {
     let columns = COLUMNS.min(width.saturating_sub(2)).max(1);
     let (from, to) = (law.quantile(TAIL), law.upper_quantile(TAIL));
     let width = to - from;
     let near = |limit: &&f64| **limit > from - OUTSIDE * width && **limit < to + OUTSIDE * width;
     let marks: Vec<f64> = limits.iter().flatten().filter(near).copied().collect();
-    // Half a column beyond a limit, for its mark to stand in the picture.
+    // One more column beyond a limit keeps its mark inside the picture.
     let low = marks.iter().fold(from, |low, limit| low.min(limit - width / columns as f64));
     let high = marks.iter().fold(to, |high, limit| high.max(limit + width / columns as f64));
     let step = (high - low) / columns as f64;
     if !(step > 0.0 && step.is_finite()) {
         return Vec::new();
     }
-    // By probability rather than density, which may be infinite at an end of the support.
+    // Heights are probabilities, because the density may be infinite at an end of the support.
     let below: Vec<[f64; 2]> =
         (0..=columns).map(|column| low + step * column as f64).map(|x| [law.cdf(x), law.sf(x)]).collect();
     let heights: Vec<f64> =
@@ -62,7 +62,7 @@ pub(super) fn sketch(law: &Pearson, limits: [Option<f64>; 2], width: usize, unic
     lines
 }
 
-/// Bars of a sample, turned by a right angle, some intervals a line.
+/// Draws the histogram of a sample with horizontal bars, each of `together` intervals.
 pub(super) fn bars(bins: &Histogram, sigma: f64, together: usize) -> DataTable {
     let groups: Vec<(f64, f64)> = (bins.counts.chunks(together).zip(bins.edges.chunks(together)))
         .map(|(counts, edges)| (edges[0], counts.iter().sum::<u64>() as f64))
@@ -76,7 +76,7 @@ pub(super) fn bars(bins: &Histogram, sigma: f64, together: usize) -> DataTable {
         .table("", groups)
 }
 
-/// The limits below their marks, those outside the picture at its edge with where they are; without limits the ends.
+/// Writes the limits below their marks. Limits outside the picture stand at its edge with an arrow. Without limits, the ends are written.
 fn labels(limits: [Option<f64>; 2], [low, high]: [f64; 2], columns: usize, column: impl Fn(f64) -> usize) -> String {
     let mut line = vec![' '; columns];
     let mut write = |text: &str, start: usize| {

@@ -1,4 +1,4 @@
-//! How a value is distributed, as SVG in a page: its style sheet has the colours.
+//! Distribution of a value as SVG in a page, whose style sheet has the colours.
 
 use std::fmt::Write;
 
@@ -7,20 +7,24 @@ use super::number::{beside, plain, power_of_ten, unsigned_zero};
 use super::svg::escaped;
 use sensitol::simulation::Histogram;
 
-/// Height of the density, and room between it and the labels above.
+/// Height of the density, in px.
 const TALL: f64 = 150.0;
+/// Distance between the density and the labels above, in px.
 const ROOM: f64 = 8.0;
-/// Height of a row of labels, of the numbers at the axis, and of a range below it.
+/// Height of a row of labels, in px.
 const ROW: f64 = 14.0;
+/// Height of the numbers at the axis, in px.
 const NUMBERS: f64 = 22.0;
+/// Height of a range below the axis, in px.
 const RANGE: f64 = 18.0;
-/// Width of a letter at the size of labels, 11.5 px, on the safe side for bold digits of a wide font; and between two labels.
+/// Width of a letter of a label (11.5 px font), in px. It is on the safe side for bold digits of a wide font.
 const LETTER: f64 = 8.0;
+/// Least distance between two labels, in px.
 const APART: f64 = 6.0;
-/// A range that reaches farther than this many extents of the density would press it together.
+/// Greatest distance of a drawn range from the density, in extents of the density. A farther one would compress the density.
 const FAR: f64 = 1.0;
 
-/// One of the two drawings of a figure: text keeps its size, and labels thin out.
+/// Size of one of the two drawings of a figure. Text keeps its size, so the narrow one has fewer labels.
 struct Frame {
     class: &'static str,
     width: f64,
@@ -28,7 +32,7 @@ struct Frame {
     points: usize,
 }
 
-/// A page shows the one that fits.
+/// Sizes of the drawings. A page shows the one that fits.
 const FRAMES: [Frame; 2] = [
     Frame { class: "wide", width: 736.0, ticks: 8, points: 180 },
     Frame { class: "narrow", width: 358.0, ticks: 4, points: 110 },
@@ -43,7 +47,7 @@ pub(crate) struct Extent {
 }
 
 impl Extent {
-    /// Over all of these with a margin; None where there is no extent.
+    /// Returns the extent of these values with a margin. Returns None if all are equal.
     pub(crate) fn over(values: impl Iterator<Item = f64>, margin: f64, width: f64) -> Option<Self> {
         let (least, most) = values
             .filter(|value| value.is_finite())
@@ -61,7 +65,7 @@ impl Extent {
         (1e3 * self.width * share).round() / 1e3
     }
 
-    /// Round numbers along it.
+    /// Returns round numbers along the scale, about `most` of them.
     fn ticks(&self, most: usize) -> Vec<Tick> {
         let raw = (self.to - self.from) / most as f64;
         let decade = power_of_ten(libm::log10(raw).floor());
@@ -84,7 +88,6 @@ impl Extent {
     }
 }
 
-/// A number at the axis.
 struct Tick {
     x: f64,
     label: String,
@@ -94,12 +97,12 @@ fn total(bins: &Histogram) -> f64 {
     bins.counts.iter().sum::<u64>() as f64
 }
 
-/// Intervals may differ in width: heights are densities.
+/// Returns the density of a bar. Intervals may differ in width, so heights are densities.
 fn density(bins: &Histogram, i: usize, count: f64) -> f64 {
     count / total(bins) / (bins.edges[i + 1] - bins.edges[i])
 }
 
-/// The standard error of a count, as that of a binomial share.
+/// Returns the standard error of a count, as that of a binomial share.
 fn error(bins: &Histogram, count: u64) -> f64 {
     (count as f64 * (1.0 - count as f64 / total(bins))).sqrt()
 }
@@ -109,7 +112,7 @@ fn densest(bins: &Histogram) -> f64 {
     tops.filter(|density| density.is_finite()).fold(0.0, f64::max)
 }
 
-/// A tabulated density, a line from place to place; 0 beyond the table.
+/// Interpolates a tabulated density linearly. Returns 0 beyond the table.
 fn between(curve: &[[f64; 2]], x: f64) -> f64 {
     let after = curve.partition_point(|[at, _]| *at < x);
     match (after.checked_sub(1).and_then(|before| curve.get(before)), curve.get(after)) {
@@ -119,7 +122,7 @@ fn between(curve: &[[f64; 2]], x: f64) -> f64 {
     }
 }
 
-/// Where a label stands beside its place.
+/// Side of a label relative to its place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Side {
     Before,
@@ -127,7 +130,6 @@ enum Side {
     After,
 }
 
-/// A label, and in which row it stands.
 struct Label {
     class: &'static str,
     text: String,
@@ -136,7 +138,7 @@ struct Label {
     side: Side,
 }
 
-/// Rows of labels in which none lies over another, each as near to its place as the width allows.
+/// Rows of labels without overlap, each label as near to its place as the width allows.
 #[derive(Default)]
 struct Labels(Vec<Label>);
 
@@ -149,7 +151,7 @@ impl Labels {
             Side::After => x + APART,
         };
         let left = left.min(width - wide).max(0.0);
-        // The room is for the widest font; in it the text stands where its place is.
+        // The reserved width fits the widest font. Other fonts leave space around the text.
         let free = |row: usize| {
             self.0.iter().filter(|one| one.row == row).all(|one| {
                 let end = one.left + LETTER * one.text.chars().count() as f64;
@@ -179,7 +181,8 @@ impl Labels {
     }
 }
 
-/// A figure; nothing where there is neither density nor sample, or no extent. Places are marked where they lie within what is drawn.
+/// Draws a figure with marks at the places within the drawn extent. Returns None if there is neither
+/// density nor sample, or if the extent is zero.
 pub(super) fn figure(of: &SpreadChart) -> Option<String> {
     let drawn: Option<String> = FRAMES.iter().map(|frame| drawing(of, frame)).collect();
     let key = |class: &str, name: &str| format!("<li class=\"{class}\">{}</li>", escaped(name));
@@ -194,7 +197,7 @@ pub(super) fn figure(of: &SpreadChart) -> Option<String> {
     Some(format!("<figure>\n{}<figcaption>{}{legend}</figcaption>\n</figure>\n", drawn?, escaped(&of.words)))
 }
 
-/// The text for readers who do not see the chart.
+/// Text of the chart for screen readers.
 fn said(of: &SpreadChart) -> String {
     let near = of.sigma.abs();
     let number = |x: f64| if near > 0.0 { beside(x, near) } else { plain(x) };
@@ -230,7 +233,7 @@ fn drawing(of: &SpreadChart, frame: &Frame) -> Option<String> {
     let place = |i: usize| scale.from + (scale.to - scale.from) * i as f64 / frame.points as f64;
     let along =
         |of: &dyn Fn(f64) -> f64| -> Vec<(f64, f64)> { (0..=frame.points).map(|i| (place(i), of(place(i)))).collect() };
-    // The best density that there is, and the Pearson law beside a better one.
+    // Main curve: the tabulated density, or the Pearson fit if there is none. The Pearson fit is drawn beside a table.
     let best = |x: f64| match curve {
         Some(curve) => between(curve, x),
         None => law.map_or(f64::NAN, |law| law.pdf(x)),
@@ -248,7 +251,7 @@ fn drawing(of: &SpreadChart, frame: &Frame) -> Option<String> {
         let x = scale.at(limit);
         labels.put("name", format!("{name} {}", plain(limit)), (x, inside), width);
         if let Some(rejected) = rejected {
-            // Where there is no room beyond the limit the text stands inside, and says on which side they are.
+            // If there is no space beyond the limit, the text stands inside it and names the side.
             let wide = LETTER * rejected.chars().count() as f64 + APART;
             let (text, side) = match (name, x) {
                 ("lower", x) if x < wide => (format!("{rejected} below"), inside),
@@ -264,7 +267,7 @@ fn drawing(of: &SpreadChart, frame: &Frame) -> Option<String> {
     }
     let top = ROW * labels.rows() as f64 + ROOM;
     let base = top + TALL;
-    // A density that is infinite at its end is cut.
+    // A density that is infinite at an end is cut off.
     let finite = points.iter().map(|&(_, density)| density).filter(|density| density.is_finite());
     let usual = of_law.map_or(f64::INFINITY, |[low, high]| 24.0 / (high - low));
     let most = finite.fold(0.0, f64::max).min(usual).max(bins.map_or(0.0, densest));
@@ -362,7 +365,7 @@ fn drawing(of: &SpreadChart, frame: &Frame) -> Option<String> {
     Some(svg + "</svg>\n")
 }
 
-/// A range as a dimension line, with its name in a gap of the line or beside it; what lies beyond a limit stands out.
+/// Draws a range as a dimension line, with its name in a gap of the line or beside it. The part beyond a limit stands out.
 fn range(scale: &Extent, limits: [Option<f64>; 2], (name, [from, to]): (&str, [f64; 2]), y: f64) -> String {
     let [a, b] = [scale.at(from), scale.at(to)];
     let wide = LETTER * name.chars().count() as f64 + APART;
@@ -377,7 +380,7 @@ fn range(scale: &Extent, limits: [Option<f64>; 2], (name, [from, to]): (&str, [f
     };
     let _ = writeln!(svg, "<path class=\"range\" d=\"{line}M{a:.1} {}v8M{b:.1} {}v8\"/>", y - 4.0, y - 4.0);
     let [lower, upper] = limits.map(|limit| limit.map(|limit| scale.at(limit)));
-    // As thin as rounding makes it, it is none.
+    // Least visible length, in px: shorter parts are rounding.
     const SEEN: f64 = 0.5;
     for [from, to] in [lower.map(|lower| [a, b.min(lower)]), upper.map(|upper| [a.max(upper), b])].into_iter().flatten()
     {

@@ -1,4 +1,4 @@
-//! Plots as SVG: by themselves one below the other, each with a frame of its own; in a page twice, for two widths.
+//! Plots as SVG. A file has the plots one below the other, each with its own frame. A page has each plot twice, for two widths.
 
 use std::fmt::Write;
 
@@ -6,35 +6,36 @@ use super::labels::{LETTER, Label, placed};
 use super::number::{plain, power_of_ten, significant};
 use super::{Chart, Document, Element, Layer, Plot, PlotAxis, PlotPoint, PlotScale, Stroke};
 
-/// The colours of what is to be looked at, and of what it is compared with.
+/// Colour of emphasised elements.
 const ACCENT: &str = "#1f6feb";
+/// Colour of elements to compare with.
 const FAINT: &str = "#666";
-/// Names beside the chart are no nearer to one another.
+/// Least distance between two names beside the chart, in px.
 const NEAR: f64 = 13.0;
 
-/// The sheet of a plot: its size, margins and steps of axes.
+/// Sheet of a plot: size, margins, and steps of the axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Sheet {
     width: f64,
     height: f64,
-    /// Left, right, above, below.
+    /// Margins: left, right, above, below.
     margin: [f64; 4],
-    /// Steps of an axis with round numbers, at least: across and upwards.
+    /// Fewest steps of an axis with round numbers: horizontal, vertical.
     ticks: [f64; 2],
-    /// Whether the style sheet of a page has the colours.
+    /// True if the style sheet of a page sets the colours.
     page: bool,
 }
 
-/// A drawing by itself.
+/// Sheet of a plot in a file of its own.
 const ALONE: Sheet =
     Sheet { width: 720.0, height: 420.0, margin: [80.0, 150.0, 48.0, 56.0], ticks: [5.0, 5.0], page: false };
-/// The two drawings of a page, of which it shows the one that fits; their margins follow what stands there.
+/// Sheets of the two drawings of a page, which shows the one that fits. Their margins grow with their labels.
 const PAGES: [(&str, Sheet); 2] = [
     ("wide", Sheet { width: 736.0, height: 330.0, margin: [48.0, 16.0, 28.0, 44.0], ticks: [5.0, 4.0], page: true }),
     ("narrow", Sheet { width: 358.0, height: 270.0, margin: [40.0, 16.0, 28.0, 44.0], ticks: [3.0, 4.0], page: true }),
 ];
 
-/// The ink of a mark, by its meaning.
+/// Colour of a mark, by its meaning.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Ink {
     Grid,
@@ -46,7 +47,7 @@ enum Ink {
 }
 
 impl Sheet {
-    /// As attributes.
+    /// Returns SVG attributes: a class on a page, colours in a file.
     fn ink(self, ink: Ink) -> String {
         if self.page {
             let class = match ink {
@@ -78,7 +79,7 @@ impl Sheet {
         }
     }
 
-    /// A point and its name: the attributes of its circle, of the name, and of the line between them.
+    /// Returns the attributes of a point's circle, of its name, and of the line between them.
     fn of_point(self, point: &PlotPoint) -> [String; 3] {
         let colour = if point.strong { ACCENT } else { FAINT };
         let fill = if point.filled { colour } else { "#fff" };
@@ -92,7 +93,7 @@ impl Sheet {
     }
 }
 
-/// All plots of a document.
+/// Draws all plots of a document.
 pub fn svg(document: &Document, title: &str) -> String {
     let plots = document.all().filter_map(|block| match block {
         Element::Chart(Chart::Plot(plot)) => Some(plot),
@@ -101,7 +102,7 @@ pub fn svg(document: &Document, title: &str) -> String {
     drawn(&plots.collect::<Vec<_>>(), title)
 }
 
-/// Plots as one drawing on white.
+/// Draws plots as one drawing on white.
 fn drawn(plots: &[&Plot], title: &str) -> String {
     let Sheet { width, height: each, margin, .. } = ALONE;
     let (height, title) = (each * plots.len() as f64, escaped(title));
@@ -120,7 +121,7 @@ fn drawn(plots: &[&Plot], title: &str) -> String {
     svg + "</svg>\n"
 }
 
-/// A plot of a page, with what stands below it.
+/// Draws a plot of a page, with its text below.
 pub(super) fn figure(of: &Plot) -> String {
     let label = escaped(&said(of));
     let mut text = "<figure>\n".to_owned();
@@ -136,7 +137,7 @@ pub(super) fn figure(of: &Plot) -> String {
     text + &format!("<figcaption>{}</figcaption>\n</figure>\n", escaped(&of.words))
 }
 
-/// The text of a plot for screen readers.
+/// Text of a plot for screen readers.
 fn said(of: &Plot) -> String {
     let number = |value: f64| significant(value, 4);
     let ends = |known: Vec<(f64, f64)>| Some((*known.first()?, *known.last()?));
@@ -171,7 +172,7 @@ fn said(of: &Plot) -> String {
     parts.join(", ")
 }
 
-/// Names come from studies: nothing in them is markup, and characters that XML 1.0 does not have are left out.
+/// Escapes text from studies for markup, and drops characters that XML 1.0 does not allow.
 pub(crate) fn escaped(text: &str) -> String {
     let allowed =
         |c: &char| !matches!(c, '\0'..='\u{8}' | '\u{b}' | '\u{c}' | '\u{e}'..='\u{1f}' | '\u{fffe}' | '\u{ffff}');
@@ -180,7 +181,7 @@ pub(crate) fn escaped(text: &str) -> String {
     text.replace('"', "&quot;").replace('\'', "&#x27;")
 }
 
-/// A scale from values to places in the drawing.
+/// Scale from values to positions in the drawing.
 struct Ruler {
     scale: PlotScale,
     from: f64,
@@ -199,7 +200,7 @@ impl Ruler {
         let [from, to] = match scale {
             PlotScale::Linear(margin) => {
                 let [from, to] = ends(&mut values.into_iter());
-                // A constant stands in the middle.
+                // A constant value stands in the middle.
                 let room = if from < to { margin * (to - from) } else { 0.5 * from.abs().max(1.0) };
                 [from - room, to + room]
             }
@@ -216,7 +217,7 @@ impl Ruler {
         self.pixels[0] + (value - self.from) / (self.to - self.from) * (self.pixels[1] - self.pixels[0])
     }
 
-    /// Places of an axis with what stands there, which is markup.
+    /// Returns the positions of an axis with their labels as markup.
     fn ticks(&self, axis: &PlotAxis, least: f64) -> Vec<(f64, String)> {
         if !axis.ticks.is_empty() {
             return axis.ticks.iter().map(|(at, label)| (self.at(*at), escaped(label))).collect();
@@ -224,19 +225,19 @@ impl Ruler {
         if self.scale == PlotScale::Decades {
             return (self.from as i32..=self.to as i32).map(|of| (self.at(10f64.powi(of)), power(of))).collect();
         }
-        // Round numbers, so many of them to twice as many.
+        // Round steps, so that there are `least` to about twice as many.
         let rough = (self.to - self.from) / least;
         let decade = power_of_ten(libm::log10(rough).floor());
         let step =
             [5.0, 2.0, 1.0].map(|digit| digit * decade).into_iter().find(|step| *step <= rough).unwrap_or(decade);
         let (first, last) = ((self.from / step).ceil() as i64, (self.to / step).floor() as i64);
-        // A product is rounder than a sum of steps.
+        // A product has less rounding error than a sum of steps.
         let rounded = |tick: i64| format!("{:.12e}", tick as f64 * step).parse().unwrap_or(tick as f64 * step);
         (first..=last).map(rounded).map(|tick| (self.at(tick), plain(tick))).collect()
     }
 }
 
-/// A power of ten with its exponent raised; 1 to 1000 in full.
+/// Formats a power of ten with a raised exponent; 1 to 1000 in full.
 fn power(decade: i32) -> String {
     match decade {
         0..=3 => 10u32.pow(decade as u32).to_string(),
@@ -244,17 +245,17 @@ fn power(decade: i32) -> String {
     }
 }
 
-/// Letters of a label that is markup.
+/// Counts the visible letters of a label with markup.
 fn letters(label: &str) -> usize {
     let parts = label.split('<').enumerate();
     let shown = parts.map(|(i, part)| if i == 0 { part } else { part.split_once('>').map_or("", |(_, text)| text) });
     shown.map(|part| part.chars().count()).sum()
 }
 
-/// A name beside the chart: where it belongs, and what it is drawn with.
+/// Name beside the chart: its height, text and colour.
 type Beside = (f64, &'static str, Ink);
 
-/// All names beside the chart, from above, none over another.
+/// Returns all names beside the chart from top to bottom, without overlap.
 fn beside(plot: &Plot, y: &Ruler, [above, floor]: [f64; 2]) -> Vec<Beside> {
     let name = |layer: &Layer| match layer {
         Layer::Mark(value, name) => Some((y.at(*value), *name, Ink::MarkName)),
@@ -276,7 +277,7 @@ fn beside(plot: &Plot, y: &Ruler, [above, floor]: [f64; 2]) -> Vec<Beside> {
     names
 }
 
-/// The text as far as it fits.
+/// Returns as much of the text as fits into a width.
 fn fitted(text: &str, width: f64) -> String {
     let most = (width / LETTER) as usize;
     match text.chars().count() > most {
@@ -294,7 +295,7 @@ fn plot(svg: &mut String, plot: &Plot, mut sheet: Sheet) {
     if sheet.page {
         let widest = |lengths: &mut dyn Iterator<Item = usize>| LETTER * lengths.max().unwrap_or(0) as f64;
         sheet.margin[0] = sheet.margin[0].max(widest(&mut upwards.iter().map(|(_, label)| letters(label))) + 12.0);
-        // A name that takes too much of the width stands inside.
+        // A name that takes too much of the width stands inside the chart.
         let room = 0.25 * sheet.width;
         let outside = names.iter().map(|(_, name, _)| name.len()).filter(|length| LETTER * *length as f64 <= room);
         sheet.margin[1] = sheet.margin[1].max(widest(&mut outside.into_iter()) + 10.0);
@@ -307,7 +308,7 @@ fn plot(svg: &mut String, plot: &Plot, mut sheet: Sheet) {
     for (at, label) in x.ticks(&plot.x, sheet.ticks[0]) {
         let _ = writeln!(svg, "<path d=\"M{at:.1} {above}V{floor}\" {grid}/>");
         let half = 0.5 * LETTER * letters(&label) as f64;
-        // Alone there is room for all of them.
+        // A plot in a file has space for all labels.
         if sheet.page && at - half < end {
             continue;
         }
@@ -320,7 +321,7 @@ fn plot(svg: &mut String, plot: &Plot, mut sheet: Sheet) {
     }
     let (middle, low) = (0.5 * (left + far), sheet.height - if sheet.page { 8.0 } else { 12.0 });
     if sheet.page {
-        // Across the whole width; what is longer is cut.
+        // The label uses the whole width; a longer one is cut.
         let of_x = fitted(&plot.x.label, 2.0 * middle.min(sheet.width - middle));
         let _ = writeln!(svg, "<text x=\"{middle:.1}\" y=\"{low}\" text-anchor=\"middle\">{}</text>", escaped(&of_x));
         let of_y = fitted(&plot.y.label, sheet.width);
@@ -335,7 +336,7 @@ fn plot(svg: &mut String, plot: &Plot, mut sheet: Sheet) {
     let (mut held, mut texts) = (Vec::new(), String::new());
     for (at, name, ink) in names {
         let (ink, name, wide) = (sheet.ink(ink), escaped(name), LETTER * name.len() as f64);
-        // Alone the margin is wide enough.
+        // The margin of a plot in a file is wide enough.
         if !sheet.page || wide <= right - 6.0 {
             held.push([far + 6.0, far + 6.0 + wide, at - 7.0, at + 7.0]);
             let _ = writeln!(texts, "<text x=\"{}\" y=\"{:.1}\" {ink}>{name}</text>", far + 6.0, at + 4.0);
@@ -371,7 +372,7 @@ fn plot(svg: &mut String, plot: &Plot, mut sheet: Sheet) {
     *svg += &texts;
 }
 
-/// Stretches of points that are known.
+/// Splits a curve into stretches of known points.
 fn known<T: Copy>(points: &[(f64, Option<T>)]) -> Vec<Vec<(f64, T)>> {
     let stretches = points.chunk_by(|a, b| a.1.is_some() == b.1.is_some());
     let inside = |part: &[(f64, Option<T>)]| part.iter().filter_map(|&(at, value)| Some((at, value?))).collect();
@@ -388,10 +389,10 @@ fn circles(svg: &mut String, x: &Ruler, y: &Ruler, points: &[PlotPoint], sheet: 
     let place = |point: &PlotPoint| [x.at(point.at[0]), y.at(point.at[1])];
     let named: Vec<&PlotPoint> = points.iter().filter(|point| !point.name.is_empty()).collect();
     let names: Vec<([f64; 2], &str)> = named.iter().map(|point| (place(point), point.name.as_str())).collect();
-    // A page has them in its table too.
+    // A page may leave names out, because its table has them too.
     let labels = placed(&names, [left, sheet.width - 5.0, above - 12.0, sheet.height - below], held, !sheet.page);
     for Label { x, y, of: [from, top], point, .. } in labels.iter().filter(|label| label.far) {
-        // To the middle of the line, where the text begins or ends.
+        // The lead ends at the middle of the text's height, where the text begins or ends.
         let (to, [.., ink]) = (y - 4.0, sheet.of_point(named[*point]));
         let _ = writeln!(svg, "<path d=\"M{from:.1} {top:.1}L{x:.1} {to:.1}\" {ink}/>");
     }

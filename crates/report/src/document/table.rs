@@ -1,74 +1,74 @@
-//! Tables with typed cells: each column is declared once, with its name in CSV, its title for people, and its cell for a row.
+//! Tables with typed cells. Each column is declared once: its key in CSV, its title for readers, and its cell for a row.
 
 use super::number::{UNKNOWN, short};
 use super::{Line, Tone};
 
-/// The content of a cell, for programs.
+/// Content of a cell for CSV and JSON.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
-    /// Nothing.
+    /// Empty cell.
     Empty,
     /// Text.
     Text(String),
-    /// A number, or None where it is unknown.
+    /// A number, or None if it is unknown.
     Number(Option<f64>),
     /// A count.
     Count(u64),
-    /// Whether something is so, or None where that is unknown.
+    /// True or false, or None if that is unknown.
     Truth(Option<bool>),
 }
 
-/// A cell: what it holds, and how people read it.
+/// Cell of a table: a value for programs and a text for readers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cell {
-    /// For programs.
+    /// Value for programs.
     pub value: Value,
-    /// For people.
+    /// Text for readers.
     pub line: Line,
-    /// The text of pages, where terminals have room for less: the whole name, a remark.
+    /// Longer text for pages if terminals have less space: the whole name, a remark.
     pub full: Option<String>,
-    /// The section that it names, by its place in the document: pages lead there.
+    /// Index of the section that the cell links to on pages.
     pub leads_to: Option<usize>,
 }
 
 /// A column of a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Column {
-    /// Its name in CSV; empty where CSV does without it.
+    /// Name of the column in CSV; empty if CSV leaves it out.
     pub key: &'static str,
-    /// Its title in a terminal.
+    /// Title in a terminal.
     pub title: &'static str,
-    /// Its title on a page.
+    /// Title on a page.
     pub heading: &'static str,
-    /// Whether a terminal shows it.
+    /// True if a terminal shows the column.
     pub terminal: bool,
-    /// Whether pages show it.
+    /// True if pages show the column.
     pub page: bool,
-    /// Whether it holds labels of the columns after it. A terminal without room for all columns keeps these beside it.
+    /// True if the column labels the columns after it. A terminal that is too narrow for all columns keeps a label beside its columns.
     pub label: bool,
 }
 
-/// A table.
+/// Table of cells, with its name and its visible rows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DataTable {
-    /// The name of its CSV file without the ending; empty where it has none.
+    /// Name of the CSV file without the extension; empty if there is none.
     pub name: &'static str,
-    /// Its columns.
+    /// Columns in order.
     pub columns: Vec<Column>,
-    /// Its rows, each with a cell for every column.
+    /// Rows, each with a cell for every column.
     pub rows: Vec<Vec<Cell>>,
-    /// The rows that people see, in their order; CSV has all.
+    /// Indices of the rows that readers see, in their order. CSV has all rows.
     pub view: Vec<usize>,
-    /// How many of these a terminal shows unless everything is asked for, and how many a page.
+    /// Most rows that a terminal shows unless everything is asked for, and most rows of a page.
     pub most: [usize; 2],
-    /// The hint of a terminal where it does not show all.
+    /// Hint that a terminal prints if it does not show all rows.
     pub rest: String,
 }
 
-/// A column and its cell for a row.
+/// Column with the function that returns its cell for a row.
 type Filled<'a, T> = (Column, Box<dyn Fn(&T) -> Cell + 'a>);
 
-/// The columns of a table whose rows are made from values of type `T`.
+/// Columns of a table whose rows are made from values of type `T`.
 pub struct Columns<'a, T>(Vec<Filled<'a, T>>);
 
 impl<T> Default for Columns<'_, T> {
@@ -88,47 +88,47 @@ impl<'a, T> Columns<'a, T> {
         self
     }
 
-    /// A column that needs no title in a terminal, as that of names.
+    /// Adds a column without a title in a terminal, such as that of names.
     pub fn named(self, key: &'static str, heading: &'static str, cell: impl Fn(&T) -> Cell + 'a) -> Self {
         self.with([key, "", heading], [true, true], cell)
     }
 
-    /// A column for people and programs.
+    /// Adds a column for readers and CSV.
     pub fn column(self, key: &'static str, title: &'static str, cell: impl Fn(&T) -> Cell + 'a) -> Self {
         self.with([key, title, title], [true, true], cell)
     }
 
-    /// A column for which a terminal has no room.
+    /// Adds a column for pages and CSV, for which a terminal has no space.
     pub fn wide(self, key: &'static str, title: &'static str, cell: impl Fn(&T) -> Cell + 'a) -> Self {
         self.with([key, title, title], [false, true], cell)
     }
 
-    /// A column for people, on pages and in terminals.
+    /// Adds a column for pages and terminals.
     pub fn shown(self, title: &'static str, cell: impl Fn(&T) -> Cell + 'a) -> Self {
         self.with(["", title, title], [true, true], cell)
     }
 
-    /// A column for a terminal, where there is something to show.
+    /// Adds a column for terminals if `shows` is true.
     pub fn terminal(self, shows: bool, title: &'static str, cell: impl Fn(&T) -> Cell + 'a) -> Self {
         self.with(["", title, title], [shows, false], cell)
     }
 
-    /// A column for people, where there is something to show.
+    /// Adds a column for pages and terminals if `shows` is true.
     pub fn shown_if(self, shows: bool, title: &'static str, cell: impl Fn(&T) -> Cell + 'a) -> Self {
         self.with(["", title, title], [shows; 2], cell)
     }
 
-    /// A column for people, for which a terminal has no room.
+    /// Adds a column for pages only.
     pub fn page(self, title: &'static str, cell: impl Fn(&T) -> Cell + 'a) -> Self {
         self.with(["", title, title], [false, true], cell)
     }
 
-    /// A column for programs.
+    /// Adds a column for CSV only.
     pub fn data(self, key: &'static str, cell: impl Fn(&T) -> Cell + 'a) -> Self {
         self.with([key, "", ""], [false, false], cell)
     }
 
-    /// The table of these rows. People see all of them.
+    /// Builds the table of these rows, all of them visible.
     pub fn table(self, name: &'static str, rows: impl IntoIterator<Item = T>) -> DataTable {
         let rows: Vec<Vec<Cell>> =
             rows.into_iter().map(|row| self.0.iter().map(|(_, cell)| cell(&row)).collect()).collect();
@@ -138,7 +138,7 @@ impl<'a, T> Columns<'a, T> {
 }
 
 impl DataTable {
-    /// The table whose rows are about the sections of its document, in their order: the names lead there.
+    /// Links the first cell of each row to the section of the same index.
     pub fn of_sections(mut self) -> Self {
         for (index, row) in self.rows.iter_mut().enumerate() {
             if let Some(name) = row.first_mut() {
@@ -148,20 +148,19 @@ impl DataTable {
         self
     }
 
-    /// The table of which people see these rows in this order.
+    /// Sets the visible rows and their order.
     pub fn seen(mut self, view: Vec<usize>) -> Self {
         self.view = view;
         self
     }
 
-    /// The table of which a terminal shows this many rows unless all are asked for, and a page so many; a terminal then
-    /// says what the rest is.
+    /// Sets the most rows of a terminal (unless all are asked for) and of a page, and the terminal's hint at the rest.
     pub fn at_most(mut self, most: [usize; 2], rest: String) -> Self {
         (self.most, self.rest) = (most, rest);
         self
     }
 
-    /// The table for a terminal that has no room for the columns of these titles, and no file of its own.
+    /// Hides the columns of these titles in a terminal, and drops the CSV name.
     pub fn without(mut self, titles: &[&str]) -> Self {
         self.name = "";
         for column in &mut self.columns {
@@ -170,7 +169,7 @@ impl DataTable {
         self
     }
 
-    /// A table without titles, for terminals and pages.
+    /// Builds a table without titles, for terminals and pages.
     pub fn untitled<const N: usize>(rows: impl IntoIterator<Item = [Cell; N]>) -> Self {
         let column = Column { key: "", title: "", heading: "", terminal: true, page: true, label: false };
         let rows: Vec<Vec<Cell>> = rows.into_iter().map(Vec::from).collect();
@@ -184,18 +183,18 @@ impl DataTable {
         }
     }
 
-    /// The table of which these columns label those after them, beside the first one.
+    /// Marks these columns as labels of the columns after them, in addition to the first one.
     pub fn labelled_by(mut self, places: &[usize]) -> Self {
         places.iter().for_each(|&place| self.columns[place].label = true);
         self
     }
 
-    /// The places of the columns that are wanted.
+    /// Returns the indices of the wanted columns.
     pub fn places(&self, wanted: impl Fn(&Column) -> bool) -> Vec<usize> {
         self.columns.iter().enumerate().filter(|(_, column)| wanted(column)).map(|(place, _)| place).collect()
     }
 
-    /// Whether a column holds numbers, which stand below one another at their right ends.
+    /// True if a column holds numbers, which are right-aligned.
     pub fn right(&self, place: usize) -> bool {
         let cells = || self.rows.iter().map(|row| &row[place]);
         let number = |cell: &Cell| matches!(cell.value, Value::Number(_) | Value::Count(_));
@@ -204,66 +203,66 @@ impl DataTable {
 }
 
 impl Cell {
-    /// An empty cell.
+    /// Returns an empty cell.
     pub fn empty() -> Self {
         Self::both(Value::Empty, "")
     }
 
-    /// A number, shown by `show`; the sign for unknown where there is none.
+    /// Returns a cell with a number, shown by `show`, or by the sign for unknown.
     pub fn number(value: impl Into<Option<f64>>, show: impl FnOnce(f64) -> String) -> Self {
         let value = value.into();
         Self::both(Value::Number(value), value.map_or(UNKNOWN.to_owned(), show))
     }
 
-    /// A number that is left out where it is unknown.
+    /// Returns a cell with a number, left empty if it is unknown.
     pub fn known(value: impl Into<Option<f64>>, show: impl FnOnce(f64) -> String) -> Self {
         let value = value.into();
         Self::both(Value::Number(value), value.map_or(String::new(), show))
     }
 
-    /// A number for programs.
+    /// Returns a cell with a number for CSV only.
     pub fn data(value: impl Into<Option<f64>>) -> Self {
         Self::both(Value::Number(value.into()), "")
     }
 
-    /// A count.
+    /// Returns a cell with a count.
     pub fn count(value: u64) -> Self {
         Self::both(Value::Count(value), value.to_string())
     }
 
-    /// Text.
+    /// Returns a cell with text.
     pub fn text(text: impl Into<String>) -> Self {
         let text = text.into();
         Self::both(Value::Text(text.clone()), text)
     }
 
-    /// Text, where there is any.
+    /// Returns a cell with text, or an empty one.
     pub fn optional(text: Option<&str>) -> Self {
         text.map_or_else(Self::empty, Self::text)
     }
 
-    /// A name, which terminals shorten.
+    /// Returns a cell with a name, which terminals shorten.
     pub fn name(name: &str) -> Self {
         Self { full: Some(name.to_owned()), ..Self::both(Value::Text(name.to_owned()), short(name)) }
     }
 
-    /// A cell with one content for people and another for programs.
+    /// Returns a cell with one content for programs and another for readers.
     pub fn both(value: Value, line: impl Into<Line>) -> Self {
         Self { value, line: line.into(), full: None, leads_to: None }
     }
 
-    /// The same with more on pages.
+    /// Sets a longer text for pages.
     pub fn on_pages(mut self, text: String) -> Self {
         self.full = Some(text);
         self
     }
 
-    /// The text of a page, which has room for whole names.
+    /// Returns the text for a page.
     pub fn on_page(&self) -> Line {
         self.full.as_deref().map_or_else(|| self.line.clone(), Line::from)
     }
 
-    /// The same in another tone.
+    /// Sets the tone of the whole text.
     pub fn toned(mut self, tone: Tone) -> Self {
         self.line.0.iter_mut().for_each(|span| span.tone = tone);
         self

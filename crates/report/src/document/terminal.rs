@@ -1,49 +1,50 @@
-//! Documents as text for a terminal: lines and tables without lines, in Unicode or plain ASCII.
+//! Documents as text for a terminal, with tables without rules, in Unicode or plain ASCII.
 
 use super::sketch::{bars, sketch};
 use super::{Chart, DataTable, Document, Element, Flow, Line, List, Paragraph, Section, Tone};
 use sensitol_numeric::names::{clean, shortened_to};
 
-/// How much is shown.
+/// Amount of detail.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Detail {
-    /// The table of all results, without sections.
+    /// Table of all results, without sections.
     Summary,
-    /// Sections in brief, with the strongest contributions.
+    /// Short sections, with the strongest contributions.
     Short,
     /// Everything.
     Full,
 }
 
-/// How a text report looks.
+/// Style of a text report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Style {
-    /// How much is shown.
+    /// Amount of detail.
     pub detail: Detail,
-    /// Whether signs such as ± may be used.
+    /// True if signs such as ± may be used.
     pub unicode: bool,
-    /// Whether verdicts are coloured.
+    /// True if verdicts are coloured.
     pub color: bool,
-    /// No line is longer, if that can be.
+    /// Greatest length of a line if it can be broken.
     pub width: usize,
 }
 
 impl Style {
-    /// The width of what is written to no terminal.
+    /// Width of text that is not written to a terminal.
     pub const WIDTH: usize = 80;
 }
 
-/// Before every column.
+/// Spaces before every column.
 const GAP: usize = 2;
-/// A name in the first column is shortened to no less than this where a table would be too wide.
+/// Least length to which a name in the first column is shortened if a table is too wide.
 const SHORTEST: usize = 8;
-/// Lines of a list unless everything is shown, and the room for "and N more" in the last of them.
+/// Most lines of a list unless everything is shown.
 const LINES: usize = 3;
+/// Space for "and N more" in the last line of a list.
 const MORE: usize = 20;
-/// Signs of the report, and what stands for them in ASCII.
+/// Signs of the report with their replacement in ASCII.
 const ASCII: [(char, &str); 5] = [('±', "+-"), ('×', "x"), ('…', "~"), ('●', "*"), ('█', "#")];
 
-/// The escape sequence of a tone; None where it has no colour.
+/// Returns the escape sequence of a tone, or None if it has no colour.
 fn escape(tone: Tone) -> Option<&'static str> {
     match tone {
         Tone::Plain => None,
@@ -53,7 +54,7 @@ fn escape(tone: Tone) -> Option<&'static str> {
     }
 }
 
-/// A document as text.
+/// Formats a document as text.
 pub fn text(document: &Document, style: Style) -> String {
     let mut page = Page { text: String::new(), style };
     if let Some(title) = &document.title {
@@ -70,10 +71,9 @@ pub fn text(document: &Document, style: Style) -> String {
     page.text
 }
 
-/// A letter in its tone.
+/// Letter with its tone.
 type Letter = (char, Tone);
 
-/// A text as it grows.
 struct Page {
     text: String,
     style: Style,
@@ -121,7 +121,7 @@ impl Page {
         }
     }
 
-    /// The letters of a line, in signs that the page has.
+    /// Returns the letters of a line, replaced by ASCII if the style asks for it.
     fn letters(&self, line: &Line) -> Vec<Letter> {
         let letters = |span: &super::Span| {
             let text = clean(&span.text);
@@ -135,7 +135,7 @@ impl Page {
         line.0.iter().flat_map(letters).collect()
     }
 
-    /// Puts letters down, without spaces at their end.
+    /// Appends letters without trailing spaces, coloured by their tone.
     fn put(&mut self, letters: &[Letter]) {
         let end = letters.iter().rposition(|&(letter, _)| !letter.is_whitespace()).map_or(0, |last| last + 1);
         for part in letters[..end].chunk_by(|a, b| a.1 == b.1) {
@@ -148,7 +148,7 @@ impl Page {
         self.text.push('\n');
     }
 
-    /// A line; what is too long for the page goes on in the next one.
+    /// Appends a line. If it is too long, it continues in the next one, indented by four.
     fn folded(&mut self, line: &Line) {
         let mut rest = self.letters(line);
         let width = self.style.width;
@@ -162,7 +162,7 @@ impl Page {
         self.put(&rest);
     }
 
-    /// A text that may take several lines, those after the first indented by four; a percent sign stays with its number.
+    /// Appends text over several lines, those after the first indented by four. A percent sign stays with its number.
     fn wrapped(&mut self, indent: usize, line: &Line) {
         let letters = self.letters(line);
         let glued = |at: usize| letters[at].0 == ' ' && letters.get(at + 1).is_some_and(|next| next.0 == '%');
@@ -187,7 +187,7 @@ impl Page {
         self.put(&line);
     }
 
-    /// Words with commas after a title, on as many lines as it takes; the rest is counted.
+    /// Appends words with commas after a title, on at most `LINES` lines unless everything is shown. The other words are counted.
     fn list(&mut self, List { title, words }: &List) {
         let most = if self.style.detail == Detail::Full { usize::MAX } else { LINES };
         let (mut lines, mut line) = (0, title.clone());
@@ -210,8 +210,8 @@ impl Page {
         self.folded(&line.into());
     }
 
-    /// A table, indented by two and no wider than the page: names, in the first column, give way, and columns that have no room
-    /// stand in a table of their own below, with the names again. Columns with labels of their own stand there beside these.
+    /// Appends a table, indented by two and no wider than the page. Names in the first column are shortened first. Columns without space
+    /// go into a table below, with the names again. Columns that have labels of their own go there beside these labels.
     fn table(&mut self, table: &DataTable) {
         let most = if self.style.detail == Detail::Full { usize::MAX } else { table.most[0] };
         let places = table.places(|column| column.terminal);
@@ -235,20 +235,20 @@ impl Page {
         }
     }
 
-    /// The columns that stand beside one another, as many as the page has room for. Each part begins with the labels of its columns: those of
-    /// the first column, or of the last column of labels before them.
+    /// Groups the columns into parts that fit side by side. Each part begins with the label of its columns: the first column, or the last
+    /// label column before them.
     fn parts(&self, widths: &[usize], labels: &[bool]) -> Vec<Vec<usize>> {
         let least = |label: usize| widths[label].min(SHORTEST) + GAP;
         let mut parts: Vec<Vec<usize>> = Vec::new();
         let (mut columns, mut taken, mut label) = (vec![0], least(0), 0);
         for column in 1..widths.len() {
-            // Columns up to the next labels stay together, as far as there is room for them at all.
+            // Columns up to the next label stay together if they fit at all.
             let end = (column + 1..widths.len()).find(|&next| labels[next]).unwrap_or(widths.len());
             let group: usize = widths[column..end].iter().map(|width| width + GAP).sum();
             let needed = if labels[column] { group } else { widths[column] + GAP };
             if taken + needed > self.style.width && columns.len() > 1 {
                 parts.push(std::mem::take(&mut columns));
-                // Labels that begin a part are its names.
+                // A label column that begins a part serves as its names.
                 let own = if labels[column] { column } else { label };
                 (columns, taken) = (vec![own], least(own));
             }
@@ -264,7 +264,7 @@ impl Page {
         parts
     }
 
-    /// Some columns of a table; below the first ones a row that has nothing in them is left out.
+    /// Appends some columns of a table. In parts below the first one, rows without content are left out.
     fn part(
         &mut self,
         rows: &[Vec<Vec<Letter>>],
@@ -292,7 +292,7 @@ impl Page {
         }
     }
 
-    /// A name without its middle, where it is longer than `most`.
+    /// Shortens a name longer than `most` in the middle.
     fn fitted(&self, cell: &[Letter], most: usize) -> Vec<Letter> {
         if cell.len() <= most {
             return cell.to_vec();
@@ -306,12 +306,12 @@ fn spaces(count: usize) -> impl Iterator<Item = Letter> {
     std::iter::repeat_n((' ', Tone::Plain), count)
 }
 
-/// How many letters there are before the spaces at the end.
+/// Returns the length without trailing spaces.
 fn trimmed(letters: &[Letter]) -> usize {
     letters.iter().rposition(|&(letter, _)| letter != ' ').map_or(0, |last| last + 1)
 }
 
-/// Columns of a terminal that letters take: two for those of East Asia and pictures, none for marks on the letter before.
+/// Returns the terminal columns that letters take: two for East Asian letters and pictures, none for combining marks.
 fn width(letters: &[Letter]) -> usize {
     let columns = |&(letter, _): &Letter| match u32::from(letter) {
         0x300..=0x36f | 0x200b..=0x200f | 0xfe00..=0xfe0f => 0,
@@ -337,7 +337,7 @@ mod tests {
         text(&document, style)
     }
 
-    /// The colour follows the tone, also where a line goes on in the next one; words have none of their own.
+    /// Colour follows the tone, also in the continuation of a line. Words have no colour of their own.
     #[test]
     fn colour_follows_the_tone() {
         let line = || Line::from("met: the yield is ").and(Line::toned("met by far", Tone::Good));
@@ -350,7 +350,7 @@ mod tests {
         assert_eq!(plain, "met: the yield is\n    met by far\n");
     }
 
-    /// Names give way, and columns without room stand below with the names again.
+    /// Names are shortened, and columns without space stand below with the names again.
     #[test]
     fn tables_fit_the_page() {
         let row =
@@ -363,7 +363,7 @@ mod tests {
         assert_eq!(lines, expected);
     }
 
-    /// Labels within a table go down with the columns that they label.
+    /// Labels within a table move down with the columns that they label.
     #[test]
     fn labels_stay_beside_their_columns() {
         let row = |[label, value, other, interval]: [&'static str; 4]| [label, value, other, interval].map(Cell::text);
@@ -376,10 +376,10 @@ mod tests {
         assert_eq!(page(24), "  mean  1.25\n  RSS         0.5 .. 2\n  worst case  0 .. 3\n");
     }
 
-    /// A table of random groups: in every row a label and its values, each with letters of its own.
+    /// Table of random groups. Every row has a label and its values, each with distinct letters.
     #[derive(Debug, Clone)]
     struct Groups {
-        /// For every group the lengths of its label and of its values, by row; 0 for an empty cell.
+        /// Lengths of the label and of the values, by group and row; 0 for an empty cell.
         lengths: Vec<Vec<Vec<usize>>>,
         titled: bool,
         width: usize,
@@ -389,7 +389,7 @@ mod tests {
         let shapes = (1..6usize, proptest::collection::vec(1..4usize, 1..4));
         (shapes, any::<bool>(), 40..200usize).prop_flat_map(|((rows, values), titled, width)| {
             let group = |values: usize| {
-                // Values as long as two numbers of 17 digits, labels as long as names.
+                // Values up to the length of two numbers of 17 digits, labels up to the length of names.
                 let row = (1..45usize, proptest::collection::vec(0..40usize, values));
                 let row = row.prop_map(|(label, values)| std::iter::once(label).chain(values).collect::<Vec<_>>());
                 proptest::collection::vec(row, rows)
@@ -399,14 +399,14 @@ mod tests {
         })
     }
 
-    /// Letters that belong to one cell alone.
+    /// Returns letters that occur in one cell only.
     fn token(kind: char, [group, row, column]: [usize; 3], length: usize) -> String {
         let name = format!("{kind}{group}{row}{column}");
         if length == 0 { String::new() } else { format!("{name}{}", "-".repeat(length.saturating_sub(name.len()))) }
     }
 
     proptest! {
-        /// At every width a value stands on a line that begins with its own label, and in a table with titles below its own title.
+        /// At every width, a value stands on a line that begins with its own label. In a table with titles it stands below its own title.
         #[test]
         fn every_value_stands_beside_its_own_label(Groups { lengths, titled, width } in groups()) {
             const TITLES: [[&str; 3]; 3] = [["t00", "t01", "t02"], ["t10", "t11", "t12"], ["t20", "t21", "t22"]];
@@ -433,7 +433,7 @@ mod tests {
                     header = line;
                     continue;
                 }
-                // Names that give way keep their first letters.
+                // Shortened names keep their first letters.
                 let mut label = "";
                 for (at, word) in line.split(' ').scan(0, |at, word| {
                     let begins = *at;
@@ -459,7 +459,7 @@ mod tests {
         }
     }
 
-    /// Letters that take two columns of a terminal, or none, stand below others all the same.
+    /// Columns stay aligned with letters that take two terminal columns, or none.
     #[test]
     fn wide_letters_are_counted_twice() {
         let letters = |text: &str| text.chars().map(|letter| (letter, Tone::Plain)).collect::<Vec<_>>();

@@ -12,10 +12,10 @@ use sensitol::analysis::Analysis;
 use sensitol::method::Basis;
 use sensitol::summary::RunSummary;
 
-/// An analysis as one page of HTML. With a [`WhatIf`] the page computes the results of other tolerances and means by itself, as
+/// Writes an analysis as one page of HTML. With a [`WhatIf`], the script of the page computes results for other tolerances and means, as
 /// [`Surface::at`](sensitol::analysis::Surface::at) does.
 ///
-/// The page needs no network and loads nothing. No evaluation.
+/// The page needs no network and loads nothing. Writing it evaluates nothing.
 pub fn analyze_html(report: &Report, what_if: Option<&WhatIf>) -> String {
     let possible = what_if.filter(|what_if| what_if.possible());
     let mut document = report.brief_document();
@@ -37,7 +37,7 @@ pub fn analyze_html(report: &Report, what_if: Option<&WhatIf>) -> String {
     let errors: Vec<sure::Row> = all.iter().flat_map(|one| sure::analysed(one, None)).collect();
     let sure = sure::section(&errors, sure::ANALYSED, &repeated(report));
     let judged = verdict(&rows, joint, &words);
-    // The verdict's own words are not repeated before the figures.
+    // The summary repeats the verdict. It follows the sections if the verdict has a table, and precedes them otherwise.
     let [first, rest] = match rows.iter().any(JudgedCharacteristic::counts) {
         true => [judged, head(&document) + &sure],
         false => [judged + &head(&document), sure],
@@ -46,7 +46,7 @@ pub fn analyze_html(report: &Report, what_if: Option<&WhatIf>) -> String {
     render(&report.head, facts(report), parts, possible.map(json))
 }
 
-/// The method and the seed that give the same figures again.
+/// Sentence with the method and the seed that reproduce the figures.
 fn repeated(report: &Report) -> String {
     let run = &report.analysis.run;
     let spent = plural(run.evaluations as usize, "evaluation", "evaluations");
@@ -57,7 +57,7 @@ fn repeated(report: &Report) -> String {
     )
 }
 
-/// How many there were, and how often the next ones waited for the last.
+/// Formats the evaluations with the rounds in which they were sent and the failed points.
 fn evaluations(run: &RunSummary) -> String {
     let rounds = plural(run.stages as usize, "round", "rounds");
     format!("{} in {rounds}, {} of them failed", run.evaluations, run.failed)

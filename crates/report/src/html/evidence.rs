@@ -1,4 +1,5 @@
-//! The next questions of a review, for each characteristic: the tails, why the mean is not the nominal value, the chain of dimensions.
+//! Answers to the next questions of a review, for each characteristic: the tails, the difference of mean and nominal value, the chain of
+//! dimensions.
 
 use std::fmt::Write;
 
@@ -16,24 +17,25 @@ use sensitol::verification::TailPoint;
 use sensitol_numeric::capability::Law;
 use sensitol_numeric::pearson::Pearson;
 
-/// A shift of the mean below this part of sigma is none.
+/// Least visible shift of the mean, as a part of sigma.
 const SEEN: f64 = 0.01;
-/// Rows of a table of shifts.
+/// Most rows of the table of shifts.
 const SHIFTS: usize = 12;
-/// A slope this near to 1 or -1 is that of a link of a chain.
+/// Greatest deviation of a slope from 1 or -1 for a link of a dimension chain.
 const STRAIGHT: f64 = 0.05;
-/// A chain of more links is too long for a picture.
+/// Most links of a chain that is drawn.
 const LINKS: usize = 24;
-/// Columns of the table of all dimensions.
+/// Columns that the table of all dimensions has as well.
 const OF_INPUTS: [&str; 3] = ["nominal", "tolerance", "unit"];
-/// The share from which a tail is drawn, and the least to which.
+/// Share at which the drawing of a tail begins.
 const FROM: f64 = 0.1;
+/// Share to which a tail is drawn at least.
 const TO: f64 = 1e-5;
 
-/// Puts what belongs to each characteristic into its section.
+/// Adds the evidence of each characteristic to its section.
 pub(super) fn add(report: &Report, sections: &mut [Section]) {
     for (one, section) in report.analysis.characteristics.iter().zip(sections) {
-        // The statistics of a terminal, in place of which stand the facts; the ranges are drawn.
+        // The facts replace the table of statistics that a terminal shows. The ranges are drawn below the density.
         if let Some(statistics) = section.blocks.iter().position(|block| matches!(block, Element::Table(_))) {
             section.blocks.remove(statistics);
         }
@@ -61,7 +63,7 @@ pub(super) fn add(report: &Report, sections: &mut [Section]) {
     }
 }
 
-/// The derivatives of a characteristic, without what the table of all dimensions has: for those who ask, and on paper.
+/// Folds the derivatives of a characteristic, without the columns that the table of all dimensions has.
 fn fold_derivatives(block: &mut Element) {
     let Element::Detail(inner) = block else { return };
     let of_derivatives = |block: &Element| matches!(block, Element::Table(table) if table.name == "sensitivities");
@@ -78,20 +80,21 @@ fn fold_derivatives(block: &mut Element) {
     inner.push(Element::Markup(format!("<details class=\"fold\"><summary>{title}</summary>\n{folded}</details>\n")));
 }
 
-/// One limit, the share beyond it in any distance, and who says what at it.
+/// One limit with the tail of the Pearson fit and the reject rates by surface and model.
 struct Tail<'l> {
     name: &'static str,
     limit: f64,
     upper: bool,
     law: &'l Pearson,
-    /// The share beyond the limit by the surface, and by points of the model with its error.
+    /// Reject rate by the surface.
     surface: Option<f64>,
+    /// Reject rate by points of the model, with its error.
     model: Option<(f64, f64)>,
     /// Values with the shares at or beyond them, by points of the model.
     seen: &'l [TailPoint],
 }
 
-/// The share rejected on a logarithmic scale near each limit: the Pearson fit as a line, the surface and the model as marks at the limit.
+/// Draws the reject rate near each limit on a logarithmic scale: the Pearson fit as a line, surface and model as marks at the limit.
 fn tails(one: &CharacteristicAnalysis) -> Option<String> {
     let Some(Law::Pearson(law)) = one.fitted() else { return None };
     let of_surface = one.surface_law.as_ref();
@@ -119,7 +122,7 @@ fn tails(one: &CharacteristicAnalysis) -> Option<String> {
     })
 }
 
-/// A panel; None where the limit is too far out for shares that are drawn.
+/// Draws one tail. Returns None if the limit is too far out for a picture.
 fn panel(one: &CharacteristicAnalysis, tail: &Tail<'_>) -> Option<String> {
     const WIDTH: f64 = 340.0;
     const TALL: f64 = 150.0;
@@ -128,7 +131,7 @@ fn panel(one: &CharacteristicAnalysis, tail: &Tail<'_>) -> Option<String> {
     let at = |share: f64| if tail.upper { tail.law.upper_quantile(share) } else { tail.law.quantile(share) };
     let seen = [tail.surface, tail.model.map(|model| model.0), Some(beyond(tail.limit))];
     let least = seen.into_iter().flatten().filter(|share| *share > 0.0).fold(TO, f64::min);
-    // Further out than this a picture says nothing.
+    // Least share that is drawn: a picture of smaller ones would show nothing.
     const FARTHEST: f64 = 1e-9;
     if least < FARTHEST {
         return None;
@@ -151,7 +154,7 @@ fn panel(one: &CharacteristicAnalysis, tail: &Tail<'_>) -> Option<String> {
             let _ = write!(line, "{}{:.1} {:.1}", if line.is_empty() { "M" } else { "L" }, x(value), y(share));
         }
     }
-    // Lines without length and with round ends are dots, and shorter than circles. The band is that of two standard errors.
+    // Dots are lines without length and with round ends, which are shorter than circles in SVG. The band spans two standard errors.
     let (mut dots, mut band) = (String::new(), String::new());
     shown().for_each(|point| {
         let _ = write!(dots, "M{:.1} {:.1}h0", x(point.at), y(point.share));
@@ -235,7 +238,7 @@ fn panel(one: &CharacteristicAnalysis, tail: &Tail<'_>) -> Option<String> {
     Some(svg + "</svg>")
 }
 
-/// Why the mean is not the value of the nominal dimensions; None where it nearly is, or where that is not known.
+/// Bars from the nominal value to the mean, a step for each cause. Returns None if the two nearly agree, or are unknown.
 fn shifts(one: &CharacteristicAnalysis, dimensions: &[DimensionReport]) -> Option<Bars> {
     let (nominal, mean, sigma) = (one.nominal?, one.mean()?, one.sigma()?);
     let seen = SEEN * sigma;
@@ -247,7 +250,7 @@ fn shifts(one: &CharacteristicAnalysis, dimensions: &[DimensionReport]) -> Optio
         let Some(dimension) = dimensions.iter().find(|of| of.name == row.dimension) else { continue };
         let off = dimension.mean - dimension.nominal;
         if let Some(first) = row.first.filter(|_| off != 0.0) {
-            // From the nominal value to the mean of the dimension, by the derivatives at the mean.
+            // Shift from the nominal value to the mean of the dimension, by the derivatives at the mean.
             let moved = first * off - 0.5 * row.second.unwrap_or(0.0) * off * off;
             let one_sided = dimension.tolerance.filter(|[lower, upper]| lower + upper != 0.0);
             let cause = one_sided
@@ -303,7 +306,8 @@ fn shifts(one: &CharacteristicAnalysis, dimensions: &[DimensionReport]) -> Optio
     })
 }
 
-/// The links as arrows from one to the next; None where the characteristic is not a sum and difference of its dimensions.
+/// Draws the dimension chain as arrows, each from the end of the one before. Returns None if the characteristic is not a sum and
+/// difference of its dimensions.
 fn chain(one: &CharacteristicAnalysis, dimensions: &[DimensionReport]) -> Option<String> {
     let nominal = one.nominal?;
     let straight = |row: &&Sensitivity| row.first.is_some_and(|first| first != 0.0);
@@ -325,7 +329,7 @@ fn chain(one: &CharacteristicAnalysis, dimensions: &[DimensionReport]) -> Option
     let links = links?;
     let sum: f64 = links.iter().map(|(of, sign)| sign * of.nominal).sum();
     let size = links.iter().map(|(of, _)| of.nominal.abs()).fold(nominal.abs(), f64::max);
-    // The rest would be a link that has no name.
+    // A remainder would be a link without a name.
     if (sum - nominal).abs() > 1e-9 * size || size == 0.0 {
         return None;
     }
@@ -339,7 +343,7 @@ fn drawing(one: &CharacteristicAnalysis, links: &[(&DimensionReport, f64)], clas
     let band = |of: &DimensionReport| of.tolerance.map(band).unwrap_or_default();
     let notes = longest(&mut links.iter().map(|(of, _)| band(of)));
     let values = longest(&mut links.iter().map(|(of, _)| plain(of.nominal)));
-    // A value in the middle of a short link at the end of the scale does not reach into the column of bands.
+    // A value at the middle of a short link at the end of the scale must not reach into the column of bands.
     let room = LETTER * (notes as f64 + 0.5 * values as f64 + 1.0);
     let (left, right) = if width > 500.0 { (110.0, room.max(110.0)) } else { (84.0, room.max(74.0)) };
     let mut at = 0.0;

@@ -1,4 +1,4 @@
-//! The facts of a characteristic, beside its density.
+//! Facts of a characteristic, beside its density.
 
 use std::fmt::Write;
 
@@ -11,10 +11,10 @@ use crate::statistics::CharacteristicStatistics;
 use sensitol::analysis::CharacteristicAnalysis;
 use sensitol_numeric::capability::Capability;
 
-/// The names of the first figures.
+/// Names of the moments.
 const FIRST: [&str; 6] = ["Nominal", "Mean", "Mean − nominal", "Sigma", "Skewness", "Kurtosis"];
 
-/// Yield, rejects and indices where there are limits; mean to kurtosis, with their errors.
+/// Table of yield, rejects and indices if there are limits, and of mean to kurtosis with their errors.
 pub(super) fn facts(one: &CharacteristicAnalysis) -> String {
     let mut text =
         format!("<table class=\"figures\"><caption class=\"sr\">Figures of {}</caption><tbody>\n", escaped(one.name()));
@@ -30,7 +30,7 @@ pub(super) fn facts(one: &CharacteristicAnalysis) -> String {
             side.into_iter().for_each(|ppm| row(name, ppm, String::new(), false));
         }
         let of = |figure: fn(&Capability) -> Option<f64>| one.capability.as_ref().and_then(figure);
-        // Of measured values they are performance indices, not those of a process in control.
+        // Indices of measured values are performance indices (Pp, Ppk), not those of a process in control (Cp, Cpk).
         let [cp, cpk] = if one.sampling.is_some() { ["Pp", "Ppk"] } else { ["Cp", "Cpk"] };
         let mut index_row = |name: &str, value: Option<f64>, key| {
             value.into_iter().for_each(|value| row(name, index(value), String::new(), key))

@@ -1,4 +1,4 @@
-//! The dimensions once, with their slopes and shares in every characteristic side by side.
+//! Table of the dimensions, with their slopes and shares in every characteristic side by side.
 
 use std::fmt::Write;
 
@@ -10,13 +10,13 @@ use crate::document::number::{UNKNOWN, known, percent, percent_within, plain, pl
 use crate::document::svg::escaped;
 use sensitol::analysis::{CharacteristicAnalysis, Sensitivity};
 
-/// Dimensions that are shown before the others are folded.
+/// Dimensions that are shown; the others are folded.
 const ROWS: usize = 12;
-/// Characteristics beside one another.
+/// Most characteristics side by side.
 const SIDE: usize = 6;
-/// Of more characteristics the slopes do not fit on paper.
+/// Most characteristics whose slopes fit on paper.
 const SLOPES: usize = 2;
-/// The titles of what a dimension has by itself.
+/// Titles of the columns of a dimension itself; true if right-aligned.
 const OWN: [(&str, bool); 7] = [
     ("dimension", false),
     ("unit", false),
@@ -27,7 +27,7 @@ const OWN: [(&str, bool); 7] = [
     ("sigma", true),
 ];
 
-/// The section of the dimensions.
+/// Writes the section of the dimensions.
 pub(super) fn section(report: &Report) -> String {
     let all = &report.analysis.characteristics;
     let shares: Vec<Option<f64>> = (0..report.dimensions.len()).map(|d| greatest(all, d)).collect();
@@ -35,7 +35,7 @@ pub(super) fn section(report: &Report) -> String {
     rows.sort_by(|&a, &b| shares[b].unwrap_or(-1.0).total_cmp(&shares[a].unwrap_or(-1.0)));
     let mut rest = rows.split_off(rows.len().min(ROWS));
     let least = rest.first().and_then(|&d| shares[d]).filter(|share| *share > 0.0);
-    // Of drawings and studies the reader knows their order.
+    // Within both parts the order of the study, which the reader knows from drawings.
     rows.sort_unstable();
     rest.sort_unstable();
     let (first, others) = all.split_at(all.len().min(SIDE));
@@ -68,7 +68,7 @@ fn folded(title: &str, inner: &str) -> String {
     format!("<details class=\"fold\"><summary>{title}</summary>\n{inner}</details>\n")
 }
 
-/// The greatest share of a dimension in any characteristic; None where all are unknown.
+/// Returns the greatest share of a dimension in any characteristic, or None if all are unknown.
 fn greatest(all: &[CharacteristicAnalysis], d: usize) -> Option<f64> {
     all.iter().filter_map(|one| part(&one.sensitivities[d])).reduce(f64::max)
 }
@@ -79,7 +79,7 @@ struct Table<'r> {
 }
 
 impl Table<'_> {
-    /// Rows of these dimensions, with columns of these characteristics, the first of which is the report's at `from`.
+    /// Writes rows of these dimensions with columns of these characteristics. `from` is the index of the first one in the report.
     fn of(&self, rows: &[usize], from: usize, characteristics: &[CharacteristicAnalysis], own: bool) -> String {
         let own = if own { &OWN[..] } else { &OWN[..1] };
         let class = |right: bool| if right { " class=\"n\"" } else { "" };
@@ -114,7 +114,7 @@ impl Table<'_> {
         text + "</tbody></table></div>\n"
     }
 
-    /// Slope and share of a dimension in a characteristic.
+    /// Writes slope and share of a dimension in a characteristic.
     fn effect(&self, row: &Sensitivity) -> String {
         let about = if row.exact || row.first.is_none() { "" } else { " ≈" };
         let slope = if self.slopes { format!("<td class=\"n\">{}{about}</td>", slope(row, 5)) } else { String::new() };
@@ -127,7 +127,7 @@ impl Table<'_> {
     }
 }
 
-/// The cells of a dimension by itself.
+/// Writes the cells of a dimension itself.
 fn inputs(of: &DimensionReport) -> String {
     let unit = escaped(of.unit.as_deref().unwrap_or_default());
     let sigma = if of.sigma > 0.0 { significant(of.sigma, 3) } else { "0".to_owned() };

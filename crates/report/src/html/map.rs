@@ -1,4 +1,4 @@
-//! Which dimensions act jointly: a map below what each does alone.
+//! Map of the interactions: a triangle below the contributions of the dimensions alone.
 
 use std::fmt::Write;
 
@@ -7,18 +7,18 @@ use crate::document::number::percent;
 use crate::document::svg::escaped;
 use sensitol::analysis::CharacteristicAnalysis;
 
-/// Dimensions of a map of interactions, the most influential first.
+/// Most dimensions of the map, the most influential first.
 const MAPPED: usize = 16;
-/// A share of the variance below which an interaction is not drawn.
+/// Least share of the variance at which an interaction is drawn.
 const SEEN: f64 = 1e-4;
-/// Shares of the variance at which the map becomes darker.
+/// Shares of the variance at which a cell becomes darker.
 const GREYS: [f64; 4] = [1e-3, 1e-2, 0.1, 0.5];
 
-/// Which dimensions act jointly, a triangle below their own shares; nothing where no interaction is seen or left out.
+/// Draws the map of interactions. Returns None if no interaction is visible and no variance is left out.
 pub(super) fn map(one: &CharacteristicAnalysis) -> Option<String> {
     let examined = one.examined_interactions;
     let strongest = one.interactions.iter().filter_map(|pair| pair.share).fold(0.0, f64::max);
-    // The variance that nothing examined explains may be interactions.
+    // Variance that is left out may come from interactions that were not examined.
     let left_out = one.left_out_share.unwrap_or(0.0);
     if one.possible_interactions == 0 || strongest.max(left_out) < 5.0 * SEEN {
         return None;

@@ -1,8 +1,8 @@
-//! Reports as pages: one file each that opens from disk and asks nothing of any network.
+//! Reports as pages: one file each, which opens from disk without any network.
 //!
-//! Everything that comes from a study or an adapter is escaped where it is written; drawings are made of numbers alone, and
-//! data for the page's script stand in a block of JSON in which no `<` is left. A content-security policy
-//! tells the browser the parts that may run: this script and this style, known by their hashes, and nothing else.
+//! Text from a study or an adapter is escaped on output. Drawings are made of numbers alone. Data for the page's script stand in a block
+//! of JSON that contains no `<`. A content-security policy lists the parts that may run: this script and this style, by their hashes, and
+//! nothing else.
 
 mod analysis;
 mod evidence;
@@ -33,7 +33,7 @@ use crate::document::svg::escaped;
 use sensitol::summary::RunSummary;
 
 const STYLE: &str = include_str!("page.css");
-/// The mathematics of the what-if, and then what shows it.
+/// Script of the what-if: first the mathematics, then the display.
 const SCRIPT: &str = concat!(
     include_str!("what_if.js"),
     include_str!("pearson.js"),
@@ -42,7 +42,7 @@ const SCRIPT: &str = concat!(
     include_str!("live.js"),
     include_str!("page.js")
 );
-/// One thing worth knowing of a report.
+/// Name and text of a fact about a run.
 struct Fact {
     name: &'static str,
     text: String,
@@ -52,7 +52,7 @@ fn fact(name: &'static str, text: impl Into<String>) -> Fact {
     Fact { name, text: text.into() }
 }
 
-/// The facts that every report ends with.
+/// Facts at the end of every report.
 fn provenance(head: &Head, run: &RunSummary) -> Vec<Fact> {
     let seconds = |time: std::time::Duration| format!("{} s", significant(time.as_secs_f64(), 3));
     let mut facts = vec![fact("known answers", run.cached.to_string())];
@@ -69,7 +69,7 @@ fn provenance(head: &Head, run: &RunSummary) -> Vec<Fact> {
     facts
 }
 
-/// Two revisions of a study as one page of HTML: what changed in inputs, results and contributions.
+/// Writes two revisions of a study as one page of HTML: changes of inputs, results and contributions.
 pub(crate) fn difference_html(report: &DifferenceReport) -> String {
     let document = report.document();
     let [old, new] = &report.studies;
@@ -84,13 +84,13 @@ pub(crate) fn difference_html(report: &DifferenceReport) -> String {
     render(&report.head, facts, parts, None)
 }
 
-/// Warnings that stand in no section of their own, as markup.
+/// Writes the warnings that no section shows.
 fn others(document: &Document, warnings: &[WarningReport]) -> String {
     let told = |name: &str| document.sections.iter().any(|section| section.name == name);
     blocks(&findings(warnings, |name| name.is_none_or(|name| !told(name))))
 }
 
-/// Who made what, the study, the tool: as on a drawing.
+/// Returns the cells of the title block: author, study, tool, as on a drawing.
 fn block(head: &Head) -> Vec<(&str, &str)> {
     let mut cells: Vec<(&str, &str)> = head.block.iter().map(|(name, text)| (*name, text.as_str())).collect();
     if let Some(first) = head.study_sha256.get(..12) {
@@ -100,14 +100,14 @@ fn block(head: &Head) -> Vec<(&str, &str)> {
     cells
 }
 
-/// The footer of every printed page: part, revision, the study's hash, page number.
+/// Footer of every printed page: part, revision, hash of the study.
 fn footer(head: &Head) -> String {
     let cell = |wanted: &str| head.block.iter().find(|(name, _)| *name == wanted).map(|(_, text)| text.as_str());
     let revision = cell("Revision").map(|revision| format!("revision {revision}"));
     let hash = head.study_sha256.get(..12).map(|hash| format!("study {hash}"));
     let what = cell("Part").or(head.title.as_deref()).map(str::to_owned);
     let text: Vec<String> = [what, revision, hash].into_iter().flatten().collect();
-    // Nothing but letters and digits stays as it is: names come from studies.
+    // Every other character than letters, digits and spaces is escaped: names come from studies.
     let safe = |c: char| match c {
         c if c.is_alphanumeric() || c == ' ' => c.to_string(),
         c => format!("\\{:x} ", u32::from(c)),
@@ -116,7 +116,7 @@ fn footer(head: &Head) -> String {
     format!("@page {{ @bottom-left {{ content: \"{text}\"; }} }}\n")
 }
 
-/// The page around its parts, which are markup in their order; `data` is JSON for the page's script, none where there is nothing to run.
+/// Writes the page around its parts, which are markup in order. `data` is JSON for the page's script. Without it no script runs.
 fn render(head: &Head, facts: Vec<Fact>, [first, sections, rest, terms]: [String; 4], data: Option<String>) -> String {
     let style = format!("{STYLE}{}", footer(head));
     let allowed = match data {
@@ -169,7 +169,7 @@ fn render(head: &Head, facts: Vec<Fact>, [first, sections, rest, terms]: [String
     )
 }
 
-/// As a content-security policy names a script or style.
+/// Returns the hash of a script or style as a content-security policy has it.
 fn hash(text: &str) -> String {
     format!("sha256-{}", base64(&Sha256::digest(text.as_bytes())))
 }
@@ -187,7 +187,7 @@ fn base64(bytes: &[u8]) -> String {
     text
 }
 
-/// JSON that may stand in a page: nothing in it ends a script or begins a comment.
+/// JSON that is safe in a page: no character in it can end a script or begin a comment.
 fn json(value: &impl Serialize) -> String {
     let text = serde_json::to_string(value).expect("reports are plain data");
     text.replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026")

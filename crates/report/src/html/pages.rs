@@ -1,5 +1,5 @@
-//! The pages of all commands but `analyze`, of the same parts: the verdict, the summary, a section for each characteristic, how sure
-//! that is, and terms.
+//! Pages of all commands except `analyze`. Each has the verdict, the summary, a section for each characteristic, the errors of the
+//! figures, and the terms.
 
 use super::super::head::{findings, seed};
 use super::super::sweep::SweptReport;
@@ -17,10 +17,10 @@ use sensitol_numeric::sampling::one_error;
 use sensitol_numeric::shape::finite;
 use sensitol_numeric::verdict::Verdict;
 
-/// Values of a sweep that are named one by one.
+/// Most values of a sweep that are listed one by one.
 const NAMED: usize = 6;
 
-/// The parts of a page that are markup: the verdict, and how sure it is.
+/// Parts of a page as markup.
 struct Parts {
     verdict: String,
     sure: String,
@@ -32,12 +32,12 @@ fn page(head: &Head, run: &RunSummary, document: &Document, parts: Parts) -> Str
     render(head, provenance(head, run), markup, None)
 }
 
-/// With the warnings that belong to no section.
+/// Returns words with the warnings that belong to no section.
 fn words(document: &Document, warnings: &[WarningReport]) -> Words {
     Words { warnings: others(document, warnings), ..Words::default() }
 }
 
-/// A simulation as one page of HTML: every estimate with its standard error, the histogram with the error of every bar.
+/// Writes a simulation as one page of HTML: every estimate with its standard error, the histogram with the error of every bar.
 pub fn simulate_html(report: &SimulationReport) -> String {
     let (document, simulation) = (report.document(), &report.simulation);
     let all = simulation.characteristics.iter().enumerate();
@@ -60,7 +60,7 @@ pub fn simulate_html(report: &SimulationReport) -> String {
     page(&report.head, &simulation.run, &document, parts)
 }
 
-/// Rare events as one page of HTML: every probability with its interval, and the assembly in which it most likely comes about.
+/// Writes rare events as one page of HTML: every probability with its interval and its design point.
 pub fn rare_html(report: &RareReport) -> String {
     let (mut document, found) = (report.document(), &report.found);
     warn(&mut document.sections, &report.warnings);
@@ -86,7 +86,7 @@ pub fn rare_html(report: &RareReport) -> String {
     page(&report.head, &found.run, &document, parts)
 }
 
-/// Puts the warnings of characteristics before all else in their sections.
+/// Puts the warnings of each characteristic first in its section.
 fn warn(sections: &mut [Section], warnings: &[WarningReport]) {
     for section in sections {
         let found = findings(warnings, |name| name == Some(section.name.as_str()));
@@ -94,7 +94,7 @@ fn warn(sections: &mut [Section], warnings: &[WarningReport]) {
     }
 }
 
-/// A comparison as one page of HTML: evaluations against error, and a table for every characteristic.
+/// Writes a comparison as one page of HTML: error over evaluations, and a table for every characteristic.
 pub fn compare_html(report: &CompareReport) -> String {
     let document = report.document();
     let all = report.characteristics.iter().enumerate();
@@ -108,7 +108,7 @@ pub fn compare_html(report: &CompareReport) -> String {
         seed(&report.run)
     );
     let cheapest = report.characteristics.iter().filter_map(|one| {
-        // Sorted by evaluations.
+        // The methods are sorted by evaluations.
         let enough = one.methods.iter().find(|method| !method.error_vs_reference.resolved());
         let least = |a: &&super::super::compare::MethodReport, b: &&super::super::compare::MethodReport| {
             let error =
@@ -132,7 +132,7 @@ pub fn compare_html(report: &CompareReport) -> String {
     page(&report.head, &report.run, &document, parts)
 }
 
-/// A sweep as one page of HTML: mean and band over the parameter, and a table for every characteristic.
+/// Writes a sweep as one page of HTML: mean and band over the parameter, and a table for every characteristic.
 pub fn sweep_html(report: &SweepReport) -> String {
     let (document, parameter) = (report.document(), report.parameter.name.as_str());
     let all = report.characteristics.iter().enumerate();
@@ -169,7 +169,7 @@ pub fn sweep_html(report: &SweepReport) -> String {
     page(&report.head, &report.run, &document, parts)
 }
 
-/// At which values the target is met and missed.
+/// Sentence with the values at which the target is met and missed, or None if there are no verdicts.
 fn along(one: &SweptReport, parameter: &str) -> Option<String> {
     let total = one.points.len();
     let of = |wanted: Verdict, word: &str| {
@@ -201,7 +201,7 @@ fn along(one: &SweptReport, parameter: &str) -> Option<String> {
     })
 }
 
-/// An allocation as one page of HTML: what it saves first, then tolerances, costs and requirements before and after.
+/// Writes an allocation as one page of HTML: the saving first, then tolerances, costs and requirements before and after.
 pub fn allocate_html(report: &AllocationReport) -> String {
     let mut document = report.document();
     document.sections.iter_mut().for_each(headed);
@@ -211,7 +211,7 @@ pub fn allocate_html(report: &AllocationReport) -> String {
             let now = one.after.as_ref().unwrap_or(&one.before);
             let mut row = JudgedCharacteristic::analysed(0, now).nowhere();
             row.before = one.after.as_ref().and(crate::figures::Figures::yield_(&one.before));
-            // The requirements of the allocation, which may differ from those of the study.
+            // The requirements of the allocation replace those of the study, which may differ.
             let kept: Vec<_> = report.requirements.iter().filter(|kept| kept.characteristic == one.name).collect();
             if !kept.is_empty() {
                 (row.target, row.verdict) = (None, None);
@@ -261,7 +261,7 @@ pub fn allocate_html(report: &AllocationReport) -> String {
     page(&report.head, &report.run, &document, parts)
 }
 
-/// The headings of a page's sections.
+/// Adds a heading to a section of the page.
 fn headed(section: &mut Section) {
     let title = section.blocks.iter().find_map(|block| match block {
         Element::Table(table) if table.view.is_empty() => None,
@@ -278,7 +278,7 @@ fn headed(section: &mut Section) {
     section.blocks.splice(0..0, heading);
 }
 
-/// The change of the cost, in a sentence.
+/// Sentence on the change of the cost.
 fn cause(report: &AllocationReport) -> Option<String> {
     let [before, after] = [report.cost_before.and_then(finite)?, report.cost_after.and_then(finite)?];
     let part = 100.0 * (1.0 - after / before);

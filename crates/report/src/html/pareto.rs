@@ -1,4 +1,4 @@
-//! The contributions to the variance of a characteristic as bars, with their running sum and the part that is not resolved.
+//! Contributions to the variance of a characteristic as bars, with their running sum and the unexplained part.
 
 use std::fmt::Write;
 
@@ -10,36 +10,38 @@ use crate::document::svg::escaped;
 use crate::statistics::CharacteristicStatistics;
 use sensitol::analysis::{CharacteristicAnalysis, EstimatedShare, Sensitivity};
 
-/// A diagram of more rows than this folds those below `SMALL` of the variance into one.
+/// Most rows of a diagram. Of more rows, those with shares below `SMALL` are folded into one.
 const ROWS: usize = 12;
+/// Share of the variance below which a row of a long diagram is folded.
 const SMALL: f64 = 5e-3;
-/// Rows of a diagram, whatever they make.
+/// Most rows of a diagram, even if more have large shares.
 const MOST: usize = 24;
-/// Dimensions without influence that are named rather than counted.
+/// Most dimensions without influence that are listed by name.
 const NAMED: usize = 24;
-/// Height of a row's drawing, and the bar in it. The running sum goes on from row to row.
+/// Height of a row's drawing, in units of its view box. The running sum continues from row to row.
 const TALL: u32 = 32;
+/// Top and height of the bar within a row.
 const BAR: [u32; 2] = [9, 14];
-/// From one line of a hatched bar to the next, in percent of the variance.
+/// Distance between the lines of a hatched bar, in percent of the variance.
 const HATCH: f64 = 0.8;
 
-/// A contribution, as a part of the variance.
+/// Contribution as a part of the variance.
 struct Share {
     name: String,
-    /// By slope, curvature and interaction; of a model by itself and with others.
+    /// From a surface: slope, curvature, interaction. From the model: the dimension alone, its interactions, and 0.
     parts: [f64; 3],
-    /// Its part of the sum.
+    /// Sum of the contribution.
     value: f64,
     error: Option<f64>,
-    /// With every interaction, where points of the model say that.
+    /// Contribution with every interaction, if points of the model give it.
     total: Option<EstimatedShare>,
-    /// Whether no other dimension varies with it: a share of others has no sigma of its own.
+    /// True if the dimension varies independently of all others. Otherwise its share has no sigma of its own.
     alone: bool,
-    /// Slope x half tolerance.
+    /// Slope times half the tolerance.
     reach: Option<String>,
 }
 
-/// The contributions to the variance, strongest first; None where none is known.
+/// Draws the contributions to the variance, strongest first. Returns None if all are unknown.
 pub(super) fn pareto(report: &Report, one: &CharacteristicAnalysis) -> Option<String> {
     let of_model = one.is_of_model();
     let mut all = if of_model { of_points(one, &report.dimensions) } else { of_surface(one, &report.dimensions) };
@@ -158,7 +160,7 @@ pub(super) fn pareto(report: &Report, one: &CharacteristicAnalysis) -> Option<St
     Some(text)
 }
 
-/// By itself and with every interaction, in percent.
+/// Formats the contribution alone and with every interaction, in percent.
 fn of_model_text(share: &Share) -> String {
     let (first, _) = percent_within(share.value, share.error);
     match share.total {
@@ -167,13 +169,13 @@ fn of_model_text(share: &Share) -> String {
     }
 }
 
-/// Whether it varies together with another.
+/// True if the dimension varies together with another one.
 fn varies_with(one: &CharacteristicAnalysis, dimension: &str) -> bool {
     let mut together = one.indices.iter().flat_map(|of| &of.factors).flat_map(|factor| &factor.dimensions);
     together.any(|of| of == dimension)
 }
 
-/// Whether it is too small for a row.
+/// True if the share is too small for a row.
 fn none(share: &Share) -> bool {
     share.parts.iter().sum::<f64>().abs() <= 0.5 * NEWS
 }
@@ -204,7 +206,7 @@ fn of_surface(one: &CharacteristicAnalysis, dimensions: &[DimensionReport]) -> V
     own.chain(joint).collect()
 }
 
-/// Of the model: by itself, and what interactions add.
+/// Contributions by points of the model: each dimension alone, and the interactions in addition.
 fn of_points(one: &CharacteristicAnalysis, dimensions: &[DimensionReport]) -> Vec<Share> {
     let share = |(row, of): (&Sensitivity, &DimensionReport)| {
         let index = row.first_order?;
@@ -223,11 +225,11 @@ fn of_points(one: &CharacteristicAnalysis, dimensions: &[DimensionReport]) -> Ve
     one.sensitivities.iter().zip(dimensions).filter_map(share).collect()
 }
 
-/// The rows below what a long diagram shows one by one become its last.
+/// Folds the weakest rows of a long diagram into one last row.
 fn fold(all: &mut Vec<Share>) {
     let first =
         if all.len() > ROWS { all.partition_point(|share| share.value >= SMALL).clamp(ROWS, MOST) } else { MOST };
-    // One row takes no more room than the row about it.
+    // A single row takes no more space than the row that would replace it.
     if all.len() <= first + 1 {
         return;
     }
@@ -240,7 +242,7 @@ fn fold(all: &mut Vec<Share>) {
     all.push(Share { name, parts, value: parts.iter().sum(), error, total: None, alone, reach: None });
 }
 
-/// Slope x half tolerance, signed, to the digits that the rounding of the slope carries.
+/// Formats slope times half tolerance with its sign, to the digits that the rounding error of the slope supports.
 fn reach(row: &Sensitivity, dimension: &DimensionReport) -> String {
     let (Some(first), Some([lower, upper])) = (row.first, dimension.tolerance) else { return UNKNOWN.to_owned() };
     if slope(row, 1) == "0" {
@@ -251,7 +253,7 @@ fn reach(row: &Sensitivity, dimension: &DimensionReport) -> String {
     if first * half > 0.0 { format!("+{text}") } else { text }
 }
 
-/// A slope to so many digits, or to those that its rounding carries.
+/// Formats a slope with `digits` digits, or fewer if its rounding error supports only those.
 pub(super) fn slope(row: &Sensitivity, digits: usize) -> String {
     let rounding = row.rounding.map(|rounding| rounding[0]);
     let text = derivative(row.first, rounding, digits);
@@ -261,8 +263,8 @@ pub(super) fn slope(row: &Sensitivity, digits: usize) -> String {
     }
 }
 
-/// The sigma that a share of the variance alone would make, with the digits that the errors of both carry; none of a negative share, as
-/// dimensions that vary together can have.
+/// Formats the sigma that this share alone would cause, with the digits that both errors support. A negative share, possible for
+/// dimensions that vary together, has none.
 fn spread((sigma, of_sigma): (f64, Option<f64>), share: f64, of_share: Option<f64>) -> String {
     if share <= 0.0 {
         return UNKNOWN.to_owned();
@@ -272,16 +274,16 @@ fn spread((sigma, of_sigma): (f64, Option<f64>), share: f64, of_share: Option<f6
     within(sigma * root, 3, Some(error))
 }
 
-/// The part of the variance that no contribution explains.
+/// Part of the variance that no contribution explains.
 enum Open {
-    /// A part of the variance.
+    /// Part that the contributions leave out.
     LeftOut(f64),
-    /// A part that the model has beside its surface, by points.
+    /// Part that the model has in addition to its surface, by points.
     ByPoints(f64),
     Unknown,
 }
 
-/// None where everything is resolved, as far as a row shows.
+/// Returns the unexplained part, or None if it is too small for a row.
 fn unresolved(one: &CharacteristicAnalysis) -> Option<Open> {
     let seen = |share: &f64| *share > 0.5 * NEWS;
     match (one.left_out_share, one.left()) {
@@ -292,7 +294,7 @@ fn unresolved(one: &CharacteristicAnalysis) -> Option<Open> {
     }
 }
 
-/// A running sum: its value, and the decimals that all of it carries.
+/// Running sum, with the decimals that all its terms support.
 #[derive(Clone, Copy)]
 struct Sum {
     value: f64,
@@ -316,12 +318,12 @@ fn summed(sum: &Sum) -> String {
     format!("<td class=\"n sum opt\">{:.*} %</td>", sum.decimals, 100.0 * sum.value)
 }
 
-/// In percent, as the drawings of rows have it.
+/// Returns a share in percent, within 0 and 100, as the drawings of rows use it.
 fn scaled(share: f64) -> f64 {
     (100.0 * share).clamp(0.0, 100.0)
 }
 
-/// A step of the running sum: across at the top of its row, and down to the next.
+/// Draws a step of the running sum: across at the top of its row, then down to the next row.
 fn step(from: f64, to: f64) -> String {
     format!("<path class=\"step\" d=\"M{:.2} 0H{:.2}V{TALL}\"/>", scaled(from), scaled(to))
 }
@@ -333,7 +335,7 @@ fn hatched(share: f64) -> String {
     format!("<path class=\"open\" d=\"M0 {top}h{width:.2}v{tall}h-{width:.2}z{}\"/>", lines.collect::<String>())
 }
 
-/// A row: name, drawing, share, cells of the sum, sigma, reach.
+/// Writes a row: name, drawing, share, cells of the sum, sigma, slope times half tolerance.
 fn row(text: &mut String, name: &str, class: &str, bars: &str, [amount, cells, spread, reach]: &[String; 4]) {
     let _ = writeln!(
         text,

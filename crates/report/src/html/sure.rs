@@ -1,4 +1,4 @@
-//! How sure all of it is, of every report: each figure beside its error.
+//! Section of a page with the error of each figure.
 
 use std::fmt::Write;
 
@@ -10,23 +10,25 @@ use sensitol::rare::RareCharacteristic;
 use sensitol::simulation::SimulatedCharacteristic;
 use sensitol_numeric::sampling::{Estimate, one_error};
 
-/// A figure and its error.
 pub(super) struct Row {
     characteristic: String,
     figure: &'static str,
     value: String,
     error: String,
-    /// A second figure: the model's own, or an interval.
+    /// Second figure: the model's own value, or an interval.
     beside: String,
 }
 
-/// Headings of the columns: value, error, second figure.
+/// Headings of an analysis: value, error, second figure.
 pub(super) const ANALYSED: [&str; 3] = ["value", "estimated error", "points of the model say"];
+/// Headings of a simulation.
 pub(super) const SAMPLED: [&str; 3] = ["value", "standard error", "95 % interval"];
+/// Headings of rare events.
 pub(super) const SOUGHT: [&str; 3] = ["ppm", "standard error", "points there"];
+/// Headings of a sweep.
 pub(super) const SWEPT: [&str; 3] = ["value", "greatest estimated error", "at"];
 
-/// The section; empty where there is no figure.
+/// Writes the section, or nothing if there is no figure.
 pub(super) fn section(rows: &[Row], titles: [&str; 3], words: &str) -> String {
     if rows.is_empty() {
         return String::new();
@@ -48,7 +50,7 @@ pub(super) fn section(rows: &[Row], titles: [&str; 3], words: &str) -> String {
     text + &format!("</tbody></table></div>\n<p class=\"note\">{}</p>\n</section>\n", escaped(words))
 }
 
-/// Of an analysis, beside what points of the model say; those of a simulation where there is one.
+/// Rows of an analysis, beside the values by points of the model. Those of a simulation are preferred if there is one.
 pub(super) fn analysed(one: &CharacteristicAnalysis, simulated: Option<&SimulatedCharacteristic>) -> Vec<Row> {
     let estimate = one.error_estimate.as_ref();
     let by_model = one.verification.as_ref();
@@ -79,7 +81,7 @@ pub(super) fn analysed(one: &CharacteristicAnalysis, simulated: Option<&Simulate
         let value = value?;
         let scale = one.sigma().filter(|_| ["mean", "sigma"].contains(&name)).unwrap_or(1.0);
         let shown = |value: f64, error: Option<f64>| match error {
-            // Rounding alone: more digits say nothing to a reader.
+            // An error of rounding alone needs no further digits.
             Some(error) if error > 1e-6 * scale => estimated(value, Some(error)),
             _ => beside(value, scale),
         };
@@ -99,7 +101,6 @@ pub(super) fn analysed(one: &CharacteristicAnalysis, simulated: Option<&Simulate
 /// The name of a figure, its value and its error.
 type Figure = (&'static str, Option<f64>, Option<f64>);
 
-/// Of a simulation.
 pub(super) fn simulated(one: &SimulatedCharacteristic) -> Vec<Row> {
     let row = |figure, value: String, error: Option<String>, beside| Row {
         characteristic: one.name().to_owned(),
@@ -124,7 +125,6 @@ pub(super) fn simulated(one: &SimulatedCharacteristic) -> Vec<Row> {
     moments.chain(yield_).collect()
 }
 
-/// Of rare events.
 pub(super) fn sought(one: &RareCharacteristic) -> Vec<Row> {
     let side = |(figure, of): (&'static str, Option<&sensitol::rare::Beyond>)| {
         let of = of?;
@@ -146,7 +146,7 @@ pub(super) fn sought(one: &RareCharacteristic) -> Vec<Row> {
         .collect()
 }
 
-/// Of a sweep: a figure and its greatest error, where that is.
+/// Row of a sweep: a figure at the value with its greatest error.
 pub(super) fn swept(name: &str, figure: &'static str, at: &str, all: &[(f64, f64, f64)]) -> Option<Row> {
     let (place, value, error) = all.iter().copied().max_by(|a, b| a.2.total_cmp(&b.2))?;
     Some(Row {

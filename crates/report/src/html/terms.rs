@@ -1,13 +1,15 @@
-//! The terms of a page, for paper too.
+//! Terms of a page, for paper too.
 
 use std::fmt::Write;
 
-/// Which pages use a term.
+/// Commands whose pages use a term: all.
 const ALL: &[&str] = &["analyze", "simulate", "compare", "sweep", "allocate"];
+/// Commands that use a surface.
 const SURFACE: &[&str] = &["analyze", "sweep", "allocate"];
+/// Commands that draw points of the model.
 const POINTS: &[&str] = &["simulate", "compare"];
 
-/// Terms, what they mean, and the commands whose pages have them.
+/// Terms, their meaning, and the commands whose pages list them.
 const TERMS: [(&str, &str, &[&str]); 16] = [
     ("Yield", "Share of the assemblies that lie within the limits.", ALL),
     ("Rejects", "Assemblies outside a limit, per million.", ALL),
@@ -59,7 +61,7 @@ const TERMS: [(&str, &str, &[&str]); 16] = [
     ("Room", "What the limits leave: 100 % are used where a range reaches from the middle to a limit.", &["allocate"]),
 ];
 
-/// The section of the terms that the page of a command has.
+/// Writes the section of the terms for the page of a command.
 pub(super) fn terms(command: &str, rare: bool) -> String {
     let has = |all: &&[&str]| match rare {
         true => all.contains(&"rare") || *all == ALL,

@@ -1,13 +1,13 @@
-//! The section What if of a page: fields for other tolerances and means, and a card for each characteristic that follows them.
+//! Section "What if" of a page: fields for other tolerances and means, and a card of results for each characteristic.
 
 use super::what_if::{Tried, Wanted, WhatIf};
 use crate::document::number::{plain, significant};
 use crate::document::svg::escaped;
 
-/// The figures of a card, by the names under which the page's script fills them in.
+/// Figures of a card, by the names under which the page's script fills them in.
 const FIGURES: [&str; 8] = ["mean", "sigma", "skewness", "kurtosis", "yield", "ppm below", "ppm above", "Cpk"];
 
-/// The section where something can be changed, and something follows it.
+/// Writes the section if something can be changed and results can follow it.
 pub(super) fn section(of: &WhatIf) -> String {
     let characteristics = || of.characteristics().iter().enumerate();
     let cards: String = characteristics().map(card).collect();
@@ -52,7 +52,7 @@ const COPY: &str =
     "<button type=\"button\" id=\"copy\">Copy as TOML</button> <span id=\"copied\" role=\"status\"></span>\n";
 const COPIED: &str = "<details><summary>The changed section [dimensions]</summary><textarea id=\"toml\" readonly rows=\"8\" spellcheck=\"false\" aria-label=\"The changed section dimensions as TOML\"></textarea></details>\n";
 
-/// The section that says why nothing can be changed.
+/// Writes the section with the reason why nothing can be changed.
 pub(super) fn impossible(why: &str) -> String {
     let why = escaped(why);
     format!(
@@ -64,7 +64,7 @@ pub(super) fn impossible(why: &str) -> String {
     )
 }
 
-/// The figures of a characteristic, as analysed and as set; the page's script fills them in.
+/// Writes the card of a characteristic, as analysed and as set. The page's script fills in the figures.
 fn card((index, one): (usize, &Wanted)) -> String {
     let unit = one.unit.as_deref().filter(|unit| !unit.is_empty());
     let unit = unit.map(|unit| format!(" <small>[{}]</small>", escaped(unit))).unwrap_or_default();
@@ -98,7 +98,7 @@ fn card((index, one): (usize, &Wanted)) -> String {
     )
 }
 
-/// The fields of a dimension.
+/// Writes the fields of a dimension.
 fn row((index, one): (usize, &Tried)) -> String {
     let (name, nominal) = (escaped(&one.name), escaped(&plain(one.nominal)));
     let unit = escaped(one.unit.as_deref().unwrap_or_default());

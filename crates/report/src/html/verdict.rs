@@ -1,4 +1,4 @@
-//! Whether it works, of every report: a sentence, and a gauge for every characteristic.
+//! Verdict of every report: a sentence, and a gauge for every characteristic.
 
 use crate::worst_case::WorstCaseFigures;
 use std::fmt::Write;
@@ -21,50 +21,52 @@ use sensitol_numeric::sampling::{Estimate, one_error};
 use sensitol_numeric::shape::finite;
 use sensitol_numeric::verdict::{Judged, Verdict};
 
-/// Claims of one kind that a sentence makes.
+/// Most claims of one kind in the sentence.
 const NAMED: usize = 6;
-/// A rejected share below this is none in a sentence.
+/// Least reject rate that the sentence prints as a number.
 const NONE: f64 = 1e-9;
 
-/// The findings of one characteristic with limits or requirements, by whatever command.
+/// Findings of one characteristic with limits or requirements, from any command.
 pub(super) struct JudgedCharacteristic<'r> {
     name: &'r str,
     unit: Option<&'r str>,
-    /// The section about it.
+    /// Index of its section on the page. None if it has no section.
     place: Option<usize>,
-    /// Warnings in that section.
+    /// Number of warnings in that section.
     warned: usize,
     limits: [Option<f64>; 2],
-    /// A line below its name.
+    /// Line below the name, such as the value of a sweep.
     pub(super) at: String,
-    /// The target yield, and what is to be said of it.
     pub(super) target: Option<f64>,
+    /// Verdict on the target yield.
     pub(super) verdict: Option<Verdict>,
-    /// All that is required besides.
+    /// Further requirements.
     pub(super) asked: Vec<Asked>,
     yield_: Option<f64>,
     interval: Option<[f64; 2]>,
-    /// The yield before something changed.
+    /// Yield before an allocation.
     pub(super) before: Option<f64>,
     yield_text: Option<String>,
-    /// Parts per million: all, on either side, and on either side in words.
+    /// All rejects in parts per million, as text.
     all_ppm: Option<String>,
+    /// Rejects below and above, in parts per million.
     ppm: [Option<f64>; 2],
+    /// Rejects below and above, as text.
     sides: Vec<String>,
     cpk: Option<f64>,
     worst: Option<KnownWorstCase>,
-    /// The dimension that makes most of the variance, and its share.
+    /// Dimension with the largest share of the variance, and this share.
     driver: Option<(&'r str, f64)>,
 }
 
-/// A requirement other than a yield: in words, what there is of it, and what is to be said.
+/// Requirement other than a yield: its text, the value found, and the verdict.
 pub(super) struct Asked {
     what: String,
     found: String,
     verdict: Verdict,
 }
 
-/// All limits at once.
+/// Yield of all limits at once.
 pub(super) struct Together<'r> {
     value: f64,
     ends: [f64; 2],
@@ -72,16 +74,16 @@ pub(super) struct Together<'r> {
     judged: Option<&'r Judged>,
 }
 
-/// The source of a verdict, in the words of its page.
+/// Words of a page around the verdict.
 #[derive(Default)]
 pub(super) struct Words {
-    /// A sentence before the others, as markup.
+    /// Sentence before the others, as markup.
     pub(super) before: String,
-    /// A sentence after them.
+    /// Sentence after the others.
     pub(super) after: String,
-    /// A note on the gauges.
+    /// Note on the gauges.
     pub(super) gauge: &'static str,
-    /// Warnings that belong to no section, after the table.
+    /// Warnings without a section, after the table.
     pub(super) warnings: String,
 }
 
@@ -90,7 +92,7 @@ impl<'r> JudgedCharacteristic<'r> {
         Self { unit: one.unit(), target: one.target(), ..Self::named(one.name(), Named::limits(one), place) }
     }
 
-    /// With a section, and nothing known yet.
+    /// Returns an entry with a section and without any findings.
     fn named(name: &'r str, limits: [Option<f64>; 2], place: usize) -> Self {
         Self {
             name,
@@ -115,7 +117,7 @@ impl<'r> JudgedCharacteristic<'r> {
         }
     }
 
-    /// Of these rejects.
+    /// Adds the texts of reject rates.
     fn rejecting(mut self, rejects: Rejects) -> Self {
         self.yield_text = rejects.yield_text();
         self.all_ppm = rejects.all_ppm();
@@ -123,7 +125,7 @@ impl<'r> JudgedCharacteristic<'r> {
         self
     }
 
-    /// Of an analysis.
+    /// Findings of an analysis.
     pub(super) fn analysed(place: usize, one: &'r CharacteristicAnalysis) -> Self {
         let all = one.sensitivities.iter().filter_map(|row| Some((row.dimension.as_str(), part(row)?)));
         Self {
@@ -139,7 +141,7 @@ impl<'r> JudgedCharacteristic<'r> {
         }
     }
 
-    /// Of a simulation.
+    /// Findings of a simulation.
     pub(super) fn simulated(place: usize, one: &'r SimulatedCharacteristic) -> Self {
         Self {
             verdict: one.verdict(),
@@ -153,7 +155,7 @@ impl<'r> JudgedCharacteristic<'r> {
         }
     }
 
-    /// Of rare events.
+    /// Findings of rare events.
     pub(super) fn rare(place: usize, one: &'r RareCharacteristic) -> Self {
         let value = |of: &Option<Beyond>| Some(of.as_ref()?.probability?.value);
         let sides = [("below", &one.below), ("above", &one.above)];
@@ -172,7 +174,7 @@ impl<'r> JudgedCharacteristic<'r> {
         }
     }
 
-    /// Of a sweep: where it is worst.
+    /// Findings of a sweep, at the value with the worst verdict and yield. Returns None if there are no points.
     pub(super) fn swept(place: usize, one: &'r SweptReport, parameter: &str) -> Option<Self> {
         let rank = |point: &SweptPointReport| {
             let worst = point.requirements.iter().map(|judged| match judged.verdict {
@@ -203,13 +205,13 @@ impl<'r> JudgedCharacteristic<'r> {
         })
     }
 
-    /// With how many of these warnings concern it.
+    /// Counts the warnings that concern the characteristic.
     pub(super) fn warned(self, warnings: &[WarningReport]) -> Self {
         let concerned = warnings.iter().filter(|one| one.characteristic.as_deref() == Some(self.name));
         Self { warned: concerned.count(), ..self }
     }
 
-    /// Without a section of its own.
+    /// Removes the link to a section.
     pub(super) fn nowhere(self) -> Self {
         Self { place: None, ..self }
     }
@@ -218,13 +220,13 @@ impl<'r> JudgedCharacteristic<'r> {
         self.limits != [None, None]
     }
 
-    /// Whether there is anything to say of it.
+    /// True if there are limits or requirements to judge.
     pub(super) fn counts(&self) -> bool {
         self.limited() || !self.asked.is_empty()
     }
 }
 
-/// The rejects on one side, or their bound.
+/// Formats the rejects on one side, or their bound.
 fn beyond(side: &str, of: &Beyond) -> String {
     match of.probability {
         Some(Estimate { value, .. }) => format!("{} ppm {side}", significant(1e6 * value, 3)),
@@ -232,13 +234,13 @@ fn beyond(side: &str, of: &Beyond) -> String {
     }
 }
 
-/// All but the target yield.
+/// Returns all requirements except the target yield.
 pub(super) fn asked(judged: Vec<Judged>) -> Vec<Asked> {
     judged.into_iter().filter_map(|one| Asked::of(one.requirement, &one)).collect()
 }
 
 impl Asked {
-    /// None of a yield.
+    /// Returns the requirement, or None if it is a yield.
     pub(super) fn of(requirement: Requirement, judged: &Judged) -> Option<Self> {
         let number = |value: f64| significant(value, 4);
         let value = judged.value.and_then(finite);
@@ -256,13 +258,13 @@ impl Asked {
 }
 
 impl<'r> Together<'r> {
-    /// A share with one error of it.
+    /// Yield with its standard error.
     pub(super) fn about(value: f64, error: f64, judged: Option<&'r Judged>) -> Self {
         let ends = [value - 2.0 * error, value + 2.0 * error].map(|end| end.clamp(0.0, 1.0));
         Self { value, ends, rejects: Rejects::all(1.0 - value, Some(error)), judged }
     }
 
-    /// A share within an interval.
+    /// Yield with its interval.
     pub(super) fn within(share: &YieldEstimate, judged: Option<&'r Judged>) -> Self {
         let error = one_error(share.value, share.interval);
         let rejects = Rejects::all(1.0 - share.value, Some(error));
@@ -270,7 +272,7 @@ impl<'r> Together<'r> {
     }
 }
 
-/// The section that answers whether it works; empty where nothing is asked.
+/// Writes the section of the verdict, empty except for warnings if nothing is required.
 pub(super) fn verdict(all: &[JudgedCharacteristic<'_>], together: Option<Together<'_>>, words: &Words) -> String {
     let lead = [words.before.as_str(), &sentence(all), &words.after];
     let lead: Vec<&str> = lead.into_iter().filter(|part| !part.is_empty()).collect();
@@ -305,7 +307,7 @@ pub(super) fn verdict(all: &[JudgedCharacteristic<'_>], together: Option<Togethe
     text + &words.warnings + "</section>\n"
 }
 
-/// The failures first, by how much, on which side and why; then the requirements that are met.
+/// Sentence on the verdicts: missed targets first, with number, side and cause, then the others.
 fn sentence(all: &[JudgedCharacteristic<'_>]) -> String {
     let mut parts = Vec::new();
     for (wanted, more) in [
@@ -371,7 +373,7 @@ fn of_target(one: &JudgedCharacteristic<'_>, wanted: Verdict) -> String {
     }
 }
 
-/// On which side most of the rejects lie.
+/// Names the side with most of the rejects. Returns None if there is only one limit, or no side has more than 60 %.
 fn side(one: &JudgedCharacteristic<'_>) -> Option<String> {
     let [lower, upper] = one.limits;
     let [below, above] = one.ppm.map(|ppm| ppm.unwrap_or(0.0));
@@ -390,16 +392,16 @@ fn side(one: &JudgedCharacteristic<'_>) -> Option<String> {
     Some(format!(", {part} {word} {}{unit}", plain(limit)))
 }
 
-/// The dimension with most of the variance.
+/// Names the dimension with the largest share of the variance if it has at least 20 %.
 fn driver(one: &JudgedCharacteristic<'_>) -> Option<String> {
     let (name, share) = one.driver?;
     let percent = (100.0 * share).round();
     (share >= 0.2).then(|| format!("<em>{}</em> makes {percent} % of its variance.", escaped(name)))
 }
 
-/// The scale that all gauges share: from 10 % rejected down to 10 ppm, or as far as a target needs.
+/// Logarithmic scale of all gauges: from 10 % rejected to 10 ppm, or further if a target needs it.
 struct Gauge {
-    /// The exponent of ten of the least share.
+    /// Exponent of ten of the least reject rate.
     least: f64,
 }
 
@@ -412,7 +414,7 @@ impl Gauge {
         Self { least: least.max(-9.0) }
     }
 
-    /// Left is bad.
+    /// Returns the place of a reject rate. Many rejects are on the left.
     fn at(&self, rejected: f64) -> f64 {
         let share = (-1.0 - libm::log10(rejected.max(1e-300))) / (-1.0 - self.least);
         (10.0 * Self::WIDTH * share.clamp(0.0, 1.0)).round() / 10.0
@@ -450,7 +452,7 @@ impl Gauge {
     }
 }
 
-/// A verdict as a shape and a word, so that no colour is needed.
+/// Writes a verdict as a shape and a word, so that it does not depend on colour.
 fn badge(verdict: Option<Verdict>) -> String {
     let (class, shape, word) = match verdict {
         None => return "<span class=\"note\">no target</span>".to_owned(),
@@ -465,10 +467,10 @@ fn badge(verdict: Option<Verdict>) -> String {
     format!("<span class=\"st {class}\"><svg viewBox=\"0 0 16 16\" aria-hidden=\"true\">{shape}</svg>{word}</span>")
 }
 
-/// The ends of an interval with the digits that its width leaves.
+/// Formats an interval with the digits that its width supports.
 pub(super) fn interval(ends: [f64; 2]) -> String {
     let width = 100.0 * (ends[1] - ends[0]);
-    // Narrower than this it is the yield itself.
+    // Least width that is printed, in percent: a narrower interval equals the yield.
     const NARROW: f64 = 1e-7;
     if width < NARROW {
         return String::new();
@@ -478,7 +480,7 @@ pub(super) fn interval(ends: [f64; 2]) -> String {
     format!("{low} – {high} %")
 }
 
-/// The columns that there are.
+/// Optional columns of the table, and the scale of its gauges.
 struct Table {
     gauge: Gauge,
     cpk: bool,
@@ -555,7 +557,7 @@ impl Table {
         cells + "</tr>\n"
     }
 
-    /// The row of all limits at once.
+    /// Writes the row of all limits at once.
     fn together(&self, of: &Together<'_>, limited: usize) -> String {
         let target = of.judged.and_then(|judged| match judged.requirement {
             Requirement::Yield(target) => Some(target),

@@ -1,4 +1,4 @@
-//! The data that the page needs to compute the results of other tolerances by itself.
+//! Data with which the page computes the results of other tolerances.
 
 use serde::Serialize;
 
@@ -11,15 +11,15 @@ use sensitol_numeric::law::TabulatedInput;
 use sensitol_numeric::power::Power;
 use sensitol_numeric::surrogate::InputShape;
 
-/// An entry of the study's `[dimensions]`: its name, and its keys with their values as TOML.
+/// Entry of the study's `[dimensions]`: its name, and its keys with their values as TOML.
 type Line = (String, Vec<(String, String)>);
 
-/// Distributions whose tolerance the page can change: their shape does not follow it, and a study writes it in one key.
+/// Distributions whose tolerance the page can change: their shape is independent of it, and a study has it in one key.
 const KINDS: [&str; 6] = ["normal", "truncated-normal", "uniform", "triangular", "trapezoidal", "beta"];
-/// A standardised moment that differs by less is the same.
+/// Greatest relative difference of equal standardised moments.
 const SAME: f64 = 1e-9;
 
-/// Dimensions, surrogates, limits and costs.
+/// Dimensions, surrogates, limits and costs of the what-if.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WhatIf {
     shapes: Vec<Shape>,
@@ -31,18 +31,18 @@ pub struct WhatIf {
     paid: Option<f64>,
 }
 
-/// Dimensions that share a process, and what it costs.
+/// Cost of dimensions that share a process.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 struct Cost {
-    /// Those that the page knows.
+    /// Indices of the members that the page lists.
     members: Vec<usize>,
-    /// The tightest half band of the others; null where there is none.
+    /// Tightest half-width of the other members. None if there are none.
     others: Option<f64>,
     parts: f64,
     offers: Vec<Offered>,
 }
 
-/// `a + b T^-shape`, or `a + b exp(-T/shape)`, or points `[T, cost]` with straight lines in `1/T` between them.
+/// Cost curve `a + b T^-shape` or `a + b exp(-T/shape)`, or points `[T, cost]` joined by straight lines in `1/T`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 struct Offered {
     exponential: bool,
@@ -55,7 +55,7 @@ struct Offered {
     max: f64,
 }
 
-/// Moments of a standardised input, and the rule for parts that are no parabolas.
+/// Moments of a standardised input, and the quadrature rule for parts that are not parabolas.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 struct Shape {
     s: f64,
@@ -67,7 +67,7 @@ struct Shape {
     h8: f64,
     nodes: Vec<f64>,
     weights: Vec<f64>,
-    /// Its distribution; null where nothing but moments is known of it, or a table of it is too large for a page.
+    /// Distribution of the input. None if only its moments are known, or if its table is too large for a page.
     law: Option<TabulatedInput>,
 }
 
@@ -78,47 +78,47 @@ pub(super) struct Tried {
     pub(super) unit: Option<String>,
     shape: usize,
     pub(super) nominal: f64,
-    /// Of the mean from nominal and the band's middle.
+    /// Distance of the mean from nominal plus band middle.
     offset: f64,
     pub(super) sigma: f64,
     pub(super) band: Option<[f64; 2]>,
     middle: f64,
-    /// Half the band, or three sigma where there is none.
+    /// Half-width of the band, or three sigma without a band.
     pub(super) half: f64,
     normal: bool,
-    /// Why it stays as it is; null where it can be changed.
+    /// Reason why the dimension cannot be changed. None if it can.
     pub(super) fixed: Option<&'static str>,
 }
 
-/// A characteristic.
+/// Characteristic with the data of its surface.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(super) struct Wanted {
     pub(super) name: String,
     pub(super) unit: Option<String>,
     lower: Option<f64>,
     upper: Option<f64>,
-    /// By how much rounding may put a value beyond a limit on which it lies.
+    /// Rounding tolerance at a limit: a value that is beyond by less lies on it.
     rounding: f64,
     target: Option<f64>,
-    /// Why nothing can be tried; null where it can.
+    /// Reason why nothing can be tried. None if something can.
     pub(super) why: Option<String>,
     centre: f64,
     parts: Vec<[f64; 4]>,
     pairs: Pairs,
     unexplained: Option<f64>,
-    /// The power of two by which all of these and the limits are divided, so that their squares are doubles; left out where it is 1.
+    /// Power of two by which the surface and the limits are divided, so that their squares do not overflow. Left out if it is 1.
     #[serde(skip_serializing_if = "is_one")]
     scale: f64,
-    /// Whether the page computes the law of its surface.
+    /// True if the page computes the surface distribution.
     law: bool,
-    /// Shares below and above the limits by the law of its surface at the study's settings, to which the page adds what points of the surface
-    /// say of changes; null where the page computes the law, and where it shows the Pearson fit.
+    /// Reject rates below and above by the surface distribution of the study. The page adds the changes by points of the surface. None if
+    /// the page computes the surface distribution, or shows the Pearson fit.
     counted: Option<[Option<f64>; 2]>,
-    /// Why the page does not compute the law; null where it does.
+    /// Reason why the page does not compute the surface distribution. None if it does.
     why_fit: Option<&'static str>,
-    /// How far below and above its yield by that law the interval reaches within which it is known; None where that is not known.
+    /// Distance of the ends of the confidence interval below and above the yield that the page computes. None if it is unknown.
     reach: Option<[f64; 2]>,
-    /// Interactions of its surface that are estimates.
+    /// Number of interactions that are screened guesses.
     #[serde(skip)]
     pub(super) screened: usize,
 }
@@ -127,7 +127,7 @@ fn is_one(scale: &f64) -> bool {
     *scale == 1.0
 }
 
-/// Products, column by column.
+/// Products of the surface in columns: indices `j` and `k`, coefficients `a`.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 struct Pairs {
     j: Vec<usize>,
@@ -135,14 +135,14 @@ struct Pairs {
     a: Vec<f64>,
 }
 
-/// Why the page cannot compute moments that the tail of an input makes infinite.
+/// Returns the reason if the tail of an input makes moments infinite.
 fn endless(found: &CharacteristicAnalysis) -> Option<String> {
     let lacks = found.moments.is_some_and(|moments| moments.sigma() > 0.0 && moments.kurtosis().is_none());
     lacks.then(|| "the tail of a dimension is so long that the kurtosis is infinite".to_owned())
 }
 
-/// How far the interval of a yield reaches on either side of what the page computes, the law of the surface or the Pearson fit: where
-/// that is off, both ends may lie on one side of it.
+/// Distance of the ends of the yield interval from the yield that the page computes. The page uses the surface distribution or the
+/// Pearson fit, so both ends may lie on one side of its yield.
 fn reach(found: &CharacteristicAnalysis, by_law: bool) -> Option<[f64; 2]> {
     let value = match by_law {
         true => found.surface_law.as_ref()?.yield_(),
@@ -152,18 +152,18 @@ fn reach(found: &CharacteristicAnalysis, by_law: bool) -> Option<[f64; 2]> {
     Some([value - low, high - value])
 }
 
-/// A degree beyond every closed form.
+/// Degree that selects a numeric rule: every closed form has a lower one.
 const DRAWN: usize = 5;
 
-/// Whether the part of an input is a parabola of a normal one.
+/// True if the part of an input is at most quadratic and the input is normal.
 fn parabola(fit: &Fit, j: usize, normal: bool) -> bool {
     normal && fit.surrogate.parts[j].is_some_and(|part| part.coefficients()[2..] == [0.0; 2])
 }
 
-/// Why a page inverts no transform of products of inputs that are not normal.
+/// Reason for interactions of inputs that are not normal: the page cannot invert the transform of their products.
 const INTERACT: &str = "dimensions interact that are not normal";
 
-/// Why the page shows the Pearson fit of a characteristic; None where it computes the law of its surface, which it does for sums of
+/// Returns the reason why the page shows the Pearson fit. Returns None if it computes the surface distribution, as it does for sums of
 /// single inputs and products of normal ones.
 fn why_fit(
     found: &CharacteristicAnalysis,
@@ -180,7 +180,7 @@ fn why_fit(
     if counting().any(|j| laws[j].is_none()) {
         return Some("the distribution of a dimension is not in the page");
     }
-    // Sums over a contour halve the values that have a probability of their own.
+    // At a value with a probability of its own, a sum over a contour gives only half of that probability.
     if counting().all(has_atoms) {
         return Some("every dimension has a few values only");
     }
@@ -196,13 +196,13 @@ fn why_fit(
 }
 
 impl WhatIf {
-    /// Of an analysis; `lines` and `costs` are those of the study, none where the problem was built without one.
+    /// Collects the data of an analysis. `lines` and `costs` come from the study. They are empty if there is no study.
     pub fn of(problem: &Problem, analysis: &Analysis, lines: &[Line], costs: &[Priced]) -> Self {
         let surface = &analysis.surface;
         let clean = |fit: &Fit| Fit { surrogate: fit.surrogate.without_rounding(), ..fit.clone() };
         let fits: Vec<Result<Fit, NoFit>> =
             surface.characteristics.iter().map(|fit| fit.as_ref().map(clean).map_err(|&no| no)).collect();
-        // A dimension takes nodes only where its part has a higher degree than its closed form, or points of it are drawn.
+        // An input needs nodes only if its part has a higher degree than its closed form, or if points of the surface are drawn.
         let normal = |j: usize| {
             problem.dimensions()[surface.varying[j]].distribution().is_some_and(|law| law.name() == "normal")
         };
@@ -221,6 +221,7 @@ impl WhatIf {
             let degree = |c: [f64; 4]| c.iter().rposition(|&c| c != 0.0).map_or(0, |place| place + 1);
             fits.iter().flatten().filter_map(own).map(degree).max().unwrap_or(0)
         };
+        // Inputs with nearly equal tables share one.
         let mut tables: Vec<TabulatedInput> = Vec::new();
         let mut table = |(j, &d): (usize, &usize)| {
             let own = TabulatedInput::of(problem.dimensions()[d].law()?, degree(j))?;
@@ -231,6 +232,7 @@ impl WhatIf {
             Some(tables[known].clone())
         };
         let laws: Vec<Option<TabulatedInput>> = surface.varying.iter().enumerate().map(&mut table).collect();
+        // Dimensions with equal shapes share one by its index.
         let mut shapes: Vec<Shape> = Vec::new();
         let mut index = |shape: &InputShape, law: &Option<TabulatedInput>| {
             let shape = Shape::of(shape, law);
@@ -287,18 +289,19 @@ impl WhatIf {
         Self { dimensions, characteristics, lines: lines.to_vec(), costs, paid, shapes }
     }
 
-    /// Whether there is something to change, and something that follows it.
+    /// True if there is something to change and a result that can follow.
     pub(super) fn possible(&self) -> bool {
         self.dimensions.iter().any(|one| one.fixed.is_none())
             && self.characteristics.iter().any(|one| one.why.is_none())
     }
 
-    /// Why there is nothing to try; None where there is, and where nothing varies at all.
+    /// Returns the reason why nothing can be tried. Returns None if something can, or if nothing varies at all.
     pub(super) fn impossible(&self) -> Option<String> {
         if self.possible() || self.dimensions.is_empty() {
             return None;
         }
         let mut whys: Vec<&str> = self.characteristics.iter().filter_map(|one| one.why.as_deref()).collect();
+        // Characteristics are possible: the dimensions are the reason then.
         if whys.len() < self.characteristics.len() {
             whys = self.dimensions.iter().filter_map(|one| one.fixed).collect();
         }
@@ -315,18 +318,18 @@ impl WhatIf {
         &self.characteristics
     }
 
-    /// The cost of the tolerances as analysed; None where nothing has a cost, and none inside where no process holds them.
+    /// Cost of the tolerances as analysed. None if there are no costs, and an inner None if no process reaches the tolerances.
     pub(super) fn paid(&self) -> Option<Option<f64>> {
         (!self.costs.is_empty()).then_some(self.paid)
     }
 
-    /// Whether the study's own lines are known, so that changed ones can be written.
+    /// True if the study's own lines are known, so that the page can write changed ones.
     pub(super) fn written(&self) -> bool {
         !self.lines.is_empty()
     }
 }
 
-/// The power of two of the largest coefficient of a surface.
+/// Power of two of the largest coefficient of a surface.
 fn size(fit: &Fit) -> Power {
     let Fit { surrogate, .. } = fit;
     let parts = surrogate.parts.iter().flatten().map(|part| part.largest());
@@ -399,7 +402,7 @@ impl Tried {
     }
 }
 
-/// Why a dimension stays as it is.
+/// Returns the reason why a dimension cannot be changed, or None if it can.
 fn fixed(dimension: &Dimension, kind: &str) -> Option<&'static str> {
     if dimension.zone().is_some() {
         return Some("a coordinate of a circular zone");
@@ -410,6 +413,7 @@ fn fixed(dimension: &Dimension, kind: &str) -> Option<&'static str> {
         kind if !KINDS.contains(&kind) => return Some("its shape or its tolerance does not follow a factor"),
         _ => {}
     }
+    // The shape must be the same at half and at twice the tolerance.
     let same = |factor: f64| {
         let scaled = dimension.scaled(factor)?.ok()?;
         let [before, after] =

@@ -18,9 +18,9 @@ use sensitol::simulation::{Pace, Sampler, SimulationOptions, simulate_with};
 use sensitol::sweep::sweep_with;
 use sensitol_study::{Error, Study};
 
-/// Points of a simulation unless the caller says otherwise, as the command line has it.
+/// Default number of points of a simulation, as on the command line.
 const SAMPLES: u64 = 100_000;
-/// The same of rare events, of a cheap model and of a costly one.
+/// Default number of points for rare events: cheap model, costly model.
 const RARE_SAMPLES: [u64; 2] = [10_000, 1000];
 
 /// A question.
@@ -106,7 +106,7 @@ pub enum GoalName {
 }
 
 impl GoalName {
-    /// For what may be spent.
+    /// Returns the goal with its cost limit.
     fn within(self, cost_limit: f64) -> Goal {
         match self {
             Self::FewestRejects => Goal::FewestRejects { cost_limit },
@@ -126,7 +126,7 @@ pub enum SamplerName {
 }
 
 impl Asked {
-    /// The parameter of a sweep.
+    /// Returns the parameter of a sweep, or None for other commands.
     pub fn swept(&self) -> Option<&str> {
         match self {
             Self::Sweep { over, .. } => Some(over),
@@ -135,13 +135,13 @@ impl Asked {
     }
 }
 
-/// Is told how far a run is: points answered, and how many it will take; 0 where that is not known.
+/// Callback for progress: answered points, and expected points (0 if unknown).
 pub type Counted<'c> = &'c dyn Fn(u64, u64);
 
-/// Does what is asked of a study.
+/// Runs a command on a study.
 ///
 /// # Errors
-/// Of a question that cannot be answered.
+/// Returns an error if the command fails.
 pub fn done(study: &Study, asked: &Asked, run: &Run<'_>, counted: Counted<'_>) -> Result<TaskReport, Box<Error>> {
     let problem = &study.problem;
     let about = || About {
@@ -211,7 +211,7 @@ pub fn done(study: &Study, asked: &Asked, run: &Run<'_>, counted: Counted<'_>) -
             let task = study.allocation_task().relative_or_default(problem, basis, !recentre.is_empty()).towards(goal);
             let in_file = |problem: &Problem| study.written_dimensions(problem);
             let found = allocate_written(problem, &task, &options, run, &in_file).map_err(boxed)?;
-            // A run that was stopped before the model had its say is not a study yet.
+            // A run that was stopped before the model confirmed the result is not written to the study.
             let confirmed = found.after.is_some() && found.status != Status::OutOfTime;
             let anew = confirmed.then(|| study.rewritten(&found.problem));
             let (anew, not_written) = match anew {
@@ -233,7 +233,7 @@ fn boxed(error: impl Into<Error>) -> Box<Error> {
     Box::new(error.into())
 }
 
-/// How many points of a costly model are planned, at the least.
+/// Reports the least number of points that a command plans.
 fn expect(study: &Study, asked: &Asked, counted: Counted<'_>) {
     let plan = procedure(study.options.method).plan(&study.problem, &study.options);
     let times = match asked {

@@ -1,11 +1,11 @@
-//! Errors as data that a page can place.
+//! Errors as data with their place in the study, for pages.
 
 use serde_json::{Value, json};
 
 use sensitol_study::Error;
 use sensitol_study::StudyError;
 
-/// The faults of a study, each with its place in the text in bytes.
+/// Faults of a study, each with its place in the text in bytes.
 pub(super) fn of_study(error: &StudyError) -> Value {
     let all: Vec<Value> = std::iter::once(error).chain(&error.more).map(one).collect();
     json!({ "faults": all })
@@ -27,7 +27,7 @@ fn one(error: &StudyError) -> Value {
     })
 }
 
-/// Any other error.
+/// Fault of a study, or any other error.
 pub(super) fn of_engine(error: &Error) -> Value {
     if let Error::Study(error) = error {
         return of_study(error);

@@ -1,4 +1,4 @@
-//! The report of a run, shown as it is asked for.
+//! Report of a run, in the forms that a task can ask for.
 
 use serde::Serialize;
 
@@ -9,35 +9,35 @@ use crate::{
     ToDocument, csv_files, svg, text,
 };
 
-/// A report of any command.
+/// Report of any command.
 pub enum Shown {
-    /// Of `analyze`, with what its page lets a reader try.
+    /// Report of `analyze`, with the data of its what-if.
     Analysis(Box<(Report, WhatIf)>),
-    /// Of `simulate`.
+    /// Report of `simulate`.
     Simulation(SimulationReport),
-    /// Of `simulate --rare`.
+    /// Report of `simulate --rare`.
     Rare(RareReport),
-    /// Of `compare`.
+    /// Report of `compare`.
     Comparison(CompareReport),
-    /// Of `sweep`.
+    /// Report of `sweep`.
     Sweep(SweepReport),
-    /// Of `allocate`.
+    /// Report of `allocate`.
     Allocation(Box<AllocationReport>),
 }
 
-/// A report, and what else there is.
+/// Report with its side results.
 pub struct TaskReport {
-    /// The report.
+    /// Report of the command.
     pub shown: Shown,
-    /// The study with the tolerances that were found.
+    /// Study with the tolerances that were found.
     pub study: Option<String>,
-    /// Why there is none.
+    /// Reason why there is no such study.
     pub not_written: Option<String>,
-    /// Why answers of an external program could not be kept, where they were to be.
+    /// Reason why answers of an external model could not be kept, if they were to be.
     pub not_kept: Option<String>,
 }
 
-/// A trait object of what all reports have.
+/// Methods of every report, as a trait object.
 trait Reported: ToDocument {
     fn json(&self) -> String;
 }
@@ -49,7 +49,7 @@ impl<R: ToDocument + Serialize> Reported for R {
 }
 
 impl TaskReport {
-    /// A report, and nothing else.
+    /// Returns a report without side results.
     pub(crate) fn of(shown: Shown) -> Self {
         Self { shown, study: None, not_written: None, not_kept: None }
     }
@@ -65,18 +65,18 @@ impl TaskReport {
         }
     }
 
-    /// The report as JSON, as `--json -v` prints it.
+    /// Formats the report as JSON, as `--json -v` prints it.
     pub fn json(&self) -> String {
         self.report().json()
     }
 
-    /// The report as text of this width.
+    /// Formats the report as text of this width, with every detail if `full` is set.
     pub fn text(&self, width: usize, full: bool) -> String {
         let detail = if full { Detail::Full } else { Detail::Short };
         text(&self.report().document(), Style { detail, unicode: true, color: false, width })
     }
 
-    /// The report as a page.
+    /// Writes the report as a page.
     pub fn html(&self) -> String {
         match &self.shown {
             Shown::Analysis(analysis) => analyze_html(&analysis.0, Some(&analysis.1)),
@@ -84,12 +84,12 @@ impl TaskReport {
         }
     }
 
-    /// The charts of the report.
+    /// Draws the charts of the report.
     pub fn svg(&self, title: &str) -> String {
         svg(&self.report().document(), title)
     }
 
-    /// Its tables as CSV.
+    /// Writes the tables of the report as CSV.
     pub fn tables(&self) -> Vec<CsvFile> {
         let names: &[&str] = match &self.shown {
             Shown::Analysis(analysis) => return csv_files(&analysis.0),

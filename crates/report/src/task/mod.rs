@@ -1,4 +1,4 @@
-//! Questions to a study as JSON, and the answers: the Python package, the workbench and `serve` share them.
+//! Tasks on a study as JSON, and their answers. The Python package, the workbench and `serve` share them.
 
 mod asked;
 mod faults;

@@ -1,17 +1,17 @@
-//! Where a task is done.
+//! Environment of a task.
 
 use std::path::PathBuf;
 
 use sensitol::assembly::Run;
 use sensitol_study::Externals;
 
-/// The folder from which a study's paths start, how its external programs are treated, and what may stop them.
+/// Folder of a study's paths, treatment of its external models, and control of the run.
 pub struct TaskPlace<'a> {
-    /// The folder; the current one unless given.
+    /// Folder of relative paths; the current folder by default.
     pub folder: PathBuf,
-    /// How external programs are treated; the task names the configuration.
+    /// Treatment of external models. The task names the configuration.
     pub externals: Externals,
-    /// The run, which hears of points and may be stopped.
+    /// Run that counts points and can be stopped.
     pub run: Run<'a>,
 }
 

@@ -1,4 +1,4 @@
-//! A task as a page sends it: the text of a study, what is asked, and the forms of the answer.
+//! Task from a page: the text of a study, the command, and the forms of the answer.
 
 use std::collections::BTreeMap;
 
@@ -56,7 +56,7 @@ enum Form {
 }
 
 impl Task {
-    /// From JSON.
+    /// Reads a task from JSON.
     pub fn read(told: &str) -> Result<Self, serde_json::Error> {
         serde_json::from_str(told)
     }
@@ -76,11 +76,11 @@ impl Task {
         Study::from_text(swept.map_or(text.clone(), |parameter| text.sweeping(parameter)))
     }
 
-    /// The study's keys, or its faults.
+    /// Returns the study's keys, or its faults.
     pub fn study(&self, place: &TaskPlace<'_>) -> String {
         match self.parsed(place) {
             Ok(study) => {
-                // As text: the order of its keys is that of the study.
+                // Spliced in as text, which keeps the order of its keys.
                 let study = RawValue::from_string(study.as_json()).expect("a study is JSON");
                 format!("{{\"study\":{study}}}")
             }
@@ -88,7 +88,7 @@ impl Task {
         }
     }
 
-    /// Does what is asked.
+    /// Runs the command and returns the answer, or an error, as JSON.
     pub fn run(&self, place: &TaskPlace<'_>, counted: Counted<'_>) -> String {
         match self.found(place, counted) {
             Ok(found) => self.shown(&found).to_string(),
@@ -130,7 +130,7 @@ impl Task {
     }
 }
 
-/// The built-in models.
+/// Lists the built-in models as JSON.
 pub fn models() -> String {
     let model = |model: &&'static Model| {
         let inputs = model.inputs.iter().map(

@@ -1,21 +1,22 @@
-//! Names of sheets, texts and tables as a workbook has them.
+//! Names of sheets, texts and tables within the rules of a workbook.
 
 use rust_xlsxwriter::{Format, Worksheet, XlsxError};
 
 use crate::document::{Cell, DataTable, Value};
 
-/// Letters of a cell and of a sheet's name.
+/// Greatest length of a cell's text, in UTF-16 units: a rule of the file format.
 const TEXT: usize = 32_767;
+/// Greatest length of a sheet's name, in UTF-16 units: a rule of the file format.
 const NAME: usize = 31;
 /// Width of a column in letters.
 const WIDE: f64 = 16.0;
 
-/// The names of sheets, which differ where case does not count.
+/// Names of sheets that differ by more than case.
 #[derive(Default)]
 pub(super) struct Names(Vec<String>);
 
 impl Names {
-    /// A name of at most 31 letters, without signs that a name cannot have, that no other sheet has.
+    /// Returns a name of at most 31 letters, without forbidden signs, that no other sheet has.
     pub(super) fn free(&mut self, wanted: &str) -> String {
         let letter = |c: char| if c.is_control() || "[]:*?/\\'".contains(c) { '_' } else { c };
         let wanted: Vec<char> = wanted.chars().map(letter).collect();
@@ -37,7 +38,7 @@ impl Names {
     }
 }
 
-/// Writes text as text: one that begins like a formula is none, and one that is too long for a cell ends early.
+/// Writes text, never a formula. A text that is too long for a cell is cut.
 pub(super) fn text(sheet: &mut Worksheet, row: u32, column: u16, text: &str, format: &Format) -> Result<(), XlsxError> {
     let mut left = TEXT;
     let kept = |c: &char| {
@@ -49,7 +50,7 @@ pub(super) fn text(sheet: &mut Worksheet, row: u32, column: u16, text: &str, for
     sheet.write_string_with_format(row, column, text, format).map(|_| ())
 }
 
-/// The headers of a table and its rows from this row on; where it begins, a frozen header.
+/// Writes the headers of a table if `header` is set, then its rows, from row `from` on.
 pub(super) fn table(sheet: &mut Worksheet, from: u32, table: &DataTable, header: bool) -> Result<(), XlsxError> {
     let places = table.places(|column| !column.key.is_empty());
     let (bold, plain) = (Format::new().set_bold(), Format::new());
@@ -69,7 +70,7 @@ pub(super) fn table(sheet: &mut Worksheet, from: u32, table: &DataTable, header:
     Ok(())
 }
 
-/// Tables with the same columns below one header.
+/// Writes tables with the same columns below one frozen header.
 pub(super) fn tables(sheet: &mut Worksheet, all: &[&DataTable]) -> Result<(), XlsxError> {
     let mut row = 0;
     for (place, one) in all.iter().enumerate() {
@@ -91,7 +92,7 @@ fn cell(sheet: &mut Worksheet, row: u32, column: u16, cell: &Cell, plain: &Forma
     }
 }
 
-/// A number; an empty cell where it is not finite.
+/// Writes a number; the cell stays empty if it is not finite.
 pub(super) fn number(
     sheet: &mut Worksheet,
     row: u32,
@@ -118,7 +119,7 @@ mod tests {
         let long = names.free(&"x".repeat(40));
         assert_eq!(long.len(), 31);
         assert_eq!(names.free(&"x".repeat(40)), format!("{} 2", "x".repeat(29)));
-        // A letter of two units.
+        // Each of these letters takes two units.
         assert_eq!(names.free(&"\u{1d70e}".repeat(20)).chars().count(), 15);
     }
 }

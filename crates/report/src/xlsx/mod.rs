@@ -1,4 +1,4 @@
-//! A report as a workbook: the stack with formulas that a spreadsheet computes anew, and the tables of the report.
+//! A report as a workbook: the stack with live formulas, and the tables of the report.
 
 mod book;
 mod stack;
@@ -10,13 +10,14 @@ use super::output_correlation::together_table;
 use crate::document::{Cell, Columns, DataTable, Document, Element, Value};
 use book::{Names, tables};
 
-/// Why a workbook cannot be made of a report.
+/// Error of a report that does not fit into a workbook.
 #[derive(Debug, thiserror::Error)]
 #[error("a workbook cannot hold this report: {0}")]
 pub struct WorkbookError(#[from] XlsxError);
 
-/// The sheets `Stack`, one for each characteristic where there are several, `Results`, `Contributions`, `Joint`, `Inputs`, `Warnings` and `Study`. Cells of the
-/// stack that are formulas hold what the report has, too; where it has something else than they would give, it stands there as a number.
+/// Writes the sheets `Stack` (one for each characteristic), `Results`, `Contributions`, `Joint`, `Inputs`, `Warnings` and `Study`.
+/// Formulas of the stack store the values of the report. If a formula would give another value, the cell holds the reported number
+/// instead.
 pub fn analyze_xlsx(report: &Report) -> Result<Vec<u8>, WorkbookError> {
     let mut book = Workbook::new();
     let mut names = Names::default();
@@ -48,7 +49,7 @@ pub fn analyze_xlsx(report: &Report) -> Result<Vec<u8>, WorkbookError> {
     Ok(book.save_to_buffer()?)
 }
 
-/// The tables of this name.
+/// Returns the tables of this name.
 fn of_name<'d>(document: &'d Document, name: &'static str) -> impl Iterator<Item = &'d DataTable> {
     document.all().filter_map(move |element| match element {
         Element::Table(table) if table.name == name => Some(table),
@@ -56,7 +57,7 @@ fn of_name<'d>(document: &'d Document, name: &'static str) -> impl Iterator<Item
     })
 }
 
-/// A table of names and values.
+/// Builds a table of names and values.
 fn pairs(rows: Vec<(&str, Value)>) -> DataTable {
     Columns::default()
         .data("name", |row: &(&str, Value)| Cell::text(row.0))
@@ -64,7 +65,6 @@ fn pairs(rows: Vec<(&str, Value)>) -> DataTable {
         .table("", rows)
 }
 
-/// The share that keeps all limits at once.
 fn joint(report: &Report) -> DataTable {
     let joint = report.analysis.joint.as_ref();
     let verdict = report.analysis.joint_requirement.as_ref().map(|judged| judged.verdict.name().to_owned());
@@ -75,7 +75,7 @@ fn joint(report: &Report) -> DataTable {
     ])
 }
 
-/// The title block, and how the report came about.
+/// Table of the title block and the origin of the report.
 fn study(report: &Report) -> DataTable {
     let text = |text: &str| Value::Text(text.to_owned());
     let head = &report.head;

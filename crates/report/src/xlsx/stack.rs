@@ -6,8 +6,9 @@
 //! totals  sum b_i m_i  with  sum e_i,  sqrt(sum e_i^2)  and their mixtures;  sum b_i mean_i  with  3 sqrt(sum (b_i sigma_i)^2)
 //! ```
 //!
-//! The rest of the report's value in the middle of all bands, as of dimensions that do not vary, is a row of its own with the factor 1.
-//! The headers of the inputs are those that `sensitol import` reads; totals have no nominal value, so that it leaves them out.
+//! The remainder of the report's value at the middle of all bands, for example from dimensions that do not vary, has a row of its own
+//! with the factor 1. The headers of the inputs are those that `sensitol import` reads. Totals have no nominal value, so the import
+//! leaves them out.
 
 use rust_xlsxwriter::{Format, Formula, Worksheet, XlsxError, utility::row_col_to_cell};
 
@@ -16,21 +17,22 @@ use super::book;
 use sensitol::analysis::CharacteristicAnalysis;
 use sensitol_numeric::labels::LABELS;
 
-/// Half the band of a dimension without one, in sigmas; and of the interval of moments.
+/// Half-width of a dimension without a band, and of the interval by moments, in sigmas.
 const SIGMAS: f64 = 3.0;
-/// Factors of the inflated and of the mean-shift RSS.
+/// Factor of the inflated RSS.
 const INFLATION: f64 = 1.5;
+/// Factor of the mean-shift RSS.
 const MEAN_SHIFT: f64 = 0.5;
-/// By how much of its scale a formula may be off what the report has.
+/// Greatest relative difference of a formula from the report.
 const AGREE: f64 = 1e-9;
-/// A part of a sum of numbers that rounding may make.
+/// Greatest remainder of a sum that counts as rounding, as a part of the summed magnitudes.
 const ROUNDING: f64 = 1e-13;
-/// Where the headers stand.
+/// Row of the headers.
 const HEADER: u32 = 2;
 /// Width of a column in letters.
 const WIDE: f64 = 14.0;
 
-/// A column of the sheet.
+/// Column of the sheet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Of {
     Name,
@@ -76,24 +78,24 @@ impl Of {
     }
 }
 
-/// The figures of a row as its formulas compute them.
+/// Figures of a row as its formulas compute them.
 struct Figures {
     middle: f64,
     half: f64,
     mean: f64,
     deviation: f64,
     effect: f64,
-    /// Factor by standard deviation.
+    /// Factor times standard deviation.
     part: f64,
 }
 
-/// Half the band in sigmas; None of what does not vary.
+/// Returns the half-width in sigmas. Returns None if there is no band, or if the dimension does not vary.
 fn sigmas(row: &StackRow) -> Option<f64> {
     let [lower, upper] = row.dimension.tolerance?;
     (row.dimension.sigma > 0.0).then(|| 0.5 * (upper - lower) / row.dimension.sigma)
 }
 
-/// The sigma of a normal dimension that does not follow from its band.
+/// Returns the sigma of a dimension that does not follow from its band.
 fn own_sigma(row: &StackRow) -> Option<f64> {
     let sigma = Some(row.dimension.sigma).filter(|sigma| *sigma > 0.0)?;
     match sigmas(row) {
@@ -103,12 +105,11 @@ fn own_sigma(row: &StackRow) -> Option<f64> {
     }
 }
 
-/// How far the mean lies off the middle of the band; without rounding.
+/// Returns the distance of the mean from the middle of the band, 0 if it is rounding.
 fn shift(row: &StackRow) -> f64 {
     let one = &row.dimension;
     let middle = one.tolerance.map_or(0.0, |[lower, upper]| 0.5 * (lower + upper));
     let shift = (one.mean - one.nominal) - middle;
-    // Rounding of the mean is left out.
     if shift.abs() <= AGREE * one.sigma { 0.0 } else { shift }
 }
 
@@ -124,23 +125,22 @@ fn figures(row: &StackRow) -> Figures {
     Figures { middle, half, mean, deviation: one.sigma, effect, part }
 }
 
-/// The part of the value in the middle of all bands that no dimension gives; None where there is none, or it is not known.
+/// Returns the part of the value at the middle of all bands that no dimension contributes, or None if it is 0 or unknown.
 fn constant(rows: &[StackRow], one: &CharacteristicAnalysis) -> Option<f64> {
     let parts: Vec<f64> = rows.iter().map(|row| row.slope.unwrap_or(f64::NAN) * figures(row).middle).collect();
     let constant = one.middle? - parts.iter().sum::<f64>();
-    // The rest of a sum that is rounding is left out.
+    // A remainder of the size of rounding errors is left out.
     let scale = parts.iter().map(|part| part.abs()).sum::<f64>();
     Some(constant).filter(|constant| constant.abs() > ROUNDING * scale)
 }
 
-/// A name for it that no dimension has.
+/// Returns a name for this part that no dimension has.
 fn name_of_constant(rows: &[StackRow]) -> String {
     let free = |name: &String| rows.iter().all(|row| row.dimension.name != *name);
     let numbered = |number: usize| if number == 1 { "constant".to_owned() } else { format!("constant {number}") };
     (1..).map(numbered).find(free).expect("numbers do not end")
 }
 
-/// A sheet as it is filled.
 struct Page<'w> {
     sheet: &'w mut Worksheet,
     columns: Vec<Of>,
@@ -148,7 +148,7 @@ struct Page<'w> {
     last: u32,
     bold: Format,
     plain: Format,
-    /// Of cells that may be changed.
+    /// Format of cells that may be changed.
     input: Format,
 }
 
@@ -157,12 +157,12 @@ impl Page<'_> {
         self.columns.iter().position(|column| *column == of).unwrap_or(0) as u16
     }
 
-    /// The name of a cell.
+    /// Returns the name of a cell.
     fn cell(&self, row: u32, of: Of) -> String {
         row_col_to_cell(row, self.column(of))
     }
 
-    /// All rows of a column.
+    /// Returns the range of all rows of a column.
     fn all(&self, of: Of) -> String {
         format!("{}:{}", self.cell(self.first, of), self.cell(self.last, of))
     }
@@ -188,7 +188,7 @@ impl Page<'_> {
         value.map_or(Ok(()), |value| book::number(self.sheet, row, column, value, &self.plain))
     }
 
-    /// A formula with its value; nothing where that is unknown.
+    /// Writes a formula with its value, or nothing if the value is unknown.
     fn formula(&mut self, row: u32, of: Of, formula: &str, value: f64) -> Result<(), XlsxError> {
         if !value.is_finite() {
             return Ok(());
@@ -229,7 +229,7 @@ pub(super) fn write(sheet: &mut Worksheet, stack: &Stack, one: &CharacteristicAn
         page.text(last, Of::Name, &name_of_constant(rows), false)?;
         page.input(last, Of::Factor, Some(1.0))?;
         page.input(last, Of::Nominal, Some(value))?;
-        // The characteristic's own unit.
+        // The remainder has the characteristic's unit.
         stack.unit.as_deref().map_or(Ok(()), |unit| page.text(last, Of::Unit, unit, false))?;
         let nominal = format!("={}", page.cell(last, Of::Nominal));
         page.formula(last, Of::Middle, &nominal, value)?;
@@ -248,7 +248,7 @@ pub(super) fn write(sheet: &mut Worksheet, stack: &Stack, one: &CharacteristicAn
     page.sheet.set_freeze_panes(first, 1).map(|_| ())
 }
 
-/// The row of a dimension.
+/// Writes the row of a dimension.
 fn dimension(page: &mut Page<'_>, line: u32, row: &StackRow, of: &Figures, squares: f64) -> Result<(), XlsxError> {
     let one = &row.dimension;
     page.text(line, Of::Name, &one.name, false)?;
@@ -297,14 +297,14 @@ fn dimension(page: &mut Page<'_>, line: u32, row: &StackRow, of: &Figures, squar
     page.formula(line, Of::Share, &share, value)
 }
 
-/// A total: its formulas and what they give.
+/// Total with its formulas and their values.
 struct Total {
     name: String,
     middle: (String, f64),
     half: (String, f64),
 }
 
-/// Factors, limits and totals; gives the row after them.
+/// Writes factors, limits and totals, and returns the row after them.
 fn totals(
     page: &mut Page<'_>,
     stack: &Stack,
@@ -352,7 +352,7 @@ fn totals(
             let formula = format!("{mean_shift}*{of_worst}+(1-{mean_shift})*{of_rss}");
             (formula, MEAN_SHIFT * worst + (1.0 - MEAN_SHIFT) * rss)
         }
-        // Of processes and proofs that the sheet does not have: as reported.
+        // Totals by processes or proofs have no formula here: the reported value is written.
         TotalKind::SixSigma | TotalKind::ProvenWorstCase => (String::new(), f64::NAN),
         TotalKind::FirstOrder | TotalKind::SecondOrder => {
             (format!("{SIGMAS}*SQRT(SUMPRODUCT(({factors}*{deviations})^2))"), SIGMAS * sigma)
@@ -360,7 +360,7 @@ fn totals(
     };
     let mean = (format!("SUMPRODUCT({factors},{means})"), sum(|row| row.mean));
     let near = |a: f64, b: Option<f64>, scale: f64| b.is_some_and(|b| (a - b).abs() <= AGREE * scale.max(b.abs()));
-    // Dimensions that vary together are in no formula.
+    // No formula includes correlations. The RSS shows if there are any.
     let alone = near(rss, one.rss, 0.0);
     let mut straight = None;
     for total in &stack.totals {
@@ -370,6 +370,7 @@ fn totals(
             middle: if of_moments { mean.clone() } else { middle.clone() },
             half: half(total.kind),
         };
+        // A total whose formula does not reproduce the report is written as a number.
         let agrees = near(live.middle.1, total.middle, live.half.1) && near(live.half.1, total.half_width, 0.0);
         if of_moments && agrees {
             straight = Some(line);
@@ -399,12 +400,12 @@ fn totals(
     Ok(line)
 }
 
-/// Cpk where there are limits and it is known.
+/// Returns Cpk if there are limits and it is known.
 fn cpk(one: &CharacteristicAnalysis) -> Option<f64> {
     one.capability.as_ref()?.cpk
 }
 
-/// A total by formulas.
+/// Writes a total by formulas.
 fn interval(page: &mut Page<'_>, line: u32, total: &Total) -> Result<(), XlsxError> {
     page.text(line, Of::Name, &total.name, false)?;
     page.formula(line, Of::Middle, &format!("={}", total.middle.0), total.middle.1)?;
@@ -412,7 +413,7 @@ fn interval(page: &mut Page<'_>, line: u32, total: &Total) -> Result<(), XlsxErr
     ends(page, line, [total.middle.1, total.half.1])
 }
 
-/// A total as the report has it.
+/// Writes a total as the report has it.
 fn fixed(page: &mut Page<'_>, line: u32, name: &str, [middle, half]: [Option<f64>; 2]) -> Result<(), XlsxError> {
     page.text(line, Of::Name, &format!("{name}, as reported"), false)?;
     page.number(line, Of::Middle, middle)?;

@@ -1,4 +1,4 @@
-//! The capability that processes hold, and the inflations of the RSS: printed stacks, and every form by hand.
+//! Capability of processes, and inflations of the RSS: printed stacks, and every form by hand.
 
 use sensitol::distribution::{Distribution, Drifting};
 use sensitol::{CharacteristicAnalysis, Method, Options, analyze};
@@ -12,7 +12,7 @@ fn one(text: &str) -> CharacteristicAnalysis {
     analyze(&study.problem, &Method::SecondOrder.into()).unwrap().characteristics.remove(0)
 }
 
-/// Drake's motor: printed to four digits, and our own route to all of them.
+/// Drake's motor: printed to four digits, and computed to full precision by an independent route.
 #[test]
 fn a_printed_stack_of_a_motor() {
     let case = case("motor");
@@ -31,12 +31,12 @@ fn a_printed_stack_of_a_motor() {
         let printed = &case["printed"][key];
         close(found, printed["value"].as_f64().unwrap(), printed["tolerance"].as_f64().unwrap(), 1.0);
     }
-    // Slopes of 1 from differences of values of 11 keep 1e-12.
+    // Slopes of 1 from differences of values of 11 are accurate to 1e-12.
     relative(found.inflated_rss.unwrap(), case["exact"]["modified_rss"].as_f64().unwrap(), 1e-11);
     relative(found.mean_shift_rss.unwrap(), case["exact"]["mean_shift_rss"].as_f64().unwrap(), 1e-11);
 }
 
-/// Seven processes of which one is off by a quarter of its half band: cp 2 and cpk 1.5.
+/// Seven processes, one of them off by a quarter of its half-width: cp 2 and cpk 1.5.
 #[test]
 fn a_printed_six_sigma_stack() {
     let case = case("mitcalc-six-sigma");
@@ -53,13 +53,13 @@ fn a_printed_six_sigma_stack() {
     };
     let found = one(&text(""));
     let effective = found.six_sigma.unwrap();
-    // Slopes of 1 from differences of values of 7 keep 1e-12.
+    // Slopes of 1 from differences of values of 7 are accurate to 1e-12.
     relative(effective, case["exact"]["effective sigma"].as_f64().unwrap(), 1e-11);
     relative(4.5 * effective, case["exact"]["half width"].as_f64().unwrap(), 1e-11);
     let printed = |key: &str| case["printed"][key]["value"].as_f64().unwrap();
     close(effective, printed("effective sigma"), 5e-6, 1.0);
     close(4.5 * effective, printed("half width"), 5e-6, 1.0);
-    // In the table stand three of it, between the other ways of adding up.
+    // The table has three effective sigmas, between the other totals.
     let study = parse(&text("")).unwrap();
     let analysis = analyze(&study.problem, &Method::SecondOrder.into()).unwrap();
     let stack = Report::of(&study.problem, &analysis, About::default()).stacks().remove(0);
@@ -81,16 +81,18 @@ fn a_printed_calibration_of_a_gauge_block() {
     assert!((moments.mean() - mean).abs() <= of_mean && (moments.sigma() - sigma).abs() <= of_sigma, "{moments:?}");
     for interval in [found.coverage.unwrap().equal_tails, found.coverage.unwrap().shortest] {
         for (end, printed) in interval.into_iter().zip(case["printed"]["99 % interval"].as_array().unwrap()) {
-            // Printed to 1 nm. 65 536 points leave 0.7 nm at a tail of 0.5 %; the shortest is flat about its place.
+            // Printed to 1 nm. 65 536 points have an error of 0.7 nm at a tail of 0.5 %. The width of the shortest interval is flat about
+            // its place.
             close(end, printed["value"].as_f64().unwrap(), 3.0, 1.0);
         }
     }
-    // The printed ends are whole nanometres: half of one moves a share of 99 % by 4e-4, and 65 536 counted points by as much.
+    // The printed ends are whole nanometres. Half a nanometre changes a share of 99 % by 4e-4, and 65 536 counted points have a similar
+    // error.
     let law = found.surface_law.unwrap();
     close(1.0 - law.below.unwrap().value - law.above.unwrap().value, 0.99, 1.5e-3, 1.0);
 }
 
-/// Factors and shifts of single dimensions, by hand: half bands 0.3 and 0.4.
+/// Factors and shifts of single dimensions, by hand: half-widths 0.3 and 0.4.
 #[test]
 fn factors_and_shifts_of_single_dimensions() {
     let text = |a: &str, all: &str| {
@@ -114,13 +116,13 @@ fn factors_and_shifts_of_single_dimensions() {
         ("", "rss_factor = \"modified\"", 0.5 + 0.1 / (2f64.sqrt() - 1.0), 0.6),
     ] {
         let [first, second] = found(a, all);
-        // Slopes of 1 from differences keep 1e-12.
+        // Slopes of 1 from differences are accurate to 1e-12.
         relative(first, inflated, 1e-11);
         relative(second, shifted, 1e-11);
     }
 }
 
-/// Band 9.6 to 10.8: half 0.6, middle 10.2.
+/// Band 9.6 to 10.8: half-width 0.6, middle 10.2.
 #[test]
 fn a_process_places_the_mean() {
     let figures = |line: &str| {
@@ -142,7 +144,7 @@ fn a_process_places_the_mean() {
         relative(found.1, sigma, 1e-12);
         assert_eq!(found.2, name, "{line}");
     }
-    // 0.1 and 0.3 sigma of a lot off, by cpk and by drift: sigma/(1 - k) with k = 0.25, 0.5.
+    // A lot has sigma 0.1. Its mean is off by cpk, or by 0.3: the effective sigma is sigma/(1 - k) with k = 0.25, 0.5.
     for (line, effective) in
         [("cp = 2, cpk = 1.5", 0.1 / 0.75), ("cp = 2, drift = 0.3", 0.2), ("cp = 2, shift = 0.3", 0.2)]
     {
@@ -155,13 +157,13 @@ fn a_process_places_the_mean() {
     assert_eq!(one(centred).six_sigma, None);
 }
 
-/// With half the tolerance cp and cpk are the same, in the problem and in the study written anew.
+/// Halving the tolerance keeps cp and cpk, in the problem and in the rewritten study.
 #[test]
 fn capabilities_stay_where_a_tolerance_changes() {
     for (line, mean, sigma) in [
         ("cp = 2, cpk = 1.5, side = \"+\"", 10.2 + 0.075, 0.05),
         ("cp = 2, cpk = 1.5", 10.2, f64::hypot(0.05, 0.075)),
-        // A drift and a shift stay as they are.
+        // A drift and a shift stay unchanged.
         ("cp = 2, drift = 0.3", 10.2, f64::hypot(0.05, 0.3 / 3f64.sqrt())),
         ("cp = 2, shift = 0.05, drift = 0.3", 10.25, f64::hypot(0.05, 0.3 / 3f64.sqrt())),
     ] {
@@ -182,7 +184,7 @@ fn capabilities_stay_where_a_tolerance_changes() {
 
 const SHOP: &str = "turning = { cp = 2, cpk = 1.5, side = \"+\" }\nlapping = { sigma = 0.05, drift = 0.03 }\nsawing = { distribution = \"uniform\" }\n";
 
-/// A database of processes, in the study and beside it: the line's own keys win.
+/// A database of processes, in the study or in a file: the line's own keys have priority.
 #[test]
 fn dimensions_take_what_their_process_holds() {
     let lines = "a = { nominal = 10, tolerance = 0.6, process = \"turning\" }\nb = { nominal = 10, tolerance = 0.6, process = \"turning\", cp = 1 }\n\
@@ -203,7 +205,7 @@ fn dimensions_take_what_their_process_holds() {
     }
 }
 
-/// Every fault says what, where, and what to write instead.
+/// Every fault is reported with its place and the text to write instead.
 #[test]
 fn processes_at_fault() {
     let line = |line: &str| {
@@ -262,7 +264,7 @@ fn processes_at_fault() {
     }
 }
 
-/// Of a file beside the study a fault says its line there.
+/// A fault in a file beside the study is reported with its line in that file.
 #[test]
 fn a_file_of_processes_at_fault() {
     let text = "processes = \"shop.toml\"\n[dimensions]\na = { nominal = 1, tolerance = 0.1 }\n[characteristics]\ny = { formula = \"a\" }\n";
@@ -279,8 +281,8 @@ fn a_file_of_processes_at_fault() {
     }
 }
 
-/// Second and fourth moments in closed form of the arc sine, the u-shaped law and the curvilinear trapezoid over -1 .. 1, and of Student's,
-/// which has no sigma with 2 degrees and no kurtosis with 4.
+/// Second and fourth moments in closed form: of the arc sine, the u-shaped distribution and the curvilinear trapezoid over -1 .. 1, and
+/// of Student's, which has no sigma with 2 degrees and no kurtosis with 4.
 #[test]
 fn moments_of_the_laws_of_measurement() {
     let found = |line: &str| {
@@ -307,7 +309,7 @@ fn moments_of_the_laws_of_measurement() {
     assert_eq!(student(4).kurtosis(), None);
 }
 
-/// Measured values have their drift in them.
+/// Measured values already include their drift.
 #[test]
 fn measured_values_drift_already() {
     let text = "[dimensions]\na = { nominal = 1, measured = \"lot.csv\", drift = 0.1 }\n[characteristics]\ny = { formula = \"a\", lower = 0 }\n";
@@ -316,7 +318,7 @@ fn measured_values_drift_already() {
     assert!(message.contains("`drift` means nothing for measured values"), "{message}");
 }
 
-/// A target of Cpk is a requirement: 0.3 within a limit 0.5 away is 1.67 of it.
+/// A target Cpk is a requirement. With sigma 0.1, a limit 0.5 away gives 1.67.
 #[test]
 fn a_target_of_cpk_is_judged() {
     let met = |target: f64| {
@@ -329,23 +331,23 @@ fn a_target_of_cpk_is_judged() {
     assert_eq!(met(1.8), [Some(false)]);
 }
 
-/// The law of a drifting mean between its limits: without drift normal, with a wide one uniform.
+/// Distribution of a drifting mean at its extremes: normal without drift, uniform with a wide one.
 #[test]
 fn drifting_meets_its_limits() {
     let near = |law: &Drifting, x: f64, expected: f64| {
         relative(law.probability().unwrap().sf(x), expected, 1e-12);
     };
-    // Tails of the normal law by mpmath 1.3: ncdf(-1), ncdf(-6). A drift of 1e-9 sigma changes them by 1e-17 of it.
+    // Tails of the normal distribution by mpmath 1.3: ncdf(-1), ncdf(-6). A drift of 1e-9 sigma changes them by 1e-17 relatively.
     let still = Drifting::new(0.0, 1.0, 1e-9).unwrap();
     near(&still, 1.0, 0.158_655_253_931_457_05);
     near(&still, 6.0, 9.865_876_450_376_98e-10);
-    // Between lots far apart the share is that of the lots.
+    // Between lots that are far apart, the share is that of the lots.
     let wide = Drifting::new(0.0, 1.0, 1e4).unwrap();
     near(&wide, 5e3, 0.25);
     relative(wide.sigma(), (1.0f64 + 1e8 / 3.0).sqrt(), 1e-15);
 }
 
-/// GUM H.1: the contributions, u_c, effective degrees, factor and expanded uncertainty as printed.
+/// GUM H.1: contributions, u_c, effective degrees, factor and expanded uncertainty as printed.
 #[test]
 fn a_printed_budget_of_uncertainty() {
     let case = case("gum-h1");
@@ -357,7 +359,7 @@ fn a_printed_budget_of_uncertainty() {
     let terms = case["inputs"]["c u"].as_array().unwrap();
     let all = ["LS", "D0", "d1", "d2", "alpha", "theta0", "dalpha", "dtheta"];
     for (name, printed) in all.into_iter().zip(terms) {
-        // Printed to 0.1 nm, the last two from rounded factors: 0.58e-6 for 1e-6/sqrt 3 moves one by 0.4 %.
+        // Printed to 0.1 nm, the last two from rounded factors: 0.58e-6 instead of 1e-6/sqrt 3 changes one by 0.4 %.
         close(of(name).contribution.unwrap(), printed.as_f64().unwrap(), 0.1, 1.0);
     }
     for (name, printed) in all.into_iter().zip(case["inputs"]["degrees"].as_array().unwrap()) {
@@ -366,16 +368,16 @@ fn a_printed_budget_of_uncertainty() {
     close(budget.combined.unwrap(), printed("u_c"), 0.5, 1.0);
     let degrees = budget.degrees.unwrap();
     assert_eq!(degrees.floor(), printed("effective degrees"));
-    // Of the printed terms: they are rounded to 0.1 of 32, to the fourth power.
+    // From the printed terms, which are rounded to 0.1 of 32, to the fourth power.
     relative(degrees, case["exact"]["effective degrees"].as_f64().unwrap(), 0.02);
-    // scipy's quantile; the inversion of the library is accurate to 1e-8.
+    // scipy's quantile. The inversion of the library is accurate to 1e-8.
     relative(budget.factor.unwrap(), case["exact"]["coverage factor"].as_f64().unwrap(), 1e-7);
     close(budget.expanded.unwrap(), printed("expanded"), 0.5, 1.0);
     close(budget.estimate.unwrap(), 50_000_838.0, 0.5, 1.0);
 }
 
-/// By hand: a Student distribution counts with its scale, infinite degrees have the factor of the normal law, correlation takes the
-/// degrees away.
+/// Budgets by hand: a Student distribution counts by its scale, infinite degrees give the factor of the normal distribution, and
+/// correlation removes the degrees.
 #[test]
 fn budgets_by_hand() {
     let budget = |text: &str| {
@@ -389,7 +391,7 @@ fn budgets_by_hand() {
         ))
     };
     let plain = of("sigma = 3", "");
-    // Slopes of 1 are exact, so only roundings remain; 1.959963984540054 is the normal 97.5 % by mpmath.
+    // Slopes of 1 are exact, so only rounding remains. 1.959963984540054 is the normal 97.5 % quantile by mpmath.
     relative(plain.combined.unwrap(), 5.0, 1e-12);
     assert_eq!((plain.degrees, plain.probability), (Some(f64::INFINITY), 0.95));
     relative(plain.expanded.unwrap(), 5.0 * 1.959_963_984_540_054, 1e-12);
@@ -406,7 +408,7 @@ fn budgets_by_hand() {
     assert_eq!(of("sigma = 3", "[analysis]\ncoverage = 0.9\n").probability, 0.9);
 }
 
-/// Intervals that hold 95 %: of a gamma distribution in closed form, of four rectangles as GUM Supplement 1, table 3, prints it.
+/// 95 % coverage intervals: of a gamma distribution in closed form, of four rectangles as printed in GUM Supplement 1, table 3.
 #[test]
 fn coverage_intervals_hold_their_share() {
     let gamma = "[dimensions]\na = { nominal = 3, sigma = 1.7320508075688772, distribution = { kind = \"gamma\", origin = 0 } }\n\
@@ -419,11 +421,11 @@ fn coverage_intervals_hold_their_share() {
     let exact = &case("shortest-gamma")["exact"];
     let found = coverage(gamma);
     for (found, expected) in found.equal_tails.into_iter().zip(ends(&exact["symmetric"])) {
-        // Quantiles are sought to 1e-7 sigma.
+        // Quantiles are computed to 1e-7 sigma.
         close(found, expected, 1e-6, 1.0);
     }
     let shortest = ends(&exact["shortest"]);
-    // The width is flat about its least: it is known to 1e-6, and the place to its root.
+    // The width is flat about its minimum: it is accurate to 1e-6, and the place to the root of that.
     close(found.shortest[1] - found.shortest[0], shortest[1] - shortest[0], 1e-5, 1.0);
     found.shortest.into_iter().zip(shortest).for_each(|(found, expected)| close(found, expected, 5e-3, 1.0));
     let four = "[dimensions]\na = { nominal = 0, tolerance = 1.7320508075688772, distribution = \"uniform\" }\n\
@@ -457,7 +459,7 @@ fn uncertainties_at_fault() {
     }
 }
 
-/// Indices by quantiles are those of a process where it is assumed, and those of a performance where it was measured.
+/// Indices by quantiles are named Cp and Cpk for an assumed process, and Pp and Ppk for measured values.
 #[test]
 fn measured_values_have_a_performance() {
     let report = |line: &str| {

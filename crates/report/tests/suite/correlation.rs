@@ -1,4 +1,4 @@
-//! Correlated inputs: closed forms, Gauss rules over the normal variables, and what no inputs have.
+//! Correlated inputs: closed forms, Gauss rules over the normal variables, and impossible correlations.
 
 use faer::Mat;
 use proptest::prelude::*;
@@ -37,7 +37,7 @@ fn by_traces(b: &[f64], h: &Mat<f64>, r: &Mat<f64>) -> [f64; 4] {
     ]
 }
 
-/// A correlation matrix of `n` from any numbers: `G G'` with rows of length 1.
+/// Returns a correlation matrix of `n` inputs from any numbers: `G G'` with rows of length 1.
 fn matrix(n: usize, numbers: &[f64]) -> Mat<f64> {
     let g = Mat::from_fn(n, n + 1, |j, k| numbers[(j * (n + 1) + k) % numbers.len()] + f64::from(u8::from(k == n)));
     let row = |j: usize| (0..=n).map(|k| g[(j, k)] * g[(j, k)]).sum::<f64>().sqrt();
@@ -66,7 +66,7 @@ fn of(moments: Moments) -> [f64; 4] {
 }
 
 proptest! {
-    /// Quadratics of correlated normal inputs: exact, whatever the matrix.
+    /// Quadratics of correlated normal inputs are exact for any matrix.
     #[test]
     fn quadratics_of_normals_are_exact(
         n in 2..6usize,
@@ -80,7 +80,7 @@ proptest! {
         let found = &analyze(&problem, &Method::Full.into()).unwrap().characteristics[0];
         let [mean, k2, k3, k4] = by_traces(&b, &h, &r);
         let [m, s, g, k] = of(found.moments.unwrap());
-        // Sigma is of the order of the largest coefficient here; differences of values add some roundings.
+        // Sigma is of the order of the largest coefficient. Differences of values add some rounding.
         close(m, mean, 1e-12, 1.0);
         close(s * s, k2, 1e-12, 1.0);
         close(g * s.powi(3), k3, 1e-12, 10.0);
@@ -95,7 +95,7 @@ proptest! {
     }
 }
 
-/// Two inputs that are one: `a + b` with correlation 1 is `2 a`, and `a - b` nothing.
+/// Two inputs with correlation 1 act as one: `a + b` is `2 a`, and `a - b` is 0.
 #[test]
 fn full_correlation_is_one_input() {
     let of = |sign: f64, value: f64| {
@@ -111,8 +111,8 @@ fn full_correlation_is_one_input() {
     assert_eq!(of(-1.0, 1.0), (0.0, 0.0));
 }
 
-/// Two correlated normals, a uniform and a distribution known by moments, all interacting: against Gauss rules, which
-/// integrate the fourth power of a quadratic exactly.
+/// Two correlated normals, a uniform and a distribution known by moments, all interacting. The reference is Gauss rules, which integrate
+/// the fourth power of a quadratic exactly.
 #[test]
 fn correlated_and_independent_inputs_mix() {
     let y = |a: f64, b: f64, c: f64, d: f64| {
@@ -152,7 +152,7 @@ fn correlated_and_independent_inputs_mix() {
     close(shares, 1.0, 1e-12, 0.0);
 }
 
-/// The correlations of Nataf's normal variables where they are known in closed form (Liu and Der Kiureghian 1986, table 4).
+/// Correlations of Nataf's normal variables that are known in closed form (Liu and Der Kiureghian 1986, table 4).
 #[test]
 fn normal_variables_are_correlated_as_in_closed_form() {
     let normal = Transform::of(&Normal::new(3.0, 0.1).unwrap()).unwrap();
@@ -163,14 +163,14 @@ fn normal_variables_are_correlated_as_in_closed_form() {
         close(normal.behind(&uniform, value).unwrap(), value * (std::f64::consts::PI / 3.0).sqrt(), 1e-12, 1.0);
         assert_eq!(normal.behind(&normal, value), Ok(value));
     }
-    // The most that a normal and a uniform can share: sqrt(3/pi).
+    // Greatest correlation of a normal and a uniform variable: sqrt(3/pi).
     let [least, most] = normal.behind(&uniform, 0.99).unwrap_err();
     close(most, (3.0 / std::f64::consts::PI).sqrt(), 1e-12, 1.0);
     close(least, -most, 1e-15, 1.0);
     relative(uniform.behind(&uniform, 1.0).unwrap(), 1.0, 1e-6);
 }
 
-/// The table between its places, and the terms that the series leaves out, against the quantiles themselves.
+/// The table between its places, and the omitted terms of the series, against the quantiles themselves.
 #[test]
 fn the_table_and_the_series_of_a_transform_are_good() {
     let laws: [Box<dyn Distribution>; 4] = [
@@ -185,17 +185,17 @@ fn the_table_and_the_series_of_a_transform_are_good() {
             let z = -5.0 + 0.025_13 * f64::from(i);
             let half = 0.5 * libm::erfc(z.abs() / 2f64.sqrt());
             let x = if z < 0.0 { whole.quantile(half) } else { whole.upper_quantile(half) };
-            // A cubic over 1/64; the mode of a triangle is a jump of the second derivative, which leaves a square there.
+            // A cubic over 1/64. The mode of a triangle is a jump of the second derivative, which leaves an error of second order there.
             let allowed = if law.name() == "triangular" { 1e-6 } else { 1e-8 };
             close(transform.value(z), (x - law.mean()) / law.sigma(), allowed, 1.0);
         }
-        // With itself an input has the correlation 1; the series at 1 leaves out what follows its last term.
+        // An input has correlation 1 with itself. The series at 1 omits the terms after its last one.
         let left_out = if law.name() == "triangular" { 1e-7 } else { 1e-14 };
         relative(transform.seen(&transform, 1.0), 1.0, left_out);
     }
 }
 
-/// Expectation over two correlated normal variables by the trapezoidal rule: for smooth functions beyond double precision.
+/// Expectation over two correlated normal variables by the trapezoidal rule, which exceeds double precision for smooth functions.
 fn over_two(r: f64, f: impl Fn(f64, f64) -> f64) -> f64 {
     let (step, places) = (1.0 / 16.0, 160);
     let density = |v: f64| (-0.5 * v * v).exp() / (2.0 * std::f64::consts::PI).sqrt();
@@ -236,10 +236,10 @@ fn sampled_moments_keep_their_standard_errors() {
         for (found, expected, error) in
             [(s, exact[0], sampled.sigma), (g, exact[1], sampled.skewness), (k, exact[2], sampled.kurtosis)]
         {
-            // Four standard errors: a fixed sample, so this holds for good.
+            // Four standard errors. The sample is fixed, so this always holds.
             assert!((found - expected).abs() <= 4.0 * error + 1e-12, "case {index}: {found} {expected} +- {error}");
         }
-        // Plain sampling has sqrt((kurtosis - 1)/(4 n)) of sigma; the controls never do worse.
+        // Plain sampling has sqrt((kurtosis - 1)/(4 n)) of sigma. The controls are never worse.
         let plain = s * ((exact[2] + 2.0) / 4.0 / sampled.samples as f64).sqrt();
         assert!(sampled.sigma < plain, "case {index}: {} against {plain}", sampled.sigma);
         let shares: f64 = (0..2).map(|d| found.share(d).unwrap()).sum::<f64>()
@@ -264,7 +264,7 @@ fn the_sample_is_the_same_for_any_number_of_threads() {
     assert_eq!(with(1), with(3));
 }
 
-/// A dimension that nothing depends on takes its correlations with it; the order of dimensions does not matter.
+/// A dimension without effect is removed with its correlations. The order of dimensions does not matter.
 #[test]
 fn only_what_matters_is_correlated() {
     let y = || Closure::scalar("y", |x| x[0] * x[1]);
@@ -286,7 +286,7 @@ fn only_what_matters_is_correlated() {
     relative(moments(&study.problem).sigma(), 0.1, 1e-13);
 }
 
-/// The example of Higham (2002, section 4): its nearest matrix has 0.7607 and 0.1573.
+/// Example of Higham (2002, section 4): its nearest matrix has 0.7607 and 0.1573.
 #[test]
 fn contradictions_name_the_nearest_matrix() {
     let pairs = [pair("x0", "x1", 1.0), pair("x1", "x2", 1.0)];
@@ -318,7 +318,7 @@ fn what_cannot_be_correlated_is_refused() {
     let twice = [pair("a", "b", 0.1), pair("b", "a", 0.1)];
     assert!(matches!(refused(&dimensions, &twice), Refusal::Twice { .. }));
     assert_eq!(Correlation::new(&dimensions, &twice).unwrap_err().pair, Some(1));
-    // A correlation of the uniforms as such, but not of any normal variables behind them.
+    // A correlation that is possible for uniform variables, but not for any normal variables behind them.
     let tight = [pair("b", "a", 0.97), pair("c", "a", -0.97), pair("b", "c", -0.9)];
     let Refusal::NotForTheseDistributions { nearest } = refused(&dimensions, &tight) else { panic!("too tight") };
     assert!(nearest.iter().all(|(_, value)| value.abs() < 0.98));
@@ -348,8 +348,8 @@ fn correlations_at_fault() {
     insta::assert_snapshot!(sensitol_testing::faults(&texts.each_ref().map(String::as_str)));
 }
 
-/// Where one input is large as the other is small, the corners of a pair lie where parts are: a model that has no value where both are
-/// large is never asked there. `x y` of normals of means 5, sigma 1 and correlation r: mean 25 + r, variance 50 (1 + r) + 1 + r^2.
+/// For a negative correlation, the corners of a pair follow the distribution: a model without value if both inputs are large is never
+/// evaluated there. `x y` of normals with means 5, sigma 1 and correlation r has mean 25 + r and variance 50 (1 + r) + 1 + r^2.
 #[test]
 fn corners_lie_where_parts_are() {
     let r: f64 = -0.9;
@@ -360,12 +360,12 @@ fn corners_lie_where_parts_are() {
     let analysis = analyze(&problem, &Method::Full.into()).unwrap();
     assert_eq!(analysis.run.failed, 0, "{:?}", analysis.warnings);
     let moments = analysis.characteristics[0].moments.unwrap();
-    // The surface is the product; its coefficients are differences of values near 25.
+    // The surface is the product. Its coefficients are differences of values near 25.
     relative(moments.mean(), 25.0 + r, 1e-12);
     relative(moments.sigma(), (50.0 * (1.0 + r) + 1.0 + r * r).sqrt(), 1e-10);
 }
 
-/// A constant has no moments to share.
+/// A constant cannot be correlated.
 #[test]
 fn a_constant_stays_constant() {
     let problem = Problem::new(standard(2), Closure::scalar("y", |_| 4.0)).unwrap();
@@ -374,8 +374,8 @@ fn a_constant_stays_constant() {
     assert_eq!(found.moments, Some(Moments::constant(4.0)));
 }
 
-/// A stack of three with sigma 0.1 each, two of them correlated by one half: `rss^2 = 0.09 (3 + 1)`; shares are of the sum of
-/// squares and sum to 1.
+/// A stack of three dimensions with sigma 0.1, two of them with correlation 1/2: `rss^2 = 0.09 (3 + 1)`. Shares refer to the sum of
+/// squares, and add up to 1.
 #[test]
 fn stacks_take_correlation_into_the_rss() {
     let problem = Problem::new(normals(&[1.0; 3], &[0.3; 3]), Closure::scalar("y", |x| x[0] + x[1] - x[2])).unwrap();
