@@ -7,7 +7,7 @@ mod generated_lists;
 use std::time::Instant;
 
 use generated_lists::lists;
-use sensitol::allocation::knapsack::cheapest;
+use sensitol::allocation::choice::knapsack::cheapest;
 use serde_json::Value;
 
 fn main() {

@@ -8,14 +8,15 @@ use serde::{Serialize, Serializer};
 use crate::analysis::{Analysis, CharacteristicAnalysis, analyze_with};
 use crate::assembly::Run;
 use crate::evaluation::{Restoration, Restore, at_any_size};
-use crate::method::{self, Method, Options, Procedure};
+use crate::method;
+use crate::method::{Method, Options, Procedure};
 use crate::problem::Problem;
 use crate::simulation::{ROWS, SimulatedCharacteristic, Simulation, SimulationError, SimulationOptions, simulate_with};
 use crate::summary::RunSummary;
+use sensitol_numeric::json_form::seconds;
 use sensitol_numeric::parallel::threads;
 use sensitol_numeric::power::{Rescale, Rescaling, rescale};
 use sensitol_numeric::sampling::{Estimate, Sampler, one_error};
-use sensitol_numeric::shape::seconds;
 use sensitol_numeric::time::Instant;
 use sensitol_numeric::verdict::Verdict;
 

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use serde::Serialize;
 
-use sensitol_numeric::shape::seconds;
+use sensitol_numeric::json_form::seconds;
 
 /// Reason for the end of a run before all planned points were evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]

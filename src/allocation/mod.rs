@@ -21,82 +21,30 @@
 //! Every result has evidence: the residual of the conditions of Karush, Kuhn and Tucker for free tolerances, a lower
 //! bound of the cost for processes, and the shadow price of every limit.
 
-mod augmented;
-mod bands;
-mod basis;
-mod best_trial;
-mod box_sample;
-mod branch;
-mod choice;
-mod choose;
-mod choose_made;
-mod closed_form;
-mod conclude;
-mod constraint;
-mod corners;
-mod correction;
+pub mod choice;
 mod cost;
-mod cost_error;
-mod driver;
-mod finisher;
-mod front;
-mod goal;
-mod joint;
-pub mod knapsack;
-pub mod lists;
-mod loss;
-mod machines;
-mod made;
-mod minimise;
-mod one_row;
-mod proportion;
-mod quadratic;
-mod recentre;
-mod reject_fit;
-mod rejects;
-mod remade;
-mod response;
-mod restore;
+mod optimise;
+mod requirement;
 mod result;
-mod root;
-mod run;
-mod sampled;
-mod scaling;
-mod separable;
-mod setup;
-mod several_rows;
-mod shape;
-mod solve;
-mod solved;
-mod sqp;
-mod station;
-mod steps;
+mod search;
+mod surface;
 mod task;
-mod together;
-mod trial;
-mod unknown;
-mod vector;
-mod verified_search;
-mod worst;
-mod worst_reach;
-mod written_cost;
-mod yield_room;
 
-pub use basis::CostBasis;
-pub use cost::CurveKind;
-pub use cost::{Curve, Offer, Priced};
-pub use cost_error::CostError;
-pub use joint::JointYield;
-pub use loss::QualityLoss;
-pub use made::Made;
-pub use result::ProofShape;
+pub use crate::allocation::cost::cost_curve::CurveKind;
+pub use crate::allocation::cost::cost_curve::{Curve, Offer, Priced};
+pub use crate::allocation::cost::cost_error::CostError;
+pub use crate::allocation::cost::default_costs::CostBasis;
+pub use crate::allocation::cost::process_option::Made;
+pub use crate::allocation::requirement::quality_loss::QualityLoss;
+pub use crate::allocation::result::allocation::ProofShape;
+pub use crate::allocation::surface::joint_yield::JointYield;
 
-pub use result::{
+pub use crate::allocation::cost::setup_cost::SetUp;
+pub use crate::allocation::result::allocation::{
     Allocated, Allocation, AllocationSolver, Attainable, Bound, FrontPoint, JointKept, Kept, Moved, Proof, ShadowPrice,
     Status,
 };
-pub use run::allocate_written;
-pub use run::{allocate, allocate_with};
-pub use setup::SetUp;
-pub use shape::FrontRequirement;
+pub use crate::allocation::result::json::FrontRequirement;
+pub use crate::allocation::search::run::allocate_written;
+pub use crate::allocation::search::run::{allocate, allocate_with};
 pub use task::{AllocateError, AllocationOptions, AllocationTask, Goal};

@@ -1,9 +1,9 @@
 //! Task and options of an allocation, and its errors.
 
-use super::basis::{CostBasis, relative, unscalable};
-use super::cost::Priced;
-use super::loss::QualityLoss;
-use super::setup::{MOST as MOST_MACHINES, SetUp};
+use crate::allocation::cost::cost_curve::Priced;
+use crate::allocation::cost::default_costs::{CostBasis, relative, unscalable};
+use crate::allocation::cost::setup_cost::{MOST as MOST_MACHINES, SetUp};
+use crate::allocation::requirement::quality_loss::QualityLoss;
 use serde::Serialize;
 
 use crate::method::{Method, MethodError, Options};

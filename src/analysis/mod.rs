@@ -1,72 +1,41 @@
 //! The main job: from a problem to moments, sensitivities, contributions and warnings.
 
-mod account;
-mod bootstrap;
-mod characteristic;
-mod counted;
-mod coverage;
-mod coverage_intervals;
-mod errors;
-mod fallback;
-mod indices;
-mod inspected;
-mod interaction;
-mod interactions;
-mod interval;
-mod jumps;
-pub mod law_at;
-mod law_guard;
-mod linear;
-mod measured;
-mod outputs;
-mod recorded;
-mod remainder;
-mod remembered;
-mod sampled_model;
-mod settle;
-mod shape;
-mod shapes;
-mod shares;
-mod shorten;
-mod sobol;
-mod strides;
-mod surface;
-pub mod surface_law;
-mod trust;
-mod unverified;
-mod verification;
-mod verified;
-mod wanted;
+pub mod distribution;
+mod evaluation_summary;
+mod interaction_truncation;
+mod output_correlation;
+mod result;
+mod sampling;
+mod sobol_estimate;
 mod warnings;
-mod written;
-mod yield_source;
 
+pub use crate::analysis::distribution::law_guard::{LawRefutation, LawTest};
+pub use crate::analysis::distribution::moment_basis::{Fit, NoFit, Surface};
+pub use crate::analysis::distribution::surface_law::SurfaceShares;
+pub(crate) use crate::analysis::distribution::surface_law::{law_over, surface_law};
+pub use crate::analysis::evaluation_summary::Account;
+pub use crate::analysis::result::characteristic::{CharacteristicAnalysis, Sensitivity};
+pub use crate::analysis::result::coverage_intervals::CoverageIntervals;
+pub use crate::analysis::result::interaction::{Interaction, InteractionList, Missing};
+pub use crate::analysis::result::interaction_remainder::Remainder;
+pub use crate::analysis::result::sampled_model::SampledModel;
+pub use crate::analysis::result::serialisation::CharacteristicShape;
+pub use crate::analysis::result::sobol_indices::{FactorIndices, IndexSource, SobolIndices};
+pub(crate) use crate::analysis::result::verification::TRUSTED;
+pub use crate::analysis::result::verification::{VarianceShare, Verification, VerificationKind};
+pub use crate::analysis::result::yield_source::YieldSource;
 pub use crate::extremes::{Coordinate, Extreme, Extremes, ExtremesProof, Place};
 pub use crate::verification::{Crossing, FoundSwitch, OutputCorrelation, Share, Verified};
-pub use account::Account;
-pub use characteristic::{CharacteristicAnalysis, Sensitivity};
-pub use coverage_intervals::CoverageIntervals;
-pub use interaction::{Interaction, InteractionList, Missing};
-pub use law_guard::{LawRefutation, LawTest};
-pub use remainder::Remainder;
-pub use sampled_model::SampledModel;
 pub use sensitol_numeric::capability::{EstimatedShare, InspectionRisks};
 pub use sensitol_numeric::law::{Branch, LawError, LawFigure};
 pub use sensitol_numeric::moments::{Contributions, Sampled};
 pub use sensitol_numeric::sampling::SamplingInterval;
 pub use sensitol_numeric::surrogate::DerivativeOrigin;
 pub use sensitol_numeric::surrogate::Relocation;
-pub use sobol::{FactorIndices, IndexSource, SobolIndices};
-pub use surface::{Fit, NoFit, Surface};
-pub use surface_law::SurfaceShares;
-pub(crate) use surface_law::{law_over, surface_law};
-pub(crate) use verified::TRUSTED;
-pub use verified::{VarianceShare, Verification, VerificationKind};
-pub use written::CharacteristicShape;
-pub use yield_source::YieldSource;
 
 use serde::Serialize;
 
+use crate::analysis::result::variance_share::Shares;
 use crate::assembly::Run;
 use crate::evaluation::{Restoration, Restore, at_any_size};
 use crate::extremes::{SearchedExtremes, enclose, search};
@@ -76,15 +45,14 @@ use crate::method::{
 use crate::problem::Problem;
 use crate::summary::{RunSummary, StopReason};
 use crate::warning::Warning;
+use sensitol_numeric::json_form::through;
 use sensitol_numeric::law::SurfaceLaw;
 use sensitol_numeric::parallel::join;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::power::{Rescale, Rescaling};
 use sensitol_numeric::requirement::Requirement;
-use sensitol_numeric::shape::through;
 use sensitol_numeric::time::Instant;
 use sensitol_numeric::verdict::{self, Judged};
-use shares::Shares;
 
 /// The results of an analysis.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -118,8 +86,8 @@ pub struct Analysis {
     /// The findings of `auto` and the use of its points; None for any other method.
     pub account: Option<Account>,
     /// The basis of the moments.
-    #[serde(flatten, serialize_with = "through::<shape::BasisShape, _, _>")]
-    #[cfg_attr(feature = "schema", schemars(with = "shape::BasisShape"))]
+    #[serde(flatten, serialize_with = "through::<crate::analysis::result::json::BasisShape, _, _>")]
+    #[cfg_attr(feature = "schema", schemars(with = "crate::analysis::result::json::BasisShape"))]
     pub basis: Basis,
     /// Surface from which the moments follow.
     #[serde(skip)]
@@ -220,8 +188,14 @@ pub(crate) fn analyze_keeping(
     let signature = problem.function().signature();
     let sampled = options.verification(signature) > 0 && !signature.costly;
     let fallback = match sampled {
-        true => fallback::Spent::default(),
-        false => fallback::fall_back(problem, &outcome, (left, seed), &mut characteristics, run),
+        true => crate::analysis::sampling::model_sample::Spent::default(),
+        false => crate::analysis::sampling::model_sample::fall_back(
+            problem,
+            &outcome,
+            (left, seed),
+            &mut characteristics,
+            run,
+        ),
     };
     outcome.evaluated.non_repeatable.extend(fallback.non_repeatable);
     for (characteristic, extremes) in characteristics.iter_mut().zip(found.extremes) {
@@ -229,36 +203,51 @@ pub(crate) fn analyze_keeping(
     }
     let left = left.map(|left| left.saturating_sub(fallback.run.evaluations as usize));
     let jumps = match signature.costly && options.verification(signature) > 0 {
-        true => jumps::find(problem, &outcome, &characteristics, left, run),
-        false => jumps::FoundJumps::default(),
+        true => crate::analysis::sampling::jump::find(problem, &outcome, &characteristics, left, run),
+        false => crate::analysis::sampling::jump::FoundJumps::default(),
     };
     outcome.evaluated.non_repeatable.extend(jumps.non_repeatable);
     let left = left.map(|left| left.saturating_sub(jumps.run.evaluations as usize));
-    let (verified, doubted) = verification::verify(problem, &outcome, options, left, &mut characteristics, run);
+    let (verified, doubted) = crate::analysis::sampling::verification_stage::verify(
+        problem,
+        &outcome,
+        options,
+        left,
+        &mut characteristics,
+        run,
+    );
     outcome.evaluated.non_repeatable.extend(doubted);
     let bounded = options.verification(signature) > 0 && !run.stopped();
     let bounds = || if bounded { bounds(problem, &outcome, &characteristics, run) } else { Vec::new() };
-    let laws = || settle::laws(problem, &outcome, options, &characteristics);
+    let laws = || crate::analysis::distribution::yield_selection::laws(problem, &outcome, options, &characteristics);
     // Both need matrices of all inputs. From four megabytes on they are computed one after the other, so that only one is in memory.
     let large = outcome.plan.varying().len().pow(2) * size_of::<f64>() > 4 << 20;
     let (bounds, laws) = if large { (bounds(), laws()) } else { join(bounds, laws) };
     characteristics.iter_mut().zip(bounds).for_each(|(one, bounds)| one.bounds = bounds);
-    let mut laws = settle::settle(problem, &outcome, options, &mut characteristics, laws);
-    if !settle::have_joint_yield(&characteristics) {
+    let mut laws =
+        crate::analysis::distribution::yield_selection::settle(problem, &outcome, options, &mut characteristics, laws);
+    if !crate::analysis::distribution::yield_selection::have_joint_yield(&characteristics) {
         // Nothing uses the distributions again, and with many inputs they are large.
         laws.clear();
     }
     // The list needs much memory with many inputs: it is made after the distributions were dropped.
     for (c, (one, shares)) in characteristics.iter_mut().zip(shares).enumerate() {
-        one.interactions = interactions::listed(problem, &outcome, c, shares.as_ref());
+        one.interactions = crate::analysis::result::interaction_listing::listed(problem, &outcome, c, shares.as_ref());
     }
-    let joint = options.target_joint_yield.and_then(|_| settle::joint(problem, options, &characteristics, &laws));
+    let joint = options
+        .target_joint_yield
+        .and_then(|_| crate::analysis::distribution::yield_selection::joint(problem, options, &characteristics, &laws));
     let spent = spent(&outcome, options).and(&fallback.run).and(&jumps.run).and(&verified);
     // The extremes do not affect shares: only the other runs decide whether a share is unfinished.
     characteristics.iter_mut().for_each(|one| one.unfinished = spent.unfinished());
     let warnings = warnings::of(problem, &outcome, &characteristics, jumps.warnings);
     let account = Account::of(problem, &outcome, &characteristics, outcome.evaluated.evaluations);
-    let drawn = measured::add_sampling_intervals(problem, &outcome, &mut characteristics, seed);
+    let drawn = crate::analysis::sampling::measured_interval::add_sampling_intervals(
+        problem,
+        &outcome,
+        &mut characteristics,
+        seed,
+    );
     let surface = Surface::of(&outcome, &characteristics);
     let analysis = Analysis {
         method: outcome.method,
@@ -288,12 +277,14 @@ impl Analysis {
         let begun = Instant::now();
         let Findings { outcome, laws } = findings;
         if self.joint.is_none() {
-            self.joint = settle::joint(problem, options, &self.characteristics, laws);
+            self.joint =
+                crate::analysis::distribution::yield_selection::joint(problem, options, &self.characteristics, laws);
             self.joint_interval = self.joint.and_then(|joint| joint_interval(joint, &self.characteristics));
         }
-        self.correlations = outputs::correlations(problem, outcome, options, &self.characteristics);
+        self.correlations =
+            crate::analysis::output_correlation::correlations(problem, outcome, options, &self.characteristics);
         // Last, because warnings and accounts also read the contributions of a surface that is not trusted.
-        indices::add(problem, outcome, options, &mut self.characteristics, run);
+        crate::analysis::sobol_estimate::add(problem, outcome, options, &mut self.characteristics, run);
         self.run.wall += begun.elapsed();
     }
 }
@@ -317,7 +308,7 @@ fn joint_requirement(
 /// Interval that contains a joint yield. Returns None if measured samples leave it unknown.
 fn joint_interval(joint: Verified, characteristics: &[CharacteristicAnalysis]) -> Option<[f64; 2]> {
     let own = verdict::about(joint.value, Some(joint.error))?;
-    let interval = match settle::joint_sampling(characteristics, joint.value) {
+    let interval = match crate::analysis::distribution::yield_selection::joint_sampling(characteristics, joint.value) {
         Some(measured) => verdict::joined(joint.value, own, measured?),
         None => own,
     };
@@ -366,7 +357,8 @@ fn run_method(problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Out
         return options.method.procedure().run(problem, options, run);
     }
     climb_until(problem, options, run, &|outcome| {
-        let excess = |one: &CharacteristicAnalysis| wanted::excess(one, &options.accuracies);
+        let excess =
+            |one: &CharacteristicAnalysis| crate::analysis::sampling::accuracy_target::excess(one, &options.accuracies);
         of_all(problem, outcome).iter().map(|(one, _)| excess(one)).fold(0.0, f64::max)
     })
 }

@@ -2,10 +2,11 @@
 
 use std::collections::HashSet;
 
-use super::characteristic::curvature;
-use super::interactions::missing;
-use super::law_guard::LawRefutation;
-use super::{CharacteristicAnalysis, Missing, trust};
+use crate::analysis::distribution::law_guard::LawRefutation;
+use crate::analysis::result::characteristic::curvature;
+use crate::analysis::result::interaction_listing::missing;
+use crate::analysis::sampling::surface_trust as trust;
+use crate::analysis::{CharacteristicAnalysis, Missing};
 use crate::evaluation::history;
 use crate::method::{Basis, Lacking, Order, Outcome};
 use crate::plan::Point;
@@ -75,7 +76,7 @@ pub(super) fn of(
         warnings.extend(doubtful(outcome, c, analysis));
         warnings.extend(trust::of(problem, outcome, c, analysis));
         let wanted = outcome.climbed.as_ref().map(|climbed| climbed.accuracy);
-        warnings.extend(super::verification::warnings(analysis, wanted));
+        warnings.extend(crate::analysis::sampling::verification_stage::warnings(analysis, wanted));
         warnings.extend(refuted_law(analysis));
         warnings.extend(not_proven(analysis));
     }

@@ -1,6 +1,6 @@
 //! Parallel evaluation of cheap models: a batch is cut into blocks of rows.
 
-use super::{Points, Request, Responses, Run};
+use crate::assembly::{Points, Request, Responses, Run};
 use sensitol_numeric::parallel::prelude::*;
 
 /// Rows that one task evaluates: enough to hide the cost of a task, and few enough to stay in the cache.

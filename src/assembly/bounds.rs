@@ -1,6 +1,6 @@
 //! Certain bounds of an output over a box.
 
-use super::formula::Interval;
+use crate::assembly::formula::Interval;
 use sensitol_numeric::power::Power;
 
 /// Bounds of an output over a box, and of its first derivatives.

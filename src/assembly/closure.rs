@@ -1,6 +1,6 @@
 //! A Rust closure as assembly function.
 
-use super::{AssemblyFunction, EvaluationError, Request, Responses, Run, Signature, in_blocks};
+use crate::assembly::{AssemblyFunction, EvaluationError, Request, Responses, Run, Signature, in_blocks};
 
 /// Points that are gathered into rows at once: some cache lines of every column.
 const TILE: usize = 32;

@@ -7,12 +7,12 @@ mod switches;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, OnceLock};
 
-use super::evaluator_account::EvaluatorAccount;
-use super::formula::{Formula, FormulaError, FormulaSet, Meaning};
-use super::formula::{Role, UnitFinding};
-use super::implicit::{Anchor, Assembler, AssemblyFailure, Conditions, ConditionsError};
-use super::responses::all_finite;
-use super::{
+use crate::assembly::evaluator_account::EvaluatorAccount;
+use crate::assembly::formula::{Formula, FormulaError, FormulaSet, Meaning};
+use crate::assembly::formula::{Role, UnitFinding};
+use crate::assembly::implicit::{Anchor, Assembler, AssemblyFailure, Conditions, ConditionsError};
+use crate::assembly::responses::all_finite;
+use crate::assembly::{
     AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, Input, ModelInfo, Output, Points, Polynomial,
     Request, Responses, Run, Signature, Switches, in_blocks,
 };

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::process_error::{ProcessError, ProcessFault};
+use crate::assembly::process_error::{ProcessError, ProcessFault};
 use crate::summary::EvaluatorSummary;
 
 /// Starts, failures and their cost, since the model was created.

@@ -7,7 +7,7 @@
 //! # A new kind of assembly function
 //! A new kind is one file with a type that implements [`AssemblyFunction`].
 
-mod account;
+mod answer_table;
 mod blocks;
 mod bounds;
 mod closure;
@@ -16,8 +16,8 @@ mod derivatives;
 mod error;
 mod evaluator_account;
 pub mod formula;
-mod given;
 pub mod implicit;
+mod model_description;
 mod polynomial;
 mod process_error;
 mod request;
@@ -27,7 +27,9 @@ mod signature;
 mod states;
 mod switch;
 
-pub use account::{ModelInfo, NonRepeatable};
+pub use crate::assembly::answer_table::GivenAnswers;
+pub use crate::assembly::answer_table::Table;
+pub use crate::assembly::model_description::{ModelInfo, NonRepeatable};
 pub use blocks::{in_blocks, in_ranges, near_rows};
 pub use bounds::Bounds;
 pub use closure::Closure;
@@ -35,8 +37,6 @@ pub use composite::{Composite, CompositeError, Parts, Source};
 pub use derivatives::{Derivatives, Directions};
 pub use error::{EvaluationError, NoColumn};
 pub use evaluator_account::{EvaluatorAccount, OutdatedJournal};
-pub use given::GivenAnswers;
-pub use given::Table;
 #[doc(hidden)]
 pub use polynomial::Polynomial;
 pub use process_error::{Exit, ProcessError, ProcessFault, Quoted, StderrTail};

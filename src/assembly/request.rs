@@ -5,7 +5,7 @@ pub use sensitol_numeric::points::Points;
 /// Batch of points, and the outputs that are wanted there.
 #[derive(Debug, Clone, Copy)]
 pub struct Request<'a> {
-    /// Points, one column per input of the [`Signature`](super::Signature).
+    /// Points, one column per input of the [`Signature`](crate::assembly::Signature).
     pub points: &'a Points,
     /// Indices of the wanted outputs. Nothing else has to be computed.
     pub outputs: &'a [usize],

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-use super::EvaluationError;
-use super::NonRepeatable;
+use crate::assembly::EvaluationError;
+use crate::assembly::NonRepeatable;
 use crate::summary::RunSummary;
 use sensitol_numeric::power::Power;
 

@@ -1,6 +1,6 @@
 //! Conditions under which a batch is evaluated.
 
-use super::Responses;
+use crate::assembly::Responses;
 use crate::summary::StopReason;
 
 /// Callback for rows that are final, with the responses that hold them.

@@ -3,9 +3,9 @@
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::evaluator_account::EvaluatorAccount;
-use super::request::bits;
-use super::{
+use crate::assembly::evaluator_account::EvaluatorAccount;
+use crate::assembly::request::bits;
+use crate::assembly::{
     AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, ModelInfo, NonRepeatable, Output, Points,
     Polynomial, Request, Responses, Run, Signature, Switches,
 };

@@ -27,21 +27,21 @@
 //! dimensions, with the bounds reached so far. If it finds a value beyond the extremes, the search goes on from there.
 
 mod answers;
-mod climb;
+mod local_search;
 mod model;
+mod one_sided_proof;
 mod proof;
-mod sides;
-mod start;
+mod start_points;
 mod task;
 mod zone;
 
+pub(crate) use crate::extremes::one_sided_proof::keeps_by_proof;
 pub use crate::warning::Ended;
 pub use answers::Spent;
 pub(crate) use model::{Model, Region};
-pub(crate) use sides::keeps_by_proof;
 
+use crate::extremes::local_search::Climb;
 use answers::Answers;
-use climb::Climb;
 use task::Task;
 
 use serde::Serialize;

@@ -6,9 +6,9 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use super::zone::{EDGE, Zone};
 use crate::assembly::Bounds;
 use crate::assembly::formula::Interval;
+use crate::extremes::zone::{EDGE, Zone};
 
 /// Box: an interval for every dimension.
 type Region = Vec<[f64; 2]>;

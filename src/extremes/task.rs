@@ -2,13 +2,13 @@
 
 use std::collections::HashMap;
 
-use super::answers::Answers;
-use super::climb::Climb;
-use super::model::{Model, Region};
-use super::start::Starts;
-use super::zone::{Zone, zones};
-use super::{Coordinate, Ended, Extreme, Extremes, ExtremesProof, Place, proof};
 use crate::assembly::{Bounds, Run};
+use crate::extremes::answers::Answers;
+use crate::extremes::local_search::Climb;
+use crate::extremes::model::{Model, Region};
+use crate::extremes::start_points::Starts;
+use crate::extremes::zone::{Zone, zones};
+use crate::extremes::{Coordinate, Ended, Extreme, Extremes, ExtremesProof, Place, proof};
 use crate::method::Outcome;
 use crate::plan::Point;
 use crate::problem::Problem;

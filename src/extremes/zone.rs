@@ -11,8 +11,8 @@
 //! and the least of all rows. Branch and bound uses it to bound the tangent plane, so that a plane is proven in one
 //! box. Source: R. T. Rockafellar, Convex Analysis (1970), section 13: support functions.
 
-use super::model::Region;
 use crate::assembly::formula::Interval;
+use crate::extremes::model::Region;
 use crate::problem::Problem;
 use sensitol_numeric::correlation::JointLaw;
 

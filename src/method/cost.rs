@@ -1,6 +1,6 @@
 //! The cost of a method.
 
-use super::{EvaluationLimit, Method, MethodError, Options};
+use crate::method::{EvaluationLimit, Method, MethodError, Options};
 use crate::plan::Plan;
 use crate::problem::Problem;
 

@@ -4,7 +4,7 @@ use std::fmt;
 
 use std::str::FromStr;
 
-use super::Method;
+use crate::method::Method;
 use crate::plan::Stencil;
 use crate::warning::Figure;
 use sensitol_numeric::names::UnknownName;

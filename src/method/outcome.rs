@@ -4,8 +4,8 @@ use serde::Serialize;
 
 use std::sync::Arc;
 
-use super::{Basis, Climbed, ExactDerivatives, Method, Order};
 use crate::evaluation::Evaluated;
+use crate::method::{Basis, Climbed, ExactDerivatives, Method, Order};
 use crate::plan::{Mixed, Plan};
 use sensitol_numeric::moments::Moments;
 use sensitol_numeric::power::rescale;

@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{DerivativeSource, Fitted, Options, Order};
+use crate::method::{DerivativeSource, Fitted, Options, Order};
 use crate::plan::{Mixed, Plan};
 use crate::problem::Problem;
 use sensitol_numeric::distribution::StandardMoments;

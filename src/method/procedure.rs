@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use super::{Cost, Method, MethodError, Options, Outcome};
 use crate::assembly::Run;
+use crate::method::{Cost, Method, MethodError, Options, Outcome};
 use crate::plan::Plan;
 use crate::problem::Problem;
 

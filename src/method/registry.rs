@@ -1,21 +1,21 @@
 //! Registry of all methods.
 
-use super::{Cost, Method, MethodError, Narrow, Options, Procedure};
+use crate::method::{Cost, Method, MethodError, Narrow, Options, Procedure};
 use crate::problem::Problem;
 
 /// Every method, in the order of listings.
 pub static ALL: &[&dyn Procedure] = &[
-    &super::auto::AUTO,
-    &super::rss::RSS,
-    &super::worst_case::WORST_CASE,
-    &super::second_order::SECOND_ORDER,
-    &super::six_n::SIX_N,
-    &super::full::FULL,
-    &super::classic::CLASSIC,
-    &super::dimension_reduction::DimensionReduction,
-    &super::bivariate_dimension_reduction::BivariateDimensionReduction,
-    &super::three_point::ThreePoint,
-    &super::response_surface::ResponseSurface,
+    &crate::method::auto::AUTO,
+    &crate::method::derivative::rss::RSS,
+    &crate::method::derivative::worst_case::WORST_CASE,
+    &crate::method::derivative::second_order::SECOND_ORDER,
+    &crate::method::derivative::six_n::SIX_N,
+    &crate::method::derivative::full::FULL,
+    &crate::method::derivative::classic::CLASSIC,
+    &crate::method::integration::dimension_reduction::DimensionReduction,
+    &crate::method::integration::bivariate_dimension_reduction::BivariateDimensionReduction,
+    &crate::method::integration::three_point::ThreePoint,
+    &crate::method::response_surface::ResponseSurface,
 ];
 
 /// Returns the procedure of a method.

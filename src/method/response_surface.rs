@@ -29,13 +29,13 @@ use std::sync::Arc;
 use faer::Mat;
 use faer::linalg::solvers::SolveLstsq;
 
-use super::polynomial_surface::PolynomialSurface;
-use super::{
+use crate::assembly::Run;
+use crate::evaluation::evaluate;
+use crate::method::polynomial_surface::PolynomialSurface;
+use crate::method::{
     Basis, Cost, EvaluationLimit, ExactDerivatives, Fitted, Lacking, Method, MethodError, Options, Order, Outcome,
     Procedure, Residual, cost,
 };
-use crate::assembly::Run;
-use crate::evaluation::evaluate;
 use crate::plan::{Axis, Design, KnownAnswers, Mixed, Plan, Point, Purpose, Spread, corners};
 use crate::problem::Problem;
 use sensitol_numeric::moments::Interactions;
@@ -66,7 +66,7 @@ impl Procedure for ResponseSurface {
             return Err(MethodError::BadStep { step });
         }
         let step = Options { step: None, ..options.clone() };
-        super::quadrature::check_options(self.name(), &step, false)
+        crate::method::integration::quadrature::check_options(self.name(), &step, false)
     }
 
     fn plan(&self, problem: &Problem, options: &Options) -> Result<Arc<dyn Plan>, MethodError> {

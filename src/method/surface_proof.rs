@@ -3,8 +3,8 @@
 //! A formula has a degree as a polynomial, or a list of all its terms. A surface that has every derivative of such a formula is the
 //! formula, unless a derivative is an estimate: [`DerivativeOrigin::Screened`](sensitol_numeric::surrogate::DerivativeOrigin).
 
-use super::polynomial_surface::PolynomialSurface;
-use super::{Fitted, Order, Outcome, SurfaceProof};
+use crate::method::polynomial_surface::PolynomialSurface;
+use crate::method::{Fitted, Order, Outcome, SurfaceProof};
 use crate::problem::Problem;
 use sensitol_numeric::surrogate::{InputShape, Univariate};
 

@@ -4,9 +4,9 @@
 //! known only as far as the rows represent it ([`MeasuredBasis`]). The shares of the samples in the variance come from
 //! the surrogate.
 
-use super::RareCharacteristic;
 use crate::method::Outcome;
 use crate::problem::Problem;
+use crate::rare::RareCharacteristic;
 use crate::verification::CONFIDENCE;
 use sensitol_numeric::capability::cpk;
 use sensitol_numeric::sampling::{MeasuredBasis, MeasuredSample, SamplingInterval};

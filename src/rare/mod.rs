@@ -21,20 +21,20 @@
 //! is wider than that of as many plain ones, the remaining points are plain, and they alone make the estimate
 //! (`plain`). The result is never much worse than that of plain sampling.
 
-mod border;
+mod design_point;
 mod estimate;
-mod explore;
+mod exploration;
+mod json;
+mod limit_point;
 mod measured;
 mod mixture;
 mod model;
-mod place;
-mod plain;
+mod normal_space;
+mod plain_points;
 mod search;
-mod shape;
-mod space;
 mod target;
 mod warnings;
-mod within;
+mod yield_estimate;
 
 use serde::Serialize;
 
@@ -42,24 +42,24 @@ use crate::assembly::{EvaluationError, NonRepeatable, Run};
 use crate::evaluation::{Restoration, Restore, at_any_size, history};
 use crate::method::{Method, MethodError, Options};
 use crate::problem::Problem;
+#[cfg(feature = "schema")]
+pub(crate) use crate::rare::json::RareShape;
 use crate::simulation::{Pace, SimulationError, Surrogates};
 use crate::summary::RunSummary;
 use crate::warning::Warning;
 use sensitol_numeric::characteristic::Characteristic;
+use sensitol_numeric::json_form::{text, through};
 use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::sampling::SamplingInterval;
 use sensitol_numeric::sampling::{Estimate, SamplingError};
-use sensitol_numeric::shape::{text, through};
 use sensitol_numeric::time::Instant;
 use sensitol_numeric::verdict::Judged;
-#[cfg(feature = "schema")]
-pub(crate) use shape::RareShape;
 
-use explore::Explored;
+use crate::rare::design_point::{Place, places};
+use crate::rare::exploration::Explored;
+use crate::rare::normal_space::Space;
 use model::Model;
-use place::{Place, places};
 use search::Search;
-use space::Space;
 use target::Target;
 
 /// Options of a search for rare events.
@@ -193,8 +193,8 @@ pub struct Beyond {
     pub limit: f64,
     /// Probability beyond the limit. None if no point lies there. The interval is then a bound, for a half-space that
     /// none of the explored points met.
-    #[serde(flatten, serialize_with = "through::<shape::ProbabilityShape, _, _>")]
-    #[cfg_attr(feature = "schema", schemars(with = "shape::ProbabilityShape"))]
+    #[serde(flatten, serialize_with = "through::<crate::rare::json::ProbabilityShape, _, _>")]
+    #[cfg_attr(feature = "schema", schemars(with = "crate::rare::json::ProbabilityShape"))]
     pub probability: Option<Estimate>,
     /// 95 % interval of the probability.
     pub interval: [f64; 2],

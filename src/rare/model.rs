@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
-use super::space::{Columns, Space};
 use crate::assembly::{EvaluationError, NonRepeatable, Points, Request, Responses, Run};
 use crate::problem::Problem;
+use crate::rare::normal_space::{Columns, Space};
 use sensitol_numeric::time::Instant;
 
 /// Points that are evaluated between two checks of the time limit.

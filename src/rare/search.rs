@@ -1,16 +1,16 @@
 //! Points drawn and weighted in stages.
 
-use super::estimate::{ProbabilityEstimate, Weighed, best_parts};
-use super::explore::Explored;
-use super::mixture::Mixture;
-use super::model::{Answers, Model};
-use super::place::{FAINT, Place, PlaceKind, dot, unit};
-use super::plain::{PlainPoints, SurrogateShare};
-use super::space::Columns;
-use super::target::Target;
-use super::within::within;
-use super::{Beyond, DesignPoint, RareCharacteristic, border, correct};
 use crate::problem::Problem;
+use crate::rare::design_point::{FAINT, Place, PlaceKind, dot, unit};
+use crate::rare::estimate::{ProbabilityEstimate, Weighed, best_parts};
+use crate::rare::exploration::Explored;
+use crate::rare::mixture::Mixture;
+use crate::rare::model::{Answers, Model};
+use crate::rare::normal_space::Columns;
+use crate::rare::plain_points::{PlainPoints, SurrogateShare};
+use crate::rare::target::Target;
+use crate::rare::yield_estimate::within;
+use crate::rare::{Beyond, DesignPoint, RareCharacteristic, correct, limit_point as border};
 use sensitol_numeric::characteristic::Characteristic;
 use sensitol_numeric::distribution::standard_normal;
 use sensitol_numeric::sampling::Estimate;

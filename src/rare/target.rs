@@ -1,6 +1,6 @@
 //! Rare event: a characteristic beyond one of its limits, by its surrogate.
 
-use super::space::{Columns, Space};
+use crate::rare::normal_space::{Columns, Space};
 use sensitol_numeric::surrogate::Surrogate;
 
 pub(super) struct Target<'a> {

@@ -1,6 +1,6 @@
 //! Warnings about estimates of rare events that rest on few points.
 
-use super::RareCharacteristic;
+use crate::rare::RareCharacteristic;
 use crate::warning::Warning;
 
 /// Part of an estimate on a single point above which there is a warning.

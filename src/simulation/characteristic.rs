@@ -2,28 +2,30 @@
 
 use serde::{Serialize, Serializer};
 
-use super::control::Twin;
-use super::count::{Count, Replicate};
-use super::difference::{Controlled, Difference, Shares, carried, largest, moments as controlled, shares};
-use super::indices::SampledFactor;
-use super::inspected::inspected;
-use super::replicate::of_replicates;
-use super::seldom::Seldom;
-use super::shape::value;
 use crate::assembly::EvaluationError;
 use crate::extremes::keeps_by_proof;
 use crate::method::Method;
 use crate::problem::Problem;
+use crate::simulation::control_variate::Twin;
+use crate::simulation::count::{Count, Replicate};
+use crate::simulation::indices::SampledFactor;
+use crate::simulation::inspection::inspected;
+use crate::simulation::json::value;
+use crate::simulation::rare_switch_side::Seldom;
+use crate::simulation::replicate_error::of_replicates;
+use crate::simulation::surface_difference::{
+    Controlled, Difference, Shares, carried, largest, moments as controlled, shares,
+};
 use crate::warning::Warning;
 use sensitol_numeric::capability::{self, InspectionRisks, TAIL};
 use sensitol_numeric::characteristic::KeptLimits;
 use sensitol_numeric::characteristic::{Characteristic, SpecLimits};
+use sensitol_numeric::json_form::{RejectIntervals, through};
+use sensitol_numeric::json_form::{millionths, text};
 use sensitol_numeric::power::rescale;
 use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::sampling::{Estimate, FEWEST, Fine, Summary, of_moments, wilson};
 use sensitol_numeric::sampling::{LargestShare, SamplingInterval, clopper_pearson, one_error, settled};
-use sensitol_numeric::shape::{RejectIntervals, through};
-use sensitol_numeric::shape::{millionths, text};
 use sensitol_numeric::verdict::{self, Judged, Verdict};
 
 /// Estimates for one characteristic, each with its standard error. Unknown values are None.
@@ -90,7 +92,7 @@ pub struct SimulatedCharacteristic {
     /// Histogram of the sample, with some tens of intervals.
     pub histogram: Option<Histogram>,
     /// Effect of the surrogate as control variate. None if none was requested, or it does not vary.
-    #[cfg_attr(feature = "schema", schemars(with = "Option<super::shape::ControlShape>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<crate::simulation::json::ControlShape>"))]
     pub control: Option<SurrogateControl>,
     /// Sobol' indices of every input. None if none were requested, or the sample does not determine them.
     #[serde(rename = "sobol")]

@@ -1,8 +1,8 @@
 //! Counts of one characteristic.
 
-use super::difference::Difference;
-use super::groups::GroupSums;
 use crate::assembly::EvaluationError;
+use crate::simulation::sample_groups::GroupSums;
+use crate::simulation::surface_difference::Difference;
 use sensitol_numeric::characteristic::KeptLimits;
 use sensitol_numeric::sampling::{Fine, LargestPoints, Scale, Summary};
 

@@ -12,9 +12,9 @@
 
 use serde::Serialize;
 
-use super::{Pace, REPLICATES, SimulationError};
 use crate::assembly::{Request, Responses, Run};
 use crate::problem::Problem;
+use crate::simulation::{Pace, REPLICATES, SimulationError};
 use crate::summary::RunSummary;
 use crate::verification::{CONFIDENCE, Columns, Space, jackknife, totals};
 use sensitol_numeric::correlation::factors;

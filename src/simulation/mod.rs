@@ -1,22 +1,22 @@
 //! Monte Carlo simulation: the assembly function at points of the inputs' distribution, with standard errors.
 
 mod characteristic;
-mod control;
+mod control_variate;
 mod count;
-mod difference;
-mod groups;
 mod indices;
-mod inspected;
-mod measured;
-mod replicate;
-mod seldom;
-mod shape;
+mod inspection;
+mod joint_result;
+mod json;
+mod measured_interval;
+mod rare_switch_side;
+mod replicate_error;
+mod sample_groups;
+mod serialisation;
+mod surface_difference;
 mod surrogates;
 mod tally;
-mod together;
-mod written;
 
-pub use written::SimulatedShape;
+pub use crate::simulation::serialisation::SimulatedShape;
 
 pub(crate) use characteristic::{BINS, CHOICE};
 pub use characteristic::{Histogram, SimulatedCharacteristic, SurrogateControl, YieldEstimate};
@@ -31,17 +31,17 @@ use crate::assembly::{EvaluationError, NonRepeatable, Points, Request, Responses
 use crate::evaluation::{Restoration, Restore, at_any_size};
 use crate::method::{Method, MethodError, Options, Outcome};
 use crate::problem::Problem;
+use crate::simulation::control_variate::Control;
+use crate::simulation::sample_groups::MeasuredGroups;
 use crate::summary::RunSummary;
 use crate::verification::OutputCorrelation;
 use crate::warning::{Advice, Warning};
-use control::Control;
 use count::Lens;
-use groups::MeasuredGroups;
+use sensitol_numeric::json_form::through;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::parallel::{Rooms, join};
 use sensitol_numeric::power::{Rescale, Rescaling};
 use sensitol_numeric::sampling::{Draws, Portion, Room};
-use sensitol_numeric::shape::through;
 use sensitol_numeric::time::Instant;
 use sensitol_numeric::verdict::Judged;
 pub(crate) use surrogates::{Surrogates, chosen};
@@ -180,8 +180,8 @@ const UNSETTLED: u64 = 1 << 24;
 #[serde(remote = "Self")]
 pub struct Simulation {
     /// Sampler of the points.
-    #[serde(flatten, serialize_with = "through::<shape::SamplerShape, _, _>")]
-    #[cfg_attr(feature = "schema", schemars(with = "shape::SamplerShape"))]
+    #[serde(flatten, serialize_with = "through::<crate::simulation::json::SamplerShape, _, _>")]
+    #[cfg_attr(feature = "schema", schemars(with = "crate::simulation::json::SamplerShape"))]
     pub sampler: Sampler,
     /// Points and time, including those of the surrogate, and the reason of an end before all points were drawn or the accuracy was
     /// reached.

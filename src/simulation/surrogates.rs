@@ -1,9 +1,9 @@
 //! Surrogates of a problem and their exact moments, for use as control variates.
 
-use super::SimulationError;
 use crate::assembly::Run;
 use crate::method::{Method, Options, Outcome};
 use crate::problem::Problem;
+use crate::simulation::SimulationError;
 use sensitol_numeric::moments::Sampled;
 use sensitol_numeric::surrogate::Surrogate;
 

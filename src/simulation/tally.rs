@@ -3,17 +3,18 @@
 use std::borrow::Cow;
 use std::time::Duration;
 
-use super::characteristic::{Evidence, SimulatedCharacteristic};
-use super::control::{Control, Twin};
-use super::count::{Count, Lens, Replicate};
-use super::difference::Difference;
-use super::groups::{GroupSums, MeasuredGroups};
-use super::seldom::Seldom;
-use super::together::{self, Together};
-use super::{REPLICATES, Simulation, SimulationOptions, TASKS};
 use crate::assembly::{EvaluationError, NonRepeatable, Responses, Run};
 use crate::evaluation::history;
 use crate::problem::Problem;
+use crate::simulation::characteristic::{Evidence, SimulatedCharacteristic};
+use crate::simulation::control_variate::{Control, Twin};
+use crate::simulation::count::{Count, Lens, Replicate};
+use crate::simulation::joint_result as together;
+use crate::simulation::joint_result::Together;
+use crate::simulation::rare_switch_side::Seldom;
+use crate::simulation::sample_groups::{GroupSums, MeasuredGroups};
+use crate::simulation::surface_difference::Difference;
+use crate::simulation::{REPLICATES, Simulation, SimulationOptions, TASKS};
 use crate::summary::{RunSummary, StopReason};
 use crate::warning::Warning;
 use sensitol_numeric::requirement::Requirement;

@@ -8,30 +8,30 @@
 //! - A costly model is evaluated at 12 to 18 points that the method has not used.
 //! - A formula needs neither if its own tree proves that the method's surface equals the function.
 
-mod checks;
-mod costly;
+mod check_points;
+mod costly_model;
 mod figures;
 mod model;
-mod outputs;
-mod residual;
+mod normal_space;
+mod output_correlation;
+mod residual_error;
 mod sample;
-mod shares;
-mod sides;
-mod space;
 mod strata;
+mod switch_side;
 mod tails;
+mod variance_shares;
 mod weighted;
 
-pub(crate) use costly::CONFIDENCE;
-pub use costly::{Checked, CheckedFigures, MOST_CHECKS, Target, unseen, verify_by_checks};
+pub(crate) use crate::verification::costly_model::CONFIDENCE;
+pub use crate::verification::costly_model::{Checked, CheckedFigures, MOST_CHECKS, Target, unseen, verify_by_checks};
+pub(crate) use crate::verification::normal_space::{Columns, Space};
+pub use crate::verification::output_correlation::OutputCorrelation;
+pub(crate) use crate::verification::output_correlation::{common_rejects, output_correlations};
+pub(crate) use crate::verification::residual_error::{OVERLOOKED, OVERLOOKED_BY, TOO_SMALL};
+pub use crate::verification::switch_side::{Crossing, FoundSwitch};
+pub use crate::verification::variance_shares::Share;
 pub(crate) use figures::{MOMENTS, carried_by, effective, jackknife, standard, student, totals};
-pub use outputs::OutputCorrelation;
-pub(crate) use outputs::{common_rejects, output_correlations};
-pub(crate) use residual::{OVERLOOKED, OVERLOOKED_BY, TOO_SMALL};
 pub(crate) use sample::REPLICATES;
-pub use shares::Share;
-pub use sides::{Crossing, FoundSwitch};
-pub(crate) use space::{Columns, Space};
 pub use tails::{TailPoint, Tails};
 pub(crate) use weighted::WeightedSample;
 
@@ -55,7 +55,7 @@ const BESIDE: usize = 1 << 10;
 
 /// Most evaluations of a sample with `core` points in its core, including those of [`unexplained`].
 pub(crate) const fn most_points(core: usize) -> usize {
-    sample::PILOT + (sides::MOST + 2) * sample::TAIL + core + BESIDE
+    sample::PILOT + (crate::verification::switch_side::MOST + 2) * sample::TAIL + core + BESIDE
 }
 
 /// Points in the core of the largest sample within `most` evaluations for a characteristic. It is at most [`CORE`], and at least the number
@@ -64,7 +64,7 @@ pub(crate) fn core_within(problem: &Problem, c: usize, most: Option<usize>) -> O
     let Some(most) = most else { return Some(CORE) };
     // Without switches there are no strata for seldom sides.
     let switches = problem.function().switches(problem.outputs()[c]).map_or(0, |switches| switches.list.len());
-    let sides = if switches == 0 { sides::MOST } else { 0 };
+    let sides = if switches == 0 { crate::verification::switch_side::MOST } else { 0 };
     let others = most_points(0) - sides * sample::TAIL;
     let halved = std::iter::successors(Some(CORE), |core| Some(core / 2));
     halved.take_while(|&core| core >= sample::TAIL).find(|&core| others + core <= most)
@@ -72,7 +72,7 @@ pub(crate) fn core_within(problem: &Problem, c: usize, most: Option<usize>) -> O
 
 /// Most evaluations of [`unexplained`] followed by [`variance_shares_during`] over this number of inputs.
 pub(crate) fn most_points_of_shares(inputs: usize) -> usize {
-    BESIDE + shares::most(inputs)
+    BESIDE + crate::verification::variance_shares::most(inputs)
 }
 
 /// A figure by the model itself, with its error. The true value lies within three of these errors whenever it lies within three standard
@@ -176,9 +176,10 @@ pub fn verify_by_sampling(problem: &Problem, seed: u64) -> Vec<SampledFigures> {
 /// the model does not report its switches.
 pub(crate) fn seldom_points(problem: &Problem, c: usize, varying: &[usize], seed: u64) -> Vec<Vec<f64>> {
     let model = Model::over(problem, c, varying);
-    let found = sides::sides(&model, &Normals::new(varying.len(), seed), 1.0);
-    let point =
-        |space: strata::HalfSpace| space.direction.iter().map(|part| part * (space.from + sides::BEFORE)).collect();
+    let found = crate::verification::switch_side::sides(&model, &Normals::new(varying.len(), seed), 1.0);
+    let point = |space: strata::HalfSpace| {
+        space.direction.iter().map(|part| part * (space.from + crate::verification::switch_side::BEFORE)).collect()
+    };
     found.half_spaces.into_iter().map(point).collect()
 }
 
@@ -209,7 +210,7 @@ pub(crate) fn seldom_sides(
     told.filter(|_| !function.signature().costly)?;
     let model = Model::new(problem, c).during(run);
     let normals = Normals::new(model.len(), seed);
-    let found = sides::sides(&model, &normals, if scale > 0.0 { scale } else { 1.0 });
+    let found = crate::verification::switch_side::sides(&model, &normals, if scale > 0.0 { scale } else { 1.0 });
     let mut all: Columns = vec![Vec::new(); model.len()];
     let mut weights = Vec::new();
     for (index, space) in found.half_spaces.iter().enumerate() {
@@ -300,7 +301,7 @@ pub(crate) fn factor_shares(
     let model = Model::new(problem, characteristic).during(run);
     let dimensions: Vec<usize> = model.dimensions().collect();
     let places = factors(problem.correlation(), &dimensions);
-    let found = shares::shares(&model, &places, seed)?;
+    let found = crate::verification::variance_shares::shares(&model, &places, seed)?;
     let named = places.into_iter().map(|factor| factor.into_iter().map(|place| dimensions[place]).collect());
     (!model.stopped()).then(|| named.zip(found).collect())
 }

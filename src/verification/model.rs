@@ -1,8 +1,8 @@
 //! One characteristic of a cheap model as a function of independent normal variables.
 
-use super::space::{Columns, Space};
 use crate::assembly::{Points, Request, Responses, Run};
 use crate::problem::Problem;
+use crate::verification::normal_space::{Columns, Space};
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::surrogate::Surrogate;
 

@@ -12,13 +12,13 @@
 //! points that carry the variance of a power (Kish 1965), and by Student's quantile. The error of a share also includes the weight of one
 //! point, because a rare event may exist although no point shows it.
 
-use super::Verified;
-use super::figures::{MOMENTS, carried_by, effective, jackknife, moments, standard, student, totals};
-use super::model::Model;
-use super::sides::{Sides, sides};
-use super::space::Columns;
-use super::strata::{HalfSpace, between, unit};
-use super::weighted::WeightedSample;
+use crate::verification::Verified;
+use crate::verification::figures::{MOMENTS, carried_by, effective, jackknife, moments, standard, student, totals};
+use crate::verification::model::Model;
+use crate::verification::normal_space::Columns;
+use crate::verification::strata::{HalfSpace, between, unit};
+use crate::verification::switch_side::{Sides, sides};
+use crate::verification::weighted::WeightedSample;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::sampling::Normals;
 use sensitol_numeric::surrogate::Surrogate;

@@ -1,8 +1,8 @@
 //! Sample in strata that is stored, for shares that are computed after it was drawn.
 
-use super::Verified;
-use super::figures::{jackknife, student, totals};
-use super::tails::{Tails, Weighed, tail};
+use crate::verification::Verified;
+use crate::verification::figures::{jackknife, student, totals};
+use crate::verification::tails::{Tails, Weighed, tail};
 use sensitol_numeric::power::{Rescale, Rescaling};
 
 /// Values with their weights, by randomisation.

@@ -1,6 +1,6 @@
 //! Aggregation of warnings: one warning for many dimensions.
 
-use super::{Loss, Warning};
+use crate::warning::{Loss, Warning};
 
 /// Joins warnings of one code and one characteristic that differ in their dimension.
 ///

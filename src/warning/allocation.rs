@@ -1,7 +1,7 @@
 //! Warnings about extremes and allocated tolerances.
 
-use super::text::{Text, names, say};
-use super::{Advice, Ended};
+use crate::warning::text::{Text, names, say};
+use crate::warning::{Advice, Ended};
 
 pub(super) fn not_proven(
     characteristic: &str,

@@ -1,8 +1,8 @@
 //! Warnings about derivatives, and about the points that they are computed from.
 
-use super::text::{Text, likewise, names, say};
-use super::{Advice, Figure, Loss};
 use crate::method_kind::Method;
+use crate::warning::text::{Text, likewise, names, say};
+use crate::warning::{Advice, Figure, Loss};
 
 pub(super) fn lost_derivative(characteristic: &str, dimensions: &[String], loss: &Loss, others: &[String]) -> Text {
     let by = names(dimensions);

@@ -1,8 +1,8 @@
 //! Warnings about the distribution of a characteristic.
 
-use super::Advice;
-use super::text::{Text, say};
 use crate::method_kind::Method;
+use crate::warning::Advice;
+use crate::warning::text::{Text, say};
 
 pub(super) fn infeasible_moments(characteristic: &str, reason: &str) -> Text {
     say(format!(

@@ -1,7 +1,7 @@
 //! Warnings about measured values.
 
-use super::Advice;
-use super::text::{Text, likewise, lines, names, say, values_and_lines};
+use crate::warning::Advice;
+use crate::warning::text::{Text, likewise, lines, names, say, values_and_lines};
 
 /// Number of measured values that make a sufficient sample.
 const ENOUGH: usize = 30;

@@ -3,6 +3,7 @@
 //! A warning is data: its [`code`](Warning::code) and its fields, which serialise as `data`. The [`message`](Warning::message) describes
 //! the event and its meaning for the result. The [`advice`](Warning::advice) lists actions. Each front end shows them in its own words.
 
+mod serialisation;
 #[macro_use]
 mod define;
 mod advice;
@@ -20,16 +21,15 @@ mod study;
 mod surface;
 mod terms;
 mod text;
-mod written;
 
 use crate::summary::StopReason;
+use crate::warning::serialisation::WarningData;
 pub use advice::Advice;
 pub use aggregate::aggregated;
 use serde::ser::SerializeMap;
 pub(crate) use serialize::warnings_last;
 pub use terms::{Change, Counted, Ended, Figure, Loss, NameKind};
 use text::Text;
-use written::WarningData;
 
 warnings! {
     /// None of the analysed characteristics can depend on these dimensions.

@@ -1,8 +1,8 @@
 //! Warnings about the answers of the model.
 
-use super::Advice;
-use super::text::{Text, say};
 use crate::method_kind::Method;
+use crate::warning::Advice;
+use crate::warning::text::{Text, say};
 
 pub(super) fn failed_points(characteristic: &str, failed: &usize, points: &usize, point: &str, error: &str) -> Text {
     say(format!(

@@ -1,6 +1,6 @@
 //! Conversion of warnings from divided outputs to the units of the characteristics.
 
-use super::Warning;
+use crate::warning::Warning;
 use sensitol_numeric::power::Power;
 
 impl Warning {

@@ -1,8 +1,8 @@
 //! Warnings about the course of a run.
 
-use super::text::{Text, lines, say};
-use super::{Advice, Counted};
 use crate::summary::StopReason;
+use crate::warning::text::{Text, lines, say};
+use crate::warning::{Advice, Counted};
 
 pub(super) fn stopped(
     cause: &StopReason,

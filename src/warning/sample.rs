@@ -1,8 +1,8 @@
 //! Warnings about samples and rare events.
 
-use super::Advice;
-use super::text::{Text, say};
 use crate::method_kind::Method;
+use crate::warning::Advice;
+use crate::warning::text::{Text, say};
 
 pub(super) fn heavy_point(characteristic: &str, limit: &f64, part: &f64) -> Text {
     say(format!(

@@ -1,7 +1,7 @@
 //! Warnings about the study itself.
 
-use super::text::{Text, likewise, names, say};
-use super::{Advice, NameKind};
+use crate::warning::text::{Text, likewise, names, say};
+use crate::warning::{Advice, NameKind};
 use sensitol_numeric::names::shortened_to;
 
 /// Greatest number of characters of a formula in a warning.

@@ -1,8 +1,8 @@
 //! Warnings about the second-order surface.
 
-use super::text::{Text, likewise, places, say};
-use super::{Advice, Change, Figure};
 use crate::method_kind::Method;
+use crate::warning::text::{Text, likewise, places, say};
+use crate::warning::{Advice, Change, Figure};
 
 pub(super) fn rss_invalid(characteristic: &str, mean_shift: &f64, variance: &f64) -> Text {
     say(format!(

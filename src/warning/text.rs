@@ -1,6 +1,6 @@
 //! Parts of the sentences of warnings.
 
-use super::Advice;
+use crate::warning::Advice;
 
 /// Names that a sentence lists before it counts the rest.
 const SHOWN: usize = 5;

@@ -1,8 +1,8 @@
 //! Lists under additive rows. The least cost of generated problems is that of HiGHS (`tests/data/allocation-lists.json`), and that of small
 //! ones is found over every choice.
 
-use sensitol::allocation::knapsack::cheapest;
-use sensitol::allocation::lists::ListOption;
+use sensitol::allocation::choice::knapsack::cheapest;
+use sensitol::allocation::choice::option_list::ListOption;
 use serde_json::Value;
 
 use super::generated_lists::{Numbers, lists};

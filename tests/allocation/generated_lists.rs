@@ -1,6 +1,6 @@
 //! Lists under additive rows from seeds, generated like those of `tests/data/generators/allocation_lists.py`.
 
-use sensitol::allocation::lists::ListOption;
+use sensitol::allocation::choice::option_list::ListOption;
 use serde_json::Value;
 
 /// Generator of numbers in [0, 1) by S. Vigna's splitmix64, like that of `generators/allocation_lists.py`.

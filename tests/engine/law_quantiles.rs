@@ -5,8 +5,8 @@ use std::sync::Arc;
 use sensitol::analysis::{Branch, Relocation, YieldSource};
 use sensitol::distribution::{Distribution, Measured, Normal, Triangular, Uniform};
 
-use sensitol::analysis::law_at::law_at;
-use sensitol::analysis::surface_law::QUANTILES;
+use sensitol::analysis::distribution::relocated_law::law_at;
+use sensitol::analysis::distribution::surface_law::QUANTILES;
 use sensitol::{
     Analysis, Characteristic, CharacteristicAnalysis, Closure, Dimension, Method, Options, Problem, SpecLimits, analyze,
 };

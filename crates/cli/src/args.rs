@@ -4,15 +4,15 @@ use std::path::PathBuf;
 
 use clap::{ArgGroup, Args, ColorChoice, Parser, Subcommand};
 
-use super::import::ImportArgs;
-use super::journal::JournalArgs;
-use super::shared_args::OUTPUT;
-pub(super) use super::shared_args::{HowArgs, OutputArgs, StudyArgs, WorkArgs};
-pub(super) use super::values::{
+use crate::commands::import::ImportArgs;
+use crate::commands::journal::JournalArgs;
+use crate::shared_args::OUTPUT;
+pub(super) use crate::shared_args::{HowArgs, OutputArgs, StudyArgs, WorkArgs};
+pub(super) use crate::values::{
     CostArg, DerivativesArg, MaximiseArg, MethodArg, MinimiseArg, Over, SamplerArg, SensitivitiesArg, StackArg,
     StencilArg,
 };
-use super::values::{
+use crate::values::{
     Movable, count, finite, movable, over, part, positive, probability, samples, samples_or_none, whole,
 };
 

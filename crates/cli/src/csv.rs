@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use super::failure::Failure;
-use super::output::Destination;
+use crate::failure::Failure;
+use crate::output::Destination;
 use sensitol_report::CsvFile;
 
 /// Folder of CSV files, each opened before the analysis and renamed when it is complete.

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
-use super::advice;
+use crate::advice;
 use sensitol::allocation::AllocateError;
 use sensitol::compare::CompareError;
 use sensitol::method::MethodError;

@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use super::args::OutputArgs;
-use super::csv::CsvFolder;
-use super::failure::Failure;
-use super::output::Destination;
+use crate::args::OutputArgs;
+use crate::csv::CsvFolder;
+use crate::failure::Failure;
+use crate::output::Destination;
 use sensitol_study::{FileRole, JournalPlace, Study};
 
 /// Paths that are read, and paths that will be written, with links resolved.

@@ -7,7 +7,7 @@ use std::io::IsTerminal;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
-use super::output::error;
+use crate::output::error;
 use sensitol::summary::StopReason;
 
 /// Time that a run without a terminal waits for running evaluations.

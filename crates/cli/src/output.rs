@@ -8,9 +8,9 @@ use std::time::Duration;
 use clap::ColorChoice;
 use tempfile::TempPath;
 
-use super::advice;
-use super::args::OutputArgs;
-use super::failure::Failure;
+use crate::advice;
+use crate::args::OutputArgs;
+use crate::failure::Failure;
 use sensitol::warning::Warning;
 use sensitol_numeric::names::{clean, is_hidden};
 use sensitol_report::WarningReport;

@@ -1,6 +1,6 @@
 //! Value of `--pairs`: strongest, adjacent, or names.
 
-use super::failure::Failure;
+use crate::failure::Failure;
 use sensitol::method::Pairs;
 
 /// Parses `strongest`, `adjacent` or `A:B,C:D`. Names with `:` or `,` are in backquotes.

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::path::Path;
 
-use super::failure::Failure;
+use crate::failure::Failure;
 use sensitol::assembly::{Points, Table};
 use sensitol::problem::Problem;
 use sensitol_report::document::csv::{guarded, unguarded};

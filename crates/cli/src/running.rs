@@ -4,9 +4,10 @@ use std::path::Path;
 use std::sync::{Arc, Once};
 use std::time::{Duration, Instant};
 
-use super::failure::{Exit, Failure};
-use super::interrupt;
-use super::output::{self, Look};
+use crate::failure::{Exit, Failure};
+use crate::interrupt;
+use crate::output;
+use crate::output::Look;
 use sensitol::assembly::Table;
 use sensitol::problem::Problem;
 use sensitol::summary::{RunSummary, StopReason};

@@ -3,12 +3,12 @@
 use std::sync::Mutex;
 use std::time::Duration;
 
-use super::args::SimulateArgs;
-use super::failure::Failure;
-use super::interrupt;
-use super::output::Look;
-use super::progress::Samples;
-use super::running::{Clock, on_threads};
+use crate::args::SimulateArgs;
+use crate::failure::Failure;
+use crate::interrupt;
+use crate::output::Look;
+use crate::progress::Samples;
+use crate::running::{Clock, on_threads};
 use sensitol::assembly::Run;
 use sensitol::method::{Method, Options};
 use sensitol::simulation::Pace;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::values::{DerivativesArg, MethodArg, SensitivitiesArg, StencilArg, count, part, positive};
+use crate::values::{DerivativesArg, MethodArg, SensitivitiesArg, StencilArg, count, part, positive};
 
 /// Help heading of the options on output.
 pub(super) const OUTPUT: &str = "Output";

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use super::args::{DerivativesArg, HowArgs, SampledArgs, SensitivitiesArg, StencilArg, StudyArgs};
-use super::failure::Failure;
-use super::output::Look;
-use super::pairs;
-use super::running::externals;
+use crate::args::{DerivativesArg, HowArgs, SampledArgs, SensitivitiesArg, StencilArg, StudyArgs};
+use crate::failure::Failure;
+use crate::output::Look;
+use crate::pairs;
+use crate::running::externals;
 use sensitol::method::{DerivativeSource, Method};
 use sensitol::plan::Stencil;
 use sensitol_study::{Externals, Study};

@@ -13,9 +13,9 @@ use serde::{Serialize, Serializer};
 
 use crate::capability;
 use crate::characteristic::{Characteristic, SpecLimits};
+use crate::json_form::{ends, finite};
 use crate::power::Power;
 use crate::requirement::{Required, Requirement};
-use crate::shape::{ends, finite};
 
 /// Errors on either side of an estimate that make its interval: 95 % if they are standard errors.
 pub const ERRORS: f64 = 2.0;

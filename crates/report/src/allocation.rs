@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{About, Head, WarningReport};
+use crate::{About, Head, WarningReport};
 use sensitol::allocation::ProofShape;
 use sensitol::allocation::{
     Allocated, Allocation, Attainable, CostBasis, FrontPoint, Goal, JointKept, JointYield, Kept, Moved, Proof, SetUp,

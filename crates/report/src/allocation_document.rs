@@ -1,13 +1,9 @@
 //! The report of an allocation as a document.
 
-use super::allocation::{
+use crate::allocation::{
     AllocatedCharacteristic, AllocatedReport, AllocationReport, BeforeAfter, OfCharacteristic, OfDimension,
 };
-use super::figures::{Figures, Named};
-use super::glance::verdict;
-use super::head;
-use super::requirement::loud;
-use crate::analysis_document::CharacteristicSections;
+use crate::analysis::analysis_document::CharacteristicSections;
 use crate::document::number::{
     beside, index, known, plain, plural, power_of_ten, share, short, significant, target_yield, yielded,
 };
@@ -15,13 +11,17 @@ use crate::document::{
     Bar, Bars, Blocks, Cell, Chart, Columns, DataTable, Document, Element, Fill, Flow, Layer, Line, Paragraph, Plot,
     PlotAxis, PlotPoint, PlotScale, Section, Stroke, Tone, Value,
 };
+use crate::figures::{Figures, Named};
+use crate::head;
+use crate::overview::verdict;
+use crate::requirement::loud;
 use sensitol::allocation::AllocationSolver;
 use sensitol::allocation::{
     Allocated, Attainable, Bound, CostBasis, FrontRequirement, Goal, JointYield, Kept, Moved, ShadowPrice, Status,
 };
 use sensitol::analysis::CharacteristicAnalysis;
+use sensitol_numeric::json_form::finite;
 use sensitol_numeric::requirement::Requirement;
-use sensitol_numeric::shape::finite;
 use sensitol_numeric::verdict::{Judged, Verdict};
 
 /// Least printed KKT residual: smaller ones are rounding.

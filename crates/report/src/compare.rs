@@ -2,14 +2,15 @@
 
 use serde::Serialize;
 
-use super::figures::{Figures as _, Named};
-use super::glance::{self, Glance};
-use super::{About, Head, head};
 use crate::document::number::{known, significant, yielded};
 use crate::document::{
     Blocks, Cell, Chart, Columns, DataTable, Document, Element, Layer, Plot, PlotAxis, PlotPoint, PlotScale, Section,
     Stroke, Tone, Value,
 };
+use crate::figures::{Figures as _, Named};
+use crate::overview as glance;
+use crate::overview::Glance;
+use crate::{About, Head, head};
 #[cfg(feature = "schema")]
 use sensitol::compare::ErrorShape;
 use sensitol::compare::{Comparison, Errors, Figures, NotRun, RESOLVED, Ran};

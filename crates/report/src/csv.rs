@@ -1,11 +1,11 @@
 //! CSV files of the tables in reports.
 
-use super::Report;
-use super::budget::Budget;
-use super::figures::Named;
-use super::stack::{Stack, stack_document};
+use crate::Report;
+use crate::analysis::budget::Budget;
+use crate::analysis::stack::{Stack, stack_document};
 use crate::document::csv::{csv, joined};
 use crate::document::{DataTable, Document};
+use crate::figures::Named;
 
 /// Tables of an analysis, except the stacks.
 const TABLES: [&str; 6] = ["dimensions", "characteristics", "sensitivities", "interactions", "quantiles", "warnings"];

@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-use super::figures::{Figures, Named};
-use super::{About, DimensionReport, Head, Report};
 use crate::document::number::{UNKNOWN, band, beside, estimated, index, limits, percent, plain, plural, yielded};
 use crate::document::{Blocks, Cell, Columns, DataTable, Document, Section, Tone, Value};
+use crate::figures::{Figures, Named};
+use crate::{About, DimensionReport, Head, Report};
 use sensitol::analysis::CharacteristicAnalysis;
 use sensitol_numeric::capability::Capability;
 use sensitol_numeric::verdict::Verdict;

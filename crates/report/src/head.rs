@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use super::{About, SCHEMA, WarningReport};
 use crate::document::number::plural;
 use crate::document::{Element, Notice, Tone};
+use crate::{About, SCHEMA, WarningReport};
 use sensitol::summary::RunSummary;
 
 /// Versions, the study, and the command.

@@ -1,6 +1,6 @@
 //! Labels beside the names of dimensions and characteristics: columns for programs, and a table for readers.
 
-use super::Report;
+use crate::Report;
 use crate::document::{Cell, Columns, DataTable, Element};
 use sensitol_numeric::labels::{LABELS, Labels};
 

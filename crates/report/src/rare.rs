@@ -2,15 +2,17 @@
 
 use serde::Serialize;
 
-use super::figures::Named;
-use super::glance::{self, Glance};
-use super::head::{self, seed};
-use super::output_correlation::all_limits;
-use super::requirement::{judged, lines};
-use super::sampling::samples;
-use super::{About, DimensionReport, Head, WarningReport, correlation};
 use crate::document::number::{known, plain, short, significant, yielded};
 use crate::document::{Blocks, Cell, Columns, DataTable, Document, Element, Line, Section, Value};
+use crate::figures::Named;
+use crate::head;
+use crate::head::seed;
+use crate::output_correlation::all_limits;
+use crate::overview as glance;
+use crate::overview::Glance;
+use crate::requirement::{judged, lines};
+use crate::sampling::samples;
+use crate::{About, DimensionReport, Head, WarningReport, correlation};
 use sensitol::problem::Problem;
 use sensitol::rare::{Beyond, DesignPoint, RareCharacteristic, RareEvents};
 use sensitol_numeric::correlation::Pair;

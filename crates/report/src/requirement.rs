@@ -2,8 +2,8 @@
 
 use crate::document::number::{known, significant, target_yield};
 use crate::document::{Line, Tone};
+use sensitol_numeric::json_form::finite;
 use sensitol_numeric::requirement::Requirement;
-use sensitol_numeric::shape::finite;
 use sensitol_numeric::verdict::{Judged, Verdict};
 
 /// Returns a line for each requirement: the value, the required one, and the verdict. The target yield is left out, because it stands

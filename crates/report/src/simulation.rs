@@ -2,17 +2,19 @@
 
 use serde::Serialize;
 
-use super::figures::{Figures, Named, QUANTILES};
-use super::glance::{self, Glance};
-use super::head::{self, findings, seed};
-use super::inspection::inspected;
-use super::output_correlation::{all_limits_within, together};
-use super::requirement::{judged, lines};
-use super::sampling::sampled;
-use super::{About, DimensionReport, Head, WarningReport, correlation};
 use crate::document::number::{estimated, index, known, limits, percent, plain, significant, uncertainty, yielded};
 use crate::document::rejects::Rejects;
 use crate::document::{Blocks, Cell, Chart, Columns, DataTable, Document, Element, Line, Section, SpreadChart};
+use crate::figures::{Figures, Named, QUANTILES};
+use crate::head;
+use crate::head::{findings, seed};
+use crate::inspection::inspected;
+use crate::output_correlation::{all_limits_within, together};
+use crate::overview as glance;
+use crate::overview::Glance;
+use crate::requirement::{judged, lines};
+use crate::sampling::sampled;
+use crate::{About, DimensionReport, Head, WarningReport, correlation};
 use sensitol::analysis::{EstimatedShare, InspectionRisks};
 use sensitol::problem::Problem;
 use sensitol::simulation::{IndexEstimate, SampledFactor, SimulatedCharacteristic, Simulation, YieldEstimate};

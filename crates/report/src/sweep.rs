@@ -1,14 +1,10 @@
 //! The report of a sweep.
 
-use crate::analysis_document::CharacteristicSections;
+use crate::analysis::analysis_document::CharacteristicSections;
 use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::figures::{Figures, QUANTILES};
-use super::glance::verdict;
-use super::head::{self, findings};
-use super::{About, Head, WarningReport};
 use crate::document::number::{UNKNOWN, beside, known, limits, plain, plural, shape, short, significant};
 use crate::document::rejects::Rejects;
 use crate::document::{
@@ -16,13 +12,18 @@ use crate::document::{
     Stroke, Value,
 };
 use crate::figures::FittedFigures;
+use crate::figures::{Figures, QUANTILES};
+use crate::head;
+use crate::head::findings;
+use crate::overview::verdict;
+use crate::{About, Head, WarningReport};
 use sensitol::analysis::{CharacteristicAnalysis, YieldSource};
 use sensitol::method::ErrorEstimate;
 use sensitol::problem::Problem;
 use sensitol::summary::RunSummary;
 use sensitol::sweep::Sweep;
 use sensitol_numeric::capability::{Law, Quantiles};
-use sensitol_numeric::shape::{RejectIntervals, through};
+use sensitol_numeric::json_form::{RejectIntervals, through};
 use sensitol_numeric::verdict::{Judged, Verdict};
 
 /// The report of a sweep, as `--json` prints it. Unknown values are null, never 0.

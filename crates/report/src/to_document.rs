@@ -1,7 +1,7 @@
 //! Every report as a document and as a page.
 
-use super::{AllocationReport, CompareReport, DifferenceReport, RareReport, Report, SimulationReport, SweepReport};
 use crate::document::Document;
+use crate::{AllocationReport, CompareReport, DifferenceReport, RareReport, Report, SimulationReport, SweepReport};
 
 /// A report that can be shown to readers.
 /// ```
@@ -14,8 +14,8 @@ use crate::document::Document;
 /// # Ok::<(), sensitol::Error>(())
 /// ```
 pub trait ToDocument {
-    /// Builds the sections, tables and charts of the report. [`text`](super::text), [`csv`](super::csv), [`markdown`](super::markdown)
-    /// and [`svg`](super::svg) write it. Nothing is evaluated.
+    /// Builds the sections, tables and charts of the report. [`text`](crate::text), [`csv`](crate::csv), [`markdown`](crate::markdown)
+    /// and [`svg`](crate::svg) write it. Nothing is evaluated.
     fn document(&self) -> Document;
 
     /// Writes the report as one page of HTML, which needs no network and loads nothing. Nothing is evaluated.
@@ -39,15 +39,15 @@ macro_rules! to_document {
 
 /// Writes the page of an analysis without a what-if.
 fn analysis_html(report: &Report) -> String {
-    super::html::analyze_html(report, None)
+    crate::html::analyze_html(report, None)
 }
 
 to_document! {
     Report by analysis_html,
-    SimulationReport by super::html::simulate_html,
-    RareReport by super::html::rare_html,
-    CompareReport by super::html::compare_html,
-    SweepReport by super::html::sweep_html,
-    AllocationReport by super::html::allocate_html,
-    DifferenceReport by super::html::difference_html,
+    SimulationReport by crate::html::simulate_html,
+    RareReport by crate::html::rare_html,
+    CompareReport by crate::html::compare_html,
+    SweepReport by crate::html::sweep_html,
+    AllocationReport by crate::html::allocate_html,
+    DifferenceReport by crate::html::difference_html,
 }

@@ -3,8 +3,8 @@
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
-use super::files::{FileRole, NamedFile};
-use super::place::{Place, Unread};
+use crate::files::{FileRole, NamedFile};
+use crate::folder::{Place, Unread};
 use crate::table::{DELIMITERS, NumberFault, Style, delimiter, records};
 use sensitol::warning::Warning;
 use sensitol_numeric::names::nearest;

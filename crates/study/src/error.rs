@@ -3,9 +3,9 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::data::DataFault;
-use super::decimal::{SAID, decimal};
-use super::slip::Slip;
+use crate::data::DataFault;
+use crate::decimal::{SAID, decimal};
+use crate::typing_habits::Slip;
 use sensitol::allocation::CostError;
 use sensitol::assembly::NoColumn;
 use sensitol::assembly::formula::FormulaFault;
@@ -52,7 +52,7 @@ impl StudyError {
             fault,
             more: Vec::new(),
         };
-        let mut errors = faults.into_iter().map(error).take(super::Study::MOST_FAULTS);
+        let mut errors = faults.into_iter().map(error).take(crate::Study::MOST_FAULTS);
         let first = errors.next()?;
         Some(Self { more: errors.collect(), ..first })
     }

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::file::ModelEntry;
-use super::spanned::Spanned;
+use crate::entries::file::ModelEntry;
+use crate::entries::spanned::Spanned;
 
 /// A file that a study names.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! Texts of dimensions and characteristics that have no effect on an analysis.
 
-use super::file::{CharacteristicEntry, DimensionEntry};
+use crate::entries::file::{CharacteristicEntry, DimensionEntry};
 use sensitol_numeric::labels::Labels;
 
 /// Labels of these texts. An empty text counts as none.

@@ -40,81 +40,53 @@
 //! # Ok::<(), sensitol_study::StudyError>(())
 //! ```
 
-mod about;
-mod analysis_entry;
+mod analysis_change;
 mod any_error;
 mod build;
-mod changed;
-mod conventions;
-mod correlation;
-mod costs;
 mod data;
-mod de;
 mod decimal;
+mod deserializer;
 mod dimension;
-mod distribution_entry;
-mod drive;
+mod dimension_text;
 mod entries;
 mod error;
 mod expand;
-mod externals;
-mod file;
+mod external_settings;
 mod files;
-mod grades;
-mod guard;
-mod implicit;
+mod folder;
 pub mod import;
-mod inspected;
-mod joint;
 mod labels;
-mod lines;
-mod loss;
-mod model;
-mod named_values;
-mod options;
-mod place;
-mod price;
-#[cfg(feature = "schema")]
-mod registry;
-mod remedy;
 mod rewrite;
 #[cfg(feature = "schema")]
 pub mod schema;
-mod slip;
 mod source;
-mod spanned;
 mod states;
-mod sweep;
+mod suggestion;
 pub mod table;
-mod together;
 mod tree;
-mod units;
-mod values;
-mod words;
+mod typing_habits;
 pub mod write;
-mod written;
-mod zone;
 
+use crate::external_settings::Host;
+pub use crate::external_settings::{Externals, JournalPlace};
+pub use crate::folder::Format;
+pub use crate::folder::StudyText;
+pub use crate::typing_habits::Slip;
 pub use any_error::Error;
 pub use data::{DataFault, DataProblem};
 pub use error::{StudyError, StudyFault};
-use externals::Host;
-pub use externals::{Externals, JournalPlace};
 pub use files::{FileRole, NamedFile};
-pub use place::Format;
-pub use place::StudyText;
 pub use rewrite::{RewriteError, Rewritten};
 #[cfg(feature = "schema")]
 pub use schema::schema;
-pub use slip::Slip;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use sha2::{Digest, Sha256};
 
+use crate::folder::Place;
 use error::Faults;
-use place::Place;
 use sensitol::allocation::{AllocationTask, Priced, QualityLoss, SetUp};
 use sensitol::method::Options;
 use sensitol::problem::Problem;
@@ -303,11 +275,11 @@ impl Study {
         let tree = tree.map_err(|fault| failed(fault.into()))?;
         let mut data = data::Data::of(&source.place);
         let expanded = expand::expand(tree, source.externals.configuration.as_deref(), &mut data).map_err(failed)?;
-        let mut file: file::StudyFile = de::read(&expanded.tree).map_err(failed)?;
+        let mut file: crate::entries::file::StudyFile = crate::deserializer::read(&expanded.tree).map_err(failed)?;
         if let Some(parameter) = parameter {
-            sweep::as_dimension(&mut file, parameter).map_err(|fault| failed(fault.into()))?;
+            crate::build::sweep::as_dimension(&mut file, parameter).map_err(|fault| failed(fault.into()))?;
         }
-        let built = build::build(&file, &source, data, &expanded.elements).map_err(failed)?;
+        let built = crate::build::problem::build(&file, &source, data, &expanded.elements).map_err(failed)?;
         let mut hash = Sha256::new_with_prefix(text.as_bytes());
         built.data.iter().for_each(|bytes| hash.update(bytes));
         Ok(Self {
@@ -315,8 +287,8 @@ impl Study {
             about: file.about.cells(),
             problem: built.problem,
             options: built.options,
-            seed: file.analysis.seed.map(spanned::Spanned::into_inner),
-            lines: lines::of(&expanded.tree),
+            seed: file.analysis.seed.map(crate::entries::spanned::Spanned::into_inner),
+            lines: crate::dimension_text::of(&expanded.tree),
             expanded: expanded.toml(text),
             configurations: expanded.configurations,
             costs: built.costs,

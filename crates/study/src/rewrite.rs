@@ -4,12 +4,12 @@
 
 use std::ops::Range;
 
-use super::Study;
-use super::error::StudyError;
-use super::externals::Externals;
-use super::place::Format;
-use super::tree::{Key, Tree, Value};
-use super::write;
+use crate::Study;
+use crate::error::StudyError;
+use crate::external_settings::Externals;
+use crate::folder::Format;
+use crate::tree::{Key, Tree, Value};
+use crate::write;
 use sensitol::allocation::Offer;
 use sensitol::problem::Problem;
 use sensitol_numeric::dimension::Dimension;

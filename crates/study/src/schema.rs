@@ -9,17 +9,19 @@ use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::{Value, json};
 
-use super::file::{ConstantEntry, Entries, FactorEntry, FormulaEntry, PairsEntry, StudyFile, TermEntry, UnknownEntry};
-use super::guard::{GuardEntry, GuardTable};
-use super::price::{RequireEntry, RequireTable};
-use super::together::{CorrelationEntry, Correlations, JointEntry, Joints};
-use super::values::{Deviation, NominalEntry, ToleranceEntry};
-use super::words::REQUIREMENTS;
+use crate::entries::correlation_entry::{CorrelationEntry, Correlations, JointEntry, Joints};
+use crate::entries::cost_entry::{RequireEntry, RequireTable};
+use crate::entries::file::{
+    ConstantEntry, Entries, FactorEntry, FormulaEntry, PairsEntry, StudyFile, TermEntry, UnknownEntry,
+};
+use crate::entries::guard::{GuardEntry, GuardTable};
+use crate::entries::values::{Deviation, NominalEntry, ToleranceEntry};
+use crate::entries::vocabulary::REQUIREMENTS;
 use sensitol::method::Pairs;
 
 /// The schema of study files, draft 2020-12, in TOML and JSON alike.
 ///
-/// A study that it accepts is well formed. Only [`Study`](super::Study) checks that formulas, names and numbers fit each other.
+/// A study that it accepts is well formed. Only [`Study`](crate::Study) checks that formulas, names and numbers fit each other.
 pub fn schema() -> Value {
     let schema = SchemaSettings::draft2020_12().into_generator().into_root_schema_for::<StudyFile>();
     let mut schema = schema.to_value();

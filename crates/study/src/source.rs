@@ -3,9 +3,9 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::error::{Fault, StudyFault, fault};
-use super::externals::Externals;
-use super::place::Place;
+use crate::error::{Fault, StudyFault, fault};
+use crate::external_settings::Externals;
+use crate::folder::Place;
 use sensitol::assembly::formula::FormulaError;
 
 /// Name and text of a study file, with the settings for its files and programs.

@@ -1,6 +1,6 @@
 //! Combines several configurations of a study: the dimensions and tolerances are shared, and every characteristic occurs once for each.
 
-use super::Study;
+use crate::Study;
 use sensitol::allocation::QualityLoss;
 use sensitol::problem::{Problem, ProblemError};
 

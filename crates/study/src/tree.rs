@@ -5,8 +5,8 @@ use std::ops::Range;
 use jsonc_parser::ast;
 use toml::de::{DeTable, DeValue};
 
-use super::error::{Fault, StudyFault, fault};
-use super::slip::Slip;
+use crate::error::{Fault, StudyFault, fault};
+use crate::typing_habits::Slip;
 
 /// A value and its place in the file.
 #[derive(Debug, Clone, PartialEq)]

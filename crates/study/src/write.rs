@@ -1,7 +1,7 @@
 //! Writes parts of a study in TOML and JSON. No other module writes either.
 
-use super::place::Format;
-use super::tree::{Tree, Value};
+use crate::folder::Format;
+use crate::tree::{Tree, Value};
 
 /// Text of a key with its value. Both are given as text of the format.
 pub fn pair(format: Format, key: &str, value: &str) -> String {
@@ -38,7 +38,7 @@ pub(super) fn value(tree: &Tree) -> String {
         }
         Value::Array(items) => array(items.iter().map(value)),
         Value::Text(text) => quoted(text),
-        Value::Number(number) => self::number(*number),
+        Value::Number(number) => crate::write::number(*number),
         Value::Integer(integer) => integer.to_string(),
         Value::Truth(truth) => truth.to_string(),
         // No study that was read contains such a value.

@@ -5,8 +5,8 @@
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, OnceLock};
 
-use super::{Composite, CompositeError, Inner, Origin, SolvedRows, Source};
 use crate::assembly::blocks::BLOCK;
+use crate::assembly::composite::{Composite, CompositeError, Inner, Origin, SolvedRows, Source};
 use crate::assembly::formula::Jet;
 use crate::assembly::request::bits;
 use crate::assembly::{

@@ -1,6 +1,6 @@
 //! Exact derivatives of outputs that depend on formulas and unknowns alone.
 
-use super::{Composite, Needs, Origin};
+use crate::assembly::composite::{Composite, Needs, Origin};
 use crate::assembly::formula::Jet;
 use crate::assembly::implicit::Tangent;
 use crate::assembly::{Derivatives, Directions, Run};

@@ -1,6 +1,6 @@
 //! Switches and degree of the outputs of a composite.
 
-use super::{Composite, Origin, SolvedRows, Source};
+use crate::assembly::composite::{Composite, Origin, SolvedRows, Source};
 use crate::assembly::{Points, Polynomial, Run, Switch, SwitchKind, Switches};
 use sensitol_numeric::parallel::prelude::*;
 

@@ -1,7 +1,7 @@
 //! Programs on columns of numbers.
 
-use super::functions::{Binary, Unary, select};
-use super::program::{Branch, Operand, Program, Step};
+use crate::assembly::formula::functions::{Binary, Unary, select};
+use crate::assembly::formula::program::{Branch, Operand, Program, Step};
 use sensitol_numeric::elementary::{self, Elementary, Work, on_this_processor};
 
 /// Number of rows that pass through the program together, so few that all registers stay in the nearest cache.

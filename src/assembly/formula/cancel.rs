@@ -5,8 +5,8 @@
 
 use std::collections::BTreeMap;
 
-use super::functions::{Binary, Unary};
-use super::graph::{Graph, GraphNode, NodeId};
+use crate::assembly::formula::functions::{Binary, Unary};
+use crate::assembly::formula::graph::{Graph, GraphNode, NodeId};
 
 /// Returns the graph of `root` without the terms that cancel, or None if no term cancels.
 pub(super) fn cancelled(graph: &Graph, root: NodeId) -> Option<(Graph, NodeId)> {

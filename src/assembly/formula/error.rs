@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::name::is_plain;
+use crate::assembly::formula::name::is_plain;
 use sensitol_numeric::names::shortened_to;
 
 /// Fault in the text of a formula, with its position.
@@ -143,9 +143,10 @@ impl FormulaFault {
             Self::MissingOperator { .. } => Some("multiplication is written with `*`".into()),
             Self::ChainedComparison => Some("write `if(a < b, b < c, 0)`".into()),
             Self::UnknownFunction { nearest: Some(name), .. } => Some(format!("did you mean `{name}`?")),
-            Self::UnknownFunction { .. } => {
-                Some(format!("functions are {}", super::functions::Callable::names().collect::<Vec<_>>().join(", ")))
-            }
+            Self::UnknownFunction { .. } => Some(format!(
+                "functions are {}",
+                crate::assembly::formula::functions::Callable::names().collect::<Vec<_>>().join(", ")
+            )),
             Self::BareFunction { name } => {
                 Some(format!("write `{name}(...)`; a dimension of this name has to be renamed"))
             }

@@ -1,8 +1,8 @@
 //! Expansion of formulas into polynomials, term by term.
 
-use super::functions::{Binary, Unary};
-use super::graph::{GraphNode, NodeId};
-use super::set::FormulaSet;
+use crate::assembly::formula::functions::{Binary, Unary};
+use crate::assembly::formula::graph::{GraphNode, NodeId};
+use crate::assembly::formula::set::FormulaSet;
 use crate::assembly::polynomial::{Coefficient, DEGREE, Polynomial};
 
 impl FormulaSet {

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::functions::{Binary, Unary};
+use crate::assembly::formula::functions::{Binary, Unary};
 
 /// Index of a node. Operands have smaller indices than the operations that use them.
 pub(super) type NodeId = u32;

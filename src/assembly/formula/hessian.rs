@@ -1,10 +1,10 @@
 //! All mixed derivatives of a formula at once, by one pass for each variable instead of one for each pair.
 
-use super::functions::{Binary, Unary};
-use super::graph::{GraphNode, NodeId};
-use super::jet::Jet;
-use super::scalar::{Scalar, Verdict};
-use super::set::FormulaSet;
+use crate::assembly::formula::functions::{Binary, Unary};
+use crate::assembly::formula::graph::{GraphNode, NodeId};
+use crate::assembly::formula::jet::Jet;
+use crate::assembly::formula::scalar::{Scalar, Verdict};
+use crate::assembly::formula::set::FormulaSet;
 use sensitol_numeric::parallel::prelude::*;
 
 /// Number of variables whose passes run together.

@@ -2,8 +2,8 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use super::functions::{Binary, Unary};
-use super::scalar::{Scalar, Verdict};
+use crate::assembly::formula::functions::{Binary, Unary};
+use crate::assembly::formula::scalar::{Scalar, Verdict};
 use sensitol_numeric::power::Power;
 
 /// Interval of all values from `lower` to `upper`, both included; NaN for the empty interval.

@@ -1,7 +1,7 @@
 //! Exact derivatives: numbers that carry their derivatives along two directions.
 
-use super::functions::{Binary, Unary};
-use super::scalar::{Scalar, Verdict};
+use crate::assembly::formula::functions::{Binary, Unary};
+use crate::assembly::formula::scalar::{Scalar, Verdict};
 
 /// Value with its first derivatives along two directions `u` and `v`, and the second derivative `D_u D_v`. For `u = v` this is the pure
 /// one, for two unit vectors the mixed one. No digits are lost, as they would be in differences.

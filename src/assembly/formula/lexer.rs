@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use super::error::{FormulaError, FormulaFault};
-use super::name::plain_length;
+use crate::assembly::formula::error::{FormulaError, FormulaFault};
+use crate::assembly::formula::name::plain_length;
 
 /// Token of a formula.
 #[derive(Debug, Clone, PartialEq)]

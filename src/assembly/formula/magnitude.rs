@@ -8,10 +8,10 @@
 //! 200.01 and the value 0.01. Source: N. J. Higham, Accuracy and Stability of Numerical Algorithms (2002), section 3.3, running error
 //! analysis.
 
-use super::functions::{Binary, Unary};
-use super::jet::Jet;
-use super::scalar::{Scalar, Verdict};
-use super::set::FormulaSet;
+use crate::assembly::formula::functions::{Binary, Unary};
+use crate::assembly::formula::jet::Jet;
+use crate::assembly::formula::scalar::{Scalar, Verdict};
+use crate::assembly::formula::set::FormulaSet;
 
 /// Value with the sum of the magnitudes of its terms.
 #[derive(Debug, Clone, Copy, PartialEq)]

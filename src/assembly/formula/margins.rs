@@ -1,7 +1,7 @@
 //! Margins of switches, ready to run.
 
-use super::program::Program;
 use crate::assembly::Switch;
+use crate::assembly::formula::program::Program;
 
 /// Switches of some formulas, with the program of their margins.
 #[derive(Debug)]

@@ -5,9 +5,9 @@
 
 use std::ops::Range;
 
-use super::error::{FormulaError, FormulaFault};
-use super::functions::{Binary, CONSTANTS, Callable, Unary};
-use super::lexer::{Token, tokens};
+use crate::assembly::formula::error::{FormulaError, FormulaFault};
+use crate::assembly::formula::functions::{Binary, CONSTANTS, Callable, Unary};
+use crate::assembly::formula::lexer::{Token, tokens};
 use sensitol_numeric::names::nearest;
 use sensitol_numeric::unit::Unit;
 

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::functions::{Binary, Unary};
-use super::graph::{GraphNode, NodeId};
-use super::set::FormulaSet;
+use crate::assembly::formula::functions::{Binary, Unary};
+use crate::assembly::formula::graph::{GraphNode, NodeId};
+use crate::assembly::formula::set::FormulaSet;
 
 /// Variables of a sum with their factors.
 type Linear = BTreeMap<usize, f64>;

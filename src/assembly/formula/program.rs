@@ -1,7 +1,7 @@
 //! Sequence of column operations for a graph, with as few stored columns as possible.
 
-use super::functions::{Binary, Unary};
-use super::graph::{Graph, GraphNode, NodeId};
+use crate::assembly::formula::functions::{Binary, Unary};
+use crate::assembly::formula::graph::{Graph, GraphNode, NodeId};
 
 /// Source of an operand's column.
 #[derive(Debug, Clone, Copy, PartialEq)]

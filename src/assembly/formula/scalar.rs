@@ -1,7 +1,7 @@
 //! Programs on any type of value: numbers, jets, intervals.
 
-use super::functions::{Binary, Unary, select};
-use super::program::{Branch, Operand, Program, Step};
+use crate::assembly::formula::functions::{Binary, Unary, select};
+use crate::assembly::formula::program::{Branch, Operand, Program, Step};
 
 /// Value that a program can run on instead of columns of numbers.
 pub(crate) trait Scalar: Clone {

@@ -3,19 +3,19 @@
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, OnceLock};
 
-use super::batch::{LANES, Machine};
-use super::cancel::cancelled;
-use super::error::{FailureReason, FormulaError, FormulaFailure, FormulaFault};
-use super::functions::{Binary, select};
-use super::graph::{Graph, NodeId};
-use super::interval::Interval;
-use super::jet::Jet;
-use super::margins::Margins;
-use super::parser::{Formula, Node};
-use super::program::Program;
-use super::scalar::Scalar;
-use super::slopes::Sloped;
 use crate::assembly::Bounds;
+use crate::assembly::formula::batch::{LANES, Machine};
+use crate::assembly::formula::cancel::cancelled;
+use crate::assembly::formula::error::{FailureReason, FormulaError, FormulaFailure, FormulaFault};
+use crate::assembly::formula::functions::{Binary, select};
+use crate::assembly::formula::graph::{Graph, NodeId};
+use crate::assembly::formula::interval::Interval;
+use crate::assembly::formula::jet::Jet;
+use crate::assembly::formula::margins::Margins;
+use crate::assembly::formula::parser::{Formula, Node};
+use crate::assembly::formula::program::Program;
+use crate::assembly::formula::scalar::Scalar;
+use crate::assembly::formula::slopes::Sloped;
 use sensitol_numeric::names::nearest;
 
 /// Meaning of a name that is not a formula.

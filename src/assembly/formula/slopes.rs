@@ -1,8 +1,8 @@
 //! Intervals with bounds of their slopes, which decide on which side of a box a formula is least.
 
-use super::functions::{Binary, Unary};
-use super::interval::Interval;
-use super::scalar::{Scalar, Verdict};
+use crate::assembly::formula::functions::{Binary, Unary};
+use crate::assembly::formula::interval::Interval;
+use crate::assembly::formula::scalar::{Scalar, Verdict};
 
 /// Value over a box with its slope along each of some dimensions.
 ///

@@ -16,12 +16,12 @@
 
 use std::sync::{Arc, PoisonError};
 
-use super::batch::{LANES, Machine};
-use super::functions::{Binary, Unary};
-use super::graph::{Graph, GraphNode, NodeId};
-use super::margins::Margins;
-use super::program::{Program, guards};
-use super::set::FormulaSet;
+use crate::assembly::formula::batch::{LANES, Machine};
+use crate::assembly::formula::functions::{Binary, Unary};
+use crate::assembly::formula::graph::{Graph, GraphNode, NodeId};
+use crate::assembly::formula::margins::Margins;
+use crate::assembly::formula::program::{Program, guards};
+use crate::assembly::formula::set::FormulaSet;
 use crate::assembly::{Switch, SwitchKind};
 
 impl FormulaSet {

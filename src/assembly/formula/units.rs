@@ -6,9 +6,9 @@
 
 use std::ops::Range;
 
-use super::functions::{Binary, Unary};
-use super::parser::{Formula, Node};
-use super::set::{FormulaSet, Reference};
+use crate::assembly::formula::functions::{Binary, Unary};
+use crate::assembly::formula::parser::{Formula, Node};
+use crate::assembly::formula::set::{FormulaSet, Reference};
 use sensitol_numeric::unit::{SAME, Unit};
 
 /// Greatest number of literal factors of a part that are followed.
@@ -494,8 +494,8 @@ fn hidden(factor: f64, unit: &Unit) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::set::Meaning;
     use super::*;
+    use crate::assembly::formula::set::Meaning;
 
     fn case(name: &str) -> serde_json::Map<String, serde_json::Value> {
         let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/elements.json")).unwrap();

@@ -4,11 +4,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use faer::Mat;
 
-use super::conditions::Conditions;
-use super::error::AssemblyFailure;
-use super::newton::{Root, Search, Stuck};
-use super::system::{Scales, System};
 use crate::assembly::formula::FormulaSet;
+use crate::assembly::implicit::conditions::Conditions;
+use crate::assembly::implicit::error::AssemblyFailure;
+use crate::assembly::implicit::newton::{Root, Search, Stuck};
+use crate::assembly::implicit::system::{Scales, System};
 
 /// Solver of the conditions at any point, once the nominal state is known.
 pub(in crate::assembly) struct Assembler {

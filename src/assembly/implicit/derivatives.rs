@@ -1,9 +1,9 @@
 //! Exact first and second derivatives of the unknowns, by the implicit function theorem.
 
-use super::assembler::{Anchor, Assembler};
-use super::linear::Linear;
-use super::newton::Search;
 use crate::assembly::formula::{FormulaSet, Jet};
+use crate::assembly::implicit::assembler::{Anchor, Assembler};
+use crate::assembly::implicit::linear::Linear;
+use crate::assembly::implicit::newton::Search;
 
 /// Unknowns at a point, with the factorised Jacobian for their derivatives.
 pub(in crate::assembly) struct Tangent<'a> {

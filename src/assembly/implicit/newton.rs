@@ -3,8 +3,8 @@
 
 use faer::Mat;
 
-use super::linear::Linear;
-use super::system::{Scales, System};
+use crate::assembly::implicit::linear::Linear;
+use crate::assembly::implicit::system::{Scales, System};
 
 /// State at which the conditions hold.
 #[derive(Debug, Clone)]

@@ -2,8 +2,8 @@
 
 use faer::Mat;
 
-use super::conditions::{Condition, Conditions, Unknown};
 use crate::assembly::formula::{Binary, FormulaFailure, FormulaSet, Jet, Routine, Scalar, Unary};
+use crate::assembly::implicit::conditions::{Condition, Conditions, Unknown};
 
 /// System of `m` conditions on `m` unknowns. The variables of the formulas are the given ones, followed by the unknowns.
 pub(super) struct System {

@@ -16,28 +16,28 @@
 //! The unexplained remainder adds to the variance, and is the estimate of the error. All points belong to a fixed design: the same study
 //! gives the same numbers with any seed.
 
-mod atoms;
-mod chosen;
-mod climb;
+mod characteristic_state;
+mod chosen_points;
+mod next_stage;
 mod product;
+mod screened_interactions;
 mod screening;
 mod start;
-mod view;
 
 use std::sync::Arc;
 
-use super::climbed::{ClimbEnd, Climbed};
-use super::exact::ExactDerivatives;
-use super::ladder::{Examined, Ladder, Order};
-use super::{Basis, Cost, DerivativeSource, Fitted, Method, MethodError, Options, Outcome, Procedure};
 use crate::assembly::Run;
 use crate::evaluation::Evaluated;
+use crate::method::auto::characteristic_state::View;
+use crate::method::auto::next_stage::Climb;
+use crate::method::auto_account::{ClimbEnd, Climbed};
+use crate::method::derivative::stages::{Examined, Ladder, Order};
+use crate::method::exact_derivatives::ExactDerivatives;
+use crate::method::{Basis, Cost, DerivativeSource, Fitted, Method, MethodError, Options, Outcome, Procedure};
 use crate::plan::{Mixed, Plan, Point, Spread};
 use crate::problem::Problem;
 use crate::warning::Figure;
-use climb::Climb;
 use start::Start;
-use view::View;
 
 /// Relative error of sigma that is wanted if the options give none.
 pub const ACCURACY: f64 = 0.01;
@@ -106,7 +106,12 @@ impl Procedure for Auto {
         }
         let plan = self.plan(problem, options).ok()?;
         let least = plan.cost().0;
-        Some([least, climb::most(plan.varying().len()).max(least).min(options.budget.unwrap_or(usize::MAX))])
+        Some([
+            least,
+            crate::method::auto::next_stage::most(plan.varying().len())
+                .max(least)
+                .min(options.budget.unwrap_or(usize::MAX)),
+        ])
     }
 
     fn run(&self, problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Outcome, MethodError> {

@@ -3,8 +3,8 @@
 //! All pairs of such a function interact, and all triples too, so that examining interactions is a waste. A regression of the logarithm has
 //! one term or two for every dimension instead (Box and Cox 1964).
 
-use super::chosen::ChosenPoints;
-use super::view::View;
+use crate::method::auto::characteristic_state::View;
+use crate::method::auto::chosen_points::ChosenPoints;
 use crate::plan::{DifferencePlan, KnownAnswers, Point};
 
 /// Greatest residual of a product at the check points, as part of the surface's residual and of the wanted error: it is negligible beside

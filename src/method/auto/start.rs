@@ -1,6 +1,6 @@
 //! Plan that `auto` begins with: the points that it evaluates in any case.
 
-use super::climb::Climb;
+use crate::method::auto::next_stage::Climb;
 use crate::plan::{DifferencePlan, Geometry, KnownAnswers, Plan, Stage};
 
 /// Points of the parabolas, check points, and points that measure the scatter.

@@ -8,7 +8,7 @@ use std::process::Command;
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use sensitol::analysis::law_at::law_at;
+use sensitol::analysis::distribution::relocated_law::law_at;
 use sensitol::analysis::{LawFigure, Relocation};
 use sensitol::capability::{Capability, Law};
 

@@ -2,11 +2,11 @@
 
 use serde::Serialize;
 
-use super::Quantiles;
+use crate::capability::Quantiles;
+use crate::json_form::{ends, through};
 use crate::moments::Moments;
 use crate::pearson::{Pearson, PearsonError};
 use crate::power::{Rescale, Rescaling};
-use crate::shape::{ends, through};
 
 /// Distribution with the four moments of a characteristic.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -2,7 +2,7 @@
 
 use serde::{Serialize, Serializer};
 
-use super::TAIL;
+use crate::capability::TAIL;
 use crate::pearson::Pearson;
 
 /// Names of the probabilities of [`Quantiles`], lowest first.

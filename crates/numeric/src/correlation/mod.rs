@@ -14,14 +14,14 @@
 //! Rows of measured parts and zones are blocks beside them: each block is independent of everything else.
 
 mod block;
+mod correlated_normals;
 mod error;
 mod matrix;
-mod together;
 pub mod transform;
 
+pub use crate::correlation::correlated_normals::Together;
 pub use block::{Atom, Block, JointLaw, Rows};
 pub use error::{CorrelationError, Refusal};
-pub use together::Together;
 pub use transform::Transform;
 
 use std::collections::{HashMap, HashSet};

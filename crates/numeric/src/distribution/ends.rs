@@ -1,6 +1,6 @@
 //! Incomplete gamma and beta functions next to an end of the support, as functions of the distance to it.
 
-use super::inverse::root;
+use crate::distribution::inverse::root;
 
 /// Distribution near an end where its density behaves like `t^(a-1)`, with the distance `t` in the distribution's own unit.
 ///

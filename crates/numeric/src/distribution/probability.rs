@@ -2,7 +2,7 @@
 
 use rand::{Rng, RngExt};
 
-use super::standard_normal;
+use crate::distribution::standard_normal;
 
 /// Density, probabilities, quantiles and samples, in the dimension's own unit.
 ///

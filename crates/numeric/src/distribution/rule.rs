@@ -2,7 +2,7 @@
 
 use faer::{Mat, Side};
 
-use super::{Distribution, DistributionError, StandardMoments};
+use crate::distribution::{Distribution, DistributionError, StandardMoments};
 
 /// Recurrence of the monic orthogonal polynomials of a standardised variable:
 /// `p[n+1] = (u - alpha[n]) p[n] - beta[n] p[n-1]`, with `alpha[0..n]` and `beta[1..=n]`.

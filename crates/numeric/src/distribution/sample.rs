@@ -2,7 +2,7 @@
 
 use rand::{Rng, RngExt};
 
-use super::{DistributionError, Jacobi, Rule, StandardMoments, finite, positive};
+use crate::distribution::{DistributionError, Jacobi, Rule, StandardMoments, finite, positive};
 use crate::elementary::Double;
 
 /// Measured values as a distribution that gives each of them the same probability, `1/n`.

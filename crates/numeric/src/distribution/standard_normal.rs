@@ -28,7 +28,7 @@ pub fn quantile(p: f64) -> f64 {
     if p < 0.5 { lower_tail(p) } else { -lower_tail(1.0 - p) }
 }
 
-/// Replaces probabilities by quantiles, as [`Probability::quantiles`](super::Probability::quantiles).
+/// Replaces probabilities by quantiles, as [`Probability::quantiles`](crate::distribution::Probability::quantiles).
 pub(crate) fn quantiles(tails: &mut [f64]) {
     quantiles_about((0.0, 1.0), tails);
 }

@@ -1,6 +1,6 @@
 //! Exponential function `exp` and natural logarithm `ln`.
 
-use super::Elementary;
+use crate::elementary::Elementary;
 
 /// First 32 bits of `ln 2`, and the rest.
 const LN_2: [f64; 2] = [0.693_147_180_369_123_8, 1.908_214_929_270_587_7e-10];

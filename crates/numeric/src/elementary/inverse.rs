@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::{Elementary, choose, mask};
+use crate::elementary::{Elementary, choose, mask};
 
 /// Difference between pi/2 and its double.
 const LACKS: f64 = 6.123_233_995_736_766e-17;

@@ -1,6 +1,6 @@
 //! Accuracy against values of many digits, and equality of the values wherever they are computed.
 
-use super::*;
+use crate::elementary::*;
 
 type Function = (&'static str, fn(f64) -> f64, fn(f64) -> f64, fn(&[f64], &mut [f64]), fn(&[f64], &mut [f64]), f64);
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_2_PI;
 
-use super::{Elementary, choose};
+use crate::elementary::{Elementary, choose};
 
 /// `pi/2` in two parts of 33 bits and the rest. A whole number below `2^20` times a part of 33 bits is exact.
 const PARTS: [f64; 3] = [

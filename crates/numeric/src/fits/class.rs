@@ -1,8 +1,8 @@
 //! Tolerance class: letter, hole or shaft, grade.
 
-use super::error::FitError;
-use super::grade::{Grade, Side};
-use super::tables::Letter;
+use crate::fits::error::FitError;
+use crate::fits::grade::{Grade, Side};
+use crate::fits::tables::Letter;
 
 /// Tolerance class such as `H7`, `js6` or `zc11`.
 pub(super) struct Class {

@@ -1,7 +1,7 @@
 //! Errors of unknown fits, with the existing ones.
 
-use super::grade::Side;
-use super::tables::Letter;
+use crate::fits::grade::Side;
+use crate::fits::tables::Letter;
 use crate::names::nearest;
 
 /// Error for text that is not a tolerance class, or for a class that the standard does not have at a size.

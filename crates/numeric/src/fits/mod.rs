@@ -16,14 +16,14 @@
 
 mod class;
 mod error;
+mod fixed_end;
 mod grade;
-mod held;
 mod tables;
 mod unit;
 
+pub use crate::fits::fixed_end::HeldEnd;
+pub use crate::fits::fixed_end::held_end;
 pub use error::FitError;
-pub use held::HeldEnd;
-pub use held::held_end;
 pub use unit::tolerance_unit;
 
 use class::Class;

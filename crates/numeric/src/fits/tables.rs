@@ -2,7 +2,7 @@
 
 use Column::{Ranges, Steps};
 
-use super::grade::{Grade, Side};
+use crate::fits::grade::{Grade, Side};
 
 /// Fundamental deviations, from far within the material to far outside it (shafts), or the other way (holes).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -25,8 +25,8 @@ pub fn tolerance_unit(nominal_mm: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::deviations;
     use super::tolerance_unit;
+    use crate::fits::deviations;
 
     /// Reference: the table of IT6 in the standard. Its values are rounded and, for the smallest and the largest sizes, raised to preferred
     /// numbers: by 0.7 um up to 6 mm, and by 1.1 um from 400 mm.

@@ -22,14 +22,14 @@ use std::sync::Arc;
 
 use faer::{Mat, Side};
 
-use super::input::Input;
-use super::points::mixed;
-use super::polynomial::value;
-use super::steps::Groups;
-use super::{LawFigure, LawTail, SurfaceLaw};
 use crate::characteristic::SpecLimits;
 use crate::correlation::Block;
 use crate::distribution::standard_normal;
+use crate::law::discrete_law::Groups;
+use crate::law::input::Input;
+use crate::law::polynomial::value;
+use crate::law::sampled_points::mixed;
+use crate::law::{LawFigure, LawTail, SurfaceLaw};
 use crate::sampling::{SOBOL_DIMENSIONS, Sobol, tails};
 
 /// Points of each replicate.

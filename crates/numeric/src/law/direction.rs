@@ -9,10 +9,10 @@ use std::sync::Arc;
 
 use faer::{Mat, Side};
 
-use super::forms::{factor, form};
-use super::input::Input;
-use super::polynomial::{Quartic, value};
-use super::surface::Surface;
+use crate::law::input::Input;
+use crate::law::inversion::quadratic_form::{factor, form};
+use crate::law::polynomial::{Quartic, value};
+use crate::law::surface::Surface;
 
 /// Coordinates of a part of the surface, and the one among them that is integrated.
 #[derive(Debug, Clone)]

@@ -2,9 +2,9 @@
 
 use std::sync::{Arc, LazyLock, OnceLock};
 
-use super::LawTail;
-use super::polynomial::{Quartic, derivative, roots, value};
 use crate::distribution::{Distribution, Normal, Probability, Uniform, behind_normal, standard_normal};
+use crate::law::LawTail;
+use crate::law::polynomial::{Quartic, derivative, roots, value};
 
 /// Tail probability at which quadratures over an unbounded input end. What lies beyond adds less than the rounding of a double to a
 /// probability of 1e-30.

@@ -18,42 +18,34 @@
 //! not included.
 
 mod common_points;
-mod complex;
-mod contour;
-mod derivative;
 mod direction;
-mod exact;
-mod forms;
-mod hats;
-mod held;
+mod discrete_law;
+mod exponential_tilt;
 mod input;
+mod input_table;
 mod inversion;
-mod joint;
+mod inverted_law;
+mod joint_yield;
 mod panels;
-mod perturbed_form;
-mod points;
+mod planar_zone;
 mod polynomial;
 mod quadrant;
 mod quantile;
-mod sampled;
-mod single;
-mod single_sum;
-mod steps;
+mod sampled_law;
+mod sampled_points;
 mod surface;
-mod table;
-mod tabulated;
-mod tilt;
-mod transform;
-mod tree;
-mod zones;
+mod tail_choices;
+mod tail_derivative;
+mod tail_table;
+mod two_inputs;
 
-pub use held::HeldTail;
-pub use joint::joint_bounds;
-pub use joint::joint_yield;
-pub use joint::rejected;
-pub use points::QUANTILE;
+pub use crate::law::input_table::TabulatedInput;
+pub use crate::law::joint_yield::joint_bounds;
+pub use crate::law::joint_yield::joint_yield;
+pub use crate::law::joint_yield::rejected;
+pub use crate::law::sampled_points::QUANTILE;
+pub use crate::law::tail_choices::HeldTail;
 pub use quantile::Sought;
-pub use tabulated::TabulatedInput;
 
 use std::sync::{Arc, OnceLock};
 
@@ -63,15 +55,15 @@ use crate::distribution::Distribution;
 use crate::power::{Rescale, Rescaling, Unknown};
 use crate::surrogate::{Inputs, Surrogate, shapes};
 
+use crate::law::discrete_law::Steps;
+use crate::law::inversion::tail_inversion::Inversion;
+use crate::law::inversion::transform::{Summed, Transform};
+use crate::law::inverted_law::Exact;
+use crate::law::planar_zone::{Straightened, Zone, straightened};
+use crate::law::sampled_law::Sampled;
+use crate::law::two_inputs::Single;
 use direction::Direction;
-use exact::Exact;
-use inversion::Inversion;
-use sampled::Sampled;
-use single::Single;
-use steps::Steps;
 use surface::Surface;
-use transform::{Summed, Transform};
-use zones::{Straightened, Zone, straightened};
 
 /// Computed number with its numerical error.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -310,11 +302,11 @@ impl SurfaceLaw {
         }
         // Inputs that all consist of atoms give a list of values. Beside a density a few such values are summed separately.
         let discrete = surface.inputs.iter().all(|input| input.is_discrete());
-        let jumps = match steps::atoms(&surface, rounding) {
+        let jumps = match crate::law::discrete_law::atoms(&surface, rounding) {
             Some(values) if discrete => return Ok(Self::step_function(surface, correlation, rounding, values)),
             some => some.filter(|jumps| jumps.len() <= MOST_JUMPS),
         };
-        let jump = if jumps.is_some() { 0.0 } else { steps::largest_jump(&surface) };
+        let jump = if jumps.is_some() { 0.0 } else { crate::law::discrete_law::largest_jump(&surface) };
         let range = surface.range();
         let with = move |kind: Kind, [mean, sigma]: [f64; 2]| match sigma > 0.0 && sigma.is_finite() && mean.is_finite()
         {
@@ -368,7 +360,7 @@ impl SurfaceLaw {
         let surface = Arc::new(Surface::of(surrogate, inputs, correlation).ok()?);
         let rounding = options.rounding.max(KeptLimits::rounding_of(surface.magnitude()));
         let discrete = surface.len() > 0 && surface.inputs.iter().all(|input| input.is_discrete());
-        let values = if discrete { steps::atoms(&surface, rounding)? } else { return None };
+        let values = if discrete { crate::law::discrete_law::atoms(&surface, rounding)? } else { return None };
         Some(Self::step_function(surface, correlation.cloned(), rounding, values))
     }
 
@@ -376,7 +368,7 @@ impl SurfaceLaw {
         surface: Arc<Surface>,
         correlation: Option<Correlation>,
         rounding: f64,
-        values: Vec<steps::Weighed>,
+        values: Vec<crate::law::discrete_law::Weighed>,
     ) -> Self {
         let steps = Steps::new(values);
         let ([mean, sigma], range, given) = (steps.moments(), steps.range(), Arc::clone(&surface));
@@ -503,7 +495,7 @@ impl SurfaceLaw {
     /// The result has one entry for each part of the surrogate, 0 for an input without a part. Cost: about one limit for each input in the
     /// exact branch, one sample for all of them in the others.
     pub fn tail_derivatives(&self, y: f64, tail: LawTail) -> Option<Vec<LawFigure>> {
-        derivative::tail_derivatives(self, y, tail)
+        crate::law::tail_derivative::tail_derivatives(self, y, tail)
     }
 
     /// Contour, points and proposals of this tail. Tails of other laws of the same structure that are computed with them are smooth in the

@@ -1,6 +1,6 @@
 //! Expectations of a function of one input by Gauss panels, which are halved as long as two rules differ.
 
-use super::input::{GAUSS, Input};
+use crate::law::input::{GAUSS, Input};
 
 /// Greatest difference of two rules on a panel, relative to the whole, for full accuracy.
 pub(super) const EXACT: f64 = 1e-15;

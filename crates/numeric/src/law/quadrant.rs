@@ -7,10 +7,10 @@
 //! Source: R. L. Plackett, "A reduction formula for normal multivariate integrals", Biometrika 41 (1954). The integral is summed over
 //! panels by Gauss's rule with sixteen nodes. Its error is the difference from half as many panels.
 
-use super::surface::Surface;
-use super::{LawFigure, SurfaceLaw};
 use crate::characteristic::SpecLimits;
 use crate::distribution::standard_normal;
+use crate::law::surface::Surface;
+use crate::law::{LawFigure, SurfaceLaw};
 use crate::pearson::LEGENDRE;
 
 /// Number of panels of the finer of two rules.

@@ -3,12 +3,12 @@
 use std::cell::Cell;
 use std::sync::Arc;
 
-use super::contour::Contour;
-use super::exact::is_poor;
-use super::inversion::Inversion;
-use super::sampled::{Choice, Sampled};
-use super::single::Single;
-use super::{Kind, LawFigure, LawTail, SurfaceLaw};
+use crate::law::inversion::contour::Contour;
+use crate::law::inversion::tail_inversion::Inversion;
+use crate::law::inverted_law::is_poor;
+use crate::law::sampled_law::{Choice, Sampled};
+use crate::law::two_inputs::Single;
+use crate::law::{Kind, LawFigure, LawTail, SurfaceLaw};
 
 /// Greatest number of steps. A dozen is usual.
 const STEPS: usize = 200;

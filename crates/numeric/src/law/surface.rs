@@ -6,12 +6,12 @@ use std::sync::Arc;
 
 use faer::Mat;
 
-use super::LawError;
-use super::input::Input;
-use super::polynomial::{Quartic, range, value};
 use crate::correlation::{Block, Correlation};
 use crate::distribution::Distribution;
 use crate::elementary::{Work, on_this_processor};
+use crate::law::LawError;
+use crate::law::input::Input;
+use crate::law::polynomial::{Quartic, range, value};
 use crate::surrogate::Surrogate;
 
 /// Surface `y = centre + sum g_j(z_j) + sum b_jk z_j z_k` over the inputs that have a part in it.

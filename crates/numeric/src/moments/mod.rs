@@ -14,14 +14,14 @@
 //! another derivation. Equations 8 to 10 and 18 to 25 of the 2018 paper have misprints that are not reproduced (see
 //! `examples/stacked-blocks/README.md`).
 
-mod assemble;
-mod growth;
+mod cumulants;
 mod interactions;
+mod moment_slopes;
 mod pairwise;
 mod part;
 mod sum;
 
-pub(crate) use growth::growths;
+pub(crate) use crate::moments::moment_slopes::growths;
 pub use interactions::Interactions;
 pub(crate) use interactions::Row;
 pub use pairwise::Tables;
@@ -33,9 +33,9 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 
 use crate::distribution::StandardMoments;
+use crate::json_form::Four;
+use crate::moments::cumulants::Assembly;
 use crate::power::rescale;
-use crate::shape::Four;
-use assemble::Assembly;
 
 /// Mean, sigma, skewness and kurtosis of one characteristic.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -30,8 +30,8 @@
 //! Cost: `O(N^3 m^3)` multiplications for N variables of m nodes, and no evaluation. Accuracy: rounding of `1e-15` times the number of
 //! parts, relative to 1 for the skewness and to 3 for the kurtosis.
 
-use super::Moments;
-use super::sum::exact;
+use crate::moments::Moments;
+use crate::moments::sum::exact;
 use crate::parallel::prelude::*;
 
 /// Function of independent discrete variables, as tables of its parts.

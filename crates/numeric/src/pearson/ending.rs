@@ -1,6 +1,6 @@
 //! Outermost piece of the axis: a series at an end of the support, or one at infinity.
 
-use super::shape::{End, Infinity};
+use crate::pearson::coefficients::{End, Infinity};
 
 /// Greatest number of terms of a series.
 const TERMS: usize = 120;

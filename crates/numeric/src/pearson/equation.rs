@@ -1,6 +1,6 @@
 //! Pearson's equation, and its solution near a point.
 
-use super::shape::{Roots, Shape};
+use crate::pearson::coefficients::{Roots, Shape};
 
 /// Greatest number of terms of a series. A panel that needs more is shortened instead.
 const TERMS: usize = 48;

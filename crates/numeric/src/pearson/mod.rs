@@ -24,17 +24,17 @@
 //! max(1, |q|) sigmas. Closer than 1e-3 sigma to a finite end of the support, results are as accurate as the distance to the end, which has
 //! lost digits. No model is evaluated. The cost is in `benches/README.md`.
 
+mod coefficients;
 mod ending;
 mod equation;
 mod error;
-mod shape;
 mod side;
 mod slopes;
 mod standard;
 
+pub use crate::pearson::coefficients::PearsonType;
 pub(crate) use equation::LEGENDRE;
 pub use error::{PearsonError, TwoPoint};
-pub use shape::PearsonType;
 
 use rand::RngExt;
 

@@ -1,7 +1,7 @@
 //! One side of a Pearson distribution, from an anchor outwards: density, mass beyond, and the inverse of the latter.
 
-use super::ending::Ending;
-use super::equation::{Equation, Panel};
+use crate::pearson::ending::Ending;
+use crate::pearson::equation::{Equation, Panel};
 
 /// Fall of log p at which the tables end. Values beyond are computed on demand.
 const CORE: f64 = -45.0;

@@ -11,8 +11,8 @@
 //! parts. `u'` is a formula and `M` is
 //! tabulated, so that Gauss-Legendre on the panels of the tables has rounding errors only.
 
-use super::equation::LEGENDRE;
-use super::side::Side;
+use crate::pearson::equation::LEGENDRE;
+use crate::pearson::side::Side;
 
 /// Relative size below which the contribution of a piece is neglected.
 const NOTHING: f64 = 1e-17;

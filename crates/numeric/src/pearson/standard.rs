@@ -1,11 +1,11 @@
 //! A Pearson law with mean 0, variance 1 and a skewness that is not negative.
 
-use super::PearsonError;
-use super::ending::Ending;
-use super::equation::Equation;
-use super::shape::{PearsonType, Roots, Shape};
-use super::side::{Place, Side};
-use super::slopes::{Slopes, Walk};
+use crate::pearson::PearsonError;
+use crate::pearson::coefficients::{PearsonType, Roots, Shape};
+use crate::pearson::ending::Ending;
+use crate::pearson::equation::Equation;
+use crate::pearson::side::{Place, Side};
+use crate::pearson::slopes::{Slopes, Walk};
 
 /// Two sides that meet at the anchor.
 #[derive(Debug, Clone)]

@@ -6,15 +6,15 @@ use std::str::FromStr;
 
 use faer::Mat;
 
-use super::joe_kuo::SOBOL_DIMENSIONS;
-use super::sobol::{Sobol, mixed, scrambled};
-use super::stream::Stream;
 use crate::correlation::{Block, Correlation, JointLaw};
 use crate::dimension::Dimension;
 use crate::distribution::{Probability, behind_normal, standard_normal, ziggurat};
 use crate::elementary::{Work, on_this_processor};
 use crate::names::UnknownName;
 use crate::points::Points;
+use crate::sampling::joe_kuo::SOBOL_DIMENSIONS;
+use crate::sampling::sobol::{Sobol, mixed, scrambled};
+use crate::sampling::stream::Stream;
 
 /// Method that draws points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

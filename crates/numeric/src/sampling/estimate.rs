@@ -1,8 +1,8 @@
 //! Estimates with their standard errors, and confidence intervals of shares.
 
-use super::Summary;
-use super::critical::beta_quantile;
 use crate::power::{Rescale, Rescaling, Unknown};
+use crate::sampling::Summary;
+use crate::sampling::critical::beta_quantile;
 
 /// Value that a sample estimates, with its uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,7 +41,7 @@ pub const FEWEST: u64 = 10;
 /// ```
 ///
 /// For a kurtosis of 10 or more the error depends on the eighth moment, which a sample of less than a million values hardly determines. The
-/// standard error is then too small, and [`settled`](super::settled) removes it.
+/// standard error is then too small, and [`settled`](crate::sampling::settled) removes it.
 pub fn of_moments(summary: &Summary) -> [Option<Estimate>; 4] {
     let n = summary.count() as f64;
     if summary.count() == 0 {

@@ -16,7 +16,7 @@
 //! itself they do so in 96.6 % or more. Without the rule they do so in 36 % of the kurtoses of the heavy-tailed distributions at 1000
 //! points. For a normal distribution every standard error is given from 10 000 points on, and those of mean, sigma and skewness from 1000.
 
-use super::{Estimate, Summary};
+use crate::sampling::{Estimate, Summary};
 
 /// Greatest number of largest points that are used.
 const LARGEST: usize = 10;

@@ -34,10 +34,10 @@ use std::f64::consts::TAU;
 
 use statrs::distribution::{ContinuousCDF, Gamma};
 
-use super::estimate::clopper_pearson;
 use crate::correlation::{Correlation, JointLaw};
 use crate::dimension::Dimension;
 use crate::distribution::{Distribution, standard_normal};
+use crate::sampling::estimate::clopper_pearson;
 
 /// Probability beyond either end of a 95 % interval.
 const SIDE: f64 = 0.025;

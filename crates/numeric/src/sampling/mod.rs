@@ -1,11 +1,11 @@
 //! Random and quasi-random points of the inputs' joint distribution, and estimates from them.
 
+mod covariance;
 mod critical;
 mod draws;
 mod estimate;
 mod fine;
 mod joe_kuo;
-mod joint;
 mod largest;
 mod measured;
 mod normals;
@@ -15,6 +15,7 @@ mod sobol;
 mod stream;
 mod summary;
 
+pub use crate::sampling::covariance::Joint;
 pub use critical::student_quantile;
 pub use draws::{Draws, Portion, Sampler, SamplingError};
 pub use draws::{Room, tails};
@@ -22,7 +23,6 @@ pub use estimate::weighted_interval;
 pub use estimate::{Estimate, FEWEST, clopper_pearson, of_moments, one_error, wilson};
 pub use fine::{Fine, Scale};
 pub use joe_kuo::SOBOL_DIMENSIONS;
-pub use joint::Joint;
 pub use largest::{LargestPoints, LargestShare, LargestTerms, settled};
 pub use measured::{MeasuredBasis, MeasuredSample};
 pub use normals::Normals;

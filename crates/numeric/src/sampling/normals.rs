@@ -1,10 +1,10 @@
 //! Columns of independent standard normal variables.
 
-use super::draws::tails;
-use super::sobol::{Sobol, mixed};
-use super::stream::Stream;
 use crate::distribution::{standard_normal, ziggurat};
 use crate::parallel::prelude::*;
+use crate::sampling::draws::tails;
+use crate::sampling::sobol::{Sobol, mixed};
+use crate::sampling::stream::Stream;
 
 /// Greatest number of variables for which Sobol' points are used. With more, a few thousand of them are no more even than random points.
 const QUASI: usize = 256;

@@ -2,8 +2,8 @@
 
 use serde::{Serialize, Serializer};
 
+use crate::json_form::by_name;
 use crate::power::rescale;
-use crate::shape::by_name;
 
 /// Intervals that contain the true results with a probability of `level`, as far as the size of the measured samples determines them.
 ///

@@ -1,7 +1,7 @@
 //! Sobol' sequence with nested uniform scrambling.
 
-use super::joe_kuo::{SOBOL_DIMENSIONS, Start};
 use crate::elementary::{Work, on_this_processor};
+use crate::sampling::joe_kuo::{SOBOL_DIMENSIONS, Start};
 
 /// Binary digits of a coordinate, and of the index of a point.
 const DIGITS: u32 = 52;

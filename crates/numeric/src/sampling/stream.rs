@@ -4,8 +4,8 @@ use std::convert::Infallible;
 
 use rand::TryRng;
 
-use super::sobol::{GOLDEN, mixed};
 use crate::elementary::{Work, on_this_processor};
+use crate::sampling::sobol::{GOLDEN, mixed};
 
 /// Number of generators, chosen for vector instructions: a word takes 0.28 ns with 16, 1 ns with 8 or 1. The words do not depend on the
 /// processor.

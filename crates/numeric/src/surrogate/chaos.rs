@@ -17,8 +17,8 @@ use faer::linalg::matmul::matmul;
 use faer::linalg::solvers::SolveLstsqCore;
 use faer::{Accum, Conj, Mat, Par};
 
-use super::{InputShape, Surrogate};
 use crate::distribution::{Jacobi, Rule};
+use crate::surrogate::{InputShape, Surrogate};
 
 /// Highest degree of one input, and of a product. Nine nodes integrate the squares of no higher degree, and many inputs would have too many
 /// products of it.

@@ -1,9 +1,9 @@
 //! Moments of a surrogate of correlated inputs: of its parabolas, plus a sampled correction if it is not a parabola.
 
-use super::parabolas::Parabolas;
-use super::{Inputs, Surrogate, Univariate, sampled};
 use crate::correlation::Correlation;
 use crate::moments::{Contributions, Moments};
+use crate::surrogate::parabolas::Parabolas;
+use crate::surrogate::{Inputs, Surrogate, Univariate, sampled_remainder as sampled};
 
 /// Moments and contributions. Returns None if a part is unknown.
 pub(super) fn correlated(surrogate: &Surrogate, inputs: &Inputs, correlation: &Correlation) -> Option<Contributions> {

@@ -1,7 +1,7 @@
 //! Derivatives of the moments of a surface by the tolerances.
 
-use super::{Inputs, Surrogate};
 use crate::moments::growths;
+use crate::surrogate::{Inputs, Surrogate};
 
 impl Surrogate {
     /// Derivatives of mean, `ln sigma`, skewness and excess by the logarithm of every input's scale, at fixed means. Returns None if inputs

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use super::shape::InputShape;
 use crate::correlation::Correlation;
 use crate::distribution::Rule;
+use crate::surrogate::input_shape::InputShape;
 
 /// Shapes of the inputs, and their correlation.
 #[derive(Debug, Clone)]

@@ -6,27 +6,27 @@
 //!
 //! Difference plans fill it. Its moments are exact for any independent inputs, and for correlated normal ones with parabolas.
 
+mod block_moments;
+mod block_surface;
 mod chaos;
 mod correlated;
 mod derivative_origin;
-mod drawn;
 mod growth;
+mod input_shape;
 mod inputs;
 mod parabolas;
-mod pooled;
 mod relocation;
-mod sampled;
-mod setting;
-mod shape;
+mod sampled_blocks;
+mod sampled_remainder;
 mod univariate;
 mod values;
 
+pub use crate::surrogate::block_moments::Pooled;
+pub use crate::surrogate::input_shape::{InputShape, shapes};
 pub use chaos::{Chaos, DEPENDENT, Places, Sparse};
 pub use derivative_origin::DerivativeOrigin;
 pub use inputs::Inputs;
-pub use pooled::Pooled;
 pub use relocation::Relocation;
-pub use shape::{InputShape, shapes};
 pub use univariate::Univariate;
 
 use crate::moments::{Contributions, Interactions, Term, contributions, exact};
@@ -55,7 +55,7 @@ impl Surrogate {
     pub fn contributions(&self, inputs: &Inputs) -> Option<Contributions> {
         if let Some(correlation) = inputs.correlation() {
             if !correlation.blocks().is_empty() {
-                return pooled::pooled(self, inputs, correlation);
+                return crate::surrogate::block_moments::pooled(self, inputs, correlation);
             }
             return correlated::correlated(self, inputs, correlation);
         }

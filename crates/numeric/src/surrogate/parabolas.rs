@@ -16,10 +16,10 @@
 
 use faer::Mat;
 
-use super::{InputShape, Inputs, Surrogate, Univariate};
 use crate::correlation::Correlation;
 use crate::distribution::StandardMoments;
 use crate::moments::{Contributions, Interactions, Term, contributions};
+use crate::surrogate::{InputShape, Inputs, Surrogate, Univariate};
 
 /// Surrogate in independent variables: correlated inputs are replaced by normal variables, each with its best parabola.
 pub(super) struct Parabolas<'a> {

@@ -1,6 +1,6 @@
 //! Change of a surrogate to inputs with another mean and sigma.
 
-use super::{Surrogate, Univariate};
+use crate::surrogate::{Surrogate, Univariate};
 
 /// Move of an input's distribution: `u = shift + stretch v`, in the old sigmas about the old mean, with `v` standardised anew.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,8 +1,8 @@
 //! Univariate part of a characteristic in one dimension: a polynomial through the values at its nodes.
 
-use super::{DerivativeOrigin, InputShape};
 use crate::moments::Term;
 use crate::power::rescale;
+use crate::surrogate::{DerivativeOrigin, InputShape};
 
 /// Polynomial `g(u) = c1 u + c2 u^2 + c3 u^3 + c4 u^4`, of the degree that the nodes allow.
 #[derive(Debug, Clone, Copy, PartialEq)]

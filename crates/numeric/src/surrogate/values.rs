@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use super::{Surrogate, Univariate};
 use crate::elementary::{Work, on_this_processor};
 use crate::moments::{Interactions, Row};
 use crate::parallel::prelude::*;
+use crate::surrogate::{Surrogate, Univariate};
 
 /// Rows of a tile: their sums stay in registers while all products are added.
 const TILE: usize = 32;

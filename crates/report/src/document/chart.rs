@@ -1,6 +1,6 @@
 //! Charts as data.
 
-use super::Line;
+use crate::document::Line;
 use sensitol::simulation::Histogram;
 use sensitol_numeric::pearson::Pearson;
 

@@ -2,7 +2,7 @@
 //!
 //! RFC 4180, except that lines end without a carriage return.
 
-use super::{Cell, DataTable, Document, Element, Value};
+use crate::document::{Cell, DataTable, Document, Element, Value};
 
 /// Writes all tables of this name in a document as one table. They must have the same columns.
 pub fn csv(document: &Document, name: &str) -> String {
@@ -75,8 +75,8 @@ fn number(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Columns, Section};
     use super::*;
+    use crate::document::{Columns, Section};
 
     /// Tables of one name follow each other below one header. Numbers keep every digit and their sign, and no text is a formula.
     #[test]

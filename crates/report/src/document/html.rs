@@ -1,7 +1,7 @@
 //! Documents as fragments of HTML. The page around them holds the style sheet for their classes.
 
-use super::svg::{escaped, figure};
-use super::{Bar, Bars, Cell, Chart, DataTable, Document, Element, Fill, Flow, Line, Section, Tone, spread};
+use crate::document::svg::{escaped, figure};
+use crate::document::{Bar, Bars, Cell, Chart, DataTable, Document, Element, Fill, Flow, Line, Section, Tone, spread};
 use sensitol_numeric::names::clean;
 
 /// Most rows of a sweep's table that is shown unfolded.
@@ -95,11 +95,11 @@ fn figure_first(all: &[Element], id: &str) -> String {
     for (place, block) in rest.iter().enumerate() {
         let without = |inside: &str| blocks(&rest[..place]) + inside + &blocks(&rest[place + 1..]);
         match block {
-            one if drawn(one) => return beside(self::block(one) + &findings) + &without(""),
+            one if drawn(one) => return beside(crate::document::html::block(one) + &findings) + &without(""),
             Element::Detail(inner) => {
                 let Some(inside) = inner.iter().position(drawn) else { continue };
                 let others = blocks(&inner[..inside]) + &blocks(&inner[inside + 1..]);
-                return beside(self::block(&inner[inside]) + &findings) + &without(&others);
+                return beside(crate::document::html::block(&inner[inside]) + &findings) + &without(&others);
             }
             _ => {}
         }
@@ -153,7 +153,7 @@ fn block(block: &Element) -> String {
 
 /// Writes text with marked tones.
 fn toned(line: &Line) -> String {
-    let span = |span: &super::Span| {
+    let span = |span: &crate::document::Span| {
         let text = escaped(&clean(&span.text));
         match span.tone {
             Tone::Plain => text,

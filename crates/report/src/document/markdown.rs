@@ -1,6 +1,6 @@
 //! Documents as Markdown.
 
-use super::{DataTable, Document, Element};
+use crate::document::{DataTable, Document, Element};
 use sensitol_numeric::names::clean;
 
 /// Writes a document: its title as a heading, a heading for every section, tables with the columns that pages show.

@@ -1,6 +1,6 @@
 //! Yields and reject rates, printed with the digits that their error supports.
 
-use super::number::{FEWEST, power_of_ten, share, significant};
+use crate::document::number::{FEWEST, power_of_ten, share, significant};
 
 /// Most significant digits of parts per million.
 const DIGITS: i32 = 4;

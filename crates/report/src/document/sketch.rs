@@ -1,7 +1,7 @@
 //! Density as a few lines of text with marked limits, and histogram of bars.
 
-use super::number::{beside, plain, significant};
-use super::{Cell, Columns, DataTable};
+use crate::document::number::{beside, plain, significant};
+use crate::document::{Cell, Columns, DataTable};
 use sensitol::simulation::Histogram;
 use sensitol_numeric::pearson::Pearson;
 

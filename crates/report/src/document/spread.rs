@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use super::chart::SpreadChart;
-use super::number::{beside, plain, power_of_ten, unsigned_zero};
-use super::svg::escaped;
+use crate::document::chart::SpreadChart;
+use crate::document::number::{beside, plain, power_of_ten, unsigned_zero};
+use crate::document::svg::escaped;
 use sensitol::simulation::Histogram;
 
 /// Height of the density, in px.

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use super::labels::{LETTER, Label, placed};
-use super::number::{plain, power_of_ten, significant};
-use super::{Chart, Document, Element, Layer, Plot, PlotAxis, PlotPoint, PlotScale, Stroke};
+use crate::document::labels::{LETTER, Label, placed};
+use crate::document::number::{plain, power_of_ten, significant};
+use crate::document::{Chart, Document, Element, Layer, Plot, PlotAxis, PlotPoint, PlotScale, Stroke};
 
 /// Colour of emphasised elements.
 const ACCENT: &str = "#1f6feb";

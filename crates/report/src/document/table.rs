@@ -1,7 +1,7 @@
 //! Tables with typed cells. Each column is declared once: its key in CSV, its title for readers, and its cell for a row.
 
-use super::number::{UNKNOWN, short};
-use super::{Line, Tone};
+use crate::document::number::{UNKNOWN, short};
+use crate::document::{Line, Tone};
 
 /// Content of a cell for CSV and JSON.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,7 +1,7 @@
 //! Documents as text for a terminal, with tables without rules, in Unicode or plain ASCII.
 
-use super::sketch::{bars, sketch};
-use super::{Chart, DataTable, Document, Element, Flow, Line, List, Paragraph, Section, Tone};
+use crate::document::sketch::{bars, sketch};
+use crate::document::{Chart, DataTable, Document, Element, Flow, Line, List, Paragraph, Section, Tone};
 use sensitol_numeric::names::{clean, shortened_to};
 
 /// Amount of detail.
@@ -123,7 +123,7 @@ impl Page {
 
     /// Returns the letters of a line, replaced by ASCII if the style asks for it.
     fn letters(&self, line: &Line) -> Vec<Letter> {
-        let letters = |span: &super::Span| {
+        let letters = |span: &crate::document::Span| {
             let text = clean(&span.text);
             let text = if self.style.unicode {
                 text
@@ -326,8 +326,8 @@ fn width(letters: &[Letter]) -> usize {
 mod tests {
     use proptest::prelude::*;
 
-    use super::super::{Blocks, Cell, Columns};
     use super::*;
+    use crate::document::{Blocks, Cell, Columns};
 
     const STYLE: Style = Style { detail: Detail::Short, unicode: true, color: true, width: 20 };
 

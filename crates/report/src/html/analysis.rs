@@ -1,13 +1,15 @@
 //! The page of an analysis.
 
-use super::super::Report;
-use super::super::head::seed;
-use super::terms::terms;
-use super::verdict::{JudgedCharacteristic, Together, Words, verdict};
-use super::what_if::WhatIf;
-use super::{Fact, evidence, fact, inputs, json, others, provenance, render, sure, tries};
+use crate::Report;
 use crate::document::html::{head, sections};
 use crate::document::number::{plain, plural};
+use crate::head::seed;
+use crate::html::terms::terms;
+use crate::html::verdict::{JudgedCharacteristic, Together, Words, verdict};
+use crate::html::what_if::WhatIf;
+use crate::html::{
+    Fact, certainty as sure, evidence, fact, inputs, json, others, provenance, render, what_if_section as tries,
+};
 use sensitol::analysis::Analysis;
 use sensitol::method::Basis;
 use sensitol::summary::RunSummary;

@@ -3,15 +3,15 @@
 
 use std::fmt::Write;
 
-use super::super::analysis_document::SHARES;
-use super::super::figures::{Figures, Named};
-use super::super::{DimensionReport, Report};
-use super::facts::facts;
-use super::pareto::pareto;
+use crate::analysis::analysis_document::SHARES;
 use crate::document::number::{band, beside, estimated, plain, power_of_ten};
 use crate::document::svg::escaped;
 use crate::document::{Bar, Bars, Chart, Element, Extent, Fill, Line, Section, html};
 use crate::figures::FittedFigures;
+use crate::figures::{Figures, Named};
+use crate::html::facts::facts;
+use crate::html::pareto::pareto;
+use crate::{DimensionReport, Report};
 use sensitol::analysis::{CharacteristicAnalysis, Sensitivity};
 use sensitol::verification::TailPoint;
 use sensitol_numeric::capability::Law;
@@ -59,7 +59,7 @@ pub(super) fn add(report: &Report, sections: &mut [Section]) {
         drawn("Dimension chain", chain(one, &report.dimensions).map(Element::Markup));
         let shifts = shifts(one, &report.dimensions).map(|bars| Element::Chart(Chart::Bars(bars)));
         drawn("From the nominal value to the mean", shifts);
-        drawn("Interactions", super::map::map(one).map(Element::Markup));
+        drawn("Interactions", crate::html::map::map(one).map(Element::Markup));
     }
 }
 

@@ -2,12 +2,12 @@
 
 use std::fmt::Write;
 
-use super::super::figures::{Figures, Named};
-use super::verdict::interval;
-use crate::analysis_document::CharacteristicSections;
+use crate::analysis::analysis_document::CharacteristicSections;
+use crate::analysis::statistics::CharacteristicStatistics;
 use crate::document::number::index;
 use crate::document::svg::escaped;
-use crate::statistics::CharacteristicStatistics;
+use crate::figures::{Figures, Named};
+use crate::html::verdict::interval;
 use sensitol::analysis::CharacteristicAnalysis;
 use sensitol_numeric::capability::Capability;
 

@@ -2,12 +2,12 @@
 
 use std::fmt::Write;
 
-use super::super::figures::Named;
-use super::super::statistics::part;
-use super::super::{DimensionReport, Report};
-use super::pareto::slope;
+use crate::analysis::statistics::part;
 use crate::document::number::{UNKNOWN, known, percent, percent_within, plain, plural, significant};
 use crate::document::svg::escaped;
+use crate::figures::Named;
+use crate::html::pareto::slope;
+use crate::{DimensionReport, Report};
 use sensitol::analysis::{CharacteristicAnalysis, Sensitivity};
 
 /// Dimensions that are shown; the others are folded.

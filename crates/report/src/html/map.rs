@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use super::super::figures::Named;
 use crate::document::number::percent;
 use crate::document::svg::escaped;
+use crate::figures::Named;
 use sensitol::analysis::CharacteristicAnalysis;
 
 /// Most dimensions of the map, the most influential first.

@@ -5,17 +5,17 @@
 //! nothing else.
 
 mod analysis;
+mod certainty;
 mod evidence;
 mod facts;
 mod inputs;
 mod map;
 mod pages;
 mod pareto;
-mod sure;
 mod terms;
-mod tries;
 mod verdict;
 mod what_if;
+mod what_if_section;
 
 pub use analysis::analyze_html;
 pub use pages::{allocate_html, compare_html, rare_html, simulate_html, sweep_html};
@@ -24,12 +24,12 @@ pub use what_if::WhatIf;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
-use super::head::findings;
-use super::{DifferenceReport, Head, WarningReport};
 use crate::document::Document;
 use crate::document::html::{blocks, head as summary, sections};
 use crate::document::number::significant;
 use crate::document::svg::escaped;
+use crate::head::findings;
+use crate::{DifferenceReport, Head, WarningReport};
 use sensitol::summary::RunSummary;
 
 const STYLE: &str = include_str!("page.css");

@@ -1,20 +1,20 @@
 //! Pages of all commands except `analyze`. Each has the verdict, the summary, a section for each characteristic, the errors of the
 //! figures, and the terms.
 
-use super::super::head::{findings, seed};
-use super::super::sweep::SweptReport;
-use super::super::{AllocationReport, CompareReport, Head, RareReport, SimulationReport, SweepReport, WarningReport};
-use super::sure::Row;
-use super::verdict::{Asked, JudgedCharacteristic, Together, Words, verdict};
-use super::{others, provenance, render, sure, terms};
 use crate::document::html::{head as summary, sections};
 use crate::document::number::{plain, plural, significant};
 use crate::document::svg::escaped;
 use crate::document::{Chart, Document, Element, Flow, Section};
+use crate::head::{findings, seed};
+use crate::html::certainty::Row;
+use crate::html::verdict::{Asked, JudgedCharacteristic, Together, Words, verdict};
+use crate::html::{certainty as sure, others, provenance, render, terms};
+use crate::sweep::SweptReport;
+use crate::{AllocationReport, CompareReport, Head, RareReport, SimulationReport, SweepReport, WarningReport};
 use sensitol::summary::RunSummary;
+use sensitol_numeric::json_form::finite;
 use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::sampling::one_error;
-use sensitol_numeric::shape::finite;
 use sensitol_numeric::verdict::Verdict;
 
 /// Most values of a sweep that are listed one by one.
@@ -110,9 +110,8 @@ pub fn compare_html(report: &CompareReport) -> String {
     let cheapest = report.characteristics.iter().filter_map(|one| {
         // The methods are sorted by evaluations.
         let enough = one.methods.iter().find(|method| !method.error_vs_reference.resolved());
-        let least = |a: &&super::super::compare::MethodReport, b: &&super::super::compare::MethodReport| {
-            let error =
-                |of: &super::super::compare::MethodReport| of.error_vs_reference.overall().unwrap_or(f64::INFINITY);
+        let least = |a: &&crate::compare::MethodReport, b: &&crate::compare::MethodReport| {
+            let error = |of: &crate::compare::MethodReport| of.error_vs_reference.overall().unwrap_or(f64::INFINITY);
             error(a).total_cmp(&error(b))
         };
         let (method, word) = match enough {
@@ -145,7 +144,7 @@ pub fn sweep_html(report: &SweepReport) -> String {
         gauge: " Each row is the value at which the characteristic is worst.",
         ..words(&document, &report.warnings)
     };
-    type Of = fn(&super::super::sweep::SweptPointReport) -> Option<(f64, f64)>;
+    type Of = fn(&crate::sweep::SweptPointReport) -> Option<(f64, f64)>;
     let figures: [(&str, Of); 3] = [
         ("mean", |point| Some((point.mean?, point.error_estimate.as_ref()?.mean?))),
         ("sigma", |point| Some((point.sigma?, point.error_estimate.as_ref()?.sigma?))),
@@ -173,7 +172,7 @@ pub fn sweep_html(report: &SweepReport) -> String {
 fn along(one: &SweptReport, parameter: &str) -> Option<String> {
     let total = one.points.len();
     let of = |wanted: Verdict, word: &str| {
-        let place = |point: &super::super::sweep::SweptPointReport| point.verdict == Some(wanted);
+        let place = |point: &crate::sweep::SweptPointReport| point.verdict == Some(wanted);
         let held: Vec<(usize, f64)> =
             one.points.iter().enumerate().filter(|(_, point)| place(point)).map(|(i, point)| (i, point.at)).collect();
         let (first, last) = (held.first()?, held.last()?);

@@ -2,12 +2,12 @@
 
 use std::fmt::Write;
 
-use super::super::figures::{Figures, Named};
-use super::super::statistics::derivative;
-use super::super::{DimensionReport, Report};
+use crate::analysis::statistics::CharacteristicStatistics;
+use crate::analysis::statistics::derivative;
 use crate::document::number::{NEWS, UNKNOWN, percent, percent_within, short, within};
 use crate::document::svg::escaped;
-use crate::statistics::CharacteristicStatistics;
+use crate::figures::{Figures, Named};
+use crate::{DimensionReport, Report};
 use sensitol::analysis::{CharacteristicAnalysis, EstimatedShare, Sensitivity};
 
 /// Most rows of a diagram. Of more rows, those with shares below `SMALL` are folded into one.

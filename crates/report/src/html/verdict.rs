@@ -1,24 +1,24 @@
 //! Verdict of every report: a sentence, and a gauge for every characteristic.
 
-use crate::worst_case::WorstCaseFigures;
+use crate::analysis::worst_case::WorstCaseFigures;
 use std::fmt::Write;
 
-use super::super::WarningReport;
-use super::super::figures::{Figures, Named};
-use super::super::statistics::part;
-use super::super::sweep::{SweptPointReport, SweptReport};
-use super::super::worst_case::{KnownWorstCase, WorstCaseKind};
-use crate::analysis_document::CharacteristicSections;
+use crate::WarningReport;
+use crate::analysis::analysis_document::CharacteristicSections;
+use crate::analysis::statistics::part;
+use crate::analysis::worst_case::{KnownWorstCase, WorstCaseKind};
 use crate::document::number::{index, plain, plural, significant, yielded};
 use crate::document::rejects::Rejects;
 use crate::document::svg::escaped;
+use crate::figures::{Figures, Named};
+use crate::sweep::{SweptPointReport, SweptReport};
 use sensitol::analysis::CharacteristicAnalysis;
 use sensitol::rare::{Beyond, RareCharacteristic};
 use sensitol::simulation::{SimulatedCharacteristic, YieldEstimate};
 use sensitol_numeric::capability::Capability;
+use sensitol_numeric::json_form::finite;
 use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::sampling::{Estimate, one_error};
-use sensitol_numeric::shape::finite;
 use sensitol_numeric::verdict::{Judged, Verdict};
 
 /// Most claims of one kind in the sentence.

@@ -5,9 +5,9 @@ mod stack;
 
 use rust_xlsxwriter::{Workbook, XlsxError};
 
-use super::Report;
-use super::output_correlation::together_table;
+use crate::Report;
 use crate::document::{Cell, Columns, DataTable, Document, Element, Value};
+use crate::output_correlation::together_table;
 use book::{Names, tables};
 
 /// Error of a report that does not fit into a workbook.

@@ -12,8 +12,8 @@
 
 use rust_xlsxwriter::{Format, Formula, Worksheet, XlsxError, utility::row_col_to_cell};
 
-use super::super::stack::{Stack, StackRow, TotalKind};
-use super::book;
+use crate::analysis::stack::{Stack, StackRow, TotalKind};
+use crate::xlsx::book;
 use sensitol::analysis::CharacteristicAnalysis;
 use sensitol_numeric::labels::LABELS;
 

@@ -3,13 +3,15 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::super::decimal::{SAID, decimal};
-use super::super::error::{Fault, StudyFault, fault};
-use super::super::file::{DimensionEntry, DistributionEntry};
-use super::super::spanned::Spanned;
-use super::super::words::{KINDS, Kind, SIGMAS};
-use super::conflict;
-use super::spread::{Spread, agree, is_flat, needs_band, nothing_to_spread, only_normal, shift, sigma, sigmas};
+use crate::decimal::{SAID, decimal};
+use crate::dimension::conflict;
+use crate::dimension::spread::{
+    Spread, agree, is_flat, needs_band, nothing_to_spread, only_normal, shift, sigma, sigmas,
+};
+use crate::entries::file::{DimensionEntry, DistributionEntry};
+use crate::entries::spanned::Spanned;
+use crate::entries::vocabulary::{KINDS, Kind, SIGMAS};
+use crate::error::{Fault, StudyFault, fault};
 use sensitol_numeric::dimension::DimensionFault;
 use sensitol_numeric::distribution::{
     Beta, CentralMoments, CurvilinearTrapezoid, Distribution, DistributionError, Exponential, Gamma, Lognormal,

@@ -3,11 +3,11 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::super::data::{Column, Data, DataFault, DataProblem};
-use super::super::error::{Fault, StudyFault, fault};
-use super::super::file::DimensionEntry;
-use super::super::spanned::Spanned;
-use super::super::words::MEASURED_MODELS;
+use crate::data::{Column, Data, DataFault, DataProblem};
+use crate::entries::file::DimensionEntry;
+use crate::entries::spanned::Spanned;
+use crate::entries::vocabulary::MEASURED_MODELS;
+use crate::error::{Fault, StudyFault, fault};
 use sensitol::warning::Warning;
 use sensitol_numeric::dimension::DimensionFault;
 use sensitol_numeric::distribution::{Distribution, DistributionError, Measured, PearsonLaw, Resample, outliers};

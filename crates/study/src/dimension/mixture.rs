@@ -1,12 +1,12 @@
 //! Mixtures. A part is written like a dimension and takes missing values from the dimension.
 
-use super::super::error::{Fault, StudyFault, fault};
-use super::super::file::{DimensionEntry, PartEntry};
-use super::super::spanned::Spanned;
-use super::distribution;
-use super::kinds::{agreeing, placed, shared};
-use super::spread::{Spread, is_flat, nothing_to_spread, sigma, sigmas};
-use super::tolerance::tolerance;
+use crate::dimension::distribution;
+use crate::dimension::kinds::{agreeing, placed, shared};
+use crate::dimension::spread::{Spread, is_flat, nothing_to_spread, sigma, sigmas};
+use crate::dimension::tolerance::tolerance;
+use crate::entries::file::{DimensionEntry, PartEntry};
+use crate::entries::spanned::Spanned;
+use crate::error::{Fault, StudyFault, fault};
 use sensitol_numeric::distribution::{Mixture, Part};
 
 /// Distribution of a mixture. Each part has the dimension's nominal and band unless it gives its own.
@@ -30,7 +30,7 @@ pub(super) fn mixture(entry: &DimensionEntry, nominal: f64, band: Option<[f64; 2
         return Err(fault(table.span(), "distribution", missing));
     };
     let built = parts.get_ref().0.iter().map(|(name, part)| {
-        self::part(name.get_ref(), part, nominal, band).map_err(|found| {
+        crate::dimension::mixture::part(name.get_ref(), part, nominal, band).map_err(|found| {
             let below = if found.key.is_empty() { String::new() } else { format!(".{}", found.key) };
             let span = found.span.filter(|span| !span.is_empty()).unwrap_or_else(|| name.span());
             let key = format!("distribution.parts.{}{below}", name.get_ref());

@@ -12,12 +12,12 @@ mod tolerance;
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::conventions;
-use super::data::Data;
-use super::error::{Fault, StudyFault, fault};
-use super::file::{DimensionEntry, Entries};
-use super::spanned::Spanned;
-use super::values::NominalEntry;
+use crate::build::inflation as conventions;
+use crate::data::Data;
+use crate::entries::file::{DimensionEntry, Entries};
+use crate::entries::spanned::Spanned;
+use crate::entries::values::NominalEntry;
+use crate::error::{Fault, StudyFault, fault};
 use sensitol_numeric::dimension::{Convention, Dimension, DimensionError};
 use spread::Spread;
 

@@ -3,13 +3,13 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::super::error::{Fault, StudyFault, fault};
-use super::super::file::DimensionEntry;
-use super::super::spanned::Spanned;
-use super::super::values::NominalEntry;
-use super::spread::only_normal;
-use super::{built, conflict, distribution};
-use crate::zone::{OF_DISC, is_even};
+use crate::build::zone::{OF_DISC, is_even};
+use crate::dimension::spread::only_normal;
+use crate::dimension::{built, conflict, distribution};
+use crate::entries::file::DimensionEntry;
+use crate::entries::spanned::Spanned;
+use crate::entries::values::NominalEntry;
+use crate::error::{Fault, StudyFault, fault};
 use sensitol_numeric::dimension::{Dimension, DimensionFault};
 use sensitol_numeric::distribution::{Beta, DistributionError};
 

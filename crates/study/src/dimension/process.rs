@@ -1,12 +1,12 @@
 //! Place of a process within its band: `cpk` beside `cp`, its `side`, and the `drift` of its lots.
 
-use super::super::error::{Fault, StudyFault, fault};
-use super::super::file::DimensionEntry;
-use super::super::spanned::Spanned;
-use super::conflict;
-use super::kinds::{placed, shared};
-use super::off_centre::OffCentre;
-use super::spread::Spread;
+use crate::dimension::conflict;
+use crate::dimension::kinds::{placed, shared};
+use crate::dimension::off_centre::OffCentre;
+use crate::dimension::spread::Spread;
+use crate::entries::file::DimensionEntry;
+use crate::entries::spanned::Spanned;
+use crate::error::{Fault, StudyFault, fault};
 use sensitol_numeric::dimension::Lot;
 use sensitol_numeric::distribution::{Drifting, Mixture, Normal, Part};
 use sensitol_numeric::names::nearest;

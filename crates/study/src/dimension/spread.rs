@@ -3,12 +3,12 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::super::decimal::{SAID, decimal};
-use super::super::error::{Fault, StudyFault, fault};
-use super::super::file::DimensionEntry;
-use super::super::spanned::Spanned;
-use super::super::words::SIGMAS;
-use super::conflict;
+use crate::decimal::{SAID, decimal};
+use crate::dimension::conflict;
+use crate::entries::file::DimensionEntry;
+use crate::entries::spanned::Spanned;
+use crate::entries::vocabulary::SIGMAS;
+use crate::error::{Fault, StudyFault, fault};
 use sensitol_numeric::distribution::Distribution;
 
 /// Relative difference within which two ways of giving sigma agree.

@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use super::super::error::{Fault, StudyFault, fault};
-use super::super::file::DimensionEntry;
-use super::super::spanned::Spanned;
-use super::super::values::{Deviation, ToleranceEntry};
-use super::conflict;
+use crate::dimension::conflict;
+use crate::entries::file::DimensionEntry;
+use crate::entries::spanned::Spanned;
+use crate::entries::values::{Deviation, ToleranceEntry};
+use crate::error::{Fault, StudyFault, fault};
 use sensitol_numeric::dimension::DimensionFault;
 use sensitol_numeric::fits;
 

@@ -1,8 +1,8 @@
 //! Expands `[configurations]`: nominal values and constants of several sizes of one assembly.
 
-use super::{Expanded, Tree, Value, wrong_type};
 use crate::data::{Cells, Data};
 use crate::error::{Fault, Faults, StudyFault, fault};
+use crate::expand::{Expanded, Tree, Value, wrong_type};
 use sensitol_numeric::names::nearest;
 
 /// A configuration: names of dimensions and constants, with their values.
@@ -127,7 +127,7 @@ fn set(tree: &mut Tree, name: &str, value: Tree) {
         if let Some(nominal) = entry.get_mut("nominal") {
             *nominal = value;
         } else if let Some(keys) = entry.entries_mut() {
-            let key = super::Key { span: value.span.clone(), name: "nominal".to_owned() };
+            let key = crate::expand::Key { span: value.span.clone(), name: "nominal".to_owned() };
             keys.insert(0, (key, value));
         }
         return;

@@ -1,8 +1,8 @@
 //! Expands relative dimensions: `x2 = { nominal = 40, tolerance = 0.1, from = "x1" }` is `x1` plus a dimension of its own.
 
-use super::geometry::{Shape, place, shape, takes_from};
-use super::{Expanded, OWN, Origin, Tree, Value, quoted, wrong_type};
 use crate::error::{Fault, Faults, StudyFault, fault};
+use crate::expand::geometry::{Shape, place, shape, takes_from};
+use crate::expand::{Expanded, OWN, Origin, Tree, Value, quoted, wrong_type};
 use crate::tree::Key;
 use sensitol_numeric::names::nearest;
 use sensitol_numeric::unit::Unit;

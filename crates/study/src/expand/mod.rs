@@ -6,15 +6,15 @@
 mod configurations;
 mod from;
 mod geometry;
-mod joint;
+mod joint_entry;
 mod processes;
 mod toml;
 
 use std::ops::Range;
 
-use super::data::Data;
-use super::error::{Fault, Faults, StudyFault, fault};
-use super::tree::{Key, Tree, Value};
+use crate::data::Data;
+use crate::error::{Fault, Faults, StudyFault, fault};
+use crate::tree::{Key, Tree, Value};
 use sensitol::assembly::formula::is_plain;
 
 /// A study with plain keys only.
@@ -60,11 +60,11 @@ pub(super) fn expand(tree: Tree, configuration: Option<&str>, data: &mut Data<'_
     configurations::expand(&mut expanded, configuration, data)?;
     processes::expand(&mut expanded, data)?;
     geometry::fasteners(&mut expanded)?;
-    joint::expand(&mut expanded);
+    crate::expand::joint_entry::expand(&mut expanded);
     from::expand(&mut expanded)?;
     geometry::expand(&mut expanded)?;
     // A second time, for the blocks that geometric elements have added.
-    joint::expand(&mut expanded);
+    crate::expand::joint_entry::expand(&mut expanded);
     Ok(expanded)
 }
 

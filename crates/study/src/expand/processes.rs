@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use super::{Expanded, Tree, Value, wrong_type};
 use crate::data::Data;
 use crate::error::{Fault, Faults, StudyFault, fault};
+use crate::expand::{Expanded, Tree, Value, wrong_type};
 use crate::tree::Key;
 use sensitol_numeric::names::nearest;
 

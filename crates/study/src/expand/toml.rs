@@ -1,6 +1,6 @@
 //! Writes a tree as a study file in TOML.
 
-use super::{Origin, Tree, Value};
+use crate::expand::{Origin, Tree, Value};
 use crate::write;
 
 /// Text of the whole study: plain keys first, then the sections, each with one line for an entry.

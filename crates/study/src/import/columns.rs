@@ -1,6 +1,6 @@
 //! Columns of a stack-up table, recognised by their headers in English and German.
 
-use super::sheet::Content;
+use crate::import::sheet::Content;
 
 /// Meaning of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

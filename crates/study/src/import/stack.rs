@@ -2,12 +2,12 @@
 
 use std::fmt::Write;
 
-use super::super::write::{inline, name as key, number, quoted};
-use super::columns::{LABELLED, ROLES, Role, role};
-use super::fault::{ImportFault, ImportProblem};
-use super::sheet::{Content, Sheet, address};
-use super::tolerance::{Written, written};
+use crate::import::columns::{LABELLED, ROLES, Role, role};
+use crate::import::fault::{ImportFault, ImportProblem};
+use crate::import::sheet::{Content, Sheet, address};
+use crate::import::tolerance::{Written, written};
 use crate::table::{NumberFault, Style};
+use crate::write::{inline, name as key, number, quoted};
 use sensitol::assembly::formula::is_plain;
 use sensitol_numeric::labels::LABELS;
 

@@ -4,7 +4,7 @@ use std::io::Cursor;
 
 use calamine::{DataRef, Reader, SheetType, SheetVisible, Xlsx, XlsxError};
 
-use super::sheet::{Content, Sheet};
+use crate::import::sheet::{Content, Sheet};
 use sensitol_numeric::names::nearest;
 
 /// Greatest number of cells of a sheet, with the empty ones before the last of each row. It bounds the memory.

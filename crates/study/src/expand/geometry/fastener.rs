@@ -1,8 +1,8 @@
 //! Expands fasteners: the play that remains when holes are off their places, as the formula of a characteristic.
 
-use super::line::{Diameter, Part, literal, names, place, unit_of};
-use super::{Expanded, Shape, shape};
 use crate::error::{Fault, Faults, StudyFault, fault};
+use crate::expand::geometry::line::{Diameter, Part, literal, names, place, unit_of};
+use crate::expand::geometry::{Expanded, Shape, shape};
 use crate::expand::{OWN, Origin, Tree, Value, quoted, wrong_type};
 use crate::tree::Key;
 use sensitol_numeric::names::nearest;

@@ -1,9 +1,9 @@
 //! Expands play between a hole and a pin: the float of one part in another, and of a part on a round pin and in a slot.
 
-use super::line::{Diameter, Line, Part};
-use super::plain::{Of, Plain, key, number, pair, text};
-use super::size;
 use crate::error::{Fault, StudyFault};
+use crate::expand::geometry::line::{Diameter, Line, Part};
+use crate::expand::geometry::plain::{Of, Plain, key, number, pair, text};
+use crate::expand::geometry::size;
 use crate::expand::{Closing, Tree, quoted};
 use crate::tree::Key;
 use sensitol::assembly::formula::Formula;

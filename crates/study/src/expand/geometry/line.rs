@@ -188,7 +188,11 @@ pub(super) fn unit_of(entry: &Tree) -> Option<&str> {
 pub(super) fn names(study: &Tree) -> Vec<String> {
     let of = |section: &str| study.get(section).map_or(&[][..], Tree::entries);
     let dimensions = of("dimensions").iter().flat_map(|(key, entry)| {
-        super::shape(entry).axes().iter().map(|axis| format!("{}{axis}", key.name)).collect::<Vec<_>>()
+        crate::expand::geometry::shape(entry)
+            .axes()
+            .iter()
+            .map(|axis| format!("{}{axis}", key.name))
+            .collect::<Vec<_>>()
     });
     let characteristics = of("characteristics").iter().filter(|(_, entry)| entry.get("formula").is_some());
     (["formulas", "constants", "unknowns"].into_iter().flat_map(of))

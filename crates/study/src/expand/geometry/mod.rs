@@ -19,8 +19,8 @@ mod zones;
 
 pub(super) use line::place;
 
-use super::{Expanded, Origin, Tree, Value};
 use crate::error::{Fault, Faults, StudyFault};
+use crate::expand::{Expanded, Origin, Tree, Value};
 use crate::tree::Key;
 use line::Line;
 use plain::Plain;

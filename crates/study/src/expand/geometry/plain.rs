@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use super::line::Line;
-use super::{Shape, shape};
+use crate::expand::geometry::line::Line;
+use crate::expand::geometry::{Shape, shape};
 use crate::expand::{Closing, Tree, Value};
 use crate::tree::Key;
 
@@ -35,7 +35,7 @@ impl Plain {
     pub(super) fn dimension(&mut self, line: &Line<'_>, name: String, of: Of, keys: Vec<(Key, Tree)>) {
         let unit = unit(line, of).map(|unit| ("unit", text(line, unit)));
         let mut keys = keys;
-        keys.extend(unit.map(|(key, tree)| (self::key(line, key), tree)));
+        keys.extend(unit.map(|(key, tree)| (crate::expand::geometry::plain::key(line, key), tree)));
         self.dimensions.push((named(line, name), table(line, keys)));
     }
 

@@ -1,9 +1,9 @@
 //! Expands a position whose zone depends on the size of a feature: the bonus of maximum or least material.
 
-use super::line::{Line, Part, literal};
-use super::plain::{Of, Plain, key, number, others, pair};
-use super::size;
 use crate::error::{Fault, StudyFault};
+use crate::expand::geometry::line::{Line, Part, literal};
+use crate::expand::geometry::plain::{Of, Plain, key, number, others, pair};
+use crate::expand::geometry::size;
 use crate::expand::{Tree, Value, quoted, wrong_type};
 use sensitol_numeric::names::nearest;
 
@@ -136,7 +136,7 @@ fn nominal(line: &Line<'_>) -> Result<[f64; 2], Fault> {
         let instead = "write the place on the drawing, such as nominal = [50.0, 30.0]".to_owned();
         return Err(line.at_key("position", StudyFault::MissingKey { key: "nominal".into(), instead }));
     };
-    super::line::place(tree).ok_or_else(|| {
+    crate::expand::geometry::line::place(tree).ok_or_else(|| {
         let expected = "the nominal place of a position, two numbers such as [50.0, 30.0],";
         wrong_type(tree, format!("dimensions.{}.nominal", line.shown()), expected)
     })

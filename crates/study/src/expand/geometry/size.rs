@@ -1,11 +1,11 @@
 //! Ranges of the sizes of features.
 
-use super::line::{Line, as_number, unit_of};
-use crate::de;
+use crate::deserializer as de;
 use crate::dimension;
+use crate::entries::file::DimensionEntry;
 use crate::error::Faults;
 use crate::expand::Tree;
-use crate::file::DimensionEntry;
+use crate::expand::geometry::line::{Line, as_number, unit_of};
 use sensitol::assembly::formula::{Formula, FormulaSet, Meaning};
 
 /// Least and greatest size of a dimension, with its unit. Returns None if it has no band. Faults of its line are reported where the line is

@@ -1,9 +1,9 @@
 //! Expands zones that are bands or circles: profile, orientation, form, eccentricity and symmetry.
 
-use super::line::Line;
-use super::plain::{Of, Plain, key, number, others, pair};
 use crate::decimal::{KEPT, decimal};
 use crate::error::{Fault, StudyFault};
+use crate::expand::geometry::line::Line;
+use crate::expand::geometry::plain::{Of, Plain, key, number, others, pair};
 use crate::expand::{Value, wrong_type};
 
 /// Plain lines of a profile: the offset along the normal of a face, and with `length` its tilt, which shares the zone.

@@ -1,0 +1,46 @@
+//! `sensitol check`.
+
+use std::path::Path;
+
+use crate::args::CheckArgs;
+use crate::commands::several;
+use crate::failure::{Exit, Failure};
+use crate::output::{Destination, Look};
+use sensitol_study::Study;
+
+pub(crate) fn run(asked: &CheckArgs, look: Look) -> Result<Exit, Failure> {
+    match &asked.studies[..] {
+        [study] => one(study, look),
+        studies => {
+            let mut exit = Exit::Done;
+            for study in studies {
+                let name = study.display().to_string();
+                exit = exit.worse(several::outcome(&name, one(study, look.of(&name)))?);
+            }
+            Ok(exit)
+        }
+    }
+}
+
+fn one(path: &Path, look: Look) -> Result<Exit, Failure> {
+    let study = Study::read(path)?;
+    look.warn_all(&study.warnings);
+    let procedure = study.options.method.procedure();
+    let plan = procedure.plan(&study.problem, &study.options)?;
+    let characteristics: Vec<&str> =
+        study.problem.characteristics().iter().map(|characteristic| characteristic.name()).collect();
+    let summary = format!(
+        "{}: valid\n  {} dimensions, {} of which vary and matter\n  characteristics: {}\n  {} would evaluate {} points\n",
+        path.display(),
+        study.problem.dimensions().len(),
+        plan.varying().len(),
+        characteristics.join(", "),
+        procedure.name(),
+        match procedure.range(&study.problem, &study.options) {
+            Some([least, most]) if least < most => format!("{least} to {most}"),
+            _ => plan.cost().0.to_string(),
+        },
+    );
+    Destination::Stdout.write(&summary)?;
+    Ok(Exit::Done)
+}

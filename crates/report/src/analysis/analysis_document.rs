@@ -1,0 +1,573 @@
+//! The report of an analysis as a document: the verdict first, then a section for every characteristic.
+
+use crate::analysis::interactions::InteractionSections;
+use crate::analysis::interactions::{SHOWN, SHOWN_ON_PAGE};
+use crate::analysis::range_bars as bars;
+use crate::analysis::stack::Stack;
+use crate::analysis::statistics::CharacteristicStatistics;
+use crate::analysis::statistics::{derivative, matters, part, size, total};
+use crate::analysis::yield_source::source;
+use crate::document::number::{
+    UNKNOWN, beside, index, known, limits, percent, plain, plural, short, significant, yielded,
+};
+use crate::document::rejects::Rejects;
+use crate::document::{
+    Blocks, Cell, Chart, Columns, DataTable, Document, Element, Line, Paragraph, Section, SpreadChart, Style, Value,
+    terminal,
+};
+use crate::figures::FittedFigures;
+use crate::figures::{Figures, Named};
+use crate::head;
+use crate::head::findings;
+use crate::inspection::inspected;
+use crate::output_correlation::{all_limits, together, together_table};
+use crate::requirement::{judged, lines};
+use crate::sampling::sampled;
+use crate::{DimensionReport, Report};
+use sensitol::analysis::{CharacteristicAnalysis, EstimatedShare, IndexSource, Sensitivity, SobolIndices};
+use sensitol::extremes::{Extreme, Place};
+use sensitol::method::Basis;
+use sensitol_numeric::capability::{Capability, Law, Quantiles, TAIL};
+use sensitol_numeric::correlation::Pair;
+use sensitol_numeric::pearson::Pearson;
+use sensitol_numeric::sampling::one_error;
+
+/// Contributions that a terminal shows unless all are asked for.
+const CONTRIBUTIONS: usize = 30;
+/// Dimensions that are named, rather than counted, in a sentence.
+const NAMED: usize = 8;
+/// Heading of the contributions.
+pub(crate) const SHARES: &str = "Contributions to the variance";
+/// Least relative difference of the reject rates, between the normal fit and the best source, that is worth a line.
+const DIFFERENT: f64 = 0.05;
+/// Reject rates below this, in ppm, count as zero.
+const LEAST_PPM: f64 = 1e-6;
+
+impl Report {
+    /// Builds the document with every table: `characteristics`, `dimensions`, `sensitivities`, `interactions`, `quantiles` and
+    /// `warnings`.
+    pub fn document(&self) -> Document {
+        self.with_pairs(usize::MAX)
+    }
+
+    /// Builds the document with only as many interactions as a page or a terminal shows.
+    pub fn brief_document(&self) -> Document {
+        self.with_pairs(SHOWN.max(SHOWN_ON_PAGE))
+    }
+
+    fn with_pairs(&self, pairs: usize) -> Document {
+        let mut document = Document::titled(self.head.title.as_deref());
+        let evaluations = head::evaluations(&self.analysis.run);
+        let varying = plural(self.analysis.varying, "varying dimension", "varying dimensions");
+        document.line(format!(
+            "{}: {evaluations}, {varying}{}",
+            self.analysis.method,
+            head::beside(&self.analysis.run)
+        ));
+        let mut account = Vec::new();
+        self.analysis.account.iter().for_each(|one| account.wrapped(0, one.to_string()));
+        document.detail(account);
+        document.gap();
+        document.table(self.verdicts());
+        if let Some(joint) = &self.analysis.joint {
+            let measured = self.analysis.characteristics.iter().any(|one| one.sampling.is_some());
+            let interval = self.analysis.joint_interval.filter(|_| measured);
+            let error = interval.map_or(joint.error, |interval| one_error(joint.value, interval));
+            let text = Rejects::all(1.0 - joint.value, Some(error)).yield_text().unwrap_or_default();
+            let requirement = self.analysis.joint_requirement.as_ref();
+            let reach = match interval.map(|ends| ends.map(yielded)) {
+                Some([low, high]) => format!("95 % interval {low} to {high}"),
+                None => format!("± {} %", significant(100.0 * joint.error, 2)),
+            };
+            document.note(all_limits(&text, &reach, requirement));
+        }
+        if let Some(line) = together(&self.analysis.correlations) {
+            document.wrapped(2, line);
+        }
+        self.labels().into_iter().for_each(|table| document.detail(table));
+        let all = self.analysis.characteristics.iter().zip(self.stacks());
+        document.sections = all.map(|(one, stack)| self.section(one, &stack, pairs)).collect();
+        document.head.extend(
+            [self.dimension_table(), together_table(&self.analysis.correlations), self.warning_table()]
+                .map(Element::Table),
+        );
+        document
+    }
+
+    fn section(&self, one: &CharacteristicAnalysis, stack: &Stack, pairs: usize) -> Section {
+        let mut section = Section::of(one.name(), one.unit());
+        section.blocks = findings(&self.warnings, |name| name == Some(one.name()));
+        one.characteristic.labels().line().into_iter().for_each(|line| section.wrapped(2, line));
+        if one.limited() {
+            section.words = format!(", limits {}", limits(one.lower(), one.upper()));
+        }
+        one.statistics(&mut section);
+        one.errors(&mut section);
+        one.extremes(&mut section);
+        one.distribution(&mut section);
+        one.sampling.iter().for_each(|of| sampled(&mut section, of, one.sigma().unwrap_or(0.0), one.limited()));
+        let concerned = self.warnings.iter().filter(|warning| warning.characteristic.as_deref() == Some(one.name()));
+        let codes: Vec<&str> = concerned.map(|warning| warning.code).collect();
+        if !codes.is_empty() {
+            section.brief(vec![Element::Paragraph(Paragraph::note(format!("warnings: {}", codes.join(", "))))]);
+        }
+        section.gap();
+        section.brief(vec![Element::Table(one.contributors(&self.dimensions))]);
+        let mut all = vec![Element::Table(one.contributions(&self.dimensions))];
+        all.remark("Slope and curvature at the means, per unit of the dimension; ≈ marks those that are differences.");
+        if let Some(source) = self.source(one) {
+            all.note(source);
+        }
+        section.detail(all);
+        self.correlations(one, &mut section);
+        if one.has_negative_contributions() {
+            section.note("a contribution below 0 lowers the variance: it varies against the others");
+        }
+        one.pairs(&mut section, pairs);
+        // Pages draw the contributions as bars.
+        let mut left = Vec::new();
+        bars::left_out(one).into_iter().for_each(|words| left.note(words));
+        section.aside(SHARES, left);
+        if let Some(spans) = bars::spans(one) {
+            section.aside("Worst case and RSS", vec![Element::Chart(Chart::Bars(spans))]);
+        }
+        if stack.straight() {
+            let mut blocks: Vec<Element> = stack.tables().map(Element::Table).into();
+            stack.notes.iter().for_each(|note| blocks.note(note.to_string()));
+            section.aside("Stack", blocks);
+        }
+        section
+    }
+
+    /// Returns a sentence on the source of slopes and curvatures, or None if all come from differences.
+    fn source(&self, one: &CharacteristicAnalysis) -> Option<String> {
+        let shown: Vec<_> = one.shown(&self.dimensions).map(|(row, _)| row).collect();
+        let differences: Vec<String> = shown.iter().filter(|row| !row.exact).map(|row| short(&row.dimension)).collect();
+        if differences.len() == shown.len() {
+            return None;
+        }
+        let but = match differences.len() {
+            0 => String::new(),
+            1..=NAMED => format!(", but by differences for {}", differences.join(", ")),
+            many => format!(", but by differences for {many} dimensions"),
+        };
+        let rest = match self.analysis.basis {
+            Basis::Exact => "everything rests on them",
+            Basis::Differences => "the rest comes from differences",
+            Basis::LeastSquares => "the rest comes from the fitted surface",
+            Basis::Quadrature => "the moments come from quadrature",
+        };
+        Some(format!("slopes and curvatures are exact{but}; {rest}"))
+    }
+
+    /// Lists correlated pairs of dimensions that affect this characteristic.
+    fn correlations(&self, one: &CharacteristicAnalysis, section: &mut Section) {
+        let matters =
+            |name: &String| one.sensitivities.iter().any(|row| row.dimension == *name && row.first != Some(0.0));
+        let word =
+            |pair: &Pair| format!("{} × {} {}", short(&pair.between[0]), short(&pair.between[1]), plain(pair.value));
+        let pairs = self.correlation.iter().filter(|pair| pair.between.iter().all(matters));
+        let words: Vec<String> = pairs.map(word).collect();
+        if !words.is_empty() {
+            section.list("  correlated:", words);
+            section.note("shares are covariances with the whole, the worst case ignores correlations");
+        }
+    }
+}
+
+/// Sections of the report of a characteristic.
+pub(crate) trait CharacteristicSections {
+    /// Adds the verification of the figures and the basis of their error estimates.
+    fn errors(&self, section: &mut Section);
+
+    /// Adds the extremes, their places, and whether they are proven.
+    fn extremes(&self, section: &mut Section);
+
+    /// Adds the distribution, its quantiles, and the yield within the limits.
+    fn distribution(&self, section: &mut Section);
+
+    fn covered(&self, section: &mut Section);
+
+    /// Chart of the density, over the histogram of the model if there is one.
+    fn spread(&self, law: &Pearson, kind: &str) -> SpreadChart;
+
+    fn quantile_data(&self) -> DataTable;
+
+    fn kept(&self, section: &mut Section);
+
+    /// Reject rates with their error.
+    fn rejects(&self) -> Rejects;
+
+    /// True if the reject rate of the normal fit differs visibly on either side.
+    fn differs(&self, normal: &Capability) -> bool;
+
+    /// Dimensions that vary or affect the characteristic, with their sensitivities.
+    fn shown<'r>(
+        &'r self,
+        dimensions: &'r [DimensionReport],
+    ) -> impl Iterator<Item = (&'r Sensitivity, &'r DimensionReport)>;
+
+    /// Table of the contributions of the dimensions, strongest first.
+    fn contributions(&self, dimensions: &[DimensionReport]) -> DataTable;
+
+    /// Adds the contributions of dimensions that vary together, each group as one factor. They are a detail unless the contributions come
+    /// from the model.
+    fn together(&self, section: &mut Section);
+
+    /// Sentence on the source of the contributions if they do not come from the surface.
+    fn of_model(&self, of: &SobolIndices) -> String;
+}
+
+impl CharacteristicSections for CharacteristicAnalysis {
+    fn errors(&self, section: &mut Section) {
+        let error = |error: Option<f64>| known(error, |error| significant(error, 2));
+        match &self.verification {
+            Some(found) => section.note(found.words()),
+            // No remark if there are no moments, or if nothing that varies has an effect.
+            None if self.mean().is_some() && !self.constant => section.note("not verified by the model"),
+            None => {}
+        }
+        let mut detail = Vec::new();
+        if let Some(fit) = &self.residual {
+            detail.note(format!(
+                "{} coefficients fitted to {} points: residual standard error {}, of the mean {}, of sigma {}",
+                fit.coefficients,
+                fit.points,
+                error(fit.standard_error),
+                error(fit.mean),
+                error(fit.sigma)
+            ));
+        }
+        if let Some(estimate) = &self.error_estimate {
+            let basis: Vec<String> = estimate.sources.iter().map(|source| source.words()).collect();
+            detail.wrapped(2, format!("error estimates are based on: {}", basis.join("; ")));
+        }
+        if let Some(sampled) = self.error_estimate.as_ref().and(self.model_sampled.as_ref()) {
+            section.wrapped(2, format!(
+                "the surface is not trusted: mean to kurtosis from {} points of the model, with the surface as control variate",
+                sampled.samples
+            ));
+        }
+        if let Some(sampled) = &self.sampled {
+            let [sigma, skewness, kurtosis] =
+                [sampled.sigma, sampled.skewness, sampled.kurtosis].map(|error| significant(error, 2));
+            detail.note(format!(
+                "sampled from the surface, {} points: standard error of sigma {sigma}, skewness {skewness}, kurtosis {kurtosis}",
+                sampled.samples
+            ));
+        }
+        section.detail(detail);
+    }
+
+    fn extremes(&self, section: &mut Section) {
+        let Some(found) = &self.extremes else { return };
+        let scale = self.scale();
+        let [least, greatest] = [&found.least, &found.greatest].map(|extreme| beside(extreme.value, scale));
+        let proven = if found.proven() { "proven" } else { "not proven" };
+        let evaluations = plural(found.evaluations, "evaluation", "evaluations");
+        section.note(format!("extremes  {least} .. {greatest}  {proven}, {evaluations}"));
+        section.list("    least at   ", words(&found.least));
+        section.list("    greatest at", words(&found.greatest));
+    }
+
+    fn distribution(&self, section: &mut Section) {
+        match self.fitted() {
+            None if self.sigma().is_some() => {
+                return section.note("no distribution has this skewness and kurtosis: its yield is unknown");
+            }
+            None => return,
+            Some(Law::Point { at }) => section.note(format!("every assembly has the same value: {}", plain(*at))),
+            Some(Law::Pearson(law)) => {
+                let (kind, sigma) = (law.kind().name(), self.sigma().unwrap_or(0.0));
+                let mut detail =
+                    vec![Element::Gap, Element::Chart(Chart::Spread(Box::new(self.spread(law, kind)))), Element::Gap];
+                detail.table(match self.surface_law.as_ref().and_then(|law| law.named_quantiles()) {
+                    Some(of_surface) => quantile_table("surface law", &of_surface, sigma),
+                    None => quantile_table(&named(kind), &Quantiles::of(law), sigma),
+                });
+                section.detail(detail);
+            }
+        }
+        if self.surface_law.is_some_and(|law| law.steps) && self.sigma().is_some_and(|sigma| sigma > 0.0) {
+            section.note("the surface law is a step function: all that varies has single values");
+        }
+        if let Some(points) = self.surface_law.as_ref().and_then(|law| law.counted) {
+            section.note(format!("the surface law is counted at {points} points of the surface"));
+        }
+        section.table(self.quantile_data());
+        self.covered(section);
+        if self.limited() {
+            self.kept(section);
+        }
+    }
+
+    fn covered(&self, section: &mut Section) {
+        let Some(of) = &self.coverage else { return };
+        /// Least relative difference of the shortest interval from that with equal tails that is worth a line.
+        const NOTABLE: f64 = 0.01;
+        let share = plain(100.0 * of.probability);
+        let width = |[from, to]: [f64; 2]| to - from;
+        let scale = self.sigma().filter(|sigma| *sigma > 0.0);
+        let interval = |ends: [f64; 2]| {
+            let [from, to] = ends.map(|end| scale.map_or_else(|| plain(end), |sigma| beside(end, sigma)));
+            format!("{from} .. {to}")
+        };
+        section.note(format!("{share} % within {} (equal tails), by {}", interval(of.equal_tails), of.source.words()));
+        if width(of.shortest) < (1.0 - NOTABLE) * width(of.equal_tails) {
+            section.note(format!("  the shortest such interval: {}", interval(of.shortest)));
+        }
+    }
+
+    fn spread(&self, law: &Pearson, kind: &str) -> SpreadChart {
+        let sample = self.model_sampled.as_ref().and_then(|sampling| sampling.histogram.as_ref());
+        let bars = sample.map_or("", |_| " over the sample of the model; each bar with one standard error");
+        let of_surface = self.surface_law.as_ref().and_then(|law| law.quantiles).map(|all| [all[0], all[3], all[6]]);
+        let of_surface = of_surface.map(|all| all.map(|figure| figure.value));
+        let [low, middle, high] =
+            of_surface.unwrap_or_else(|| [law.quantile(TAIL), law.quantile(0.5), law.upper_quantile(TAIL)]);
+        let mut places = vec![
+            (low, "quantile", "0.135 % quantile"),
+            (middle, "quantile", "median"),
+            (high, "quantile", "99.865 % quantile"),
+        ];
+        let fit = if kind == "normal" { "normal".to_owned() } else { format!("Pearson type {kind}") };
+        let words = match &self.density {
+            Some(table) => format!("Surface distribution{}{bars}; dashed: the Pearson fit ({fit}).", accuracy(table)),
+            None => format!("{fit}{bars}."),
+        };
+        places.extend(self.mean().map(|mean| (mean, "mean", "mean")));
+        SpreadChart {
+            law: Some(law.clone()),
+            curve: self.density.as_ref().map(|table| table.iter().map(|&[y, density, _]| [y, density]).collect()),
+            bins: sample.cloned(),
+            sampled: false,
+            limits: Named::limits(self),
+            rejects: self.rejects().by_side(),
+            ranges: bars::ranges(self),
+            nominal: self.nominal,
+            places,
+            sigma: self.sigma().unwrap_or(0.0),
+            label: format!("Density of {}", self.name()),
+            words,
+        }
+    }
+
+    fn quantile_data(&self) -> DataTable {
+        let quantiles = self.quantiles();
+        Columns::default()
+            .data("characteristic", |_| Cell::text(self.name()))
+            .data("probability", |row: &(&'static str, &f64)| Cell::text(row.0))
+            .data("value", |row| Cell::data(*row.1))
+            .table("quantiles", quantiles.iter().flat_map(Quantiles::iter))
+    }
+
+    fn kept(&self, section: &mut Section) {
+        let shown = |rejects: Rejects| format!("yield {}", rejects.text().unwrap_or_else(|| "unknown".to_owned()));
+        let target = judged(self.target(), self.verdict());
+        section.note(Line::from(shown(self.rejects())).and(target));
+        source(self).into_iter().for_each(|line| section.note(line));
+        let named = |name: &str, value: Option<f64>| value.map(|value| format!("{name} {}", index(value)));
+        let of = |figure: fn(&Capability) -> Option<f64>| self.capability.as_ref().and_then(figure);
+        let join = |indices: Vec<Option<String>>| indices.into_iter().flatten().collect::<Vec<String>>().join("  ");
+        let level = of(Capability::sigma_level).filter(|_| self.rejects().are_resolved());
+        let indices =
+            join(vec![named("Cp", of(|of| of.cp)), named("Cpk", of(|of| of.cpk)), named("sigma level", level)]);
+        if !indices.is_empty() {
+            section.note(indices);
+        }
+        lines(self.requirements()).for_each(|line| section.note(line));
+        if let Some(of) = &self.inspection {
+            inspected(section, of);
+        }
+        let mut detail = Vec::new();
+        // Indices of measured values are performance indices (Pp, Ppk), not those of a process in control (Cp, Cpk).
+        let names = if self.sampling.is_some() { ["Pp", "Ppk"] } else { ["Cp", "Cpk"] };
+        let indices = [of(|of| of.cp_percentile), of(|of| of.cpk_percentile)];
+        let quantiles = join(names.into_iter().zip(indices).map(|(name, index)| named(name, index)).collect());
+        if !quantiles.is_empty() {
+            detail.note(format!("by quantiles (ISO 22514-2): {quantiles}"));
+        }
+        if let Some(normal) = self.normal.as_ref().filter(|normal| self.differs(normal)) {
+            detail.note(format!("a normal fit would say: {}", shown(Rejects::new(normal.below, normal.above, None))));
+        }
+        section.detail(detail);
+    }
+
+    fn rejects(&self) -> Rejects {
+        let error = match self.sampling.as_ref().and(self.yield_()) {
+            Some(value) => self.yield_interval().map(|interval| one_error(value, interval)),
+            None => self.error_estimate.as_ref().and_then(|estimate| estimate.yield_),
+        };
+        let [below, above] = [|of: &Capability| of.below, |of: &Capability| of.above]
+            .map(|side| self.capability.as_ref().and_then(side));
+        Rejects::new(below, above, error).within(self.reject_intervals)
+    }
+
+    fn differs(&self, normal: &Capability) -> bool {
+        let far = |a: Option<f64>, b: Option<f64>| match (a, b) {
+            (Some(a), Some(b)) => (a - b).abs() > DIFFERENT * a.max(b),
+            (None, None) => false,
+            _ => true,
+        };
+        let seen = |ppm: Option<f64>| ppm.map(|ppm| if ppm < LEAST_PPM { 0.0 } else { ppm });
+        far(seen(self.ppm_below()), seen(normal.ppm_below())) || far(seen(self.ppm_above()), seen(normal.ppm_above()))
+    }
+
+    fn shown<'r>(
+        &'r self,
+        dimensions: &'r [DimensionReport],
+    ) -> impl Iterator<Item = (&'r Sensitivity, &'r DimensionReport)> {
+        self.sensitivities.iter().zip(dimensions).filter(|(row, dimension)| matters(row, dimension))
+    }
+
+    fn contributions(&self, dimensions: &[DimensionReport]) -> DataTable {
+        type Row<'r> = (&'r Sensitivity, &'r DimensionReport);
+        let all: Vec<Row<'_>> = self.sensitivities.iter().zip(dimensions).collect();
+        let mut view: Vec<usize> = (0..all.len()).filter(|&index| matters(all[index].0, all[index].1)).collect();
+        let size = |index: usize| size(all[index].0);
+        view.sort_by(|&a, &b| size(b).total_cmp(&size(a)));
+        let rest = &view[view.len().min(CONTRIBUTIONS)..];
+        let together: f64 = rest.iter().filter_map(|&index| part(all[index].0)).sum();
+        let rest = format!("and {} more with {} % together; -v shows all", rest.len(), percent(together));
+        let number = |value: Option<f64>, row: &Row<'_>, order: usize| {
+            let rounding = row.0.rounding.map(|rounding| rounding[order]);
+            let text = derivative(value, rounding, 6);
+            let cell = Cell::both(Value::Number(value), text.as_str());
+            if row.0.exact || value.is_none() { cell } else { cell.on_pages(format!("{text} ≈")) }
+        };
+        let rounding = |row: &Row<'_>, order: usize| Cell::data(row.0.rounding.map(|rounding| rounding[order]));
+        let shift = |row: &Row<'_>| match (row.0.mean_shift, self.sigma()) {
+            (Some(shift), Some(sigma)) => Cell::number(shift, |shift| rounded(shift, sigma)),
+            (shift, _) => Cell::both(Value::Number(shift), UNKNOWN),
+        };
+        Columns::default()
+            .data("characteristic", |_| Cell::text(self.name()))
+            .named("dimension", "dimension", |row: &Row<'_>| Cell::name(&row.0.dimension))
+            .shown("nominal", |row| Cell::number(row.1.nominal, plain))
+            .shown("tolerance", |row| Cell::text(row.1.tolerance()))
+            .named("", "unit", |row| Cell::optional(row.1.unit.as_deref()))
+            .column("first", "slope", move |row| number(row.0.first, row, 0))
+            .column("second", "curvature", move |row| number(row.0.second, row, 1))
+            .column("linear_share", "linear %", |row| Cell::number(row.0.linear_share, percent))
+            .column("curvature_share", "curved %", |row| Cell::number(row.0.curvature_share, percent))
+            .column("mean_shift", "mean shift", shift)
+            .shown_if(self.has_totals(), "total %", |row| Cell::number(total(row.0), percent))
+            .data("rounding_first", move |row| rounding(row, 0))
+            .data("rounding_second", move |row| rounding(row, 1))
+            .data("first_order", |row| Cell::data(row.0.first_order.map(|index| index.value)))
+            .data("first_order_error", |row| Cell::data(row.0.first_order.and_then(|index| index.error)))
+            .data("total", |row| Cell::data(total(row.0)))
+            .data("total_error", |row| Cell::data(row.0.total.and_then(|index| index.error)))
+            .table("sensitivities", all.iter().copied())
+            .seen(view)
+            .at_most([CONTRIBUTIONS, usize::MAX], rest)
+    }
+
+    fn together(&self, section: &mut Section) {
+        let Some(of) = &self.indices else { return };
+        let percents =
+            |index: Option<EstimatedShare>| known(index.map(|of| of.value), |share| format!("{} %", percent(share)));
+        let mut lines = Vec::new();
+        for factor in &of.factors {
+            let names: Vec<String> = factor.dimensions.iter().map(|name| short(name)).collect();
+            let (first, total) = (percents(factor.first_order), percents(factor.total));
+            lines.wrapped(2, format!("{} together: contribution {first}, with interactions {total}", names.join(", ")));
+        }
+        match self.is_of_model() {
+            false => section.detail(lines),
+            true => section.brief(lines),
+        }
+    }
+
+    fn of_model(&self, of: &SobolIndices) -> String {
+        // A negative estimate is 0 within its error.
+        let rest = of.interactions.map(|share| format!("{} %", percent(share.max(0.0))));
+        match (of.source, rest) {
+            (_, None) => {
+                "contributions unknown: the surface is not trusted, and no sample of the model has them".to_owned()
+            }
+            (IndexSource::Ranks, Some(rest)) => {
+                format!("contributions by the ranks of the model's points; interactions and what is left: {rest}")
+            }
+            (_, Some(rest)) => {
+                format!("contributions by points of the model; interactions have {rest} of the variance")
+            }
+        }
+    }
+}
+
+/// Returns the error of a drawn density in words, empty if it is too small to be seen.
+fn accuracy(table: &[[f64; 3]]) -> String {
+    /// Least visible error, as a part of the peak: the width of a line.
+    const SEEN: f64 = 1e-3;
+    let most = |of: fn(&[f64; 3]) -> f64| table.iter().map(of).filter(|x| x.is_finite()).fold(0.0, f64::max);
+    let (peak, error) = (most(|row| row[1]), most(|row| row[2]));
+    match error > SEEN * peak {
+        true => format!(" from points, within ± {} % of its peak", significant(100.0 * error / peak, 2)),
+        false => String::new(),
+    }
+}
+
+/// Lists the dimensions at the lower and upper ends of their bands, then those in between with their values.
+fn words(extreme: &Extreme) -> Vec<String> {
+    let of = |place: Place| extreme.at.iter().filter(move |at| at.place == place);
+    let mut words = Vec::new();
+    for (place, title) in [(Place::Lower, "lower "), (Place::Upper, "upper ")] {
+        let first = words.len();
+        words.extend(of(place).map(|at| short(&at.dimension)));
+        if words.len() > first {
+            words[first].insert_str(0, title);
+            words.last_mut().expect("just pushed").push(';');
+        }
+    }
+    words.extend(
+        of(Place::Interior).map(|at| format!("{} = {}", short(&at.dimension), beside(at.x, at.band[1] - at.band[0]))),
+    );
+    words
+}
+
+/// Prints a Pearson distribution by itself: its type, support, density and quantiles.
+pub fn law_text(law: &Pearson, style: Style) -> String {
+    let mut document = Document::default();
+    let end = |end: f64| match end.is_finite() {
+        true => beside(end, law.sigma()),
+        false => format!("{}infinity", if end < 0.0 { "-" } else { "" }),
+    };
+    let ([lower, upper], kind) = (law.support().map(end), law.kind().name());
+    document.line(format!("{}, from {lower} to {upper}", named(kind)));
+    document.gap();
+    document.chart(Chart::Spread(Box::new(SpreadChart {
+        law: Some(law.clone()),
+        sigma: law.sigma(),
+        ..SpreadChart::default()
+    })));
+    document.gap();
+    document.table(quantile_table(&named(kind), &Quantiles::of(law), law.sigma()));
+    terminal::text(&document, style)
+}
+
+fn named(kind: &str) -> String {
+    if kind == "normal" { kind.to_owned() } else { format!("Pearson {kind}") }
+}
+
+/// Table of quantiles side by side, with their probabilities above.
+fn quantile_table(law: &str, quantiles: &Quantiles, sigma: f64) -> DataTable {
+    let row = |name: String, cell: &dyn Fn((&'static str, &f64)) -> Cell| -> [Cell; 8] {
+        let mut cells = std::iter::once(Cell::text(name)).chain(quantiles.iter().map(cell));
+        std::array::from_fn(|_| cells.next().unwrap_or_else(Cell::empty))
+    };
+    let probability = |(p, _): (&'static str, &f64)| {
+        // Rounded, so that `0.00135` becomes `0.135 %`.
+        Cell::number(p.parse::<f64>().ok(), |p| format!("{} %", plain((1e5 * p).round() / 1e3)))
+    };
+    DataTable::untitled([
+        row(law.to_owned(), &probability),
+        row("quantiles".to_owned(), &|(_, value)| Cell::number(*value, |value| beside(value, sigma))),
+    ])
+}
+
+/// Formats a mean shift with the digits of sigma, or as `0` if all of them are zeros.
+fn rounded(shift: f64, sigma: f64) -> String {
+    let text = beside(shift, sigma);
+    if text.parse() == Ok(0.0) { "0".to_owned() } else { text }
+}

@@ -1,0 +1,82 @@
+//! Summary with one line for every characteristic: moments, Cpk, yield and verdict.
+
+use crate::document::number::{estimated, index, known, yielded};
+use crate::document::rejects::Rejects;
+use crate::document::{Cell, Columns, DataTable, Line, Value};
+use crate::figures::Named;
+use crate::requirement::loud;
+use sensitol::rare::RareCharacteristic;
+use sensitol::simulation::SimulatedCharacteristic;
+use sensitol_numeric::sampling::Estimate;
+use sensitol_numeric::verdict::{Judged, worst};
+
+/// Line of a characteristic, as text.
+pub(super) struct Glance<'r> {
+    name: &'r str,
+    unit: Option<&'r str>,
+    mean: String,
+    sigma: String,
+    cpk: Option<f64>,
+    yield_: String,
+    verdict: Line,
+}
+
+impl<'r> Glance<'r> {
+    /// Summary of a simulation, with the digits that its standard errors support.
+    pub(super) fn sampled(one: &'r SimulatedCharacteristic) -> Self {
+        let text = |of: Option<Estimate>, error| known(of.map(|of| of.value), |value| estimated(value, error));
+        let [of_mean, of_sigma] = one.errors();
+        Self {
+            name: one.name(),
+            unit: one.unit(),
+            mean: text(one.mean, of_mean),
+            sigma: text(one.sigma, of_sigma),
+            cpk: one.cpk,
+            yield_: one.yield_.map_or_else(String::new, |share| {
+                let rejects = Rejects::new(one.below, one.above, one.yield_error());
+                let text = rejects.within(one.reject_intervals).with_error();
+                text.unwrap_or_else(|| yielded(share.value))
+            }),
+            verdict: verdict(&one.requirements()),
+        }
+    }
+
+    /// Summary of rare events: the yield with its interval.
+    pub(super) fn sought(one: &'r RareCharacteristic) -> Self {
+        let interval = one.yield_interval.map(|ends| ends.map(yielded));
+        let interval = interval.map_or_else(String::new, |[low, high]| format!(", {low} to {high}"));
+        Self {
+            name: one.name(),
+            unit: one.unit(),
+            mean: String::new(),
+            sigma: String::new(),
+            cpk: None,
+            yield_: one.yield_.map_or_else(String::new, |share| format!("{}{interval}", yielded(share))),
+            verdict: verdict(&one.requirements()),
+        }
+    }
+}
+
+/// Returns the worst verdict of all requirements, empty if there is none.
+pub(super) fn verdict(judged: &[Judged]) -> Line {
+    worst(judged.iter().map(|one| one.verdict)).map_or_else(Line::default, loud)
+}
+
+/// Table for terminals. Pages show the verdict and its gauges instead.
+pub(super) fn table<'r>(all: impl IntoIterator<Item = Glance<'r>>) -> DataTable {
+    let all: Vec<Glance<'_>> = all.into_iter().collect();
+    let any = |of: fn(&Glance<'_>) -> bool| all.iter().any(of);
+    let (moments, cpk) = (any(|one| !one.mean.is_empty()), any(|one| one.cpk.is_some()));
+    let (limited, judged) = (any(|one| !one.yield_.is_empty()), any(|one| !one.verdict.text().is_empty()));
+    // Values without a number keep figures right-aligned.
+    let figure = |text: &str| Cell::both(Value::Number(None), text);
+    Columns::default()
+        .terminal(true, "", |one: &&Glance<'_>| Cell::name(one.name))
+        .terminal(moments, "mean", move |one| figure(&one.mean))
+        .terminal(moments, "sigma", move |one| figure(&one.sigma))
+        .terminal(moments, "", |one| Cell::optional(one.unit))
+        .terminal(cpk, "Cpk", |one| Cell::known(one.cpk, index))
+        .terminal(limited, "yield", |one| Cell::text(&one.yield_))
+        .terminal(judged, "verdict", |one| Cell { line: one.verdict.clone(), ..Cell::empty() })
+        .table("", &all)
+}

@@ -1,0 +1,247 @@
+//! Questions to a study: the commands of the command line, with their options as JSON.
+
+use serde::Deserialize;
+
+use crate::html::WhatIf;
+use crate::task::answer::{Shown, TaskReport};
+use crate::{About, AllocationReport, CompareReport, RareReport, Report, SimulationReport, SweepReport, WrittenAnew};
+use sensitol::allocation::allocate_written;
+use sensitol::allocation::{AllocationOptions, CostBasis, Goal, Status};
+use sensitol::analysis::analyze_with;
+use sensitol::assembly::Run;
+use sensitol::compare::{CompareOptions, compare_with};
+use sensitol::method::Options;
+use sensitol::method::registry::procedure;
+use sensitol::problem::Problem;
+use sensitol::rare::{RareOptions, rare_with};
+use sensitol::simulation::{Pace, Sampler, SimulationOptions, simulate_with};
+use sensitol::sweep::sweep_with;
+use sensitol_study::{Error, Study};
+
+/// Default number of points of a simulation, as on the command line.
+const SAMPLES: u64 = 100_000;
+/// Default number of points for rare events: cheap model, costly model.
+const RARE_SAMPLES: [u64; 2] = [10_000, 1000];
+
+/// A question.
+#[derive(Debug, Deserialize)]
+#[serde(tag = "command", rename_all = "kebab-case", deny_unknown_fields)]
+pub enum Asked {
+    /// Moments, yield, capability and sensitivities.
+    Analyze {},
+    /// The model itself at many points.
+    Simulate {
+        /// How many points.
+        samples: Option<u64>,
+        /// How they are drawn.
+        sampler: Option<SamplerName>,
+        /// Until sigma has this relative error.
+        until: Option<f64>,
+        /// Until the yield has this error.
+        until_yield: Option<f64>,
+        /// With the fitted surface as control variate.
+        #[serde(default)]
+        control_variate: bool,
+    },
+    /// Small probabilities by importance sampling.
+    Rare {
+        /// How many points for each characteristic.
+        samples: Option<u64>,
+        /// Until a probability has this relative error.
+        until: Option<f64>,
+    },
+    /// Every method beside a reference.
+    Compare {
+        /// Points of the reference.
+        samples: Option<u64>,
+    },
+    /// An analysis along a parameter.
+    Sweep {
+        /// The parameter.
+        over: String,
+        /// Its values.
+        values: Vec<f64>,
+    },
+    /// The cheapest tolerances that keep what is required.
+    Allocate {
+        /// Dimensions whose nominal values may move.
+        #[serde(default)]
+        recentre: Vec<String>,
+        /// Least and greatest of these values.
+        #[serde(default)]
+        nominal_bounds: Vec<(String, [f64; 2])>,
+        /// Points of the front of cost against what is required.
+        front: Option<usize>,
+        /// Points of the model that confirm what was found.
+        confirm: Option<u64>,
+        /// Relative costs in place of the study's own.
+        cost: Option<CostName>,
+        /// The goal in place of the least cost.
+        goal: Option<GoalName>,
+        /// The most that may be spent on it.
+        cost_limit: Option<f64>,
+    },
+}
+
+/// Relative costs in place of the study's own.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CostName {
+    /// The tolerance unit of ISO 286 by the tolerance.
+    ToleranceUnit,
+    /// One grade for every tolerance.
+    ConstantPrecision,
+    /// The same effect of every tolerance.
+    EqualShares,
+}
+
+/// A goal in place of the least cost.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum GoalName {
+    /// The fewest rejects.
+    FewestRejects,
+    /// The highest Cpk.
+    MostCpk,
+}
+
+impl GoalName {
+    /// Returns the goal with its cost limit.
+    fn within(self, cost_limit: f64) -> Goal {
+        match self {
+            Self::FewestRejects => Goal::FewestRejects { cost_limit },
+            Self::MostCpk => Goal::MostCpk { cost_limit },
+        }
+    }
+}
+
+/// How points are drawn.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SamplerName {
+    /// Pseudo-random numbers.
+    Random,
+    /// Sobol' points.
+    Sobol,
+}
+
+impl Asked {
+    /// Returns the parameter of a sweep, or None for other commands.
+    pub fn swept(&self) -> Option<&str> {
+        match self {
+            Self::Sweep { over, .. } => Some(over),
+            _ => None,
+        }
+    }
+}
+
+/// Callback for progress: answered points, and expected points (0 if unknown).
+pub type Counted<'c> = &'c dyn Fn(u64, u64);
+
+/// Runs a command on a study.
+///
+/// # Errors
+/// Returns an error if the command fails.
+pub fn done(study: &Study, asked: &Asked, run: &Run<'_>, counted: Counted<'_>) -> Result<TaskReport, Box<Error>> {
+    let problem = &study.problem;
+    let about = || About {
+        title: study.title.clone(),
+        sha256: study.sha256.clone(),
+        warnings: study.warnings.clone(),
+        block: study.about.clone(),
+    };
+    let seed = study.seed.or(study.options.seed).unwrap_or(Options::SEED);
+    let pace = |pace: Pace| counted(pace.samples, pace.expected as u64);
+    if let Asked::Analyze {} | Asked::Sweep { .. } | Asked::Allocate { .. } = asked {
+        expect(study, asked, counted);
+    }
+    Ok(match asked {
+        Asked::Analyze {} => {
+            let mut options = study.options.clone();
+            options.densities = true;
+            let found = analyze_with(problem, &options, run).map_err(boxed)?;
+            let what_if = WhatIf::of(problem, &found, &study.lines, &study.costs);
+            TaskReport::of(Shown::Analysis(Box::new((Report::of(problem, &found, about()), what_if))))
+        }
+        Asked::Simulate { samples, sampler, until, until_yield, control_variate } => {
+            let mut options = SimulationOptions::default().with_seed(seed);
+            let wanted = until.is_some() || until_yield.is_some();
+            options.samples = samples.unwrap_or(if wanted { 1 << 52 } else { SAMPLES });
+            options.sampler = match sampler {
+                Some(SamplerName::Sobol) => Sampler::Sobol,
+                Some(SamplerName::Random) | None => Sampler::Random,
+            };
+            (options.until, options.until_yield) = (*until, *until_yield);
+            options.control = control_variate.then(|| study.options.clone());
+            let found = simulate_with(problem, &options, run, &pace).map_err(boxed)?;
+            TaskReport::of(Shown::Simulation(SimulationReport::of(problem, &found, about())))
+        }
+        Asked::Rare { samples, until } => {
+            let costly = problem.function().signature().costly;
+            let options = RareOptions::default()
+                .with_samples(samples.unwrap_or(RARE_SAMPLES[usize::from(costly)]))
+                .with_seed(seed)
+                .with_surrogate(study.options.clone());
+            let options = until.map_or(options.clone(), |until| options.with_until(until));
+            let found = rare_with(problem, &options, run, &pace).map_err(boxed)?;
+            TaskReport::of(Shown::Rare(RareReport::of(problem, &found, about())))
+        }
+        Asked::Compare { samples } => {
+            let mut options = CompareOptions::default().with_seed(seed);
+            (options.budget, options.reference) = (study.options.budget, *samples);
+            let found = compare_with(problem, &options, run).map_err(boxed)?;
+            TaskReport::of(Shown::Comparison(CompareReport::of(&found, about())))
+        }
+        Asked::Sweep { over, values } => {
+            let found = sweep_with(problem, over, values, &study.options, run).map_err(boxed)?;
+            TaskReport::of(Shown::Sweep(SweepReport::of(problem, &found, about())))
+        }
+        Asked::Allocate { recentre, nominal_bounds, front, confirm, cost, goal, cost_limit } => {
+            let mut options = AllocationOptions::default().with_analysis(study.options.clone()).with_seed(seed);
+            options.recentre.clone_from(recentre);
+            options.nominal_bounds.clone_from(nominal_bounds);
+            options.front = *front;
+            let options = options.with_confirm_or_default(problem, *confirm);
+            let basis = cost.map(|basis| match basis {
+                CostName::ToleranceUnit => CostBasis::ToleranceUnit,
+                CostName::ConstantPrecision => CostBasis::ConstantPrecision,
+                CostName::EqualShares => CostBasis::EqualShares,
+            });
+            let goal = goal.zip(*cost_limit).map_or(Goal::LeastCost, |(goal, limit)| goal.within(limit));
+            let task = study.allocation_task().relative_or_default(problem, basis, !recentre.is_empty()).towards(goal);
+            let in_file = |problem: &Problem| study.written_dimensions(problem);
+            let found = allocate_written(problem, &task, &options, run, &in_file).map_err(boxed)?;
+            // A run that was stopped before the model confirmed the result is not written to the study.
+            let confirmed = found.after.is_some() && found.status != Status::OutOfTime;
+            let anew = confirmed.then(|| study.rewritten(&found.problem));
+            let (anew, not_written) = match anew {
+                Some(Ok(anew)) => (Some(anew), None),
+                Some(Err(error)) => (None, Some(error.to_string())),
+                None => (None, None),
+            };
+            let written = anew
+                .as_ref()
+                .map(|anew| WrittenAnew { entries: anew.entries.clone(), replaced_fits: anew.replaced_fits.clone() });
+            let report = AllocationReport::of(problem, &found, written.as_ref(), about());
+            let study = anew.map(|anew| anew.text);
+            TaskReport { study, not_written, ..TaskReport::of(Shown::Allocation(Box::new(report))) }
+        }
+    })
+}
+
+fn boxed(error: impl Into<Error>) -> Box<Error> {
+    Box::new(error.into())
+}
+
+/// Reports the least number of points that a command plans.
+fn expect(study: &Study, asked: &Asked, counted: Counted<'_>) {
+    let plan = procedure(study.options.method).plan(&study.problem, &study.options);
+    let times = match asked {
+        Asked::Sweep { values, .. } => values.len(),
+        Asked::Allocate { .. } => 2,
+        _ => 1,
+    };
+    if let Ok(plan) = plan {
+        counted(0, plan.cost().0.saturating_mul(times) as u64);
+    }
+}

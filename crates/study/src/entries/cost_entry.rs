@@ -1,0 +1,179 @@
+//! Types of `[costs]`, `[loss]` and `require` in a study file.
+
+use std::fmt;
+use std::ops::Range;
+
+use serde::de::{IgnoredAny, Visitor, value};
+use serde::{Deserialize, Deserializer};
+
+use crate::entries::distribution_entry::{DistributionEntry, distribution};
+#[cfg(feature = "schema")]
+use crate::entries::schema_parts as registry;
+use crate::entries::spanned::Spanned;
+
+/// One line of `[costs]`.
+#[derive(Debug, Default, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(extend("oneOf" = registry::one_of(["model", "formula", "table", "same_as", "processes"]))))]
+#[serde(deny_unknown_fields, expecting = "a table such as { model = \"reciprocal\", a = 1.0, b = 0.1 }")]
+pub(crate) struct CostEntry {
+    /// The cost over the half band T: reciprocal a + b/T, reciprocal-power a + b/T^k, exponential a + b exp(-T/c).
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = registry::cost_models())))]
+    pub(crate) model: Option<Spanned<String>>,
+    /// The cost that no tolerance saves.
+    #[cfg_attr(feature = "schema", schemars(extend("default" = 0)))]
+    pub(crate) a: Option<Spanned<f64>>,
+    /// The factor of what falls as the tolerance opens.
+    pub(crate) b: Option<Spanned<f64>>,
+    /// Of a reciprocal power its exponent.
+    pub(crate) k: Option<Spanned<f64>>,
+    /// Of an exponential cost the half band over which it falls to 1/e.
+    pub(crate) c: Option<Spanned<f64>>,
+    /// The cost as a formula of T, the half band in the unit of the dimension, in place of a model: "0.02/T + 0.0004/T^2".
+    pub(crate) formula: Option<Spanned<String>>,
+    /// The cost as points [half band, cost], in place of a model; between two of them it is a straight line in 1/T.
+    pub(crate) table: Option<Spanned<Vec<[f64; 2]>>>,
+    /// Least half band; a tenth of the present one unless given, and the least of a table.
+    pub(crate) min: Option<Spanned<f64>>,
+    /// Greatest half band; ten times the present one unless given, and the greatest of a table.
+    pub(crate) max: Option<Spanned<f64>>,
+    /// Tolerances are whole multiples of this half band.
+    pub(crate) step: Option<Spanned<f64>>,
+    /// Tolerances are standard grades of ISO 286-1 for the nominal size, from the first to the last: ["IT6", "IT10"]; half bands are half of them.
+    pub(crate) grades: Option<Spanned<[String; 2]>>,
+    /// The end of the band that stays where it is, `lower` or `upper`; that of a fit unless given, and the middle otherwise.
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = ["lower", "upper", "middle"])))]
+    pub(crate) fixed_side: Option<Spanned<String>>,
+    /// The dimension with which this one shares tolerance and process; each part costs.
+    pub(crate) same_as: Option<Spanned<String>>,
+    /// The processes that compete for it.
+    pub(crate) processes: Option<Spanned<Vec<Spanned<ProcessEntry>>>>,
+}
+
+/// One line of `[loss]`.
+#[derive(Debug, Default, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, expecting = "a table such as { k = 40.0, target = 0.0 }")]
+pub(crate) struct LossEntry {
+    /// Cost per square of the deviation from the target: k (sigma^2 + (mean - target)^2).
+    pub(crate) k: Option<Spanned<f64>>,
+    /// The value from which deviations count; the middle of two limits unless given.
+    pub(crate) target: Option<Spanned<f64>>,
+    /// Cost of an assembly that breaks a limit.
+    pub(crate) scrap: Option<Spanned<f64>>,
+}
+
+/// A process: one half band at one cost, or a range of them with a cost that follows.
+#[derive(Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, expecting = "a process such as { name = \"grind\", tolerance = 0.002, cost = 19.4 }")]
+pub(crate) struct ProcessEntry {
+    /// Its name.
+    pub(crate) name: Spanned<String>,
+    /// The half band that it holds.
+    pub(crate) tolerance: Option<Spanned<f64>>,
+    /// The cost of a part.
+    pub(crate) cost: Option<Spanned<f64>>,
+    /// The machine that it needs: its cost in [setup] is paid once for all dimensions that need it.
+    pub(crate) machine: Option<Spanned<String>>,
+    /// The cost over a range of half bands, as of a dimension.
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = registry::cost_models())))]
+    pub(crate) model: Option<Spanned<String>>,
+    /// The cost that no tolerance saves.
+    #[cfg_attr(feature = "schema", schemars(extend("default" = 0)))]
+    pub(crate) a: Option<Spanned<f64>>,
+    /// The factor of what falls as the tolerance opens.
+    pub(crate) b: Option<Spanned<f64>>,
+    /// Of a reciprocal power its exponent.
+    pub(crate) k: Option<Spanned<f64>>,
+    /// Of an exponential cost the half band over which it falls to 1/e.
+    pub(crate) c: Option<Spanned<f64>>,
+    /// Least half band that it holds.
+    pub(crate) min: Option<Spanned<f64>>,
+    /// Greatest half band that it holds.
+    pub(crate) max: Option<Spanned<f64>>,
+    /// A line of [processes], whose keys count where this one does not have them.
+    #[serde(default, rename = "process")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<String>"))]
+    pub(crate) _process: Option<IgnoredAny>,
+    /// How its parts are distributed, as of a dimension; beside `tolerance`. Where one process of a list says how its parts lie, each does, and
+    /// what the dimension says of that does not count.
+    #[serde(default, deserialize_with = "distribution")]
+    #[cfg_attr(feature = "schema", schemars(schema_with = "registry::word_or_table"))]
+    pub(crate) distribution: Option<Spanned<DistributionEntry>>,
+    /// Standard deviation of its parts.
+    pub(crate) sigma: Option<Spanned<f64>>,
+    /// How many sigmas half its tolerance band has.
+    pub(crate) sigmas: Option<Spanned<f64>>,
+    /// Its capability: half band by three sigma.
+    pub(crate) cp: Option<Spanned<f64>>,
+    /// Its capability with the place of the mean, as of a dimension.
+    pub(crate) cpk: Option<Spanned<f64>>,
+    /// Beside cp and cpk "+" or "-": where the mean lies.
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = ["+", "-"])))]
+    pub(crate) side: Option<Spanned<String>>,
+    /// How far the mean of a lot lies off the mean of all, at most.
+    pub(crate) drift: Option<Spanned<f64>>,
+}
+
+impl ProcessEntry {
+    /// First key that states a distribution, with its place. Returns None if the process states none.
+    pub(crate) fn spread(&self) -> Option<(&'static str, Range<usize>)> {
+        let span = |of: &Option<Spanned<f64>>| of.as_ref().map(Spanned::span);
+        [
+            ("distribution", self.distribution.as_ref().map(Spanned::span)),
+            ("sigma", span(&self.sigma)),
+            ("sigmas", span(&self.sigmas)),
+            ("cp", span(&self.cp)),
+            ("cpk", span(&self.cpk)),
+            ("side", self.side.as_ref().map(Spanned::span)),
+            ("drift", span(&self.drift)),
+        ]
+        .into_iter()
+        .find_map(|(key, span)| Some((key, span?)))
+    }
+}
+
+/// `"worst-case"`, `"rss"`, or `{ yield = 0.9973 }`, `{ cpk = 1.33 }`, `{ sigma = 0.05 }`.
+#[derive(Debug)]
+pub(crate) enum RequireEntry {
+    Word(String),
+    Table(RequireTable),
+}
+
+/// A number that is required.
+#[derive(Debug, Default, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(extend("oneOf" = registry::one_of(["yield", "cpk", "sigma"]))))]
+#[serde(deny_unknown_fields)]
+pub(crate) struct RequireTable {
+    /// The least share of assemblies within the limits.
+    #[serde(rename = "yield")]
+    pub(crate) yield_: Option<Spanned<f64>>,
+    /// The least Cpk.
+    pub(crate) cpk: Option<Spanned<f64>>,
+    /// The greatest sigma.
+    pub(crate) sigma: Option<Spanned<f64>>,
+}
+
+impl<'de> Deserialize<'de> for RequireEntry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Require;
+        impl<'de> Visitor<'de> for Require {
+            type Value = RequireEntry;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a requirement such as \"worst-case\", \"rss\" or { cpk = 1.33 },")
+            }
+
+            fn visit_str<E>(self, word: &str) -> Result<Self::Value, E> {
+                Ok(RequireEntry::Word(word.to_owned()))
+            }
+
+            fn visit_map<A: serde::de::MapAccess<'de>>(self, map: A) -> Result<Self::Value, A::Error> {
+                RequireTable::deserialize(value::MapAccessDeserializer::new(map)).map(RequireEntry::Table)
+            }
+        }
+        deserializer.deserialize_any(Require)
+    }
+}

@@ -1,0 +1,105 @@
+//! Type of `distribution` in a study file, for a dimension or a process.
+
+use std::fmt;
+
+use serde::de::{MapAccess, Visitor, value};
+use serde::{Deserialize, Deserializer};
+
+use crate::entries::named_entries::Entries;
+#[cfg(feature = "schema")]
+use crate::entries::schema_parts as registry;
+use crate::entries::spanned::Spanned;
+use crate::entries::values::ToleranceEntry;
+
+/// `"uniform"` or `{ kind = "beta", alpha = 2, beta = 5 }`: the parameters of all kinds.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub(crate) struct DistributionEntry {
+    /// The kind of distribution.
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = registry::kinds())))]
+    pub(crate) kind: String,
+    /// Of a triangular distribution its most probable value; the band's middle unless given.
+    pub(crate) mode: Option<Spanned<f64>>,
+    /// Of a trapezoidal distribution the share of the band over which it is flat, from 0 to 1.
+    pub(crate) top: Option<Spanned<f64>>,
+    /// Of a beta distribution the exponent at the lower end, above 0.
+    pub(crate) alpha: Option<Spanned<f64>>,
+    /// Of a beta distribution the exponent at the upper end, above 0.
+    pub(crate) beta: Option<Spanned<f64>>,
+    /// Of a curvilinear trapezoid by how much the two ends of the band may be off, above 0 and below half the band.
+    pub(crate) inexactness: Option<Spanned<f64>>,
+    /// Of a student distribution the degrees of freedom, above 2.
+    pub(crate) degrees: Option<Spanned<f64>>,
+    /// Of a student distribution the scale, in place of sigma: sigma is scale sqrt(degrees/(degrees - 2)). A standard uncertainty with
+    /// degrees of freedom is a scale.
+    pub(crate) scale: Option<Spanned<f64>>,
+    /// Where a distribution with a tail begins.
+    #[cfg_attr(feature = "schema", schemars(extend("default" = 0)))]
+    pub(crate) origin: Option<Spanned<f64>>,
+    /// The parts of a mixture by name.
+    pub(crate) parts: Option<Spanned<Entries<PartEntry>>>,
+    /// Of a table of quantiles the normal scores, ascending: the value at the score z has the probability Phi(z) below it.
+    pub(crate) scores: Option<Spanned<Vec<f64>>>,
+    /// Of a table of quantiles the values of the dimension at its scores, ascending; the first and last are its ends.
+    pub(crate) values: Option<Spanned<Vec<f64>>>,
+}
+
+/// A part of a mixture: a weight, and what of a dimension is its own.
+#[derive(Debug, Clone, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, expecting = "a table such as { weight = 0.6, shift = 0.02, sigma = 0.01 }")]
+pub(crate) struct PartEntry {
+    /// Its share, relative to those of the other parts.
+    pub(crate) weight: Spanned<f64>,
+    /// Its nominal value; that of the dimension unless given.
+    pub(crate) nominal: Option<Spanned<f64>>,
+    /// Its tolerance; that of the dimension unless given.
+    pub(crate) tolerance: Option<Spanned<ToleranceEntry>>,
+    /// Its limits, in place of a tolerance.
+    pub(crate) limits: Option<Spanned<[f64; 2]>>,
+    /// How it is distributed: the name of a kind, or a table with its parameters.
+    #[serde(default, deserialize_with = "distribution")]
+    #[cfg_attr(feature = "schema", schemars(schema_with = "registry::distribution::<DistributionEntry>", extend("default" = "normal")))]
+    pub(crate) distribution: Option<Spanned<DistributionEntry>>,
+    /// Standard deviation.
+    pub(crate) sigma: Option<Spanned<f64>>,
+    /// How many sigmas half a tolerance band has.
+    pub(crate) sigmas: Option<Spanned<f64>>,
+    /// Process capability: sigmas/3.
+    pub(crate) cp: Option<Spanned<f64>>,
+    /// How far its mean lies off the middle of the band.
+    pub(crate) shift: Option<Spanned<f64>>,
+}
+
+/// Reads a text, which names the kind alone, or a table with parameters. For `deserialize_with`.
+pub(crate) fn distribution<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<Spanned<DistributionEntry>>, D::Error> {
+    Option::<Spanned<WordOrTable>>::deserialize(deserializer)
+        .map(|entry| entry.map(|entry| Spanned::new(entry.span(), entry.into_inner().0)))
+}
+
+struct WordOrTable(DistributionEntry);
+
+impl<'de> Deserialize<'de> for WordOrTable {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Distribution;
+        impl<'de> Visitor<'de> for Distribution {
+            type Value = WordOrTable;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a distribution such as \"uniform\", or { kind = \"uniform\" },")
+            }
+
+            fn visit_str<E>(self, kind: &str) -> Result<Self::Value, E> {
+                Ok(WordOrTable(DistributionEntry { kind: kind.to_owned(), ..Default::default() }))
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Self::Value, A::Error> {
+                DistributionEntry::deserialize(value::MapAccessDeserializer::new(map)).map(WordOrTable)
+            }
+        }
+        deserializer.deserialize_any(Distribution)
+    }
+}

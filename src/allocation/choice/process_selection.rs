@@ -1,0 +1,400 @@
+//! Choice of processes with distributions of their own: each choice has its own sigmas, means and distributions.
+//!
+//! If every requirement is a sum over the options, the lists are a knapsack ([`knapsack`](crate::allocation::choice::knapsack)). Such sums
+//! are `s^2 T^2`, `|s| T`, or `s^2 sigma^2` about a fixed mean. Otherwise every choice is judged by the surface with
+//! its distributions. All choices are examined from the cheapest on, up to the first that keeps everything. If there
+//! are too many, exchanges improve the choice of the least sigmas.
+
+use crate::allocation::choice::knapsack::cheapest;
+use crate::allocation::choice::option_list::ListOption;
+use crate::allocation::choice::outcome::Choice;
+use crate::allocation::choice::single_offer::Setting;
+use crate::allocation::cost::cost_curve::{Offer, Priced};
+use crate::allocation::requirement::constraint::{Constraint, kept};
+use crate::allocation::result::allocation::{AllocationSolver, Attainable, Proof};
+use crate::allocation::result::solver_result::{Solved, Starts};
+use crate::allocation::surface::reject_rate::of_scores;
+use crate::allocation::surface::response::Responses;
+use crate::problem::Problem;
+use sensitol_numeric::dimension::Dimension;
+use sensitol_numeric::law::rejected;
+use sensitol_numeric::requirement::Requirement;
+
+/// Most choices that are all examined.
+const ALL: usize = 20_000;
+/// Difference of means, in sigmas, within which they are the same.
+const SAME: f64 = 1e-12;
+
+/// True if some process has a distribution of its own.
+pub(in crate::allocation) fn any(priced: &[Priced]) -> bool {
+    priced.iter().flat_map(|group| &group.offers).any(|offer| offer.made.is_some())
+}
+
+/// Dimensions with the distributions of the chosen processes, moved to their present nominal values.
+pub(in crate::allocation) fn remade(problem: &Problem, priced: &[Priced], offers: &[usize]) -> Vec<(usize, Dimension)> {
+    let mut all = Vec::new();
+    for (group, &offer) in priced.iter().zip(offers) {
+        let Some(made) = &group.offers[offer].made else { continue };
+        for (&d, dimension) in group.members.iter().zip(made.dimensions()) {
+            let moved = dimension.moved(problem.dimensions()[d].nominal()).and_then(Result::ok);
+            all.push((d, moved.unwrap_or_else(|| dimension.clone())));
+        }
+    }
+    all
+}
+
+/// Evaluation of choices against the requirements.
+struct Judge<'s, 'a> {
+    setting: &'s Setting<'a>,
+    /// Dimensions of the members for every group and offer.
+    options: Vec<Vec<Vec<Dimension>>>,
+}
+
+impl<'s, 'a> Judge<'s, 'a> {
+    /// Returns None if an option cannot be applied to the present dimensions.
+    fn of(setting: &'s Setting<'a>) -> Option<Self> {
+        let dimensions = &setting.responses.dimensions;
+        let option = |group: &Priced, offer: &Offer| -> Option<Vec<Dimension>> {
+            let members = group.members.iter().enumerate();
+            members
+                .map(|(place, &d)| match &offer.made {
+                    Some(made) => made.dimensions()[place].moved(dimensions[d].nominal())?.ok(),
+                    None => dimensions[d].scaled(offer.min / dimensions[d].half_band())?.ok(),
+                })
+                .collect()
+        };
+        let of = |group: &Priced| group.offers.iter().map(|offer| option(group, offer)).collect();
+        let options = setting.priced.iter().map(of).collect::<Option<_>>()?;
+        Some(Self { setting, options })
+    }
+
+    fn at(&self, offers: &[usize]) -> Vec<f64> {
+        self.setting.priced.iter().zip(offers).map(|(group, &offer)| group.offers[offer].min).collect()
+    }
+
+    /// Cost of the tolerances of a choice.
+    fn held(&self, offers: &[usize]) -> f64 {
+        let of = |(group, &offer): (&Priced, &usize)| {
+            let offer = &group.offers[offer];
+            group.parts * offer.curve.cost(offer.min)
+        };
+        self.setting.priced.iter().zip(offers).map(of).sum()
+    }
+
+    /// Responses with the dimensions of a choice.
+    fn responses(&self, offers: &[usize]) -> Option<Responses> {
+        let mut dimensions = self.setting.responses.dimensions.clone();
+        for ((group, options), &offer) in self.setting.priced.iter().zip(&self.options).zip(offers) {
+            for (&d, dimension) in group.members.iter().zip(&options[offer]) {
+                dimensions[d] = dimension.clone();
+            }
+        }
+        let by_law = |one: &Constraint| matches!(one.requirement, Requirement::Yield(_));
+        self.setting.responses.remade(&dimensions, self.setting.constraints.iter().any(by_law))
+    }
+
+    /// Largest constraint at a choice, and its losses. Unless `whole`, the evaluation stops at the first constraint
+    /// that is broken.
+    fn value(&self, offers: &[usize], whole: bool) -> (f64, Option<f64>) {
+        let base = self.setting.responses;
+        let at = self.at(offers);
+        let mut value: f64 = 0.0;
+        let by_band = |one: &&Constraint| matches!(one.requirement, Requirement::WorstCase | Requirement::Rss);
+        for one in self.setting.constraints.iter().filter(by_band) {
+            value = value.max(one.value(base, self.setting.priced, &at));
+            if !whole && !kept(value) {
+                return (value, None);
+            }
+        }
+        let Some(own) = self.responses(offers) else { return (f64::INFINITY, None) };
+        let ones = vec![1.0; own.dimensions.len()];
+        for one in self.setting.constraints.iter().filter(|one| !by_band(one)) {
+            value = value.max(self.of_own(one, &own, &ones));
+            if !whole && !kept(value) {
+                return (value, None);
+            }
+        }
+        let lost: Option<f64> = self.setting.losses.iter().map(|loss| loss.at(&own, &ones, None)).sum();
+        (value, lost)
+    }
+
+    /// Value of a requirement of sigma, Cpk or yield with the distributions of a choice.
+    fn of_own(&self, one: &Constraint, own: &Responses, ones: &[f64]) -> f64 {
+        let Requirement::Yield(_) = one.requirement else { return one.value_at(own, ones) };
+        let of = one.characteristics(own);
+        if !one.is_joint() && own.is_plain(of[0]) {
+            return one.value_at(own, ones);
+        }
+        let laws: Option<Vec<_>> = of.iter().map(|&c| Some((own.law(c)?, own.of[c].limits))).collect();
+        match laws {
+            Some(laws) => {
+                let (tails, twice) = rejected(&laws);
+                of_scores((tails - twice.value).max(0.0), 1.0 - one.target(own))
+            }
+            None => one.value_at(own, ones),
+        }
+    }
+
+    /// Lists with the use of every requirement by each option. Returns None if a requirement is not such a sum.
+    fn lists(&self) -> Option<Vec<Vec<ListOption>>> {
+        let Setting { responses, priced, constraints, losses, .. } = *self.setting;
+        // Losses depend on the whole choice, not on a sum over its options.
+        if !losses.is_empty() {
+            return None;
+        }
+        let mut lists: Vec<Vec<ListOption>> = (priced.iter())
+            .map(|group| {
+                let option = |(place, offer): (usize, &Offer)| ListOption {
+                    cost: group.parts * offer.curve.cost(offer.min),
+                    uses: Vec::with_capacity(constraints.len()),
+                    place,
+                };
+                group.offers.iter().enumerate().map(option).collect()
+            })
+            .collect();
+        for one in constraints {
+            let c = one.characteristic;
+            let (room, of_group): (f64, Box<dyn Fn(usize, usize) -> f64>) = match one.requirement {
+                _ if one.is_joint() => return None,
+                Requirement::WorstCase => {
+                    let (room, coefficients) = one.linear_room(responses, priced)?;
+                    (room, Box::new(move |g, i| coefficients[g] * priced[g].offers[i].min))
+                }
+                Requirement::Rss => {
+                    let room = one.still_room(responses, priced)?;
+                    let squares = responses.squares_of_bands(c, priced)?;
+                    (room * room - squares.0, Box::new(move |g, i| squares.1[g] * priced[g].offers[i].min.powi(2)))
+                }
+                _ => {
+                    let slopes = responses.slopes_of_sum(c)?;
+                    let normal = matches!(one.requirement, Requirement::Yield(_));
+                    if normal && !responses.is_plain(c) && !self.all_normal() {
+                        return None;
+                    }
+                    if !matches!(one.requirement, Requirement::Sigma(_)) && !self.means_stay(c) {
+                        return None;
+                    }
+                    let most = one.most_sigma(responses, normal)?;
+                    let sigma = |d: usize| responses.dimensions[d].sigma();
+                    let priced_one = |d: usize| priced.iter().any(|group| group.members.contains(&d));
+                    let fixed: f64 =
+                        (0..slopes.len()).filter(|&d| !priced_one(d)).map(|d| (slopes[d] * sigma(d)).powi(2)).sum();
+                    let options = &self.options;
+                    let of = move |g: usize, i: usize| -> f64 {
+                        let members = priced[g].members.iter().zip(&options[g][i]);
+                        members.map(|(&d, dimension)| (slopes[d] * dimension.sigma()).powi(2)).sum()
+                    };
+                    (most * most - fixed, Box::new(of))
+                }
+            };
+            if !(room > 0.0 && room.is_finite()) {
+                return None;
+            }
+            for (g, list) in lists.iter_mut().enumerate() {
+                list.iter_mut().enumerate().for_each(|(i, option)| option.uses.push(of_group(g, i) / room));
+            }
+        }
+        lists.iter().flatten().all(|one| one.uses.iter().all(|&use_| use_ >= 0.0)).then_some(lists)
+    }
+
+    /// True if every option of every group and every other dimension is normal.
+    fn all_normal(&self) -> bool {
+        let normal = |dimension: &Dimension| {
+            let law = dimension.distribution();
+            law.is_none_or(|law| law.standard_moments() == sensitol_numeric::distribution::StandardMoments::NORMAL)
+        };
+        self.options.iter().flatten().flatten().all(normal) && self.setting.responses.dimensions.iter().all(normal)
+    }
+
+    /// True if no option moves the mean of a characteristic.
+    fn means_stay(&self, c: usize) -> bool {
+        let responses = self.setting.responses;
+        self.setting.priced.iter().zip(&self.options).all(|(group, options)| {
+            !responses.depends(c, group)
+                || options.iter().all(|option| {
+                    group.members.iter().zip(option).all(|(&d, dimension)| {
+                        let old = &responses.dimensions[d];
+                        let blur = 8.0 * f64::EPSILON * old.mean().abs();
+                        (dimension.mean() - old.mean()).abs() <= SAME * old.sigma() + blur
+                    })
+                })
+        })
+    }
+
+    /// True if the surfaces represent the requirements exactly: they are straight, or slopes determine the worst case.
+    fn is_exact(&self) -> bool {
+        let exact = |one: &Constraint| {
+            let responses = self.setting.responses;
+            one.characteristics(responses).into_iter().all(|c| match one.requirement {
+                Requirement::WorstCase => responses.has_linear_worst_case(c),
+                Requirement::Rss => true,
+                _ => responses.is_straight(c),
+            })
+        };
+        self.setting.constraints.iter().all(exact)
+    }
+
+    fn found(&self, offers: Vec<usize>, lost: f64, bound: Option<f64>, nodes: usize) -> Choice {
+        let at = self.at(&offers);
+        let cost = self.held(&offers) + lost;
+        let rigorous = bound.is_some() && self.is_exact();
+        // No choice costs less than the cheapest option of every list.
+        let least = |group: &Priced| {
+            let of = group.offers.iter().map(|offer| group.parts * offer.curve.cost(offer.min));
+            of.fold(f64::INFINITY, f64::min)
+        };
+        let bound = bound.unwrap_or_else(|| self.setting.priced.iter().map(least).sum()).min(cost);
+        let solved = Solved {
+            value: self.value(&offers, true).0,
+            multipliers: vec![0.0; self.setting.constraints.len()],
+            residual: 0.0,
+            closed: false,
+            converged: true,
+            sequential: false,
+            starts: Starts::default(),
+            at,
+            cost,
+        };
+        Choice::Found {
+            solved,
+            offers,
+            proof: Proof {
+                solver: Some(AllocationSolver::BranchAndBound),
+                bound: Some(bound),
+                rigorous,
+                nodes,
+                ..Proof::default()
+            },
+        }
+    }
+
+    /// Examines every choice from the cheapest on. Returns None if none keeps everything, or the run was stopped.
+    fn everything(&self) -> Option<Choice> {
+        let counts: Vec<usize> = self.options.iter().map(Vec::len).collect();
+        let picks = |mut code: usize| -> Vec<usize> {
+            let digit = |&count: &usize| {
+                let digit = code % count;
+                code /= count;
+                digit
+            };
+            counts.iter().map(digit).collect()
+        };
+        let all: usize = counts.iter().product();
+        let mut choices: Vec<(f64, usize)> = (0..all).map(|code| (self.held(&picks(code)), code)).collect();
+        choices.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let mut best: Option<(f64, Vec<usize>, f64)> = None;
+        let mut nodes = 0;
+        for (held, code) in choices {
+            // Losses are never negative.
+            if best.as_ref().is_some_and(|(cost, ..)| held >= *cost) || (self.setting.stopped)() {
+                break;
+            }
+            nodes += 1;
+            let offers = picks(code);
+            let (value, lost) = self.value(&offers, false);
+            let cheaper = |lost: f64| best.as_ref().is_none_or(|(cost, ..)| held + lost < *cost);
+            if let Some(lost) = lost.filter(|&lost| kept(value) && cheaper(lost)) {
+                best = Some((held + lost, offers, lost));
+            }
+        }
+        let bound = |cost: f64| if (self.setting.stopped)() { None } else { Some(cost) };
+        best.map(|(cost, offers, lost)| self.found(offers, lost, bound(cost), nodes))
+    }
+
+    /// Choice of the least sigmas, improved by exchanges.
+    fn exchanged(&self) -> Option<Choice> {
+        let mut offers = self.tightest();
+        let mut nodes = 1;
+        let (value, lost) = self.value(&offers, true);
+        let mut cost = self.held(&offers) + lost.filter(|_| kept(value))?;
+        loop {
+            let mut better: Option<(f64, usize, usize)> = None;
+            for g in 0..offers.len() {
+                let present = offers[g];
+                for i in (0..self.options[g].len()).filter(|&i| i != present) {
+                    offers[g] = i;
+                    let held = self.held(&offers);
+                    let least = better.map_or(cost, |(least, ..)| least);
+                    if held < least && !(self.setting.stopped)() {
+                        nodes += 1;
+                        let (value, lost) = self.value(&offers, false);
+                        if let Some(lost) = lost.filter(|&lost| kept(value) && held + lost < least) {
+                            better = Some((held + lost, g, i));
+                        }
+                    }
+                }
+                offers[g] = present;
+            }
+            let Some((now, g, i)) = better else { break };
+            (offers[g], cost) = (i, now);
+        }
+        let lost = self.value(&offers, true).1?;
+        Some(self.found(offers, lost, None, nodes))
+    }
+
+    /// Option of the least sigma of every group, and of these the tightest.
+    fn tightest(&self) -> Vec<usize> {
+        let size = |g: usize, i: usize| {
+            let sigma = self.options[g][i].iter().map(Dimension::sigma).fold(0.0, f64::max);
+            (sigma, self.setting.priced[g].offers[i].min)
+        };
+        let least = |g: usize| {
+            let places = 0..self.options[g].len();
+            places.min_by(|&a, &b| size(g, a).partial_cmp(&size(g, b)).unwrap_or(std::cmp::Ordering::Equal))
+        };
+        (0..self.options.len()).map(|g| least(g).unwrap_or(0)).collect()
+    }
+
+    /// Outcome without a choice: the requirement with the largest value at the choice of the least sigmas.
+    fn none(&self) -> Choice {
+        let offers = self.tightest();
+        let at = self.at(&offers);
+        let Some(own) = self.responses(&offers) else { return Choice::Stopped };
+        let (base, priced) = (self.setting.responses, self.setting.priced);
+        let ones = vec![1.0; own.dimensions.len()];
+        let by_band = |one: &Constraint| matches!(one.requirement, Requirement::WorstCase | Requirement::Rss);
+        let value = |one: &&Constraint| match by_band(one) {
+            true => one.value(base, priced, &at),
+            false => self.of_own(one, &own, &ones),
+        };
+        let worst = self.setting.constraints.iter().max_by(|a, b| value(a).total_cmp(&value(b)));
+        let of = |one: &Constraint| Attainable {
+            characteristic: one.characteristic,
+            unit: None,
+            requirement: one.requirement,
+            joint: one.is_joint(),
+            best: match by_band(one) {
+                true => one.measured(base, priced, &at),
+                false => one.measured(&own, &[], &[]),
+            },
+            because: Vec::new(),
+            together: kept(value(&one)),
+        };
+        worst.map_or(Choice::Stopped, |worst| Choice::Infeasible(of(worst), at.clone()))
+    }
+}
+
+/// Cheapest choice of processes with one tolerance each.
+pub(in crate::allocation) fn choose_made(setting: &Setting<'_>) -> Choice {
+    let Some(judge) = Judge::of(setting) else { return Choice::Stopped };
+    if let Some(lists) = judge.lists() {
+        let found = cheapest(&lists, setting.stopped);
+        // Sums in another order may differ by a last digit, so such a choice is judged again.
+        if let Some(found) = found.filter(|found| kept(judge.value(&found.places, true).0)) {
+            return judge.found(found.places, 0.0, Some(found.bound), found.nodes);
+        }
+    }
+    let count = judge.options.iter().fold(1usize, |count, list| count.saturating_mul(list.len()));
+    let found = if count <= ALL { judge.everything() } else { judge.exchanged() };
+    match found {
+        Some(found) => found,
+        None if (setting.stopped)() => Choice::Stopped,
+        None => judge.none(),
+    }
+}
+
+/// True if all choices are examined, and the surfaces represent the requirements exactly.
+pub(in crate::allocation) fn is_proof(setting: &Setting<'_>) -> bool {
+    let count = setting.priced.iter().fold(1usize, |count, group| count.saturating_mul(group.offers.len()));
+    count <= ALL && Judge::of(setting).is_some_and(|judge| judge.is_exact())
+}

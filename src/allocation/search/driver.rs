@@ -1,0 +1,273 @@
+//! Common part of all searches of tolerances: analyses of the model at given tolerances, within budget and time.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use crate::allocation::choice::process_selection::remade;
+use crate::allocation::cost::cost_curve::Priced;
+use crate::allocation::requirement::constraint::{Constraint, kept};
+use crate::allocation::search::linearization_point::{Seen, Station};
+use crate::allocation::surface::corners::Places;
+use crate::allocation::surface::response::Responses;
+use crate::allocation::surface::sampled_moments::SampledCorrection;
+use crate::allocation::surface::uncertainty::Unknown;
+use crate::allocation::task::{AllocateError, AllocationOptions, AllocationTask, Goal};
+use crate::analysis::{Analysis, CharacteristicAnalysis, Findings, analyze_keeping};
+use crate::assembly::Run;
+use crate::method::{MethodError, Options};
+use crate::problem::Problem;
+use crate::summary::{RunSummary, StopReason};
+use sensitol_numeric::dimension::Dimension;
+use sensitol_numeric::moments::Moments;
+use sensitol_numeric::parallel::prelude::*;
+use sensitol_numeric::requirement::Requirement;
+
+/// Most rounds, each with an analysis for new derivatives.
+pub(in crate::allocation) const ROUNDS: usize = 20;
+
+/// Evaluations so far, and values that later rounds need.
+#[derive(Default)]
+pub(in crate::allocation) struct Spent {
+    pub(in crate::allocation) run: RunSummary,
+    pub(in crate::allocation) rounds: usize,
+    pub(in crate::allocation) stopped: bool,
+    /// Greatest uncertainty of every characteristic since the rounds have [settled](SETTLED).
+    unknown: Vec<Unknown>,
+    /// Greatest uncertainty of the joint yield since then.
+    joint_unknown: f64,
+    /// Additional requirement of every characteristic, because trials missed it.
+    stricter: Vec<Unknown>,
+    /// Additional requirement of the joint yield, because trials missed it.
+    joint_stricter: f64,
+    /// Cheapest linearization point that kept everything.
+    pub(in crate::allocation) seen: Option<Seen>,
+    /// Places of the farthest reach of formulas, by characteristic.
+    places: BTreeMap<usize, [Places; 2]>,
+    /// Points of a cheap model in addition to the evaluations.
+    pub(in crate::allocation) points: Arc<AtomicU64>,
+}
+
+/// Rounds after which uncertainties only grow. The uncertainty of a sample jumps when an assembly passes a limit. The
+/// search could otherwise alternate between two neighbouring linearization points.
+const SETTLED: usize = 4;
+
+impl Spent {
+    /// Adds to the requirements from the next linearization point on.
+    pub(in crate::allocation) fn require_more(&mut self, more: &[Unknown], joint: f64) {
+        self.stricter.resize(more.len(), Unknown::default());
+        self.stricter.iter_mut().zip(more).for_each(|(all, more)| *all = all.and(*more));
+        self.joint_stricter += joint;
+    }
+}
+
+/// Function that returns the dimensions of a problem as they stand in the file of its study.
+pub(crate) type AsWritten<'a> = &'a dyn Fn(&Problem) -> Option<Vec<Dimension>>;
+
+/// Task, options and state of an allocation.
+pub(in crate::allocation) struct Driver<'a> {
+    pub(in crate::allocation) task: &'a AllocationTask,
+    pub(in crate::allocation) options: &'a AllocationOptions,
+    pub(in crate::allocation) run: &'a Run<'a>,
+    /// Requirements of all characteristics.
+    pub(in crate::allocation) required: Vec<(usize, Requirement)>,
+    pub(in crate::allocation) written: Option<AsWritten<'a>>,
+    pub(in crate::allocation) spent: Spent,
+}
+
+/// Distances at which a search has converged. They are larger for a costly model, because every round evaluates it.
+#[derive(Clone, Copy)]
+pub(in crate::allocation) struct Near {
+    /// Relative change within which tolerances agree.
+    pub(in crate::allocation) agree: f64,
+    /// Part by which tolerances are tightened, in case the next analysis differs.
+    pub(in crate::allocation) margin: f64,
+    /// Move within which nominal values are at rest, in sigmas.
+    pub(in crate::allocation) rest: f64,
+}
+
+/// Error of a requirement that is followed along its slopes, relative to the square of a change of tolerances. The
+/// second derivatives of the [corrections](crate::allocation::surface::surface_slack) of a slack are some tenths.
+const BENT: f64 = 0.1;
+/// Ten times the error of moments by differences, whose steps in `ln T` give them to 1e-10.
+const NOISE: f64 = 1e-9;
+
+impl Near {
+    pub(in crate::allocation) fn of(problem: &Problem) -> Self {
+        let (agree, rest) = if problem.function().signature().costly { (1e-3, 1e-3) } else { (1e-7, 1e-6) };
+        Self { agree, margin: (BENT * agree * agree).max(NOISE), rest }
+    }
+}
+
+pub(in crate::allocation) struct Ended {
+    pub(in crate::allocation) agreed: bool,
+    pub(in crate::allocation) within_budget: bool,
+    /// Residual of nominal values and tolerances together, if both may change.
+    pub(in crate::allocation) at_rest: Option<f64>,
+}
+
+/// True if a constraint with this value is kept. A level that is sought for a cost is not promised, so it may differ by
+/// as much as another round would change it.
+pub(in crate::allocation) fn kept_within(value: f64, goal: Goal) -> bool {
+    /// Tolerance of a sought level, relative to sigma squared.
+    const SOUGHT: f64 = 1e-6;
+    kept(value) || goal != Goal::LeastCost && value <= 1.0 + SOUGHT
+}
+
+impl Driver<'_> {
+    pub(in crate::allocation) fn constraints(
+        &self,
+        problem: &Problem,
+        requirements: &[Option<Requirement>],
+    ) -> Vec<Constraint> {
+        let of = |(c, one): (usize, &Option<Requirement>)| {
+            Some(Constraint::of(c, (*one)?, problem.characteristics()[c].limits()))
+        };
+        let all: Vec<Constraint> = requirements.iter().enumerate().filter_map(of).flatten().collect();
+        all.into_iter().chain(self.joint_constraint(problem)).collect()
+    }
+
+    /// Constraint of the joint yield, if one is required. It has the name of the first characteristic with limits.
+    fn joint_constraint(&self, problem: &Problem) -> Option<Constraint> {
+        let least = self.task.joint_target(problem, self.options)?;
+        let mut limited = problem.characteristics().iter().enumerate().filter(|(_, one)| one.limits().exist());
+        limited.next().map(|(c, one)| Constraint::joint(c, least, one.limits()))
+    }
+
+    /// Analyses the model for a problem, which gives a linearization point. An error is an error of the task only in
+    /// the first round.
+    pub(in crate::allocation) fn analysed(&mut self, problem: Problem) -> Result<Station, AllocateError> {
+        let budget = self
+            .options
+            .analysis
+            .budget
+            .map(|budget| budget.saturating_sub(usize::try_from(self.spent.run.evaluations).unwrap_or(usize::MAX)));
+        let options = Options { budget, ..self.options.derivatives(&problem) };
+        let (analysis, findings) = analyze_keeping(&problem, &options, self.run)?;
+        self.spent.run = self.spent.run.and(&analysis.run);
+        self.spent.rounds += 1;
+        self.spent.stopped |= analysis.run.unfinished();
+        let mut responses = Responses::of(&problem, &findings.outcome, &analysis, &self.task.requirements);
+        if self.spent.rounds > SETTLED {
+            self.spent.unknown.resize(responses.of.len(), Unknown::default());
+            for (one, most) in responses.of.iter_mut().zip(&mut self.spent.unknown) {
+                *most = most.most(one.unknown);
+                one.unknown = *most;
+            }
+            self.spent.joint_unknown = self.spent.joint_unknown.max(responses.joint_unknown);
+            responses.joint_unknown = self.spent.joint_unknown;
+        }
+        for (one, more) in responses.of.iter_mut().zip(&self.spent.stricter) {
+            one.unknown = one.unknown.and(*more);
+        }
+        responses.joint_unknown += self.spent.joint_stricter;
+        self.correct(&problem, &analysis, &mut responses);
+        if !problem.function().signature().costly {
+            let Spent { places, points, .. } = &mut self.spent;
+            responses.follow_corners(&problem, places, points);
+        }
+        if self.task.goal == Goal::LeastCost {
+            self.constraints(&problem, &self.task.requirements).par_iter().for_each(|one| one.prepare(&responses));
+        }
+        Ok(Station { problem, analysis, findings, responses })
+    }
+
+    /// Analysis of a linearization point, with the results that are only reported.
+    pub(in crate::allocation) fn completed(
+        &self,
+        mut analysis: Analysis,
+        findings: &Findings,
+        problem: &Problem,
+    ) -> Analysis {
+        analysis.complete(findings, problem, &self.options.derivatives(problem), self.run);
+        analysis
+    }
+
+    /// Corrects moments by samples of the model, if its verification refutes the surface, the requirement uses moments,
+    /// and the model is cheap.
+    fn correct(&self, problem: &Problem, analysis: &Analysis, responses: &mut Responses) {
+        let of = |(c, one): (usize, &CharacteristicAnalysis)| {
+            let refuted = one.verification.as_ref().is_some_and(|of| of.replaced);
+            let moments =
+                self.task.requirements[c].is_some_and(|of| !matches!(of, Requirement::Rss | Requirement::WorstCase));
+            (refuted && moments).then_some((c, one.moments?))
+        };
+        let verified: Vec<(usize, Moments)> = analysis.characteristics.iter().enumerate().filter_map(of).collect();
+        let priced = &self.task.priced;
+        let many = priced.len() > SampledCorrection::MOST_GROUPS;
+        if verified.is_empty() || many || problem.function().signature().costly || self.run.stopped() {
+            return;
+        }
+        let at = |g: usize, factor: f64| {
+            let half = problem.dimensions()[priced[g].members[0]].half_band();
+            with_tolerances(problem.clone(), &priced[g..=g], &[factor * half]).ok()
+        };
+        let surface = |c: usize, g: usize, factor: f64| {
+            let mut factors = vec![1.0; problem.dimensions().len()];
+            priced[g].members.iter().for_each(|&d| factors[d] = factor);
+            responses.moments(c, &factors)
+        };
+        let (found, points) = SampledCorrection::of(&verified, priced, &at, &surface, self.options.seed, self.run);
+        self.spent.points.fetch_add(points, Ordering::Relaxed);
+        for (c, correction) in found {
+            responses.of[c].sampled = correction;
+        }
+    }
+
+    /// Analyses the model in later rounds. Returns None if the budget does not allow it.
+    pub(in crate::allocation) fn station(&mut self, problem: Problem) -> Result<Option<Station>, AllocateError> {
+        match self.analysed(problem) {
+            Ok(station) => Ok(Some(station)),
+            Err(AllocateError::Method(MethodError::OverBudget { .. })) => {
+                self.spent.run.stopped.get_or_insert(StopReason::Budget);
+                Ok(None)
+            }
+            Err(error) => Err(error),
+        }
+    }
+}
+
+pub(in crate::allocation) fn unit(problem: &Problem, characteristic: usize) -> Option<String> {
+    problem.characteristics()[characteristic].unit().map(str::to_owned)
+}
+
+pub(in crate::allocation) fn cost(priced: &[Priced], at: &[f64], offers: &[usize]) -> f64 {
+    let of = |((group, &t), &offer): ((&Priced, &f64), &usize)| group.parts * group.offers[offer].curve.cost(t);
+    priced.iter().zip(at).zip(offers).map(of).sum()
+}
+
+/// Problem with the groups at these half bands.
+pub(in crate::allocation) fn with_tolerances(
+    problem: Problem,
+    priced: &[Priced],
+    at: &[f64],
+) -> Result<Problem, AllocateError> {
+    let dimensions: Vec<Dimension> = scaled(&problem, priced, at)?;
+    Ok(problem.with_dimensions(dimensions)?)
+}
+
+/// Problem with the groups at these half bands, and with the distributions of the chosen processes.
+pub(in crate::allocation) fn with_choice(
+    problem: Problem,
+    priced: &[Priced],
+    at: &[f64],
+    offers: &[usize],
+) -> Result<Problem, AllocateError> {
+    let mut dimensions: Vec<Dimension> = scaled(&problem, priced, at)?;
+    remade(&problem, priced, offers).into_iter().for_each(|(d, dimension)| dimensions[d] = dimension);
+    Ok(problem.with_dimensions(dimensions)?)
+}
+
+/// Dimensions with the groups at these half bands.
+fn scaled(problem: &Problem, priced: &[Priced], at: &[f64]) -> Result<Vec<Dimension>, AllocateError> {
+    let mut dimensions = problem.dimensions().to_vec();
+    for (group, &t) in priced.iter().zip(at) {
+        for &d in &group.members {
+            let factor = t / dimensions[d].half_band();
+            if let Some(scaled) = dimensions[d].scaled(factor) {
+                dimensions[d] = scaled?;
+            }
+        }
+    }
+    Ok(dimensions)
+}

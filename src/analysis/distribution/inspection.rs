@@ -1,0 +1,157 @@
+//! Risks of an inspection, from the distribution that the yield comes from, and from the sample of the model if there is one.
+
+use crate::analysis::{CharacteristicAnalysis, YieldSource};
+use crate::verification::WeightedSample;
+use sensitol_numeric::capability::{EstimatedShare, InspectionRisks, Law, Risks, Tails, acceptance, guard_for};
+use sensitol_numeric::characteristic::KeptLimits;
+use sensitol_numeric::characteristic::SpecLimits;
+use sensitol_numeric::inspection::{Guard, Inspection};
+use sensitol_numeric::law::SurfaceLaw;
+
+/// Risks of the inspection of a characteristic whose yield is settled. Returns None if there is no inspection, and if nothing is known of
+/// its distribution.
+///
+/// `points` of the surface, in ascending order, replace a distribution that is refuted.
+pub(in crate::analysis) fn inspected(
+    one: &CharacteristicAnalysis,
+    kept: KeptLimits,
+    surface: Option<&SurfaceLaw>,
+    points: Option<&[f64]>,
+) -> Option<InspectionRisks> {
+    let inspection = one.characteristic.inspection()?;
+    let limits = one.characteristic.limits();
+    let fit = one.law.as_ref().and_then(|law| law.as_ref().ok());
+    // The distribution of a surface that does not vary is a step: the closed form is more accurate than the integrals.
+    let surface = surface.filter(|_| !matches!(fit, Some(Law::Point { .. })));
+    match (surface, fit) {
+        (Some(surface), _) => {
+            let (below, above) = (|x: f64| surface.below(x).value, |x: f64| surface.above(x).value);
+            Some(by(one, inspection, (limits, kept), &Tails { below: &below, above: &above }, surface_error(one)))
+        }
+        (None, Some(Law::Point { at })) => {
+            // A value that keeps a limit except for rounding is moved onto it.
+            let [least, most] = [limits.lower(), limits.upper()];
+            let on = |at: f64| at.max(least.unwrap_or(at)).min(most.unwrap_or(at));
+            let at = if kept.contains(*at) { on(*at) } else { *at };
+            let (below, above) = (|x: f64| f64::from(u8::from(at < x)), |x: f64| f64::from(u8::from(at > x)));
+            let exact = |guard: f64| of_point(at, kept, inspection.gauge(), guard);
+            let guard = guard(inspection, limits, &Tails { below: &below, above: &above });
+            Some(told(one, inspection, guard, guard.map(|guard| (exact(guard), [Some(0.0); 2]))))
+        }
+        (None, Some(_))
+            if let Some(points) = points.filter(|_| one.surface_law.is_some_and(|law| law.refuted.is_some())) =>
+        {
+            let share = |count: usize| count as f64 / points.len() as f64;
+            let below = |x: f64| share(points.partition_point(|&y| y < x));
+            let above = |x: f64| share(points.len() - points.partition_point(|&y| y <= x));
+            Some(by(one, inspection, (limits, kept), &Tails { below: &below, above: &above }, None))
+        }
+        (None, Some(fit)) => {
+            let (below, above) = (|x: f64| fit.below(x), |x: f64| fit.above(x));
+            Some(by(one, inspection, (limits, kept), &Tails { below: &below, above: &above }, None))
+        }
+        (None, None) => None,
+    }
+}
+
+/// Numerical error of the surface distribution, if it is the only error.
+fn surface_error(one: &CharacteristicAnalysis) -> Option<f64> {
+    let proven = one.yield_source == Some(YieldSource::Proof);
+    one.surface_law.filter(|_| proven).map(|law| law.error())
+}
+
+fn guard(inspection: Inspection, limits: SpecLimits, tails: &Tails<'_>) -> Option<f64> {
+    match inspection.guard() {
+        Guard::Width(width) => Some(width),
+        Guard::FalseAccept(rate) => guard_for(tails, limits, inspection.gauge(), rate),
+    }
+}
+
+/// Risks from a distribution, and from the sample of the model if there is one. Without a trusted surface distribution the values are those
+/// of the sample.
+fn by(
+    one: &CharacteristicAnalysis,
+    inspection: Inspection,
+    (limits, kept): (SpecLimits, KeptLimits),
+    tails: &Tails<'_>,
+    proven: Option<f64>,
+) -> InspectionRisks {
+    let (gauge, guard) = (inspection.gauge(), guard(inspection, limits, tails));
+    let sample = one.verification.as_ref().and_then(|of| of.sample.as_deref());
+    let of = |guard: f64| {
+        let mut risks = Risks::of(tails, limits, gauge, guard);
+        // Proven yields bound the risk: no more bad parts are accepted than there are rejects.
+        if let Some(rejected) = one.capability.and_then(|of| of.rejected()).filter(|_| proven.is_some()) {
+            risks.false_accept = risks.false_accept.min(rejected);
+        }
+        let Some(sample) = sample else {
+            let error = proven.or(one.error_estimate.as_ref().and_then(|of| of.yield_));
+            return (risks, [error.map(|error| error + risks.error); 2]);
+        };
+        let found = of_sample(sample, kept, gauge, guard);
+        // Points of the model take precedence over a count of the surface.
+        if one.surface_law.is_none_or(|law| law.refuted.is_some()) {
+            (risks.false_accept, risks.false_reject) = (found[0].value, found[1].value);
+        }
+        let errors = [found[0].error_of(risks.false_accept), found[1].error_of(risks.false_reject)];
+        (risks, errors.map(Some))
+    };
+    told(one, inspection, guard, guard.map(of))
+}
+
+/// Shares of bad accepted and good rejected parts, over points of the model.
+fn of_sample(
+    sample: &WeightedSample,
+    limits: KeptLimits,
+    gauge: f64,
+    guard: f64,
+) -> [crate::verification::Verified; 2] {
+    let accepted = |x: f64| acceptance(x, limits, gauge, guard);
+    let bad = |x: f64| if limits.contains(x) { 0.0 } else { accepted(x) };
+    let good = |x: f64| if limits.contains(x) { 1.0 - accepted(x) } else { 0.0 };
+    sample.shares([&bad, &good])
+}
+
+fn of_point(x: f64, limits: KeptLimits, gauge: f64, guard: f64) -> Risks {
+    let accepted = acceptance(x, limits, gauge, guard);
+    let good = limits.contains(x);
+    Risks {
+        false_accept: if good { 0.0 } else { accepted },
+        false_reject: if good { 1.0 - accepted } else { 0.0 },
+        error: 0.0,
+    }
+}
+
+fn told(
+    one: &CharacteristicAnalysis,
+    inspection: Inspection,
+    guard: Option<f64>,
+    found: Option<(Risks, [Option<f64>; 2])>,
+) -> InspectionRisks {
+    let limits = one.characteristic.limits();
+    let tightened = |limit: Option<f64>, sign: f64| Some(limit? + sign * guard?);
+    let share = |value: f64, error: Option<f64>| Some(EstimatedShare { value: value.clamp(0.0, 1.0), error });
+    let yield_ = one.capability.and_then(|of| of.yield_());
+    let yield_error = match one.constant {
+        true => Some(0.0),
+        false => one.error_estimate.as_ref().and_then(|of| of.yield_),
+    };
+    let accepted = found.zip(yield_).map(|((risks, errors), yield_)| {
+        let error = yield_error.zip(errors[0]).zip(errors[1]);
+        let error = error.map(|((yield_, accept), reject)| libm::hypot(libm::hypot(yield_, accept), reject));
+        EstimatedShare { value: (yield_ - risks.false_reject + risks.false_accept).clamp(0.0, 1.0), error }
+    });
+    let among =
+        found.zip(accepted).filter(|(_, accepted)| accepted.value > 0.0).and_then(|((risks, errors), accepted)| {
+            share(risks.false_accept / accepted.value, errors[0].map(|error| error / accepted.value))
+        });
+    InspectionRisks {
+        gauge: inspection.gauge(),
+        guard,
+        acceptance: [tightened(limits.lower(), 1.0), tightened(limits.upper(), -1.0)],
+        false_accept: found.and_then(|(risks, errors)| share(risks.false_accept, errors[0])),
+        false_reject: found.and_then(|(risks, errors)| share(risks.false_reject, errors[1])),
+        accepted,
+        bad_among_accepted: among,
+    }
+}

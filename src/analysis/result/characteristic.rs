@@ -1,0 +1,568 @@
+//! Results of one characteristic.
+
+use serde::{Serialize, Serializer};
+
+use crate::analysis::result::coverage_intervals::CoverageIntervals;
+use crate::analysis::result::interaction_listing::{dimensions_of, mixed_of, pairs_of, share_of};
+use crate::analysis::result::interaction_remainder::Remainder;
+use crate::analysis::result::linear::Linear;
+use crate::analysis::result::sobol_indices::SobolIndices;
+use crate::analysis::result::variance_share::Shares;
+use crate::analysis::result::yield_error::of_yield;
+use crate::analysis::{
+    InteractionList, SampledModel, SamplingInterval, SurfaceShares, Verification, VerificationKind, YieldSource,
+};
+use crate::extremes::{Extremes, ExtremesProof};
+use crate::method::{ErrorEstimate, Order, Outcome, Residual, estimate};
+use crate::problem::Problem;
+use sensitol_numeric::capability::{Capability, CapabilityShape, EstimatedShare, InspectionRisks, Law};
+use sensitol_numeric::characteristic::{Characteristic, SpecLimits};
+use sensitol_numeric::json_form::{Four, RejectIntervals, through};
+use sensitol_numeric::moments::{Moments, Sampled};
+use sensitol_numeric::pearson::PearsonError;
+use sensitol_numeric::power::{Rescale, Rescaling, Wide, rescale};
+use sensitol_numeric::requirement::Requirement;
+use sensitol_numeric::surrogate::DerivativeOrigin;
+use sensitol_numeric::verdict::{self, Judged, Verdict};
+
+/// Moments, sensitivities and contributions of one characteristic. Unknown values are None.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(remote = "Self")]
+pub struct CharacteristicAnalysis {
+    /// Characteristic, with its limits.
+    #[serde(flatten)]
+    pub characteristic: Characteristic,
+    /// Value at the nominal dimensions.
+    pub nominal: Option<f64>,
+    /// First four moments.
+    #[serde(flatten, serialize_with = "through::<Four<Option<f64>>, _, _>")]
+    #[cfg_attr(feature = "schema", schemars(with = "Four<Option<f64>>"))]
+    pub moments: Option<Moments>,
+    /// Standard errors of the moments from sampling the surrogate of correlated inputs. None if the moments are exact.
+    #[serde(rename = "surrogate_sampling")]
+    pub sampled: Option<Sampled>,
+    /// Points of the model from which the moments follow, in place of a surrogate that was not trusted.
+    #[serde(rename = "model_sampling")]
+    pub model_sampled: Option<SampledModel>,
+    /// Verification of these results by the model itself. None if they were not verified.
+    #[cfg_attr(
+        feature = "schema",
+        schemars(with = "Option<crate::analysis::result::verification::VerificationShape>")
+    )]
+    pub verification: Option<Verification>,
+    /// Results of the surface distribution. None if the moments follow from no surface.
+    #[cfg_attr(
+        feature = "schema",
+        schemars(with = "Option<crate::analysis::distribution::surface_law::SurfaceLawShape>")
+    )]
+    pub surface_law: Option<SurfaceShares>,
+    /// Density of the surface distribution as `[y, density, error]`, for drawing. None unless [requested](crate::Options::densities), and
+    /// if the distribution has none.
+    #[serde(skip)]
+    pub density: Option<Vec<[f64; 3]>>,
+    /// Source of the yield. None if there is no yield.
+    pub yield_source: Option<YieldSource>,
+    /// True if the run was stopped before all planned points were evaluated. There is no verdict then.
+    pub unfinished: bool,
+    /// Evaluated points without a value of the characteristic.
+    pub without_value: usize,
+    /// Estimated errors of these results. None if there are no moments.
+    pub error_estimate: Option<ErrorEstimate>,
+    /// Residual of a fitted surface at the values that it was fitted to. None if nothing was fitted.
+    #[serde(rename = "least_squares")]
+    pub residual: Option<Residual>,
+    /// Distribution of the Pearson system with these moments, or the reason why there is none.
+    #[serde(rename = "distribution", serialize_with = "fitted")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<Law>"))]
+    pub law: Option<Result<Law, PearsonError>>,
+    /// Capability from the best available source ([`yield_source`](Self::yield_source)). Quantiles come from the surface distribution if
+    /// there is one.
+    #[serde(flatten, serialize_with = "through::<CapabilityShape, _, _>")]
+    #[cfg_attr(feature = "schema", schemars(with = "CapabilityShape"))]
+    pub capability: Option<Capability>,
+    /// 95 % intervals of the shares below and above the limits, each side separately: 0 to 0 if a proof excludes a side. None if
+    /// that limit does not exist, and if it is unknown.
+    #[serde(flatten, serialize_with = "through::<RejectIntervals, _, _>")]
+    #[cfg_attr(feature = "schema", schemars(with = "RejectIntervals"))]
+    pub reject_intervals: [Option<[f64; 2]>; 2],
+    /// Capability by the Pearson fit.
+    #[serde(rename = "pearson_fit")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<CapabilityShape>"))]
+    pub pearson: Option<Capability>,
+    /// Capability by the normal distribution with the same mean and sigma.
+    #[serde(rename = "normal_fit")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<CapabilityShape>"))]
+    pub normal: Option<Capability>,
+    /// Intervals that hold the requested share of assemblies. None if none was requested.
+    pub coverage: Option<CoverageIntervals>,
+    /// Risks of the inspection. None if there is no gauge.
+    pub inspection: Option<InspectionRisks>,
+    /// Uncertainty of the results because measured dimensions are known by samples. None if there are no measured dimensions.
+    #[serde(rename = "sampling_interval")]
+    pub sampling: Option<SamplingInterval>,
+    /// Interval that no assembly of a linear model leaves: around the nominal, with every dimension at the unfavourable end of its band,
+    /// and a point of a circular zone ([`Dimension::within_zone`](crate::Dimension::within_zone)) at its edge.
+    #[serde(skip)]
+    pub worst_case: Option<[f64; 2]>,
+    /// Greatest addition of curvatures and interactions to the worst case, by the surface. None if a curvature is missing.
+    #[serde(skip)]
+    pub curved: Option<f64>,
+    /// Least and greatest value in the box of the tolerance bands, if they were searched and found.
+    #[serde(skip)]
+    pub extremes: Option<Extremes>,
+    /// Interval that no assembly leaves, by interval arithmetic. Only for formulas that are verified, if no extremes were searched.
+    #[serde(skip)]
+    pub bounds: Option<ExtremesProof>,
+    /// Value of a linear model with every dimension in the middle of its band: the middle of the worst case, of the RSS and of the two
+    /// inflations of it. It is the nominal value if all bands are symmetric.
+    pub middle: Option<f64>,
+    /// `sqrt(t'R t)` with `t` = slope x half-width (three sigma if a dimension has no band) and the correlation `R`. Without correlation it
+    /// is the root of the sum of squares.
+    pub rss: Option<f64>,
+    /// 1.5 times the RSS (Bender 1962, 1968), or by the factors of the study.
+    pub inflated_rss: Option<f64>,
+    /// RSS with means that are all shifted in the unfavourable direction by half of their half-widths, 1.5 sigma of 3: `0.5 sum of |slope|
+    /// x half-width + 0.5 rss` (Greenwood and Chase 1987 with m = 0.5).
+    pub mean_shift_rss: Option<f64>,
+    /// `sqrt(sum of (slope x sigma/(1 - k))^2)` with the sigma of a lot and the shift `k` of its mean in half-widths, from `cpk`, `drift`
+    /// or `shift` (Harry and Stewart 1988). It is a sigma, not an interval. None if every mean is in the middle of its band, or one is at
+    /// an end.
+    pub six_sigma: Option<f64>,
+    /// Sensitivities to every dimension of the problem, in order.
+    pub sensitivities: Vec<Sensitivity>,
+    /// Examined interactions, strongest first.
+    #[cfg_attr(feature = "schema", schemars(with = "Vec<crate::analysis::Interaction<'_>>"))]
+    pub interactions: InteractionList,
+    /// Sum of the interactions that are not listed one by one. None if all are listed.
+    pub interactions_remainder: Option<Remainder>,
+    /// Number of possible interactions.
+    pub possible_interactions: usize,
+    /// Number of interactions that were examined, or are known from the formula.
+    pub examined_interactions: usize,
+    /// Share of the variance that no contribution explains. None if it is unknown.
+    pub left_out_share: Option<f64>,
+    /// Source of the Sobol' indices of the [`sensitivities`](Self::sensitivities). None if the characteristic does not vary.
+    #[serde(rename = "sobol")]
+    pub indices: Option<SobolIndices>,
+    /// True if the characteristic depends on nothing that varies, so that it has a single value.
+    pub constant: bool,
+}
+
+/// Effect of one dimension on a characteristic.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Sensitivity {
+    /// Name of the dimension.
+    pub dimension: String,
+    /// First derivative at the mean, in units of the characteristic per unit of the dimension.
+    pub first: Option<f64>,
+    /// Second derivative at the mean.
+    pub second: Option<f64>,
+    /// True if both derivatives are exact rather than differences.
+    pub exact: bool,
+    /// Source of the shares: `exact`, `evaluated`, or `screened` if an estimate has a part in them. None if there are no shares.
+    pub origin: Option<DerivativeOrigin>,
+    /// Largest effect on the two derivatives of a rounding error of the characteristic. It is computed for the steps used, and for one
+    /// sigma if the derivatives are exact.
+    pub rounding: Option<[f64; 2]>,
+    /// Nodes along the dimension at which the model has a value, relative to the mean and in the unit of the dimension, ascending. Empty if
+    /// none was evaluated.
+    pub steps: Vec<f64>,
+    /// Share of the variance that the best straight line through the univariate part explains.
+    pub linear_share: Option<f64>,
+    /// Share of the variance that the curvature adds.
+    pub curvature_share: Option<f64>,
+    /// Mean shift by the curvature.
+    pub mean_shift: Option<f64>,
+    /// First-order Sobol' index: the part of the variance that the dimension explains alone. None for a dimension that varies together with
+    /// others.
+    pub first_order: Option<EstimatedShare>,
+    /// Total Sobol' index: the part of the variance including all interactions of the dimension.
+    pub total: Option<EstimatedShare>,
+}
+
+rescale!(CharacteristicAnalysis {
+    nominal, moments, sampled, model_sampled, verification, surface_law, error_estimate, residual, law, coverage, inspection, sampling,
+    worst_case, curved, extremes, bounds, middle, rss, inflated_rss, mean_shift_rss, six_sigma, sensitivities, interactions,
+} without {
+    characteristic, yield_source, unfinished, without_value, capability, pearson, normal, reject_intervals, interactions_remainder, possible_interactions, examined_interactions,
+    left_out_share, indices, constant, density,
+});
+
+impl Rescale for Sensitivity {
+    fn rescale(&mut self, by: &mut Rescaling) {
+        self.first.rescale(by);
+        // The rounding of the second derivative is in the characteristic's own unit already, as the derivative itself.
+        self.rounding.iter_mut().for_each(|[first, _]| first.rescale(by));
+        self.mean_shift.rescale(by);
+    }
+}
+
+/// Serializes the distribution that has the moments; null if there is none.
+fn fitted<S: Serializer>(law: &Option<Result<Law, PearsonError>>, serializer: S) -> Result<S::Ok, S::Error> {
+    law.as_ref().and_then(|law| law.as_ref().ok()).serialize(serializer)
+}
+
+impl CharacteristicAnalysis {
+    /// Share of a dimension: straight line and curvature.
+    pub fn share(&self, dimension: usize) -> Option<f64> {
+        let sensitivity = &self.sensitivities[dimension];
+        Some(sensitivity.linear_share? + sensitivity.curvature_share.unwrap_or(0.0))
+    }
+
+    /// Bounds of the worst case by interval arithmetic: those of the search for extremes if there was one, else `bounds`.
+    pub fn proof(&self) -> Option<&ExtremesProof> {
+        self.extremes.as_ref().map_or(self.bounds.as_ref(), |found| found.proof.as_ref())
+    }
+
+    /// Interval of the yield: the estimate and two of its errors, with the uncertainty of measured samples. It extends down to 0 if there
+    /// are assemblies without a value that were not counted. Returns None if an error is unknown.
+    pub fn yield_interval(&self) -> Option<[f64; 2]> {
+        let value = self.capability?.yield_()?;
+        let error = if self.constant { Some(0.0) } else { self.error_estimate.as_ref().and_then(|of| of.yield_) };
+        let around = verdict::about(value, error)?;
+        let around = match &self.sampling {
+            Some(measured) => {
+                measured.rejected.map(|[low, high]| verdict::joined(value, around, [1.0 - high, 1.0 - low]))?
+            }
+            None => around,
+        };
+        // Only samples give the share of assemblies without a value.
+        let counted =
+            self.verification.as_ref().filter(|of| of.kind == VerificationKind::Sample).and_then(|of| of.valid);
+        let lost = match &self.model_sampled {
+            _ if let Some(valid) = counted => Some(match valid.value < 1.0 {
+                true => (1.0 - valid.value + verdict::ERRORS * valid.error).min(1.0),
+                false => 0.0,
+            }),
+            _ if self.without_value == 0 => Some(0.0),
+            Some(sampled) => Some(sampled.failed as f64 / (sampled.failed + sampled.samples) as f64),
+            None => None,
+        };
+        Some(verdict::share(verdict::losing(around, lost)))
+    }
+
+    /// Judges a requirement, which need not be the characteristic's own.
+    ///
+    /// The interval of a yield is [`yield_interval`](Self::yield_interval). That of a Cpk and of sigma follows from the estimated errors of
+    /// mean and sigma, and from the uncertainty of measured samples. RSS follows from the slopes, without an error. The worst case lies
+    /// between values that were found and the bounds of interval arithmetic.
+    pub(crate) fn judge(&self, requirement: Requirement) -> Judged {
+        let limits = self.characteristic.limits();
+        let error = |of: fn(&ErrorEstimate) -> Option<f64>| match self.constant {
+            true => Some(0.0),
+            false => self.error_estimate.as_ref().and_then(of),
+        };
+        let (mean, sigma) = (error(|of| of.mean), error(|of| of.sigma));
+        let part = |value: Option<f64>| (value, value.map(|value| [value; 2]));
+        // No interval if the uncertainty of measured samples is unknown.
+        let measured =
+            |value: Option<f64>, own: Option<[f64; 2]>, of: fn(&SamplingInterval) -> Option<[f64; 2]>| match &self
+                .sampling
+            {
+                Some(sampling) => Some(verdict::joined(value?, own?, of(sampling)?)),
+                None => own,
+            };
+        let (value, interval) = match requirement {
+            Requirement::Yield(_) => (self.capability.and_then(|of| of.yield_()), self.yield_interval()),
+            Requirement::Cpk(_) => {
+                let value = self.capability.and_then(|of| of.cpk);
+                let own = self.moments.and_then(|of| verdict::of_cpk((of.mean(), mean), (of.sigma(), sigma), limits));
+                (value, measured(value, own, |of| of.cpk))
+            }
+            Requirement::Sigma(_) => {
+                let value = self.moments.map(|of| of.sigma());
+                let own = value.and_then(|value| verdict::about(value, sigma));
+                (value, measured(value, own, |of| of.sigma).map(|[low, high]| [low.max(0.0), high]))
+            }
+            Requirement::Rss => {
+                part(self.middle.zip(self.rss).and_then(|(middle, rss)| taken(limits, middle, [rss; 2])))
+            }
+            Requirement::WorstCase => {
+                self.worst_case_taken().map_or((None, None), |(value, within)| (Some(value), within))
+            }
+        };
+        Judged::of(requirement, value, interval).unless(self.unfinished)
+    }
+
+    /// Part of the distance to the limits that the worst case uses, and its interval.
+    ///
+    /// The interval lies between values that exist and the bounds of interval arithmetic, if the formula has bounds. It follows from the
+    /// slopes if the function is proven to be linear, and otherwise from the surface.
+    fn worst_case_taken(&self) -> Option<(f64, Option<[f64; 2]>)> {
+        let (nominal, linear) = self.nominal.zip(self.worst_case)?;
+        let part = |[low, high]: [f64; 2], more: f64| {
+            let reach = [nominal - low, high - nominal].map(|reach| (reach + more).max(0.0));
+            taken(self.characteristic.limits(), nominal, reach)
+        };
+        let by_slopes = part(linear, 0.0)?;
+        if self.constant {
+            return Some((by_slopes, Some([by_slopes; 2])));
+        }
+        if let Some(proof) = self.proof().filter(|proof| proof.proven) {
+            let ([low, high], [below, above]) = (proof.bounds, proof.slack);
+            let most = part(proof.bounds, 0.0)?;
+            let reached = part([low + below, high - above], 0.0)?;
+            return Some((most, Some([reached.min(most), most])));
+        }
+        if self.is_proven_linear() {
+            return Some((by_slopes, Some([by_slopes; 2])));
+        }
+        let found = self.extremes.as_ref().and_then(|found| part([found.least.value, found.greatest.value], 0.0));
+        if let Some(proof) = self.proof() {
+            let most = part(proof.bounds, 0.0)?;
+            let least = found.unwrap_or(0.0).min(most);
+            return Some((found.unwrap_or(by_slopes), Some([least, most])));
+        }
+        let around = self.curved.and_then(|curved| Some([part(linear, -curved)?, part(linear, curved)?]));
+        Some(match found {
+            // A search without a proof shows only values that are reached.
+            Some(found) => (found, around.map(|[_, most]| [found, found.max(most)])),
+            None => (by_slopes, around),
+        })
+    }
+
+    /// True if the formula's own degree proves that it is linear: the slopes are exact everywhere.
+    pub fn is_proven_linear(&self) -> bool {
+        let kind = self.verification.as_ref().map(|of| of.kind);
+        matches!(kind, Some(VerificationKind::Exact { degree: 0 | 1 }))
+    }
+
+    /// Verdicts on all requirements of the characteristic, its target yield included.
+    pub fn requirements(&self) -> Vec<Judged> {
+        verdict::judged(&self.characteristic, |requirement| self.judge(requirement))
+    }
+
+    /// Verdict on the target yield. Returns None if there is no target.
+    pub fn verdict(&self) -> Option<Verdict> {
+        self.characteristic.target_yield().map(|target| self.judge(Requirement::Yield(target)).verdict)
+    }
+
+    /// True if the target yield is met. Returns None if there is no target, and if it is unknown.
+    pub fn met(&self) -> Option<bool> {
+        self.verdict()?.met()
+    }
+
+    /// Creates the analysis without the list of interactions. The shares are for [`listed`](crate::analysis::result::interaction_listing::listed), which makes that
+    /// list.
+    pub(in crate::analysis) fn of(problem: &Problem, outcome: &Outcome, c: usize) -> (Self, Option<Shares>) {
+        let fitted = &outcome.fitted[c];
+        let plan = &outcome.plan;
+        let unexplained = outcome.climbed.as_ref().and_then(|climbed| climbed.unexplained(c));
+        // A variance beyond the largest double is unknown. The warning `overflow` reports it.
+        let finite =
+            |shares: &Shares| [shares.moments().mean(), shares.moments().sigma()].iter().all(|x| x.is_finite());
+        let shares = Shares::of(fitted, plan.inputs()).map(|shares| shares.beside(unexplained)).filter(finite);
+        let sensitivities: Vec<Sensitivity> =
+            (0..problem.dimensions().len()).map(|d| sensitivity(problem, outcome, c, d, shares.as_ref())).collect();
+        // Without gaps in derivatives and pairs, the surface explains all of its variance.
+        let pair_shares = || pairs_of(outcome, c).map(|index| share_of(outcome, c, index, shares.as_ref()));
+        let (possible_interactions, examined_interactions) = (plan.pairs_of(c), fitted.known_pairs);
+        let complete = outcome.order == Order::Second
+            && examined_interactions == possible_interactions
+            && pair_shares().all(|share| share.is_some())
+            && plan.varying().iter().all(|&d| fitted.parts[d].is_some_and(|part| part.degree() >= 2));
+        let characteristic = problem.characteristics()[c].clone();
+        let moments = shares.as_ref().map(Shares::moments);
+        let sampled = shares.as_ref().and_then(Shares::sampled);
+        let law = moments.map(|moments| Law::fit(&moments));
+        let capability = |law: &Law| {
+            moments.map(|moments| {
+                let (limits, kept) = (characteristic.limits(), problem.kept_limits(c));
+                Capability::of_kept(law, moments.mean(), moments.sigma(), limits, kept)
+            })
+        };
+        let normal = moments.and_then(|moments| capability(&Law::normal(&moments).ok()?));
+        let error_estimate = moments.and_then(|moments| {
+            let estimate = estimate(problem, outcome, c, &moments)?;
+            let yield_ = of_yield(&estimate, &moments, characteristic.limits());
+            Some(ErrorEstimate { yield_, ..estimate })
+        });
+        let linear = linear(problem, plan.varying(), &sensitivities);
+        let explained = || {
+            let own =
+                sensitivities.iter().flat_map(|one| [one.linear_share, one.curvature_share]).flatten().sum::<f64>();
+            own + pair_shares().flatten().sum::<f64>()
+        };
+        // A share that is only rounding is 0.
+        let left_out_share = match (&shares, unexplained) {
+            (Some(Shares::Integrated(integrated)), _) => integrated.left_out,
+            (Some(_), Some(_)) if moments.is_some_and(|moments| moments.sigma() > 0.0) => {
+                Some(1.0 - explained()).map(|share| if share.abs() < 1e-12 { 0.0 } else { share })
+            }
+            (Some(_), _) if complete => Some(0.0),
+            _ => None,
+        };
+        let middle = fitted.nominal.zip(linear).map(|(nominal, linear)| nominal + linear.middle);
+        let one = Self {
+            nominal: fitted.nominal,
+            moments,
+            sampled,
+            residual: fitted.residual,
+            capability: law.as_ref().and_then(|law| capability(law.as_ref().ok()?)),
+            normal,
+            reject_intervals: [None; 2],
+            law,
+            sampling: None,
+            coverage: None,
+            inspection: None,
+            characteristic,
+            worst_case: middle
+                .zip(linear)
+                .map(|(middle, linear)| [middle - linear.worst_case, middle + linear.worst_case]),
+            curved: curved(problem, outcome, c),
+            middle,
+            rss: linear.map(|linear| linear.rss),
+            inflated_rss: linear.map(|linear| linear.inflated_rss),
+            mean_shift_rss: linear.map(|linear| linear.mean_shift_rss),
+            six_sigma: linear.and_then(|linear| linear.six_sigma),
+            extremes: None,
+            bounds: None,
+            sensitivities,
+            interactions: InteractionList::default(),
+            interactions_remainder: None,
+            possible_interactions,
+            examined_interactions,
+            left_out_share,
+            indices: None,
+            error_estimate,
+            model_sampled: None,
+            verification: None,
+            surface_law: None,
+            density: None,
+            yield_source: None,
+            pearson: None,
+            unfinished: false,
+            constant: plan.varying().iter().all(|&d| !plan.depends(c, d)),
+            without_value: outcome.evaluated.known.errors().filter(|&(_, of, _)| of == c).count(),
+        };
+        (one, shares)
+    }
+}
+
+/// `sum of |f_jj| h_j^2/2 + sum of |f_jk| h_j h_k` over the half-widths `h`: the greatest distance of a corner of a second-order surface
+/// from the linear one. Returns None if a derivative is a screened guess: it bounds nothing.
+fn curved(problem: &Problem, outcome: &Outcome, c: usize) -> Option<f64> {
+    if outcome.fitted[c].screened > 0 {
+        return None;
+    }
+    let half = |d: usize| problem.dimensions()[d].half_band();
+    let own = |d: usize| match half(d) {
+        0.0 => Some(0.0),
+        half => Some(curvature(outcome, c, d)?.abs().times(0.5).times(half).times(half).value()),
+    };
+    let both = |index: usize| {
+        let [j, k] = dimensions_of(outcome, index).map(half);
+        Some(mixed_of(outcome, c, index)?.abs().times(j).times(k).value())
+    };
+    let own = (0..problem.dimensions().len()).map(own).sum::<Option<f64>>()?;
+    Some(own + pairs_of(outcome, c).map(both).sum::<Option<f64>>()?)
+}
+
+/// Greatest part of the distance between a value and the limits that is used, below and above it. Infinite if there is no distance.
+fn taken(limits: SpecLimits, from: f64, [below, above]: [f64; 2]) -> Option<f64> {
+    // If the value is at its limit and nothing extends beyond it, nothing is used.
+    let part = |reach: f64, room: f64| match room > 0.0 {
+        true => reach / room,
+        false if room == 0.0 && reach <= 4.0 * f64::EPSILON * from.abs() => 0.0,
+        false => f64::INFINITY,
+    };
+    let below = limits.lower().map(|lower| part(below, from - lower));
+    let above = limits.upper().map(|upper| part(above, upper - from));
+    below.into_iter().chain(above).reduce(f64::max)
+}
+
+/// Exact first and second derivative by a dimension. Returns None if one of them is unknown.
+fn exact_derivatives(outcome: &Outcome, c: usize, d: usize) -> Option<[Wide; 2]> {
+    let exact = outcome.fitted[c].exact.as_ref()?;
+    match outcome.plan.depends(c, d) {
+        true => exact.slope(d).zip(exact.curvature(d)).map(<[Wide; 2]>::from),
+        false => Some([Wide::of(0.0); 2]),
+    }
+}
+
+/// Second derivative of a characteristic by a dimension: exact if it is known, else a difference.
+pub(in crate::analysis) fn curvature(outcome: &Outcome, c: usize, d: usize) -> Option<Wide> {
+    if let Some([_, second]) = exact_derivatives(outcome, c, d) {
+        return Some(second);
+    }
+    let (plan, second) = (&outcome.plan, outcome.fitted[c].parts[d]?.second()?);
+    // A characteristic that cannot depend on a dimension has slope 0, evaluated or not.
+    Some(match plan.depends(c, d) {
+        true => Wide::of(second).over(plan.axis(d).scale).over(plan.axis(d).scale),
+        false => Wide::of(0.0),
+    })
+}
+
+/// Sensitivity of a characteristic to dimension `d`.
+fn sensitivity(problem: &Problem, outcome: &Outcome, c: usize, d: usize, shares: Option<&Shares>) -> Sensitivity {
+    let (plan, dimension) = (&outcome.plan, &problem.dimensions()[d]);
+    let part = outcome.fitted[c].parts[d];
+    let axis = plan.axis(d);
+    let scale = axis.scale;
+    let exact = exact_derivatives(outcome, c, d);
+    // Second derivatives by a dimension of extreme size fit a double only in the characteristic's own unit.
+    let in_unit = |second: Wide| second.times_power(problem.power(c)).checked();
+    let rounding = outcome.fitted[c].centre.filter(|_| plan.depends(c, d)).and_then(|centre| {
+        let slope = |step: f64| f64::EPSILON * centre.abs() / step;
+        let second = |factor: f64, step: f64| {
+            in_unit(Wide::of(f64::EPSILON * centre.abs()).over(step).times(factor).over(step)).unwrap_or(f64::NAN)
+        };
+        let nearest = axis.nearest_step();
+        match exact {
+            Some(_) => Some([slope(scale), second(1.0, scale)]),
+            None if axis.slots.is_empty() => None,
+            None => Some([slope(nearest), second(4.0, nearest)]),
+        }
+    });
+    // A characteristic that cannot depend on a dimension has slope 0, evaluated or not.
+    let per_unit = |value: f64| if plan.depends(c, d) { value / scale } else { 0.0 };
+    let position = plan.varying().iter().position(|&varying| varying == d);
+    let of = |share: fn(&Shares, usize) -> Option<f64>| match (position, shares) {
+        (Some(position), Some(shares)) => share(shares, position),
+        // A dimension that does not vary, or has no effect, adds nothing.
+        (None, Some(_)) => Some(0.0),
+        (_, None) => None,
+    };
+    let curved = |share: Option<f64>| match outcome.order {
+        _ if matches!(shares, Some(Shares::Integrated(_))) => share,
+        Order::Second if part.is_none_or(|part| part.degree() >= 2) || position.is_none() => share,
+        _ => None,
+    };
+    Sensitivity {
+        dimension: dimension.name().to_owned(),
+        first: exact.map(|[first, _]| first.value()).or(part.map(|part| per_unit(part.slope()))),
+        second: curvature(outcome, c, d).and_then(in_unit),
+        exact: exact.is_some(),
+        origin: origin(outcome, c, position),
+        rounding,
+        steps: match plan.depends(c, d) {
+            true => plan.samples(&outcome.evaluated.known, c, d).unwrap_or_default(),
+            false => Vec::new(),
+        }
+        .into_iter()
+        .map(|(u, _)| u * scale)
+        .collect(),
+        linear_share: of(Shares::linear),
+        curvature_share: curved(of(Shares::curvature)),
+        mean_shift: curved(of(Shares::mean_shift)),
+        first_order: None,
+        total: None,
+    }
+}
+
+/// Source of the part of a varying dimension in the surface, or in the variance if there is no surface.
+fn origin(outcome: &Outcome, c: usize, position: Option<usize>) -> Option<DerivativeOrigin> {
+    let (fitted, position) = (&outcome.fitted[c], position?);
+    match &fitted.integrated {
+        Some(integrated) => integrated.own[position].map(|_| DerivativeOrigin::Evaluated),
+        None => fitted.surrogate.as_ref()?.parts[position].map(|part| part.origin()),
+    }
+}
+
+/// Linear results, from slopes and bands. Returns None if a slope is missing.
+fn linear(problem: &Problem, varying: &[usize], sensitivities: &[Sensitivity]) -> Option<Linear> {
+    let slopes: Option<Vec<(f64, usize)>> = varying.iter().map(|&d| Some((sensitivities[d].first?, d))).collect();
+    Some(Linear::of(problem, &slopes?))
+}

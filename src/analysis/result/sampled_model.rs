@@ -1,0 +1,70 @@
+//! Results of a sample of the model whose surrogate was not trusted.
+
+use serde::Serialize;
+
+use crate::simulation::Histogram;
+use crate::verification::Share;
+use sensitol_numeric::json_form::{Four, through};
+use sensitol_numeric::power::{Rescale, Rescaling, Unknown};
+
+/// Points of the model in place of a surrogate that was not trusted.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct SampledModel {
+    /// Number of points with a value.
+    pub samples: u64,
+    /// Number of further points at which the model has no value.
+    pub failed: u64,
+    /// Error of the first of them.
+    pub error: Option<String>,
+    /// Share of the variance that the surrogate left unexplained at the check points.
+    pub left: f64,
+    /// Standard errors of mean, sigma, skewness and kurtosis. None if unknown.
+    #[serde(flatten, serialize_with = "through::<Four<Option<f64>>, _, _>")]
+    #[cfg_attr(feature = "schema", schemars(with = "Four<Option<f64>>"))]
+    pub standard_errors: [Option<f64>; 4],
+    /// Share of the sample within the limits with its 95 % interval.
+    #[serde(flatten, serialize_with = "through::<YieldShape, _, _>")]
+    #[cfg_attr(feature = "schema", schemars(with = "YieldShape"))]
+    pub yield_: Option<(f64, [f64; 2])>,
+    /// Shares of the sample below the lower and above the upper limit. None if that limit does not exist.
+    pub beyond: [Option<f64>; 2],
+    /// 95 % intervals of `beyond`.
+    #[serde(skip)]
+    pub(crate) intervals: [Option<[f64; 2]>; 2],
+    /// Histogram of the sample, with some tens of intervals.
+    pub histogram: Option<Histogram>,
+    /// First-order indices of the dimensions, by the ranks of the sample. Empty if the model is cheap enough to be evaluated again.
+    #[serde(skip)]
+    pub(crate) ranks: Vec<(usize, Share)>,
+}
+
+impl Rescale for SampledModel {
+    fn rescale(&mut self, by: &mut Rescaling) {
+        let [mean, sigma, ..] = &mut self.standard_errors;
+        mean.rescale(by);
+        sigma.rescale(by);
+        self.histogram.rescale(by);
+    }
+}
+
+impl Unknown for SampledModel {}
+
+/// A share and its interval, in JSON.
+#[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+struct YieldShape {
+    /// Share of the sample within the limits.
+    #[serde(rename = "yield")]
+    yield_: Option<f64>,
+    /// 95 % interval of `yield`.
+    yield_interval: Option<[f64; 2]>,
+}
+
+impl From<&Option<(f64, [f64; 2])>> for YieldShape {
+    fn from(found: &Option<(f64, [f64; 2])>) -> Self {
+        let (yield_, yield_interval) = found.unzip();
+        Self { yield_, yield_interval }
+    }
+}

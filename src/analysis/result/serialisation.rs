@@ -1,0 +1,98 @@
+//! JSON form of an analysis: its fields, and figures that follow from them.
+
+use serde::{Serialize, Serializer};
+
+use crate::analysis::{Analysis, CharacteristicAnalysis};
+use crate::extremes::{Coordinate, Extremes};
+use crate::warning::warnings_last;
+use sensitol_numeric::verdict::{Judged, Verdict};
+
+warnings_last!(Analysis);
+
+/// A characteristic with its verdicts and intervals, in JSON.
+#[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct CharacteristicShape<'r> {
+    #[serde(flatten, serialize_with = "CharacteristicAnalysis::serialize")]
+    #[cfg_attr(feature = "schema", schemars(with = "CharacteristicAnalysis"))]
+    own: &'r CharacteristicAnalysis,
+    /// Intervals that no assembly leaves.
+    worst_case: WorstCase<'r>,
+    /// True if the target yield is met; null if unknown.
+    met: Option<bool>,
+    /// Verdict on the target yield; null without a target.
+    verdict: Option<Verdict>,
+    /// Verdicts on all requirements, the target yield included.
+    #[cfg_attr(feature = "schema", schemars(with = "Vec<sensitol_numeric::verdict::JudgedShape>"))]
+    requirements: Vec<Judged>,
+    /// Interval of the yield; null if unknown.
+    yield_interval: Option<[f64; 2]>,
+}
+
+impl Serialize for CharacteristicAnalysis {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let shape = CharacteristicShape {
+            own: self,
+            worst_case: WorstCase::of(self),
+            met: self.met(),
+            verdict: self.verdict(),
+            requirements: self.requirements(),
+            yield_interval: self.yield_interval(),
+        };
+        shape.serialize(serializer)
+    }
+}
+
+/// Intervals that no assembly leaves, in JSON.
+#[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+struct WorstCase<'r> {
+    /// Worst case of the linear model, an interval.
+    linear: Option<[f64; 2]>,
+    /// Interval of the model itself, if it was searched.
+    extremes: Option<[f64; 2]>,
+    /// True if it is proven that no assembly lies beyond the extremes.
+    proven: Option<bool>,
+    /// Points at which the extremes are: every dimension that matters by name.
+    at: Option<ExtremesAt<'r>>,
+    /// Interval that no assembly leaves, by interval arithmetic. Only for formulas.
+    bounds: Option<[f64; 2]>,
+    /// True if values next to both bounds exist.
+    bounds_reached: Option<bool>,
+    /// Evaluations of the search; a point that serves several characteristics counts for each.
+    evaluations: Option<usize>,
+}
+
+/// Places of the extremes.
+#[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+struct ExtremesAt<'r> {
+    /// Values of the dimensions at the least value.
+    #[serde(serialize_with = "coordinates")]
+    #[cfg_attr(feature = "schema", schemars(with = "std::collections::BTreeMap<String, f64>"))]
+    lower: &'r [Coordinate],
+    /// Values of the dimensions at the greatest value.
+    #[serde(serialize_with = "coordinates")]
+    #[cfg_attr(feature = "schema", schemars(with = "std::collections::BTreeMap<String, f64>"))]
+    upper: &'r [Coordinate],
+}
+
+fn coordinates<S: Serializer>(point: &[Coordinate], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(point.iter().map(|at| (&at.dimension, at.x)))
+}
+
+impl<'r> WorstCase<'r> {
+    fn of(one: &'r CharacteristicAnalysis) -> Self {
+        let found = one.extremes.as_ref();
+        let proof = one.proof();
+        Self {
+            linear: one.worst_case,
+            extremes: found.map(|found| [found.least.value, found.greatest.value]),
+            proven: found.map(Extremes::proven),
+            at: found.map(|found| ExtremesAt { lower: &found.least.at, upper: &found.greatest.at }),
+            bounds: proof.map(|proof| proof.bounds),
+            bounds_reached: proof.map(|proof| proof.proven),
+            evaluations: found.map(|found| found.evaluations),
+        }
+    }
+}

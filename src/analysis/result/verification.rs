@@ -1,0 +1,173 @@
+//! Results of the verification of a characteristic.
+
+use std::sync::Arc;
+
+use serde::{Serialize, Serializer};
+
+use crate::verification::{FoundSwitch, Share, Tails, Verified, WeightedSample};
+use sensitol_numeric::json_form::{Four, Sides, through};
+use sensitol_numeric::power::{Rescale, Rescaling, Unknown};
+
+/// Kind of the verification of figures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum VerificationKind {
+    /// Points of a cheap model.
+    Sample,
+    /// Check points of a costly model.
+    Checks,
+    /// Proof by the formula itself, a polynomial of this degree that the surface represents exactly.
+    Exact {
+        /// Degree of the polynomial.
+        degree: u32,
+    },
+}
+
+/// Greatest unexplained share of the variance of a trusted surface. Above it the surface is no basis for tails or for an optimum.
+pub(crate) const TRUSTED: f64 = 0.01;
+/// Unexplained share of the variance above which a surface does not follow the model, and has no contributions to show.
+pub(in crate::analysis) const UNTRUSTED: f64 = 0.05;
+
+/// Results of the model itself for a characteristic.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(remote = "Self")]
+#[non_exhaustive]
+pub struct Verification {
+    /// Kind of the verification.
+    #[serde(flatten, serialize_with = "through::<KindShape, _, _>")]
+    #[cfg_attr(feature = "schema", schemars(with = "KindShape"))]
+    pub kind: VerificationKind,
+    /// Evaluated points of the model.
+    pub points: usize,
+    /// Check points without a value. A sample has `valid` instead.
+    #[serde(skip)]
+    pub(crate) failed: usize,
+    /// Share of the assemblies that have a value. None if there is no sample.
+    #[serde(rename = "valid_share")]
+    pub valid: Option<Verified>,
+    /// Share of the variance that the surface leaves unexplained.
+    pub left: Option<f64>,
+    /// Mean, sigma, skewness and kurtosis by the model. None if there is no sample of it.
+    #[serde(skip)]
+    pub figures: [Option<Verified>; 4],
+    /// Share within the limits: by the model, or by the surface with the error from check points.
+    #[serde(skip)]
+    pub yield_: Option<Verified>,
+    /// Shares beyond the lower and the upper limit.
+    #[serde(skip)]
+    pub beyond: [Option<Verified>; 2],
+    /// Weight of one point of a sample.
+    #[serde(skip)]
+    pub(crate) point: f64,
+    /// Difference of the shares of model and surface within the limits, below and above them. None if there is no sample of both.
+    pub difference: Option<[Verified; 3]>,
+    /// Switches that were met. None if the model does not report where it changes its form.
+    pub switches: Option<Vec<FoundSwitch>>,
+    /// Greatest share of the assemblies that may behave differently although all points agree, at 95 %. None for a sample, which has many
+    /// points.
+    pub unseen: Option<f64>,
+    /// Shares of the variance from the model, if the surface is not trusted.
+    pub shares: Option<Vec<VarianceShare>>,
+    /// Tails of the sample towards the limits. None if there are no limits.
+    pub tails: Option<Tails>,
+    /// True if figures of the characteristic are the model's, in place of the surface's.
+    pub replaced: bool,
+    /// Sample, kept if an inspection or a coverage interval needs its points.
+    #[serde(skip)]
+    pub(crate) sample: Option<Arc<WeightedSample>>,
+}
+
+/// Part of the variance that a dimension explains, by the model itself.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct VarianceShare {
+    /// Name of the dimension.
+    pub dimension: String,
+    /// Share of the dimension alone.
+    pub first: Share,
+    /// Share with all interactions of the dimension.
+    pub total: Share,
+}
+
+impl Rescale for Verification {
+    fn rescale(&mut self, by: &mut Rescaling) {
+        let [mean, sigma, ..] = &mut self.figures;
+        mean.rescale(by);
+        sigma.rescale(by);
+        self.tails.rescale(by);
+        if let Some(sample) = &mut self.sample {
+            Arc::make_mut(sample).rescale(by);
+        }
+    }
+}
+
+impl Unknown for Verification {}
+
+impl Verification {
+    /// Describes the verification in one line.
+    pub fn words(&self) -> String {
+        match self.kind {
+            VerificationKind::Sample => format!("verified at {} points of the model", self.points),
+            VerificationKind::Checks => {
+                let unseen = 100.0 * self.unseen.unwrap_or(1.0);
+                format!("verified at {} check points; up to {unseen:.0} % of the assemblies unseen", self.points)
+            }
+            VerificationKind::Exact { degree } => format!("exact: the formula is a polynomial of degree {degree}"),
+        }
+    }
+}
+
+/// Kind of the verification, in JSON.
+#[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+struct KindShape {
+    /// `sample`, `checks` or `exact`.
+    kind: &'static str,
+    /// Degree of the polynomial that the formula is; null for other kinds.
+    degree: Option<u32>,
+}
+
+impl From<&VerificationKind> for KindShape {
+    fn from(kind: &VerificationKind) -> Self {
+        let (kind, degree) = match *kind {
+            VerificationKind::Sample => ("sample", None),
+            VerificationKind::Checks => ("checks", None),
+            VerificationKind::Exact { degree } => ("exact", Some(degree)),
+        };
+        Self { kind, degree }
+    }
+}
+
+/// A verification in JSON.
+#[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub(in crate::analysis) struct VerificationShape<'r> {
+    #[serde(flatten, serialize_with = "Verification::serialize")]
+    #[cfg_attr(feature = "schema", schemars(with = "Verification"))]
+    own: &'r Verification,
+    /// Figures of the model itself; null without a sample of it.
+    figures: FiguresShape,
+}
+
+/// Figures of a verification.
+#[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+struct FiguresShape {
+    #[serde(flatten)]
+    moments: Four<Option<Verified>>,
+    /// Share within the limits: by the sample, or by the surface with the error from check points.
+    #[serde(rename = "yield")]
+    yield_: Option<Verified>,
+    #[serde(flatten)]
+    beyond: Sides<Option<Verified>>,
+}
+
+impl Serialize for Verification {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let (moments, beyond) = (Four::from(&self.figures), Sides::from(&self.beyond));
+        let figures = FiguresShape { moments, yield_: self.yield_, beyond };
+        VerificationShape { own: self, figures }.serialize(serializer)
+    }
+}

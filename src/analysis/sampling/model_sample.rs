@@ -1,0 +1,274 @@
+//! Fallback if a surrogate is not trusted: points of the model itself, with the surrogate as control variate.
+
+use std::sync::Arc;
+
+use crate::analysis::result::yield_error::of_yield;
+use crate::analysis::sampling::accuracy_target::{MORE, PART, excess};
+use crate::analysis::sampling::cross_fit::{Beside, StridedFigures, Strides};
+use crate::analysis::sampling::known_answers::Remembered;
+use crate::analysis::sampling::recorded_points::Recorded;
+use crate::analysis::{CharacteristicAnalysis, SampledModel};
+use crate::assembly::{NonRepeatable, Run};
+use crate::method::{Climbed, ErrorEstimate, ErrorSource, Outcome};
+use crate::problem::Problem;
+use crate::simulation::{REPLICATES, SimulatedCharacteristic, Simulation, SimulationOptions, simulate_beside};
+use crate::summary::RunSummary;
+use crate::verification::{Share, carried_by, student};
+use crate::warning::Figure;
+use sensitol_numeric::capability::{Capability, Law};
+use sensitol_numeric::moments::Moments;
+use sensitol_numeric::sampling::{Estimate, SOBOL_DIMENSIONS, Sampler, one_error};
+
+/// Most points of a cheap model.
+const MOST: u64 = 1 << 18;
+/// Fewest points for which the sample of a costly model is useful.
+const FEWEST: u64 = 48;
+/// Fewest points of the first sample.
+const FIRST: u64 = 1 << 10;
+/// Most points of strides with regressions. If the accuracy is not reached with them, a regression does not follow the model, and each
+/// stride fits all regressions anew.
+const STRIDES: usize = 512;
+/// Part of a costly model's budget that strides may use (one in four), because the points of its sample are others.
+const COSTLY_PART: usize = 4;
+
+/// Cost of the fallback.
+#[derive(Debug, Default)]
+pub(in crate::analysis) struct Spent {
+    pub(in crate::analysis) run: RunSummary,
+    pub(in crate::analysis) non_repeatable: Vec<NonRepeatable>,
+}
+
+/// Replaces moments that miss the requested accuracy by those of points of the model, if the budget allows it. `left` is the rest of the
+/// budget, if there is one.
+pub(in crate::analysis) fn fall_back(
+    problem: &Problem,
+    outcome: &Outcome,
+    (left, seed): (Option<usize>, u64),
+    characteristics: &mut [CharacteristicAnalysis],
+    run: &Run<'_>,
+) -> Spent {
+    let mut spent = Spent::default();
+    let Some(climbed) = outcome.climbed.as_ref().filter(|_| outcome.evaluated.stopped.is_none()) else { return spent };
+    let short: Vec<usize> =
+        (0..characteristics.len()).filter(|&c| shortfall(&characteristics[c], climbed, c).is_some()).collect();
+    if short.is_empty() {
+        return spent;
+    }
+    let remembered;
+    let costly = problem.function().signature().costly;
+    // A costly model is sampled only within its budget.
+    let most = match (costly, left.map(|left| left as u64)) {
+        (true, None) => 0,
+        (true, Some(left)) => left,
+        (false, left) => left.unwrap_or(MOST).min(MOST),
+    };
+    if most < FEWEST {
+        return spent;
+    }
+    let strided = if costly { most as usize / COSTLY_PART } else { most as usize }.min(STRIDES);
+    let problem = match stride((problem, outcome, climbed), (seed, strided), &short, characteristics, run, &mut spent) {
+        Strided::Enough => return spent,
+        Strided::Known(answers) => {
+            // The sample begins with these points. They are not evaluated again.
+            remembered = problem.replacing(0, problem.dimensions()[0].clone(), Arc::new(*answers));
+            &remembered
+        }
+        Strided::Nothing => problem,
+    };
+    let needed = short.iter().filter_map(|&c| shortfall(&characteristics[c], climbed, c)).fold(0.0, f64::max);
+    let finest =
+        climbed.accuracies.wanted().into_iter().filter_map(|(_, wanted)| wanted).fold(climbed.accuracy, f64::min);
+    let few = problem.dimensions().iter().filter(|dimension| dimension.sigma() > 0.0).count() <= SOBOL_DIMENSIONS;
+    let sampler = if costly || !few { Sampler::Random } else { Sampler::Sobol };
+    let few_scramblings = if sampler == Sampler::Sobol { student(REPLICATES as usize) } else { 1.0 };
+    let mut samples = ((needed / (PART * finest)).powi(2) as u64).clamp(FIRST, MOST).min(most);
+    // Points that were evaluated in strides are not evaluated again.
+    let most = most + if sampler == Sampler::Sobol { spent.run.evaluations } else { 0 };
+    let recorded = Arc::new(Recorded::new(problem));
+    // A cheap model is evaluated again, and answers several batches at a time.
+    let recording = costly.then(|| problem.with_function(recorded.clone()));
+    let problem = recording.as_ref().unwrap_or(problem);
+    while spent.run.evaluations + samples <= most {
+        recorded.clear();
+        // Sobol' points come in powers of two: the greatest power that is allowed.
+        let points = if sampler == Sampler::Sobol { (samples + 1).next_power_of_two() / 2 } else { samples };
+        let wish = SimulationOptions { samples: points.max(2), sampler, seed, ..SimulationOptions::default() };
+        let Ok(found) = simulate_beside(problem, &wish, outcome, run) else { return spent };
+        spent.add(&found);
+        if found.run.unfinished() {
+            return spent;
+        }
+        let enough = short.iter().all(|&c| known(&found.characteristics[c], climbed));
+        let last = enough || spent.run.evaluations + MORE as u64 * samples > most;
+        if last {
+            for &c in &short {
+                let depends = outcome.plan.varying().iter().copied().filter(|&d| outcome.plan.depends(c, d));
+                let ranks = recorded.ranks(c, &depends.collect::<Vec<usize>>());
+                replace(&mut characteristics[c], climbed, c, (&found.characteristics[c], few_scramblings), ranks);
+            }
+            return spent;
+        }
+        samples *= MORE as u64;
+    }
+    spent
+}
+
+/// Result of the attempt with strides.
+enum Strided {
+    /// Every figure has the requested accuracy, or the run was stopped.
+    Enough,
+    /// The requested accuracy was not reached. Contains the answers of the model.
+    Known(Box<Remembered>),
+    Nothing,
+}
+
+/// Samples in strides with sparse regressions as control variates. Takes their figures if all have the requested accuracy.
+fn stride(
+    (problem, outcome, climbed): (&Problem, &Outcome, &Climbed),
+    (seed, most): (u64, usize),
+    short: &[usize],
+    characteristics: &mut [CharacteristicAnalysis],
+    run: &Run<'_>,
+    spent: &mut Spent,
+) -> Strided {
+    let strides = Strides::new(problem, outcome, seed).filter(|strides| strides.next(most) > 0);
+    let Some(mut strides) = strides else { return Strided::Nothing };
+    let mut beside: Vec<Vec<Beside<'_>>> = short.iter().map(|&c| strides.beside(c)).collect();
+    let mut enough = false;
+    while !enough && strides.next(most) > 0 {
+        enough = !strides.draw(most, run);
+        if enough {
+            break;
+        }
+        let found: Option<Vec<StridedFigures>> = (short.iter().zip(&mut beside))
+            .map(|(&c, beside)| strides.found(c, beside, left(&characteristics[c], climbed, c)))
+            .collect();
+        if let Some(found) = found.filter(|found| found.iter().all(|found| found.is_known(climbed))) {
+            short.iter().zip(found).for_each(|(&c, found)| take(&mut characteristics[c], found));
+            enough = true;
+        }
+    }
+    spent.run = spent.run.and(&strides.run);
+    spent.non_repeatable.extend(strides.non_repeatable.iter().cloned());
+    if enough { Strided::Enough } else { Strided::Known(Box::new(strides.answers)) }
+}
+
+impl StridedFigures {
+    /// True if two standard errors are within the requested accuracy, for sigma and all other requested figures.
+    fn is_known(&self, climbed: &Climbed) -> bool {
+        let within = |error: Option<f64>, wanted: f64| error.is_some_and(|error| error <= PART * wanted);
+        let [_, sigma, skewness, kurtosis] = self.moments;
+        let each = |(figure, wanted): (Figure, Option<f64>)| {
+            let Some(wanted) = wanted else { return true };
+            match figure {
+                Figure::Sigma => true,
+                Figure::Skewness => within(skewness.standard_error, wanted),
+                Figure::Kurtosis => within(kurtosis.standard_error, wanted),
+                Figure::Yield => {
+                    let share = self.sampled.yield_;
+                    share.is_none_or(|(share, interval)| within(Some(one_error(share, interval)), wanted))
+                }
+            }
+        };
+        let sigma = within(sigma.standard_error, climbed.accuracy * sigma.value);
+        sigma && climbed.accuracies.wanted().into_iter().all(each)
+    }
+}
+
+/// Size of the residual as a part of sigma, if the accuracy of sigma or of another figure is missed. Returns None otherwise.
+fn shortfall(one: &CharacteristicAnalysis, climbed: &Climbed, c: usize) -> Option<f64> {
+    let (moments, check) = (one.moments?, climbed.checked[c].as_ref()?);
+    let error = one.error_estimate.as_ref()?.sigma?;
+    let variance = moments.variance();
+    let short = error > climbed.accuracy * moments.sigma() || excess(one, &climbed.accuracies) > 1.0;
+    // The part that the surrogate does not explain decides how many points a control variate needs.
+    short.then(|| (check.variance / variance).sqrt().clamp(0.01, 1.0))
+}
+
+/// True if two standard errors are within the requested accuracy, for sigma and all other requested figures.
+fn known(found: &SimulatedCharacteristic, climbed: &Climbed) -> bool {
+    let within = |error: Option<f64>, wanted: f64| error.is_some_and(|error| error <= PART * wanted);
+    let error = |estimate: Option<Estimate>| estimate.and_then(|estimate| estimate.standard_error);
+    let sigma = error(found.sigma).zip(found.sigma).map(|(error, sigma)| error / sigma.value);
+    let each = |(figure, wanted): (Figure, Option<f64>)| {
+        let Some(wanted) = wanted else { return true };
+        match figure {
+            Figure::Sigma => true,
+            Figure::Skewness => within(error(found.skewness), wanted),
+            Figure::Kurtosis => within(error(found.kurtosis), wanted),
+            Figure::Yield => {
+                found.yield_.is_none_or(|share| within(Some(one_error(share.value, share.interval)), wanted))
+            }
+        }
+    };
+    within(sigma, climbed.accuracy) && climbed.accuracies.wanted().into_iter().all(each)
+}
+
+fn replace(
+    one: &mut CharacteristicAnalysis,
+    climbed: &Climbed,
+    c: usize,
+    (found, few): (&SimulatedCharacteristic, f64),
+    ranks: Vec<(usize, Share)>,
+) {
+    let (Some(mean), Some(sigma)) = (found.mean, found.sigma) else { return };
+    let (Some(skewness), Some(kurtosis)) = (found.skewness, found.kurtosis) else { return };
+    let moments = [mean, sigma, skewness, kurtosis];
+    // Widened as the errors of a verification are: few randomisations, and few points that carry a power, determine their own scatter
+    // badly.
+    let carried = found.control.map(|control| control.carried);
+    let widths = carried.map_or([1.0; 4], |points| points.map(|points| few * carried_by(points)));
+    let standard_errors = std::array::from_fn(|i| moments[i].standard_error.map(|error| widths[i] * error));
+    let sampled = SampledModel {
+        samples: found.samples,
+        failed: found.failed,
+        error: found.error.as_ref().map(ToString::to_string),
+        left: left(one, climbed, c),
+        standard_errors,
+        yield_: found.yield_.map(|share| (share.value, share.interval)),
+        beyond: [found.below, found.above],
+        intervals: found.reject_intervals,
+        histogram: found.histogram.clone(),
+        ranks,
+    };
+    take(one, StridedFigures { moments, sampled });
+}
+
+/// Share of the variance that the surface does not explain, by the check points.
+fn left(one: &CharacteristicAnalysis, climbed: &Climbed, c: usize) -> f64 {
+    let variance = one.moments.map_or(0.0, |moments| moments.variance());
+    let checked = climbed.checked[c].as_ref().map(|check| check.variance);
+    checked.map_or(0.0, |off| if variance > 0.0 { (off / variance).min(1.0) } else { 1.0 })
+}
+
+/// Replaces the surface's figures by the model's.
+fn take(one: &mut CharacteristicAnalysis, StridedFigures { moments, sampled }: StridedFigures) {
+    let [mean, sigma, skewness, kurtosis] = moments.map(|of| of.value);
+    let moments = Moments::new(mean, sigma, skewness, kurtosis - 3.0);
+    let limits = one.characteristic.limits();
+    let capability = |law: &Law| Capability::of(law, moments.mean(), moments.sigma(), limits);
+    let law = Law::fit(&moments);
+    one.capability = law.as_ref().ok().map(capability);
+    one.normal = Law::normal(&moments).ok().map(|law| capability(&law));
+    let sources = vec![ErrorSource::Sampled { points: sampled.samples }];
+    let [mean, sigma, skewness, kurtosis] = sampled.standard_errors;
+    let estimate = ErrorEstimate { mean, sigma, skewness, kurtosis, yield_: None, sources };
+    // Error of the fit of four moments: its distance from the sample's yield, and the error of that yield.
+    let of_fit = one.capability.and_then(|capability| capability.yield_()).zip(sampled.yield_);
+    let off = of_fit.map(|(fit, (value, interval))| (fit - value).abs() + one_error(value, interval));
+    let of_moments = of_yield(&estimate, &moments, limits);
+    one.error_estimate =
+        Some(ErrorEstimate { yield_: of_moments.map(|error| error.max(off.unwrap_or(0.0))), ..estimate });
+    one.law = Some(law);
+    one.moments = Some(moments);
+    one.sampled = None;
+    one.without_value += sampled.failed as usize;
+    one.model_sampled = Some(sampled);
+}
+
+impl Spent {
+    fn add(&mut self, found: &Simulation) {
+        self.run = self.run.and(&found.run);
+        self.non_repeatable.extend(found.non_repeatable.iter().cloned());
+    }
+}

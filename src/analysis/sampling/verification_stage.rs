@@ -1,0 +1,362 @@
+//! Verification after any method: estimates the error of every figure from points of the model.
+//!
+//! `../verification` computes it. This module turns it into error estimates and warnings. Figures of a method that was chosen by name stay,
+//! and the model's are shown beside them. `auto` takes the model's figure if its own lies beyond two standard errors of it. Within them
+//! both agree, and the figures of one surface stay together.
+
+use std::sync::Arc;
+
+use crate::analysis::CharacteristicAnalysis;
+use crate::analysis::result::verification::{TRUSTED, UNTRUSTED, VarianceShare, Verification, VerificationKind};
+use crate::analysis::result::yield_error::of_yield;
+use crate::analysis::sampling::accuracy_target::{MORE, PART};
+use crate::assembly::{EvaluationError, NonRepeatable, Run};
+use crate::method::{ErrorEstimate, ErrorSource, Method, Options, Outcome, interpolated};
+use crate::problem::Problem;
+use crate::summary::RunSummary;
+use crate::verification::{
+    Checked, CheckedFigures, SampledFigures, Target, Verified, core_within, most_points, most_points_of_shares,
+    unexplained, variance_shares_during, verify_by_checks, verify_characteristic,
+};
+use crate::warning::Warning;
+use sensitol_numeric::capability::{Capability, Law};
+use sensitol_numeric::moments::Moments;
+use sensitol_numeric::parallel::prelude::*;
+use sensitol_numeric::surrogate::Surrogate;
+use sensitol_numeric::time::Instant;
+
+/// Greatest error of a share, as a part of the reject rate that the target allows (of 1e-4: 1e-5). Above it a larger sample is drawn.
+const TARGET: f64 = 0.1;
+/// Greatest number of points in the core of a sample.
+const MOST: usize = 1 << 19;
+/// Standard errors beyond which a figure contradicts the model.
+const OFF: f64 = 3.0;
+/// Smallest deviation of a figure that matters: as a part of sigma for mean and sigma, of the value (at least 1) for skewness and kurtosis.
+const MATTERS: f64 = 0.01;
+/// Standard errors beyond which `auto` takes the model's figure.
+const AGREES: f64 = 2.0;
+/// Error of sigma, as a part of sigma, above which the surface does not follow the model.
+const UNKNOWN: f64 = 0.1;
+/// Assumed share of the variance of a correlated dimension, for methods that integrate and have no share of it. Any value serves that lies
+/// between 1e-4 (an input is not idle) and 0.03 (an input gets check points of its own).
+const ORDINARY: f64 = 0.01;
+/// Largest error of a difference, in roundings of the value at the means.
+const ROUNDINGS: f64 = 8.0;
+
+/// Verifies every characteristic, unless that is switched off (see [`Options::verify`]). Returns the spent points and time, and the points
+/// at which the model was not repeatable.
+pub(in crate::analysis) fn verify(
+    problem: &Problem,
+    outcome: &Outcome,
+    options: &Options,
+    left: Option<usize>,
+    characteristics: &mut [CharacteristicAnalysis],
+    run: &Run<'_>,
+) -> (RunSummary, Vec<NonRepeatable>) {
+    let most = options.verification(problem.function().signature());
+    let costly = problem.function().signature().costly;
+    if most == 0 || outcome.evaluated.stopped.is_some() || costly && run.stopped() {
+        return Default::default();
+    }
+    let open: Vec<usize> =
+        (0..characteristics.len()).filter(|&c| !proven(outcome, c, &mut characteristics[c])).collect();
+    if open.is_empty() {
+        return Default::default();
+    }
+    // A budget that is too small for a sample of each characteristic may suffice for check points.
+    let each = left.map(|left| left / open.len());
+    let cores: Option<Vec<usize>> = open.iter().map(|&c| core_within(problem, c, each)).collect();
+    let Some(cores) = cores.filter(|_| !costly) else {
+        return check(problem, outcome, options, most.min(left.unwrap_or(usize::MAX)), (&open, characteristics), run);
+    };
+    let seed = options.seed.unwrap_or(Options::SEED);
+    // A long formula takes a while for each of some 45 000 points. Characteristics that are not reached in time have no verification, and
+    // the report states it.
+    let one = |(c, one): (usize, &mut CharacteristicAnalysis)| {
+        let core = open.binary_search(&c).map(|place| cores[place]);
+        core.map_or(true, |core| sample(problem, outcome, (options, each), (c, core), one, (seed, run)))
+    };
+    let done: Vec<bool> = characteristics.par_iter_mut().enumerate().map(one).collect();
+    let stopped = done.contains(&false).then(|| run.why_open());
+    (RunSummary { stopped, ..RunSummary::default() }, Vec::new())
+}
+
+/// True if the surface is proven to equal the function. Its errors are roundings then.
+fn proven(outcome: &Outcome, c: usize, one: &mut CharacteristicAnalysis) -> bool {
+    let (Some(proof), Some(moments)) = (outcome.fitted[c].proof, one.moments) else { return false };
+    let sampled = one.sampled.is_some() || one.model_sampled.is_some();
+    if sampled || one.without_value > 0 {
+        return false;
+    }
+    let sigma = moments.sigma();
+    let [of_mean, of_sigma] = [proof.mean, proof.sigma + f64::EPSILON * sigma].map(|rounding| ROUNDINGS * rounding);
+    let part = if sigma > 0.0 { of_sigma / sigma } else { 0.0 };
+    let known = |error: f64| moments.skewness().is_some().then_some(error);
+    let estimate = ErrorEstimate {
+        mean: Some(of_mean),
+        sigma: Some(of_sigma),
+        skewness: known(4.0 * part),
+        kurtosis: known(8.0 * part),
+        yield_: None,
+        sources: vec![ErrorSource::Proven { degree: proof.degree }],
+    };
+    let yield_ = of_yield(&estimate, &moments, one.characteristic.limits());
+    one.error_estimate = Some(ErrorEstimate { yield_, ..estimate });
+    one.verification = Some(Verification {
+        kind: VerificationKind::Exact { degree: proof.degree },
+        points: 0,
+        failed: 0,
+        valid: None,
+        left: Some(0.0),
+        figures: [None; 4],
+        yield_: None,
+        beyond: [None; 2],
+        point: 0.0,
+        difference: None,
+        switches: Some(Vec::new()),
+        unseen: None,
+        shares: None,
+        tails: None,
+        replaced: false,
+        sample: None,
+    });
+    true
+}
+
+/// Verifies one characteristic by a sample with `core` points in its core, within the evaluations that are left for it. Returns false if
+/// the run was stopped before there was a sample.
+fn sample(
+    problem: &Problem,
+    outcome: &Outcome,
+    (options, left): (&Options, Option<usize>),
+    (c, mut core): (usize, usize),
+    one: &mut CharacteristicAnalysis,
+    (seed, run): (u64, &Run<'_>),
+) -> bool {
+    let surrogate = outcome.fitted[c].surrogate.as_ref();
+    let beside = surrogate.map(|surrogate| (outcome.plan.varying(), surrogate));
+    let Some(mut found) = verify_characteristic(problem, c, (seed, core), beside, run) else { return false };
+    // The sample must resolve sigma to the accuracy, and the yield to its target.
+    let climbed = outcome.climbed.as_ref();
+    let wanted = climbed.map(|climbed| climbed.accuracy);
+    // If the target allows few rejects, the weight of a single point may exceed them.
+    let rejected = one.characteristic.target_yield().map(|target| 1.0 - target);
+    let coarse = |found: &SampledFigures| {
+        let sigma = wanted.zip(found.sigma).is_some_and(|(wanted, sigma)| sigma.error > PART * wanted * sigma.value);
+        let error = found.difference.map(|[within, ..]| within.error).or(found.yield_.map(|share| share.error));
+        sigma || rejected.zip(error).is_some_and(|(rejected, error)| error > TARGET * rejected)
+    };
+    let mut spent = found.points;
+    let affords = |spent: usize, more: usize| left.is_none_or(|left| spent + more <= left);
+    while core < MOST && coarse(&found) && !run.stopped() && affords(spent, most_points(MORE * core)) {
+        core *= MORE;
+        // If there is no time for a larger sample, the smaller one stays.
+        let Some(more) = verify_characteristic(problem, c, (seed, core), beside, run) else { break };
+        found = more;
+        spent += found.points;
+    }
+    // Shares of variance cost many points: they are computed only if the surface leaves too much of the variance unexplained.
+    let open = beside.and_then(|beside| unexplained(problem, c, beside, seed, run));
+    let shares = open
+        .filter(|&share| {
+            share > UNTRUSTED && !run.stopped() && affords(spent, most_points_of_shares(outcome.plan.varying().len()))
+        })
+        .and_then(|_| variance_shares_during(problem, c, seed, run));
+    let dimension = |d: usize| problem.dimensions()[d].name().to_owned();
+    let share = |(d, [first, total]): (usize, [Verified; 2])| VarianceShare { dimension: dimension(d), first, total };
+    let shares = shares.map(|shares| shares.into_iter().map(share).collect());
+    // With `model_figures`, a surface that is not trusted gives way to the model's figures.
+    let refuted = options.model_figures && open.is_none_or(|share| share > TRUSTED);
+    let replaced = (options.method == Method::Auto || refuted) && replace(one, &found);
+    let Some(moments) = one.moments else { return true };
+    let error = |of: Option<Verified>, value: Option<f64>| Some(of?.error_of(value?));
+    let law = one.capability.and_then(|capability| capability.yield_());
+    let limits = one.characteristic.limits();
+    let sides = [limits.lower().is_some(), limits.upper().is_some()];
+    one.error_estimate = Some(ErrorEstimate {
+        mean: error(found.mean, Some(moments.mean())),
+        sigma: error(found.sigma, Some(moments.sigma())),
+        skewness: error(found.skewness, moments.skewness()),
+        kurtosis: error(found.kurtosis, moments.kurtosis()),
+        yield_: error(found.yield_, law),
+        sources: vec![ErrorSource::Sampled { points: found.points as u64 }],
+    });
+    one.verification = Some(Verification {
+        kind: VerificationKind::Sample,
+        points: found.points,
+        failed: 0,
+        valid: Some(found.valid),
+        left: open,
+        figures: [found.mean, found.sigma, found.skewness, found.kurtosis],
+        yield_: found.yield_,
+        beyond: found.beyond,
+        point: found.point,
+        difference: found.difference,
+        switches: found.switches.filter(|found| {
+            !found.is_empty() || problem.function().switches(problem.outputs()[c]).is_some_and(|of| of.complete)
+        }),
+        unseen: None,
+        shares,
+        tails: found.sample.as_ref().filter(|_| limits.exist()).map(|sample| sample.tails(sides)),
+        replaced,
+        // For the risks of an inspection, and for coverage intervals.
+        sample: found
+            .sample
+            .filter(|_| one.characteristic.inspection().is_some() || options.coverage.is_some())
+            .map(Arc::new),
+    });
+    true
+}
+
+/// Replaces figures that the model contradicts by the model's. Returns true if any was replaced.
+fn replace(one: &mut CharacteristicAnalysis, found: &SampledFigures) -> bool {
+    let (Some(mean), Some(sigma)) = (found.mean, found.sigma) else { return false };
+    let sampled = |of: Verified| Some(of.value);
+    let Some(moments) = one.moments else { return false };
+    let apart = |of: Option<Verified>, value: Option<f64>| {
+        of.zip(value).is_some_and(|(of, value)| (value - of.value).abs() > AGREES * of.error)
+    };
+    let off = [
+        apart(Some(mean), Some(moments.mean())),
+        apart(Some(sigma), Some(moments.sigma())),
+        apart(found.skewness, moments.skewness()),
+        apart(found.kurtosis, moments.kurtosis()),
+    ];
+    if !off.contains(&true) {
+        return false;
+    }
+    let own = [Some(moments.mean()), Some(moments.sigma()), moments.skewness(), moments.kurtosis()];
+    let other = [sampled(mean), sampled(sigma), found.skewness.and_then(sampled), found.kurtosis.and_then(sampled)];
+    let pick = |take: &dyn Fn(usize) -> bool| -> Option<Moments> {
+        let of = |i: usize| if take(i) { other[i] } else { own[i] };
+        Some(Moments::new(of(0)?, of(1)?, of(2)?, of(3)? - 3.0))
+    };
+    // Moments of two origins need not belong to any distribution. All are the sample's in that case.
+    let mixed = pick(&|i| off[i]).filter(|mixed| Law::fit(mixed).is_ok());
+    let Some(moments) = mixed.or_else(|| pick(&|_| true)) else { return false };
+    let limits = one.characteristic.limits();
+    let capability = |law: &Law| Capability::of(law, moments.mean(), moments.sigma(), limits);
+    let law = Law::fit(&moments);
+    one.capability = law.as_ref().ok().map(capability);
+    one.normal = Law::normal(&moments).ok().map(|law| capability(&law));
+    one.law = Some(law);
+    one.moments = Some(moments);
+    one.sampled = None;
+    true
+}
+
+/// Verifies the `open` characteristics of a costly model at check points.
+fn check(
+    problem: &Problem,
+    outcome: &Outcome,
+    options: &Options,
+    budget: usize,
+    (open, characteristics): (&[usize], &mut [CharacteristicAnalysis]),
+    run: &Run<'_>,
+) -> (RunSummary, Vec<NonRepeatable>) {
+    let varying = outcome.plan.varying();
+    let begun = Instant::now();
+    let integrated: Vec<Option<Surrogate>> = (0..characteristics.len()).map(|c| interpolated(outcome, c)).collect();
+    let surface = |c: usize| outcome.fitted[c].surrogate.as_ref().or(integrated[c].as_ref());
+    let shares = |(one, integrated): (&CharacteristicAnalysis, &Option<Surrogate>)| -> Vec<f64> {
+        let unknown = if integrated.is_some() { ORDINARY } else { 0.0 };
+        varying.iter().map(|&d| one.share(d).unwrap_or(unknown)).collect()
+    };
+    let shares: Vec<Vec<f64>> = characteristics.iter().zip(&integrated).map(shares).collect();
+    let targets: Vec<Target<'_>> = (shares.iter().enumerate())
+        .map(|(c, shares)| Target { surrogate: surface(c).filter(|_| open.contains(&c)), shares })
+        .collect();
+    let seed = options.seed.unwrap_or(Options::SEED);
+    let Some(checked) = verify_by_checks(problem, varying, &targets, seed, budget, run) else {
+        return Default::default();
+    };
+    let Checked { answers, .. } = &checked;
+    let not_given = |c: usize| {
+        let given = |row: usize| !matches!(answers.error(row, c), Some(EvaluationError::NotGiven));
+        (0..answers.rows()).any(|row| !given(row) || answers.is_open(row, c))
+    };
+    for &c in open {
+        // Points without an answer give no information.
+        if !not_given(c) {
+            let exact = surface(c).and_then(|of| Some(of.contributions(outcome.plan.inputs())?.moments));
+            judge(&mut characteristics[c], &checked, &checked.characteristics[c], exact);
+        }
+    }
+    (answers.summary(begun.elapsed()), answers.non_repeatable().to_vec())
+}
+
+/// Derives the errors of a method's figures: the error of the surface, and the difference between method and surface.
+fn judge(one: &mut CharacteristicAnalysis, checked: &Checked, found: &CheckedFigures, surface: Option<Moments>) {
+    let Some(moments) = one.moments else { return };
+    let errors = found.errors;
+    let error =
+        |index: usize, own: Option<f64>, surface: Option<f64>| Some(libm::hypot(own? - surface?, errors?[index]));
+    let of = |part: fn(&Moments) -> Option<f64>| (part(&moments), surface.as_ref().and_then(part));
+    let (mean, sigma) = (of(|m| Some(m.mean())), of(|m| Some(m.sigma())));
+    let (skewness, kurtosis) = (of(Moments::skewness), of(Moments::kurtosis));
+    let law = one.capability.and_then(|capability| capability.yield_());
+    one.error_estimate = Some(ErrorEstimate {
+        mean: error(0, mean.0, mean.1),
+        sigma: error(1, sigma.0, sigma.1),
+        skewness: error(2, skewness.0, skewness.1),
+        kurtosis: error(3, kurtosis.0, kurtosis.1),
+        yield_: found.yield_.zip(law).map(|(share, law)| share.error_of(law)),
+        sources: vec![ErrorSource::Checked { points: checked.count() }],
+    });
+    one.without_value += found.failed;
+    one.verification = Some(Verification {
+        kind: VerificationKind::Checks,
+        points: checked.count(),
+        failed: found.failed,
+        valid: None,
+        left: found.left,
+        figures: [None; 4],
+        yield_: found.yield_,
+        beyond: found.beyond,
+        point: 0.0,
+        difference: None,
+        switches: None,
+        unseen: Some(checked.unseen()),
+        shares: None,
+        tails: None,
+        replaced: false,
+        sample: None,
+    });
+}
+
+/// Warnings that follow from the verification of one characteristic.
+pub(in crate::analysis) fn warnings(one: &CharacteristicAnalysis, wanted: Option<f64>) -> Vec<Warning> {
+    let Some(verification) = &one.verification else { return Vec::new() };
+    let characteristic = || one.characteristic.name().to_owned();
+    let mut warnings = Vec::new();
+    if verification.failed > 0 {
+        let (failed, points) = (verification.failed, verification.points);
+        warnings.push(Warning::DomainEdgeWithin { characteristic: characteristic(), failed, points });
+    }
+    let switches = verification.switches.iter().flatten();
+    warnings.extend(switches.filter_map(|found| found.warning(&characteristic(), None)));
+    let Some(moments) = one.moments else { return warnings };
+    let sigma = moments.sigma();
+    let error = one.error_estimate.as_ref().and_then(|estimate| estimate.sigma);
+    if sigma > 0.0
+        && error.is_some_and(|error| error > UNKNOWN * sigma)
+        && !verification.replaced
+        && let Some(share) = verification.left.map(|left| left.min(1.0))
+    {
+        warnings.push(Warning::UntrustedSurrogate { characteristic: characteristic(), share, sampled: None });
+    }
+    let matters = wanted.unwrap_or(0.0).max(MATTERS);
+    let values = [Some(moments.mean()), Some(sigma), moments.skewness(), moments.kurtosis()];
+    let units = |model: f64| [sigma, sigma, model.abs().max(1.0), model.abs().max(1.0)];
+    let names = ["mean", "sigma", "skewness", "kurtosis"];
+    for (index, figure) in names.into_iter().enumerate() {
+        let Some((value, model)) = values[index].zip(verification.figures[index]) else { continue };
+        let unit = units(model.value)[index];
+        let off = (value - model.value).abs();
+        if off > OFF * model.error && off > matters * unit {
+            let (characteristic, error, model) = (characteristic(), model.error, model.value);
+            warnings.push(Warning::FigureOff { characteristic, figure, value, model, error });
+        }
+    }
+    warnings
+}
