@@ -91,7 +91,7 @@ impl Evaluated {
     pub(crate) fn add(&mut self, problem: &Problem, plan: &dyn Plan, stage: &Stage, run: &Run<'_>) {
         self.stages += 1;
         self.known.reserve(stage.points.len());
-        let desk = Desk { problem, plan, centre: plan.centre(), run };
+        let desk = StageEvaluation { problem, plan, centre: plan.centre(), run };
         let many = stage.points.len() > near_rows(desk.centre.len());
         match many && problem.function().signature().cheap && !run.tells() {
             true => self.add_side_by_side(&desk, &stage.points),
@@ -100,7 +100,7 @@ impl Evaluated {
     }
 
     /// Evaluates points in the largest batches, for a costly model.
-    fn add_in_batches(&mut self, desk: &Desk<'_>, points: &[(Point, Purpose)]) {
+    fn add_in_batches(&mut self, desk: &StageEvaluation<'_>, points: &[(Point, Purpose)]) {
         let rows = (BATCH / desk.centre.len()).max(1);
         let mut room = Points::repeated(&[], 0);
         for batch in points.chunks(rows) {
@@ -116,7 +116,7 @@ impl Evaluated {
 
     /// Evaluates points of a cheap function in small batches in parallel. Answers of one group of batches are stored while the next group
     /// is evaluated.
-    fn add_side_by_side(&mut self, desk: &Desk<'_>, points: &[(Point, Purpose)]) {
+    fn add_side_by_side(&mut self, desk: &StageEvaluation<'_>, points: &[(Point, Purpose)]) {
         /// Batches between two checks of the stop of the run.
         const TASKS: usize = 64;
         let rows = near_rows(desk.centre.len());
@@ -199,14 +199,14 @@ impl Evaluated {
 }
 
 /// Model, plan and run that evaluate the points of a stage.
-struct Desk<'a> {
+struct StageEvaluation<'a> {
     problem: &'a Problem,
     plan: &'a dyn Plan,
     centre: Vec<f64>,
     run: &'a Run<'a>,
 }
 
-impl Desk<'_> {
+impl StageEvaluation<'_> {
     /// Answers at some points. `room` holds copies of the centre before and after the call.
     fn answers(&self, room: &mut Points, batch: &[(Point, Purpose)]) -> Responses {
         let Self { problem, plan, centre, run } = self;

@@ -2,7 +2,7 @@
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use sensitol_study::Error;
+use sensitol_study::AnyError;
 use sensitol_study::StudyError;
 
 /// Returns the exception of this name in `sensitol._errors`, with these attributes.
@@ -27,7 +27,7 @@ pub(crate) fn of_study(py: Python<'_>, error: &StudyError, made_in_python: bool)
 }
 
 fn help(error: &StudyError) -> Option<String> {
-    let error = Error::from(error.clone());
+    let error = AnyError::from(error.clone());
     let advice: Vec<String> = error.advice().iter().map(ToString::to_string).collect();
     error.help().or_else(|| (!advice.is_empty()).then(|| advice.join(" ")))
 }
@@ -60,8 +60,8 @@ fn one<'py>(py: Python<'py>, error: &StudyError, made_in_python: bool) -> PyResu
 }
 
 /// Returns any other error with the actions to take.
-pub(crate) fn of_engine(py: Python<'_>, error: &Error, made_in_python: bool) -> PyErr {
-    if let Error::Study(error) = error {
+pub(crate) fn of_engine(py: Python<'_>, error: &AnyError, made_in_python: bool) -> PyErr {
+    if let AnyError::Study(error) = error {
         return of_study(py, error, made_in_python);
     }
     let build = || -> PyResult<PyErr> {

@@ -12,7 +12,7 @@ use pyo3::types::{PyBytes, PyList};
 use sensitol::StopReason;
 use sensitol::assembly::Run;
 use sensitol_report::task::{Asked, TaskReport, done};
-use sensitol_study::Error;
+use sensitol_study::AnyError;
 use sensitol_study::Study;
 
 use crate::host::{Answer, Call, Event};
@@ -22,7 +22,7 @@ use crate::pools::Pool;
 const TICK: Duration = Duration::from_millis(20);
 
 /// Result of a run. None if the engine panicked.
-pub(crate) type Ended = Option<Result<TaskReport, Box<Error>>>;
+pub(crate) type Ended = Option<Result<TaskReport, Box<AnyError>>>;
 
 /// Conditions that end a run.
 #[derive(Default)]
@@ -75,7 +75,7 @@ pub(crate) fn run(
     caller: &Caller<'_>,
     events: Receiver<Event<Ended>>,
     ended: std::sync::mpsc::Sender<Event<Ended>>,
-) -> PyResult<Result<TaskReport, Box<Error>>> {
+) -> PyResult<Result<TaskReport, Box<AnyError>>> {
     let pool = Pool::of(threads).map_err(|error| PyRuntimeError::new_err(format!("no threads: {error}")))?;
     let deadline =
         seconds.and_then(|s| Duration::try_from_secs_f64(s).ok()).and_then(|s| Instant::now().checked_add(s));
@@ -83,7 +83,7 @@ pub(crate) fn run(
     let counter = Arc::new(Counter::default());
     let (stopped, counted) = (Arc::clone(&stop), Arc::clone(&counter));
     pool.spawn(move || {
-        let work = || -> Result<TaskReport, Box<Error>> {
+        let work = || -> Result<TaskReport, Box<AnyError>> {
             let reason = || stopped.reason();
             let abandoned = || stopped.asked.load(Ordering::Relaxed);
             let run = Run::to_the_end().stopping_when(&reason).abandoning_when(&abandoned);

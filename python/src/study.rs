@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use sensitol::assembly::Signature;
 use sensitol_external::Greeting;
 use sensitol_report::task::Asked;
-use sensitol_study::Error;
+use sensitol_study::AnyError;
 use sensitol_study::StudyError;
 use sensitol_study::{Externals, JournalPlace, StudyText};
 use serde_json::json;
@@ -212,7 +212,7 @@ impl Study {
     ) -> PyResult<Outcome> {
         let asked: Asked = serde_json::from_str(asked).map_err(|error| PyValueError::new_err(error.to_string()))?;
         let (events, heard) = channel();
-        let failed = |error: Error| of_engine(py, &error, self.made_in_python);
+        let failed = |error: AnyError| of_engine(py, &error, self.made_in_python);
         let place = journal.map_or(JournalPlace::Nowhere, JournalPlace::At);
         let (study, hello) =
             self.parsed(asked.swept(), place, Some(events.clone()), whole).map_err(|error| failed(error.into()))?;

@@ -40,7 +40,8 @@ use crate::assembly::Run;
 use crate::evaluation::{Restoration, Restore, at_any_size};
 use crate::extremes::{SearchedExtremes, enclose, search};
 use crate::method::{
-    Basis, ClimbEnd, DerivativeSource, Method, MethodError, Narrow, Narrowed, Options, Outcome, climb_until,
+    Basis, ClimbEnd, DerivativeSource, Method, MethodError, Options, Outcome, ReducedInputs, ReducedSurface,
+    climb_until,
 };
 use crate::problem::Problem;
 use crate::summary::{RunSummary, StopReason};
@@ -341,11 +342,11 @@ fn spent(outcome: &Outcome, options: &Options) -> RunSummary {
 
 /// Runs the method of the options. `auto` continues until the errors of results other than sigma also meet their accuracies.
 fn run_method(problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Outcome, MethodError> {
-    let narrow = if options.accuracies.any() { None } else { Narrow::of(problem, options) };
+    let narrow = if options.accuracies.any() { None } else { ReducedInputs::of(problem, options) };
     if let Some(narrow) = narrow {
         let spent = match narrow.run(problem, options, run)? {
-            Narrowed::Fitted(outcome) => return Ok(*outcome),
-            Narrowed::Spent(spent) => spent,
+            ReducedSurface::Fitted(outcome) => return Ok(*outcome),
+            ReducedSurface::Spent(spent) => spent,
         };
         let budget = options.budget.map(|budget| budget.saturating_sub(spent.evaluations).max(1));
         let mut outcome = options.method.procedure().run(problem, &Options { budget, ..options.clone() }, run)?;

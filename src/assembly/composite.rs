@@ -335,13 +335,13 @@ impl Composite {
 }
 
 /// Solved unknowns in a block of points.
-struct SolvedRows {
+struct RowSolution {
     columns: Vec<Vec<f64>>,
     /// Failure of every row without a solution.
     errors: Vec<Option<Box<AssemblyFailure>>>,
 }
 
-impl SolvedRows {
+impl RowSolution {
     /// Solves the conditions at every row whose variables are all known.
     fn of(
         (assembler, set): (&Assembler, &FormulaSet),
@@ -456,7 +456,7 @@ impl AssemblyFunction for Composite {
             };
             let found = match (&self.assembler, &anchor) {
                 (Some(assembler), Some(Ok(anchor))) => {
-                    Some(SolvedRows::of((assembler, &self.formulas), anchor, rows.len(), given, |index, row| {
+                    Some(RowSolution::of((assembler, &self.formulas), anchor, rows.len(), given, |index, row| {
                         known(index)[row]
                     }))
                 }

@@ -23,7 +23,7 @@ pub enum ClimbEnd {
 /// Account of the refinement by which `auto` came to its result. Lists of values have one entry for each characteristic.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
-pub struct Climbed {
+pub struct AutoAccount {
     /// Relative error of sigma that was wanted.
     pub accuracy: f64,
     /// Wanted accuracies of the other results.
@@ -57,7 +57,7 @@ pub struct Climbed {
     pub(crate) far: Vec<(usize, [Point; 2])>,
 }
 
-impl Climbed {
+impl AutoAccount {
     /// Returns the relative error of sigma if a surface is off by `off` sigmas three sigma out.
     pub(crate) fn far_out(off: f64) -> f64 {
         SurrogateCheck::far_out(off)

@@ -9,7 +9,7 @@ use crate::assembly::Directions;
 use crate::method::check_points::SurrogateCheck;
 use crate::method::exact_derivatives::units;
 use crate::method::hidden_terms::{hidden, ratio};
-use crate::method::{Basis, Climbed, Order, Outcome, SurfaceProof};
+use crate::method::{AutoAccount, Basis, Order, Outcome, SurfaceProof};
 use crate::problem::Problem;
 use sensitol_numeric::moments::{Interactions, Moments, Term, contributions};
 use sensitol_numeric::power::rescale;
@@ -269,7 +269,7 @@ impl Estimate<'_> {
     }
 
     /// Adds the errors of a surrogate that was compared with the model. The residuals at the check points bound the hidden powers.
-    fn checked(&mut self, climbed: &Climbed, check: &SurrogateCheck, hidden: Errors, moments: &Moments) {
+    fn checked(&mut self, climbed: &AutoAccount, check: &SurrogateCheck, hidden: Errors, moments: &Moments) {
         let sigma = moments.sigma();
         let left = if sigma > 0.0 { check.variance / (sigma * sigma) } else { 0.0 };
         let root = left.sqrt();

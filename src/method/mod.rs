@@ -27,15 +27,15 @@ pub mod registry;
 mod response_surface;
 mod surface_proof;
 
+pub(crate) use crate::method::auto_account::AutoAccount;
 pub use crate::method::auto_account::ClimbEnd;
-pub(crate) use crate::method::auto_account::Climbed;
 pub use crate::method::derivative_order::Basis;
 pub(crate) use crate::method::derivative_order::Order;
 pub(crate) use crate::method::error_estimate::estimate;
 pub use crate::method::error_estimate::{ErrorEstimate, ErrorSource};
 pub(crate) use crate::method::exact_derivatives::ExactDerivatives;
 pub(crate) use crate::method::interpolated_surface::interpolated;
-pub use crate::method::reduced_inputs::{Narrow, Narrowed};
+pub use crate::method::reduced_inputs::{ReducedInputs, ReducedSurface};
 pub use crate::method_kind::Method;
 pub use crate::plan::Stencil;
 pub use auto::{ACCURACY, climb_until};

@@ -5,7 +5,7 @@ use serde::Serialize;
 use std::sync::Arc;
 
 use crate::evaluation::Evaluated;
-use crate::method::{Basis, Climbed, ExactDerivatives, Method, Order};
+use crate::method::{AutoAccount, Basis, ExactDerivatives, Method, Order};
 use crate::plan::{Mixed, Plan};
 use sensitol_numeric::moments::Moments;
 use sensitol_numeric::power::rescale;
@@ -32,7 +32,7 @@ pub struct Outcome {
     /// Pairs that were examined, as positions among the varying dimensions.
     pub pairs: Vec<(usize, usize)>,
     /// Account of the refinement by `auto`; None for any other method.
-    pub climbed: Option<Climbed>,
+    pub climbed: Option<AutoAccount>,
 }
 
 /// Fit of one characteristic.

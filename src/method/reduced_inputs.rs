@@ -30,7 +30,7 @@ const POINTS: usize = 1 << 13;
 const NEAR: f64 = 0.01;
 
 /// Problem over the inputs of the model.
-pub struct Narrow<'p> {
+pub struct ReducedInputs<'p> {
     composite: &'p Composite,
     /// The problem whose dimensions are the inputs, and whose characteristics are the needed outputs of the model.
     pub problem: Problem,
@@ -55,14 +55,14 @@ impl Restore for OverInputs {
 }
 
 /// Result of a fit over the inputs.
-pub enum Narrowed {
+pub enum ReducedSurface {
     /// Outcome over the dimensions, with the surface in place of the model.
     Fitted(Box<Outcome>),
     /// Evaluations alone, because an output has no surface or a point has no value.
     Spent(Box<Evaluated>),
 }
 
-impl<'p> Narrow<'p> {
+impl<'p> ReducedInputs<'p> {
     /// Returns the problem over the inputs of the model. Returns None if no model is driven, if its inputs are no fewer than the
     /// dimensions, or if an option concerns the dimensions themselves.
     pub fn of(problem: &'p Problem, options: &Options) -> Option<Self> {
@@ -122,7 +122,12 @@ impl<'p> Narrow<'p> {
     ///
     /// Returns the evaluations alone if an output of the model has no surface, or no value at some point. The method over the dimensions
     /// then reports the failed point, and includes these evaluations in its count.
-    pub(crate) fn run(&self, problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Narrowed, MethodError> {
+    pub(crate) fn run(
+        &self,
+        problem: &Problem,
+        options: &Options,
+        run: &Run<'_>,
+    ) -> Result<ReducedSurface, MethodError> {
         // Outputs of the model may be of extreme size even if the characteristics are not.
         let over_inputs = at_any_size(&self.problem, run, |problem, run| {
             options.method.procedure().run(problem, options, run).map(OverInputs)
@@ -134,7 +139,7 @@ impl<'p> Narrow<'p> {
             .collect();
         let failed = over_inputs.evaluated.known.errors().next().is_some();
         let Some(surrogates) = surrogates.filter(|_| !failed) else {
-            return Ok(Narrowed::Spent(Box::new(over_inputs.evaluated)));
+            return Ok(ReducedSurface::Spent(Box::new(over_inputs.evaluated)));
         };
         let place = |&d: &usize| {
             let input = &self.problem.dimensions()[d];
@@ -157,7 +162,7 @@ impl<'p> Narrow<'p> {
         outcome.evaluated = over_inputs.evaluated;
         (outcome.evaluated.known, outcome.evaluated.gradients) = (known, gradients);
         outcome.asked = options.method;
-        Ok(Narrowed::Fitted(Box::new(outcome)))
+        Ok(ReducedSurface::Fitted(Box::new(outcome)))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Registry of all methods.
 
-use crate::method::{Cost, Method, MethodError, Narrow, Options, Procedure};
+use crate::method::{Cost, Method, MethodError, Options, Procedure, ReducedInputs};
 use crate::problem::Problem;
 
 /// Every method, in the order of listings.
@@ -36,7 +36,7 @@ impl Options {
     /// # Errors
     /// Fails if the options do not fit the problem, or if the method needs more evaluations than the budget allows.
     pub fn cost(&self, problem: &Problem) -> Result<Cost, MethodError> {
-        let narrow = Narrow::of(problem, self);
+        let narrow = ReducedInputs::of(problem, self);
         self.method.procedure().fits(narrow.as_ref().map_or(problem, |narrow| &narrow.problem), self)
     }
 }

@@ -11,7 +11,7 @@ use crate::simulation::count::{Count, Replicate};
 use crate::simulation::indices::SampledFactor;
 use crate::simulation::inspection::inspected;
 use crate::simulation::json::value;
-use crate::simulation::rare_switch_side::Seldom;
+use crate::simulation::rare_switch_side::RareSwitchSides;
 use crate::simulation::replicate_error::of_replicates;
 use crate::simulation::surface_difference::{
     Controlled, Difference, Shares, carried, largest, moments as controlled, shares,
@@ -404,7 +404,7 @@ struct Watched<'a> {
     plain: [Watch; 4],
     /// Sums of the differences to a surrogate.
     controlled: [Watch; 4],
-    seldom: Option<&'a Seldom>,
+    seldom: Option<&'a RareSwitchSides>,
 }
 
 /// Reliability of one sum.
@@ -435,7 +435,7 @@ impl<'a> Evidence<'a> {
     }
 
     /// Removes standard errors that depend on a few points, or on assemblies beyond switches that are seldom met.
-    pub(super) fn watched(mut self, seldom: Option<&'a Seldom>) -> Self {
+    pub(super) fn watched(mut self, seldom: Option<&'a RareSwitchSides>) -> Self {
         let (mean, sigma) = (self.all.mean(), self.all.moment(2).sqrt());
         let powers = seldom.filter(|_| sigma > 0.0).map_or([0.0; 4], |seldom| seldom.powers(mean, sigma));
         let standardised = self.all.standardised();
@@ -503,7 +503,7 @@ impl<'a> Evidence<'a> {
         Some(Unsettled {
             figures: open.iter().map(|&i| ["mean", "sigma", "skewness", "kurtosis"][i]).collect(),
             share: plain.share,
-            switch: watched.seldom.filter(|_| plain.lacks_a_side).and_then(Seldom::rarest),
+            switch: watched.seldom.filter(|_| plain.lacks_a_side).and_then(RareSwitchSides::rarest),
         })
     }
 

@@ -8,7 +8,7 @@ use sensitol_numeric::sampling::{Fine, LargestPoints, Scale, Summary};
 
 /// Limits and scale with which a portion is counted.
 #[derive(Clone, Copy)]
-pub(super) struct Lens {
+pub(super) struct CountingScale {
     pub(super) limits: KeptLimits,
     /// Scale of the histogram bins, known after the first batch.
     pub(super) scale: Option<Scale>,

@@ -4,7 +4,7 @@ use crate::assembly::{Responses, all_finite};
 use crate::problem::Problem;
 use crate::simulation::SimulatedCharacteristic;
 use crate::simulation::characteristic::{REJECTED, YieldEstimate};
-use crate::simulation::count::Lens;
+use crate::simulation::count::CountingScale;
 use crate::simulation::replicate_error::of_replicates;
 use crate::verification::{OutputCorrelation, REPLICATES, student};
 use sensitol_numeric::elementary::{Work, on_this_processor};
@@ -31,7 +31,7 @@ pub(super) struct Together {
 
 impl Together {
     /// Sums of a portion, by parts. Returns None if there is a single characteristic.
-    pub(super) fn of(out: &Responses, lenses: &[Lens], sampler: Sampler, replicate: u64) -> Option<Self> {
+    pub(super) fn of(out: &Responses, lenses: &[CountingScale], sampler: Sampler, replicate: u64) -> Option<Self> {
         if lenses.len() < 2 {
             return None;
         }
@@ -97,7 +97,7 @@ impl Together {
 /// Sums of a portion in which every sixteenth point belongs to the same part.
 struct Groups<'a> {
     out: &'a Responses,
-    lenses: &'a [Lens],
+    lenses: &'a [CountingScale],
 }
 
 impl Work for Groups<'_> {

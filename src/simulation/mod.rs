@@ -36,7 +36,7 @@ use crate::simulation::sample_groups::MeasuredGroups;
 use crate::summary::RunSummary;
 use crate::verification::OutputCorrelation;
 use crate::warning::{Advice, Warning};
-use count::Lens;
+use count::CountingScale;
 use sensitol_numeric::json_form::through;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::parallel::{Rooms, join};
@@ -517,7 +517,12 @@ fn block(
     (points, out): (&Points, &mut Responses),
     portion: Portion,
     run: &Run<'_>,
-    (lenses, control, measured, sampler): (&[Lens], Option<&Control<'_>>, Option<&MeasuredGroups<'_>>, Sampler),
+    (lenses, control, measured, sampler): (
+        &[CountingScale],
+        Option<&Control<'_>>,
+        Option<&MeasuredGroups<'_>>,
+        Sampler,
+    ),
 ) -> Block {
     out.reopen(portion.rows, problem.outputs().len());
     let begun = Instant::now();

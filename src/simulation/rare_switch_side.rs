@@ -8,17 +8,17 @@ use crate::assembly::Run;
 use crate::problem::Problem;
 use crate::simulation::control_variate::{Control, Twin};
 use crate::simulation::surface_difference::squares;
-use crate::verification::{SeldomSides, seldom_sides};
+use crate::verification::{RareSides, seldom_sides};
 use crate::warning::Warning;
 
 /// Switches of one characteristic, with points of the seldom sides.
-pub(super) struct Seldom {
-    sides: SeldomSides,
+pub(super) struct RareSwitchSides {
+    sides: RareSides,
     /// Rises of the surrogate at these points. Empty if there is none.
     rises: Vec<f64>,
 }
 
-impl Seldom {
+impl RareSwitchSides {
     /// Searches for the switches of a characteristic with this sigma. Returns None if it reports no switch.
     pub(super) fn of(
         problem: &Problem,

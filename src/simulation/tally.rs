@@ -8,10 +8,10 @@ use crate::evaluation::history;
 use crate::problem::Problem;
 use crate::simulation::characteristic::{Evidence, SimulatedCharacteristic};
 use crate::simulation::control_variate::{Control, Twin};
-use crate::simulation::count::{Count, Lens, Replicate};
+use crate::simulation::count::{Count, CountingScale, Replicate};
 use crate::simulation::joint_result as together;
 use crate::simulation::joint_result::Together;
-use crate::simulation::rare_switch_side::Seldom;
+use crate::simulation::rare_switch_side::RareSwitchSides;
 use crate::simulation::sample_groups::{GroupSums, MeasuredGroups};
 use crate::simulation::surface_difference::Difference;
 use crate::simulation::{REPLICATES, Simulation, SimulationOptions, TASKS};
@@ -60,7 +60,7 @@ impl Block {
     pub(super) fn of(
         out: &Responses,
         took: Duration,
-        (lenses, sampler, replicate): (&[Lens], Sampler, u64),
+        (lenses, sampler, replicate): (&[CountingScale], Sampler, u64),
         beside: &[Option<(&Twin, Vec<f64>)>],
         groups: Option<&(&MeasuredGroups<'_>, Vec<Vec<usize>>)>,
     ) -> Self {
@@ -94,7 +94,7 @@ impl Block {
 }
 
 impl Column {
-    fn of(out: &Responses, output: usize, lens: &Lens, beside: Option<&(&Twin, Vec<f64>)>) -> Self {
+    fn of(out: &Responses, output: usize, lens: &CountingScale, beside: Option<&(&Twin, Vec<f64>)>) -> Self {
         let mut values = Cow::Borrowed(out.column(output));
         if values.iter().fold(false, |any, value| any | value.is_nan()) {
             values.to_mut().retain(|value| !value.is_nan());
@@ -122,11 +122,11 @@ impl Column {
 pub(super) struct Tally<'a> {
     problem: &'a Problem,
     control: Option<&'a Control<'a>>,
-    lenses: Vec<Lens>,
+    lenses: Vec<CountingScale>,
     counts: Vec<Count>,
     together: Together,
     /// Seldom sides of every characteristic, after the search for them. None if standard errors are not watched.
-    seldom: Option<Vec<Option<Seldom>>>,
+    seldom: Option<Vec<Option<RareSwitchSides>>>,
     answered: u64,
     extra: i64,
     /// Cost of the points drawn so far.
@@ -158,7 +158,9 @@ impl<'a> Tally<'a> {
         Self {
             problem,
             control,
-            lenses: (0..characteristics.len()).map(|c| Lens { limits: problem.kept_limits(c), scale: None }).collect(),
+            lenses: (0..characteristics.len())
+                .map(|c| CountingScale { limits: problem.kept_limits(c), scale: None })
+                .collect(),
             counts: characteristics.iter().map(|_| count()).collect(),
             together: Together::default(),
             seldom: None,
@@ -170,7 +172,7 @@ impl<'a> Tally<'a> {
         }
     }
 
-    pub(super) fn lenses(&self) -> &[Lens] {
+    pub(super) fn lenses(&self) -> &[CountingScale] {
         &self.lenses
     }
 
@@ -250,9 +252,9 @@ impl<'a> Tally<'a> {
             return;
         }
         let seldom = |(c, count): (usize, &Count)| {
-            Seldom::of(self.problem, c, self.control, (seed, count.summary().sigma()), run)
+            RareSwitchSides::of(self.problem, c, self.control, (seed, count.summary().sigma()), run)
         };
-        let found: Vec<Option<Seldom>> = self.counts.iter().enumerate().map(seldom).collect();
+        let found: Vec<Option<RareSwitchSides>> = self.counts.iter().enumerate().map(seldom).collect();
         self.extra += found.iter().flatten().map(|seldom| seldom.evaluations() as i64).sum::<i64>();
         self.seldom = Some(found);
     }

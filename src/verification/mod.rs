@@ -32,7 +32,7 @@ pub use crate::verification::switch_side::{Crossing, FoundSwitch};
 pub use crate::verification::variance_shares::Share;
 pub(crate) use figures::{MOMENTS, carried_by, effective, jackknife, standard, student, totals};
 pub(crate) use sample::REPLICATES;
-pub use tails::{TailPoint, Tails};
+pub use tails::{SampleTails, TailPoint};
 pub(crate) use weighted::WeightedSample;
 
 use serde::Serialize;
@@ -43,7 +43,7 @@ use figures::moments;
 use model::Model;
 use sample::Sample;
 use sensitol_numeric::correlation::factors;
-use sensitol_numeric::power::{Rescale, Rescaling, Unknown};
+use sensitol_numeric::power::{Losable, Rescale, Rescaling};
 use sensitol_numeric::sampling::Normals;
 use sensitol_numeric::surrogate::Surrogate;
 
@@ -93,7 +93,7 @@ impl Rescale for Verified {
     }
 }
 
-impl Unknown for Verified {
+impl Losable for Verified {
     fn is_unknown(&self) -> bool {
         self.value.is_nan()
     }
@@ -184,7 +184,7 @@ pub(crate) fn seldom_points(problem: &Problem, c: usize, varying: &[usize], seed
 }
 
 /// Switches of a characteristic, and points beyond those that are seldom met.
-pub(crate) struct SeldomSides {
+pub(crate) struct RareSides {
     pub(crate) switches: Vec<FoundSwitch>,
     /// Points of the half-spaces that contain the seldom sides. Their `values` are NaN if the model has none.
     pub(crate) points: Points,
@@ -197,12 +197,7 @@ pub(crate) struct SeldomSides {
 /// its switches, or if the run was stopped.
 ///
 /// Evaluations: 256 for every half-space, six at most. The margins of switches, and some values beside them, are evaluated in addition.
-pub(crate) fn seldom_sides(
-    problem: &Problem,
-    c: usize,
-    (seed, scale): (u64, f64),
-    run: &Run<'_>,
-) -> Option<SeldomSides> {
+pub(crate) fn seldom_sides(problem: &Problem, c: usize, (seed, scale): (u64, f64), run: &Run<'_>) -> Option<RareSides> {
     /// Number of points of a half-space. Its part of a moment is known to about a tenth.
     const WITHIN: usize = 1 << 8;
     let function = problem.function();
@@ -227,7 +222,7 @@ pub(crate) fn seldom_sides(
         weights.extend(own.iter().zip(&held).filter(|(_, held)| !**held).map(|(weight, _)| weight / WITHIN as f64));
     }
     let (points, values) = model.points_and_values(&all);
-    (!model.stopped()).then(|| SeldomSides { switches: found.switches.unwrap_or_default(), points, values, weights })
+    (!model.stopped()).then(|| RareSides { switches: found.switches.unwrap_or_default(), points, values, weights })
 }
 
 /// Share of a characteristic's variance that a surface over the dimensions at `varying` leaves unexplained, from 1024 points of the model.

@@ -1,4 +1,4 @@
-//! Tails of a sample in strata, for comparison with a fitted distribution.
+//! SampleTails of a sample in strata, for comparison with a fitted distribution.
 
 use serde::Serialize;
 
@@ -18,7 +18,7 @@ const FEWEST: usize = 4;
 /// logarithm.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Tails {
+pub struct SampleTails {
     /// Tail towards the lower limit. Empty if there is none.
     pub below: Vec<TailPoint>,
     /// Tail towards the upper limit. Empty if there is none.
@@ -37,7 +37,7 @@ pub struct TailPoint {
     pub error: Option<f64>,
 }
 
-rescale!(Tails { below, above } without {});
+rescale!(SampleTails { below, above } without {});
 rescale!(TailPoint { at } without { share, error });
 
 /// A value with its weight and its randomisation.

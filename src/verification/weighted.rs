@@ -2,7 +2,7 @@
 
 use crate::verification::Verified;
 use crate::verification::figures::{jackknife, student, totals};
-use crate::verification::tails::{Tails, Weighed, tail};
+use crate::verification::tails::{SampleTails, Weighed, tail};
 use sensitol_numeric::power::{Rescale, Rescaling};
 
 /// Values with their weights, by randomisation.
@@ -27,7 +27,7 @@ impl WeightedSample {
     }
 
     /// Tails below and above, of the requested sides.
-    pub(crate) fn tails(&self, [below, above]: [bool; 2]) -> Tails {
+    pub(crate) fn tails(&self, [below, above]: [bool; 2]) -> SampleTails {
         let of = |(replicate, values, weights): &(usize, Vec<f64>, Vec<f64>)| -> Vec<Weighed> {
             let points = values.iter().zip(weights).filter(|(y, _)| y.is_finite());
             points.map(|(&y, &weight)| (y, weight, *replicate)).collect()
@@ -37,7 +37,7 @@ impl WeightedSample {
             true => tail(&values, above, (self.replicates, self.one)),
             false => Vec::new(),
         };
-        Tails { below: towards(below, false), above: towards(above, true) }
+        SampleTails { below: towards(below, false), above: towards(above, true) }
     }
 
     /// Finite values in ascending order, with their weights.

@@ -7,7 +7,7 @@ use crate::failure::Failure;
 use sensitol::assembly::{Points, Table};
 use sensitol::problem::Problem;
 use sensitol_report::document::csv::{guarded, unguarded};
-use sensitol_study::table::{NumberFault, Style, delimiter, records};
+use sensitol_study::table::{NumberFault, NumberStyle, delimiter, records};
 
 /// Writes a column for every input of the model and a row for every point, in full precision.
 ///
@@ -69,7 +69,7 @@ pub(super) fn read(path: &Path) -> Result<Table, Failure> {
     for (index, name) in columns.iter().enumerate() {
         let cells: Vec<(usize, &str)> =
             records.iter().map(|(_, record)| &record[index]).enumerate().filter(|(_, cell)| !cell.is_empty()).collect();
-        let style = Style::of(cells.iter().map(|(_, cell)| *cell), delimiter == b',');
+        let style = NumberStyle::of(cells.iter().map(|(_, cell)| *cell), delimiter == b',');
         for (place, &(row, cell)) in cells.iter().enumerate() {
             rows[row][index] = match style.number(place, cell) {
                 Ok(value) => Some(value),

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::distribution::{Distribution, DistributionError, Normal, Uniform, finite, positive};
-use crate::fits::HeldEnd;
+use crate::fits::FixedEnd;
 use crate::labels::Labels;
 
 /// Half-width of a dimension without a tolerance band, in sigmas: it replaces the band in RSS and worst case.
@@ -29,7 +29,7 @@ pub struct Dimension {
     distribution: Option<Arc<dyn Distribution>>,
     step: Option<f64>,
     zone: Option<Arc<str>>,
-    held: Option<HeldEnd>,
+    held: Option<FixedEnd>,
     labels: Labels,
     convention: Convention,
 }
@@ -222,8 +222,8 @@ impl Dimension {
     pub fn opened(&self, band: [f64; 2], factor: f64) -> [f64; 2] {
         let [lower, upper] = band;
         match self.held {
-            Some(HeldEnd::Lower) => [lower, lower + factor * (upper - lower)],
-            Some(HeldEnd::Upper) => [upper - factor * (upper - lower), upper],
+            Some(FixedEnd::Lower) => [lower, lower + factor * (upper - lower)],
+            Some(FixedEnd::Upper) => [upper - factor * (upper - lower), upper],
             None => about_middle(band, factor),
         }
     }
@@ -234,14 +234,14 @@ impl Dimension {
     }
 
     /// Holds one end of the tolerance band. Without a band nothing is held.
-    pub fn holding(mut self, end: HeldEnd) -> Self {
+    pub fn holding(mut self, end: FixedEnd) -> Self {
         self.held = self.tolerance.map(|_| end);
         self
     }
 
     /// Direction in which the middle of the band moves when its half-width grows, by the same amount: 1 up, -1 down, 0 for none.
     pub fn lean(&self) -> f64 {
-        self.held.map_or(0.0, HeldEnd::lean)
+        self.held.map_or(0.0, FixedEnd::lean)
     }
 
     /// Dimension about another nominal value, with its tolerance unchanged. Returns None if its distribution does not move with the

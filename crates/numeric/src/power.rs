@@ -177,7 +177,7 @@ impl Rescale for f64 {
     }
 }
 
-impl<T: Rescale + Unknown> Rescale for Option<T> {
+impl<T: Rescale + Losable> Rescale for Option<T> {
     fn rescale(&mut self, by: &mut Rescaling) {
         if let Some(value) = self {
             let known = !value.is_unknown();
@@ -210,28 +210,28 @@ impl<T: Rescale, E> Rescale for Result<T, E> {
 }
 
 /// Result that may be lost as a whole.
-pub trait Unknown {
+pub trait Losable {
     /// True if the result is not a number. False for results of several figures, which lose them one by one.
     fn is_unknown(&self) -> bool {
         false
     }
 }
 
-impl Unknown for f64 {
+impl Losable for f64 {
     fn is_unknown(&self) -> bool {
         self.is_nan()
     }
 }
 
-impl<T: Unknown, const N: usize> Unknown for [T; N] {
+impl<T: Losable, const N: usize> Losable for [T; N] {
     fn is_unknown(&self) -> bool {
         self.iter().any(T::is_unknown)
     }
 }
 
-impl<T> Unknown for Vec<T> {}
+impl<T> Losable for Vec<T> {}
 
-impl<T, E> Unknown for Result<T, E> {}
+impl<T, E> Losable for Result<T, E> {}
 
 /// Implements [`Rescale`] for a structure. Every field is named once, either as one with figures in the unit or as one without, so that a
 /// new field does not compile until it is named.
@@ -244,7 +244,7 @@ macro_rules! rescale {
                 $($crate::power::Rescale::rescale($figure, by);)*
             }
         }
-        impl $crate::power::Unknown for $type {}
+        impl $crate::power::Losable for $type {}
     };
 }
 pub use rescale;

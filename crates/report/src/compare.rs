@@ -9,7 +9,7 @@ use crate::document::{
 };
 use crate::figures::{Figures as _, Named};
 use crate::overview as glance;
-use crate::overview::Glance;
+use crate::overview::OverviewLine;
 use crate::{About, Head, head};
 #[cfg(feature = "schema")]
 use sensitol::compare::ErrorShape;
@@ -127,7 +127,7 @@ impl CompareReport {
         let all = self.run.evaluator.map_or(String::new(), |_| format!("; all: {}", head::evaluations(&self.run)));
         document.line(format!("reference: {reference} with {samples} points{all}{beside}"));
         document.gap();
-        document.table(glance::table(self.characteristics.iter().map(|one| Glance::sampled(&one.reference))));
+        document.table(glance::table(self.characteristics.iter().map(|one| OverviewLine::sampled(&one.reference))));
         document.sections = self.characteristics.iter().map(ComparedReport::section).collect();
         if !self.not_run.is_empty() {
             let mut section = Section::default();

@@ -11,7 +11,7 @@ use sensitol_numeric::sampling::Estimate;
 use sensitol_numeric::verdict::{Judged, worst};
 
 /// Line of a characteristic, as text.
-pub(super) struct Glance<'r> {
+pub(super) struct OverviewLine<'r> {
     name: &'r str,
     unit: Option<&'r str>,
     mean: String,
@@ -21,7 +21,7 @@ pub(super) struct Glance<'r> {
     verdict: Line,
 }
 
-impl<'r> Glance<'r> {
+impl<'r> OverviewLine<'r> {
     /// Summary of a simulation, with the digits that its standard errors support.
     pub(super) fn sampled(one: &'r SimulatedCharacteristic) -> Self {
         let text = |of: Option<Estimate>, error| known(of.map(|of| of.value), |value| estimated(value, error));
@@ -63,15 +63,15 @@ pub(super) fn verdict(judged: &[Judged]) -> Line {
 }
 
 /// Table for terminals. Pages show the verdict and its gauges instead.
-pub(super) fn table<'r>(all: impl IntoIterator<Item = Glance<'r>>) -> DataTable {
-    let all: Vec<Glance<'_>> = all.into_iter().collect();
-    let any = |of: fn(&Glance<'_>) -> bool| all.iter().any(of);
+pub(super) fn table<'r>(all: impl IntoIterator<Item = OverviewLine<'r>>) -> DataTable {
+    let all: Vec<OverviewLine<'_>> = all.into_iter().collect();
+    let any = |of: fn(&OverviewLine<'_>) -> bool| all.iter().any(of);
     let (moments, cpk) = (any(|one| !one.mean.is_empty()), any(|one| one.cpk.is_some()));
     let (limited, judged) = (any(|one| !one.yield_.is_empty()), any(|one| !one.verdict.text().is_empty()));
     // Values without a number keep figures right-aligned.
     let figure = |text: &str| Cell::both(Value::Number(None), text);
     Columns::default()
-        .terminal(true, "", |one: &&Glance<'_>| Cell::name(one.name))
+        .terminal(true, "", |one: &&OverviewLine<'_>| Cell::name(one.name))
         .terminal(moments, "mean", move |one| figure(&one.mean))
         .terminal(moments, "sigma", move |one| figure(&one.sigma))
         .terminal(moments, "", |one| Cell::optional(one.unit))

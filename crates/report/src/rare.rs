@@ -9,7 +9,7 @@ use crate::head;
 use crate::head::seed;
 use crate::output_correlation::all_limits;
 use crate::overview as glance;
-use crate::overview::Glance;
+use crate::overview::OverviewLine;
 use crate::requirement::{judged, lines};
 use crate::sampling::samples;
 use crate::{About, DimensionReport, Head, WarningReport, correlation};
@@ -70,7 +70,7 @@ impl RareReport {
             head::beside(&found.run)
         ));
         document.gap();
-        document.table(glance::table(found.characteristics.iter().map(Glance::sought)));
+        document.table(glance::table(found.characteristics.iter().map(OverviewLine::sought)));
         if let Some([low, high]) = found.joint_interval {
             let interval = format!("95 % interval {} to {}", yielded(low), yielded(high));
             document.note(all_limits(&known(found.joint, yielded), &interval, found.joint_requirement.as_ref()));

@@ -11,7 +11,7 @@ use crate::head::{findings, seed};
 use crate::inspection::inspected;
 use crate::output_correlation::{all_limits_within, together};
 use crate::overview as glance;
-use crate::overview::Glance;
+use crate::overview::OverviewLine;
 use crate::requirement::{judged, lines};
 use crate::sampling::sampled;
 use crate::{About, DimensionReport, Head, WarningReport, correlation};
@@ -69,7 +69,7 @@ impl SimulationReport {
         let (seed, rest) = (seed(run), head::beside(run));
         document.line(format!("{}: {samples} points{seed}{rest}; ± is one standard error", sampler.method()));
         document.gap();
-        document.table(glance::table(characteristics.iter().map(Glance::sampled)));
+        document.table(glance::table(characteristics.iter().map(OverviewLine::sampled)));
         if let Some(joint) = &self.simulation.joint {
             document.note(all_limits_within(joint, self.simulation.joint_requirement.as_ref()));
         }

@@ -7,7 +7,7 @@ use crate::{RewriteError, StudyError};
 /// An error of a study, or of its evaluation.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-pub enum Error {
+pub enum AnyError {
     /// The study file is not valid.
     #[error(transparent)]
     Study(#[from] StudyError),
@@ -19,13 +19,13 @@ pub enum Error {
     Engine(sensitol::Error),
 }
 
-impl<E: Into<sensitol::Error>> From<E> for Error {
+impl<E: Into<sensitol::Error>> From<E> for AnyError {
     fn from(error: E) -> Self {
         Self::Engine(error.into())
     }
 }
 
-impl Error {
+impl AnyError {
     /// Text to write instead. Returns None if no general advice exists.
     pub fn help(&self) -> Option<String> {
         match self {

@@ -4,8 +4,8 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use crate::files::{FileRole, NamedFile};
-use crate::folder::{Place, Unread};
-use crate::table::{DELIMITERS, NumberFault, Style, delimiter, records};
+use crate::folder::{Place, UnreadKey};
+use crate::table::{DELIMITERS, NumberFault, NumberStyle, delimiter, records};
 use sensitol::warning::Warning;
 use sensitol_numeric::names::nearest;
 
@@ -323,8 +323,8 @@ impl<'s> Data<'s> {
         }
         let bytes = self.place.read(file).map_err(|unread| {
             let problem = Box::new(match unread {
-                Unread::Failed(error) => DataProblem::Unreadable { reason: error.to_string() },
-                Unread::NotGiven { known } => {
+                UnreadKey::Failed(error) => DataProblem::Unreadable { reason: error.to_string() },
+                UnreadKey::NotGiven { known } => {
                     let nearest = nearest(file, known.iter().map(String::as_str)).map(str::to_owned);
                     DataProblem::NotGiven { nearest, known }
                 }
@@ -400,7 +400,7 @@ impl Table {
                 false => cells.push((*line, text)),
             }
         }
-        let style = Style::of(cells.iter().map(|(_, text)| *text), !self.decimal_commas);
+        let style = NumberStyle::of(cells.iter().map(|(_, text)| *text), !self.decimal_commas);
         for (place, &(line, text)) in cells.iter().enumerate() {
             let value = style.number(place, text).map_err(|found| {
                 let text = text.to_owned();

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::data::DataFault;
 use crate::decimal::{SAID, decimal};
-use crate::typing_habits::Slip;
+use crate::typing_habits::TypingHabit;
 use sensitol::allocation::CostError;
 use sensitol::assembly::NoColumn;
 use sensitol::assembly::formula::FormulaFault;
@@ -129,7 +129,7 @@ pub enum StudyFault {
         /// Message of the parser.
         message: String,
         /// Probable mistake behind the fault.
-        slip: Option<Slip>,
+        slip: Option<TypingHabit>,
     },
     /// A key that does not exist here.
     #[error("there is no key `{key}` here")]

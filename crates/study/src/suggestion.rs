@@ -2,7 +2,7 @@
 
 use crate::entries::vocabulary::CORRELATIONS;
 use crate::error::StudyFault;
-use crate::typing_habits::{Slip, percent};
+use crate::typing_habits::{TypingHabit, percent};
 use sensitol::allocation::CostError;
 use sensitol::assembly::implicit::ConditionsError;
 use sensitol::warning::Advice;
@@ -29,7 +29,7 @@ impl StudyFault {
                 Some("write three lines for each pair:\n[[correlation]]\nbetween = [\"a\", \"b\"]\nvalue = 0.9".into())
             }
             Self::Syntax { slip, .. } => slip.as_ref().map(ToString::to_string),
-            Self::WrongType { expected, found } => Slip::of_value(expected, found).map(|slip| slip.to_string()),
+            Self::WrongType { expected, found } => TypingHabit::of_value(expected, found).map(|slip| slip.to_string()),
             Self::IsFolder { within: None } => Some("name the study file in it".into()),
             Self::UnknownKey { nearest: Some(name), .. } | Self::UnknownWord { nearest: Some(name), .. } => {
                 Some(meant(name))

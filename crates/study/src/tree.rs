@@ -6,7 +6,7 @@ use jsonc_parser::ast;
 use toml::de::{DeTable, DeValue};
 
 use crate::error::{Fault, StudyFault, fault};
-use crate::typing_habits::Slip;
+use crate::typing_habits::TypingHabit;
 
 /// A value and its place in the file.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,7 +53,7 @@ impl Tree {
                 Some(key) if error.message().contains("duplicate key") => StudyFault::DuplicateKey { key },
                 _ => {
                     let message = error.message().lines().collect::<Vec<_>>().join("; ");
-                    let slip = error.span().and_then(|span| Slip::of_syntax(text, &span, &message));
+                    let slip = error.span().and_then(|span| TypingHabit::of_syntax(text, &span, &message));
                     StudyFault::Syntax { message, slip }
                 }
             };
@@ -77,7 +77,7 @@ impl Tree {
         let parsed = jsonc_parser::parse_to_ast(text, &Default::default(), &strict).map_err(|error| {
             let range = error.range();
             let (span, message) = (range.start..range.end, error.kind().to_string());
-            let slip = Slip::of_syntax(text, &span, &message);
+            let slip = TypingHabit::of_syntax(text, &span, &message);
             fault(span, "", StudyFault::Syntax { message, slip })
         })?;
         match &parsed.value {

@@ -6,7 +6,7 @@ use std::ops::Range;
 /// Probable mistake behind a fault.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Slip {
+pub enum TypingHabit {
     /// A decimal comma.
     DecimalComma {
         /// The number as written.
@@ -30,7 +30,7 @@ pub enum Slip {
     },
 }
 
-impl fmt::Display for Slip {
+impl fmt::Display for TypingHabit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::DecimalComma { found } => {
@@ -47,7 +47,7 @@ impl fmt::Display for Slip {
     }
 }
 
-impl Slip {
+impl TypingHabit {
     /// Probable mistake in a text that the parser refused at this place with this message. Returns None if none is likely.
     pub(super) fn of_syntax(text: &str, at: &Range<usize>, message: &str) -> Option<Self> {
         let start = text.get(..at.start)?.rfind('\n').map_or(0, |newline| newline + 1);

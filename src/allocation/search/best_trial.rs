@@ -13,7 +13,7 @@ use crate::allocation::requirement::constraint::Constraint;
 use crate::allocation::result::allocation::{Allocation, AllocationSolver, Proof, Status};
 use crate::allocation::result::solver_result::{Chosen, Solved, Starts};
 use crate::allocation::search::driver::{Driver, Ended};
-use crate::allocation::search::linearization_point::{Seen, Station};
+use crate::allocation::search::linearization_point::{LinearizationPoint, Seen};
 use crate::allocation::search::trial::{Trial, is_offered};
 use crate::allocation::search::trial_search::{Tolerances, VerifiedSearch};
 use crate::allocation::surface::uncertainty::Unknown;
@@ -33,7 +33,7 @@ const SAME: f64 = 1e-9;
 const BACK: [f64; 4] = [1e-4, 1e-3, 1e-2, 1e-1];
 
 pub(in crate::allocation) struct SearchEnd {
-    pub(in crate::allocation) station: Rc<Station>,
+    pub(in crate::allocation) station: Rc<LinearizationPoint>,
     /// Tolerances found. None if only nominal values were to be chosen.
     pub(in crate::allocation) last: Option<Chosen>,
     /// Requirements, including the level that is sought for a given cost.
@@ -47,7 +47,7 @@ pub(in crate::allocation) struct SearchEnd {
 
 /// Tolerances of the study at the start.
 pub(in crate::allocation) struct AllocationStart {
-    pub(in crate::allocation) station: Rc<Station>,
+    pub(in crate::allocation) station: Rc<LinearizationPoint>,
     pub(in crate::allocation) trial: Option<Trial>,
     /// True if the costs offer these tolerances.
     pub(in crate::allocation) offered: bool,
@@ -66,7 +66,11 @@ impl SearchEnd {
 
 impl Driver<'_> {
     /// Judges the study's own tolerances. They are tried if the model is cheap.
-    pub(in crate::allocation) fn start(&mut self, problem: &Problem, station: &Rc<Station>) -> AllocationStart {
+    pub(in crate::allocation) fn start(
+        &mut self,
+        problem: &Problem,
+        station: &Rc<LinearizationPoint>,
+    ) -> AllocationStart {
         let at: Vec<f64> = self.task.priced.iter().map(|group| group.tightest_member(problem)).collect();
         let held = self.holding(problem);
         let made = held.as_ref().is_some_and(|offers| is_made(problem, &remade(problem, &self.task.priced, offers)));
@@ -313,7 +317,7 @@ impl Driver<'_> {
 
 /// End of a search at a trial, without a proof.
 fn ended_at(
-    station: Rc<Station>,
+    station: Rc<LinearizationPoint>,
     constraints: Vec<Constraint>,
     trial: Trial,
     proof: Proof,

@@ -14,7 +14,7 @@ use crate::allocation::search::best_trial::{SearchEnd, status_of_missed};
 use crate::allocation::search::box_sample::worst_in_box;
 use crate::allocation::search::common_factor::loosest;
 use crate::allocation::search::driver::{Driver, cost, kept_within, unit, with_choice};
-use crate::allocation::search::linearization_point::{Station, prices};
+use crate::allocation::search::linearization_point::{LinearizationPoint, prices};
 use crate::allocation::search::pareto_front::front;
 use crate::allocation::search::trial::Trial;
 use crate::allocation::surface::joint_yield::joint;
@@ -207,7 +207,7 @@ impl Driver<'_> {
     /// all costs except some formulas and tables. With a moving mean they are convex in both, except for a yield.
     fn is_certified(
         &self,
-        station: &Station,
+        station: &LinearizationPoint,
         constraints: &[Constraint],
         (solved, proof): (&Solved, &Proof),
         recentred: bool,
@@ -265,7 +265,7 @@ impl Driver<'_> {
     }
 
     /// Quality loss and scrap at a linearization point, 0 if the task has none. Returns None if they are unknown.
-    pub(in crate::allocation) fn loss_at(&self, station: &Station) -> Option<f64> {
+    pub(in crate::allocation) fn loss_at(&self, station: &LinearizationPoint) -> Option<f64> {
         let ones = vec![1.0; station.problem.dimensions().len()];
         self.task.losses.iter().map(|loss| loss.at(&station.responses, &ones, None)).sum()
     }

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use crate::allocation::choice::process_selection::remade;
 use crate::allocation::cost::cost_curve::Priced;
 use crate::allocation::requirement::constraint::{Constraint, kept};
-use crate::allocation::search::linearization_point::{Seen, Station};
+use crate::allocation::search::linearization_point::{LinearizationPoint, Seen};
 use crate::allocation::surface::corners::Places;
 use crate::allocation::surface::response::Responses;
 use crate::allocation::surface::sampled_moments::SampledCorrection;
@@ -136,7 +136,7 @@ impl Driver<'_> {
 
     /// Analyses the model for a problem, which gives a linearization point. An error is an error of the task only in
     /// the first round.
-    pub(in crate::allocation) fn analysed(&mut self, problem: Problem) -> Result<Station, AllocateError> {
+    pub(in crate::allocation) fn analysed(&mut self, problem: Problem) -> Result<LinearizationPoint, AllocateError> {
         let budget = self
             .options
             .analysis
@@ -169,7 +169,7 @@ impl Driver<'_> {
         if self.task.goal == Goal::LeastCost {
             self.constraints(&problem, &self.task.requirements).par_iter().for_each(|one| one.prepare(&responses));
         }
-        Ok(Station { problem, analysis, findings, responses })
+        Ok(LinearizationPoint { problem, analysis, findings, responses })
     }
 
     /// Analysis of a linearization point, with the results that are only reported.
@@ -215,7 +215,10 @@ impl Driver<'_> {
     }
 
     /// Analyses the model in later rounds. Returns None if the budget does not allow it.
-    pub(in crate::allocation) fn station(&mut self, problem: Problem) -> Result<Option<Station>, AllocateError> {
+    pub(in crate::allocation) fn station(
+        &mut self,
+        problem: Problem,
+    ) -> Result<Option<LinearizationPoint>, AllocateError> {
         match self.analysed(problem) {
             Ok(station) => Ok(Some(station)),
             Err(AllocateError::Method(MethodError::OverBudget { .. })) => {

@@ -15,7 +15,7 @@ use sensitol_numeric::requirement::Requirement;
 const BINDING: f64 = 1e-6;
 
 /// Tolerances with their derivatives.
-pub(in crate::allocation) struct Station {
+pub(in crate::allocation) struct LinearizationPoint {
     pub(in crate::allocation) problem: Problem,
     /// Analysis with the results that a search reads.
     pub(in crate::allocation) analysis: Analysis,
@@ -23,7 +23,7 @@ pub(in crate::allocation) struct Station {
     pub(in crate::allocation) responses: Responses,
 }
 
-impl Station {
+impl LinearizationPoint {
     /// True if every characteristic with a requirement has moments.
     pub(in crate::allocation) fn answers(&self, constraints: &[Constraint]) -> bool {
         constraints.iter().all(|one| self.analysis.characteristics[one.characteristic].moments.is_some())
@@ -32,7 +32,7 @@ impl Station {
 
 /// Linearization point that kept everything by its own analysis, with its cost.
 pub(in crate::allocation) struct Seen {
-    pub(in crate::allocation) station: Rc<Station>,
+    pub(in crate::allocation) station: Rc<LinearizationPoint>,
     pub(in crate::allocation) chosen: Chosen,
     pub(in crate::allocation) cost: f64,
 }

@@ -4,7 +4,7 @@ use crate::allocation::choice::single_offer::Setting;
 use crate::allocation::optimise::minimise::minimised;
 use crate::allocation::requirement::constraint::Constraint;
 use crate::allocation::search::driver::{Driver, Near};
-use crate::allocation::search::linearization_point::Station;
+use crate::allocation::search::linearization_point::LinearizationPoint;
 use crate::allocation::search::nominal_and_tolerance::{Together, together};
 use crate::allocation::surface::response::Responses;
 use crate::allocation::task::{AllocateError, Goal};
@@ -41,7 +41,7 @@ impl Driver<'_> {
     /// Moves nominal values: together with the tolerances if these may change too, or to the fewest rejects.
     pub(in crate::allocation) fn recentred(
         &self,
-        station: &Station,
+        station: &LinearizationPoint,
         constraints: &[Constraint],
         at: &[f64],
     ) -> Result<Recentred, AllocateError> {

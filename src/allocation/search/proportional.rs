@@ -9,7 +9,7 @@ use crate::allocation::result::solver_result::{Solved, Starts};
 use crate::allocation::search::best_trial::SearchEnd;
 use crate::allocation::search::common_factor::loosest_of;
 use crate::allocation::search::driver::{Driver, Ended, Near, ROUNDS, cost, with_tolerances};
-use crate::allocation::search::linearization_point::Station;
+use crate::allocation::search::linearization_point::LinearizationPoint;
 use crate::allocation::task::AllocateError;
 
 impl Driver<'_> {
@@ -17,7 +17,7 @@ impl Driver<'_> {
     pub(in crate::allocation) fn in_proportion(
         &mut self,
         allocation: &mut Allocation,
-        first: Rc<Station>,
+        first: Rc<LinearizationPoint>,
         constraints: &[Constraint],
     ) -> Result<Option<SearchEnd>, AllocateError> {
         let near = Near::of(&allocation.problem);
@@ -74,7 +74,7 @@ impl Driver<'_> {
     }
 
     /// Half bands in the proportions of the basis, with the same geometric mean as the present ones.
-    fn proportions(&self, first: &Station) -> Vec<f64> {
+    fn proportions(&self, first: &LinearizationPoint) -> Vec<f64> {
         let dimensions = first.problem.dimensions();
         let present = |g: usize| dimensions[self.task.priced[g].members[0]].half_band();
         let effect = |g: usize| {

@@ -17,7 +17,7 @@ use crate::allocation::search::conclusion::doubts;
 use crate::allocation::search::driver::{
     AsWritten, Driver, Ended, Near, ROUNDS, Spent, kept_within, unit, with_choice, with_tolerances,
 };
-use crate::allocation::search::linearization_point::{Seen, Station, required};
+use crate::allocation::search::linearization_point::{LinearizationPoint, Seen, required};
 use crate::allocation::search::step::Steps;
 use crate::allocation::search::trial::required_of;
 use crate::allocation::surface::joint_yield::joint;
@@ -193,7 +193,7 @@ impl Driver<'_> {
     pub(in crate::allocation) fn search(
         &mut self,
         allocation: &mut Allocation,
-        first: Rc<Station>,
+        first: Rc<LinearizationPoint>,
         constraints: &[Constraint],
         before: &[f64],
     ) -> Result<Option<SearchEnd>, AllocateError> {
@@ -205,7 +205,7 @@ impl Driver<'_> {
         let mut station = first;
         let mut at = before.to_vec();
         let mut last: Option<Chosen> = None;
-        let mut haven: Option<(Rc<Station>, Vec<f64>, Option<Chosen>)> = None;
+        let mut haven: Option<(Rc<LinearizationPoint>, Vec<f64>, Option<Chosen>)> = None;
         let mut haven_cost = f64::INFINITY;
         let mut steps = Steps::default();
         let free = self.task.priced.iter().all(|group| group.offers.len() == 1);
@@ -364,7 +364,7 @@ impl Driver<'_> {
     }
 
     /// Stores the cheapest linearization point that keeps everything.
-    fn see(&mut self, station: &Rc<Station>, last: Option<&Chosen>) {
+    fn see(&mut self, station: &Rc<LinearizationPoint>, last: Option<&Chosen>) {
         let Some(chosen) = last.filter(|_| self.task.goal == Goal::LeastCost && !self.spent.stopped) else { return };
         let Some(loss) = self.loss_at(station) else { return };
         let cost = self.held_cost(&chosen.0.at, &chosen.1) + loss;

@@ -25,7 +25,7 @@ use crate::allocation::surface::response::Responses;
 use sensitol_numeric::capability::Law;
 use sensitol_numeric::characteristic::SpecLimits;
 use sensitol_numeric::distribution::standard_normal;
-use sensitol_numeric::law::{HeldTail, LawTail, SurfaceLaw, rejected};
+use sensitol_numeric::law::{LawTail, SurfaceLaw, TailChoices, rejected};
 use sensitol_numeric::moments::Moments;
 use sensitol_numeric::parallel::prelude::*;
 
@@ -276,7 +276,7 @@ impl Responses {
         let sides = [(LawTail::Lower, limits.lower()), (LawTail::Upper, limits.upper())];
         for (tail, limit) in sides.into_iter().filter_map(|(tail, limit)| Some((tail, limit?))) {
             let own = law.tail_derivatives(limit, tail);
-            let held: HeldTail = law.hold(limit, tail);
+            let held: TailChoices = law.hold(limit, tail);
             for (position, &d) in self.varying().iter().enumerate() {
                 let exact = own.as_ref().filter(|_| self.keeps_mean_and_shape(position));
                 let exact = exact.and_then(|own| own.get(position)).map(|figure| figure.value);

@@ -18,7 +18,7 @@
 
 use crate::allocation::optimise::root::root;
 use sensitol_numeric::characteristic::SpecLimits;
-use sensitol_numeric::law::{HeldTail, LawTail, SurfaceLaw};
+use sensitol_numeric::law::{LawTail, SurfaceLaw, TailChoices};
 use sensitol_numeric::moments::Moments;
 
 /// Least part of the allowed rejects that remains after the uncertainty is subtracted. A greater uncertainty cannot be
@@ -106,14 +106,14 @@ impl Correction {
         let ones = vec![1.0; n];
         let moments = (about.moments)(&ones)?;
         let (mean, sigma) = (moments.mean(), moments.sigma());
-        let sides: Vec<(LawTail, f64, HeldTail)> = [
+        let sides: Vec<(LawTail, f64, TailChoices)> = [
             (LawTail::Lower, limits.lower().map(|lower| lower - mean)),
             (LawTail::Upper, limits.upper().map(|upper| upper - mean)),
         ]
         .into_iter()
         .filter_map(|(tail, distance)| Some((tail, distance?, law.hold(mean + distance?, tail))))
         .collect();
-        let outside = |(tail, distance, _): &(LawTail, f64, HeldTail)| match tail {
+        let outside = |(tail, distance, _): &(LawTail, f64, TailChoices)| match tail {
             LawTail::Lower => *distance >= 0.0,
             LawTail::Upper => *distance <= 0.0,
         };

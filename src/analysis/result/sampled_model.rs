@@ -5,7 +5,7 @@ use serde::Serialize;
 use crate::simulation::Histogram;
 use crate::verification::Share;
 use sensitol_numeric::json_form::{Four, through};
-use sensitol_numeric::power::{Rescale, Rescaling, Unknown};
+use sensitol_numeric::power::{Losable, Rescale, Rescaling};
 
 /// Points of the model in place of a surrogate that was not trusted.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -49,7 +49,7 @@ impl Rescale for SampledModel {
     }
 }
 
-impl Unknown for SampledModel {}
+impl Losable for SampledModel {}
 
 /// A share and its interval, in JSON.
 #[derive(Serialize)]

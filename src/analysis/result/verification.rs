@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use serde::{Serialize, Serializer};
 
-use crate::verification::{FoundSwitch, Share, Tails, Verified, WeightedSample};
+use crate::verification::{FoundSwitch, SampleTails, Share, Verified, WeightedSample};
 use sensitol_numeric::json_form::{Four, Sides, through};
-use sensitol_numeric::power::{Rescale, Rescaling, Unknown};
+use sensitol_numeric::power::{Losable, Rescale, Rescaling};
 
 /// Kind of the verification of figures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -70,7 +70,7 @@ pub struct Verification {
     /// Shares of the variance from the model, if the surface is not trusted.
     pub shares: Option<Vec<VarianceShare>>,
     /// Tails of the sample towards the limits. None if there are no limits.
-    pub tails: Option<Tails>,
+    pub tails: Option<SampleTails>,
     /// True if figures of the characteristic are the model's, in place of the surface's.
     pub replaced: bool,
     /// Sample, kept if an inspection or a coverage interval needs its points.
@@ -103,7 +103,7 @@ impl Rescale for Verification {
     }
 }
 
-impl Unknown for Verification {}
+impl Losable for Verification {}
 
 impl Verification {
     /// Describes the verification in one line.

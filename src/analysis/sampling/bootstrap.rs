@@ -19,7 +19,7 @@ use sensitol_numeric::correlation::JointLaw;
 use sensitol_numeric::distribution::{Distribution, Resample, Reweighted, StandardMoments};
 use sensitol_numeric::moments::Moments;
 use sensitol_numeric::parallel::prelude::*;
-use sensitol_numeric::surrogate::{InputShape, Inputs, Pooled, Relocation, Surrogate};
+use sensitol_numeric::surrogate::{BlockMoments, InputShape, Inputs, Relocation, Surrogate};
 
 /// Number of resamples with which an end of an interval is known to about a tenth of the width.
 const RESAMPLES: usize = 1000;
@@ -192,7 +192,7 @@ struct Target<'o> {
     index: usize,
     surrogate: &'o Surrogate,
     /// Surrogate evaluated at the rows of the blocks of correlated inputs.
-    pooled: Option<Pooled>,
+    pooled: Option<BlockMoments>,
     limits: SpecLimits,
 }
 
@@ -226,7 +226,7 @@ impl Setting<'_> {
         let values: usize = self.measured.iter().map(Measurement::len).sum();
         let target = |target: &Target<'_>| {
             let fit = if target.limits.exist() { FIT } else { 0 };
-            let pooled = target.pooled.as_ref().map_or(0, Pooled::work);
+            let pooled = target.pooled.as_ref().map_or(0, BlockMoments::work);
             let own = target.surrogate.interactions.work().saturating_add(pooled);
             VALUE.saturating_mul(values).saturating_add(fit).saturating_add(own)
         };

@@ -14,10 +14,10 @@
 //! that so few points overlook.
 
 use crate::analysis::SampledModel;
-use crate::analysis::sampling::known_answers::Remembered;
+use crate::analysis::sampling::known_answers::KnownAnswersFunction;
 use crate::analysis::sampling::recorded_points::ranked;
 use crate::assembly::{EvaluationError, NonRepeatable, Points, Request, Responses, Run};
-use crate::method::{Climbed, Outcome};
+use crate::method::{AutoAccount, Outcome};
 use crate::plan::Point;
 use crate::problem::Problem;
 use crate::simulation::{BINS, CHOICE, Histogram};
@@ -60,7 +60,7 @@ struct Stride {
 }
 
 /// All points drawn so far, with their answers.
-pub(in crate::analysis) struct Strides<'p> {
+pub(in crate::analysis) struct CrossFit<'p> {
     problem: &'p Problem,
     outcome: &'p Outcome,
     draws: Draws<'p>,
@@ -69,7 +69,7 @@ pub(in crate::analysis) struct Strides<'p> {
     knots: Stride,
     failed: Vec<(usize, Option<EvaluationError>)>,
     /// All answers, so that a later sample can reuse them.
-    pub(in crate::analysis) answers: Remembered,
+    pub(in crate::analysis) answers: KnownAnswersFunction,
     pub(in crate::analysis) run: RunSummary,
     pub(in crate::analysis) non_repeatable: Vec<NonRepeatable>,
 }
@@ -119,13 +119,13 @@ struct Figures {
 }
 
 /// Estimates for one characteristic from the points.
-pub(in crate::analysis) struct StridedFigures {
+pub(in crate::analysis) struct CrossFitFigures {
     /// Estimates of mean, sigma, skewness, kurtosis.
     pub(in crate::analysis) moments: [Estimate; MOMENTS],
     pub(in crate::analysis) sampled: SampledModel,
 }
 
-impl<'p> Strides<'p> {
+impl<'p> CrossFit<'p> {
     /// Returns None if a dimension cannot be sampled.
     pub(in crate::analysis) fn new(problem: &'p Problem, outcome: &'p Outcome, seed: u64) -> Option<Self> {
         let n = outcome.plan.varying().len();
@@ -143,7 +143,7 @@ impl<'p> Strides<'p> {
             strides: Vec::new(),
             knots,
             failed: vec![(0, None); characteristics],
-            answers: Remembered::new(problem),
+            answers: KnownAnswersFunction::new(problem),
             run: RunSummary::default(),
             non_repeatable: Vec::new(),
         })
@@ -223,7 +223,7 @@ impl<'p> Strides<'p> {
     }
 
     /// Estimates from all points drawn so far. Regressions are fitted anew if points were added.
-    pub(in crate::analysis) fn found(&self, c: usize, beside: &mut [Beside<'_>], left: f64) -> Option<StridedFigures> {
+    pub(in crate::analysis) fn found(&self, c: usize, beside: &mut [Beside<'_>], left: f64) -> Option<CrossFitFigures> {
         for beside in beside.iter_mut().filter(|beside| beside.rows < self.rows()) {
             self.fit(c, beside);
         }
@@ -247,7 +247,7 @@ impl<'p> Strides<'p> {
         let share = |i: usize| best.values[i].clamp(0.0, 1.0);
         let around = |i: usize| [-2.0, 2.0].map(|times| (best.values[i] + times * best.errors[i]).clamp(0.0, 1.0));
         let (failed, error) = &self.failed[c];
-        Some(StridedFigures {
+        Some(CrossFitFigures {
             moments: [0, 1, 2, 3].map(estimate),
             sampled: SampledModel {
                 samples: valid.len() as u64,
@@ -415,7 +415,7 @@ impl<'p> Strides<'p> {
             *error = libm::hypot(*error * student(REPLICATES), one);
         }
         if let Some(beside) = beside {
-            let far = Climbed::far_out(beside.far / scale);
+            let far = AutoAccount::far_out(beside.far / scale);
             let grown = [far * scale, far * scale, 6.0 * far, 20.0 * far];
             errors.iter_mut().zip(grown).for_each(|(error, far)| *error = libm::hypot(*error, far));
         }
@@ -486,7 +486,7 @@ impl<'p> Strides<'p> {
     }
 }
 
-impl Strides<'_> {
+impl CrossFit<'_> {
     /// First means of the powers of every part, centred and scaled by `origin` and `scale`, as far as they are known without points: two of
     /// a polynomial, four of a product of functions of one input each. Returns None with correlated inputs.
     fn exact(&self, beside: &Beside<'_>, [origin, scale]: [f64; 2]) -> Option<Vec<Vec<f64>>> {

@@ -6,7 +6,7 @@ use crate::assembly::{AssemblyFunction, Points, Request, Responses, Run, Signatu
 use crate::problem::Problem;
 
 /// Stored answers for all outputs that a problem uses, and the model for every other point.
-pub(in crate::analysis) struct Remembered {
+pub(in crate::analysis) struct KnownAnswersFunction {
     problem: Problem,
     /// Batch that answered a point, and the row in it, by the bits of the coordinates.
     places: HashMap<Vec<u64>, (usize, usize)>,
@@ -17,7 +17,7 @@ fn key(points: &Points, row: usize) -> Vec<u64> {
     (0..points.dimensions()).map(|d| points.column(d)[row].to_bits()).collect()
 }
 
-impl Remembered {
+impl KnownAnswersFunction {
     pub(in crate::analysis) fn new(problem: &Problem) -> Self {
         Self { problem: problem.clone(), places: HashMap::new(), batches: Vec::new() }
     }
@@ -30,7 +30,7 @@ impl Remembered {
     }
 }
 
-impl AssemblyFunction for Remembered {
+impl AssemblyFunction for KnownAnswersFunction {
     fn signature(&self) -> &Signature {
         self.problem.function().signature()
     }

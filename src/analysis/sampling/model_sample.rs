@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use crate::analysis::result::yield_error::of_yield;
 use crate::analysis::sampling::accuracy_target::{MORE, PART, excess};
-use crate::analysis::sampling::cross_fit::{Beside, StridedFigures, Strides};
-use crate::analysis::sampling::known_answers::Remembered;
-use crate::analysis::sampling::recorded_points::Recorded;
+use crate::analysis::sampling::cross_fit::{Beside, CrossFit, CrossFitFigures};
+use crate::analysis::sampling::known_answers::KnownAnswersFunction;
+use crate::analysis::sampling::recorded_points::RecordedPoints;
 use crate::analysis::{CharacteristicAnalysis, SampledModel};
 use crate::assembly::{NonRepeatable, Run};
-use crate::method::{Climbed, ErrorEstimate, ErrorSource, Outcome};
+use crate::method::{AutoAccount, ErrorEstimate, ErrorSource, Outcome};
 use crate::problem::Problem;
 use crate::simulation::{REPLICATES, SimulatedCharacteristic, Simulation, SimulationOptions, simulate_beside};
 use crate::summary::RunSummary;
@@ -84,7 +84,7 @@ pub(in crate::analysis) fn fall_back(
     let mut samples = ((needed / (PART * finest)).powi(2) as u64).clamp(FIRST, MOST).min(most);
     // Points that were evaluated in strides are not evaluated again.
     let most = most + if sampler == Sampler::Sobol { spent.run.evaluations } else { 0 };
-    let recorded = Arc::new(Recorded::new(problem));
+    let recorded = Arc::new(RecordedPoints::new(problem));
     // A cheap model is evaluated again, and answers several batches at a time.
     let recording = costly.then(|| problem.with_function(recorded.clone()));
     let problem = recording.as_ref().unwrap_or(problem);
@@ -118,20 +118,20 @@ enum Strided {
     /// Every figure has the requested accuracy, or the run was stopped.
     Enough,
     /// The requested accuracy was not reached. Contains the answers of the model.
-    Known(Box<Remembered>),
+    Known(Box<KnownAnswersFunction>),
     Nothing,
 }
 
 /// Samples in strides with sparse regressions as control variates. Takes their figures if all have the requested accuracy.
 fn stride(
-    (problem, outcome, climbed): (&Problem, &Outcome, &Climbed),
+    (problem, outcome, climbed): (&Problem, &Outcome, &AutoAccount),
     (seed, most): (u64, usize),
     short: &[usize],
     characteristics: &mut [CharacteristicAnalysis],
     run: &Run<'_>,
     spent: &mut Spent,
 ) -> Strided {
-    let strides = Strides::new(problem, outcome, seed).filter(|strides| strides.next(most) > 0);
+    let strides = CrossFit::new(problem, outcome, seed).filter(|strides| strides.next(most) > 0);
     let Some(mut strides) = strides else { return Strided::Nothing };
     let mut beside: Vec<Vec<Beside<'_>>> = short.iter().map(|&c| strides.beside(c)).collect();
     let mut enough = false;
@@ -140,7 +140,7 @@ fn stride(
         if enough {
             break;
         }
-        let found: Option<Vec<StridedFigures>> = (short.iter().zip(&mut beside))
+        let found: Option<Vec<CrossFitFigures>> = (short.iter().zip(&mut beside))
             .map(|(&c, beside)| strides.found(c, beside, left(&characteristics[c], climbed, c)))
             .collect();
         if let Some(found) = found.filter(|found| found.iter().all(|found| found.is_known(climbed))) {
@@ -153,9 +153,9 @@ fn stride(
     if enough { Strided::Enough } else { Strided::Known(Box::new(strides.answers)) }
 }
 
-impl StridedFigures {
+impl CrossFitFigures {
     /// True if two standard errors are within the requested accuracy, for sigma and all other requested figures.
-    fn is_known(&self, climbed: &Climbed) -> bool {
+    fn is_known(&self, climbed: &AutoAccount) -> bool {
         let within = |error: Option<f64>, wanted: f64| error.is_some_and(|error| error <= PART * wanted);
         let [_, sigma, skewness, kurtosis] = self.moments;
         let each = |(figure, wanted): (Figure, Option<f64>)| {
@@ -176,7 +176,7 @@ impl StridedFigures {
 }
 
 /// Size of the residual as a part of sigma, if the accuracy of sigma or of another figure is missed. Returns None otherwise.
-fn shortfall(one: &CharacteristicAnalysis, climbed: &Climbed, c: usize) -> Option<f64> {
+fn shortfall(one: &CharacteristicAnalysis, climbed: &AutoAccount, c: usize) -> Option<f64> {
     let (moments, check) = (one.moments?, climbed.checked[c].as_ref()?);
     let error = one.error_estimate.as_ref()?.sigma?;
     let variance = moments.variance();
@@ -186,7 +186,7 @@ fn shortfall(one: &CharacteristicAnalysis, climbed: &Climbed, c: usize) -> Optio
 }
 
 /// True if two standard errors are within the requested accuracy, for sigma and all other requested figures.
-fn known(found: &SimulatedCharacteristic, climbed: &Climbed) -> bool {
+fn known(found: &SimulatedCharacteristic, climbed: &AutoAccount) -> bool {
     let within = |error: Option<f64>, wanted: f64| error.is_some_and(|error| error <= PART * wanted);
     let error = |estimate: Option<Estimate>| estimate.and_then(|estimate| estimate.standard_error);
     let sigma = error(found.sigma).zip(found.sigma).map(|(error, sigma)| error / sigma.value);
@@ -206,7 +206,7 @@ fn known(found: &SimulatedCharacteristic, climbed: &Climbed) -> bool {
 
 fn replace(
     one: &mut CharacteristicAnalysis,
-    climbed: &Climbed,
+    climbed: &AutoAccount,
     c: usize,
     (found, few): (&SimulatedCharacteristic, f64),
     ranks: Vec<(usize, Share)>,
@@ -231,18 +231,18 @@ fn replace(
         histogram: found.histogram.clone(),
         ranks,
     };
-    take(one, StridedFigures { moments, sampled });
+    take(one, CrossFitFigures { moments, sampled });
 }
 
 /// Share of the variance that the surface does not explain, by the check points.
-fn left(one: &CharacteristicAnalysis, climbed: &Climbed, c: usize) -> f64 {
+fn left(one: &CharacteristicAnalysis, climbed: &AutoAccount, c: usize) -> f64 {
     let variance = one.moments.map_or(0.0, |moments| moments.variance());
     let checked = climbed.checked[c].as_ref().map(|check| check.variance);
     checked.map_or(0.0, |off| if variance > 0.0 { (off / variance).min(1.0) } else { 1.0 })
 }
 
 /// Replaces the surface's figures by the model's.
-fn take(one: &mut CharacteristicAnalysis, StridedFigures { moments, sampled }: StridedFigures) {
+fn take(one: &mut CharacteristicAnalysis, CrossFitFigures { moments, sampled }: CrossFitFigures) {
     let [mean, sigma, skewness, kurtosis] = moments.map(|of| of.value);
     let moments = Moments::new(mean, sigma, skewness, kurtosis - 3.0);
     let limits = one.characteristic.limits();

@@ -4,7 +4,7 @@ use crate::analysis::result::verification::UNTRUSTED;
 use crate::analysis::sampling::accuracy_target::beside_sigma;
 use crate::analysis::sampling::axis_effect::{Shape, higher, shape};
 use crate::analysis::{CharacteristicAnalysis, YieldSource};
-use crate::method::{ClimbEnd, Climbed, Outcome};
+use crate::method::{AutoAccount, ClimbEnd, Outcome};
 use crate::plan::Point;
 use crate::problem::Problem;
 use crate::warning::{Figure, Warning};
@@ -135,7 +135,7 @@ fn axes(problem: &Problem, outcome: &Outcome, c: usize, sigma: f64) -> Vec<Warni
 /// Warnings from the findings of `auto` about its surrogate.
 fn climb(
     outcome: &Outcome,
-    climbed: &Climbed,
+    climbed: &AutoAccount,
     c: usize,
     (analysis, sigma): (&CharacteristicAnalysis, f64),
 ) -> Vec<Warning> {

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex, OnceLock};
 
 use crate::assembly::blocks::BLOCK;
-use crate::assembly::composite::{Composite, CompositeError, Inner, Origin, SolvedRows, Source};
+use crate::assembly::composite::{Composite, CompositeError, Inner, Origin, RowSolution, Source};
 use crate::assembly::formula::Jet;
 use crate::assembly::request::bits;
 use crate::assembly::{
@@ -104,7 +104,7 @@ impl Composite {
             match self.anchor(run).0 {
                 Some(Ok(anchor)) => {
                     let variable = |index: usize, row: usize| points.column(index)[row];
-                    let found = SolvedRows::of((assembler, &self.formulas), &anchor, rows, given, variable);
+                    let found = RowSolution::of((assembler, &self.formulas), &anchor, rows, given, variable);
                     let failed = found.errors.into_iter().map(|failure| failure.map(Into::into));
                     errors.iter_mut().zip(failed).for_each(|(error, failure)| *error = failure);
                     unknowns = found.columns;

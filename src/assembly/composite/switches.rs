@@ -1,6 +1,6 @@
 //! Switches and degree of the outputs of a composite.
 
-use crate::assembly::composite::{Composite, Origin, SolvedRows, Source};
+use crate::assembly::composite::{Composite, Origin, RowSolution, Source};
 use crate::assembly::{Points, Polynomial, Run, Switch, SwitchKind, Switches};
 use sensitol_numeric::parallel::prelude::*;
 
@@ -64,10 +64,10 @@ impl Composite {
                     let block = |first: usize| {
                         let rows = ROWS.min(rows - first);
                         let variable = |index: usize, row: usize| column(index)[first + row];
-                        SolvedRows::of((assembler, &self.formulas), &anchor, rows, given, variable)
+                        RowSolution::of((assembler, &self.formulas), &anchor, rows, given, variable)
                     };
                     let starts: Vec<usize> = (0..rows).step_by(ROWS).collect();
-                    let blocks: Vec<SolvedRows> = starts.into_par_iter().map(block).collect();
+                    let blocks: Vec<RowSolution> = starts.into_par_iter().map(block).collect();
                     for found in blocks {
                         unknowns.iter_mut().zip(found.columns).for_each(|(all, block)| all.extend(block));
                         solved.extend(found.errors.iter().map(|error| SOLVED[usize::from(error.is_none())]));

@@ -30,7 +30,7 @@ use crate::assembly::Run;
 use crate::evaluation::Evaluated;
 use crate::method::auto::characteristic_state::View;
 use crate::method::auto::next_stage::Climb;
-use crate::method::auto_account::{ClimbEnd, Climbed};
+use crate::method::auto_account::{AutoAccount, ClimbEnd};
 use crate::method::derivative::stages::{Examined, Ladder, Order};
 use crate::method::exact_derivatives::ExactDerivatives;
 use crate::method::{Basis, Cost, DerivativeSource, Fitted, Method, MethodError, Options, Outcome, Procedure};
@@ -196,7 +196,7 @@ fn outcome(problem: &Problem, options: &Options, climb: &Climb<'_>, evaluated: &
     };
     let fitted = views.iter().zip(exact).enumerate().map(fit).collect();
     let of = |what: fn(&View) -> Option<f64>| views.iter().map(|view| what(view.as_ref()?)).collect();
-    let climbed = Climbed {
+    let climbed = AutoAccount {
         accuracy: options.accuracy.unwrap_or(ACCURACY),
         accuracies: options.accuracies,
         rest: if evaluated.stopped.is_some() { ClimbEnd::Stopped } else { climb.rest.unwrap_or(ClimbEnd::Budget) },

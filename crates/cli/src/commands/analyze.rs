@@ -15,7 +15,7 @@ use crate::running::{Clock, checked, confirmed, externals, kept, on_threads};
 use crate::study;
 use sensitol::analysis::{Analysis, CharacteristicAnalysis, analyze_with};
 use sensitol::assembly::{Progress, Run, Table};
-use sensitol::method::Narrow;
+use sensitol::method::ReducedInputs;
 use sensitol::warning::{Counted, Warning};
 use sensitol_numeric::characteristic::Characteristic;
 use sensitol_report::document::markdown::markdown;
@@ -172,7 +172,7 @@ fn unmatched(given: &Table, written: Option<&Path>, look: Look) {
 fn analyze(study: &Study, threads: Option<u16>, clock: &Clock, look: Look) -> Result<Analysis, Failure> {
     let stop = || clock.stop();
     let costly = study.problem.function().signature().costly;
-    let narrow = Narrow::of(&study.problem, &study.options);
+    let narrow = ReducedInputs::of(&study.problem, &study.options);
     let problem = narrow.as_ref().map_or(&study.problem, |narrow| &narrow.problem);
     let plan = costly.then(|| study.options.method.procedure().plan(problem, &study.options)).transpose()?;
     let bar = plan.map(|plan| Bar::new(plan.cost().0, look.quiet));

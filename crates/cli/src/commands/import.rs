@@ -11,7 +11,8 @@ use crate::shared_args::OUTPUT;
 use sensitol_numeric::names::nearest;
 use sensitol_study::Study;
 use sensitol_study::import::{
-    ImportFault, ImportProblem, ROLES, Role, Sheet, WorkbookFault, has_header, import, is_workbook, named, workbook,
+    ColumnRole, ImportFault, ImportProblem, ROLES, Sheet, WorkbookFault, has_header, import, is_workbook, named,
+    workbook,
 };
 
 #[derive(Debug, Args)]
@@ -22,7 +23,7 @@ pub(crate) struct ImportArgs {
     /// The header of a column in the table's own words, such as nominal=Wert; of name, part, description, drawing, revision, feature, direction, factor, nominal, upper,
     /// lower, minus, tolerance, unit, distribution, cp and sigma (repeatable)
     #[arg(long, value_name = "ROLE=HEADER", value_parser = column)]
-    pub(crate) column: Vec<(Role, String)>,
+    pub(crate) column: Vec<(ColumnRole, String)>,
 
     /// The sheet of a workbook; without it the first one whose columns are known
     #[arg(long, value_name = "NAME")]
@@ -37,7 +38,7 @@ pub(crate) struct ImportArgs {
     pub(crate) output: Option<PathBuf>,
 }
 
-fn column(text: &str) -> Result<(Role, String), String> {
+fn column(text: &str) -> Result<(ColumnRole, String), String> {
     let Some((role, header)) = text.split_once('=') else {
         return Err("write a role and a header, such as nominal=Nennmaß".to_owned());
     };

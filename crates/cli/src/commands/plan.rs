@@ -10,7 +10,7 @@ use crate::failure::{Exit, Failure};
 use crate::files::Files;
 use crate::output::{Look, json};
 use crate::{points, study};
-use sensitol::method::{DerivativeSource, Narrow};
+use sensitol::method::{DerivativeSource, ReducedInputs};
 use sensitol::plan::{KnownAnswers, Plan, Point, Purpose, Stage};
 use sensitol::problem::Problem;
 use sensitol::verification::MOST_CHECKS;
@@ -92,7 +92,7 @@ pub(crate) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
     let destination = files.output(&asked.output)?;
     let written = files.file(asked.write_points.as_deref())?;
     let procedure = study.options.method.procedure();
-    let narrow = Narrow::of(&study.problem, &study.options);
+    let narrow = ReducedInputs::of(&study.problem, &study.options);
     let problem = narrow.as_ref().map_or(&study.problem, |narrow| &narrow.problem);
     let plan = procedure.plan(problem, &study.options)?;
     let (evaluations, stages) = plan.cost();

@@ -5,7 +5,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::command::{run, sensitol};
-use sensitol_testing::relative;
+use sensitol_testing::{relative, repository};
 
 const SHAFT: &str = "examples/shaft-and-housing/study.toml";
 const WORST: &str = "examples/shaft-and-housing/worst-case.toml";
@@ -69,7 +69,8 @@ fn a_study_written_anew_is_the_same_but_for_its_tolerances() {
     for (study, path) in [(SHAFT, "shaft.toml"), (ENGINE, "engine.toml"), (BLOCKS, "blocks.toml")] {
         let written = at(&folder, path);
         let first = json(&["allocate", study, "--json", "--write", &written]);
-        let (old, new) = (std::fs::read_to_string(study).unwrap(), std::fs::read_to_string(&written).unwrap());
+        let (old, new) =
+            (std::fs::read_to_string(repository(study)).unwrap(), std::fs::read_to_string(&written).unwrap());
         assert_eq!(old.lines().count(), new.lines().count());
         let skeleton = |text: &str| -> String {
             let line = |line: &str| match line.split_once("tolerance = ") {
@@ -177,7 +178,7 @@ fn nominal_values_are_written_too() {
 fn what_cannot_be_kept_is_exit_4_with_a_report() {
     let folder = tempfile::tempdir().unwrap();
     let study = at(&folder, "study.toml");
-    let text = std::fs::read_to_string(WORST).unwrap();
+    let text = std::fs::read_to_string(repository(WORST)).unwrap();
     std::fs::write(&study, text.replace("lower = 0.0049, upper = 0.0349", "lower = 0.012, upper = 0.0278")).unwrap();
     let written = at(&folder, "written.toml");
     let output = sensitol(&["allocate", &study, "--json", "--write", &written]).output().unwrap();

@@ -2,14 +2,14 @@
 
 /// End of a tolerance band that stays in place when the band opens and closes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum HeldEnd {
+pub enum FixedEnd {
     /// Lower end, as for a hole H7.
     Lower,
     /// Upper end, as for a shaft h7.
     Upper,
 }
 
-impl HeldEnd {
+impl FixedEnd {
     /// Direction in which the middle of the band moves when its half-width grows: 1 up, -1 down.
     pub(crate) fn lean(self) -> f64 {
         match self {
@@ -21,19 +21,19 @@ impl HeldEnd {
 
 /// End of the band that the letter of a class defines: the one nearer to the nominal size. The grade defines the other end. Returns None
 /// for J and JS, whose band lies about the nominal size, and for text that is not a class.
-pub fn held_end(class: &str) -> Option<HeldEnd> {
+pub fn held_end(class: &str) -> Option<FixedEnd> {
     let first = class.trim().chars().next()?;
     let lower = match first.to_ascii_lowercase() {
         'a'..='h' => first.is_ascii_uppercase(),
         'k'..='z' => first.is_ascii_lowercase(),
         _ => return None,
     };
-    Some(if lower { HeldEnd::Lower } else { HeldEnd::Upper })
+    Some(if lower { FixedEnd::Lower } else { FixedEnd::Upper })
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{HeldEnd, held_end};
+    use super::{FixedEnd, held_end};
     use crate::fits::deviations;
 
     /// Grades of the same letter share the deviation at the held end, in the tables of the standard. K to ZC of holes change it with the
@@ -43,12 +43,12 @@ mod tests {
         for class in ["D", "E", "F", "G", "H", "d", "e", "f", "g", "h", "m", "n", "p", "r", "s"] {
             let [fine, coarse] = [6, 7].map(|grade| deviations(25.0, &format!("{class}{grade}")).unwrap());
             let held = held_end(&format!("{class}7")).unwrap();
-            let end = usize::from(held == HeldEnd::Upper);
+            let end = usize::from(held == FixedEnd::Upper);
             assert_eq!(fine[end], coarse[end], "{class}");
             assert_ne!(fine[1 - end], coarse[1 - end], "{class}");
         }
         let [fine, coarse] = [9, 10].map(|grade| deviations(25.0, &format!("P{grade}")).unwrap());
-        assert_eq!((held_end("P9"), fine[1]), (Some(HeldEnd::Upper), coarse[1]));
+        assert_eq!((held_end("P9"), fine[1]), (Some(FixedEnd::Upper), coarse[1]));
         assert_eq!([held_end("js7"), held_end("J7"), held_end("7"), held_end("")], [None; 4]);
     }
 }

@@ -21,7 +21,7 @@ mod grade;
 mod tables;
 mod unit;
 
-pub use crate::fits::fixed_end::HeldEnd;
+pub use crate::fits::fixed_end::FixedEnd;
 pub use crate::fits::fixed_end::held_end;
 pub use error::FitError;
 pub use unit::tolerance_unit;

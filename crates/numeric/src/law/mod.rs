@@ -44,7 +44,7 @@ pub use crate::law::joint_yield::joint_bounds;
 pub use crate::law::joint_yield::joint_yield;
 pub use crate::law::joint_yield::rejected;
 pub use crate::law::sampled_points::QUANTILE;
-pub use crate::law::tail_choices::HeldTail;
+pub use crate::law::tail_choices::TailChoices;
 pub use quantile::Sought;
 
 use std::sync::{Arc, OnceLock};
@@ -52,7 +52,7 @@ use std::sync::{Arc, OnceLock};
 use crate::characteristic::{KeptLimits, SpecLimits};
 use crate::correlation::Correlation;
 use crate::distribution::Distribution;
-use crate::power::{Rescale, Rescaling, Unknown};
+use crate::power::{Losable, Rescale, Rescaling};
 use crate::surrogate::{Inputs, Surrogate, shapes};
 
 use crate::law::discrete_law::Steps;
@@ -77,7 +77,7 @@ pub struct LawFigure {
     pub proven: bool,
 }
 
-impl Unknown for LawFigure {
+impl Losable for LawFigure {
     fn is_unknown(&self) -> bool {
         self.value.is_nan()
     }
@@ -500,8 +500,8 @@ impl SurfaceLaw {
 
     /// Contour, points and proposals of this tail. Tails of other laws of the same structure that are computed with them are smooth in the
     /// coefficients.
-    pub fn hold(&self, y: f64, tail: LawTail) -> HeldTail {
-        HeldTail::of(self, y, tail)
+    pub fn hold(&self, y: f64, tail: LawTail) -> TailChoices {
+        TailChoices::of(self, y, tail)
     }
 
     /// Branch by which the distribution is computed.

@@ -12,25 +12,25 @@ use crate::law::{Kind, LawFigure, LawTail, SurfaceLaw};
 ///
 /// Choose it again at the end of an optimisation: with other coefficients it stays right but becomes less accurate.
 #[derive(Debug, Clone)]
-pub struct HeldTail {
+pub struct TailChoices {
     tail: LawTail,
-    kind: HeldKind,
+    kind: TailChoiceKind,
 }
 
 #[derive(Debug, Clone)]
-enum HeldKind {
+enum TailChoiceKind {
     Line(Line),
     Points(Arc<Held>),
     /// Panels and lists take no choices.
     Nothing,
 }
 
-impl HeldTail {
+impl TailChoices {
     pub(super) fn of(law: &SurfaceLaw, y: f64, tail: LawTail) -> Self {
         let kind = match &law.kind {
-            Kind::Exact(exact) if !exact.inversion.is_normal() => HeldKind::Line(exact.inversion.held(y, tail)),
-            Kind::Sampled(sampled) => HeldKind::Points(Arc::new(sampled.held(y, tail, law.mean))),
-            _ => HeldKind::Nothing,
+            Kind::Exact(exact) if !exact.inversion.is_normal() => TailChoiceKind::Line(exact.inversion.held(y, tail)),
+            Kind::Sampled(sampled) => TailChoiceKind::Points(Arc::new(sampled.held(y, tail, law.mean))),
+            _ => TailChoiceKind::Nothing,
         };
         Self { tail, kind }
     }
@@ -45,10 +45,10 @@ impl HeldTail {
         }
         let y = law.beyond(y, self.tail);
         match (&self.kind, &law.kind) {
-            (HeldKind::Line(line), Kind::Exact(exact)) => {
+            (TailChoiceKind::Line(line), Kind::Exact(exact)) => {
                 exact.inversion.tail_along(y, line).filter(|figure| !is_poor(*figure)).unwrap_or_else(own)
             }
-            (HeldKind::Points(held), Kind::Sampled(sampled)) => sampled.tail_held(y, held).unwrap_or_else(own),
+            (TailChoiceKind::Points(held), Kind::Sampled(sampled)) => sampled.tail_held(y, held).unwrap_or_else(own),
             _ => own(),
         }
     }

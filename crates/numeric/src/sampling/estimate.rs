@@ -1,6 +1,6 @@
 //! Estimates with their standard errors, and confidence intervals of shares.
 
-use crate::power::{Rescale, Rescaling, Unknown};
+use crate::power::{Losable, Rescale, Rescaling};
 use crate::sampling::Summary;
 use crate::sampling::critical::beta_quantile;
 
@@ -20,7 +20,7 @@ impl Rescale for Estimate {
     }
 }
 
-impl Unknown for Estimate {
+impl Losable for Estimate {
     fn is_unknown(&self) -> bool {
         self.value.is_nan()
     }

@@ -58,7 +58,7 @@ impl Cumulants {
 }
 
 /// Surface at all places of its blocks, stored so that it can be pooled with other weights too.
-pub struct Pooled {
+pub struct BlockMoments {
     /// Cumulants of the part that is independent of all blocks.
     rest: Cumulants,
     components: Vec<Component>,
@@ -77,7 +77,7 @@ struct Component {
 
 impl Surrogate {
     /// Surface at the places of its blocks. Returns None if there are no blocks, a part is unknown, or the surface must be sampled.
-    pub fn pooled(&self, inputs: &Inputs) -> Option<Pooled> {
+    pub fn pooled(&self, inputs: &Inputs) -> Option<BlockMoments> {
         let correlation = inputs.correlation().filter(|correlation| !correlation.blocks().is_empty())?;
         Setting::of(self, inputs, correlation)?.pooled()
     }
@@ -106,7 +106,7 @@ pub(super) fn pooled(surrogate: &Surrogate, inputs: &Inputs, correlation: &Corre
 
 impl<'a> Setting<'a> {
     /// Pools the surface over the places of its blocks. Returns None if it must be sampled.
-    fn pooled(&self) -> Option<Pooled> {
+    fn pooled(&self) -> Option<BlockMoments> {
         let (rest, components) = self.components();
         let correlated = |j: &usize| self.block_of[*j].is_none() && self.correlation.members().contains(j);
         if components.iter().any(|(_, free)| free.iter().any(correlated)) {
@@ -121,7 +121,7 @@ impl<'a> Setting<'a> {
         };
         let components = components.into_iter().map(|(blocks, free)| self.component(blocks, free));
         let components = components.collect::<Option<_>>()?;
-        Some(Pooled { rest: of_rest, components, scale: self.scale, centre: self.centre })
+        Some(BlockMoments { rest: of_rest, components, scale: self.scale, centre: self.centre })
     }
 
     /// Inputs that are independent of all blocks, and the groups of interacting blocks with their free inputs.
@@ -240,7 +240,7 @@ impl<'a> Setting<'a> {
     }
 
     /// Contributions with the covariance of every part with the whole as its share. The shares sum to 1.
-    fn contributions(&self, pooled: &Pooled) -> Contributions {
+    fn contributions(&self, pooled: &BlockMoments) -> Contributions {
         let n = self.parts.len();
         let all = pooled.cumulants(&|_, _| None);
         let variance = all.variance;
@@ -368,7 +368,7 @@ impl Component {
     }
 }
 
-impl Pooled {
+impl BlockMoments {
     /// Moments with other weights for the places of some blocks. The weights sum to 1 over each block.
     pub fn moments(&self, weights: &dyn Fn(usize, usize) -> Option<f64>) -> Moments {
         self.scaled(self.cumulants(weights))

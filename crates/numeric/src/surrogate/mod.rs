@@ -21,7 +21,7 @@ mod sampled_remainder;
 mod univariate;
 mod values;
 
-pub use crate::surrogate::block_moments::Pooled;
+pub use crate::surrogate::block_moments::BlockMoments;
 pub use crate::surrogate::input_shape::{InputShape, shapes};
 pub use chaos::{Chaos, DEPENDENT, Places, Sparse};
 pub use derivative_origin::DerivativeOrigin;

@@ -1,7 +1,7 @@
 //! Bars of a characteristic's ranges beside its limits, and the variance that its contributions leave out.
 
 use crate::analysis::statistics::CharacteristicStatistics;
-use crate::analysis::worst_case::WorstCaseFigures;
+use crate::analysis::worst_case::KnownWorstCaseFigures;
 use crate::analysis::worst_case::WorstCaseKind;
 use crate::document::number::{NEWS, beside, outward, percent};
 use crate::document::{Bar, Bars, Extent, Fill, Line, Tone};

@@ -8,7 +8,7 @@
 //! A nonlinear characteristic has the table of its tangent at the means, with a note about it.
 //! The totals are those of [`CharacteristicAnalysis`](sensitol::CharacteristicAnalysis), each about its own middle.
 
-use crate::analysis::worst_case::WorstCaseFigures;
+use crate::analysis::worst_case::KnownWorstCaseFigures;
 use std::fmt;
 
 use crate::analysis::statistics::part;

@@ -1,7 +1,7 @@
 //! Statistics of a characteristic with their errors, its intervals, and its strongest contributors.
 
 use crate::DimensionReport;
-use crate::analysis::worst_case::WorstCaseFigures;
+use crate::analysis::worst_case::KnownWorstCaseFigures;
 use crate::document::number::{UNKNOWN, carried, known, outward, percent, plain, shape_with, significant, uncertainty};
 use crate::document::{Blocks, Cell, Columns, DataTable, Section, Value};
 use crate::figures::Figures;

@@ -31,7 +31,7 @@ pub(crate) struct KnownWorstCase {
 }
 
 /// Worst-case figures of a characteristic.
-pub(crate) trait WorstCaseFigures {
+pub(crate) trait KnownWorstCaseFigures {
     /// Returns the best known worst case, or None if no slope is known.
     fn known_worst_case(&self) -> Option<KnownWorstCase>;
 
@@ -47,7 +47,7 @@ pub(crate) trait WorstCaseFigures {
     fn shown_ends(&self, ends: [f64; 2]) -> [String; 2];
 }
 
-impl WorstCaseFigures for CharacteristicAnalysis {
+impl KnownWorstCaseFigures for CharacteristicAnalysis {
     fn known_worst_case(&self) -> Option<KnownWorstCase> {
         let found = self.extremes.as_ref().map(|found| [found.least.value, found.greatest.value]);
         let of = |kind, ends: [f64; 2]| KnownWorstCase { kind, ends, texts: self.shown_ends(ends) };

@@ -1,6 +1,6 @@
 //! Verdict of every report: a sentence, and a gauge for every characteristic.
 
-use crate::analysis::worst_case::WorstCaseFigures;
+use crate::analysis::worst_case::KnownWorstCaseFigures;
 use std::fmt::Write;
 
 use crate::WarningReport;

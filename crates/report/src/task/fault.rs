@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use sensitol_study::Error;
+use sensitol_study::AnyError;
 use sensitol_study::StudyError;
 
 /// Faults of a study, each with its place in the text in bytes.
@@ -14,7 +14,7 @@ pub(super) fn of_study(error: &StudyError) -> Value {
 fn one(error: &StudyError) -> Value {
     let mut alone = error.clone();
     alone.more.clear();
-    let whole = Error::from(alone);
+    let whole = AnyError::from(alone);
     let advice: Vec<String> = whole.advice().iter().map(ToString::to_string).collect();
     json!({
         "key": error.key,
@@ -28,8 +28,8 @@ fn one(error: &StudyError) -> Value {
 }
 
 /// Fault of a study, or any other error.
-pub(super) fn of_engine(error: &Error) -> Value {
-    if let Error::Study(error) = error {
+pub(super) fn of_engine(error: &AnyError) -> Value {
+    if let AnyError::Study(error) = error {
         return of_study(error);
     }
     let advice: Vec<String> = error.advice().iter().map(ToString::to_string).collect();

@@ -16,7 +16,7 @@ use sensitol::problem::Problem;
 use sensitol::rare::{RareOptions, rare_with};
 use sensitol::simulation::{Pace, Sampler, SimulationOptions, simulate_with};
 use sensitol::sweep::sweep_with;
-use sensitol_study::{Error, Study};
+use sensitol_study::{AnyError, Study};
 
 /// Default number of points of a simulation, as on the command line.
 const SAMPLES: u64 = 100_000;
@@ -142,7 +142,7 @@ pub type Counted<'c> = &'c dyn Fn(u64, u64);
 ///
 /// # Errors
 /// Returns an error if the command fails.
-pub fn done(study: &Study, asked: &Asked, run: &Run<'_>, counted: Counted<'_>) -> Result<TaskReport, Box<Error>> {
+pub fn done(study: &Study, asked: &Asked, run: &Run<'_>, counted: Counted<'_>) -> Result<TaskReport, Box<AnyError>> {
     let problem = &study.problem;
     let about = || About {
         title: study.title.clone(),
@@ -229,7 +229,7 @@ pub fn done(study: &Study, asked: &Asked, run: &Run<'_>, counted: Counted<'_>) -
     })
 }
 
-fn boxed(error: impl Into<Error>) -> Box<Error> {
+fn boxed(error: impl Into<AnyError>) -> Box<AnyError> {
     Box::new(error.into())
 }
 

@@ -11,7 +11,7 @@ use crate::task::fault::{of_engine, of_study};
 use crate::task::location::TaskPlace;
 use crate::task::question::{Asked, Counted, done};
 use sensitol_models::{ALL, Model};
-use sensitol_study::Error;
+use sensitol_study::AnyError;
 use sensitol_study::{Study, StudyError, StudyText};
 
 /// A study, and what is asked of it.
@@ -96,13 +96,13 @@ impl Task {
         }
     }
 
-    fn found(&self, place: &TaskPlace<'_>, counted: Counted<'_>) -> Result<TaskReport, Box<Error>> {
-        let mut study = self.parsed(place).map_err(Error::from)?;
+    fn found(&self, place: &TaskPlace<'_>, counted: Counted<'_>) -> Result<TaskReport, Box<AnyError>> {
+        let mut study = self.parsed(place).map_err(AnyError::from)?;
         if let Some(keys) = &self.analysis {
-            study = study.with_analysis(keys.get()).map_err(Error::from)?;
+            study = study.with_analysis(keys.get()).map_err(AnyError::from)?;
         }
         if !self.characteristics.is_empty() {
-            study.problem = study.problem.only(&self.characteristics).map_err(Error::from)?;
+            study.problem = study.problem.only(&self.characteristics).map_err(AnyError::from)?;
         }
         let asked = self.asked.as_ref().unwrap_or(&Asked::Analyze {});
         done(&study, asked, &place.run, counted)

@@ -15,7 +15,7 @@ use sensitol::assembly::formula::Formula;
 use sensitol::problem::Problem;
 use sensitol_numeric::characteristic::Characteristic;
 use sensitol_numeric::dimension::Dimension;
-use sensitol_numeric::fits::{HeldEnd, held_end};
+use sensitol_numeric::fits::{FixedEnd, held_end};
 use sensitol_numeric::names::nearest;
 use sensitol_numeric::requirement::Requirement;
 
@@ -444,8 +444,8 @@ pub(crate) fn holding(file: &StudyFile, mut dimensions: Vec<Dimension>) -> Resul
         };
         let key = format!("costs.{}.fixed_side", dimension.name());
         let end = match side.get_ref().as_str() {
-            "lower" => HeldEnd::Lower,
-            "upper" => HeldEnd::Upper,
+            "lower" => FixedEnd::Lower,
+            "upper" => FixedEnd::Upper,
             "middle" => continue,
             found => {
                 let known = ["lower", "upper", "middle"];

@@ -4,7 +4,7 @@ use crate::import::sheet::Content;
 
 /// Meaning of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Role {
+pub enum ColumnRole {
     /// Name of the dimension.
     Name,
     /// Part of the dimension.
@@ -42,26 +42,30 @@ pub enum Role {
 }
 
 /// Roles with their names and headers. Headers are in the form that [`plain`] gives.
-pub const ROLES: [(Role, &str, &[&str]); 17] = [
-    (Role::Name, "name", &["name", "dimension", "bezeichnung", "mass", "masz", "massbezeichnung", "symbol", "id"]),
-    (Role::Part, "part", &["part", "component", "bauteil", "teil", "komponente"]),
+pub const ROLES: [(ColumnRole, &str, &[&str]); 17] = [
     (
-        Role::Description,
+        ColumnRole::Name,
+        "name",
+        &["name", "dimension", "bezeichnung", "mass", "masz", "massbezeichnung", "symbol", "id"],
+    ),
+    (ColumnRole::Part, "part", &["part", "component", "bauteil", "teil", "komponente"]),
+    (
+        ColumnRole::Description,
         "description",
         &["description", "remark", "comment", "beschreibung", "bemerkung", "kommentar", "benennung"],
     ),
-    (Role::Drawing, "drawing", &["drawing", "drawing no", "zeichnung", "zeichnungsnummer", "zeichnungsnr"]),
-    (Role::Revision, "revision", &["revision", "rev", "anderungsindex", "anderungsstand"]),
-    (Role::Feature, "feature", &["feature", "balloon", "merkmal", "merkmalsnummer", "merkmalsnr"]),
-    (Role::Direction, "direction", &["direction", "sign", "richtung", "vorzeichen", "+/-"]),
-    (Role::Factor, "factor", &["factor", "lever", "sensitivity", "coefficient", "hebel", "faktor", "hebelarm"]),
+    (ColumnRole::Drawing, "drawing", &["drawing", "drawing no", "zeichnung", "zeichnungsnummer", "zeichnungsnr"]),
+    (ColumnRole::Revision, "revision", &["revision", "rev", "anderungsindex", "anderungsstand"]),
+    (ColumnRole::Feature, "feature", &["feature", "balloon", "merkmal", "merkmalsnummer", "merkmalsnr"]),
+    (ColumnRole::Direction, "direction", &["direction", "sign", "richtung", "vorzeichen", "+/-"]),
+    (ColumnRole::Factor, "factor", &["factor", "lever", "sensitivity", "coefficient", "hebel", "faktor", "hebelarm"]),
     (
-        Role::Nominal,
+        ColumnRole::Nominal,
         "nominal",
         &["nominal", "nominal value", "nominal size", "nennmass", "nennwert", "nennmaß", "sollmass"],
     ),
     (
-        Role::Upper,
+        ColumnRole::Upper,
         "upper",
         &[
             "upper",
@@ -76,13 +80,13 @@ pub const ROLES: [(Role, &str, &[&str]); 17] = [
             "es",
         ],
     ),
-    (Role::Lower, "lower", &["lower", "lower deviation", "unteres abmass", "unteres grenzabmass", "ei"]),
-    (Role::Minus, "minus", &["lower tolerance", "tol -", "tol-", "-tol", "minus"]),
-    (Role::Tolerance, "tolerance", &["tolerance", "tol", "toleranz", "toleranzklasse", "abmass"]),
-    (Role::Unit, "unit", &["unit", "einheit"]),
-    (Role::Distribution, "distribution", &["distribution", "verteilung"]),
-    (Role::Cp, "cp", &["cp"]),
-    (Role::Sigma, "sigma", &["sigma", "standard deviation", "standardabweichung", "s"]),
+    (ColumnRole::Lower, "lower", &["lower", "lower deviation", "unteres abmass", "unteres grenzabmass", "ei"]),
+    (ColumnRole::Minus, "minus", &["lower tolerance", "tol -", "tol-", "-tol", "minus"]),
+    (ColumnRole::Tolerance, "tolerance", &["tolerance", "tol", "toleranz", "toleranzklasse", "abmass"]),
+    (ColumnRole::Unit, "unit", &["unit", "einheit"]),
+    (ColumnRole::Distribution, "distribution", &["distribution", "verteilung"]),
+    (ColumnRole::Cp, "cp", &["cp"]),
+    (ColumnRole::Sigma, "sigma", &["sigma", "standard deviation", "standardabweichung", "s"]),
 ];
 
 /// Header in lower case without accents, and the unit in brackets behind it, if any.
@@ -109,17 +113,18 @@ pub(crate) fn plain(header: &str) -> (String, Option<String>) {
     (text.split_whitespace().collect::<Vec<_>>().join(" "), unit)
 }
 
-/// Role of a header and the unit in it. Returns None for an unknown header.
-pub(crate) fn role(header: &Content) -> Option<(Role, Option<String>)> {
+/// ColumnRole of a header and the unit in it. Returns None for an unknown header.
+pub(crate) fn role(header: &Content) -> Option<(ColumnRole, Option<String>)> {
     let Content::Text(text) = header else { return None };
     let (name, unit) = plain(text);
     ROLES.iter().find(|(_, _, headers)| headers.contains(&name.as_str())).map(|(role, ..)| (*role, unit))
 }
 
 /// Roles of the texts of a dimension, in the order of its keys.
-pub(super) const LABELLED: [Role; 5] = [Role::Description, Role::Part, Role::Drawing, Role::Revision, Role::Feature];
+pub(super) const LABELLED: [ColumnRole; 5] =
+    [ColumnRole::Description, ColumnRole::Part, ColumnRole::Drawing, ColumnRole::Revision, ColumnRole::Feature];
 
-/// Role of this name. Returns None if there is none.
-pub fn named(name: &str) -> Option<Role> {
+/// ColumnRole of this name. Returns None if there is none.
+pub fn named(name: &str) -> Option<ColumnRole> {
     ROLES.iter().find(|(_, known, _)| *known == name).map(|(role, ..)| *role)
 }

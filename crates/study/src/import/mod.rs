@@ -8,7 +8,7 @@ mod tolerance;
 #[cfg(feature = "xlsx")]
 pub mod workbook;
 
-pub use columns::{ROLES, Role, named};
+pub use columns::{ColumnRole, ROLES, named};
 pub use fault::{ImportFault, ImportProblem};
 pub use sheet::Sheet;
 pub use stack::{has_header, import};

@@ -2,11 +2,11 @@
 
 use std::fmt::Write;
 
-use crate::import::columns::{LABELLED, ROLES, Role, role};
+use crate::import::columns::{ColumnRole, LABELLED, ROLES, role};
 use crate::import::fault::{ImportFault, ImportProblem};
 use crate::import::sheet::{Content, Sheet, address};
 use crate::import::tolerance::{Written, written};
-use crate::table::{NumberFault, Style};
+use crate::table::{NumberFault, NumberStyle};
 use crate::write::{inline, name as key, number, quoted};
 use sensitol::assembly::formula::is_plain;
 use sensitol_numeric::labels::LABELS;
@@ -73,7 +73,7 @@ impl Figures {
     }
 
     fn read(self, commas_separate: bool) -> Result<Vec<f64>, ImportFault> {
-        let style = Style::of(self.0.iter().map(|figure| figure.text.as_str()), commas_separate);
+        let style = NumberStyle::of(self.0.iter().map(|figure| figure.text.as_str()), commas_separate);
         let of = |(place, figure): (usize, &Figure)| {
             if let Some(value) = figure.value {
                 return Ok(value);
@@ -127,7 +127,7 @@ struct Row {
 /// Header row of a table: columns by their roles.
 struct Header {
     row: u64,
-    columns: Vec<(Role, usize)>,
+    columns: Vec<(ColumnRole, usize)>,
     /// Unit in the header of the nominal value; None if there is none.
     unit: Option<String>,
     unknown: Vec<String>,
@@ -136,7 +136,7 @@ struct Header {
 }
 
 /// Reads a table. `named` gives roles to unknown headers. The characteristic gets the name `output`.
-pub fn import(sheet: &Sheet, named: &[(Role, String)], output: &str) -> Result<Imported, ImportFault> {
+pub fn import(sheet: &Sheet, named: &[(ColumnRole, String)], output: &str) -> Result<Imported, ImportFault> {
     let header = header(sheet, named)?;
     let mut figures = Figures::default();
     let (mut rows, mut notes): (Vec<Row>, Vec<String>) = (Vec::new(), Vec::new());
@@ -149,7 +149,7 @@ pub fn import(sheet: &Sheet, named: &[(Role, String)], output: &str) -> Result<I
             Read::Blank => {}
             Read::Heading(text) => notes.push(format!("row {line} has no nominal value and was left out: {text}")),
             Read::Dimension(found) => {
-                let cell = header.cell(Role::Name, *line);
+                let cell = header.cell(ColumnRole::Name, *line);
                 if let Some((_, other)) = cells.iter().find(|(name, _)| *name == found.name) {
                     let problem = ImportProblem::NameTwice { name: found.name.clone(), other: other.clone() };
                     return Err(ImportFault::of(cell, problem));
@@ -162,7 +162,7 @@ pub fn import(sheet: &Sheet, named: &[(Role, String)], output: &str) -> Result<I
     if rows.is_empty() {
         return Err(ImportFault { cell: None, problem: ImportProblem::NoDimension });
     }
-    if header.column(Role::Direction).is_none() && header.column(Role::Factor).is_none() {
+    if header.column(ColumnRole::Direction).is_none() && header.column(ColumnRole::Factor).is_none() {
         notes.push("no column has a direction or a factor: all dimensions are added".to_owned());
     }
     // Numbers are parsed only now, since their style follows from all cells together.
@@ -179,36 +179,40 @@ pub fn import(sheet: &Sheet, named: &[(Role, String)], output: &str) -> Result<I
 }
 
 impl Header {
-    fn column(&self, role: Role) -> Option<usize> {
+    fn column(&self, role: ColumnRole) -> Option<usize> {
         self.columns.iter().find(|(known, _)| *known == role).map(|(_, column)| *column)
     }
 
     /// Name of the cell of a role in a row, such as B7.
-    fn cell(&self, role: Role, row: u64) -> String {
+    fn cell(&self, role: ColumnRole, row: u64) -> String {
         address(row, self.column(role).unwrap_or(0))
     }
 }
 
 /// True if a row of the sheet names the required columns.
-pub fn has_header(sheet: &Sheet, named: &[(Role, String)]) -> bool {
+pub fn has_header(sheet: &Sheet, named: &[(ColumnRole, String)]) -> bool {
     header(sheet, named).is_ok()
 }
 
 /// First row with columns for the name and the nominal value.
-fn header(sheet: &Sheet, named: &[(Role, String)]) -> Result<Header, ImportFault> {
+fn header(sheet: &Sheet, named: &[(ColumnRole, String)]) -> Result<Header, ImportFault> {
     let none = |problem| ImportFault { cell: None, problem };
     if sheet.rows.is_empty() {
         return Err(none(ImportProblem::Empty));
     }
     let is = |content: &Content, header: &str| matches!(content, Content::Text(text) if text.trim() == header);
-    let holds = |content: &[Content], wanted: Role| {
+    let holds = |content: &[Content], wanted: ColumnRole| {
         let given = named.iter().find(|(role, _)| *role == wanted);
         content.iter().any(|cell| match given {
             Some((_, header)) => is(cell, header),
             None => role(cell).is_some_and(|(role, _)| role == wanted),
         })
     };
-    let found = sheet.rows.iter().take(HEADER).position(|(_, row)| holds(row, Role::Name) && holds(row, Role::Nominal));
+    let found = sheet
+        .rows
+        .iter()
+        .take(HEADER)
+        .position(|(_, row)| holds(row, ColumnRole::Name) && holds(row, ColumnRole::Nominal));
     let Some(place) = found else {
         // A header given by the user that stands in no row is most likely misspelt.
         let texts = |row: &[Content]| -> Vec<String> {
@@ -239,7 +243,7 @@ fn header(sheet: &Sheet, named: &[(Role, String)]) -> Result<Header, ImportFault
             let problem = ImportProblem::Twice { role: name, other: address(header.row, other) };
             return Err(ImportFault::of(address(header.row, column), problem));
         }
-        if role == Role::Nominal {
+        if role == ColumnRole::Nominal {
             header.unit = unit;
         }
         header.columns.push((role, column));
@@ -254,10 +258,10 @@ enum Read {
 }
 
 fn row(header: &Header, line: u64, content: &[Content], figures: &mut Figures) -> Result<Read, ImportFault> {
-    let of = |role: Role| header.column(role).and_then(|column| content.get(column)).unwrap_or(&Content::Empty);
-    let at = |role: Role, problem: ImportProblem| ImportFault::of(header.cell(role, line), problem);
-    let text = |role: Role| of(role).words();
-    if matches!(of(Role::Nominal), Content::Empty) {
+    let of = |role: ColumnRole| header.column(role).and_then(|column| content.get(column)).unwrap_or(&Content::Empty);
+    let at = |role: ColumnRole, problem: ImportProblem| ImportFault::of(header.cell(role, line), problem);
+    let text = |role: ColumnRole| of(role).words();
+    if matches!(of(ColumnRole::Nominal), Content::Empty) {
         let words: Vec<&str> = content
             .iter()
             .filter_map(|cell| if let Content::Text(text) = cell { Some(text.as_str()) } else { None })
@@ -273,12 +277,12 @@ fn row(header: &Header, line: u64, content: &[Content], figures: &mut Figures) -
         };
         return Err(ImportFault::of(address(line, column), problem));
     }
-    let name = text(Role::Name).ok_or_else(|| at(Role::Name, ImportProblem::NoName))?;
+    let name = text(ColumnRole::Name).ok_or_else(|| at(ColumnRole::Name, ImportProblem::NoName))?;
     // A backquote ends a name in formulas, so it is replaced.
     let name = name.replace('`', "'").split_whitespace().collect::<Vec<_>>().join(" ");
-    let nominal = figures.keep_content(&header.cell(Role::Nominal, line), of(Role::Nominal))?;
-    let nominal = nominal.ok_or_else(|| at(Role::Nominal, ImportProblem::NoDimension))?;
-    let sign = match text(Role::Direction) {
+    let nominal = figures.keep_content(&header.cell(ColumnRole::Nominal, line), of(ColumnRole::Nominal))?;
+    let nominal = nominal.ok_or_else(|| at(ColumnRole::Nominal, ImportProblem::NoDimension))?;
+    let sign = match text(ColumnRole::Direction) {
         None => 1.0,
         Some(word) => {
             let word = crate::table::clean(&word).to_lowercase();
@@ -287,26 +291,30 @@ fn row(header: &Header, line: u64, content: &[Content], figures: &mut Figures) -
                 (_, true) => -1.0,
                 _ => {
                     let known = "+, -, 1, -1, right or left";
-                    return Err(at(Role::Direction, ImportProblem::Unknown { text: word, what: "direction", known }));
+                    return Err(at(
+                        ColumnRole::Direction,
+                        ImportProblem::Unknown { text: word, what: "direction", known },
+                    ));
                 }
             }
         }
     };
-    let distribution = match text(Role::Distribution) {
+    let distribution = match text(ColumnRole::Distribution) {
         None => None,
         Some(word) => {
             let plain = word.to_lowercase();
             let found = DISTRIBUTIONS.iter().find(|(_, words)| words.contains(&plain.as_str())).map(|(kind, _)| *kind);
             let known = "normal, uniform, triangular, beta or trapezoidal";
-            let unknown = || at(Role::Distribution, ImportProblem::Unknown { text: word, what: "distribution", known });
+            let unknown =
+                || at(ColumnRole::Distribution, ImportProblem::Unknown { text: word, what: "distribution", known });
             Some(found.ok_or_else(unknown)?)
         }
     };
-    let mut figure = |role: Role| figures.keep_content(&header.cell(role, line), of(role));
-    let (factor, sigma, cp) = (figure(Role::Factor)?, figure(Role::Sigma)?, figure(Role::Cp)?);
+    let mut figure = |role: ColumnRole| figures.keep_content(&header.cell(role, line), of(role));
+    let (factor, sigma, cp) = (figure(ColumnRole::Factor)?, figure(ColumnRole::Sigma)?, figure(ColumnRole::Cp)?);
     let one_line = |text: String| text.split_whitespace().collect::<Vec<_>>().join(" ");
     let labels = LABELLED.map(|role| text(role).map(one_line));
-    let unit = text(Role::Unit).or_else(|| header.unit.clone());
+    let unit = text(ColumnRole::Unit).or_else(|| header.unit.clone());
     let band = band(header, line, &of, figures)?;
     Ok(Read::Dimension(Box::new(Row { name, nominal, band, sign, factor, sigma, cp, unit, distribution, labels })))
 }
@@ -314,17 +322,18 @@ fn row(header: &Header, line: u64, content: &[Content], figures: &mut Figures) -
 fn band<'c>(
     header: &Header,
     line: u64,
-    of: &dyn Fn(Role) -> &'c Content,
+    of: &dyn Fn(ColumnRole) -> &'c Content,
     figures: &mut Figures,
 ) -> Result<Band, ImportFault> {
-    let cell = |role: Role| header.cell(role, line);
-    let lower_role = if matches!(of(Role::Minus), Content::Empty) { Role::Lower } else { Role::Minus };
-    let upper = figures.keep_content(&cell(Role::Upper), of(Role::Upper))?;
+    let cell = |role: ColumnRole| header.cell(role, line);
+    let lower_role =
+        if matches!(of(ColumnRole::Minus), Content::Empty) { ColumnRole::Lower } else { ColumnRole::Minus };
+    let upper = figures.keep_content(&cell(ColumnRole::Upper), of(ColumnRole::Upper))?;
     let lower = figures.keep_content(&cell(lower_role), of(lower_role))?;
-    let tolerance = of(Role::Tolerance);
+    let tolerance = of(ColumnRole::Tolerance);
     if *tolerance != Content::Empty && (upper.is_some() || lower.is_some()) {
-        let other = cell(if upper.is_some() { Role::Upper } else { lower_role });
-        return Err(ImportFault::of(cell(Role::Tolerance), ImportProblem::ToleranceTwice { other }));
+        let other = cell(if upper.is_some() { ColumnRole::Upper } else { lower_role });
+        return Err(ImportFault::of(cell(ColumnRole::Tolerance), ImportProblem::ToleranceTwice { other }));
     }
     match (upper, lower) {
         (Some(upper), Some(lower)) => {
@@ -333,15 +342,15 @@ fn band<'c>(
                 Content::Number { value, .. } => *value < 0.0,
                 _ => false,
             };
-            return Ok(Band::Deviations { upper, lower, unsigned: lower_role == Role::Minus && !signed });
+            return Ok(Band::Deviations { upper, lower, unsigned: lower_role == ColumnRole::Minus && !signed });
         }
         (None, None) => {}
         (upper, _) => {
-            let missing = if upper.is_some() { lower_role } else { Role::Upper };
+            let missing = if upper.is_some() { lower_role } else { ColumnRole::Upper };
             return Err(ImportFault::of(cell(missing), ImportProblem::OneDeviation));
         }
     }
-    let at = cell(Role::Tolerance);
+    let at = cell(ColumnRole::Tolerance);
     let text = match tolerance {
         Content::Text(text) => text,
         Content::Number { value, percent: false } => return Ok(Band::Half(figures.keep_value(&at, *value))),

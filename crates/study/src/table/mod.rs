@@ -4,7 +4,7 @@ mod number;
 mod text;
 
 pub(crate) use number::clean;
-pub use number::{NumberFault, Style};
+pub use number::{NumberFault, NumberStyle};
 pub use text::{delimiter, records};
 
 /// Delimiters between columns, in the order of trial. The comma is last, since it may be a decimal one.

@@ -6,7 +6,7 @@
 
 /// Style of the numbers in a list of cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Style {
+pub struct NumberStyle {
     /// Index of the first cell that shows the decimal mark, and true if that mark is the comma. None if no cell shows it.
     shown: Option<(usize, bool)>,
     /// True if commas separate columns, so that one within a cell has no meaning by itself.
@@ -77,7 +77,7 @@ fn shows(text: &str) -> Option<bool> {
     }
 }
 
-impl Style {
+impl NumberStyle {
     /// Style of these cells. `commas_separate` is true if commas separate the columns of their table.
     pub fn of<'c>(cells: impl IntoIterator<Item = &'c str>, commas_separate: bool) -> Self {
         let mut style = Self { commas_separate, ..Self::default() };
@@ -132,7 +132,7 @@ mod tests {
     use super::*;
 
     fn read(cells: &[&str], commas_separate: bool) -> Result<Vec<f64>, (usize, NumberFault)> {
-        let style = Style::of(cells.iter().copied(), commas_separate);
+        let style = NumberStyle::of(cells.iter().copied(), commas_separate);
         cells
             .iter()
             .enumerate()

@@ -7,7 +7,7 @@ use crate::law::polynomial::Quartic;
 
 /// Half-widths of all uniform variables of a surface.
 #[derive(Debug, Clone, Default)]
-pub(in crate::law) struct Hats {
+pub(in crate::law) struct SinhTransform {
     halves: Vec<f64>,
     pub(in crate::law) inputs: Vec<Hat>,
 }
@@ -36,7 +36,7 @@ impl Hat {
     }
 }
 
-impl Hats {
+impl SinhTransform {
     pub(in crate::law) fn push(&mut self, hat: Hat) {
         self.halves.extend_from_slice(&hat.halves);
         self.inputs.push(hat);
@@ -160,7 +160,7 @@ mod tests {
             let (inside, outside) = (ratio(x, 0.5 - 1e-12), ratio(x, 0.5 + 1e-12));
             assert!((inside - outside).abs() < 1e-12, "{x}: {inside:?} {outside:?}");
         }
-        let hats = Hats { halves: vec![1.0], inputs: Vec::new() };
+        let hats = SinhTransform { halves: vec![1.0], inputs: Vec::new() };
         let (below, above) = (hats.cumulants(0.5 - 1e-13), hats.cumulants(0.5 + 1e-13));
         // The derivatives by s are below 1, and the two arguments are 2e-13 apart.
         below.iter().zip(above).for_each(|(below, above)| assert!((below - above).abs() < 2e-13, "{below} {above}"));

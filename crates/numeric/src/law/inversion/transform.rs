@@ -5,7 +5,7 @@ use crate::law::inversion::perturbed_form::PerturbedForm;
 use crate::law::inversion::product_tree::Tree;
 use crate::law::inversion::quadratic_form::{Block, Forms};
 use crate::law::inversion::single_input::Single;
-use crate::law::inversion::sinh_transform::{Hat, Hats};
+use crate::law::inversion::sinh_transform::{Hat, SinhTransform};
 use crate::law::surface::Surface;
 
 /// Greatest tilt that is searched, times sigma.
@@ -17,7 +17,7 @@ const LEAST_TILT: f64 = 0.3;
 #[derive(Debug)]
 pub(in crate::law) struct Transform {
     pub(in crate::law) forms: Forms,
-    pub(in crate::law) hats: Hats,
+    pub(in crate::law) hats: SinhTransform,
     pub(in crate::law) singles: Vec<Single>,
     pub(in crate::law) perturbed: Vec<PerturbedForm>,
     pub(in crate::law) trees: Vec<Tree>,
@@ -61,7 +61,7 @@ impl Transform {
     pub(in crate::law) fn of(surface: &Surface, components: &[Vec<usize>], summed: Summed) -> (Self, Vec<Vec<usize>>) {
         let mut transform = Self {
             forms: Forms::default(),
-            hats: Hats::default(),
+            hats: SinhTransform::default(),
             singles: Vec::new(),
             perturbed: Vec::new(),
             trees: Vec::new(),
