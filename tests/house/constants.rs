@@ -4,11 +4,17 @@ use super::sources::sources;
 
 const TYPES: [&str; 6] = ["f64", "f32", "usize", "u64", "u32", "i32"];
 
-/// The numeric constants of a file that no comment precedes.
+/// Numeric constants of a file that no comment precedes. Constants of a module within the file are left out: they name the columns of a
+/// built-in model, whose table of inputs and outputs says what each is.
 fn without_comment(text: &str) -> Vec<String> {
     let lines: Vec<&str> = text.lines().collect();
     let mut found = Vec::new();
+    let mut in_columns = false;
     for (at, line) in lines.iter().enumerate() {
+        in_columns = (in_columns || ["mod input {", "mod output {"].contains(line)) && *line != "}";
+        if in_columns {
+            continue;
+        }
         if line.trim() == "#[cfg(test)]" && lines.get(at + 1).is_some_and(|next| next.ends_with('{')) {
             break;
         }

@@ -5,5 +5,6 @@ mod circles;
 mod constants;
 mod errors;
 mod sources;
+mod style;
 mod tuning;
 mod type_names;

@@ -45,6 +45,7 @@ pub(super) fn part(text: &str) -> Result<f64, String> {
 /// Parses a count, such as 1000000 or 1e6.
 pub(super) fn whole(text: &str) -> Result<u64, String> {
     /// Limit up to which every whole number is a double.
+    /// Largest number of samples: counts stay exact in doubles.
     const MOST: f64 = (1u64 << 53) as f64;
     if let Ok(count) = text.trim().parse::<u64>() {
         return Ok(count);

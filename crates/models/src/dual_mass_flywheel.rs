@@ -216,6 +216,7 @@ pub static DUAL_MASS_FLYWHEEL: Model = Model {
     bounds: &[],
 };
 
+/// Number of inputs.
 const INPUTS: usize = 17;
 /// Order of the crankshaft of the first vibration of three cylinders.
 const ORDER: f64 = 1.5;

@@ -304,7 +304,8 @@ mod tests {
     /// Reference: twelve factors of NIST SP 811, appendix B.8, in `tests/data/elements.json`. Exact factors are compared to rounding.
     #[test]
     fn factors_are_those_of_sp_811() {
-        let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/elements.json")).unwrap();
+        let text =
+            std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/elements.json")).unwrap();
         let cases: serde_json::Value = serde_json::from_str(&text).unwrap();
         let case = cases["cases"].as_array().unwrap().iter().find(|case| case["name"] == "units-sp811").unwrap();
         assert_eq!(case["printed"].as_object().unwrap().len(), 12);

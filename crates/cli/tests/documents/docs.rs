@@ -20,6 +20,8 @@ fn console_blocks_are_real() {
         let elided = read(&document).lines().any(|line| line == "..." || line.contains("[..]"));
         assert!(!elided, "{document} leaves out some output");
     }
+    // Commands of documents run at the repository's root, and so does everything in this binary.
+    std::env::set_current_dir(repository("")).unwrap();
     let cases = trycmd::TestCases::new();
     cases.case("README.md").case("CONTRIBUTING.md").case("examples/*/README.md");
     cases.case("docs/*.md").case("docs/how-to/*.md").case("docs/reference/*.md");

@@ -45,6 +45,7 @@ mod input {
     pub(crate) const SPEED: usize = 26;
     pub(crate) const CUT: usize = 27;
 }
+/// Number of inputs.
 const INPUTS: usize = 28;
 
 /// Models a connecting rod as three lumped masses. Outputs are the forces at its ends over the crank angle with their largest values, the
@@ -405,6 +406,7 @@ mod output {
     pub(crate) const FA_OPT: usize = 34;
 }
 
+/// One degree in radians.
 const DEGREE: f64 = PI / 180.0;
 /// Number of rows in a pass, so that their inputs and maxima stay in the nearest cache.
 const LANES: usize = 128;

@@ -40,7 +40,8 @@ fn arguments() -> Vec<f64> {
 
 #[test]
 fn values_of_sixty_digits_are_met() {
-    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/elementary.json")).unwrap();
+    let text =
+        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/elementary.json")).unwrap();
     let cases: Vec<(String, f64, f64, f64)> = serde_json::from_str(&text).unwrap();
     for (name, of, _, _, _, most) in functions() {
         let mut worst = 0f64;

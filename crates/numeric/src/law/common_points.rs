@@ -36,6 +36,7 @@ use crate::sampling::{SOBOL_DIMENSIONS, Sobol, tails};
 pub(super) const POINTS: usize = 1 << 11;
 /// Points of each replicate that are drawn from the inputs' own distribution.
 const OWN: usize = POINTS / 4;
+/// Seed of the points: any fixed number.
 const SEED: u64 = 1;
 /// Distance of a cut inside its limit, in standard deviations of the part that the direction does not explain. At three of them a
 /// thousandth of the rejects lies before the cut and is left to the points of the own distribution.

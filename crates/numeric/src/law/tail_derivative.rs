@@ -182,6 +182,7 @@ fn by_differences(
     ratios: impl Fn(&Surface) -> Option<Ratios>,
     changes: &mut [Vec<Complex>],
 ) {
+    /// Relative step of the difference quotient: its error is some 1e-8 of the derivative.
     const PART: f64 = 1e-4;
     let Some((own, _)) = ratios(surface) else { return };
     for &j in members {

@@ -154,6 +154,7 @@ pub(super) struct Slopes {
 impl Table {
     /// Derivatives of a tail at every fourth entry of the table.
     pub(super) fn slopes(&self, law: &Inversion, surface: &Surface, tail: LawTail) -> Slopes {
+        /// Places per slope: slopes change more slowly than the tail.
         const EVERY: usize = 4;
         let step = self.step * EVERY as f64;
         let places = self.lower.len().div_ceil(EVERY);

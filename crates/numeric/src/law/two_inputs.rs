@@ -176,6 +176,7 @@ fn crossings(law: &Input, f: impl Fn(f64) -> f64) -> Vec<f64> {
 
 /// Maximum point of a function with one extreme in an interval, by golden section search.
 fn largest(f: &impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+    /// Golden section.
     const SECTION: f64 = 0.618_033_988_749_894_8;
     for _ in 0..60 {
         let (a, b) = (high - SECTION * (high - low), low + SECTION * (high - low));

@@ -98,6 +98,7 @@ pub fn one_error(value: f64, [low, high]: [f64; 2]) -> f64 {
 /// assert!(low < 0.9963 && low > 0.996 && high == 1.0); // all of a thousand is not all
 /// ```
 pub fn wilson(hits: f64, n: f64) -> [f64; 2] {
+    /// 97.5 % quantile of the standard normal distribution.
     const Z: f64 = 1.959_963_984_540_054;
     if n <= 0.0 {
         return [0.0, 1.0];

@@ -34,6 +34,7 @@ impl Scale {
     /// Bin of a value: exponent and first digits of `1 + |u|` in the bits of the double. A value on an edge belongs to the bin above it.
     #[inline(always)]
     pub fn bin(&self, value: f64) -> u32 {
+        /// Bits of a mantissa below a bin.
         const UNUSED: u32 = f64::MANTISSA_DIGITS - 1 - EVEN;
         const ONE: i64 = (1.0f64.to_bits() >> UNUSED) as i64;
         let u = (value - self.middle) / self.spread;

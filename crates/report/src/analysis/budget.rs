@@ -155,6 +155,7 @@ fn factor(probability: f64, degrees: f64) -> Option<f64> {
 
 /// Rounds down, but keeps a whole number that only rounding made smaller.
 fn whole(degrees: f64) -> f64 {
+    /// Degrees of freedom that rounding may take from a whole number.
     const ROUNDING: f64 = 1e-9;
     (degrees * (1.0 + ROUNDING)).floor()
 }

@@ -124,8 +124,11 @@ fn tails(one: &CharacteristicAnalysis) -> Option<String> {
 
 /// Draws one tail. Returns None if the limit is too far out for a picture.
 fn panel(one: &CharacteristicAnalysis, tail: &Tail<'_>) -> Option<String> {
+    /// Width in pixels.
     const WIDTH: f64 = 340.0;
+    /// Height in pixels.
     const TALL: f64 = 150.0;
+    /// Left margin in pixels, for the labels of the axis.
     const LEFT: f64 = 56.0;
     let beyond = |x: f64| if tail.upper { tail.law.sf(x) } else { tail.law.cdf(x) };
     let at = |share: f64| if tail.upper { tail.law.upper_quantile(share) } else { tail.law.quantile(share) };
@@ -337,7 +340,9 @@ fn chain(one: &CharacteristicAnalysis, dimensions: &[DimensionReport]) -> Option
 }
 
 fn drawing(one: &CharacteristicAnalysis, links: &[(&DimensionReport, f64)], class: &str, width: f64) -> String {
+    /// Height of a row in pixels.
     const ROW: f64 = 26.0;
+    /// Width of a letter in pixels.
     const LETTER: f64 = 7.0;
     let longest = |texts: &mut dyn Iterator<Item = String>| texts.map(|text| text.chars().count()).max().unwrap_or(0);
     let band = |of: &DimensionReport| of.tolerance.map(band).unwrap_or_default();

@@ -406,6 +406,7 @@ struct Gauge {
 }
 
 impl Gauge {
+    /// Width in pixels.
     const WIDTH: f64 = 150.0;
 
     fn of(all: &[JudgedCharacteristic<'_>]) -> Self {
