@@ -359,6 +359,7 @@ struct JudgedEnd<'e> {
 }
 
 impl<'e> JudgedEnd<'e> {
+    /// Judges the requirements of an allocation where its search ended.
     fn of(allocation: &Allocation, end: &'e SearchEnd) -> Self {
         let ones = vec![1.0; end.station.problem.dimensions().len()];
         let values = end.constraints.iter().map(|one| one.value_at(&end.station.responses, &ones)).collect();

@@ -262,6 +262,7 @@ struct DerivativeSearch<'s, 'd> {
 }
 
 impl<'s, 'd> DerivativeSearch<'s, 'd> {
+    /// A search that begins at a station with these half bands.
     fn new(
         driver: &'s mut Driver<'d>,
         original: Problem,
@@ -288,6 +289,7 @@ impl<'s, 'd> DerivativeSearch<'s, 'd> {
         }
     }
 
+    /// Returns the last station with the choice that led to it.
     fn end(self) -> SearchEnd {
         let Self { station, last, current: constraints, ended, .. } = self;
         SearchEnd { station, last, constraints, ended, trial: None, is_start: false }
