@@ -147,120 +147,227 @@ pub fn probe(problem: &Problem, run: &Run<'_>) -> Result<Probe, EvaluationError>
     let begun = Instant::now();
     let adapter = problem.function().prepare(problem.outputs())?;
     let start = begun.elapsed();
-    let asked = Asked { problem, run };
-    let nominal: Vec<f64> = problem.dimensions().iter().map(|dimension| dimension.nominal()).collect();
-    let names: Vec<String> = problem.characteristics().iter().map(|one| one.name().to_owned()).collect();
-    let since = begun;
-    let mut spent = RunSummary::default();
-    let mut ask = |rows: &[Vec<f64>]| {
-        let begun = Instant::now();
-        let out = asked.rows(rows);
-        spent.evaluations += rows.len() as u64;
-        spent.retried += out.count_retried() as u64;
-        spent.failed += out.failed_among(&(0..rows.len()).collect::<Vec<_>>()) as u64;
-        spent.stages += 1;
-        spent.in_model += begun.elapsed();
-        out
+    let mut probing = Probing::new(problem, run);
+    // The first point may warm something up.
+    let (first, warming) = probing.ask_timed(&[probing.nominal.clone()]);
+    probing.check_nominal(&first);
+    let ([alone, together], characteristics) = if probing.has_values(&first) {
+        let (passes, times) = probing.ask_passes(first);
+        let noise = passes.noise(probing.names.len());
+        probing.check_passes(&passes, &noise);
+        let characteristics = probing.probed(&passes, &noise);
+        probing.check(REACTS, reacts(&probing.names, &passes));
+        probing.check(RUNS, runs(problem));
+        (times, characteristics)
+    } else {
+        LATER.into_iter().for_each(|what| probing.check(what, Finding::NotChecked));
+        ([warming; 2], probing.unknown())
     };
-    let mut checks = Vec::new();
-    let mut check = |what, verdict| checks.push(Check { what, verdict });
+    let Probing { spent, checks, .. } = probing;
+    let run = RunSummary { wall: begun.elapsed(), stopped: run.stop_reason(), evaluator: problem.evaluator(), ..spent };
+    Ok(Probe { adapter, run, start, alone, together, checks, characteristics })
+}
 
-    // The first point may include a warm-up, so its time is used only if it has no value.
-    let begun = Instant::now();
-    let first = ask(std::slice::from_ref(&nominal));
-    let alone = begun.elapsed();
-    let missing = (0..names.len()).find(|&c| first.value(0, c).is_none());
-    let fault = missing.map(|c| format!("`{}`: {}", names[c], reason(&first, 0, c)));
-    check("the nominal dimensions have values", Finding::of(fault));
-    if (0..names.len()).all(|c| first.value(0, c).is_none()) {
-        LATER.into_iter().for_each(|what| check(what, Finding::NotChecked));
+/// Answers of the model to the points of a probe, in the order in which they are asked.
+struct Passes {
+    /// At the nominal dimensions.
+    first: Responses,
+    /// There again.
+    second: Responses,
+    scattered: Answered,
+    /// On walks to the scattered points, in another order.
+    walked: Responses,
+    line: Answered,
+    /// At the nominal dimensions, after all of these.
+    after: Responses,
+    /// At the nominal dimensions, after points where the model may fail.
+    failing: Responses,
+    steps: Answered,
+}
+
+/// Points with the answers to them.
+struct Answered {
+    rows: Vec<Vec<f64>>,
+    out: Responses,
+}
+
+impl Passes {
+    /// The noise of every characteristic along the line.
+    fn noise(&self, characteristics: usize) -> Vec<Option<f64>> {
+        let values = |c: usize| (0..LINE).map(|row| self.line.out.value(row, c)).collect::<Option<Vec<f64>>>();
+        (0..characteristics).map(|c| values(c).and_then(|values| level(&values))).collect()
+    }
+
+    /// The values of a characteristic at the steps of one sigma, where it has any.
+    fn stepped(&self, c: usize) -> Vec<f64> {
+        (0..self.steps.rows.len()).filter_map(|row| self.steps.out.value(row, c)).collect()
+    }
+}
+
+/// Evaluations and checks of a probe so far.
+struct Probing<'a> {
+    asked: Asked<'a>,
+    nominal: Vec<f64>,
+    /// Names of the characteristics.
+    names: Vec<String>,
+    spent: RunSummary,
+    checks: Vec<Check>,
+}
+
+impl<'a> Probing<'a> {
+    /// A probe of a problem's model of which nothing has been asked yet.
+    fn new(problem: &'a Problem, run: &'a Run<'a>) -> Self {
+        Self {
+            asked: Asked { problem, run },
+            nominal: problem.dimensions().iter().map(|dimension| dimension.nominal()).collect(),
+            names: problem.characteristics().iter().map(|one| one.name().to_owned()).collect(),
+            spent: RunSummary::default(),
+            checks: Vec::new(),
+        }
+    }
+
+    /// Adds a check with its result.
+    fn check(&mut self, what: &'static str, verdict: Finding) {
+        self.checks.push(Check { what, verdict });
+    }
+
+    /// Asks for points in one batch, and counts them.
+    fn ask(&mut self, rows: &[Vec<f64>]) -> Responses {
+        let begun = Instant::now();
+        let out = self.asked.rows(rows);
+        self.spent.evaluations += rows.len() as u64;
+        self.spent.retried += out.count_retried() as u64;
+        self.spent.failed += out.failed_among(&(0..rows.len()).collect::<Vec<_>>()) as u64;
+        self.spent.stages += 1;
+        self.spent.in_model += begun.elapsed();
+        out
+    }
+
+    /// Asks for points, and returns the time that they took with the answers.
+    fn ask_timed(&mut self, rows: &[Vec<f64>]) -> (Responses, Duration) {
+        let begun = Instant::now();
+        let out = self.ask(rows);
+        (out, begun.elapsed())
+    }
+
+    /// Asks for every point after the first one. Returns the times for a point by itself and for one of many, too.
+    fn ask_passes(&mut self, first: Responses) -> (Passes, [Duration; 2]) {
+        let nominal = self.nominal.clone();
+        let (second, alone) = self.ask_timed(std::slice::from_ref(&nominal));
+        let scattered: Vec<Vec<f64>> = (0..SCATTERED).map(|index| self.asked.scattered(index)).collect();
+        let (forward, forward_time) = self.ask_timed(&scattered);
+        let together = forward_time / SCATTERED as u32;
+        let walks: Vec<Vec<f64>> = SHUFFLED.iter().flat_map(|&row| walk(&nominal, &scattered[row])).collect();
+        let walked = self.ask(&walks);
+        let line: Vec<Vec<f64>> =
+            (0..LINE).map(|index| self.asked.along(&nominal, CLOSE * (index as f64 - 4.0))).collect();
+        let close = self.ask(&line);
+        let after = self.ask(std::slice::from_ref(&nominal));
+        // Whether these fail is the model's business; what matters is what comes after.
+        let outside: Vec<Vec<f64>> = [FAR, -FAR].map(|far| self.asked.along(&nominal, far)).to_vec();
+        self.ask(&outside);
+        let failing = self.ask(std::slice::from_ref(&nominal));
+        let steps: Vec<Vec<f64>> = self.asked.steps(&nominal);
+        let stepped = self.ask(&steps);
+        let passes = Passes {
+            first,
+            second,
+            scattered: Answered { rows: scattered, out: forward },
+            walked,
+            line: Answered { rows: line, out: close },
+            after,
+            failing,
+            steps: Answered { rows: steps, out: stepped },
+        };
+        (passes, [alone, together])
+    }
+
+    /// Checks that every characteristic has a value at the nominal dimensions.
+    fn check_nominal(&mut self, first: &Responses) {
+        let missing = (0..self.names.len()).find(|&c| first.value(0, c).is_none());
+        let fault = missing.map(|c| format!("`{}`: {}", self.names[c], reason(first, 0, c)));
+        self.check("the nominal dimensions have values", Finding::of(fault));
+    }
+
+    /// Returns true if some characteristic has a value at the nominal dimensions.
+    fn has_values(&self, first: &Responses) -> bool {
+        (0..self.names.len()).any(|c| first.value(0, c).is_some())
+    }
+
+    /// Checks repeatability, noise, values within the tolerances and the order of the points.
+    fn check_passes(&mut self, passes: &Passes, noise: &[Option<f64>]) {
+        let Passes { first, second, scattered, walked, line, after, failing, steps } = passes;
+        let characteristics = 0..self.names.len();
+        // The ranges over which the tolerances move the outputs, by everything that was evaluated within them.
+        let evaluated = [first, &scattered.out, walked, &steps.out];
+        let moved: Vec<f64> = characteristics.clone().map(|c| spread(&evaluated, c)).collect();
+        self.check(TWICE, repeats(&self.names, first, second, &moved));
+        self.check(NOISE, quiet(&self.names, noise, &moved));
+        self.check(WITHIN, self.asked.within(&self.nominal, &[scattered, line, steps]));
+        let ends: Vec<(usize, usize)> =
+            SHUFFLED.iter().enumerate().map(|(turn, &row)| (row, STEPS * turn + STEPS - 1)).collect();
+        // Values that repeat as well as that are the same.
+        let by: Vec<f64> = characteristics.map(|c| (10.0 * noise[c].unwrap_or(0.0)).max(HARMLESS * moved[c])).collect();
+        self.check(ORDER, same(&self.names, &ends, &scattered.out, walked, &by));
+        self.check(AFTER, same(&self.names, &[(0, 0)], first, after, &by));
+        self.check(FAILING, same(&self.names, &[(0, 0)], first, failing, &by));
+    }
+
+    /// The results of every characteristic.
+    fn probed(&self, passes: &Passes, noise: &[Option<f64>]) -> Vec<Probed> {
+        (0..self.names.len()).map(|c| self.probed_characteristic(passes, noise[c], c)).collect()
+    }
+
+    /// The noise, steps and silent dimensions of one characteristic.
+    fn probed_characteristic(&self, passes: &Passes, noise: Option<f64>, c: usize) -> Probed {
+        let dimensions = self.asked.problem.dimensions();
+        let (varying, stepped) = (self.asked.varying(), &passes.steps.out);
+        let change = |index: usize| Some((stepped.value(2 * index, c)? - stepped.value(2 * index + 1, c)?).abs() / 2.0);
+        // Over a step of h sigmas noise makes `noise / h` of a slope that is `change` per sigma.
+        let step = |index: usize| {
+            let (change, noise) = (change(index)?, noise?);
+            (change > 10.0 * noise && change > 0.0).then_some(noise / change / SPOILT)
+        };
+        let nominal = passes.first.value(0, c);
+        let still = |row: usize| nominal.is_some() && stepped.value(row, c) == nominal;
+        let silent = (0..varying.len()).filter(|&index| still(2 * index) && still(2 * index + 1));
+        Probed {
+            name: self.names[c].clone(),
+            nominal,
+            noise,
+            least_step: (0..dimensions.len()).map(|d| varying.iter().position(|&v| v == d).and_then(step)).collect(),
+            silent: silent.map(|index| dimensions[varying[index]].name().to_owned()).collect(),
+        }
+    }
+
+    /// The results of a model that has no values at the nominal dimensions.
+    fn unknown(&self) -> Vec<Probed> {
         let unknown = |name: &String| Probed {
             name: name.clone(),
             nominal: None,
             noise: None,
-            least_step: vec![None; problem.dimensions().len()],
+            least_step: vec![None; self.asked.problem.dimensions().len()],
             silent: Vec::new(),
         };
-        let characteristics = names.iter().map(unknown).collect();
-        let run =
-            RunSummary { wall: since.elapsed(), stopped: run.stop_reason(), evaluator: problem.evaluator(), ..spent };
-        return Ok(Probe { adapter, run, start, alone, together: alone, checks, characteristics });
+        self.names.iter().map(unknown).collect()
     }
-    let begun = Instant::now();
-    let second = ask(std::slice::from_ref(&nominal));
-    let alone = begun.elapsed();
-    let scattered: Vec<Vec<f64>> = (0..SCATTERED).map(|index| asked.scattered(index)).collect();
-    let begun = Instant::now();
-    let forward = ask(&scattered);
-    let together = begun.elapsed() / SCATTERED as u32;
-    let walks: Vec<Vec<f64>> = SHUFFLED.iter().flat_map(|&row| walk(&nominal, &scattered[row])).collect();
-    let walked = ask(&walks);
-    let line: Vec<Vec<f64>> = (0..LINE).map(|index| asked.along(&nominal, CLOSE * (index as f64 - 4.0))).collect();
-    let close = ask(&line);
-    let noise: Vec<Option<f64>> = (0..names.len())
-        .map(|c| {
-            (0..LINE).map(|row| close.value(row, c)).collect::<Option<Vec<f64>>>().and_then(|values| level(&values))
-        })
-        .collect();
-    let after = ask(std::slice::from_ref(&nominal));
-    // These points may fail. The check is about the values after them.
-    let outside: Vec<Vec<f64>> = [FAR, -FAR].map(|far| asked.along(&nominal, far)).to_vec();
-    ask(&outside);
-    let failing = ask(std::slice::from_ref(&nominal));
-    let steps: Vec<Vec<f64>> = asked.steps(&nominal);
-    let stepped = ask(&steps);
+}
 
-    // Range of each output within the tolerances, over all points evaluated there.
-    let moved: Vec<f64> = (0..names.len()).map(|c| spread(&[&first, &forward, &walked, &stepped], c)).collect();
-    check(TWICE, repeats(&names, &first, &second, &moved));
-    check(NOISE, quiet(&names, &noise, &moved));
-    check(WITHIN, asked.within(&nominal, &[(&scattered, &forward), (&line, &close), (&steps, &stepped)]));
-    let ends: Vec<(usize, usize)> =
-        SHUFFLED.iter().enumerate().map(|(turn, &row)| (row, STEPS * turn + STEPS - 1)).collect();
-    // Tolerance of equality: values this close are the same.
-    let by: Vec<f64> = (0..names.len()).map(|c| (10.0 * noise[c].unwrap_or(0.0)).max(HARMLESS * moved[c])).collect();
-    let same = |rows: &[(usize, usize)], a: &Responses, b: &Responses| same(&names, rows, a, b, &by);
-    check(ORDER, same(&ends, &forward, &walked));
-    check(AFTER, same(&[(0, 0)], &first, &after));
-    check(FAILING, same(&[(0, 0)], &first, &failing));
-
-    let varying = asked.varying();
-    let characteristics = names.iter().enumerate().map(|(c, name)| {
-        let change = |index: usize| Some((stepped.value(2 * index, c)? - stepped.value(2 * index + 1, c)?).abs() / 2.0);
-        // Over a step of h sigmas, noise changes a slope of `change` per sigma by `noise / h`.
-        let step = |index: usize| {
-            let (change, noise) = (change(index)?, noise[c]?);
-            (change > 10.0 * noise && change > 0.0).then_some(noise / change / SPOILT)
-        };
-        let nominal = first.value(0, c);
-        let still = |row: usize| nominal.is_some() && stepped.value(row, c) == nominal;
-        let silent = (0..varying.len()).filter(|&index| still(2 * index) && still(2 * index + 1));
-        Probed {
-            name: name.clone(),
-            nominal,
-            noise: noise[c],
-            least_step: (0..problem.dimensions().len())
-                .map(|d| varying.iter().position(|&v| v == d).and_then(step))
-                .collect(),
-            silent: silent.map(|index| problem.dimensions()[varying[index]].name().to_owned()).collect(),
-        }
-    });
-    let characteristics: Vec<Probed> = characteristics.collect();
-    let known = |c: usize| (0..steps.len()).filter_map(|row| stepped.value(row, c)).collect::<Vec<f64>>();
+/// Returns a failure if a characteristic has its nominal value at all steps of one sigma.
+fn reacts(names: &[String], passes: &Passes) -> Finding {
     let mute = |&c: &usize| {
-        let known = known(c);
-        first.value(0, c).is_some_and(|nominal| !known.is_empty() && known.iter().all(|value| *value == nominal))
+        let known = passes.stepped(c);
+        let is_nominal = |nominal: f64| !known.is_empty() && known.iter().all(|value| *value == nominal);
+        passes.first.value(0, c).is_some_and(is_nominal)
     };
-    let unknown = |c: usize| first.value(0, c).is_none() || (!steps.is_empty() && known(c).is_empty());
-    let reacts = match (0..names.len()).find(mute) {
+    let unknown = |c: usize| {
+        passes.first.value(0, c).is_none() || (!passes.steps.rows.is_empty() && passes.stepped(c).is_empty())
+    };
+    match (0..names.len()).find(mute) {
         Some(c) => Finding::Failed(format!("`{}` is the same at every point within one sigma", names[c])),
         None if (0..names.len()).any(unknown) => Finding::NotChecked,
         None => Finding::Passed,
-    };
-    check(REACTS, reacts);
-    check(RUNS, runs(problem));
-    let run = RunSummary { wall: since.elapsed(), stopped: run.stop_reason(), evaluator: problem.evaluator(), ..spent };
-    Ok(Probe { adapter, run, start, alone, together, checks, characteristics })
+    }
 }
 
 /// Points in equal steps from one point to another, both included.
@@ -304,12 +411,12 @@ impl Asked<'_> {
         self.problem.dimensions().iter().enumerate().map(place).collect()
     }
 
-    /// Checks that all points within the tolerances have values, and names those without.
-    fn within(&self, nominal: &[f64], asked: &[(&Vec<Vec<f64>>, &Responses)]) -> Finding {
+    /// Whether all points within the tolerances have values, and which have none.
+    fn within(&self, nominal: &[f64], asked: &[&Answered]) -> Finding {
         let outputs = self.problem.outputs().len();
         let mut failed: Vec<String> = Vec::new();
         let mut points = 0;
-        for (rows, out) in asked {
+        for Answered { rows, out } in asked {
             points += rows.len();
             for (row, point) in rows.iter().enumerate() {
                 if let Some(c) = (0..outputs).find(|&c| out.value(row, c).is_none()) {

@@ -1,29 +1,25 @@
 //! Assembly function of a study: a model, formulas, or formulas on top of a model. Closure conditions may determine further values.
 
 mod driven;
+mod evaluate;
 mod exact;
 mod switches;
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, OnceLock};
 
-use crate::assembly::evaluator_account::EvaluatorAccount;
-use crate::assembly::formula::{Formula, FormulaError, FormulaSet, Meaning};
-use crate::assembly::formula::{Role, UnitFinding};
-use crate::assembly::implicit::{Anchor, Assembler, AssemblyFailure, Conditions, ConditionsError};
-use crate::assembly::responses::all_finite;
-use crate::assembly::{
+use super::evaluator_account::EvaluatorAccount;
+use super::formula::{Formula, FormulaError, FormulaSet, Meaning};
+use super::formula::{Role, UnitFinding};
+use super::implicit::{Anchor, Assembler, AssemblyFailure, Conditions, ConditionsError};
+use super::{
     AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, Input, ModelInfo, Output, Points, Polynomial,
-    Request, Responses, Run, Signature, Switches, in_blocks,
+    Request, Responses, Run, Signature, Switches,
 };
 use crate::warning::Warning;
 use sensitol_numeric::unit::Unit;
 
-/// Number of formula parts that are evaluated to explain the failures in one block of rows. It allows all failures of short formulas, and
-/// the first few of long ones. Explaining a failure evaluates every part of all formulas, without the speed of a block.
-const EXPLAINED: usize = 1 << 17;
-
-/// Source of a model's input.
+/// Where a model's input comes from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Source {
     /// Dimension of this index.
@@ -417,122 +413,7 @@ impl AssemblyFunction for Composite {
     }
 
     fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
-        let origins = self.origins(request.outputs);
-        let needs: Vec<Needs> = origins.iter().map(|&origin| self.needs(origin)).collect();
-        let Needs { answers: needed, unknowns, .. } = Needs::all(&needs);
-        let own = |(origin, output): (&Origin, &usize)| matches!(origin, Origin::Model(of) if of == output);
-        let alone = origins.len() == needed.len() && origins.iter().zip(&needed).all(own);
-        // A factor can make a value infinite, which is then an error.
-        let as_it_is = |model: &&Inner| model.factors[1].iter().all(|factor| *factor == 1.0);
-        if let Some(model) = self.model.as_ref().filter(as_it_is)
-            && alone
-            && !run.tells()
-            && self.ask_in_place(model, request.points, &run.quiet(), &needed, out)
-        {
-            // The outputs of a built-in model were answered in its own order.
-            return;
-        }
-        let (anchor, spent) = if unknowns { self.anchor(run) } else { (None, 0) };
-        let answers = self.ask_model(request.points, &run.quiet(), &needed);
-        let answer = |output: usize| needed.binary_search(&output).expect("the model was asked for it");
-        // Columns of `out` that formulas fill, and these formulas.
-        let (columns, formulas): (Vec<usize>, Vec<usize>) = (origins.iter().enumerate())
-            .filter_map(|(column, origin)| match origin {
-                Origin::Formula(formula) => Some((column, *formula)),
-                Origin::Model(_) | Origin::Unknown(_) => None,
-            })
-            .unzip();
-        let (dimensions, given) = (self.signature.inputs.len(), self.given());
-
-        // A stop must not lose answers of the model: only the model itself is stopped.
-        let run = if needed.is_empty() { *run } else { run.unstopped() };
-        in_blocks(request, &run, out, |points, rows, out| {
-            let known = |index: usize| -> &[f64] {
-                let column = match index.checked_sub(dimensions) {
-                    None => points.column(index),
-                    Some(output) => answers.column(answer(output)),
-                };
-                &column[rows.clone()]
-            };
-            let found = match (&self.assembler, &anchor) {
-                (Some(assembler), Some(Ok(anchor))) => {
-                    Some(RowSolution::of((assembler, &self.formulas), anchor, rows.len(), given, |index, row| {
-                        known(index)[row]
-                    }))
-                }
-                _ => None,
-            };
-            let nothing = vec![f64::NAN; rows.len()];
-            let variable = |index: usize| match index.checked_sub(given) {
-                None => known(index),
-                Some(unknown) => found.as_ref().map_or(&nothing[..], |found| &found.columns[unknown]),
-            };
-            // A missing answer or unknown decides the output: it gets the same error, or stays open.
-            let missing = |out: &mut Responses, row: usize, column: usize| -> bool {
-                let lacks = |&&output: &&usize| answers.value(rows.start + row, answer(output)).is_none();
-                if let Some(&output) = needs[column].answers.iter().find(lacks) {
-                    out.pass_on(row, column, &answers, rows.start + row, answer(output));
-                    return true;
-                }
-                if !needs[column].unknowns {
-                    return false;
-                }
-                match (&anchor, &found) {
-                    (Some(Err(error)), _) => out.fail(row, column, error.clone()),
-                    (_, Some(found)) => match &found.errors[row] {
-                        Some(failure) => out.fail(row, column, failure.clone().into()),
-                        None => return false,
-                    },
-                    _ => {}
-                }
-                true
-            };
-            for (column, origin) in origins.iter().enumerate() {
-                if let Origin::Model(output) = *origin
-                    && let answers = &answers.column(answer(output))[rows.clone()]
-                    && all_finite(answers)
-                {
-                    out.set_rows(0, column, answers);
-                    continue;
-                }
-                for row in 0..rows.len() {
-                    match *origin {
-                        Origin::Model(output) => out.pass_on(row, column, &answers, rows.start + row, answer(output)),
-                        Origin::Unknown(unknown) if !missing(out, row, column) => {
-                            out.set(row, column, variable(given + unknown)[row]);
-                        }
-                        Origin::Unknown(_) | Origin::Formula(_) => {}
-                    }
-                }
-            }
-            // Only so many failures are explained, because each costs an evaluation of all parts.
-            let mut explained = (EXPLAINED / self.formulas.parts().max(1)).max(1);
-            self.formulas.evaluate_blocks(&formulas, rows.len(), variable, |position, first, values| {
-                let column = columns[position];
-                if all_finite(values) {
-                    return out.set_rows(first, column, values);
-                }
-                for (row, &value) in (first..).zip(values) {
-                    if value.is_finite() {
-                        out.set(row, column, value);
-                    } else if !missing(out, row, column) {
-                        let explain = || self.formulas.explain(formulas[position], |index| variable(index)[row]);
-                        let failure = if explained > 0 { explain() } else { None };
-                        explained = explained.saturating_sub(1);
-                        let error =
-                            failure.map_or(EvaluationError::NotFinite { value }, |failure| Box::new(failure).into());
-                        out.fail(row, column, error);
-                    }
-                }
-            });
-        });
-        out.spent(spent + answers.extra() + answers.count_reused() as i64);
-        out.reused(answers.count_reused());
-        out.retried(answers.count_retried());
-        out.note_non_repeatable(answers.non_repeatable().iter().cloned());
-        answers.revoked().iter().for_each(|point| out.revoke(point.clone()));
-        let request = request.points;
-        self.pass_gradients(request, &origins, &needed, &answers, out);
+        self.evaluate_points(request, run, out);
     }
 
     fn derivatives(&self, outputs: &[usize], directions: &Directions<'_>) -> Vec<Option<Derivatives>> {

@@ -333,15 +333,7 @@ fn sought(
     run: &Run<'_>,
     pace: &dyn Fn(Pace),
 ) -> Result<RareEvents, RareError> {
-    if !(LEAST..=MOST).contains(&options.samples) {
-        return Err(RareError::Samples { samples: options.samples, least: LEAST, most: MOST });
-    }
-    if let Some(value) = options.until.filter(|wanted| wanted.is_nan() || *wanted <= 0.0) {
-        return Err(SimulationError::Wanted { value }.into());
-    }
-    if !problem.characteristics().iter().any(|one| one.limits().exist()) {
-        return Err(RareError::NoLimits);
-    }
+    options.check(problem)?;
     problem.function().prepare(problem.outputs()).map_err(|error| SimulationError::Model { error })?;
     // The surrogate comes first: its design points are the places at which points will be drawn.
     let begun = Instant::now();
@@ -358,75 +350,131 @@ fn sought(
         let explored = Explored::new(&targets, &search.reached(), options.samples, !options.seed, &mut model);
         search.learn(&explored, (options.samples / 10) as usize, &mut model);
     }
-    let (mut done, mut reached) = (surrogates.outcome.evaluated.stopped.is_some() || targets.is_empty(), None);
-    while !done {
-        let left = options.samples.saturating_sub(model.answered);
-        let stage = match options.until {
-            Some(_) => search.points.max(FIRST[0]),
-            // With many variables the first stage decides whether there is a second of its kind.
-            None if search.stages == 0 && search.has_many_variables() => {
-                (options.samples / 20).clamp(FIRST[0], FIRST[1])
-            }
-            None if search.stages < LEARNING && !search.is_plain() => (options.samples / 5).clamp(FIRST[0], FIRST[1]),
-            None => left,
-        };
-        done = search.stage(stage.min(left) as usize, &mut model);
-        if search.stages >= LEARNING || search.has_many_variables() {
-            search.judge(model.answered);
+    let nothing_to_draw = surrogates.outcome.evaluated.stopped.is_some() || targets.is_empty();
+    let mut sampled = SampledStages { problem, options, run, begun, model, search, reached: None };
+    if !nothing_to_draw {
+        sampled.draw(pace);
+    }
+    Ok(sampled.conclude(&surrogates, targets.is_empty()))
+}
+
+impl RareOptions {
+    /// Checks the numbers, and that some characteristic has a limit.
+    fn check(&self, problem: &Problem) -> Result<(), RareError> {
+        if !(LEAST..=MOST).contains(&self.samples) {
+            return Err(RareError::Samples { samples: self.samples, least: LEAST, most: MOST });
         }
-        let shortfall = search.shortfall();
-        reached = options.until.map(|wanted| shortfall <= wanted && search.confirmed(wanted));
-        let more = options.until.map_or(f64::INFINITY, |wanted| (shortfall / wanted).powi(2).max(1.0));
-        let expected = (search.points as f64 * more).min((search.points + left) as f64);
-        pace(Pace { samples: search.points, expected, elapsed: begun.elapsed() });
-        done |= model.answered >= options.samples || reached == Some(true) || run.stopped();
-        if !done && !search.is_plain() && (search.stages <= LEARNING || options.until.is_some()) {
-            let left = options.samples - model.answered;
-            search.follow((left / 4) as usize, &mut model);
+        if let Some(value) = self.until.filter(|wanted| wanted.is_nan() || *wanted <= 0.0) {
+            return Err(SimulationError::Wanted { value }.into());
+        }
+        if !problem.characteristics().iter().any(|one| one.limits().exist()) {
+            return Err(RareError::NoLimits);
+        }
+        Ok(())
+    }
+}
+
+/// Stages of points that are drawn until the accuracy or the number of points is reached.
+struct SampledStages<'s> {
+    problem: &'s Problem,
+    options: &'s RareOptions,
+    run: &'s Run<'s>,
+    begun: Instant,
+    model: Model<'s>,
+    search: Search<'s>,
+    /// True if the accuracy is reached; None without one.
+    reached: Option<bool>,
+}
+
+impl SampledStages<'_> {
+    /// Draws stage after stage; places and parts follow the rejects of each.
+    fn draw(&mut self, pace: &dyn Fn(Pace)) {
+        let options = self.options;
+        let mut done = false;
+        while !done {
+            let left = options.samples.saturating_sub(self.model.answered);
+            let stage = self.stage_points(left);
+            let (search, model) = (&mut self.search, &mut self.model);
+            done = search.stage(stage.min(left) as usize, model);
+            if search.stages >= LEARNING || search.has_many_variables() {
+                search.judge(model.answered);
+            }
+            let shortfall = search.shortfall();
+            self.reached = options.until.map(|wanted| shortfall <= wanted && search.confirmed(wanted));
+            let more = options.until.map_or(f64::INFINITY, |wanted| (shortfall / wanted).powi(2).max(1.0));
+            let expected = (search.points as f64 * more).min((search.points + left) as f64);
+            pace(Pace { samples: search.points, expected, elapsed: self.begun.elapsed() });
+            done |= model.answered >= options.samples || self.reached == Some(true) || self.run.stopped();
+            if !done && !search.is_plain() && (search.stages <= LEARNING || options.until.is_some()) {
+                let left = options.samples - model.answered;
+                search.follow((left / 4) as usize, model);
+            }
         }
     }
-    // The results count the evaluations of the surrogate and of the search together.
-    let surrogate = &surrogates.outcome.evaluated;
-    let spent = surrogate.summary();
-    let drawn = RunSummary {
-        evaluations: model.answered.saturating_add_signed(model.extra),
-        cached: model.reused,
-        retried: model.retried,
-        failed: model.failed,
-        stages: model.stages,
-        wall: begun.elapsed(),
-        in_model: model.in_model,
-        seed: Some(options.seed),
-        ..RunSummary::default()
-    };
-    let open = || reached != Some(true) && model.answered < options.samples && !targets.is_empty();
-    let stopped = surrogate.stopped.or_else(|| open().then(|| run.why_open()));
-    let non_repeatable: Vec<NonRepeatable> =
-        surrogate.non_repeatable.iter().chain(&model.non_repeatable).cloned().collect();
-    let samples = search.points;
-    let (joint, joint_interval) = search.within_all(problem).unzip();
-    let joint = joint.flatten();
-    let characteristics = search.characteristics(&model, stopped.is_some());
-    let characteristics = measured::with_sampling(problem, &surrogates.outcome, characteristics);
-    let joint_interval = joint_interval.map(|interval| measured::joint(joint, interval, &characteristics));
-    let joint_requirement = options.surrogate.target_joint_yield.filter(|_| joint_interval.is_some());
-    let joint_requirement = joint_requirement
-        .map(|target| Judged::of(Requirement::Yield(target), joint, joint_interval).unless(stopped.is_some()));
-    let run = RunSummary { stopped, evaluator: problem.evaluator(), ..drawn.and(&spent) };
-    let warnings = warnings::of(&characteristics, samples, run.evaluations);
-    Ok(RareEvents {
-        method: surrogates.outcome.method,
-        run,
-        samples,
-        surrogate_evaluations: spent.evaluations,
-        reached,
-        warnings: warnings.into_iter().chain(history(problem, &non_repeatable)).collect(),
-        non_repeatable,
-        joint,
-        joint_interval,
-        joint_requirement,
-        characteristics,
-    })
+
+    /// The points of the next stage, where so many are left.
+    fn stage_points(&self, left: u64) -> u64 {
+        let (search, samples) = (&self.search, self.options.samples);
+        match self.options.until {
+            Some(_) => search.points.max(FIRST[0]),
+            // In many variables the first stage decides whether there is a second of its kind.
+            None if search.stages == 0 && search.has_many_variables() => (samples / 20).clamp(FIRST[0], FIRST[1]),
+            None if search.stages < LEARNING && !search.is_plain() => (samples / 5).clamp(FIRST[0], FIRST[1]),
+            None => left,
+        }
+    }
+
+    /// The points and time of the drawn points, without those of the surrogate.
+    fn drawn(&self) -> RunSummary {
+        let model = &self.model;
+        RunSummary {
+            evaluations: model.answered.saturating_add_signed(model.extra),
+            cached: model.reused,
+            retried: model.retried,
+            failed: model.failed,
+            stages: model.stages,
+            wall: self.begun.elapsed(),
+            in_model: model.in_model,
+            seed: Some(self.options.seed),
+            ..RunSummary::default()
+        }
+    }
+
+    /// The results of all stages and of the surrogate.
+    fn conclude(self, surrogates: &Surrogates, no_targets: bool) -> RareEvents {
+        let drawn = self.drawn();
+        let Self { problem, options, run, model, search, reached, .. } = self;
+        let surrogate = &surrogates.outcome.evaluated;
+        let spent = surrogate.summary();
+        let open = || reached != Some(true) && model.answered < options.samples && !no_targets;
+        let stopped = surrogate.stopped.or_else(|| open().then(|| run.why_open()));
+        let non_repeatable: Vec<NonRepeatable> =
+            surrogate.non_repeatable.iter().chain(&model.non_repeatable).cloned().collect();
+        let samples = search.points;
+        let (joint, joint_interval) = search.within_all(problem).unzip();
+        let joint = joint.flatten();
+        let characteristics = search.characteristics(&model, stopped.is_some());
+        let characteristics = measured::with_sampling(problem, &surrogates.outcome, characteristics);
+        let joint_interval = joint_interval.map(|interval| measured::joint(joint, interval, &characteristics));
+        let joint_requirement = options.surrogate.target_joint_yield.filter(|_| joint_interval.is_some());
+        let joint_requirement = joint_requirement
+            .map(|target| Judged::of(Requirement::Yield(target), joint, joint_interval).unless(stopped.is_some()));
+        let run = RunSummary { stopped, evaluator: problem.evaluator(), ..drawn.and(&spent) };
+        let warnings = warnings::of(&characteristics, samples, run.evaluations);
+        RareEvents {
+            method: surrogates.outcome.method,
+            run,
+            samples,
+            surrogate_evaluations: spent.evaluations,
+            reached,
+            warnings: warnings.into_iter().chain(history(problem, &non_repeatable)).collect(),
+            non_repeatable,
+            joint,
+            joint_interval,
+            joint_requirement,
+            characteristics,
+        }
+    }
 }
 
 /// Targets: every limit of every characteristic whose surrogate varies.

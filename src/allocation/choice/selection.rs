@@ -7,7 +7,7 @@ use crate::allocation::choice::single_offer::Setting;
 use crate::allocation::cost::cost_curve::Priced;
 use crate::allocation::requirement::constraint::{Constraint, kept};
 use crate::allocation::result::allocation::{AllocationSolver, Attainable, Proof};
-use crate::allocation::result::solver_result::{Solved, Starts};
+use crate::allocation::result::solver_result::{Chosen as ChosenOffers, Solved, Starts};
 
 /// Cheapest tolerances at fixed derivatives, without set-up costs.
 pub(in crate::allocation) fn choose_alone(setting: &Setting<'_>, start: &[f64]) -> Choice {
@@ -28,60 +28,13 @@ pub(in crate::allocation) fn choose_alone(setting: &Setting<'_>, start: &[f64]) 
             return Choice::Infeasible(unattainable(setting, constraint, &at), at);
         }
     }
-    let found = if free {
-        setting.solve(start).map(|solved| {
-            let fixed = setting.priced.iter().all(|group| group.tightest() == group.loosest());
-            let residual = if solved.converged { solved.residual } else { solved.residual.max(f64::MIN_POSITIVE) };
-            let Starts { begun, reached, other } = solved.starts;
-            let several = (begun > 1).then_some((begun, reached));
-            let exact = setting.is_exact();
-            let proof = Proof {
-                solver: Some(match solved.sequential {
-                    true => AllocationSolver::SequentialQuadratic,
-                    false if exact => AllocationSolver::DualNewton,
-                    false => AllocationSolver::Separable,
-                }),
-                residual: (!fixed).then_some(residual),
-                closed_form: solved.closed,
-                starts: several.map(|(begun, _)| begun),
-                reached: several.map(|(_, reached)| reached),
-                other_optimum: other,
-                ..Proof::default()
-            };
-            (solved, vec![0; setting.priced.len()], proof)
-        })
-    } else {
-        branch(*setting, start).map(|Chosen { solved, offers, bound, nodes, rigorous }| {
-            let curved =
-                setting.priced.iter().zip(&offers).any(|(group, &o)| group.offers[o].min < group.offers[o].max);
-            let residual = curved.then_some(solved.residual);
-            let bound = bound.is_finite().then_some(bound);
-            let solver = Some(AllocationSolver::BranchAndBound);
-            let proof = Proof { solver, residual, bound, rigorous, nodes, ..Proof::default() };
-            (solved, offers, proof)
-        })
-    };
+    let found = if free { choose_free(setting, start) } else { choose_listed(setting, start) };
     match found {
         Some((solved, offers, proof)) => Choice::Found { solved, offers, proof },
         None if (setting.stopped)() => Choice::Stopped,
-        // Nothing cheaper was found, so the start is the result, without a proof.
-        None if here => Choice::Found {
-            solved: Solved {
-                at: start.to_vec(),
-                cost: setting.cost(start),
-                multipliers: vec![0.0; setting.constraints.len()],
-                residual: f64::INFINITY,
-                value: setting.value(start),
-                closed: false,
-                converged: false,
-                sequential: false,
-                starts: Starts::default(),
-            },
-            offers: vec![0; setting.priced.len()],
-            proof: Proof { residual: Some(f64::INFINITY), ..Proof::default() },
-        },
-        // Each constraint can be kept alone. The result names the one with the largest value at the tightest
-        // tolerances.
+        // Nothing cheaper is found: the start itself, of which nothing is proven.
+        None if here => unproven(setting, start),
+        // Each can be kept by itself: the one that is farthest off where all are tightest.
         None => {
             let value = |one: &&Constraint| one.value(setting.responses, setting.priced, &tight);
             let worst = setting.constraints.iter().max_by(|a, b| value(a).total_cmp(&value(b)));
@@ -93,7 +46,63 @@ pub(in crate::allocation) fn choose_alone(setting: &Setting<'_>, start: &[f64]) 
     }
 }
 
-/// True if some process of each group may hold these half bands.
+/// The cheapest tolerances where every group has one offer.
+fn choose_free(setting: &Setting<'_>, start: &[f64]) -> Option<ChosenOffers> {
+    setting.solve(start).map(|solved| {
+        let fixed = setting.priced.iter().all(|group| group.tightest() == group.loosest());
+        let residual = if solved.converged { solved.residual } else { solved.residual.max(f64::MIN_POSITIVE) };
+        let Starts { begun, reached, other } = solved.starts;
+        let several = (begun > 1).then_some((begun, reached));
+        let exact = setting.is_exact();
+        let proof = Proof {
+            solver: Some(match solved.sequential {
+                true => AllocationSolver::SequentialQuadratic,
+                false if exact => AllocationSolver::DualNewton,
+                false => AllocationSolver::Separable,
+            }),
+            residual: (!fixed).then_some(residual),
+            closed_form: solved.closed,
+            starts: several.map(|(begun, _)| begun),
+            reached: several.map(|(_, reached)| reached),
+            other_optimum: other,
+            ..Proof::default()
+        };
+        (solved, vec![0; setting.priced.len()], proof)
+    })
+}
+
+/// The cheapest choice of processes where groups have several offers.
+fn choose_listed(setting: &Setting<'_>, start: &[f64]) -> Option<ChosenOffers> {
+    branch(*setting, start).map(|Chosen { solved, offers, bound, nodes, rigorous }| {
+        let curved = setting.priced.iter().zip(&offers).any(|(group, &o)| group.offers[o].min < group.offers[o].max);
+        let residual = curved.then_some(solved.residual);
+        let bound = bound.is_finite().then_some(bound);
+        let solver = Some(AllocationSolver::BranchAndBound);
+        let proof = Proof { solver, residual, bound, rigorous, nodes, ..Proof::default() };
+        (solved, offers, proof)
+    })
+}
+
+/// The start as a choice without a proof.
+fn unproven(setting: &Setting<'_>, start: &[f64]) -> Choice {
+    Choice::Found {
+        solved: Solved {
+            at: start.to_vec(),
+            cost: setting.cost(start),
+            multipliers: vec![0.0; setting.constraints.len()],
+            residual: f64::INFINITY,
+            value: setting.value(start),
+            closed: false,
+            converged: false,
+            sequential: false,
+            starts: Starts::default(),
+        },
+        offers: vec![0; setting.priced.len()],
+        proof: Proof { residual: Some(f64::INFINITY), ..Proof::default() },
+    }
+}
+
+/// Whether some process of each group may hold these half bands.
 pub(in crate::allocation) fn within_bounds(priced: &[Priced], at: &[f64]) -> bool {
     priced.iter().zip(at).all(|(group, t)| (group.tightest()..=group.loosest()).contains(t))
 }

@@ -43,132 +43,142 @@ impl Driver<'_> {
         original: &Problem,
         end: SearchEnd,
     ) -> Result<(), AllocateError> {
-        let SearchEnd { station, last, constraints, ended, trial, is_start } = end;
-        let constraints = &constraints[..];
-        allocation.moved = moved(original, &station.problem);
-        if last.is_none() && allocation.moved.is_empty() {
-            let finished = self.task.priced.is_empty() && ended.agreed;
+        allocation.moved = moved(original, &end.station.problem);
+        if end.last.is_none() && allocation.moved.is_empty() {
+            let finished = self.task.priced.is_empty() && end.ended.agreed;
             if !finished {
                 return Ok(());
             }
         }
-        let stopped = || self.run.stopped();
-        let ones = vec![1.0; station.problem.dimensions().len()];
-        let values: Vec<f64> = constraints.iter().map(|one| one.value_at(&station.responses, &ones)).collect();
-        let met = values.iter().all(|&value| kept_within(value, self.task.goal));
-        let solved = last.as_ref().map(|(solved, ..)| solved);
-        if let Some((solved, offers, proof)) = &last {
-            let loss = self.loss_at(&station);
-            let cost = cost(&self.task.priced, &solved.at, offers)
-                + loss.unwrap_or(f64::NAN)
-                + self.set_up(allocation, offers);
-            let gap = |bound: f64| ((cost - bound) / cost.abs().max(f64::MIN_POSITIVE)).max(0.0);
-            let together = ended.at_rest.map(|_| AllocationSolver::AugmentedLagrangian);
-            let solver = together.or(proof.solver);
-            allocation.proof = Proof { solver, gap: proof.bound.map(gap), ..proof.clone() };
-            allocation.cost_after = Some(cost).filter(|cost| cost.is_finite());
-            allocation.loss[1] = loss.filter(|_| !self.task.losses.is_empty());
-            allocation.tolerances = self.allocated(original, &solved.at, offers);
-            if is_start {
-                // Nothing has changed, so the costs are those before, for any process.
-                (allocation.cost_after, allocation.loss[1]) = (allocation.cost_before, allocation.loss[0]);
-                allocation.tolerances = self.unchanged(original);
-                allocation.tolerances.iter_mut().for_each(|one| one.cost_after = one.cost_before);
-            }
-            let free = self.task.priced.iter().all(|group| group.offers.len() == 1);
-            // Multipliers are no shadow prices for a level that is sought, or for fixed proportions.
-            if free && self.task.goal == Goal::LeastCost && !self.task.basis.is_proportion() {
-                let (responses, priced) = (&station.responses, &self.task.priced);
-                let (losses, setups) = (&self.task.losses, &self.task.setups);
-                let setting =
-                    Setting { responses, priced, constraints, losses, setups, stopped: &stopped, anywhere: false };
-                allocation.prices = prices(&setting, solved);
-                self.price_bounds(allocation, &setting, solved);
-            }
+        let judged = JudgedEnd::of(allocation, &end);
+        self.conclude_tolerances(allocation, original, &end);
+        allocation.confirmed = end.ended.within_budget && !self.spent.stopped;
+        allocation.status = self.status(&end, &judged);
+        if allocation.status == Status::Infeasible {
+            allocation.attainable = judged.farthest_missed(original, &end);
         }
-        let analysis = trial.as_ref().map_or(&station.analysis, |trial| &trial.analysis);
-        let judged = |one: &Kept| analysis.characteristics[one.characteristic].judge(one.requirement);
-        let judged: Vec<Judged> = allocation.requirements.iter().map(judged).collect();
-        let joint_now = allocation.joint_requirement.as_ref().and(analysis.joint_requirement);
-        let verdict = worst(judged.iter().chain(&joint_now).map(|judged| judged.verdict)).unwrap_or(Verdict::Met);
-        // If an error is unknown nothing can be met, and nothing speaks against the result.
-        let open = trial.as_ref().is_some_and(|trial| !trial.is_kept() && !trial.is_unknown());
-        let open = open && self.task.goal == Goal::LeastCost || verdict == Verdict::Missed;
-        let reached = ended.within_budget && !self.spent.stopped;
-        allocation.confirmed = reached;
-        allocation.status = match &last {
+        // A budget that ended before the model was asked at these tolerances leaves nothing to say of them.
+        if let (false, Some((solved, offers, _))) = (end.ended.within_budget, &end.last) {
+            allocation.problem = with_choice(end.station.problem.clone(), &self.task.priced, &solved.at, offers)?;
+            return Ok(());
+        }
+        allocation.requirements.iter_mut().zip(judged.requirements).for_each(|(one, judged)| one.after = Some(judged));
+        allocation.joint_requirement.iter_mut().for_each(|one| one.after = judged.joint);
+        self.conclude_alternatives(allocation, original, &end);
+        if let (Some(samples), false) = (self.options.confirm, self.spent.stopped) {
+            self.confirm(allocation, &end.station.problem, &judged.analysis.characteristics, samples)?;
+        }
+        let station = &end.station;
+        allocation.after = Some(match &end.trial {
+            Some(trial) => self.completed_trial(trial, &station.findings),
+            None => self.completed(station.analysis.clone(), &station.findings, &station.problem),
+        });
+        allocation.problem = station.problem.clone();
+        Ok(())
+    }
+
+    /// The requirements at a station, on the tolerances of the task.
+    fn setting<'s>(
+        &'s self,
+        station: &'s LinearizationPoint,
+        constraints: &'s [Constraint],
+        stopped: &'s (dyn Fn() -> bool + Sync),
+    ) -> Setting<'s> {
+        let (responses, priced) = (&station.responses, &self.task.priced);
+        let (losses, setups) = (&self.task.losses, &self.task.setups);
+        Setting { responses, priced, constraints, losses, setups, stopped, anywhere: false }
+    }
+
+    /// The tolerances chosen, with their proof, their cost, and the prices of what holds it up.
+    fn conclude_tolerances(&self, allocation: &mut Allocation, original: &Problem, end: &SearchEnd) {
+        let Some((solved, offers, proof)) = &end.last else { return };
+        let loss = self.loss_at(&end.station);
+        let cost =
+            cost(&self.task.priced, &solved.at, offers) + loss.unwrap_or(f64::NAN) + self.set_up(allocation, offers);
+        let gap = |bound: f64| ((cost - bound) / cost.abs().max(f64::MIN_POSITIVE)).max(0.0);
+        let together = end.ended.at_rest.map(|_| AllocationSolver::AugmentedLagrangian);
+        let solver = together.or(proof.solver);
+        allocation.proof = Proof { solver, gap: proof.bound.map(gap), ..proof.clone() };
+        allocation.cost_after = Some(cost).filter(|cost| cost.is_finite());
+        allocation.loss[1] = loss.filter(|_| !self.task.losses.is_empty());
+        allocation.tolerances = self.allocated(original, &solved.at, offers);
+        if end.is_start {
+            // Nothing has changed, whatever process holds it.
+            (allocation.cost_after, allocation.loss[1]) = (allocation.cost_before, allocation.loss[0]);
+            allocation.tolerances = self.unchanged(original);
+            allocation.tolerances.iter_mut().for_each(|one| one.cost_after = one.cost_before);
+        }
+        let free = self.task.priced.iter().all(|group| group.offers.len() == 1);
+        // Of a level that is sought, and of proportions that are fixed, multipliers are not what a limit costs.
+        if free && self.task.goal == Goal::LeastCost && !self.task.basis.is_proportion() {
+            let stopped = || self.run.stopped();
+            let setting = self.setting(&end.station, &end.constraints, &stopped);
+            allocation.prices = prices(&setting, solved);
+            self.price_bounds(allocation, &setting, solved);
+        }
+    }
+
+    /// The status of an end by the way that it ended, its verdict and its proof.
+    fn status(&self, end: &SearchEnd, judged: &JudgedEnd<'_>) -> Status {
+        let met = judged.values.iter().all(|&value| kept_within(value, self.task.goal));
+        // Where no error is known nothing could be met, and nothing is said against it.
+        let open = end.trial.as_ref().is_some_and(|trial| !trial.is_kept() && !trial.is_unknown());
+        let open = open && self.task.goal == Goal::LeastCost || judged.verdict == Verdict::Missed;
+        match &end.last {
             _ if self.spent.stopped => Status::OutOfTime,
             // Only nominal values were to be chosen. What they cannot reach needs tighter tolerances.
             None if !met => Status::Infeasible,
-            Some(_) | None if open && ended.within_budget => status_of_missed(verdict),
-            None if ended.agreed => Status::Optimal,
+            Some(_) | None if open && end.ended.within_budget => status_of_missed(judged.verdict),
+            None if end.ended.agreed => Status::Optimal,
             None => Status::AlmostOptimal,
-            Some((solved, _, proof)) => {
-                // Slopes from samples, or from a surface that the model refutes, prove nothing.
-                let followed = |c: usize| {
-                    let left = station.analysis.characteristics[c].verification.as_ref().and_then(|of| of.left);
-                    !station.responses.is_sampled(c) && left.is_none_or(|left| left <= TRUSTED)
-                };
-                let trusted = constraints.iter().all(|one| {
-                    one.characteristics(&station.responses).into_iter().all(followed)
-                        || one.requirement == Requirement::WorstCase
-                }) && self.task.losses.iter().all(|loss| followed(loss.characteristic));
-                let proven = trusted
-                    && proof.residual.is_none_or(|residual| residual <= OPTIMAL)
-                    && proof.bound.is_none_or(|bound| {
-                        proof.rigorous && solved.cost - bound <= NO_GAP * solved.cost.abs().max(f64::MIN_POSITIVE)
-                    });
-                let at_rest = ended.at_rest.is_none_or(|residual| residual <= OPTIMAL);
-                let recentred = !self.options.recentre.is_empty();
-                match proven && at_rest && ended.agreed && met {
-                    true if recentred && ended.at_rest.is_none() => Status::AlmostOptimal,
-                    true if self.is_certified(&station, constraints, (solved, proof), recentred) => Status::Optimal,
-                    true => Status::LocalOptimum,
-                    false => Status::AlmostOptimal,
-                }
-            }
-        };
-        if allocation.status == Status::Infeasible {
-            let worst = values.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).map(|(k, _)| k);
-            allocation.attainable = worst.map(|k| {
-                let one = &constraints[k];
-                Attainable {
-                    characteristic: one.characteristic,
-                    unit: unit(original, one.characteristic),
-                    requirement: one.requirement,
-                    joint: one.is_joint(),
-                    best: match one.is_joint() {
-                        true => joint_now.and_then(|joint| joint.value),
-                        false => analysis.characteristics[one.characteristic].judge(one.requirement).value,
-                    },
-                    because: Vec::new(),
-                    together: false,
-                }
+            Some((solved, _, proof)) => self.status_by_proof(end, met, (solved, proof)),
+        }
+    }
+
+    /// The status of tolerances that nothing speaks against.
+    fn status_by_proof(&self, end: &SearchEnd, met: bool, (solved, proof): (&Solved, &Proof)) -> Status {
+        let proven = self.has_true_slopes(&end.station, &end.constraints)
+            && proof.residual.is_none_or(|residual| residual <= OPTIMAL)
+            && proof.bound.is_none_or(|bound| {
+                proof.rigorous && solved.cost - bound <= NO_GAP * solved.cost.abs().max(f64::MIN_POSITIVE)
             });
+        let at_rest = end.ended.at_rest.is_none_or(|residual| residual <= OPTIMAL);
+        let recentred = !self.options.recentre.is_empty();
+        match proven && at_rest && end.ended.agreed && met {
+            true if recentred && end.ended.at_rest.is_none() => Status::AlmostOptimal,
+            true if self.is_certified(&end.station, &end.constraints, (solved, proof), recentred) => Status::Optimal,
+            true => Status::LocalOptimum,
+            false => Status::AlmostOptimal,
         }
-        // If the budget ended before the model was evaluated at these tolerances, nothing is known about them.
-        if let (false, Some((solved, offers, _))) = (ended.within_budget, &last) {
-            allocation.problem = with_choice(station.problem.clone(), &self.task.priced, &solved.at, offers)?;
-            return Ok(());
-        }
-        allocation.requirements.iter_mut().zip(judged).for_each(|(one, judged)| one.after = Some(judged));
-        allocation.joint_requirement.iter_mut().for_each(|one| one.after = joint_now);
-        if let (Some(solved), false) = (solved, self.spent.stopped) {
-            let (losses, setups) = (&self.task.losses, &self.task.setups);
-            let (responses, priced) = (&station.responses, &self.task.priced);
-            let setting =
-                Setting { responses, priced, constraints, losses, setups, stopped: &stopped, anywhere: false };
+    }
+
+    /// Returns true if the slopes of everything that is required and lost are those of the model.
+    fn has_true_slopes(&self, station: &LinearizationPoint, constraints: &[Constraint]) -> bool {
+        // Slopes of a surface that the model refutes, and those of samples, prove nothing.
+        let followed = |c: usize| {
+            let left = station.analysis.characteristics[c].verification.as_ref().and_then(|of| of.left);
+            !station.responses.is_sampled(c) && left.is_none_or(|left| left <= TRUSTED)
+        };
+        constraints.iter().all(|one| {
+            one.characteristics(&station.responses).into_iter().all(followed)
+                || one.requirement == Requirement::WorstCase
+        }) && self.task.losses.iter().all(|loss| followed(loss.characteristic))
+    }
+
+    /// The cost without steps and grades, the common factors that are left, and the front of costs.
+    fn conclude_alternatives(&self, allocation: &mut Allocation, original: &Problem, end: &SearchEnd) {
+        let station = &end.station;
+        let solved = end.last.as_ref().map(|(solved, ..)| solved).filter(|_| !self.spent.stopped);
+        let stopped = || self.run.stopped();
+        let setting = self.setting(station, &end.constraints, &stopped);
+        if let Some(solved) = solved {
             allocation.cost_unrounded = unrounded(&setting, solved);
         }
         // Derivatives that the search did not follow do not give the remaining slack.
         let followed = allocation.proof.solver != Some(AllocationSolver::VerifiedSearch);
-        allocation.loosest_after = loosest(&station.responses, constraints).filter(|_| followed);
+        allocation.loosest_after = loosest(&station.responses, &end.constraints).filter(|_| followed);
         allocation.joint[1] = joint(&station.problem, &station.responses, self.options.seed);
-        if let (Some(points), Some(solved), false) = (self.options.front, solved, self.spent.stopped) {
-            let (responses, priced) = (&station.responses, &self.task.priced);
-            let (losses, setups) = (&self.task.losses, &self.task.setups);
-            let setting =
-                Setting { responses, priced, constraints, losses, setups, stopped: &stopped, anywhere: false };
+        if let (Some(points), Some(solved)) = (self.options.front, solved) {
             let joint = self.task.joint_target(original, self.options);
             allocation.front = front(&setting, original, &self.task.requirements, joint, points, &solved.at);
             let group = |d: usize| self.task.priced.iter().position(|group| group.members.contains(&d));
@@ -179,15 +189,6 @@ impl Driver<'_> {
                 });
             }
         }
-        if let (Some(samples), false) = (self.options.confirm, self.spent.stopped) {
-            self.confirm(allocation, &station.problem, &analysis.characteristics, samples)?;
-        }
-        allocation.after = Some(match &trial {
-            Some(trial) => self.completed_trial(trial, &station.findings),
-            None => self.completed(station.analysis.clone(), &station.findings, &station.problem),
-        });
-        allocation.problem = station.problem.clone();
-        Ok(())
     }
 
     /// Analysis of a trial, with the results that are only reported.
@@ -217,8 +218,7 @@ impl Driver<'_> {
         let loosest =
             self.task.losses.is_empty() && priced.iter().zip(&solved.at).all(|(group, &t)| t >= group.loosest());
         let stopped = || false;
-        let (responses, losses, setups) = (&station.responses, &self.task.losses, &self.task.setups);
-        let setting = Setting { responses, priced, constraints, losses, setups, stopped: &stopped, anywhere: false };
+        let setting = self.setting(station, constraints, &stopped);
         let bilinear = recentred && constraints.iter().any(|one| matches!(one.requirement, Requirement::Yield(_)));
         free && loosest
             || free && setting.is_convex() && !bilinear
@@ -349,8 +349,54 @@ impl Driver<'_> {
     }
 }
 
-/// Cost of the cheapest tolerances that need not be steps or grades. Returns None if there is no such rounding, and if
-/// they are not found.
+/// The requirements at the end of a search.
+struct JudgedEnd<'e> {
+    /// The analysis of the trial, or of the station where none was made.
+    analysis: &'e Analysis,
+    /// The values of the constraints; kept where they are at most 1.
+    values: Vec<f64>,
+    /// The requirements of the allocation, in its order.
+    requirements: Vec<Judged>,
+    joint: Option<Judged>,
+    /// The worst verdict of all.
+    verdict: Verdict,
+}
+
+impl<'e> JudgedEnd<'e> {
+    /// Judges the requirements of an allocation where its search ended.
+    fn of(allocation: &Allocation, end: &'e SearchEnd) -> Self {
+        let ones = vec![1.0; end.station.problem.dimensions().len()];
+        let values = end.constraints.iter().map(|one| one.value_at(&end.station.responses, &ones)).collect();
+        let analysis = end.trial.as_ref().map_or(&end.station.analysis, |trial| &trial.analysis);
+        let judged = |one: &Kept| analysis.characteristics[one.characteristic].judge(one.requirement);
+        let requirements: Vec<Judged> = allocation.requirements.iter().map(judged).collect();
+        let joint = allocation.joint_requirement.as_ref().and(analysis.joint_requirement);
+        let verdict = worst(requirements.iter().chain(&joint).map(|judged| judged.verdict)).unwrap_or(Verdict::Met);
+        Self { analysis, values, requirements, joint, verdict }
+    }
+
+    /// The best of the constraint that is farthest from being kept.
+    fn farthest_missed(&self, original: &Problem, end: &SearchEnd) -> Option<Attainable> {
+        let worst = self.values.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).map(|(k, _)| k);
+        worst.map(|k| {
+            let one = &end.constraints[k];
+            Attainable {
+                characteristic: one.characteristic,
+                unit: unit(original, one.characteristic),
+                requirement: one.requirement,
+                joint: one.is_joint(),
+                best: match one.is_joint() {
+                    true => self.joint.and_then(|joint| joint.value),
+                    false => self.analysis.characteristics[one.characteristic].judge(one.requirement).value,
+                },
+                because: Vec::new(),
+                together: false,
+            }
+        })
+    }
+}
+
+/// The cost of the cheapest tolerances that need not be steps or grades; None where none need be, or they are not found.
 fn unrounded(setting: &Setting<'_>, solved: &Solved) -> Option<f64> {
     if setting.priced.iter().all(|group| group.rounded.is_none()) {
         return None;

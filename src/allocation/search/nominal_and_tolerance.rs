@@ -51,86 +51,121 @@ pub(in crate::allocation) fn together(
     if !free || (groups + of.len()) * setting.constraints.len() > MOST {
         return None;
     }
-    let responses = setting.responses;
-    let dimensions = responses.dimensions.len();
-    let ones = vec![1.0; dimensions];
-    let widths: Vec<f64> =
-        setting.constraints.iter().map(|one| one.width(responses, &ones)).collect::<Option<Vec<f64>>>()?;
-    // The unknowns are ln T of the groups, then the moves of the nominal values in sigmas.
-    let places = |x: &[f64]| {
-        let t: Vec<f64> = x[..groups].iter().map(|x| libm::exp(*x)).collect();
-        let mut shifts = vec![0.0; dimensions];
-        of.iter().zip(&x[groups..]).for_each(|(&d, &shift)| shifts[d] = shift);
-        (responses.factors(setting.priced, &t), shifts)
-    };
-    let values = |x: &[f64]| -> Option<Vec<f64>> {
-        let (factors, shifts) = places(x);
-        let of = |(one, width): (&Constraint, &f64)| one.excess(responses, &factors, &shifts, *width);
-        setting.constraints.iter().zip(&widths).map(of).collect()
-    };
-    let rows = |x: &[f64]| -> Option<Vec<Slope>> {
-        let mut rows: Vec<Slope> = values(x)?.into_iter().map(|value| (value, vec![0.0; x.len()])).collect();
+    let ones = vec![1.0; setting.responses.dimensions.len()];
+    let widths =
+        setting.constraints.iter().map(|one| one.width(setting.responses, &ones)).collect::<Option<Vec<f64>>>()?;
+    let scale = setting.cost(at).abs().max(f64::MIN_POSITIVE);
+    let unknowns = Unknowns { setting, of, bounds, widths, scale };
+    let Ended { x, residual, .. } = unknowns.cheapest(at)?;
+    let [ln, shifts] = [&x[..groups], &x[groups..]];
+    Some(Together { shifts: shifts.to_vec(), at: ln.iter().map(|x| libm::exp(*x)).collect(), residual })
+}
+
+/// The problem by its unknowns `x`: `ln T` of the groups, then the shifts of the movable dimensions.
+struct Unknowns<'s> {
+    setting: &'s Setting<'s>,
+    /// The movable dimensions, and bounds of their shifts.
+    of: &'s [usize],
+    bounds: &'s [[f64; 2]],
+    /// `w` of every constraint.
+    widths: Vec<f64>,
+    /// The cost by which all costs are divided.
+    scale: f64,
+}
+
+impl Unknowns<'_> {
+    /// Half bands of the groups.
+    fn half_bands(&self, x: &[f64]) -> Vec<f64> {
+        x[..self.setting.priced.len()].iter().map(|x| libm::exp(*x)).collect()
+    }
+
+    /// The factors of all tolerances, and the shifts of all dimensions.
+    fn places(&self, x: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let responses = self.setting.responses;
+        let mut shifts = vec![0.0; responses.dimensions.len()];
+        self.of.iter().zip(&x[self.setting.priced.len()..]).for_each(|(&d, &shift)| shifts[d] = shift);
+        (responses.factors(self.setting.priced, &self.half_bands(x)), shifts)
+    }
+
+    /// The excess of every constraint.
+    fn values(&self, x: &[f64]) -> Option<Vec<f64>> {
+        let (factors, shifts) = self.places(x);
+        let excess = |(one, width): (&Constraint, &f64)| one.excess(self.setting.responses, &factors, &shifts, *width);
+        self.setting.constraints.iter().zip(&self.widths).map(excess).collect()
+    }
+
+    /// The excess of every constraint with its slopes.
+    fn rows(&self, x: &[f64]) -> Option<Vec<Slope>> {
+        let mut rows: Vec<Slope> = self.values(x)?.into_iter().map(|value| (value, vec![0.0; x.len()])).collect();
         let mut moved = x.to_vec();
         for j in 0..x.len() {
             moved[j] = x[j] + STEP;
-            let up = values(&moved)?;
+            let up = self.values(&moved)?;
             moved[j] = x[j] - STEP;
-            let down = values(&moved)?;
+            let down = self.values(&moved)?;
             moved[j] = x[j];
             rows.iter_mut()
                 .zip(up.iter().zip(down))
                 .for_each(|(row, (up, down))| row.1[j] = (up - down) / (2.0 * STEP));
         }
         Some(rows)
-    };
-    let within = |t: &[f64]| -> Vec<f64> {
-        let clamped =
-            setting.priced.iter().zip(t).map(|(group, t)| libm::log(t.clamp(group.tightest(), group.loosest())));
-        clamped.chain(bounds.iter().map(|&[low, high]| 0.0f64.clamp(low, high))).collect()
-    };
-    let scale = setting.cost(at).abs().max(f64::MIN_POSITIVE);
-    let lost = |x: &[f64]| -> f64 {
-        let (factors, shifts) = places(x);
-        setting.losses.iter().map(|loss| loss.at(responses, &factors, Some(&shifts)).unwrap_or(f64::NAN)).sum()
-    };
-    let objective = |x: &[f64]| {
-        let t: Vec<f64> = x[..groups].iter().map(|x| libm::exp(*x)).collect();
-        let (value, mut slopes) = cost(setting.priced, &t, x);
+    }
+
+    /// The cost of deviations and rejects.
+    fn lost(&self, x: &[f64]) -> f64 {
+        let (factors, shifts) = self.places(x);
+        let losses = self.setting.losses.iter();
+        losses.map(|loss| loss.at(self.setting.responses, &factors, Some(&shifts)).unwrap_or(f64::NAN)).sum()
+    }
+
+    /// The cost of tolerances and losses, with its slopes.
+    fn objective(&self, x: &[f64]) -> Slope {
+        let scale = self.scale;
+        let (value, mut slopes) = cost(self.setting.priced, &self.half_bands(x), x);
         slopes.resize(x.len(), 0.0);
         slopes.iter_mut().for_each(|slope| *slope /= scale);
-        if setting.losses.is_empty() {
+        if self.setting.losses.is_empty() {
             return (value / scale, slopes);
         }
         let mut moved = x.to_vec();
         for (j, slope) in slopes.iter_mut().enumerate() {
             moved[j] = x[j] + STEP;
-            let up = lost(&moved);
+            let up = self.lost(&moved);
             moved[j] = x[j] - STEP;
-            *slope += (up - lost(&moved)) / (2.0 * STEP * scale);
+            *slope += (up - self.lost(&moved)) / (2.0 * STEP * scale);
             moved[j] = x[j];
         }
-        ((value + lost(x)) / scale, slopes)
-    };
-    let all: Vec<[f64; 2]> =
-        (setting.priced.iter().map(|group| [libm::log(group.tightest()), libm::log(group.loosest())]))
-            .chain(bounds.iter().copied())
-            .collect();
-    let smooth = Smooth { objective: &objective, rows: &rows, bounds: &all };
-    // Several starts, because the surface may have several optima.
-    let tight: Vec<f64> = setting.priced.iter().map(Priced::tightest).collect();
-    let middle: Vec<f64> = at.iter().zip(&tight).map(|(at, tight)| (at * tight).sqrt()).collect();
-    let mut best: Option<(f64, Ended)> = None;
-    for start in [at, &middle, &tight] {
-        let Some(ended) = smooth.minimised(&within(start), NEAR) else { continue };
-        let kept = values(&ended.x).is_some_and(|values| values.iter().all(|&value| value <= KEPT));
-        let cost = objective(&ended.x).0;
-        if kept && best.as_ref().is_none_or(|(least, _)| cost < least * (1.0 - KEPT)) {
-            best = Some((cost, ended));
-        }
-        if (setting.stopped)() {
-            break;
-        }
+        ((value + self.lost(x)) / scale, slopes)
     }
-    let Ended { x, residual, .. } = best?.1;
-    Some(Together { shifts: x[groups..].to_vec(), at: x[..groups].iter().map(|x| libm::exp(*x)).collect(), residual })
+
+    /// A start at these half bands within their bounds, with nominal values that move as little as their bounds allow.
+    fn within(&self, t: &[f64]) -> Vec<f64> {
+        let groups = self.setting.priced.iter().zip(t);
+        let clamped = groups.map(|(group, t)| libm::log(t.clamp(group.tightest(), group.loosest())));
+        clamped.chain(self.bounds.iter().map(|&[low, high]| 0.0f64.clamp(low, high))).collect()
+    }
+
+    /// The cheapest end that keeps all constraints, from these half bands, from the tightest, and from between them.
+    fn cheapest(&self, at: &[f64]) -> Option<Ended> {
+        let priced = self.setting.priced;
+        let of_groups = priced.iter().map(|group| [libm::log(group.tightest()), libm::log(group.loosest())]);
+        let bounds: Vec<[f64; 2]> = of_groups.chain(self.bounds.iter().copied()).collect();
+        let (objective, rows) = (|x: &[f64]| self.objective(x), |x: &[f64]| self.rows(x));
+        let smooth = Smooth { objective: &objective, rows: &rows, bounds: &bounds };
+        let tight: Vec<f64> = priced.iter().map(Priced::tightest).collect();
+        let middle: Vec<f64> = at.iter().zip(&tight).map(|(at, tight)| (at * tight).sqrt()).collect();
+        let mut best: Option<(f64, Ended)> = None;
+        for start in [at, &middle, &tight] {
+            let Some(ended) = smooth.minimised(&self.within(start), NEAR) else { continue };
+            let kept = self.values(&ended.x).is_some_and(|values| values.iter().all(|&value| value <= KEPT));
+            let cost = self.objective(&ended.x).0;
+            if kept && best.as_ref().is_none_or(|(least, _)| cost < least * (1.0 - KEPT)) {
+                best = Some((cost, ended));
+            }
+            if (self.setting.stopped)() {
+                break;
+            }
+        }
+        best.map(|(_, ended)| ended)
+    }
 }

@@ -1,5 +1,6 @@
 //! Entry points of an allocation, and the search along derivatives.
 
+use std::ops::ControlFlow;
 use std::rc::Rc;
 use std::sync::atomic::Ordering;
 
@@ -200,167 +201,15 @@ impl Driver<'_> {
         if self.task.basis.is_proportion() {
             return self.in_proportion(allocation, first, constraints);
         }
-        let original = &allocation.problem.clone();
-        let near = Near::of(original);
-        let mut station = first;
-        let mut at = before.to_vec();
-        let mut last: Option<Chosen> = None;
-        let mut haven: Option<(Rc<LinearizationPoint>, Vec<f64>, Option<Chosen>)> = None;
-        let mut haven_cost = f64::INFINITY;
-        let mut steps = Steps::default();
-        let free = self.task.priced.iter().all(|group| group.offers.len() == 1);
-        let (mut agreed, mut within_budget, mut at_tightest, mut reach) = (false, true, false, f64::INFINITY);
-        let (mut at_rest, mut searched, mut other) = (None, [None; 2], None);
-        let mut current = constraints.to_vec();
+        let mut search = DerivativeSearch::new(self, allocation.problem.clone(), first, constraints, before);
         for _ in 0..ROUNDS {
-            // Nominal values move before tolerances, because a better middle leaves more slack to them.
-            let mut next = station.problem.clone();
-            let mut still = true;
-            if !self.options.recentre.is_empty() {
-                let found = self.recentred(&station, constraints, &at)?;
-                still = found.far <= found.rest;
-                at_rest = found.residual;
-                if !still {
-                    next = found.problem;
-                }
-                // Tolerances are chosen only about the place where the nominal values come to rest.
-                if !still && (found.at.is_some() || found.far > 1.0 || self.task.priced.is_empty()) {
-                    if let Some(found) = found.at {
-                        (at, last) = (found, None);
-                        next = with_tolerances(next, &self.task.priced, &at)?;
-                    }
-                    match self.station(next)? {
-                        Some(there) if !self.spent.stopped => station = Rc::new(there),
-                        there => {
-                            within_budget = there.is_some();
-                            break;
-                        }
-                    }
-                    continue;
-                }
-            }
-            if self.task.priced.is_empty() {
-                agreed = still;
-                break;
-            }
-            let stopped = || self.run.stopped();
-            // Derivatives are followed only as far as they are trusted.
-            let sampled = constraints.iter().any(|one| station.responses.is_sampled(one.characteristic));
-            let followed = if sampled { reach.min(SampledCorrection::REACH) } else { reach };
-            let priced = within_reach(&self.task.priced, &at, followed);
-            let (responses, anywhere) = (&station.responses, last.is_none() && haven.is_none());
-            let (losses, setups) = (&self.task.losses, &self.task.setups);
-            let setting =
-                Setting { responses, priced: &priced, constraints, losses, setups, stopped: &stopped, anywhere };
-            let levels = match self.task.goal {
-                Goal::LeastCost => None,
-                _ => match self.levelled(&setting, original, &at) {
-                    Some(levels) => Some(levels),
-                    None => {
-                        allocation.status = Status::NoFeasiblePointFound;
-                        return Ok(None);
-                    }
-                },
-            };
-            current = levels.unwrap_or_else(|| constraints.to_vec());
-            let setting = Setting { constraints: &current, ..setting };
-            // Tolerances that the model keeps within the bounds are a place to return to.
-            let here = kept_within(setting.value(&at), self.task.goal);
-            let safe = here && within_bounds(&self.task.priced, &at);
-            // Losses may be greater than the derivatives predicted. The search then takes shorter steps from the
-            // cheaper tolerances before.
-            let cost_here = if self.task.losses.is_empty() { 0.0 } else { setting.cost(&at) };
-            if last.is_some() && haven.is_some() && cost_here > haven_cost * (1.0 + DEARER) {
-                (station, at, last) = haven.take().unwrap_or((station, at, last));
-                (reach, steps) = (shorter(reach), Steps::default());
-                continue;
-            }
-            let (mut solved, offers, mut proof) = match choose(&setting, &at) {
-                Choice::Found { solved, offers, proof } => (solved, offers, proof),
-                // Derivatives were wrong: shorter steps from the last tolerances that kept everything.
-                Choice::Infeasible(..) if haven.is_some() => {
-                    (station, at, last) = haven.take().unwrap_or((station, at, last));
-                    (reach, steps) = (shorter(reach), Steps::default());
-                    continue;
-                }
-                // Derivatives from other tolerances may be wrong at the tightest ones, so the model is evaluated there
-                // first.
-                Choice::Infeasible(_, tight) if !at_tightest && farthest(&at, &tight) > libm::log(REACH) => {
-                    (at, at_tightest, last) = (tight, true, None);
-                    match self.station(with_tolerances(next, &self.task.priced, &at)?)? {
-                        Some(there) if !self.spent.stopped => station = Rc::new(there),
-                        there => {
-                            within_budget = there.is_some();
-                            break;
-                        }
-                    }
-                    continue;
-                }
-                Choice::Infeasible(attainable, _) => {
-                    // If every tolerance only does harm, the tightest ones are the proof.
-                    let exact = if choose_made::any(setting.priced) {
-                        choose_made::is_proof(&setting)
-                    } else {
-                        setting.is_exact()
-                    };
-                    let proven = exact && self.options.recentre.is_empty();
-                    allocation.status = if proven { Status::Infeasible } else { Status::NoFeasiblePointFound };
-                    let unit = unit(original, attainable.characteristic);
-                    allocation.attainable = Some(Attainable { unit, ..attainable });
-                    return Ok(None);
-                }
-                Choice::Stopped => {
-                    self.spent.stopped = true;
-                    break;
-                }
-            };
-            if proof.starts.is_some() {
-                searched = [proof.starts, proof.reached];
-                other = proof.other_optimum;
-            }
-            (proof.starts, proof.reached, proof.other_optimum) = (searched[0], searched[1], other);
-            let change = farthest(&at, &solved.at);
-            // Processes of one tolerance may differ in their distributions.
-            let alike = !choose_made::any(&priced) || last.as_ref().is_some_and(|(_, chosen, _)| *chosen == offers);
-            // The model has been analysed at these tolerances, and its derivatives give the same ones.
-            if still && here && last.is_some() && alike && change <= near.agree {
-                last = last.map(|(old, offers, _)| {
-                    let residual = setting.residual(&old.at, &solved.multipliers).unwrap_or(solved.residual);
-                    let proof = Proof { residual: proof.residual.map(|_| residual), ..proof };
-                    (Solved { multipliers: solved.multipliers.clone(), ..old }, offers, proof)
-                });
-                agreed = true;
-                break;
-            }
-            if last.is_some() && !setting.is_exact() {
-                tightened(&mut solved.at, &priced, 1.0 - near.margin);
-            }
-            if let Some(part_way) = steps.shortened(&at, &solved.at).filter(|_| free) {
-                solved.at = part_way;
-                solved.cost = setting.cost(&solved.at);
-                proof.residual = setting.residual(&solved.at, &solved.multipliers);
-            }
-            let from = std::mem::replace(&mut at, solved.at.clone());
-            match self.station(with_choice(next, &self.task.priced, &at, &offers)?)? {
-                Some(there) if self.spent.stopped || there.answers(constraints) => {
-                    let left = (std::mem::replace(&mut station, Rc::new(there)), from, last.take());
-                    (haven, haven_cost) = if safe { (Some(left), cost_here) } else { (haven, haven_cost) };
-                    last = Some((solved, offers, proof));
-                    self.see(&station, last.as_ref());
-                }
-                // The model fails so far out: shorter steps from the last tolerances that it accepts.
-                Some(_) => (at, reach) = (from, shorter(reach)),
-                None => {
-                    (within_budget, last) = (false, Some((solved, offers, proof)));
-                    break;
-                }
-            }
-            if self.spent.stopped {
-                break;
+            match search.round(allocation)? {
+                Next::Round => {}
+                Next::End => break,
+                Next::NothingFound => return Ok(None),
             }
         }
-        let ended = Ended { agreed, within_budget, at_rest };
-        Ok(Some(SearchEnd { station, last, constraints: current, ended, trial: None, is_start: false }))
+        Ok(Some(search.end()))
     }
 
     /// Stores the cheapest linearization point that keeps everything.
@@ -375,7 +224,301 @@ impl Driver<'_> {
     }
 }
 
-/// Largest change of a half band, in logarithms.
+/// Transition after a round of a search.
+enum Next {
+    /// Another round, at the station that was reached.
+    Round,
+    /// End of the search, with the tolerances chosen last.
+    End,
+    /// End without a result; the status of the allocation says why.
+    NothingFound,
+}
+
+/// Station that keeps everything by the model, to which a search falls back where derivatives lead astray.
+struct Fallback {
+    station: Rc<LinearizationPoint>,
+    at: Vec<f64>,
+    last: Option<Chosen>,
+    cost: f64,
+}
+
+/// Search along derivatives: every round chooses tolerances by those of one station, and asks the model there.
+struct DerivativeSearch<'s, 'd> {
+    driver: &'s mut Driver<'d>,
+    original: Problem,
+    near: Near,
+    /// The requirements of the task.
+    constraints: &'s [Constraint],
+    /// The same with the levels that are sought for a cost.
+    current: Vec<Constraint>,
+    station: Rc<LinearizationPoint>,
+    /// Half bands of the groups at the station.
+    at: Vec<f64>,
+    /// The choice that led to the station; None where something else did.
+    last: Option<Chosen>,
+    fallback: Option<Fallback>,
+    steps: Steps,
+    reach: f64,
+    at_tightest: bool,
+    ended: Ended,
+    /// Starts and reached ends of the last round that began from several places.
+    searched: [Option<usize>; 2],
+    /// The next cheapest end of that round.
+    other: Option<f64>,
+}
+
+impl<'s, 'd> DerivativeSearch<'s, 'd> {
+    /// A search that begins at a station with these half bands.
+    fn new(
+        driver: &'s mut Driver<'d>,
+        original: Problem,
+        first: Rc<LinearizationPoint>,
+        constraints: &'s [Constraint],
+        before: &[f64],
+    ) -> Self {
+        Self {
+            driver,
+            near: Near::of(&original),
+            original,
+            constraints,
+            current: constraints.to_vec(),
+            station: first,
+            at: before.to_vec(),
+            last: None,
+            fallback: None,
+            steps: Steps::default(),
+            reach: f64::INFINITY,
+            at_tightest: false,
+            ended: Ended { agreed: false, within_budget: true, at_rest: None },
+            searched: [None; 2],
+            other: None,
+        }
+    }
+
+    /// Returns the last station with the choice that led to it.
+    fn end(self) -> SearchEnd {
+        let Self { station, last, current: constraints, ended, .. } = self;
+        SearchEnd { station, last, constraints, ended, trial: None, is_start: false }
+    }
+
+    /// Moves nominal values, or else chooses tolerances.
+    fn round(&mut self, allocation: &mut Allocation) -> Result<Next, AllocateError> {
+        let (next, still) = match self.recentre()? {
+            ControlFlow::Continue(centred) => centred,
+            ControlFlow::Break(next) => return Ok(next),
+        };
+        if self.driver.task.priced.is_empty() {
+            self.ended.agreed = still;
+            return Ok(Next::End);
+        }
+        self.choose(allocation, next, still)
+    }
+
+    /// Moves the nominal values. Continues with the problem to choose tolerances for, and true if its nominal values are at rest.
+    fn recentre(&mut self) -> Result<ControlFlow<Next, (Problem, bool)>, AllocateError> {
+        let next = self.station.problem.clone();
+        if self.driver.options.recentre.is_empty() {
+            return Ok(ControlFlow::Continue((next, true)));
+        }
+        let found = self.driver.recentred(&self.station, self.constraints, &self.at)?;
+        self.ended.at_rest = found.residual;
+        if found.far <= found.rest {
+            return Ok(ControlFlow::Continue((next, true)));
+        }
+        let mut next = found.problem;
+        let priced = &self.driver.task.priced;
+        // Tolerances are chosen about the place where the nominal values come to rest.
+        if found.at.is_some() || found.far > 1.0 || priced.is_empty() {
+            if let Some(found) = found.at {
+                (self.at, self.last) = (found, None);
+                next = with_tolerances(next, priced, &self.at)?;
+            }
+            return self.move_to(next).map(ControlFlow::Break);
+        }
+        Ok(ControlFlow::Continue((next, false)))
+    }
+
+    /// Makes a problem the station of the next round.
+    fn move_to(&mut self, problem: Problem) -> Result<Next, AllocateError> {
+        match self.driver.station(problem)? {
+            Some(there) if !self.driver.spent.stopped => {
+                self.station = Rc::new(there);
+                Ok(Next::Round)
+            }
+            there => {
+                self.ended.within_budget = there.is_some();
+                Ok(Next::End)
+            }
+        }
+    }
+
+    /// Chooses tolerances by the derivatives of the station, and asks the model there unless it would not choose others.
+    fn choose(&mut self, allocation: &mut Allocation, next: Problem, still: bool) -> Result<Next, AllocateError> {
+        let (task, run, station) = (self.driver.task, self.driver.run, Rc::clone(&self.station));
+        let stopped = || run.stopped();
+        let priced = within_reach(&task.priced, &self.at, self.followed_reach());
+        let setting = Setting {
+            responses: &station.responses,
+            priced: &priced,
+            constraints: self.constraints,
+            losses: &task.losses,
+            setups: &task.setups,
+            stopped: &stopped,
+            anywhere: self.last.is_none() && self.fallback.is_none(),
+        };
+        let Some(current) = self.with_levels(&setting) else {
+            allocation.status = Status::NoFeasiblePointFound;
+            return Ok(Next::NothingFound);
+        };
+        self.current.clone_from(&current);
+        let setting = Setting { constraints: &current, ..setting };
+        // Kept, by the model and within the bounds: a place to come back to.
+        let here = kept_within(setting.value(&self.at), task.goal);
+        let safe = here && within_bounds(&task.priced, &self.at);
+        // Losses may be greater than the derivatives foretold: shorter steps from where all together was cheaper.
+        let cost_here = if task.losses.is_empty() { 0.0 } else { setting.cost(&self.at) };
+        if self.last.is_some()
+            && self.fallback.as_ref().is_some_and(|fallback| cost_here > fallback.cost * (1.0 + DEARER))
+        {
+            return Ok(self.fall_back());
+        }
+        let (solved, offers, mut proof) = match choose(&setting, &self.at) {
+            Choice::Found { solved, offers, proof } => (solved, offers, proof),
+            Choice::Infeasible(attainable, tight) => {
+                return self.without_choice(allocation, &setting, next, (attainable, tight));
+            }
+            Choice::Stopped => {
+                self.driver.spent.stopped = true;
+                return Ok(Next::End);
+            }
+        };
+        self.keep_starts(&mut proof);
+        // The model has been asked at these tolerances, and would not choose others.
+        if still && here && self.is_chosen_again(&priced, &solved, &offers) {
+            self.confirm_choice(&setting, &solved, &proof);
+            return Ok(Next::End);
+        }
+        let chosen = self.shortened(&setting, (solved, offers, proof));
+        self.ask(next, chosen, safe.then_some(cost_here))
+    }
+
+    /// The factor up to which the derivatives of the station are followed; that of samples is limited.
+    fn followed_reach(&self) -> f64 {
+        let responses = &self.station.responses;
+        let sampled = self.constraints.iter().any(|one| responses.is_sampled(one.characteristic));
+        if sampled { self.reach.min(SampledCorrection::REACH) } else { self.reach }
+    }
+
+    /// The requirements, with the level that is sought for a cost. None if no level is found.
+    fn with_levels(&self, setting: &Setting<'_>) -> Option<Vec<Constraint>> {
+        match self.driver.task.goal {
+            Goal::LeastCost => Some(self.constraints.to_vec()),
+            _ => self.driver.levelled(setting, &self.original, &self.at),
+        }
+    }
+
+    /// Returns to the station that kept everything, for shorter steps from there.
+    fn fall_back(&mut self) -> Next {
+        if let Some(Fallback { station, at, last, .. }) = self.fallback.take() {
+            (self.station, self.at, self.last) = (station, at, last);
+        }
+        (self.reach, self.steps) = (shorter(self.reach), Steps::default());
+        Next::Round
+    }
+
+    /// Goes on after derivatives by which no tolerances keep everything: back, to the tightest, or to the end.
+    fn without_choice(
+        &mut self,
+        allocation: &mut Allocation,
+        setting: &Setting<'_>,
+        next: Problem,
+        (attainable, tight): (Attainable, Vec<f64>),
+    ) -> Result<Next, AllocateError> {
+        // Derivatives led astray: shorter steps from where everything was kept.
+        if self.fallback.is_some() {
+            return Ok(self.fall_back());
+        }
+        // Derivatives at other tolerances may be wrong there: the model is asked first.
+        if !self.at_tightest && farthest(&self.at, &tight) > libm::log(REACH) {
+            (self.at, self.at_tightest, self.last) = (tight, true, None);
+            return self.move_to(with_tolerances(next, &self.driver.task.priced, &self.at)?);
+        }
+        // Where every tolerance does harm only, the tightest are the proof.
+        let exact = if choose_made::any(setting.priced) { choose_made::is_proof(setting) } else { setting.is_exact() };
+        let proven = exact && self.driver.options.recentre.is_empty();
+        allocation.status = if proven { Status::Infeasible } else { Status::NoFeasiblePointFound };
+        let unit = unit(&self.original, attainable.characteristic);
+        allocation.attainable = Some(Attainable { unit, ..attainable });
+        Ok(Next::NothingFound)
+    }
+
+    /// Carries the starts of the last round that had several into the proof of a later one.
+    fn keep_starts(&mut self, proof: &mut Proof) {
+        if proof.starts.is_some() {
+            self.searched = [proof.starts, proof.reached];
+            self.other = proof.other_optimum;
+        }
+        (proof.starts, proof.reached, proof.other_optimum) = (self.searched[0], self.searched[1], self.other);
+    }
+
+    /// Returns true if the choice is the one that led to the station.
+    fn is_chosen_again(&self, priced: &[Priced], solved: &Solved, offers: &[usize]) -> bool {
+        let change = farthest(&self.at, &solved.at);
+        // Processes of one tolerance may differ in how their parts lie.
+        let alike = !choose_made::any(priced) || self.last.as_ref().is_some_and(|(_, chosen, _)| chosen == offers);
+        self.last.is_some() && alike && change <= self.near.agree
+    }
+
+    /// Keeps the tolerances at which the model was asked, with the multipliers found there.
+    fn confirm_choice(&mut self, setting: &Setting<'_>, solved: &Solved, proof: &Proof) {
+        self.last = self.last.take().map(|(old, offers, _)| {
+            let residual = setting.residual(&old.at, &solved.multipliers).unwrap_or(solved.residual);
+            let proof = Proof { residual: proof.residual.map(|_| residual), ..proof.clone() };
+            (Solved { multipliers: solved.multipliers.clone(), ..old }, offers, proof)
+        });
+        self.ended.agreed = true;
+    }
+
+    /// The choice tightened by a margin, and as far on the way to it as the last steps advise.
+    fn shortened(&mut self, setting: &Setting<'_>, (mut solved, offers, mut proof): Chosen) -> Chosen {
+        if self.last.is_some() && !setting.is_exact() {
+            tightened(&mut solved.at, setting.priced, 1.0 - self.near.margin);
+        }
+        let free = self.driver.task.priced.iter().all(|group| group.offers.len() == 1);
+        if let Some(part_way) = self.steps.shortened(&self.at, &solved.at).filter(|_| free) {
+            solved.at = part_way;
+            solved.cost = setting.cost(&solved.at);
+            proof.residual = setting.residual(&solved.at, &solved.multipliers);
+        }
+        (solved, offers, proof)
+    }
+
+    /// Asks the model at chosen tolerances. The station left is a place to come back to if it has a cost.
+    fn ask(&mut self, next: Problem, chosen: Chosen, kept_at_cost: Option<f64>) -> Result<Next, AllocateError> {
+        let (solved, offers, _) = &chosen;
+        let from = std::mem::replace(&mut self.at, solved.at.clone());
+        let problem = with_choice(next, &self.driver.task.priced, &self.at, offers)?;
+        match self.driver.station(problem)? {
+            Some(there) if self.driver.spent.stopped || there.answers(self.constraints) => {
+                let station = std::mem::replace(&mut self.station, Rc::new(there));
+                let last = self.last.replace(chosen);
+                if let Some(cost) = kept_at_cost {
+                    self.fallback = Some(Fallback { station, at: from, last, cost });
+                }
+                self.driver.see(&self.station, self.last.as_ref());
+            }
+            // The model fails so far out: shorter steps from where it did not.
+            Some(_) => (self.at, self.reach) = (from, shorter(self.reach)),
+            None => {
+                (self.ended.within_budget, self.last) = (false, Some(chosen));
+                return Ok(Next::End);
+            }
+        }
+        Ok(if self.driver.spent.stopped { Next::End } else { Next::Round })
+    }
+}
+
+/// The largest change of a half band, in logarithms.
 fn farthest(from: &[f64], to: &[f64]) -> f64 {
     from.iter().zip(to).map(|(a, b)| libm::log(b / a).abs()).fold(0.0, f64::max)
 }

@@ -98,105 +98,157 @@ impl Correction {
         if libm::log(factors[dimension]).abs() < FAR { self.slopes[dimension] } else { 0.0 }
     }
 
-    /// Computes the correction at a linearization point. Returns None if the mean lies beyond a limit, or the
-    /// distribution has no value.
-    pub(in crate::allocation) fn of(about: &About<'_>, rejected: f64) -> Option<Self> {
-        let About { law, limits, room, .. } = *about;
-        let n = about.dimensions;
-        let ones = vec![1.0; n];
-        let moments = (about.moments)(&ones)?;
+    /// At a station; None where the mean lies beyond a limit, or the law answers nothing.
+    pub(super) fn of(about: &About<'_>, rejected: f64) -> Option<Self> {
+        let moments = (about.moments)(&vec![1.0; about.dimensions])?;
         let (mean, sigma) = (moments.mean(), moments.sigma());
-        let sides: Vec<(LawTail, f64, TailChoices)> = [
-            (LawTail::Lower, limits.lower().map(|lower| lower - mean)),
-            (LawTail::Upper, limits.upper().map(|upper| upper - mean)),
-        ]
-        .into_iter()
-        .filter_map(|(tail, distance)| Some((tail, distance?, law.hold(mean + distance?, tail))))
-        .collect();
-        let outside = |(tail, distance, _): &(LawTail, f64, TailChoices)| match tail {
-            LawTail::Lower => *distance >= 0.0,
-            LawTail::Upper => *distance <= 0.0,
-        };
-        if sides.is_empty() || sides.iter().any(outside) || sigma <= 0.0 {
+        let sides = Side::all(about, mean);
+        if sides.is_empty() || sides.iter().any(Side::is_beyond_mean) || sigma <= 0.0 {
             return None;
         }
-        let beyond = |law: &SurfaceLaw, mean: f64, r: f64| -> f64 {
-            sides.iter().map(|(_, distance, held)| held.tail(law, mean + r * distance).value).sum()
-        };
-        let fitted = room(&moments)?;
-        let r = level(&|r| beyond(law, mean, r), rejected, sigma / fitted)?;
-        // d R/d ln r: the density at both moved limits times their move.
-        let density: f64 =
-            sides.iter().map(|(_, distance, _)| -law.density(mean + r * distance).value * r * distance.abs()).sum();
-        let mut slopes: Vec<f64> = vec![0.0; n];
-        let own: Vec<Option<Vec<f64>>> = (sides.iter())
-            .map(|(tail, distance, _)| {
-                let found = law.tail_derivatives(mean + r * distance, *tail)?;
-                Some(found.iter().map(|figure| figure.value).collect())
-            })
-            .collect();
+        let fitted = (about.room)(&moments)?;
+        let r = level(&|r| share_beyond(&sides, about.law, mean, (r, 0.0)), rejected, sigma / fitted)?;
+        let moved = MovedLimits::new(about, mean, r, sides);
         let partial = about.slopes.as_ref().and_then(|_| (about.room_slopes)(&moments));
+        let mut slopes: Vec<f64> = vec![0.0; about.dimensions];
         let moving = about.varying.iter().enumerate().filter(|(_, (_, follows))| *follows != Follows::Still);
         for (position, &(d, follows)) in moving {
-            // With exact slopes of the moments no difference is needed: the derivatives of the distribution minus those
-            // of the moments.
-            if let (Some(all), Some(partial)) = (&about.slopes, partial) {
-                let [by_mean, by_sigma, by_skewness, by_excess] = all[d];
-                let by_law = sides.iter().zip(&own).map(|((tail, distance, _), own)| {
-                    let sign = if *tail == LawTail::Lower { 1.0 } else { -1.0 };
-                    let moved = sign * law.density(mean + r * distance).value * (1.0 - r) * by_mean;
-                    Some(own.as_ref()?.get(position)? + moved)
-                });
-                let by_law: Option<f64> = by_law.sum();
-                if let Some(by_law) = by_law.filter(|slope| slope.is_finite() && density < 0.0) {
-                    let by_room = partial[0] * by_mean + partial[1] * by_skewness + partial[2] * by_excess;
-                    slopes[d] = by_sigma + by_law / density - by_room;
-                    continue;
-                }
+            let exact = partial.and_then(|partial| moved.exact_slope(position, d, partial));
+            if let Some(slope) = exact.or_else(|| moved.slope_by_differences(position, d, follows)) {
+                slopes[d] = slope;
             }
-            let mut trial = ones.clone();
-            let mut at = |step: f64| {
-                trial[d] = libm::exp(step);
-                let moments = (about.moments)(&trial)?;
-                let room = room(&moments)?;
-                Some((moments, room, trial.clone()))
-            };
-            let (Some((up, room_up, more)), Some((down, room_down, less))) = (at(STEP), at(-STEP)) else { continue };
-            let slope = |up: f64, down: f64| (up - down) / (2.0 * STEP);
-            let by_mean = slope(up.mean(), down.mean());
-            let exact = (follows == Follows::Similar).then(|| {
-                let each = sides.iter().zip(&own).map(|((tail, distance, _), own)| {
-                    // The limit moves with the mean, outward or inward.
-                    let sign = if *tail == LawTail::Lower { 1.0 } else { -1.0 };
-                    let moved = sign * law.density(mean + r * distance).value * (1.0 - r) * by_mean;
-                    let own = own.as_ref()?.get(position)?;
-                    Some(own + moved)
-                });
-                each.sum::<Option<f64>>()
-            });
-            let by_law: Option<f64> = exact.flatten().filter(|slope: &f64| slope.is_finite()).or_else(|| {
-                let (more, less) = ((about.law_at)(&more)?, (about.law_at)(&less)?);
-                // The distance of a limit from the mean changes with the mean.
-                let at = |law: &SurfaceLaw, mean_here: f64| -> f64 {
-                    let moved = mean_here - mean;
-                    sides
-                        .iter()
-                        .map(|(_, distance, held)| held.tail(law, mean_here + r * (distance - moved)).value)
-                        .sum()
-                };
-                Some(slope(at(&more, up.mean()), at(&less, down.mean())))
-            });
-            let Some(by_law) = by_law.filter(|_| density < 0.0) else { continue };
-            let by_sigma = slope(libm::log(up.sigma()), libm::log(down.sigma()));
-            // ln s = ln sigma - ln r, and r responds to a change of the share at fixed r.
-            slopes[d] = by_sigma + by_law / density - slope(libm::log(room_up), libm::log(room_down));
         }
         let ln = libm::log(sigma / r / fitted);
         (ln.is_finite() && slopes.iter().all(|slope: &f64| slope.is_finite())).then_some(Self { ln, slopes })
     }
 }
 
-/// Argument near `start` at which a decreasing share equals `rejected`.
+/// A limit with the contour of the law beyond it.
+struct Side {
+    tail: LawTail,
+    /// Distance from the mean, negative below it.
+    distance: f64,
+    held: TailChoices,
+}
+
+impl Side {
+    /// The limits that a characteristic has.
+    fn all(about: &About<'_>, mean: f64) -> Vec<Self> {
+        [
+            (LawTail::Lower, about.limits.lower().map(|lower| lower - mean)),
+            (LawTail::Upper, about.limits.upper().map(|upper| upper - mean)),
+        ]
+        .into_iter()
+        .filter_map(|(tail, distance)| {
+            Some(Self { tail, distance: distance?, held: about.law.hold(mean + distance?, tail) })
+        })
+        .collect()
+    }
+
+    /// Returns true if the mean is at the limit or beyond it.
+    fn is_beyond_mean(&self) -> bool {
+        match self.tail {
+            LawTail::Lower => self.distance >= 0.0,
+            LawTail::Upper => self.distance <= 0.0,
+        }
+    }
+}
+
+/// `R(r)` by a law about `mean`; the limits are nearer to it by `shift` than at the station.
+fn share_beyond(sides: &[Side], law: &SurfaceLaw, mean: f64, (r, shift): (f64, f64)) -> f64 {
+    sides.iter().map(|side| side.held.tail(law, mean + r * (side.distance - shift)).value).sum()
+}
+
+/// The law of a station at limits moved to `r` times their distance from the mean, where it leaves just the allowed share.
+struct MovedLimits<'a, 'r> {
+    about: &'a About<'r>,
+    mean: f64,
+    r: f64,
+    sides: Vec<Side>,
+    /// Slopes of the share beyond each limit by `ln T` of the varying dimensions about their means.
+    tails: Vec<Option<Vec<f64>>>,
+    /// `d R/d ln r`: the density at both moved limits by how they move.
+    density: f64,
+}
+
+impl<'a, 'r> MovedLimits<'a, 'r> {
+    /// Asks the law for its density and slopes at the moved limits.
+    fn new(about: &'a About<'r>, mean: f64, r: f64, sides: Vec<Side>) -> Self {
+        let law = about.law;
+        let density: f64 = (sides.iter())
+            .map(|Side { distance, .. }| -law.density(mean + r * distance).value * r * distance.abs())
+            .sum();
+        let tails = (sides.iter())
+            .map(|Side { tail, distance, .. }| {
+                let found = law.tail_derivatives(mean + r * distance, *tail)?;
+                Some(found.iter().map(|figure| figure.value).collect())
+            })
+            .collect();
+        Self { about, mean, r, sides, tails, density }
+    }
+
+    /// The slope of the share by `ln T` of a dimension that keeps its shape while the mean grows by `by_mean`.
+    fn share_slope(&self, position: usize, by_mean: f64) -> Option<f64> {
+        let each = self.sides.iter().zip(&self.tails).map(|(side, own)| {
+            // The limit moves with the mean, outward or inward.
+            let sign = if side.tail == LawTail::Lower { 1.0 } else { -1.0 };
+            let density = self.about.law.density(self.mean + self.r * side.distance).value;
+            let moved = sign * density * (1.0 - self.r) * by_mean;
+            Some(own.as_ref()?.get(position)? + moved)
+        });
+        each.sum::<Option<f64>>().filter(|slope| slope.is_finite())
+    }
+
+    /// The derivatives by the law itself, less those by the moments, without a difference where their slopes are exact.
+    fn exact_slope(&self, position: usize, d: usize, partial: [f64; 3]) -> Option<f64> {
+        let [by_mean, by_sigma, by_skewness, by_excess] = self.about.slopes.as_ref()?[d];
+        let by_law = self.share_slope(position, by_mean).filter(|_| self.density < 0.0)?;
+        let by_room = partial[0] * by_mean + partial[1] * by_skewness + partial[2] * by_excess;
+        Some(by_sigma + by_law / self.density - by_room)
+    }
+
+    /// The same by differences of the moments, and of the law where the dimension does not keep its shape.
+    fn slope_by_differences(&self, position: usize, d: usize, follows: Follows) -> Option<f64> {
+        let (up, down) = (self.neighbour(d, STEP)?, self.neighbour(d, -STEP)?);
+        let by_mean = central(up.moments.mean(), down.moments.mean());
+        let exact = (follows == Follows::Similar).then(|| self.share_slope(position, by_mean)).flatten();
+        let by_law = exact.or_else(|| {
+            let (more, less) = ((self.about.law_at)(&up.factors)?, (self.about.law_at)(&down.factors)?);
+            Some(central(self.share_at(&more, up.moments.mean()), self.share_at(&less, down.moments.mean())))
+        });
+        let by_law = by_law.filter(|_| self.density < 0.0)?;
+        let by_sigma = central(libm::log(up.moments.sigma()), libm::log(down.moments.sigma()));
+        // ln s = ln sigma - ln r, and r answers a change of the share at fixed r.
+        Some(by_sigma + by_law / self.density - central(libm::log(up.room), libm::log(down.room)))
+    }
+
+    /// The moments and their room with the tolerance of one dimension changed by a step of `ln T`.
+    fn neighbour(&self, d: usize, step: f64) -> Option<Neighbour> {
+        let mut factors = vec![1.0; self.about.dimensions];
+        factors[d] = libm::exp(step);
+        let moments = (self.about.moments)(&factors)?;
+        Some(Neighbour { moments, room: (self.about.room)(&moments)?, factors })
+    }
+
+    /// The share beyond the limits by another law. The distance of a limit from the mean changes with the mean.
+    fn share_at(&self, law: &SurfaceLaw, mean: f64) -> f64 {
+        share_beyond(&self.sides, law, mean, (self.r, mean - self.mean))
+    }
+}
+
+/// A station beside another one.
+struct Neighbour {
+    moments: Moments,
+    room: f64,
+    factors: Vec<f64>,
+}
+
+/// The slope between values that are two [steps](STEP) apart.
+fn central(up: f64, down: f64) -> f64 {
+    (up - down) / (2.0 * STEP)
+}
+
+/// Where a decreasing share is `rejected`, near `start`.
 fn level(share: &dyn Fn(f64) -> f64, rejected: f64, start: f64) -> Option<f64> {
     let gap = |ln: f64| libm::log(share(libm::exp(ln)).max(f64::MIN_POSITIVE) / rejected);
     let (mut low, mut high) = (libm::log(start), libm::log(start));

@@ -349,20 +349,9 @@ impl CharacteristicAnalysis {
     pub(in crate::analysis) fn of(problem: &Problem, outcome: &Outcome, c: usize) -> (Self, Option<Shares>) {
         let fitted = &outcome.fitted[c];
         let plan = &outcome.plan;
-        let unexplained = outcome.climbed.as_ref().and_then(|climbed| climbed.unexplained(c));
-        // A variance beyond the largest double is unknown. The warning `overflow` reports it.
-        let finite =
-            |shares: &Shares| [shares.moments().mean(), shares.moments().sigma()].iter().all(|x| x.is_finite());
-        let shares = Shares::of(fitted, plan.inputs()).map(|shares| shares.beside(unexplained)).filter(finite);
+        let shares = shares_of(outcome, c);
         let sensitivities: Vec<Sensitivity> =
             (0..problem.dimensions().len()).map(|d| sensitivity(problem, outcome, c, d, shares.as_ref())).collect();
-        // Without gaps in derivatives and pairs, the surface explains all of its variance.
-        let pair_shares = || pairs_of(outcome, c).map(|index| share_of(outcome, c, index, shares.as_ref()));
-        let (possible_interactions, examined_interactions) = (plan.pairs_of(c), fitted.known_pairs);
-        let complete = outcome.order == Order::Second
-            && examined_interactions == possible_interactions
-            && pair_shares().all(|share| share.is_some())
-            && plan.varying().iter().all(|&d| fitted.parts[d].is_some_and(|part| part.degree() >= 2));
         let characteristic = problem.characteristics()[c].clone();
         let moments = shares.as_ref().map(Shares::moments);
         let sampled = shares.as_ref().and_then(Shares::sampled);
@@ -374,27 +363,10 @@ impl CharacteristicAnalysis {
             })
         };
         let normal = moments.and_then(|moments| capability(&Law::normal(&moments).ok()?));
-        let error_estimate = moments.and_then(|moments| {
-            let estimate = estimate(problem, outcome, c, &moments)?;
-            let yield_ = of_yield(&estimate, &moments, characteristic.limits());
-            Some(ErrorEstimate { yield_, ..estimate })
-        });
+        let error_estimate = moments.and_then(|moments| error_estimate_of(problem, outcome, c, &moments));
         let linear = linear(problem, plan.varying(), &sensitivities);
-        let explained = || {
-            let own =
-                sensitivities.iter().flat_map(|one| [one.linear_share, one.curvature_share]).flatten().sum::<f64>();
-            own + pair_shares().flatten().sum::<f64>()
-        };
-        // A share that is only rounding is 0.
-        let left_out_share = match (&shares, unexplained) {
-            (Some(Shares::Integrated(integrated)), _) => integrated.left_out,
-            (Some(_), Some(_)) if moments.is_some_and(|moments| moments.sigma() > 0.0) => {
-                Some(1.0 - explained()).map(|share| if share.abs() < 1e-12 { 0.0 } else { share })
-            }
-            (Some(_), _) if complete => Some(0.0),
-            _ => None,
-        };
         let middle = fitted.nominal.zip(linear).map(|(nominal, linear)| nominal + linear.middle);
+        let left_out_share = left_out_share(outcome, c, shares.as_ref(), &sensitivities);
         let one = Self {
             nominal: fitted.nominal,
             moments,
@@ -422,8 +394,8 @@ impl CharacteristicAnalysis {
             sensitivities,
             interactions: InteractionList::default(),
             interactions_remainder: None,
-            possible_interactions,
-            examined_interactions,
+            possible_interactions: plan.pairs_of(c),
+            examined_interactions: fitted.known_pairs,
             left_out_share,
             indices: None,
             error_estimate,
@@ -441,8 +413,48 @@ impl CharacteristicAnalysis {
     }
 }
 
-/// `sum of |f_jj| h_j^2/2 + sum of |f_jk| h_j h_k` over the half-widths `h`: the greatest distance of a corner of a second-order surface
-/// from the linear one. Returns None if a derivative is a screened guess: it bounds nothing.
+/// The shares of the variance. None if its moments are not finite.
+fn shares_of(outcome: &Outcome, c: usize) -> Option<Shares> {
+    let unexplained = outcome.climbed.as_ref().and_then(|climbed| climbed.unexplained(c));
+    // A variance beyond the largest double is unknown; the warning `overflow` says why.
+    let finite = |shares: &Shares| [shares.moments().mean(), shares.moments().sigma()].iter().all(|x| x.is_finite());
+    Shares::of(&outcome.fitted[c], outcome.plan.inputs()).map(|shares| shares.beside(unexplained)).filter(finite)
+}
+
+/// The errors of the moments, with that of the yield.
+fn error_estimate_of(problem: &Problem, outcome: &Outcome, c: usize, moments: &Moments) -> Option<ErrorEstimate> {
+    let estimate = estimate(problem, outcome, c, moments)?;
+    let yield_ = of_yield(&estimate, moments, problem.characteristics()[c].limits());
+    Some(ErrorEstimate { yield_, ..estimate })
+}
+
+/// The share of the variance that no contribution explains. None if it is unknown.
+fn left_out_share(outcome: &Outcome, c: usize, shares: Option<&Shares>, sensitivities: &[Sensitivity]) -> Option<f64> {
+    let pair_shares = || pairs_of(outcome, c).map(|index| share_of(outcome, c, index, shares));
+    let explained = || {
+        let own = sensitivities.iter().flat_map(|one| [one.linear_share, one.curvature_share]).flatten().sum::<f64>();
+        own + pair_shares().flatten().sum::<f64>()
+    };
+    let complete = || {
+        let (plan, fitted) = (&outcome.plan, &outcome.fitted[c]);
+        outcome.order == Order::Second
+            && fitted.known_pairs == plan.pairs_of(c)
+            && pair_shares().all(|share| share.is_some())
+            && plan.varying().iter().all(|&d| fitted.parts[d].is_some_and(|part| part.degree() >= 2))
+    };
+    let unexplained = outcome.climbed.as_ref().and_then(|climbed| climbed.unexplained(c));
+    match (shares?, unexplained) {
+        (Shares::Integrated(integrated), _) => integrated.left_out,
+        (known, Some(_)) if known.moments().sigma() > 0.0 => {
+            Some(1.0 - explained()).map(|share| if share.abs() < 1e-12 { 0.0 } else { share })
+        }
+        _ if complete() => Some(0.0),
+        _ => None,
+    }
+}
+
+/// `sum of |f_jj| h_j^2/2 + sum of |f_jk| h_j h_k` over the half bands `h`: no corner of a second-order surface lies farther from the linear one.
+/// None with an estimate in the place of a derivative: it bounds nothing.
 fn curved(problem: &Problem, outcome: &Outcome, c: usize) -> Option<f64> {
     if outcome.fitted[c].screened > 0 {
         return None;

@@ -1,18 +1,15 @@
 //! Model `connecting-rod`: forces, crank torque, section, buckling and mass of a connecting rod.
 
+mod answers;
 mod mechanics;
 mod search;
 mod section;
 
 use std::f64::consts::PI;
 
-use super::gas;
-use super::jet::Peak;
 use super::{Block, Model, ModelInput, ModelOutput, Validity};
-use mechanics::{Alone, Angle, Centre, Curve, Effect, Loaded, Speed, Unfired, pressure};
-use search::{CYCLE, GAS_ANGLES, ROD_ANGLES, SAFETY, height_at, heights, maxima, pulled};
-use section::{Root, Section, shank};
-use sensitol::assembly::{EvaluationError, Responses};
+use answers::answer;
+use sensitol::assembly::Responses;
 
 /// Indices of the inputs, in the order of `CONNECTING_ROD.inputs`.
 mod input {
@@ -411,12 +408,7 @@ const DEGREE: f64 = PI / 180.0;
 /// Number of rows in a pass, so that their inputs and maxima stay in the nearest cache.
 const LANES: usize = 128;
 
-/// The larger of both. Returns NaN if `height` is NaN.
-fn least(height: f64, flanges: f64) -> f64 {
-    if height < flanges { flanges } else { height }
-}
-
-/// Inputs of some rows in SI units, one column for each.
+/// The inputs of some rows in SI units, a column each.
 struct Rows {
     x: [[f64; LANES]; INPUTS],
     count: usize,
@@ -480,141 +472,3 @@ fn evaluate(block: &Block<'_>, out: &mut Responses) {
         answer(&rows, first, &asked, out);
     }
 }
-
-fn answer(rows: &Rows, first: usize, asked: &[(usize, usize)], out: &mut Responses) {
-    let is_asked = |any: &[usize]| asked.iter().any(|(output, _)| any.contains(output));
-    let count = rows.count;
-    let none = || [Peak { at: f64::NAN, value: f64::NAN }; LANES];
-    let found = |wanted: bool, search: &dyn Fn() -> [Peak; LANES]| if wanted { search() } else { none() };
-    let fired = Speed::Rpm(3000.0);
-    let with_gas = |effect| move || maxima(&Loaded { rows, speed: fired, effect }, rows, &GAS_ANGLES, true);
-    let compression = found(
-        is_asked(&[output::F_COMP_3000, output::THETA_F_COMP, output::N_ZZ, output::N_YY]),
-        &with_gas(Effect::Compression),
-    );
-    let torque = found(is_asked(&[output::T_PEAK]), &with_gas(Effect::Torque));
-    let alone = |centre, effect| move || maxima(&Alone::of(rows, fired, centre, effect), rows, &ROD_ANGLES, false);
-    let normal = found(is_asked(&[output::FN_ROD]), &alone(Centre::Given, Effect::Normal));
-    let braking = found(is_asked(&[output::T_ROD]), &alone(Centre::Given, Effect::Braking));
-    let tied = found(is_asked(&[output::T_OPT]), &alone(Centre::Tied, Effect::Torque));
-    let lobe_a = found(is_asked(&[output::FN_OPT, output::FN_OPT_A]), &alone(Centre::Optimum, Effect::Normal));
-    let lobe_b = found(is_asked(&[output::FN_OPT, output::FN_OPT_B]), &alone(Centre::Optimum, Effect::AgainstNormal));
-    let pressed = found(is_asked(&[output::FA_OPT]), &alone(Centre::Optimum, Effect::Compression));
-    let pulled_alone = found(is_asked(&[output::FA_OPT]), &alone(Centre::Optimum, Effect::Tension));
-    let height = found(is_asked(&[output::H_REQ_3000, output::H_MARGIN, output::THETA_H_REQ]), &|| {
-        heights(Root { rows, speed: fired, webs: [1.0; LANES], at_cut: false }, &GAS_ANGLES)
-    });
-    // Maxima at the input `speed`.
-    let given = |effect| move || maxima(&Loaded { rows, speed: Speed::Given, effect }, rows, &CYCLE, true);
-    let pushed = found(is_asked(&[output::F_COMP, output::THETA_F]), &given(Effect::Compression));
-    let big_ends = [output::F_COMP_BIG, output::H_BUCKLING_ZZ, output::H_BUCKLING_YY];
-    let big_end = found(is_asked(&big_ends), &given(Effect::BigEnd));
-    let unfired = found(is_asked(&[output::F_COMP_INERTIA]), &|| {
-        let curve = Unfired(Loaded { rows, speed: Speed::Given, effect: Effect::Compression });
-        maxima(&curve, rows, &ROD_ANGLES, false)
-    });
-    let rod = found(is_asked(&[output::F_COMP_ROD]), &|| {
-        let effect = Effect::Compression;
-        maxima(&Alone::of(rows, Speed::Given, Centre::Given, effect), rows, &ROD_ANGLES, false)
-    });
-    let at_speed = || Root { rows, speed: Speed::Given, webs: [1.0; LANES], at_cut: true };
-    let required =
-        found(is_asked(&[output::H_REQ, output::THETA_H, output::M_SHANK_REQ]), &|| heights(at_speed(), &CYCLE));
-
-    let across = Alone::of(rows, Speed::Given, Centre::Given, Effect::Normal);
-    for &(output, column) in asked {
-        let mut values = [f64::NAN; LANES];
-        for (row, value) in values[..count].iter_mut().enumerate() {
-            let x = |at: usize| rows.x[at][row];
-            let pull = |w: f64| {
-                x(input::M_P) * w * w * x(input::R) * (1.0 + x(input::R) / x(input::L))
-                    + (gas::ATMOSPHERE - gas::SUCTION) * 0.25 * PI * x(input::D) * x(input::D)
-            };
-            let buckling = || SAFETY * big_end[row].value * x(input::L) * x(input::L) / (PI * PI * x(input::E));
-            *value = match output {
-                output::F_TENS_6000 => pull(Speed::Rpm(6000.0).circular(rows, row)),
-                output::F_COMP_3000 => compression[row].value,
-                output::T_PEAK => torque[row].value,
-                output::FN_ROD => normal[row].value,
-                output::T_ROD => braking[row].value,
-                output::H_REQ_3000 => 1e3 * height[row].value,
-                output::H_MARGIN => 1e3 * (x(input::H) - least(height[row].value, 2.0 * x(input::T))),
-                output::N_ZZ | output::N_YY => {
-                    let (section, l) = (Section::of(rows, row), x(input::L));
-                    let web = section.web(x(input::H));
-                    let inertia = if output == output::N_ZZ { section.across(web) } else { 4.0 * section.along(web) };
-                    PI * PI * x(input::E) * inertia / (l * l * compression[row].value)
-                }
-                output::M_SHANK => {
-                    let section = Section::of(rows, row);
-                    1e3 * x(input::RHO) * section.area(section.web(x(input::H))) * shank(rows, row)
-                }
-                output::T_OPT => tied[row].value,
-                output::FN_OPT => lobe_a[row].value.max(lobe_b[row].value),
-                output::FN_OPT_A => lobe_a[row].value,
-                output::FN_OPT_B => lobe_b[row].value,
-                output::THETA_F_COMP => compression[row].at / DEGREE,
-                output::THETA_H_REQ => height[row].at / DEGREE,
-                output::H_REQ => 1e3 * required[row].value,
-                output::THETA_H => required[row].at / DEGREE,
-                output::M_SHANK_REQ => {
-                    let section = Section::of(rows, row);
-                    1e3 * x(input::RHO) * section.area(section.web(required[row].value)) * shank(rows, row)
-                }
-                output::H_BUCKLING_ZZ => 1e3 * Section::of(rows, row).height_across(buckling()),
-                output::H_BUCKLING_YY => 1e3 * Section::of(rows, row).height_along(0.25 * buckling()),
-                output::THETA_BIG_TENSION => pulled(rows, row),
-                output::F_COMP => pushed[row].value,
-                output::THETA_F => pushed[row].at / DEGREE,
-                output::F_TENS => pull(Speed::Given.circular(rows, row)),
-                output::F_COMP_BIG => big_end[row].value,
-                output::F_COMP_INERTIA => unfired[row].value,
-                output::F_COMP_ROD => rod[row].value,
-                output::FA_OPT => pressed[row].value.max(pulled_alone[row].value),
-                _ => {
-                    let degrees = if output == output::F_TENS_BIG { -360.0 } else { x(input::THETA) };
-                    if (-360.0..=360.0).contains(&degrees) {
-                        let angle = Angle::of(degrees * DEGREE, pressure(degrees, x(input::P3), x(input::THS)));
-                        let loaded = |effect| Loaded { rows, speed: Speed::Given, effect }.at(row, &angle);
-                        match output {
-                            output::F_AXIAL => -loaded(Effect::Compression),
-                            output::F_NORMAL => across.at(row, &angle),
-                            output::T_CRANK => loaded(Effect::Torque),
-                            output::H_THETA => 1e3 * height_at(&mut at_speed(), row, &angle),
-                            _ => -loaded(Effect::BigEnd),
-                        }
-                    } else {
-                        out.fail(first + row, column, EvaluationError::Refused { message: BEYOND.into() });
-                        continue;
-                    }
-                }
-            };
-        }
-        for (row, &value) in values[..count].iter().enumerate() {
-            let heights = matches!(
-                output,
-                output::H_REQ_3000
-                    | output::H_MARGIN
-                    | output::THETA_H_REQ
-                    | output::H_REQ
-                    | output::THETA_H
-                    | output::M_SHANK_REQ
-                    | output::H_THETA
-            );
-            if out.error(first + row, column).is_some() {
-                continue;
-            }
-            if output == output::THETA_BIG_TENSION && value.is_nan() {
-                out.fail(first + row, column, EvaluationError::Refused { message: NEVER_PUSHED.into() });
-            } else if heights && value.is_nan() {
-                out.fail(first + row, column, EvaluationError::Refused { message: NO_HEIGHT.into() });
-            } else {
-                out.set(first + row, column, value);
-            }
-        }
-    }
-}
-
-const BEYOND: &str = "the crank angle theta lies beyond -360 .. 360 degrees";
-const NEVER_PUSHED: &str = "the big end is pulled during the whole stroke of suction";
-const NO_HEIGHT: &str = "no height of the section brings the stress to a fifth of the yield strength";

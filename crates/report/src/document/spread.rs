@@ -213,159 +213,281 @@ fn said(of: &SpreadChart) -> String {
     parts.join(", ")
 }
 
+/// Draws a figure at the width of a frame. None if it has no extent.
 fn drawing(of: &SpreadChart, frame: &Frame) -> Option<String> {
-    let (law, limits, width) = (of.law.as_ref(), of.limits, frame.width);
-    let bins = of.bins.as_ref().filter(|bins| bins.counts.len() > 1 && total(bins) > 0.0);
-    let curve = of.curve.as_deref().filter(|curve| curve.len() > 1);
-    let of_law = match curve {
-        Some([[from, _], .., [to, _]]) => Some([*from, *to]),
-        _ => law.map(|law| [law.quantile(1e-4), law.upper_quantile(1e-4)]),
-    };
-    let of_bins = bins.map(|bins| [bins.edges[0], bins.edges[bins.counts.len()]]);
-    let extents = || of_law.into_iter().chain(of_bins);
-    let [low, high] = extents().reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])?;
-    let near = |x: &f64| *x - high < FAR * (high - low) && low - *x < FAR * (high - low);
-    let ranges: Vec<&(String, [f64; 2], [String; 2])> =
-        of.ranges.iter().filter(|range| range.1.iter().all(near)).collect();
-    let others = limits.into_iter().flatten().chain(of.nominal).filter(near);
-    let ends = [low, high].into_iter().chain(others).chain(ranges.iter().flat_map(|range| range.1));
-    let scale = Extent::over(ends, 0.02, width)?;
-    let place = |i: usize| scale.from + (scale.to - scale.from) * i as f64 / frame.points as f64;
-    let along =
-        |of: &dyn Fn(f64) -> f64| -> Vec<(f64, f64)> { (0..=frame.points).map(|i| (place(i), of(place(i)))).collect() };
-    // Main curve: the tabulated density, or the Pearson fit if there is none. The Pearson fit is drawn beside a table.
-    let best = |x: f64| match curve {
-        Some(curve) => between(curve, x),
-        None => law.map_or(f64::NAN, |law| law.pdf(x)),
-    };
-    let points = if law.is_some() || curve.is_some() { along(&best) } else { Vec::new() };
-    let fit = law.filter(|_| curve.is_some()).map(|law| along(&|x| law.pdf(x)));
-    let marked = |x: f64| x >= scale.from && x <= scale.to;
-    let unit = if of.sigma > 0.0 { of.sigma } else { high - low };
-    let mut labels = Labels::default();
-    for (limit, rejected, name, side, inside) in [
-        (limits[0], &of.rejects[0], "lower", Side::Before, Side::After),
-        (limits[1], &of.rejects[1], "upper", Side::After, Side::Before),
-    ] {
-        let Some(limit) = limit.filter(|limit| marked(*limit)) else { continue };
-        let x = scale.at(limit);
-        labels.put("name", format!("{name} {}", plain(limit)), (x, inside), width);
-        if let Some(rejected) = rejected {
-            // If there is no space beyond the limit, the text stands inside it and names the side.
-            let wide = LETTER * rejected.chars().count() as f64 + APART;
-            let (text, side) = match (name, x) {
-                ("lower", x) if x < wide => (format!("{rejected} below"), inside),
-                ("upper", x) if x + wide > width => (format!("{rejected} above"), inside),
-                _ => (rejected.clone(), side),
-            };
-            labels.put("rejected", text, (x, side), width);
-        }
-    }
-    let mean = of.places.iter().find(|place| place.1 == "mean").filter(|place| marked(place.0));
-    if let Some((x, _, name)) = mean {
-        labels.put("of-mean", format!("{name} {}", beside(*x, unit)), (scale.at(*x), Side::Over), width);
-    }
-    let top = ROW * labels.rows() as f64 + ROOM;
-    let base = top + TALL;
-    // A density that is infinite at an end is cut off.
-    let finite = points.iter().map(|&(_, density)| density).filter(|density| density.is_finite());
-    let usual = of_law.map_or(f64::INFINITY, |[low, high]| 24.0 / (high - low));
-    let most = finite.fold(0.0, f64::max).min(usual).max(bins.map_or(0.0, densest));
-    let height = |density: f64| (1e2 * TALL * (density / most).min(1.0)).round() / 1e2;
-    let path = |points: &[(f64, f64)]| {
-        let mut path = String::new();
-        for (i, &(x, density)) in points.iter().enumerate() {
-            let y = base - height(density);
-            let _ = write!(path, "{}{:.1} {y:.1}", if i == 0 { "M" } else { "L" }, scale.at(x));
-        }
-        path
-    };
-    let area = |from: f64, to: f64| {
-        let (from, to) = (from.max(scale.from), to.min(scale.to));
-        (from < to && bins.is_none() && !points.is_empty()).then(|| {
-            let mut inside = vec![(from, best(from))];
-            inside.extend(points.iter().filter(|(x, _)| *x > from && *x < to));
-            inside.push((to, best(to)));
-            format!("{}L{:.1} {base}L{:.1} {base}Z", path(&inside), scale.at(to), scale.at(from))
-        })
-    };
-    let tall = base + NUMBERS + RANGE * ranges.len() as f64;
+    let plot = DensityPlot::new(of, frame)?;
+    let labels = plot.labels();
+    let drawing = DensityDrawing::new(plot, ROW * labels.rows() as f64 + ROOM);
+    let (base, rows) = (drawing.base, drawing.plot.ranges.len());
+    let tall = base + NUMBERS + RANGE * rows as f64;
     let mut svg = format!(
-        "<svg class=\"density {}\" viewBox=\"0 0 {width} {tall}\" role=\"img\" aria-label=\"{}\">\n",
+        "<svg class=\"density {}\" viewBox=\"0 0 {} {tall}\" role=\"img\" aria-label=\"{}\">\n",
         frame.class,
+        frame.width,
         escaped(&said(of))
     );
-    let line = (!points.is_empty()).then(|| path(&points));
-    if let (Some(line), None) = (&line, bins) {
-        let _ = writeln!(svg, "<path class=\"area\" d=\"{line}L{width} {base}L0 {base}Z\"/>");
-    }
-    let [lower, upper] = limits;
-    let beyond =
-        [lower.and_then(|lower| area(f64::NEG_INFINITY, lower)), upper.and_then(|upper| area(upper, f64::INFINITY))];
-    for area in beyond.into_iter().flatten() {
-        let _ = writeln!(svg, "<path class=\"beyond\" d=\"{area}\"/>");
-    }
-    let outside = |x: f64| lower.is_some_and(|lower| x < lower) || upper.is_some_and(|upper| x > upper);
-    for (bins, (i, &count)) in bins.iter().flat_map(|bins| bins.counts.iter().enumerate().map(move |bar| (bins, bar))) {
-        let (x, to) = (scale.at(bins.edges[i]), scale.at(bins.edges[i + 1]));
-        let (number, error) = (count as f64, error(bins, count));
-        let tall = height(density(bins, i, number));
-        let [low, high] = [-1.0, 1.0].map(|side| base - height(density(bins, i, (number + side * error).max(0.0))));
-        let class = if outside(0.5 * (bins.edges[i] + bins.edges[i + 1])) { "bin out" } else { "bin" };
-        let (y, wide, middle) = (base - tall, (to - x).max(0.1), 0.5 * (x + to));
-        let _ =
-            write!(svg, "<rect class=\"{class}\" x=\"{x:.1}\" y=\"{y:.1}\" width=\"{wide:.1}\" height=\"{tall:.1}\"/>");
-        let _ = writeln!(svg, "<path class=\"error\" d=\"M{middle:.1} {low:.1}V{high:.1}\"/>");
-    }
-    let foot = base + RANGE * ranges.len() as f64;
-    for (x, kind, name) in of.places.iter().filter(|place| marked(place.0)) {
-        let (at, label) = (scale.at(*x), format!("{name} {}", beside(*x, unit)));
-        let _ = writeln!(svg, "<path class=\"{kind}\" d=\"M{at:.1} {top}V{base}\"><title>{label}</title></path>");
-    }
-    if let Some(fit) = &fit {
-        let _ = writeln!(svg, "<path class=\"fit\" d=\"{}\"><title>Pearson fit</title></path>", path(fit));
-    }
-    if let Some(line) = &line {
-        let _ = writeln!(svg, "<path class=\"line\" d=\"{line}\"/>");
-    }
-    for (limit, name) in [(lower, "lower limit"), (upper, "upper limit")] {
-        if let Some(limit) = limit.filter(|limit| marked(*limit)) {
-            let (at, label) = (scale.at(limit), format!("{name} {}", plain(limit)));
-            let _ = writeln!(
-                svg,
-                "<path class=\"limit\" d=\"M{at:.1} 0V{}\"><title>{label}</title></path>",
-                foot + NUMBERS
-            );
-        }
-    }
-    let _ = writeln!(svg, "<path class=\"axis\" d=\"M0 {base}H{width}\"/>");
-    let mut end = f64::NEG_INFINITY;
-    for Tick { x, label } in scale.ticks(frame.ticks) {
-        let _ = write!(svg, "<path class=\"axis\" d=\"M{x:.1} {base}v4\"/>");
-        let half = 0.5 * LETTER * label.chars().count() as f64;
-        if x - half < end.max(0.0) || x + half > width {
-            continue;
-        }
-        end = x + half + APART;
-        let _ = writeln!(svg, "<text x=\"{x:.1}\" y=\"{}\" text-anchor=\"middle\">{label}</text>", base + 17.0);
-    }
-    if let Some(nominal) = of.nominal.filter(|nominal| marked(*nominal)) {
-        let at = scale.at(nominal);
-        let _ = writeln!(
-            svg,
-            "<path class=\"nominal\" d=\"M{at:.1} {}l-4 7h8z\"><title>nominal {}</title></path>",
-            base + 1.0,
-            beside(nominal, unit)
-        );
-    }
-    for (row, (name, [from, to], _)) in ranges.into_iter().enumerate() {
-        svg += &range(&scale, limits, (name, [*from, *to]), base + NUMBERS + RANGE * (row as f64 + 0.5));
+    let line = (!drawing.points.is_empty()).then(|| drawing.path(&drawing.points));
+    drawing.areas(&mut svg, line.as_deref());
+    drawing.bars(&mut svg);
+    drawing.places(&mut svg);
+    drawing.curves(&mut svg, line.as_deref());
+    drawing.limits(&mut svg);
+    drawing.axis(&mut svg);
+    drawing.nominal(&mut svg);
+    for (row, (name, [from, to], _)) in drawing.plot.ranges.iter().enumerate() {
+        let y = base + NUMBERS + RANGE * (row as f64 + 0.5);
+        svg += &range(&drawing.plot.scale, of.limits, (name, [*from, *to]), y);
     }
     svg += &labels.svg();
     Some(svg + "</svg>\n")
 }
 
-/// Draws a range as a dimension line, with its name in a gap of the line or beside it. The part beyond a limit stands out.
+/// The density, sample and ranges of a chart along the scale of a frame.
+struct DensityPlot<'c> {
+    of: &'c SpreadChart,
+    frame: &'c Frame,
+    bins: Option<&'c Histogram>,
+    curve: Option<&'c [[f64; 2]]>,
+    /// Ends of the density.
+    law_ends: Option<[f64; 2]>,
+    scale: Extent,
+    /// Ranges that are near enough to be drawn.
+    ranges: Vec<&'c (String, [f64; 2], [String; 2])>,
+    /// The standard deviation or another length by which numbers are rounded.
+    unit: f64,
+}
+
+impl<'c> DensityPlot<'c> {
+    /// Chooses the scale. None if there is no extent.
+    fn new(of: &'c SpreadChart, frame: &'c Frame) -> Option<Self> {
+        let (law, limits) = (of.law.as_ref(), of.limits);
+        let bins = of.bins.as_ref().filter(|bins| bins.counts.len() > 1 && total(bins) > 0.0);
+        let curve = of.curve.as_deref().filter(|curve| curve.len() > 1);
+        let law_ends = match curve {
+            Some([[from, _], .., [to, _]]) => Some([*from, *to]),
+            _ => law.map(|law| [law.quantile(1e-4), law.upper_quantile(1e-4)]),
+        };
+        let of_bins = bins.map(|bins| [bins.edges[0], bins.edges[bins.counts.len()]]);
+        let extents = || law_ends.into_iter().chain(of_bins);
+        let [low, high] = extents().reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])?;
+        let near = |x: &f64| *x - high < FAR * (high - low) && low - *x < FAR * (high - low);
+        let ranges: Vec<&(String, [f64; 2], [String; 2])> =
+            of.ranges.iter().filter(|range| range.1.iter().all(near)).collect();
+        let others = limits.into_iter().flatten().chain(of.nominal).filter(near);
+        let ends = [low, high].into_iter().chain(others).chain(ranges.iter().flat_map(|range| range.1));
+        let scale = Extent::over(ends, 0.02, frame.width)?;
+        let unit = if of.sigma > 0.0 { of.sigma } else { high - low };
+        Some(Self { of, frame, bins, curve, law_ends, scale, ranges, unit })
+    }
+
+    /// The best density that there is.
+    fn best(&self, x: f64) -> f64 {
+        match self.curve {
+            Some(curve) => between(curve, x),
+            None => self.of.law.as_ref().map_or(f64::NAN, |law| law.pdf(x)),
+        }
+    }
+
+    /// A density at evenly spaced places of the scale.
+    fn along(&self, density: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
+        let Extent { from, to, .. } = self.scale;
+        let place = |i: usize| from + (to - from) * i as f64 / self.frame.points as f64;
+        (0..=self.frame.points).map(|i| (place(i), density(place(i)))).collect()
+    }
+
+    /// Returns true for a value on the scale.
+    fn marked(&self, x: f64) -> bool {
+        x >= self.scale.from && x <= self.scale.to
+    }
+
+    /// The labels above the density: limits, rejects and mean.
+    fn labels(&self) -> Labels {
+        let (of, width) = (self.of, self.frame.width);
+        let mut labels = Labels::default();
+        for (limit, rejected, name, side, inside) in [
+            (of.limits[0], &of.rejects[0], "lower", Side::Before, Side::After),
+            (of.limits[1], &of.rejects[1], "upper", Side::After, Side::Before),
+        ] {
+            let Some(limit) = limit.filter(|limit| self.marked(*limit)) else { continue };
+            let x = self.scale.at(limit);
+            labels.put("name", format!("{name} {}", plain(limit)), (x, inside), width);
+            if let Some(rejected) = rejected {
+                // Where there is no room beyond the limit the text stands inside, and says on which side they are.
+                let wide = LETTER * rejected.chars().count() as f64 + APART;
+                let (text, side) = match (name, x) {
+                    ("lower", x) if x < wide => (format!("{rejected} below"), inside),
+                    ("upper", x) if x + wide > width => (format!("{rejected} above"), inside),
+                    _ => (rejected.clone(), side),
+                };
+                labels.put("rejected", text, (x, side), width);
+            }
+        }
+        let mean = of.places.iter().find(|place| place.1 == "mean").filter(|place| self.marked(place.0));
+        if let Some((x, _, name)) = mean {
+            let text = format!("{name} {}", beside(*x, self.unit));
+            labels.put("of-mean", text, (self.scale.at(*x), Side::Over), width);
+        }
+        labels
+    }
+}
+
+/// A plot with its heights: from `top` down to its axis at `base`.
+struct DensityDrawing<'c> {
+    plot: DensityPlot<'c>,
+    /// The best density along the scale; empty where there is none.
+    points: Vec<(f64, f64)>,
+    /// The density at the top.
+    most: f64,
+    top: f64,
+    base: f64,
+}
+
+impl<'c> DensityDrawing<'c> {
+    /// Chooses the vertical scale.
+    fn new(plot: DensityPlot<'c>, top: f64) -> Self {
+        let known = plot.of.law.is_some() || plot.curve.is_some();
+        let points = if known { plot.along(|x| plot.best(x)) } else { Vec::new() };
+        // A density that is infinite at its end is cut.
+        let finite = points.iter().map(|&(_, density)| density).filter(|density| density.is_finite());
+        let usual = plot.law_ends.map_or(f64::INFINITY, |[low, high]| 24.0 / (high - low));
+        let most = finite.fold(0.0, f64::max).min(usual).max(plot.bins.map_or(0.0, densest));
+        Self { plot, points, most, top, base: top + TALL }
+    }
+
+    /// The height of a density above the axis.
+    fn height(&self, density: f64) -> f64 {
+        (1e2 * TALL * (density / self.most).min(1.0)).round() / 1e2
+    }
+
+    /// A line through points of a density.
+    fn path(&self, points: &[(f64, f64)]) -> String {
+        let mut path = String::new();
+        for (i, &(x, density)) in points.iter().enumerate() {
+            let y = self.base - self.height(density);
+            let _ = write!(path, "{}{:.1} {y:.1}", if i == 0 { "M" } else { "L" }, self.plot.scale.at(x));
+        }
+        path
+    }
+
+    /// The area below the density between two values. None beside a sample, which has its own bars.
+    fn area(&self, from: f64, to: f64) -> Option<String> {
+        let (plot, base) = (&self.plot, self.base);
+        let (from, to) = (from.max(plot.scale.from), to.min(plot.scale.to));
+        (from < to && plot.bins.is_none() && !self.points.is_empty()).then(|| {
+            let mut inside = vec![(from, plot.best(from))];
+            inside.extend(self.points.iter().filter(|(x, _)| *x > from && *x < to));
+            inside.push((to, plot.best(to)));
+            format!("{}L{:.1} {base}L{:.1} {base}Z", self.path(&inside), plot.scale.at(to), plot.scale.at(from))
+        })
+    }
+
+    /// Fills the density, and what lies beyond the limits.
+    fn areas(&self, svg: &mut String, line: Option<&str>) {
+        let (width, base) = (self.plot.frame.width, self.base);
+        if let (Some(line), None) = (line, self.plot.bins) {
+            let _ = writeln!(svg, "<path class=\"area\" d=\"{line}L{width} {base}L0 {base}Z\"/>");
+        }
+        let [lower, upper] = self.plot.of.limits;
+        let beyond = [
+            lower.and_then(|lower| self.area(f64::NEG_INFINITY, lower)),
+            upper.and_then(|upper| self.area(upper, f64::INFINITY)),
+        ];
+        for area in beyond.into_iter().flatten() {
+            let _ = writeln!(svg, "<path class=\"beyond\" d=\"{area}\"/>");
+        }
+    }
+
+    /// Draws the bars of the sample with their standard errors.
+    fn bars(&self, svg: &mut String) {
+        let Some(bins) = self.plot.bins else { return };
+        let (scale, base, [lower, upper]) = (&self.plot.scale, self.base, self.plot.of.limits);
+        let outside = |x: f64| lower.is_some_and(|lower| x < lower) || upper.is_some_and(|upper| x > upper);
+        for (i, &count) in bins.counts.iter().enumerate() {
+            let (x, to) = (scale.at(bins.edges[i]), scale.at(bins.edges[i + 1]));
+            let (number, error) = (count as f64, error(bins, count));
+            let tall = self.height(density(bins, i, number));
+            let [low, high] =
+                [-1.0, 1.0].map(|side| base - self.height(density(bins, i, (number + side * error).max(0.0))));
+            let class = if outside(0.5 * (bins.edges[i] + bins.edges[i + 1])) { "bin out" } else { "bin" };
+            let (y, wide, middle) = (base - tall, (to - x).max(0.1), 0.5 * (x + to));
+            let _ = write!(
+                svg,
+                "<rect class=\"{class}\" x=\"{x:.1}\" y=\"{y:.1}\" width=\"{wide:.1}\" height=\"{tall:.1}\"/>"
+            );
+            let _ = writeln!(svg, "<path class=\"error\" d=\"M{middle:.1} {low:.1}V{high:.1}\"/>");
+        }
+    }
+
+    /// Marks the mean and quantiles.
+    fn places(&self, svg: &mut String) {
+        let Self { plot, top, base, .. } = self;
+        for (x, kind, name) in plot.of.places.iter().filter(|place| plot.marked(place.0)) {
+            let (at, label) = (plot.scale.at(*x), format!("{name} {}", beside(*x, plot.unit)));
+            let _ = writeln!(svg, "<path class=\"{kind}\" d=\"M{at:.1} {top}V{base}\"><title>{label}</title></path>");
+        }
+    }
+
+    /// Draws the density, and the Pearson law beside a better one.
+    fn curves(&self, svg: &mut String, line: Option<&str>) {
+        if let Some(law) = self.plot.of.law.as_ref().filter(|_| self.plot.curve.is_some()) {
+            let fit = self.path(&self.plot.along(|x| law.pdf(x)));
+            let _ = writeln!(svg, "<path class=\"fit\" d=\"{fit}\"><title>Pearson fit</title></path>");
+        }
+        if let Some(line) = line {
+            let _ = writeln!(svg, "<path class=\"line\" d=\"{line}\"/>");
+        }
+    }
+
+    /// Draws the limits from the top to the foot of the ranges.
+    fn limits(&self, svg: &mut String) {
+        let plot = &self.plot;
+        let [lower, upper] = plot.of.limits;
+        let foot = self.base + RANGE * plot.ranges.len() as f64;
+        for (limit, name) in [(lower, "lower limit"), (upper, "upper limit")] {
+            if let Some(limit) = limit.filter(|limit| plot.marked(*limit)) {
+                let (at, label) = (plot.scale.at(limit), format!("{name} {}", plain(limit)));
+                let _ = writeln!(
+                    svg,
+                    "<path class=\"limit\" d=\"M{at:.1} 0V{}\"><title>{label}</title></path>",
+                    foot + NUMBERS
+                );
+            }
+        }
+    }
+
+    /// Draws the axis with the numbers that have room at it.
+    fn axis(&self, svg: &mut String) {
+        let (base, frame) = (self.base, self.plot.frame);
+        let width = frame.width;
+        let _ = writeln!(svg, "<path class=\"axis\" d=\"M0 {base}H{width}\"/>");
+        let mut end = f64::NEG_INFINITY;
+        for Tick { x, label } in self.plot.scale.ticks(frame.ticks) {
+            let _ = write!(svg, "<path class=\"axis\" d=\"M{x:.1} {base}v4\"/>");
+            let half = 0.5 * LETTER * label.chars().count() as f64;
+            if x - half < end.max(0.0) || x + half > width {
+                continue;
+            }
+            end = x + half + APART;
+            let _ = writeln!(svg, "<text x=\"{x:.1}\" y=\"{}\" text-anchor=\"middle\">{label}</text>", base + 17.0);
+        }
+    }
+
+    /// Marks the value at the nominal dimensions.
+    fn nominal(&self, svg: &mut String) {
+        let plot = &self.plot;
+        if let Some(nominal) = plot.of.nominal.filter(|nominal| plot.marked(*nominal)) {
+            let at = plot.scale.at(nominal);
+            let _ = writeln!(
+                svg,
+                "<path class=\"nominal\" d=\"M{at:.1} {}l-4 7h8z\"><title>nominal {}</title></path>",
+                self.base + 1.0,
+                beside(nominal, plot.unit)
+            );
+        }
+    }
+}
+
+/// A range as a dimension line, with its name in a gap of the line or beside it; what lies beyond a limit stands out.
 fn range(scale: &Extent, limits: [Option<f64>; 2], (name, [from, to]): (&str, [f64; 2]), y: f64) -> String {
     let [a, b] = [scale.at(from), scale.at(to)];
     let wide = LETTER * name.chars().count() as f64 + APART;

@@ -286,6 +286,7 @@ fn fitted(text: &str, width: f64) -> String {
     }
 }
 
+/// Draws a plot on a sheet: grid and numbers first, then its labels and layers, and names at the end of lines over all.
 fn plot(svg: &mut String, plot: &Plot, mut sheet: Sheet) {
     let [_, _, above, below] = sheet.margin;
     let floor = sheet.height - below;
@@ -301,11 +302,21 @@ fn plot(svg: &mut String, plot: &Plot, mut sheet: Sheet) {
         sheet.margin[1] = sheet.margin[1].max(widest(&mut outside.into_iter()) + 10.0);
     }
     let [left, right, ..] = sheet.margin;
-    let far = sheet.width - right;
-    let x = Ruler::over(plot.values(0), plot.x.scale, [left, far]);
+    let x = Ruler::over(plot.values(0), plot.x.scale, [left, sheet.width - right]);
+    grid(svg, (x.ticks(&plot.x, sheet.ticks[0]), upwards), &sheet);
+    axis_labels(svg, plot, &sheet);
+    let (texts, held) = end_names(names, &sheet);
+    layers(svg, plot, [&x, &y], &sheet, &held);
+    *svg += &texts;
+}
+
+/// Draws the grid with the numbers at it.
+fn grid(svg: &mut String, (across, upwards): (Vec<(f64, String)>, Vec<(f64, String)>), sheet: &Sheet) {
+    let [left, right, above, below] = sheet.margin;
+    let (far, floor) = (sheet.width - right, sheet.height - below);
     let grid = sheet.ink(Ink::Grid);
     let mut end = f64::NEG_INFINITY;
-    for (at, label) in x.ticks(&plot.x, sheet.ticks[0]) {
+    for (at, label) in across {
         let _ = writeln!(svg, "<path d=\"M{at:.1} {above}V{floor}\" {grid}/>");
         let half = 0.5 * LETTER * letters(&label) as f64;
         // A plot in a file has space for all labels.
@@ -319,6 +330,12 @@ fn plot(svg: &mut String, plot: &Plot, mut sheet: Sheet) {
         let _ = writeln!(svg, "<path d=\"M{left} {at:.1}H{far}\" {grid}/>");
         let _ = writeln!(svg, "<text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{label}</text>", left - 8.0, at + 4.0);
     }
+}
+
+/// Writes the labels of both axes.
+fn axis_labels(svg: &mut String, plot: &Plot, sheet: &Sheet) {
+    let [left, right, above, below] = sheet.margin;
+    let (far, floor) = (sheet.width - right, sheet.height - below);
     let (middle, low) = (0.5 * (left + far), sheet.height - if sheet.page { 8.0 } else { 12.0 });
     if sheet.page {
         // The label uses the whole width; a longer one is cut.
@@ -333,6 +350,12 @@ fn plot(svg: &mut String, plot: &Plot, mut sheet: Sheet) {
         let turned = format!("text-anchor=\"middle\" transform=\"rotate(-90 18 {centre})\"");
         let _ = writeln!(svg, "<text x=\"18\" y=\"{centre}\" {turned}>{label}</text>");
     }
+}
+
+/// The names at the end of lines, and the boxes that they take.
+fn end_names(names: Vec<Beside>, sheet: &Sheet) -> (String, Vec<[f64; 4]>) {
+    let right = sheet.margin[1];
+    let far = sheet.width - right;
     let (mut held, mut texts) = (Vec::new(), String::new());
     for (at, name, ink) in names {
         let (ink, name, wide) = (sheet.ink(ink), escaped(name), LETTER * name.len() as f64);
@@ -346,6 +369,13 @@ fn plot(svg: &mut String, plot: &Plot, mut sheet: Sheet) {
         let (x, y) = (far - 4.0, at - 5.0);
         let _ = writeln!(texts, "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"end\" {ink}>{name}</text>");
     }
+    (texts, held)
+}
+
+/// Draws the layers one over the other; names of points keep out of the boxes that are held.
+fn layers(svg: &mut String, plot: &Plot, [x, y]: [&Ruler; 2], sheet: &Sheet, held: &[[f64; 4]]) {
+    let [left, right, ..] = sheet.margin;
+    let far = sheet.width - right;
     for layer in &plot.layers {
         match layer {
             Layer::Band(points) => {
@@ -353,23 +383,22 @@ fn plot(svg: &mut String, plot: &Plot, mut sheet: Sheet) {
                 for part in known(points) {
                     let low = part.iter().map(|&(at, [low, _])| (at, low));
                     let high = part.iter().rev().map(|&(at, [_, high])| (at, high));
-                    let _ = writeln!(svg, "<path d=\"{}Z\" {ink}/>", path(&x, &y, low.chain(high)));
+                    let _ = writeln!(svg, "<path d=\"{}Z\" {ink}/>", path(x, y, low.chain(high)));
                 }
             }
             Layer::Curve(points, stroke) => {
                 let ink = sheet.ink(Ink::Line(*stroke));
                 for part in known(points) {
-                    let _ = writeln!(svg, "<path d=\"{}\" {ink}/>", path(&x, &y, part.into_iter()));
+                    let _ = writeln!(svg, "<path d=\"{}\" {ink}/>", path(x, y, part.into_iter()));
                 }
             }
-            Layer::Points(points) => circles(svg, &x, &y, points, &sheet, &held),
+            Layer::Points(points) => circles(svg, x, y, points, sheet, held),
             Layer::Mark(value, _) => {
                 let _ = writeln!(svg, "<path d=\"M{left} {:.1}H{far}\" {}/>", y.at(*value), sheet.ink(Ink::Mark));
             }
             Layer::End(..) => {}
         }
     }
-    *svg += &texts;
 }
 
 /// Splits a curve into stretches of known points.

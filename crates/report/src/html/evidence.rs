@@ -124,121 +124,204 @@ fn tails(one: &CharacteristicAnalysis) -> Option<String> {
 
 /// Draws one tail. Returns None if the limit is too far out for a picture.
 fn panel(one: &CharacteristicAnalysis, tail: &Tail<'_>) -> Option<String> {
-    /// Width in pixels.
-    const WIDTH: f64 = 340.0;
-    /// Height in pixels.
-    const TALL: f64 = 150.0;
-    /// Left margin in pixels, for the labels of the axis.
-    const LEFT: f64 = 56.0;
-    let beyond = |x: f64| if tail.upper { tail.law.sf(x) } else { tail.law.cdf(x) };
-    let at = |share: f64| if tail.upper { tail.law.upper_quantile(share) } else { tail.law.quantile(share) };
-    let seen = [tail.surface, tail.model.map(|model| model.0), Some(beyond(tail.limit))];
-    let least = seen.into_iter().flatten().filter(|share| *share > 0.0).fold(TO, f64::min);
-    // Least share that is drawn: a picture of smaller ones would show nothing.
-    const FARTHEST: f64 = 1e-9;
-    if least < FARTHEST {
-        return None;
-    }
-    let decades = -libm::log10(least).floor();
-    let least = power_of_ten(-decades);
-    let shown = || tail.seen.iter().filter(|point| point.share >= least);
-    let values = [at(FROM), at(least), tail.limit].into_iter().chain(shown().map(|point| point.at));
-    let scale = Extent::over(values, 0.04, WIDTH - LEFT)?;
-    let x = |value: f64| LEFT + scale.at(value);
-    let y = |share: f64| {
-        let part = (libm::log10(FROM) - libm::log10(share.max(least))) / (libm::log10(FROM) - libm::log10(least));
-        (10.0 * TALL * part.clamp(0.0, 1.0)).round() / 10.0 + 8.0
-    };
-    let mut line = String::new();
-    for i in 0..=60 {
-        let value = scale.from + (scale.to - scale.from) * f64::from(i) / 60.0;
-        let share = beyond(value);
-        if share <= FROM && share >= least {
-            let _ = write!(line, "{}{:.1} {:.1}", if line.is_empty() { "M" } else { "L" }, x(value), y(share));
-        }
-    }
-    // Dots are lines without length and with round ends, which are shorter than circles in SVG. The band spans two standard errors.
-    let (mut dots, mut band) = (String::new(), String::new());
-    shown().for_each(|point| {
-        let _ = write!(dots, "M{:.1} {:.1}h0", x(point.at), y(point.share));
-    });
-    let known: Vec<(&TailPoint, f64)> = shown().filter_map(|point| Some((point, point.error?))).collect();
-    for (point, error) in &known {
-        let _ = write!(band, "{:.1} {:.1} ", x(point.at), y(point.share + 2.0 * error));
-    }
-    for (point, error) in known.iter().rev() {
-        let _ = write!(band, "{:.1} {:.1} ", x(point.at), y((point.share - 2.0 * error).max(least)));
-    }
-    let limit = x(tail.limit);
-    let (from, to) = if tail.upper { (limit, WIDTH) } else { (LEFT, limit) };
+    let panel = Panel::new(tail)?;
     let unit = one.unit().map(|unit| format!(" {unit}")).unwrap_or_default();
-    let said = |share: f64| format!("{} ppm", estimated(1e6 * share, None));
-    let mut spoken = vec![format!("Tail of {} at the {} limit {}{unit}", one.name(), tail.name, plain(tail.limit))];
-    spoken.push(format!("Pearson fit {}", said(beyond(tail.limit))));
-    spoken.extend(tail.surface.map(|share| format!("surface {}", said(share))));
-    spoken.extend(tail.model.map(|(share, error)| format!("model {} ± {}", said(share), said(error))));
     let mut svg = format!(
         "<svg class=\"tail\" viewBox=\"0 0 {WIDTH} {}\" role=\"img\" aria-label=\"{}\">\n",
         TALL + 30.0,
-        escaped(&spoken.join(", "))
+        escaped(&tail.spoken(one.name(), &unit))
     );
-    let _ = writeln!(
-        svg,
-        "<rect class=\"zone\" x=\"{from:.1}\" y=\"8\" width=\"{:.1}\" height=\"{TALL}\"/>",
-        (to - from).max(0.0)
-    );
-    for decade in 1..=decades as i32 {
-        let share = 10f64.powi(-decade);
-        let name = match decade {
-            1 => "10 %".to_owned(),
-            2 => "1 %".to_owned(),
-            3 => "0.1 %".to_owned(),
-            4..=6 => format!("{} ppm", 10i32.pow(6 - decade as u32)),
-            _ => format!("{} ppm", plain(10f64.powi(6 - decade))),
-        };
-        let at = y(share);
+    panel.background(&mut svg);
+    panel.shares(&mut svg);
+    panel.limit(&mut svg, &unit);
+    panel.marks(&mut svg);
+    Some(svg + "</svg>")
+}
+
+/// Width of a panel: two stand beside each other on a page.
+const WIDTH: f64 = 340.0;
+/// Height between the largest share and the least.
+const TALL: f64 = 150.0;
+/// Width of the numbers at the left.
+const LEFT: f64 = 56.0;
+
+impl Tail<'_> {
+    /// The share beyond a value by the Pearson fit.
+    fn beyond(&self, x: f64) -> f64 {
+        if self.upper { self.law.sf(x) } else { self.law.cdf(x) }
+    }
+
+    /// The value with this share beyond it.
+    fn at(&self, share: f64) -> f64 {
+        if self.upper { self.law.upper_quantile(share) } else { self.law.quantile(share) }
+    }
+
+    /// The text for readers who do not see the panel.
+    fn spoken(&self, name: &str, unit: &str) -> String {
+        let said = |share: f64| format!("{} ppm", estimated(1e6 * share, None));
+        let mut spoken = vec![format!("Tail of {name} at the {} limit {}{unit}", self.name, plain(self.limit))];
+        spoken.push(format!("Pearson fit {}", said(self.beyond(self.limit))));
+        spoken.extend(self.surface.map(|share| format!("surface {}", said(share))));
+        spoken.extend(self.model.map(|(share, error)| format!("model {} ± {}", said(share), said(error))));
+        spoken.join(", ")
+    }
+}
+
+/// A tail on its scales: values across, shares downwards by decades.
+struct Panel<'t> {
+    tail: &'t Tail<'t>,
+    scale: Extent,
+    decades: f64,
+    /// The share at the bottom.
+    least: f64,
+    /// Place of the limit across.
+    limit: f64,
+}
+
+impl<'t> Panel<'t> {
+    /// Chooses the scales. None where the limit is too far out.
+    fn new(tail: &'t Tail<'t>) -> Option<Self> {
+        let seen = [tail.surface, tail.model.map(|model| model.0), Some(tail.beyond(tail.limit))];
+        let least = seen.into_iter().flatten().filter(|share| *share > 0.0).fold(TO, f64::min);
+        // Further out than this a picture says nothing.
+        const FARTHEST: f64 = 1e-9;
+        if least < FARTHEST {
+            return None;
+        }
+        let decades = -libm::log10(least).floor();
+        let least = power_of_ten(-decades);
+        let shown = tail.seen.iter().filter(|point| point.share >= least);
+        let values = [tail.at(FROM), tail.at(least), tail.limit].into_iter().chain(shown.map(|point| point.at));
+        let scale = Extent::over(values, 0.04, WIDTH - LEFT)?;
+        let limit = LEFT + scale.at(tail.limit);
+        Some(Self { tail, scale, decades, least, limit })
+    }
+
+    /// Place of a value across.
+    fn x(&self, value: f64) -> f64 {
+        LEFT + self.scale.at(value)
+    }
+
+    /// Place of a share downwards.
+    fn y(&self, share: f64) -> f64 {
+        let least = self.least;
+        let part = (libm::log10(FROM) - libm::log10(share.max(least))) / (libm::log10(FROM) - libm::log10(least));
+        (10.0 * TALL * part.clamp(0.0, 1.0)).round() / 10.0 + 8.0
+    }
+
+    /// Draws the zone beyond the limit, and a line for each decade.
+    fn background(&self, svg: &mut String) {
+        let (from, to) = if self.tail.upper { (self.limit, WIDTH) } else { (LEFT, self.limit) };
         let _ = writeln!(
             svg,
-            "<path class=\"axis\" d=\"M{LEFT} {at}H{WIDTH}\"/><text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{name}</text>",
-            LEFT - 6.0,
-            at + 4.0
+            "<rect class=\"zone\" x=\"{from:.1}\" y=\"8\" width=\"{:.1}\" height=\"{TALL}\"/>",
+            (to - from).max(0.0)
         );
-    }
-    let _ =
-        writeln!(svg, "<path class=\"line\" d=\"{line}\"/><path class=\"limit\" d=\"M{limit:.1} 2V{}\"/>", TALL + 12.0);
-    if !dots.is_empty() {
-        let _ = writeln!(
-            svg,
-            "<polygon class=\"seen-within\" points=\"{}\"/><path class=\"seen\" d=\"{dots}\"/>",
-            band.trim_end()
-        );
-    }
-    let anchor = if limit > 0.75 * WIDTH {
-        "end"
-    } else if limit < 0.35 * WIDTH {
-        "start"
-    } else {
-        "middle"
-    };
-    let _ = writeln!(
-        svg,
-        "<text class=\"name\" x=\"{limit:.1}\" y=\"{}\" text-anchor=\"{anchor}\">{} {}{}</text>",
-        TALL + 25.0,
-        tail.name,
-        plain(tail.limit),
-        escaped(&unit)
-    );
-    if let Some(share) = tail.surface.filter(|share| *share > 0.0) {
-        let _ = writeln!(svg, "<path class=\"of-surface\" d=\"M{limit:.1} {:.1}l5 5l-5 5l-5 -5z\"/>", y(share) - 5.0);
-    }
-    if let Some((share, error)) = tail.model.filter(|(share, error)| share + 2.0 * error > least) {
-        let [low, high] = [-2.0, 2.0].map(|by| y((share + by * error).max(least)));
-        let _ = writeln!(svg, "<path class=\"reach\" d=\"M{limit:.1} {low:.1}V{high:.1}\"/>");
-        if share > least {
-            let _ = writeln!(svg, "<circle cx=\"{limit:.1}\" cy=\"{:.1}\" r=\"4\"/>", y(share));
+        for decade in 1..=self.decades as i32 {
+            let share = 10f64.powi(-decade);
+            let name = match decade {
+                1 => "10 %".to_owned(),
+                2 => "1 %".to_owned(),
+                3 => "0.1 %".to_owned(),
+                4..=6 => format!("{} ppm", 10i32.pow(6 - decade as u32)),
+                _ => format!("{} ppm", plain(10f64.powi(6 - decade))),
+            };
+            let at = self.y(share);
+            let _ = writeln!(
+                svg,
+                "<path class=\"axis\" d=\"M{LEFT} {at}H{WIDTH}\"/><text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{name}</text>",
+                LEFT - 6.0,
+                at + 4.0
+            );
         }
     }
-    Some(svg + "</svg>")
+
+    /// Draws the Pearson fit, the limit, and points of the model with their band.
+    fn shares(&self, svg: &mut String) {
+        let (line, limit) = (self.fit(), self.limit);
+        let _ = writeln!(
+            svg,
+            "<path class=\"line\" d=\"{line}\"/><path class=\"limit\" d=\"M{limit:.1} 2V{}\"/>",
+            TALL + 12.0
+        );
+        let (dots, band) = self.points();
+        if !dots.is_empty() {
+            let _ = writeln!(
+                svg,
+                "<polygon class=\"seen-within\" points=\"{}\"/><path class=\"seen\" d=\"{dots}\"/>",
+                band.trim_end()
+            );
+        }
+    }
+
+    /// The line of the Pearson fit.
+    fn fit(&self) -> String {
+        let mut line = String::new();
+        for i in 0..=60 {
+            let value = self.scale.from + (self.scale.to - self.scale.from) * f64::from(i) / 60.0;
+            let share = self.tail.beyond(value);
+            if share <= FROM && share >= self.least {
+                let start = if line.is_empty() { "M" } else { "L" };
+                let _ = write!(line, "{start}{:.1} {:.1}", self.x(value), self.y(share));
+            }
+        }
+        line
+    }
+
+    /// Points of the model, and their band.
+    fn points(&self) -> (String, String) {
+        let shown = || self.tail.seen.iter().filter(|point| point.share >= self.least);
+        // Lines without length and with round ends are dots, and shorter than circles. The band is that of two standard errors.
+        let (mut dots, mut band) = (String::new(), String::new());
+        shown().for_each(|point| {
+            let _ = write!(dots, "M{:.1} {:.1}h0", self.x(point.at), self.y(point.share));
+        });
+        let known: Vec<(&TailPoint, f64)> = shown().filter_map(|point| Some((point, point.error?))).collect();
+        for (point, error) in &known {
+            let _ = write!(band, "{:.1} {:.1} ", self.x(point.at), self.y(point.share + 2.0 * error));
+        }
+        for (point, error) in known.iter().rev() {
+            let low = (point.share - 2.0 * error).max(self.least);
+            let _ = write!(band, "{:.1} {:.1} ", self.x(point.at), self.y(low));
+        }
+        (dots, band)
+    }
+
+    /// Writes the limit below the panel.
+    fn limit(&self, svg: &mut String, unit: &str) {
+        let limit = self.limit;
+        let anchor = if limit > 0.75 * WIDTH {
+            "end"
+        } else if limit < 0.35 * WIDTH {
+            "start"
+        } else {
+            "middle"
+        };
+        let _ = writeln!(
+            svg,
+            "<text class=\"name\" x=\"{limit:.1}\" y=\"{}\" text-anchor=\"{anchor}\">{} {}{}</text>",
+            TALL + 25.0,
+            self.tail.name,
+            plain(self.tail.limit),
+            escaped(unit)
+        );
+    }
+
+    /// Marks the shares of surface and model at the limit.
+    fn marks(&self, svg: &mut String) {
+        let (limit, least) = (self.limit, self.least);
+        if let Some(share) = self.tail.surface.filter(|share| *share > 0.0) {
+            let top = self.y(share) - 5.0;
+            let _ = writeln!(svg, "<path class=\"of-surface\" d=\"M{limit:.1} {top:.1}l5 5l-5 5l-5 -5z\"/>");
+        }
+        if let Some((share, error)) = self.tail.model.filter(|(share, error)| share + 2.0 * error > least) {
+            let [low, high] = [-2.0, 2.0].map(|by| self.y((share + by * error).max(least)));
+            let _ = writeln!(svg, "<path class=\"reach\" d=\"M{limit:.1} {low:.1}V{high:.1}\"/>");
+            if share > least {
+                let _ = writeln!(svg, "<circle cx=\"{limit:.1}\" cy=\"{:.1}\" r=\"4\"/>", self.y(share));
+            }
+        }
+    }
 }
 
 /// Bars from the nominal value to the mean, a step for each cause. Returns None if the two nearly agree, or are unknown.

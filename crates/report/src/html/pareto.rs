@@ -58,22 +58,76 @@ pub(super) fn pareto(report: &Report, one: &CharacteristicAnalysis) -> Option<St
         fold(&mut all);
     }
     all.truncate(MOST + 1);
-    let sigma = one.sigma().map(|sigma| (sigma, one.error_estimate.as_ref().and_then(|of| of.sigma)));
-    let unit = one.unit().map(|unit| format!(", {}", escaped(unit))).unwrap_or_default();
-    let (by, sum) = match of_model {
-        true => (" by the model", ""),
-        false => ("", "<th scope=\"col\" class=\"n opt\">cumulative</th>"),
+    let open = unresolved(one).filter(|_| !of_model);
+    let mut diagram = Diagram::new(one);
+    all.iter().for_each(|share| diagram.add(share));
+    if let Some(open) = &open {
+        diagram.add_open(open);
+    }
+    let mut text = diagram.text;
+    text += "</tbody></table>\n";
+    let keys: &[[&str; 2]] = match of_model {
+        true => &[["linear", "by itself"], ["interaction", "with others"]],
+        false => {
+            &[["linear", "linear"], ["curvature", "curvature"], ["interaction", "interaction"], ["step", "cumulative"]]
+        }
     };
-    let mut text = format!(
-        "<table class=\"drivers\"><caption class=\"sr\">Contributions to the variance of {}{by}, strongest first</caption>\n\
-         <thead><tr><th scope=\"col\">dimension</th><th scope=\"col\">of the variance, 0 to 100 %</th><th scope=\"col\" class=\"n\">share</th>{sum}\
-         <th scope=\"col\" class=\"n\">sigma{unit}</th><th scope=\"col\" class=\"n opt\">slope × half tolerance{unit}</th></tr></thead><tbody>\n",
-        escaped(one.name())
-    );
-    let mut before = Sum::default();
-    for share in &all {
-        let after = before.and(share);
-        let fills = if of_model { ["linear", "interaction", ""] } else { ["linear", "curvature", "interaction"] };
+    let key = |[fill, name]: &[&str; 2]| format!("<li class=\"key {fill}\">{name}</li>");
+    let _ = writeln!(text, "<ul class=\"legend\">{}</ul>", keys.iter().map(key).collect::<String>());
+    notes(&mut text, (of_model, open.as_ref()), &all, &idle);
+    Some(text)
+}
+
+/// The table of contributions, row by row.
+struct Diagram {
+    text: String,
+    of_model: bool,
+    /// Sigma of the characteristic with its error.
+    sigma: Option<(f64, Option<f64>)>,
+    /// The running sum after the last row.
+    before: Sum,
+}
+
+impl Diagram {
+    /// A table without rows.
+    fn new(one: &CharacteristicAnalysis) -> Self {
+        let of_model = one.is_of_model();
+        let sigma = one.sigma().map(|sigma| (sigma, one.error_estimate.as_ref().and_then(|of| of.sigma)));
+        let unit = one.unit().map(|unit| format!(", {}", escaped(unit))).unwrap_or_default();
+        let (by, sum) = match of_model {
+            true => (" by the model", ""),
+            false => ("", "<th scope=\"col\" class=\"n opt\">cumulative</th>"),
+        };
+        let text = format!(
+            "<table class=\"drivers\"><caption class=\"sr\">Contributions to the variance of {}{by}, strongest first</caption>\n\
+             <thead><tr><th scope=\"col\">dimension</th><th scope=\"col\">of the variance, 0 to 100 %</th><th scope=\"col\" class=\"n\">share</th>{sum}\
+             <th scope=\"col\" class=\"n\">sigma{unit}</th><th scope=\"col\" class=\"n opt\">slope × half tolerance{unit}</th></tr></thead><tbody>\n",
+            escaped(one.name())
+        );
+        Self { text, of_model, sigma, before: Sum::default() }
+    }
+
+    /// Adds the row of a contribution.
+    fn add(&mut self, share: &Share) {
+        let after = self.before.and(share);
+        let mut bars = self.bars(share);
+        let (amount, cells) = match self.of_model {
+            true => (of_model_text(share), String::new()),
+            false => {
+                bars += &step(self.before.value, after.value);
+                (format!("{} %", percent_within(share.value, share.error).0), summed(&after))
+            }
+        };
+        let alone = self.sigma.filter(|_| share.alone);
+        let spread = alone.map_or(UNKNOWN.to_owned(), |sigma| spread(sigma, share.value, share.error));
+        let reach = share.reach.as_deref().unwrap_or_default();
+        row(&mut self.text, &share.name, "", &bars, &[amount, cells, spread, reach.to_owned()]);
+        self.before = after;
+    }
+
+    /// The parts of a contribution, one after the other.
+    fn bars(&self, share: &Share) -> String {
+        let fills = if self.of_model { ["linear", "interaction", ""] } else { ["linear", "curvature", "interaction"] };
         let mut at = 0.0;
         let mut bars = String::new();
         for (fill, part) in fills.into_iter().zip(share.parts.map(|part| scaled(part.max(0.0)))) {
@@ -86,26 +140,16 @@ pub(super) fn pareto(report: &Report, one: &CharacteristicAnalysis) -> Option<St
                 at += part;
             }
         }
-        let (amount, cells) = match of_model {
-            true => (of_model_text(share), String::new()),
-            false => {
-                bars += &step(before.value, after.value);
-                (format!("{} %", percent_within(share.value, share.error).0), summed(&after))
-            }
-        };
-        let spread =
-            sigma.filter(|_| share.alone).map_or(UNKNOWN.to_owned(), |sigma| spread(sigma, share.value, share.error));
-        let reach = share.reach.as_deref().unwrap_or_default();
-        row(&mut text, &share.name, "", &bars, &[amount, cells, spread, reach.to_owned()]);
-        before = after;
+        bars
     }
-    let open = unresolved(one).filter(|_| !of_model);
-    if let Some(open) = &open {
+
+    /// Adds the row of what is not resolved.
+    fn add_open(&mut self, open: &Open) {
         let (bars, amount, cells, spread) = match *open {
             Open::LeftOut(share) => {
-                let after = Sum { value: before.value + share, ..before };
-                let bars = hatched(share) + &step(before.value, after.value);
-                let spread = sigma.map_or(UNKNOWN.to_owned(), |sigma| spread(sigma, share, None));
+                let after = Sum { value: self.before.value + share, ..self.before };
+                let bars = hatched(share) + &step(self.before.value, after.value);
+                let spread = self.sigma.map_or(UNKNOWN.to_owned(), |sigma| spread(sigma, share, None));
                 (bars, format!("{} %", percent(share)), summed(&after), spread)
             }
             Open::ByPoints(share) => (
@@ -121,34 +165,29 @@ pub(super) fn pareto(report: &Report, one: &CharacteristicAnalysis) -> Option<St
                 UNKNOWN.to_owned(),
             ),
         };
-        row(&mut text, "not resolved", " class=\"unknown\"", &bars, &[amount, cells, spread, String::new()]);
+        row(&mut self.text, "not resolved", " class=\"unknown\"", &bars, &[amount, cells, spread, String::new()]);
     }
-    text += "</tbody></table>\n";
-    let keys: &[[&str; 2]] = match of_model {
-        true => &[["linear", "by itself"], ["interaction", "with others"]],
-        false => {
-            &[["linear", "linear"], ["curvature", "curvature"], ["interaction", "interaction"], ["step", "cumulative"]]
-        }
-    };
-    let key = |[fill, name]: &[&str; 2]| format!("<li class=\"key {fill}\">{name}</li>");
-    let _ = writeln!(text, "<ul class=\"legend\">{}</ul>", keys.iter().map(key).collect::<String>());
+}
+
+/// Writes the notes below the table: what is not resolved, shares of the model, shares below 0, and dimensions without influence.
+fn notes(text: &mut String, (of_model, open): (bool, Option<&Open>), all: &[Share], idle: &[String]) {
     match open {
         Some(Open::ByPoints(_)) => {
-            text += "<p class=\"note\">Not resolved: by points of the model, the surface leaves this part of the variance.</p>\n"
+            *text += "<p class=\"note\">Not resolved: by points of the model, the surface leaves this part of the variance.</p>\n"
         }
         Some(Open::LeftOut(_)) => {
-            text += "<p class=\"note\">Not resolved: part of the variance, and in no contribution.</p>\n"
+            *text += "<p class=\"note\">Not resolved: part of the variance, and in no contribution.</p>\n"
         }
         Some(Open::Unknown) => {
-            text += "<p class=\"note\">Not resolved: what these contributions leave of the variance is unknown.</p>\n"
+            *text += "<p class=\"note\">Not resolved: what these contributions leave of the variance is unknown.</p>\n"
         }
         None => {}
     }
     if of_model {
-        text += "<p class=\"note\">Share by itself, and with every interaction; sigma is that of a dimension by itself.</p>\n";
+        *text += "<p class=\"note\">Share by itself, and with every interaction; sigma is that of a dimension by itself.</p>\n";
     }
     if all.iter().any(|share| share.value <= -0.5 * NEWS) {
-        text += "<p class=\"note\">A share below 0 lowers the variance: the dimension is correlated with others and varies against them.</p>\n";
+        *text += "<p class=\"note\">A share below 0 lowers the variance: the dimension is correlated with others and varies against them.</p>\n";
     }
     if !idle.is_empty() {
         let more = idle.len().saturating_sub(NAMED);
@@ -157,7 +196,6 @@ pub(super) fn pareto(report: &Report, one: &CharacteristicAnalysis) -> Option<St
         let _ =
             writeln!(text, "<p class=\"note\">Less than {} % of the variance each: {names}{more}.</p>", 50.0 * NEWS);
     }
-    Some(text)
 }
 
 /// Formats the contribution alone and with every interaction, in percent.

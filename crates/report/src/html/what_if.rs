@@ -202,37 +202,7 @@ impl WhatIf {
         let clean = |fit: &Fit| Fit { surrogate: fit.surrogate.without_rounding(), ..fit.clone() };
         let fits: Vec<Result<Fit, NoFit>> =
             surface.characteristics.iter().map(|fit| fit.as_ref().map(clean).map_err(|&no| no)).collect();
-        // An input needs nodes only if its part has a higher degree than its closed form, or if points of the surface are drawn.
-        let normal = |j: usize| {
-            problem.dimensions()[surface.varying[j]].distribution().is_some_and(|law| law.name() == "normal")
-        };
-        let interacts = |fit: &Fit| {
-            let pairs = fit.surrogate.interactions.pairs();
-            pairs
-                .iter()
-                .any(|&(j, k, product)| product != 0.0 && !(parabola(fit, j, normal(j)) && parabola(fit, k, normal(k))))
-        };
-        let drawn = fits.iter().flatten().any(interacts);
-        let degree = |j: usize| {
-            if drawn {
-                return DRAWN;
-            }
-            let own = |fit: &Fit| Some(fit.surrogate.parts.get(j)?.as_ref()?.coefficients());
-            let degree = |c: [f64; 4]| c.iter().rposition(|&c| c != 0.0).map_or(0, |place| place + 1);
-            fits.iter().flatten().filter_map(own).map(degree).max().unwrap_or(0)
-        };
-        // Inputs with nearly equal tables share one.
-        let mut tables: Vec<TabulatedInput> = Vec::new();
-        let mut table = |(j, &d): (usize, &usize)| {
-            let own = TabulatedInput::of(problem.dimensions()[d].law()?, degree(j))?;
-            let known = tables.iter().position(|known| known.is_near(&own)).unwrap_or_else(|| {
-                tables.push(own);
-                tables.len() - 1
-            });
-            Some(tables[known].clone())
-        };
-        let laws: Vec<Option<TabulatedInput>> = surface.varying.iter().enumerate().map(&mut table).collect();
-        // Dimensions with equal shapes share one by its index.
+        let laws = tabulated(problem, &surface.varying, &fits);
         let mut shapes: Vec<Shape> = Vec::new();
         let mut index = |shape: &InputShape, law: &Option<TabulatedInput>| {
             let shape = Shape::of(shape, law);
@@ -250,40 +220,8 @@ impl WhatIf {
             law.is_some_and(|law| !law.atoms().is_empty())
         };
         let all = analysis.characteristics.iter().zip(&fits).enumerate();
-        let characteristics = all.map(|(c, (found, fit))| {
-            let one = &found.characteristic;
-            let limits = one.limits();
-            let power = fit.as_ref().map_or(Power::ONE, size);
-            let empty = || (0.0, Vec::new(), Pairs::default(), None);
-            let (centre, parts, pairs, unexplained) = fit.as_ref().map_or_else(|_| empty(), |fit| contents(fit, power));
-            let divided = limits.times(power.inverse());
-            let why_fit = fit.as_ref().ok().and_then(|fit| why_fit(found, fit, &laws, &has_atoms));
-            let law = fit.is_ok() && why_fit.is_none();
-            let of_surface = found.surface_law.as_ref().filter(|_| why_fit == Some(INTERACT));
-            let counted = of_surface
-                .map(|law| [law.below, law.above].map(|share| Some(share?.value)))
-                .filter(|shares| shares.iter().any(Option::is_some));
-            Wanted {
-                name: one.name().to_owned(),
-                unit: one.unit().map(str::to_owned),
-                lower: divided.lower(),
-                upper: divided.upper(),
-                rounding: power.inverse().times(problem.kept_limits(c).rounding()),
-                target: one.target_yield(),
-                why: fit.as_ref().err().map(ToString::to_string).or_else(|| endless(found)),
-                centre,
-                parts,
-                pairs,
-                unexplained,
-                scale: power.times(1.0),
-                law,
-                counted,
-                why_fit,
-                reach: reach(found, law || counted.is_some()),
-                screened: fit.as_ref().map_or(0, |fit| fit.screened),
-            }
-        });
-        let characteristics = characteristics.collect();
+        let characteristics =
+            all.map(|(c, (found, fit))| Wanted::of(problem, c, (found, fit), &laws, &has_atoms)).collect();
         let paid = costs.iter().map(|group| group.cost_to_hold(group.tightest_member(problem))).sum();
         let costs = costs.iter().map(|group| Cost::of(problem, &surface.varying, group)).collect();
         Self { dimensions, characteristics, lines: lines.to_vec(), costs, paid, shapes }
@@ -329,7 +267,81 @@ impl WhatIf {
     }
 }
 
-/// Power of two of the largest coefficient of a surface.
+/// The tabulated distributions of the varying dimensions; those that are near each other are one.
+fn tabulated(problem: &Problem, varying: &[usize], fits: &[Result<Fit, NoFit>]) -> Vec<Option<TabulatedInput>> {
+    let normal = |j: usize| problem.dimensions()[varying[j]].distribution().is_some_and(|law| law.name() == "normal");
+    let interacts = |fit: &Fit| {
+        let pairs = fit.surrogate.interactions.pairs();
+        pairs
+            .iter()
+            .any(|&(j, k, product)| product != 0.0 && !(parabola(fit, j, normal(j)) && parabola(fit, k, normal(k))))
+    };
+    let drawn = fits.iter().flatten().any(interacts);
+    let mut tables: Vec<TabulatedInput> = Vec::new();
+    let mut table = |(j, &d): (usize, &usize)| {
+        // A dimension takes nodes only where its part has a higher degree than its closed form, or points of it are drawn.
+        let degree = if drawn { DRAWN } else { highest_degree(fits, j) };
+        let own = TabulatedInput::of(problem.dimensions()[d].law()?, degree)?;
+        let known = tables.iter().position(|known| known.is_near(&own)).unwrap_or_else(|| {
+            tables.push(own);
+            tables.len() - 1
+        });
+        Some(tables[known].clone())
+    };
+    varying.iter().enumerate().map(&mut table).collect()
+}
+
+/// The highest degree of the part of an input in all surfaces.
+fn highest_degree(fits: &[Result<Fit, NoFit>], j: usize) -> usize {
+    let own = |fit: &Fit| Some(fit.surrogate.parts.get(j)?.as_ref()?.coefficients());
+    let degree = |c: [f64; 4]| c.iter().rposition(|&c| c != 0.0).map_or(0, |place| place + 1);
+    fits.iter().flatten().filter_map(own).map(degree).max().unwrap_or(0)
+}
+
+impl Wanted {
+    /// A characteristic with its surface, divided by a power of two.
+    fn of(
+        problem: &Problem,
+        c: usize,
+        (found, fit): (&CharacteristicAnalysis, &Result<Fit, NoFit>),
+        laws: &[Option<TabulatedInput>],
+        has_atoms: &dyn Fn(usize) -> bool,
+    ) -> Self {
+        let one = &found.characteristic;
+        let limits = one.limits();
+        let power = fit.as_ref().map_or(Power::ONE, size);
+        let empty = || (0.0, Vec::new(), Pairs::default(), None);
+        let (centre, parts, pairs, unexplained) = fit.as_ref().map_or_else(|_| empty(), |fit| contents(fit, power));
+        let divided = limits.times(power.inverse());
+        let why_fit = fit.as_ref().ok().and_then(|fit| why_fit(found, fit, laws, has_atoms));
+        let law = fit.is_ok() && why_fit.is_none();
+        let of_surface = found.surface_law.as_ref().filter(|_| why_fit == Some(INTERACT));
+        let counted = of_surface
+            .map(|law| [law.below, law.above].map(|share| Some(share?.value)))
+            .filter(|shares| shares.iter().any(Option::is_some));
+        Self {
+            name: one.name().to_owned(),
+            unit: one.unit().map(str::to_owned),
+            lower: divided.lower(),
+            upper: divided.upper(),
+            rounding: power.inverse().times(problem.kept_limits(c).rounding()),
+            target: one.target_yield(),
+            why: fit.as_ref().err().map(ToString::to_string).or_else(|| endless(found)),
+            centre,
+            parts,
+            pairs,
+            unexplained,
+            scale: power.times(1.0),
+            law,
+            counted,
+            why_fit,
+            reach: reach(found, law || counted.is_some()),
+            screened: fit.as_ref().map_or(0, |fit| fit.screened),
+        }
+    }
+}
+
+/// The power of two of the largest coefficient of a surface.
 fn size(fit: &Fit) -> Power {
     let Fit { surrogate, .. } = fit;
     let parts = surrogate.parts.iter().flatten().map(|part| part.largest());

@@ -311,66 +311,18 @@ fn totals(
     one: &CharacteristicAnalysis,
     all: &[(f64, Figures)],
 ) -> Result<u32, XlsxError> {
-    let sum = |of: fn(&Figures) -> f64| all.iter().map(|(slope, row)| slope * of(row)).sum::<f64>();
     let mut line = page.last + 2;
-    let inputs: [(&str, Option<f64>); 4] = [
-        ("inflation factor", Some(INFLATION)),
-        ("mean-shift factor", Some(MEAN_SHIFT)),
-        ("lower limit", stack.limits[0]),
-        ("upper limit", stack.limits[1]),
-    ];
-    let from = line;
-    for (name, value) in inputs {
-        page.text(line, Of::Name, name, false)?;
-        page.input(line, Of::Middle, value)?;
-        line += 1;
-    }
-    let [inflation, mean_shift, lower, upper] = [0, 1, 2, 3].map(|place| page.cell(from + place, Of::Middle));
+    let inputs = inputs(page, stack, line)?;
+    line += inputs.len() as u32 + 1;
+    titles(page, line)?;
     line += 1;
-    for (of, title) in [
-        (Of::Name, "total"),
-        (Of::Middle, "middle"),
-        (Of::Half, "half width"),
-        (Of::Mean, "from"),
-        (Of::Deviation, "to"),
-    ] {
-        page.text(line, of, title, true)?;
-    }
-    line += 1;
-    let [factors, middles, means, deviations, effects] =
-        [Of::Factor, Of::Middle, Of::Mean, Of::Deviation, Of::Effect].map(|of| page.all(of));
-    let worst: f64 = all.iter().map(|(_, row)| row.effect).sum();
-    let rss = all.iter().map(|(_, row)| row.effect * row.effect).sum::<f64>().sqrt();
-    let sigma = all.iter().map(|(_, row)| row.part * row.part).sum::<f64>().sqrt();
-    let middle = (format!("SUMPRODUCT({factors},{middles})"), sum(|row| row.middle));
-    let (of_worst, of_rss) = (page.cell(line, Of::Half), page.cell(line + 1, Of::Half));
-    let half = |kind: TotalKind| match kind {
-        TotalKind::WorstCase | TotalKind::LinearWorstCase => (format!("SUM({effects})"), worst),
-        TotalKind::Rss => (format!("SQRT(SUMSQ({effects}))"), rss),
-        TotalKind::InflatedRss => (format!("{inflation}*{of_rss}"), INFLATION * rss),
-        TotalKind::MeanShiftRss => {
-            let formula = format!("{mean_shift}*{of_worst}+(1-{mean_shift})*{of_rss}");
-            (formula, MEAN_SHIFT * worst + (1.0 - MEAN_SHIFT) * rss)
-        }
-        // Totals by processes or proofs have no formula here: the reported value is written.
-        TotalKind::SixSigma | TotalKind::ProvenWorstCase => (String::new(), f64::NAN),
-        TotalKind::FirstOrder | TotalKind::SecondOrder => {
-            (format!("{SIGMAS}*SQRT(SUMPRODUCT(({factors}*{deviations})^2))"), SIGMAS * sigma)
-        }
-    };
-    let mean = (format!("SUMPRODUCT({factors},{means})"), sum(|row| row.mean));
-    let near = |a: f64, b: Option<f64>, scale: f64| b.is_some_and(|b| (a - b).abs() <= AGREE * scale.max(b.abs()));
-    // No formula includes correlations. The RSS shows if there are any.
-    let alone = near(rss, one.rss, 0.0);
+    let formulas = TotalFormulas::new(page, line, &inputs, all);
+    // Dimensions that vary together are in no formula.
+    let alone = near(formulas.rss, one.rss, 0.0);
     let mut straight = None;
     for total in &stack.totals {
         let of_moments = matches!(total.kind, TotalKind::FirstOrder | TotalKind::SecondOrder);
-        let live = Total {
-            name: total.kind.name().to_owned(),
-            middle: if of_moments { mean.clone() } else { middle.clone() },
-            half: half(total.kind),
-        };
-        // A total whose formula does not reproduce the report is written as a number.
+        let live = formulas.total(total.kind, of_moments);
         let agrees = near(live.middle.1, total.middle, live.half.1) && near(live.half.1, total.half_width, 0.0);
         if of_moments && agrees {
             straight = Some(line);
@@ -388,6 +340,7 @@ fn totals(
     }
     if let (Some(at), Some(cpk)) = (straight, cpk(one)) {
         let [mean, half] = [page.cell(at, Of::Middle), page.cell(at, Of::Half)];
+        let [_, _, lower, upper] = inputs;
         let sides = [
             stack.limits[1].map(|_| format!("({upper}-{mean})/{half}")),
             stack.limits[0].map(|_| format!("({mean}-{lower})/{half}")),
@@ -400,7 +353,103 @@ fn totals(
     Ok(line)
 }
 
-/// Returns Cpk if there are limits and it is known.
+/// Returns true if a figure of the report is that of a formula.
+fn near(a: f64, b: Option<f64>, scale: f64) -> bool {
+    b.is_some_and(|b| (a - b).abs() <= AGREE * scale.max(b.abs()))
+}
+
+/// Factors and limits, a row each; gives their cells.
+fn inputs(page: &mut Page<'_>, stack: &Stack, from: u32) -> Result<[String; 4], XlsxError> {
+    let inputs: [(&str, Option<f64>); 4] = [
+        ("inflation factor", Some(INFLATION)),
+        ("mean-shift factor", Some(MEAN_SHIFT)),
+        ("lower limit", stack.limits[0]),
+        ("upper limit", stack.limits[1]),
+    ];
+    for (line, (name, value)) in (from..).zip(inputs) {
+        page.text(line, Of::Name, name, false)?;
+        page.input(line, Of::Middle, value)?;
+    }
+    Ok([0, 1, 2, 3].map(|place| page.cell(from + place, Of::Middle)))
+}
+
+/// The headings of the totals.
+fn titles(page: &mut Page<'_>, line: u32) -> Result<(), XlsxError> {
+    for (of, title) in [
+        (Of::Name, "total"),
+        (Of::Middle, "middle"),
+        (Of::Half, "half width"),
+        (Of::Mean, "from"),
+        (Of::Deviation, "to"),
+    ] {
+        page.text(line, of, title, true)?;
+    }
+    Ok(())
+}
+
+/// Formulas of the totals over all rows, with their values.
+struct TotalFormulas {
+    middle: (String, f64),
+    mean: (String, f64),
+    /// Cells of the inflation factor and of the mean-shift factor.
+    factors: [String; 2],
+    /// Cells of the half widths of worst case and RSS.
+    cells: [String; 2],
+    /// Half widths of worst case, RSS and moments.
+    sums: [String; 3],
+    worst: f64,
+    rss: f64,
+    sigma: f64,
+}
+
+impl TotalFormulas {
+    /// Formulas of totals that begin in a line, worst case and RSS first.
+    fn new(page: &Page<'_>, line: u32, [inflation, mean_shift, ..]: &[String; 4], all: &[(f64, Figures)]) -> Self {
+        let sum = |of: fn(&Figures) -> f64| all.iter().map(|(slope, row)| slope * of(row)).sum::<f64>();
+        let [factors, middles, means, deviations, effects] =
+            [Of::Factor, Of::Middle, Of::Mean, Of::Deviation, Of::Effect].map(|of| page.all(of));
+        Self {
+            middle: (format!("SUMPRODUCT({factors},{middles})"), sum(|row| row.middle)),
+            mean: (format!("SUMPRODUCT({factors},{means})"), sum(|row| row.mean)),
+            factors: [inflation.clone(), mean_shift.clone()],
+            cells: [page.cell(line, Of::Half), page.cell(line + 1, Of::Half)],
+            sums: [
+                format!("SUM({effects})"),
+                format!("SQRT(SUMSQ({effects}))"),
+                format!("{SIGMAS}*SQRT(SUMPRODUCT(({factors}*{deviations})^2))"),
+            ],
+            worst: all.iter().map(|(_, row)| row.effect).sum(),
+            rss: all.iter().map(|(_, row)| row.effect * row.effect).sum::<f64>().sqrt(),
+            sigma: all.iter().map(|(_, row)| row.part * row.part).sum::<f64>().sqrt(),
+        }
+    }
+
+    /// A total by formulas, about the mean if it is one of moments.
+    fn total(&self, kind: TotalKind, of_moments: bool) -> Total {
+        let middle = if of_moments { self.mean.clone() } else { self.middle.clone() };
+        Total { name: kind.name().to_owned(), middle, half: self.half(kind) }
+    }
+
+    /// The half width of a total.
+    fn half(&self, kind: TotalKind) -> (String, f64) {
+        let Self { factors: [inflation, mean_shift], cells: [of_worst, of_rss], sums, worst, rss, sigma, .. } = self;
+        let [sum, root, by_sigma] = sums;
+        match kind {
+            TotalKind::WorstCase | TotalKind::LinearWorstCase => (sum.clone(), *worst),
+            TotalKind::Rss => (root.clone(), *rss),
+            TotalKind::InflatedRss => (format!("{inflation}*{of_rss}"), INFLATION * rss),
+            TotalKind::MeanShiftRss => {
+                let formula = format!("{mean_shift}*{of_worst}+(1-{mean_shift})*{of_rss}");
+                (formula, MEAN_SHIFT * worst + (1.0 - MEAN_SHIFT) * rss)
+            }
+            // Of processes and proofs that the sheet does not have: as reported.
+            TotalKind::SixSigma | TotalKind::ProvenWorstCase => (String::new(), f64::NAN),
+            TotalKind::FirstOrder | TotalKind::SecondOrder => (by_sigma.clone(), SIGMAS * sigma),
+        }
+    }
+}
+
+/// Cpk where there are limits and it is known.
 fn cpk(one: &CharacteristicAnalysis) -> Option<f64> {
     one.capability.as_ref()?.cpk
 }
