@@ -411,7 +411,7 @@ impl Asked<'_> {
         self.problem.dimensions().iter().enumerate().map(place).collect()
     }
 
-    /// Whether all points within the tolerances have values, and which have none.
+    /// Checks that all points within the tolerances have values, and names those without.
     fn within(&self, nominal: &[f64], asked: &[&Answered]) -> Finding {
         let outputs = self.problem.outputs().len();
         let mut failed: Vec<String> = Vec::new();

@@ -19,7 +19,7 @@ use super::{
 use crate::warning::Warning;
 use sensitol_numeric::unit::Unit;
 
-/// Where a model's input comes from.
+/// Source of an input of the model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Source {
     /// Dimension of this index.

@@ -67,9 +67,9 @@ fn every_error_of_the_library_becomes_the_one() {
 /// Errors of studies, and all of the engine's, become one error of the package that reads studies.
 #[test]
 fn errors_of_studies_become_one() {
-    let _: fn(sensitol_study::StudyError) -> sensitol_study::Error = sensitol_study::Error::from;
-    let _: fn(sensitol_study::RewriteError) -> sensitol_study::Error = sensitol_study::Error::from;
-    let _: fn(sensitol::MethodError) -> sensitol_study::Error = sensitol_study::Error::from;
+    let _: fn(sensitol_study::StudyError) -> sensitol_study::AnyError = sensitol_study::AnyError::from;
+    let _: fn(sensitol_study::RewriteError) -> sensitol_study::AnyError = sensitol_study::AnyError::from;
+    let _: fn(sensitol::MethodError) -> sensitol_study::AnyError = sensitol_study::AnyError::from;
 }
 
 /// The error says what the error of the part says.

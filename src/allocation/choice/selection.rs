@@ -102,7 +102,7 @@ fn unproven(setting: &Setting<'_>, start: &[f64]) -> Choice {
     }
 }
 
-/// Whether some process of each group may hold these half bands.
+/// True if each group has a process that may hold these half bands.
 pub(in crate::allocation) fn within_bounds(priced: &[Priced], at: &[f64]) -> bool {
     priced.iter().zip(at).all(|(group, t)| (group.tightest()..=group.loosest()).contains(t))
 }

@@ -248,7 +248,7 @@ fn central(up: f64, down: f64) -> f64 {
     (up - down) / (2.0 * STEP)
 }
 
-/// Where a decreasing share is `rejected`, near `start`.
+/// Root at which a decreasing share is `rejected`, near `start`.
 fn level(share: &dyn Fn(f64) -> f64, rejected: f64, start: f64) -> Option<f64> {
     let gap = |ln: f64| libm::log(share(libm::exp(ln)).max(f64::MIN_POSITIVE) / rejected);
     let (mut low, mut high) = (libm::log(start), libm::log(start));

@@ -63,7 +63,7 @@ struct Maxima {
     compression: [Peak; LANES],
     torque: [Peak; LANES],
     height: [Peak; LANES],
-    /// Of the rod alone at 3000 rpm.
+    /// Maxima of the rod alone at 3000 rpm.
     normal: [Peak; LANES],
     braking: [Peak; LANES],
     /// The same with the mass centres that are sought.
