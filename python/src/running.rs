@@ -83,17 +83,9 @@ pub(crate) fn run(
     let counter = Arc::new(Counter::default());
     let (stopped, counted) = (Arc::clone(&stop), Arc::clone(&counter));
     pool.spawn(move || {
-        let work = || -> Result<TaskReport, Box<AnyError>> {
-            let reason = || stopped.reason();
-            let abandoned = || stopped.asked.load(Ordering::Relaxed);
-            let run = Run::to_the_end().stopping_when(&reason).abandoning_when(&abandoned);
-            let mut found = done(&study, &asked, &run, &|answered, expected| counted.tell(answered, expected))?;
-            found.not_kept = study.problem.function().account().and_then(|account| account.not_kept);
-            Ok(found)
-        };
-        let result = catch_unwind(AssertUnwindSafe(work)).ok();
-        // The processes of an external model end with the study, before the caller continues. After Ctrl-C the caller does not wait for
-        // slow ones.
+        let result = catch_unwind(AssertUnwindSafe(|| answer(&study, &asked, &stopped, &counted))).ok();
+        // Children of an external model end with the study, before the caller goes on; after Ctrl-C it does not wait for children that
+        // take their time to end.
         if stopped.asked.load(Ordering::Relaxed) {
             let _ = ended.send(Event::Done(result));
             return;
@@ -101,60 +93,104 @@ pub(crate) fn run(
         drop(study);
         let _ = ended.send(Event::Done(result));
     });
+    let mut serving = Serving { caller, stop: &stop, counter: &counter, raised: None, shown: Instant::now() };
     let events = Mutex::new(events);
-    let mut raised: Option<PyErr> = None;
-    let mut shown = Instant::now();
-    let result = loop {
-        let wait = || events.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(TICK);
-        match py.detach(wait) {
-            Ok(Event::Done(result)) => break result,
-            Ok(Event::Call(call)) => {
-                let answered = if raised.is_some() { Ok(None) } else { evaluated(py, caller, &call).map(Some) };
-                let answer = answered.unwrap_or_else(|error| {
-                    stop.asked.store(true, Ordering::Relaxed);
-                    raised = Some(error);
-                    None
-                });
-                if answer.is_some() {
-                    counter.points.fetch_add(call.rows as u64, Ordering::Relaxed);
-                }
-                // The asking thread may have been stopped in the meantime.
-                let _ = call.reply.send(answer);
+    let result = serving.until_done(py, &events);
+    serving.conclude(py, result)
+}
+
+/// Answers a question to a study on the thread of the engine.
+fn answer(study: &Study, asked: &Asked, stop: &Stop, counter: &Counter) -> Result<TaskReport, Box<AnyError>> {
+    let reason = || stop.reason();
+    let abandoned = || stop.asked.load(Ordering::Relaxed);
+    let run = Run::to_the_end().stopping_when(&reason).abandoning_when(&abandoned);
+    let mut found = done(study, asked, &run, &|answered, expected| counter.tell(answered, expected))?;
+    found.not_kept = study.problem.function().account().and_then(|account| account.not_kept);
+    Ok(found)
+}
+
+/// The calling thread while the engine works.
+struct Serving<'s, 'py> {
+    caller: &'s Caller<'py>,
+    stop: &'s Stop,
+    counter: &'s Counter,
+    /// The first exception of the model or of a signal.
+    raised: Option<PyErr>,
+    /// The moment when progress was shown last.
+    shown: Instant,
+}
+
+impl Serving<'_, '_> {
+    /// Evaluates points, looks for signals and shows progress until the engine is done.
+    fn until_done(&mut self, py: Python<'_>, events: &Mutex<Receiver<Event<Ended>>>) -> Ended {
+        loop {
+            let wait = || events.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(TICK);
+            match py.detach(wait) {
+                Ok(Event::Done(result)) => return result,
+                Ok(Event::Call(call)) => self.reply(py, call),
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => return None,
             }
-            Err(RecvTimeoutError::Timeout) => {}
-            Err(RecvTimeoutError::Disconnected) => break None,
+            if self.raised.is_none()
+                && let Err(error) = self.look(py)
+            {
+                self.raise(error);
+            }
         }
-        if raised.is_some() {
-            continue;
+    }
+
+    /// Stops the engine for an exception.
+    fn raise(&mut self, error: PyErr) {
+        self.stop.asked.store(true, Ordering::Relaxed);
+        self.raised = Some(error);
+    }
+
+    /// Replies to a call of the model; without values once an exception was raised.
+    fn reply(&mut self, py: Python<'_>, call: Call) {
+        let answered = if self.raised.is_some() { Ok(None) } else { evaluated(py, self.caller, &call).map(Some) };
+        let answer = answered.unwrap_or_else(|error| {
+            self.raise(error);
+            None
+        });
+        if answer.is_some() {
+            self.counter.points.fetch_add(call.rows as u64, Ordering::Relaxed);
         }
-        let looked = py.check_signals().and_then(|()| match &caller.progress {
-            Some(progress) if shown.elapsed() >= TICK => {
-                shown = Instant::now();
+        // Who asked may have been stopped meanwhile.
+        let _ = call.reply.send(answer);
+    }
+
+    /// Looks for signals, and shows progress from time to time.
+    fn look(&mut self, py: Python<'_>) -> PyResult<()> {
+        py.check_signals()?;
+        match &self.caller.progress {
+            Some(progress) if self.shown.elapsed() >= TICK => {
+                self.shown = Instant::now();
                 let count = |value: &AtomicU64| value.load(Ordering::Relaxed);
-                progress.call1((count(&counter.points), count(&counter.expected))).map(drop)
+                progress.call1((count(&self.counter.points), count(&self.counter.expected))).map(drop)
             }
             _ => Ok(()),
-        });
-        if let Err(error) = looked {
-            stop.asked.store(true, Ordering::Relaxed);
-            raised = Some(error);
         }
-    };
-    match (raised, result) {
-        (Some(error), Some(Ok(found))) if caller.partial && error.is_instance_of::<PyKeyboardInterrupt>(py) => {
-            Ok(Ok(found))
-        }
-        (Some(error), _) => Err(error),
-        (None, Some(result)) => {
-            if let Some(progress) = &caller.progress {
-                let points = counter.points.load(Ordering::Relaxed);
-                progress.call1((points, points))?;
+    }
+
+    /// Raises the exception of a run, or returns its result with the last progress.
+    fn conclude(self, py: Python<'_>, result: Ended) -> PyResult<Result<TaskReport, Box<AnyError>>> {
+        let caller = self.caller;
+        match (self.raised, result) {
+            (Some(error), Some(Ok(found))) if caller.partial && error.is_instance_of::<PyKeyboardInterrupt>(py) => {
+                Ok(Ok(found))
             }
-            Ok(result)
+            (Some(error), _) => Err(error),
+            (None, Some(result)) => {
+                if let Some(progress) = &caller.progress {
+                    let points = self.counter.points.load(Ordering::Relaxed);
+                    progress.call1((points, points))?;
+                }
+                Ok(result)
+            }
+            (None, None) => Err(PyRuntimeError::new_err(
+                "the engine failed; please report it with the study and the model, at the address of the package",
+            )),
         }
-        (None, None) => Err(PyRuntimeError::new_err(
-            "the engine failed; please report it with the study and the model, at the address of the package",
-        )),
     }
 }
 

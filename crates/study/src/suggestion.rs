@@ -20,6 +20,16 @@ impl StudyFault {
 
     /// Text to write instead. Returns None if no general advice exists.
     pub(crate) fn help(&self) -> Option<String> {
+        // No fault has help in more than one of these.
+        self.text_help()
+            .or_else(|| self.dimension_help())
+            .or_else(|| self.joint_help())
+            .or_else(|| self.requirement_help())
+            .or_else(|| self.formula_help())
+    }
+
+    /// The help on files, keys and names.
+    fn text_help(&self) -> Option<String> {
         let meant = |name: &String| format!("did you mean `{name}`?");
         let one_of = |known: &[String]| format!("it is one of {}", known.join(", "));
         match self {
@@ -44,6 +54,27 @@ impl StudyFault {
             }
             Self::MissingKey { instead, .. } => Some(instead.clone()),
             Self::DoesNotApply { instead, .. } => Some((*instead).to_owned()),
+            Self::Data(fault) => fault.problem.help(),
+            Self::ProcessFile { fault, .. } => fault.help(),
+            Self::ReservedName { .. } => Some("choose another name".into()),
+            Self::UnknownConfigured { nearest: Some(name), .. } => Some(format!("nearest: `{name}`")),
+            Self::UnknownConfigured { known, .. } => Some(one_of(known)),
+            Self::ConfiguredLimits { .. } => Some("write tolerance or fit in place of limits".into()),
+            Self::ReservedConfiguration => Some("choose another name".into()),
+            Self::NameTaken { .. } => Some("one of the two needs another name".into()),
+            Self::Nothing { what: "dimension" } => {
+                Some("write one a line below [dimensions], such as `a = { nominal = 10.0, tolerance = 0.3 }`".into())
+            }
+            Self::Nothing { .. } => Some(
+                "write one a line below [characteristics], such as `gap = { formula = \"a - b\", lower = 0.1 }`".into(),
+            ),
+            _ => None,
+        }
+    }
+
+    /// The help on values and tolerances of dimensions.
+    fn dimension_help(&self) -> Option<String> {
+        match self {
             Self::NotFinite { .. } => Some("write a finite number, or leave out a limit that does not exist".into()),
             Self::Swapped { lower, upper } if lower > upper => Some(format!("write [{upper}, {lower}]")),
             Self::Swapped { .. } => Some("a value that does not vary needs no tolerance".into()),
@@ -57,17 +88,49 @@ impl StudyFault {
             Self::Dimension(DimensionFault::Distribution(
                 DistributionError::InfiniteMoment { .. } | DistributionError::Pearson(_),
             )) => Some("leave model out: the values themselves have all moments".into()),
-            Self::Data(fault) => fault.problem.help(),
-            Self::ProcessFile { fault, .. } => fault.help(),
+            Self::SameAsItself { .. } => Some("name another dimension, or write a model or processes".into()),
+            Self::SameAsChain { end, .. } => {
+                Some(format!("write same_as = \"{end}\" where that has a cost, or give one of them a cost"))
+            }
+            Self::FromCircle { .. } => Some("measure one of them from a datum: leave out its `from`".into()),
+            Self::NoMaterial { .. } => Some("write its tolerance, limits or fit".into()),
+            Self::NothingFloats { .. } => Some("swap them, or write the clearance yourself: max(0, hole - pin)".into()),
+            Self::LengthBelowZone { .. } => Some("write the length over which the zone holds, in its unit".into()),
+            Self::FastenerPair { key, .. } => {
+                let names = if key == "holes" { "[\"d1\", \"d2\"]" } else { "[\"hole_place\", \"thread\"]" };
+                Some(format!("write {key} = {names}"))
+            }
+            _ => None,
+        }
+    }
+
+    /// The help on dimensions that vary together.
+    fn joint_help(&self) -> Option<String> {
+        match self {
+            Self::CorrelationOfRows { .. } => Some("leave it out, or write joint = false at one of the two".into()),
+            Self::CorrelationInZone { .. } => Some("leave it out, or leave [[joint]] out".into()),
+            Self::JointCount { .. } => Some("write of = [\"x\", \"y\"]".into()),
+            Self::JointTwice { .. } => Some("a dimension is of one block".into()),
+            Self::JointFile { .. } => Some(
+                "leave `measured` of the dimension out, or give it a number of the part: match = \"serial\"".into(),
+            ),
+            Self::JointBand { .. } => Some("write its tolerance".into()),
+            Self::JointDistribution { .. } => Some("leave it out".into()),
+            Self::CorrelationBesideRows { inside, .. } => {
+                Some(format!("leave the pair out, or write joint = false at `{inside}`"))
+            }
+            _ => None,
+        }
+    }
+
+    /// The help on limits, requirements and costs.
+    fn requirement_help(&self) -> Option<String> {
+        match self {
             Self::Limits(LimitsError::ImpossibleYield { value }) if *value > 1.0 && *value <= 100.0 => {
                 Some(format!("write {} for {value} %", percent(*value)))
             }
             Self::Limits(LimitsError::Swapped { .. }) | Self::Cost(CostError::Swapped { .. }) => {
                 Some("exchange them".into())
-            }
-            Self::SameAsItself { .. } => Some("name another dimension, or write a model or processes".into()),
-            Self::SameAsChain { end, .. } => {
-                Some(format!("write same_as = \"{end}\" where that has a cost, or give one of them a cost"))
             }
             Self::Cost(CostError::NoProcess) => {
                 Some("write some, such as { name = \"grind\", tolerance = 0.002, cost = 19.4 }".into())
@@ -81,6 +144,13 @@ impl StudyFault {
             Self::Requirement(RequirementError::ImpossibleYield { value }) if *value >= 1.0 => {
                 Some("only a worst case promises that: require = \"worst-case\"".into())
             }
+            _ => None,
+        }
+    }
+
+    /// The help on formulas, conditions and units.
+    fn formula_help(&self) -> Option<String> {
+        match self {
             Self::Conditions(ConditionsError::Unbalanced { .. }) => Some(
                 "as many equations as unknowns are needed; a loop counts for two, one along x and one along y".into(),
             ),
@@ -92,42 +162,10 @@ impl StudyFault {
                 Some("use it in an equation or a loop, or write it as a constant".into())
             }
             Self::Formula(fault) => fault.help(),
-            Self::ReservedName { .. } => Some("choose another name".into()),
-            Self::UnknownConfigured { nearest: Some(name), .. } => Some(format!("nearest: `{name}`")),
-            Self::UnknownConfigured { known, .. } => Some(one_of(known)),
-            Self::ConfiguredLimits { .. } => Some("write tolerance or fit in place of limits".into()),
-            Self::FromCircle { .. } => Some("measure one of them from a datum: leave out its `from`".into()),
-            Self::CorrelationOfRows { .. } => Some("leave it out, or write joint = false at one of the two".into()),
-            Self::CorrelationInZone { .. } => Some("leave it out, or leave [[joint]] out".into()),
-            Self::JointCount { .. } => Some("write of = [\"x\", \"y\"]".into()),
-            Self::JointTwice { .. } => Some("a dimension is of one block".into()),
-            Self::JointFile { .. } => Some(
-                "leave `measured` of the dimension out, or give it a number of the part: match = \"serial\"".into(),
-            ),
-            Self::JointBand { .. } => Some("write its tolerance".into()),
-            Self::JointDistribution { .. } => Some("leave it out".into()),
-            Self::CorrelationBesideRows { inside, .. } => {
-                Some(format!("leave the pair out, or write joint = false at `{inside}`"))
-            }
-            Self::NoMaterial { .. } => Some("write its tolerance, limits or fit".into()),
-            Self::NothingFloats { .. } => Some("swap them, or write the clearance yourself: max(0, hole - pin)".into()),
-            Self::LengthBelowZone { .. } => Some("write the length over which the zone holds, in its unit".into()),
-            Self::FastenerPair { key, .. } => {
-                let names = if key == "holes" { "[\"d1\", \"d2\"]" } else { "[\"hole_place\", \"thread\"]" };
-                Some(format!("write {key} = {names}"))
-            }
             Self::Units { remedy, .. } => Some(remedy.clone()),
-            Self::ReservedConfiguration => Some("choose another name".into()),
             Self::DimensionAndFormula { .. } => Some("leave one out".into()),
             Self::DrivenByOutput { .. } => Some("use dimensions, constants and other formulas".into()),
             Self::IdleFormula { .. } => Some("name it in [model] inputs, or leave it out".into()),
-            Self::NameTaken { .. } => Some("one of the two needs another name".into()),
-            Self::Nothing { what: "dimension" } => {
-                Some("write one a line below [dimensions], such as `a = { nominal = 10.0, tolerance = 0.3 }`".into())
-            }
-            Self::Nothing { .. } => Some(
-                "write one a line below [characteristics], such as `gap = { formula = \"a - b\", lower = 0.1 }`".into(),
-            ),
             _ => None,
         }
     }

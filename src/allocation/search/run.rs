@@ -249,7 +249,7 @@ struct DerivativeSearch<'s, 'd> {
     near: Near,
     /// The requirements of the task.
     constraints: &'s [Constraint],
-    /// The same with the levels that are sought for a cost.
+    /// The requirements with the levels that are sought for a cost.
     current: Vec<Constraint>,
     station: Rc<LinearizationPoint>,
     /// Half bands of the groups at the station.

@@ -207,7 +207,7 @@ impl<'a, 'r> MovedLimits<'a, 'r> {
         Some(by_sigma + by_law / self.density - by_room)
     }
 
-    /// The same by differences of the moments, and of the law where the dimension does not keep its shape.
+    /// The slope by differences of the moments, and of the law where the dimension does not keep its shape.
     fn slope_by_differences(&self, position: usize, d: usize, follows: Follows) -> Option<f64> {
         let (up, down) = (self.neighbour(d, STEP)?, self.neighbour(d, -STEP)?);
         let by_mean = central(up.moments.mean(), down.moments.mean());

@@ -59,20 +59,20 @@ const FIRED: Speed = Speed::Rpm(3000.0);
 
 /// Maxima over the crank angle in every row; NaN where no output that is asked needs them.
 struct Maxima {
-    /// At 3000 rpm with gas.
+    /// Maxima at 3000 rpm with gas.
     compression: [Peak; LANES],
     torque: [Peak; LANES],
     height: [Peak; LANES],
     /// Maxima of the rod alone at 3000 rpm.
     normal: [Peak; LANES],
     braking: [Peak; LANES],
-    /// The same with the mass centres that are sought.
+    /// Maxima of the rod alone with the mass centres that are sought.
     tied: [Peak; LANES],
     lobe_a: [Peak; LANES],
     lobe_b: [Peak; LANES],
     pressed: [Peak; LANES],
     pulled_alone: [Peak; LANES],
-    /// At the speed that is given.
+    /// Maxima at the speed that is given.
     pushed: [Peak; LANES],
     big_end: [Peak; LANES],
     unfired: [Peak; LANES],

@@ -95,6 +95,17 @@ pub enum CostName {
     EqualShares,
 }
 
+impl CostName {
+    /// The relative costs of this name.
+    fn basis(self) -> CostBasis {
+        match self {
+            Self::ToleranceUnit => CostBasis::ToleranceUnit,
+            Self::ConstantPrecision => CostBasis::ConstantPrecision,
+            Self::EqualShares => CostBasis::EqualShares,
+        }
+    }
+}
+
 /// A goal in place of the least cost.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -141,28 +152,15 @@ pub type Counted<'c> = &'c dyn Fn(u64, u64);
 /// Runs a command on a study.
 ///
 /// # Errors
-/// Returns an error if the command fails.
+/// Of a question that cannot be answered.
 pub fn done(study: &Study, asked: &Asked, run: &Run<'_>, counted: Counted<'_>) -> Result<TaskReport, Box<AnyError>> {
-    let problem = &study.problem;
-    let about = || About {
-        title: study.title.clone(),
-        sha256: study.sha256.clone(),
-        warnings: study.warnings.clone(),
-        block: study.about.clone(),
-    };
     let seed = study.seed.or(study.options.seed).unwrap_or(Options::SEED);
-    let pace = |pace: Pace| counted(pace.samples, pace.expected as u64);
+    let task = StudyTask { study, run, counted, seed };
     if let Asked::Analyze {} | Asked::Sweep { .. } | Asked::Allocate { .. } = asked {
         expect(study, asked, counted);
     }
-    Ok(match asked {
-        Asked::Analyze {} => {
-            let mut options = study.options.clone();
-            options.densities = true;
-            let found = analyze_with(problem, &options, run).map_err(boxed)?;
-            let what_if = WhatIf::of(problem, &found, &study.lines, &study.costs);
-            TaskReport::of(Shown::Analysis(Box::new((Report::of(problem, &found, about()), what_if))))
-        }
+    match asked {
+        Asked::Analyze {} => task.analyze(),
         Asked::Simulate { samples, sampler, until, until_yield, control_variate } => {
             let mut options = SimulationOptions::default().with_seed(seed);
             let wanted = until.is_some() || until_yield.is_some();
@@ -173,60 +171,120 @@ pub fn done(study: &Study, asked: &Asked, run: &Run<'_>, counted: Counted<'_>) -
             };
             (options.until, options.until_yield) = (*until, *until_yield);
             options.control = control_variate.then(|| study.options.clone());
-            let found = simulate_with(problem, &options, run, &pace).map_err(boxed)?;
-            TaskReport::of(Shown::Simulation(SimulationReport::of(problem, &found, about())))
+            task.simulate(&options)
         }
-        Asked::Rare { samples, until } => {
-            let costly = problem.function().signature().costly;
-            let options = RareOptions::default()
-                .with_samples(samples.unwrap_or(RARE_SAMPLES[usize::from(costly)]))
-                .with_seed(seed)
-                .with_surrogate(study.options.clone());
-            let options = until.map_or(options.clone(), |until| options.with_until(until));
-            let found = rare_with(problem, &options, run, &pace).map_err(boxed)?;
-            TaskReport::of(Shown::Rare(RareReport::of(problem, &found, about())))
-        }
-        Asked::Compare { samples } => {
-            let mut options = CompareOptions::default().with_seed(seed);
-            (options.budget, options.reference) = (study.options.budget, *samples);
-            let found = compare_with(problem, &options, run).map_err(boxed)?;
-            TaskReport::of(Shown::Comparison(CompareReport::of(&found, about())))
-        }
-        Asked::Sweep { over, values } => {
-            let found = sweep_with(problem, over, values, &study.options, run).map_err(boxed)?;
-            TaskReport::of(Shown::Sweep(SweepReport::of(problem, &found, about())))
-        }
+        Asked::Rare { samples, until } => task.rare(*samples, *until),
+        Asked::Compare { samples } => task.compare(*samples),
+        Asked::Sweep { over, values } => task.sweep(over, values),
         Asked::Allocate { recentre, nominal_bounds, front, confirm, cost, goal, cost_limit } => {
             let mut options = AllocationOptions::default().with_analysis(study.options.clone()).with_seed(seed);
             options.recentre.clone_from(recentre);
             options.nominal_bounds.clone_from(nominal_bounds);
             options.front = *front;
-            let options = options.with_confirm_or_default(problem, *confirm);
-            let basis = cost.map(|basis| match basis {
-                CostName::ToleranceUnit => CostBasis::ToleranceUnit,
-                CostName::ConstantPrecision => CostBasis::ConstantPrecision,
-                CostName::EqualShares => CostBasis::EqualShares,
-            });
+            let options = options.with_confirm_or_default(&study.problem, *confirm);
             let goal = goal.zip(*cost_limit).map_or(Goal::LeastCost, |(goal, limit)| goal.within(limit));
-            let task = study.allocation_task().relative_or_default(problem, basis, !recentre.is_empty()).towards(goal);
-            let in_file = |problem: &Problem| study.written_dimensions(problem);
-            let found = allocate_written(problem, &task, &options, run, &in_file).map_err(boxed)?;
-            // A run that was stopped before the model confirmed the result is not written to the study.
-            let confirmed = found.after.is_some() && found.status != Status::OutOfTime;
-            let anew = confirmed.then(|| study.rewritten(&found.problem));
-            let (anew, not_written) = match anew {
-                Some(Ok(anew)) => (Some(anew), None),
-                Some(Err(error)) => (None, Some(error.to_string())),
-                None => (None, None),
-            };
-            let written = anew
-                .as_ref()
-                .map(|anew| WrittenAnew { entries: anew.entries.clone(), replaced_fits: anew.replaced_fits.clone() });
-            let report = AllocationReport::of(problem, &found, written.as_ref(), about());
-            let study = anew.map(|anew| anew.text);
-            TaskReport { study, not_written, ..TaskReport::of(Shown::Allocation(Box::new(report))) }
+            task.allocate(&options, cost.map(CostName::basis), goal)
         }
-    })
+    }
+}
+
+/// A study with the run and the seed of a question.
+struct StudyTask<'s> {
+    study: &'s Study,
+    run: &'s Run<'s>,
+    counted: Counted<'s>,
+    seed: u64,
+}
+
+impl StudyTask<'_> {
+    /// The title, warnings and drawings of the study.
+    fn about(&self) -> About {
+        let study = self.study;
+        About {
+            title: study.title.clone(),
+            sha256: study.sha256.clone(),
+            warnings: study.warnings.clone(),
+            block: study.about.clone(),
+        }
+    }
+
+    /// Counts the points of a run that tells of its pace.
+    fn count(&self, pace: Pace) {
+        (self.counted)(pace.samples, pace.expected as u64);
+    }
+
+    /// Analyses the study, with densities and what a page can try.
+    fn analyze(&self) -> Result<TaskReport, Box<AnyError>> {
+        let (study, problem) = (self.study, &self.study.problem);
+        let mut options = study.options.clone();
+        options.densities = true;
+        let found = analyze_with(problem, &options, self.run).map_err(boxed)?;
+        let what_if = WhatIf::of(problem, &found, &study.lines, &study.costs);
+        Ok(TaskReport::of(Shown::Analysis(Box::new((Report::of(problem, &found, self.about()), what_if)))))
+    }
+
+    /// Simulates the model itself.
+    fn simulate(&self, options: &SimulationOptions) -> Result<TaskReport, Box<AnyError>> {
+        let problem = &self.study.problem;
+        let found = simulate_with(problem, options, self.run, &|pace| self.count(pace)).map_err(boxed)?;
+        Ok(TaskReport::of(Shown::Simulation(SimulationReport::of(problem, &found, self.about()))))
+    }
+
+    /// Seeks rare events by so many points, or until an error.
+    fn rare(&self, samples: Option<u64>, until: Option<f64>) -> Result<TaskReport, Box<AnyError>> {
+        let problem = &self.study.problem;
+        let costly = problem.function().signature().costly;
+        let options = RareOptions::default()
+            .with_samples(samples.unwrap_or(RARE_SAMPLES[usize::from(costly)]))
+            .with_seed(self.seed)
+            .with_surrogate(self.study.options.clone());
+        let options = until.map_or(options.clone(), |until| options.with_until(until));
+        let found = rare_with(problem, &options, self.run, &|pace| self.count(pace)).map_err(boxed)?;
+        Ok(TaskReport::of(Shown::Rare(RareReport::of(problem, &found, self.about()))))
+    }
+
+    /// Compares every method with samples.
+    fn compare(&self, samples: Option<u64>) -> Result<TaskReport, Box<AnyError>> {
+        let mut options = CompareOptions::default().with_seed(self.seed);
+        (options.budget, options.reference) = (self.study.options.budget, samples);
+        let found = compare_with(&self.study.problem, &options, self.run).map_err(boxed)?;
+        Ok(TaskReport::of(Shown::Comparison(CompareReport::of(&found, self.about()))))
+    }
+
+    /// Analyses the study along the values of a parameter.
+    fn sweep(&self, over: &str, values: &[f64]) -> Result<TaskReport, Box<AnyError>> {
+        let problem = &self.study.problem;
+        let found = sweep_with(problem, over, values, &self.study.options, self.run).map_err(boxed)?;
+        Ok(TaskReport::of(Shown::Sweep(SweepReport::of(problem, &found, self.about()))))
+    }
+
+    /// Allocates tolerances, and writes the study anew with them.
+    fn allocate(
+        &self,
+        options: &AllocationOptions,
+        basis: Option<CostBasis>,
+        goal: Goal,
+    ) -> Result<TaskReport, Box<AnyError>> {
+        let (study, problem) = (self.study, &self.study.problem);
+        let recentred = !options.recentre.is_empty();
+        let task = study.allocation_task().relative_or_default(problem, basis, recentred).towards(goal);
+        let in_file = |problem: &Problem| study.written_dimensions(problem);
+        let found = allocate_written(problem, &task, options, self.run, &in_file).map_err(boxed)?;
+        // A run that was stopped before the model had its say is not a study yet.
+        let confirmed = found.after.is_some() && found.status != Status::OutOfTime;
+        let anew = confirmed.then(|| study.rewritten(&found.problem));
+        let (anew, not_written) = match anew {
+            Some(Ok(anew)) => (Some(anew), None),
+            Some(Err(error)) => (None, Some(error.to_string())),
+            None => (None, None),
+        };
+        let written = anew
+            .as_ref()
+            .map(|anew| WrittenAnew { entries: anew.entries.clone(), replaced_fits: anew.replaced_fits.clone() });
+        let report = AllocationReport::of(problem, &found, written.as_ref(), self.about());
+        let study = anew.map(|anew| anew.text);
+        Ok(TaskReport { study, not_written, ..TaskReport::of(Shown::Allocation(Box::new(report))) })
+    }
 }
 
 fn boxed(error: impl Into<AnyError>) -> Box<AnyError> {

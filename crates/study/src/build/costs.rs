@@ -236,6 +236,7 @@ struct Numbers<'e> {
     max: &'e Option<Spanned<f64>>,
 }
 
+/// The offers of an entry: a curve, with steps or grades of it, or a list of processes.
 fn offers(
     entry: &CostEntry,
     source: &Source,
@@ -243,38 +244,53 @@ fn offers(
     key: &str,
     dimension: &Dimension,
 ) -> Result<Offers, Fault> {
-    let CostEntry { model, a, b, k, c, min, max, processes, .. } = entry;
-    let Some(processes) = processes else {
-        // Without processes: one curve, which steps or grades turn into a list.
-        let numbers = Numbers { model, a, b, k, c, min, max };
-        let present = dimension.half_band();
-        let offer = match written(entry, source, key)? {
-            Some(curve) => numbers.offer_of(curve, key, &name.span(), present)?,
-            None => numbers.offer(key, &name.span(), Some(present))?,
-        };
-        let all = match (&entry.step, &entry.grades) {
-            (Some(step), _) => {
-                let at = |error| fault(step.span(), format!("{key}.step"), error);
-                stepped(&offer, *step.get_ref()).map_err(at)?
-            }
-            (None, Some(grades)) => {
-                let at = |error| fault(grades.span(), format!("{key}.grades"), error);
-                let bounds = [min, max].map(|bound| bound.as_ref().map(|bound| *bound.get_ref()));
-                graded(&offer.curve, grades.get_ref(), bounds, dimension).map_err(at)?
-            }
-            _ => return Ok(Offers { all: vec![offer], rounded: None }),
-        };
-        // Steps use the bounds of the offer. Grades have bounds of their own.
-        let rounded = match entry.step {
-            Some(_) => Some(offer),
-            None => {
-                let least = all.iter().map(|one| one.min).fold(f64::INFINITY, f64::min);
-                let most = all.iter().map(|one| one.max).fold(0.0, f64::max);
-                Offer::between(offer.curve, least, most).ok()
-            }
-        };
-        return Ok(Offers { all, rounded });
+    match &entry.processes {
+        Some(processes) => process_offers(processes, key),
+        None => curve_offers(entry, source, name, key, dimension),
+    }
+}
+
+/// The offer of a cost curve, or its steps or grades.
+fn curve_offers(
+    entry: &CostEntry,
+    source: &Source,
+    name: &Spanned<String>,
+    key: &str,
+    dimension: &Dimension,
+) -> Result<Offers, Fault> {
+    let CostEntry { model, a, b, k, c, min, max, .. } = entry;
+    let numbers = Numbers { model, a, b, k, c, min, max };
+    let present = dimension.half_band();
+    let offer = match written(entry, source, key)? {
+        Some(curve) => numbers.offer_of(curve, key, &name.span(), present)?,
+        None => numbers.offer(key, &name.span(), Some(present))?,
     };
+    let all = match (&entry.step, &entry.grades) {
+        (Some(step), _) => {
+            let at = |error| fault(step.span(), format!("{key}.step"), error);
+            stepped(&offer, *step.get_ref()).map_err(at)?
+        }
+        (None, Some(grades)) => {
+            let at = |error| fault(grades.span(), format!("{key}.grades"), error);
+            let bounds = [min, max].map(|bound| bound.as_ref().map(|bound| *bound.get_ref()));
+            graded(&offer.curve, grades.get_ref(), bounds, dimension).map_err(at)?
+        }
+        _ => return Ok(Offers { all: vec![offer], rounded: None }),
+    };
+    // Steps lie between the bounds; grades have bounds of their own.
+    let rounded = match entry.step {
+        Some(_) => Some(offer),
+        None => {
+            let least = all.iter().map(|one| one.min).fold(f64::INFINITY, f64::min);
+            let most = all.iter().map(|one| one.max).fold(0.0, f64::max);
+            Offer::between(offer.curve, least, most).ok()
+        }
+    };
+    Ok(Offers { all, rounded })
+}
+
+/// The offers of a list of processes, the loosest first.
+fn process_offers(processes: &Spanned<Vec<Spanned<ProcessEntry>>>, key: &str) -> Result<Offers, Fault> {
     if processes.get_ref().is_empty() {
         return Err(fault(processes.span(), format!("{key}.processes"), CostError::NoProcess));
     }
@@ -288,38 +304,7 @@ fn offers(
             let taken = StudyFault::NameTaken { name: named.clone(), by: "another process" };
             return Err(fault(process.name.span(), format!("{key}.name"), taken));
         }
-        let ProcessEntry { model, a, b, k, c, min, max, .. } = process;
-        let offer = match (&process.model, &process.tolerance, &process.cost) {
-            (Some(_), None, None) => {
-                let numbers = Numbers { model, a, b, k, c, min, max };
-                for (bound, given) in [("min", min), ("max", max)] {
-                    if given.is_none() {
-                        let instead = "a process with a model needs min and max, between which it is used".to_owned();
-                        return Err(fault(span, key, StudyFault::MissingKey { key: bound.into(), instead }));
-                    }
-                }
-                numbers.offer(&key, &span, None)?.named(named)
-            }
-            (Some(_), Some(value), _) | (Some(_), _, Some(value)) => {
-                let which = if process.tolerance.is_some() { "tolerance" } else { "cost" };
-                let why = "say two things: leave one out".to_owned();
-                return Err(fault(
-                    value.span(),
-                    format!("{key}.{which}"),
-                    StudyFault::Conflict { a: "model", b: which, why },
-                ));
-            }
-            (None, Some(tolerance), Some(cost)) => Offer::process(named, *tolerance.get_ref(), *cost.get_ref())
-                .map_err(|error| match error {
-                    CostError::Tolerance { .. } => fault(tolerance.span(), format!("{key}.tolerance"), error),
-                    _ => fault(cost.span(), format!("{key}.cost"), error),
-                })?,
-            (None, tolerance, _) => {
-                let missing = if tolerance.is_none() { "tolerance" } else { "cost" };
-                let instead = "a process is such as { name = \"grind\", tolerance = 0.002, cost = 19.4 }".to_owned();
-                return Err(fault(span, key, StudyFault::MissingKey { key: missing.into(), instead }));
-            }
-        };
+        let offer = process_offer(process, span, key)?;
         offers.push(match &process.machine {
             Some(machine) => offer.on(machine.get_ref()),
             None => offer,
@@ -330,7 +315,41 @@ fn offers(
     Ok(Offers { all: offers, rounded: None })
 }
 
-/// Line of a dimension with the distribution keys of a process, and no others.
+/// The offer of one process: a cost model between bounds, or one tolerance at one cost.
+fn process_offer(process: &ProcessEntry, span: Range<usize>, key: String) -> Result<Offer, Fault> {
+    let ProcessEntry { model, a, b, k, c, min, max, .. } = process;
+    let named = process.name.get_ref();
+    match (&process.model, &process.tolerance, &process.cost) {
+        (Some(_), None, None) => {
+            let numbers = Numbers { model, a, b, k, c, min, max };
+            for (bound, given) in [("min", min), ("max", max)] {
+                if given.is_none() {
+                    let instead = "a process with a model needs min and max, between which it is used".to_owned();
+                    return Err(fault(span, key, StudyFault::MissingKey { key: bound.into(), instead }));
+                }
+            }
+            Ok(numbers.offer(&key, &span, None)?.named(named))
+        }
+        (Some(_), Some(value), _) | (Some(_), _, Some(value)) => {
+            let which = if process.tolerance.is_some() { "tolerance" } else { "cost" };
+            let why = "say two things: leave one out".to_owned();
+            Err(fault(value.span(), format!("{key}.{which}"), StudyFault::Conflict { a: "model", b: which, why }))
+        }
+        (None, Some(tolerance), Some(cost)) => {
+            Offer::process(named, *tolerance.get_ref(), *cost.get_ref()).map_err(|error| match error {
+                CostError::Tolerance { .. } => fault(tolerance.span(), format!("{key}.tolerance"), error),
+                _ => fault(cost.span(), format!("{key}.cost"), error),
+            })
+        }
+        (None, tolerance, _) => {
+            let missing = if tolerance.is_none() { "tolerance" } else { "cost" };
+            let instead = "a process is such as { name = \"grind\", tolerance = 0.002, cost = 19.4 }".to_owned();
+            Err(fault(span, key, StudyFault::MissingKey { key: missing.into(), instead }))
+        }
+    }
+}
+
+/// The line of a dimension that says of how its parts lie what a process does, and nothing else.
 fn spread_of(process: &ProcessEntry) -> DimensionEntry {
     DimensionEntry {
         distribution: process.distribution.clone(),
