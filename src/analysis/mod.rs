@@ -13,10 +13,12 @@ pub use crate::analysis::distribution::law_guard::{LawRefutation, LawTest};
 pub use crate::analysis::distribution::moment_basis::{Fit, NoFit, Surface};
 pub use crate::analysis::distribution::surface_law::SurfaceShares;
 pub(crate) use crate::analysis::distribution::surface_law::{law_over, surface_law};
+use crate::analysis::distribution::yield_selection;
 pub use crate::analysis::evaluation_summary::Account;
 pub use crate::analysis::result::characteristic::{CharacteristicAnalysis, Sensitivity};
 pub use crate::analysis::result::coverage_intervals::CoverageIntervals;
 pub use crate::analysis::result::interaction::{Interaction, InteractionList, Missing};
+use crate::analysis::result::interaction_listing;
 pub use crate::analysis::result::interaction_remainder::Remainder;
 pub use crate::analysis::result::sampled_model::SampledModel;
 pub use crate::analysis::result::serialisation::CharacteristicShape;
@@ -24,6 +26,11 @@ pub use crate::analysis::result::sobol_indices::{FactorIndices, IndexSource, Sob
 pub(crate) use crate::analysis::result::verification::TRUSTED;
 pub use crate::analysis::result::verification::{VarianceShare, Verification, VerificationKind};
 pub use crate::analysis::result::yield_source::YieldSource;
+use crate::analysis::sampling::accuracy_target;
+use crate::analysis::sampling::jump;
+use crate::analysis::sampling::measured_interval;
+use crate::analysis::sampling::model_sample;
+use crate::analysis::sampling::verification_stage;
 pub use crate::extremes::{Coordinate, Extreme, Extremes, ExtremesProof, Place};
 pub use crate::verification::{Crossing, FoundSwitch, OutputCorrelation, Share, Verified};
 pub use sensitol_numeric::capability::{EstimatedShare, InspectionRisks};
@@ -189,14 +196,8 @@ pub(crate) fn analyze_keeping(
     let signature = problem.function().signature();
     let sampled = options.verification(signature) > 0 && !signature.costly;
     let fallback = match sampled {
-        true => crate::analysis::sampling::model_sample::Spent::default(),
-        false => crate::analysis::sampling::model_sample::fall_back(
-            problem,
-            &outcome,
-            (left, seed),
-            &mut characteristics,
-            run,
-        ),
+        true => model_sample::Spent::default(),
+        false => model_sample::fall_back(problem, &outcome, (left, seed), &mut characteristics, run),
     };
     outcome.evaluated.non_repeatable.extend(fallback.non_repeatable);
     for (characteristic, extremes) in characteristics.iter_mut().zip(found.extremes) {
@@ -204,51 +205,37 @@ pub(crate) fn analyze_keeping(
     }
     let left = left.map(|left| left.saturating_sub(fallback.run.evaluations as usize));
     let jumps = match signature.costly && options.verification(signature) > 0 {
-        true => crate::analysis::sampling::jump::find(problem, &outcome, &characteristics, left, run),
-        false => crate::analysis::sampling::jump::FoundJumps::default(),
+        true => jump::find(problem, &outcome, &characteristics, left, run),
+        false => jump::FoundJumps::default(),
     };
     outcome.evaluated.non_repeatable.extend(jumps.non_repeatable);
     let left = left.map(|left| left.saturating_sub(jumps.run.evaluations as usize));
-    let (verified, doubted) = crate::analysis::sampling::verification_stage::verify(
-        problem,
-        &outcome,
-        options,
-        left,
-        &mut characteristics,
-        run,
-    );
+    let (verified, doubted) = verification_stage::verify(problem, &outcome, options, left, &mut characteristics, run);
     outcome.evaluated.non_repeatable.extend(doubted);
     let bounded = options.verification(signature) > 0 && !run.stopped();
     let bounds = || if bounded { bounds(problem, &outcome, &characteristics, run) } else { Vec::new() };
-    let laws = || crate::analysis::distribution::yield_selection::laws(problem, &outcome, options, &characteristics);
+    let laws = || yield_selection::laws(problem, &outcome, options, &characteristics);
     // Both need matrices of all inputs. From four megabytes on they are computed one after the other, so that only one is in memory.
     let large = outcome.plan.varying().len().pow(2) * size_of::<f64>() > 4 << 20;
     let (bounds, laws) = if large { (bounds(), laws()) } else { join(bounds, laws) };
     characteristics.iter_mut().zip(bounds).for_each(|(one, bounds)| one.bounds = bounds);
-    let mut laws =
-        crate::analysis::distribution::yield_selection::settle(problem, &outcome, options, &mut characteristics, laws);
-    if !crate::analysis::distribution::yield_selection::have_joint_yield(&characteristics) {
+    let mut laws = yield_selection::settle(problem, &outcome, options, &mut characteristics, laws);
+    if !yield_selection::have_joint_yield(&characteristics) {
         // Nothing uses the distributions again, and with many inputs they are large.
         laws.clear();
     }
     // The list needs much memory with many inputs: it is made after the distributions were dropped.
     for (c, (one, shares)) in characteristics.iter_mut().zip(shares).enumerate() {
-        one.interactions = crate::analysis::result::interaction_listing::listed(problem, &outcome, c, shares.as_ref());
+        one.interactions = interaction_listing::listed(problem, &outcome, c, shares.as_ref());
     }
-    let joint = options
-        .target_joint_yield
-        .and_then(|_| crate::analysis::distribution::yield_selection::joint(problem, options, &characteristics, &laws));
+    let joint =
+        options.target_joint_yield.and_then(|_| yield_selection::joint(problem, options, &characteristics, &laws));
     let spent = spent(&outcome, options).and(&fallback.run).and(&jumps.run).and(&verified);
     // The extremes do not affect shares: only the other runs decide whether a share is unfinished.
     characteristics.iter_mut().for_each(|one| one.unfinished = spent.unfinished());
     let warnings = warnings::of(problem, &outcome, &characteristics, jumps.warnings);
     let account = Account::of(problem, &outcome, &characteristics, outcome.evaluated.evaluations);
-    let drawn = crate::analysis::sampling::measured_interval::add_sampling_intervals(
-        problem,
-        &outcome,
-        &mut characteristics,
-        seed,
-    );
+    let drawn = measured_interval::add_sampling_intervals(problem, &outcome, &mut characteristics, seed);
     let surface = Surface::of(&outcome, &characteristics);
     let analysis = Analysis {
         method: outcome.method,
@@ -278,8 +265,7 @@ impl Analysis {
         let begun = Instant::now();
         let Findings { outcome, laws } = findings;
         if self.joint.is_none() {
-            self.joint =
-                crate::analysis::distribution::yield_selection::joint(problem, options, &self.characteristics, laws);
+            self.joint = yield_selection::joint(problem, options, &self.characteristics, laws);
             self.joint_interval = self.joint.and_then(|joint| joint_interval(joint, &self.characteristics));
         }
         self.correlations =
@@ -309,7 +295,7 @@ fn joint_requirement(
 /// Interval that contains a joint yield. Returns None if measured samples leave it unknown.
 fn joint_interval(joint: Verified, characteristics: &[CharacteristicAnalysis]) -> Option<[f64; 2]> {
     let own = verdict::about(joint.value, Some(joint.error))?;
-    let interval = match crate::analysis::distribution::yield_selection::joint_sampling(characteristics, joint.value) {
+    let interval = match yield_selection::joint_sampling(characteristics, joint.value) {
         Some(measured) => verdict::joined(joint.value, own, measured?),
         None => own,
     };
@@ -358,8 +344,7 @@ fn run_method(problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Out
         return options.method.procedure().run(problem, options, run);
     }
     climb_until(problem, options, run, &|outcome| {
-        let excess =
-            |one: &CharacteristicAnalysis| crate::analysis::sampling::accuracy_target::excess(one, &options.accuracies);
+        let excess = |one: &CharacteristicAnalysis| accuracy_target::excess(one, &options.accuracies);
         of_all(problem, outcome).iter().map(|(one, _)| excess(one)).fold(0.0, f64::max)
     })
 }

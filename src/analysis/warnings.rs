@@ -1,5 +1,6 @@
 //! Warnings of an analysis: assumptions of its results that fail.
 
+use crate::analysis::sampling::verification_stage;
 use std::collections::HashSet;
 
 use crate::analysis::distribution::law_guard::LawRefutation;
@@ -76,7 +77,7 @@ pub(super) fn of(
         warnings.extend(doubtful(outcome, c, analysis));
         warnings.extend(trust::of(problem, outcome, c, analysis));
         let wanted = outcome.climbed.as_ref().map(|climbed| climbed.accuracy);
-        warnings.extend(crate::analysis::sampling::verification_stage::warnings(analysis, wanted));
+        warnings.extend(verification_stage::warnings(analysis, wanted));
         warnings.extend(refuted_law(analysis));
         warnings.extend(not_proven(analysis));
     }

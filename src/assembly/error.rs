@@ -1,6 +1,8 @@
 //! Errors of one output at one point.
 
 use crate::assembly::formula::FormulaFailure;
+use crate::assembly::implicit;
+use crate::assembly::process_error;
 use sensitol_numeric::names::nearest;
 
 /// Reason why an assembly function has no value for one output at one point.
@@ -18,10 +20,10 @@ pub enum EvaluationError {
     Formula(#[from] Box<FormulaFailure>),
     /// The assembly does not close at the point, or only on another branch than the nominal state.
     #[error(transparent)]
-    Assembly(#[from] Box<crate::assembly::implicit::AssemblyFailure>),
+    Assembly(#[from] Box<implicit::AssemblyFailure>),
     /// An external program failed.
     #[error(transparent)]
-    Process(#[from] Box<crate::assembly::process_error::ProcessError>),
+    Process(#[from] Box<process_error::ProcessError>),
     /// A table of answers has none for this point.
     #[error("no answer is given for this point")]
     NotGiven,

@@ -1,21 +1,32 @@
 //! Registry of all methods.
 
+use crate::method::auto;
+use crate::method::derivative::classic;
+use crate::method::derivative::full;
+use crate::method::derivative::rss;
+use crate::method::derivative::second_order;
+use crate::method::derivative::six_n;
+use crate::method::derivative::worst_case;
+use crate::method::integration::bivariate_dimension_reduction;
+use crate::method::integration::dimension_reduction;
+use crate::method::integration::three_point;
+use crate::method::response_surface;
 use crate::method::{Cost, Method, MethodError, Options, Procedure, ReducedInputs};
 use crate::problem::Problem;
 
 /// Every method, in the order of listings.
 pub static ALL: &[&dyn Procedure] = &[
-    &crate::method::auto::AUTO,
-    &crate::method::derivative::rss::RSS,
-    &crate::method::derivative::worst_case::WORST_CASE,
-    &crate::method::derivative::second_order::SECOND_ORDER,
-    &crate::method::derivative::six_n::SIX_N,
-    &crate::method::derivative::full::FULL,
-    &crate::method::derivative::classic::CLASSIC,
-    &crate::method::integration::dimension_reduction::DimensionReduction,
-    &crate::method::integration::bivariate_dimension_reduction::BivariateDimensionReduction,
-    &crate::method::integration::three_point::ThreePoint,
-    &crate::method::response_surface::ResponseSurface,
+    &auto::AUTO,
+    &rss::RSS,
+    &worst_case::WORST_CASE,
+    &second_order::SECOND_ORDER,
+    &six_n::SIX_N,
+    &full::FULL,
+    &classic::CLASSIC,
+    &dimension_reduction::DimensionReduction,
+    &bivariate_dimension_reduction::BivariateDimensionReduction,
+    &three_point::ThreePoint,
+    &response_surface::ResponseSurface,
 ];
 
 /// Returns the procedure of a method.

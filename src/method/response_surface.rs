@@ -24,6 +24,7 @@
 //!
 //! Evaluations: `2^r + 2N + 1`. r is N up to four dimensions, then 4, 5, 6 for N of 5, 6, 7 and 8, 7 up to 11, 8 up to 17.
 
+use crate::method::integration::quadrature;
 use std::sync::Arc;
 
 use faer::Mat;
@@ -66,7 +67,7 @@ impl Procedure for ResponseSurface {
             return Err(MethodError::BadStep { step });
         }
         let step = Options { step: None, ..options.clone() };
-        crate::method::integration::quadrature::check_options(self.name(), &step, false)
+        quadrature::check_options(self.name(), &step, false)
     }
 
     fn plan(&self, problem: &Problem, options: &Options) -> Result<Arc<dyn Plan>, MethodError> {

@@ -1,5 +1,6 @@
 //! Correlations of the characteristics of a cheap model, and their common rejects, from points of the model itself.
 
+use crate::verification::figures;
 use serde::Serialize;
 
 use crate::problem::Problem;
@@ -112,7 +113,7 @@ pub(crate) fn common_rejects(problem: &Problem, characteristics: &[usize], seed:
 /// Mean and sigma of the finite values, 0 and 1 if they are undefined.
 fn unit(column: &[f64]) -> [f64; 2] {
     let valid: Vec<f64> = column.iter().copied().filter(|y| y.is_finite()).collect();
-    let [mean, sigma, ..] = crate::verification::figures::moments(&valid, &vec![1.0; valid.len()]);
+    let [mean, sigma, ..] = figures::moments(&valid, &vec![1.0; valid.len()]);
     [if mean.is_finite() { mean } else { 0.0 }, if sigma > 0.0 { sigma } else { 1.0 }]
 }
 

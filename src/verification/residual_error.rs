@@ -20,6 +20,7 @@
 use crate::verification::check_points::{Design, ON_AXIS, Wish, dot};
 use crate::verification::figures::{MOMENTS, moments};
 use crate::verification::normal_space::Columns;
+use crate::verification::strata;
 use crate::verification::strata::along;
 
 /// Residual that [`OVERLOOKED_BY`] points may overlook, in sigmas. With `n` points it falls as `1/sqrt(n)`.
@@ -219,7 +220,7 @@ pub(super) fn regression(surface: &Surface) -> Vec<f64> {
     let [mean, sigma, ..] = surface.figures;
     let weighted: Vec<f64> =
         surface.values.iter().zip(&surface.weights).map(|(q, weight)| weight * (q - mean) / sigma).collect();
-    crate::verification::strata::unit(surface.z.iter().map(|column| dot(column, &weighted)).collect())
+    strata::unit(surface.z.iter().map(|column| dot(column, &weighted)).collect())
 }
 
 #[cfg(test)]

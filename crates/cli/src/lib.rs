@@ -19,6 +19,27 @@ mod shared_args;
 mod study;
 mod values;
 
+use crate::commands::allocate;
+use crate::commands::analyze;
+use crate::commands::check;
+use crate::commands::compare;
+use crate::commands::difference;
+use crate::commands::evaluate;
+use crate::commands::expand;
+use crate::commands::import;
+use crate::commands::init;
+use crate::commands::journal;
+use crate::commands::models;
+use crate::commands::pearson;
+use crate::commands::plan;
+use crate::commands::probe;
+use crate::commands::reference;
+use crate::commands::schema;
+use crate::commands::serve;
+use crate::commands::several;
+use crate::commands::simulate;
+use crate::commands::sweep;
+use crate::commands::workbench;
 use std::ffi::OsString;
 use std::io::Write;
 use std::process::ExitCode;
@@ -80,32 +101,30 @@ pub fn run_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         output::Look { color: arguments.color, quiet: arguments.quiet, verbose: arguments.verbose, study: None };
     let result = match &arguments.command {
         Command::Analyze(asked) => match &asked.studies[..] {
-            [old, new] if asked.compare => crate::commands::difference::run([old, new], asked, style),
+            [old, new] if asked.compare => difference::run([old, new], asked, style),
             studies if asked.compare => Err(Failure::NotTwo { count: studies.len() }),
-            [study] if asked.how.configuration.as_deref() != Some(study::ALL) => {
-                crate::commands::analyze::run(study, asked, style)
-            }
-            studies => crate::commands::several::analyze(studies, asked, style),
+            [study] if asked.how.configuration.as_deref() != Some(study::ALL) => analyze::run(study, asked, style),
+            studies => several::analyze(studies, asked, style),
         },
-        Command::Simulate(asked) => crate::commands::simulate::run(asked, style),
-        Command::Compare(asked) => crate::commands::compare::run(asked, style),
-        Command::Sweep(asked) => crate::commands::sweep::run(asked, style),
-        Command::Allocate(asked) => crate::commands::allocate::run(asked, style),
-        Command::Plan(asked) => crate::commands::plan::run(asked, style),
-        Command::Check(asked) => crate::commands::check::run(asked, style),
-        Command::Expand(asked) => crate::commands::expand::run(asked, style),
-        Command::Models(asked) => crate::commands::models::run(asked, style),
-        Command::Probe(asked) => crate::commands::probe::run(asked, style),
-        Command::Evaluate(asked) => crate::commands::evaluate::run(asked, style),
-        Command::Journal(asked) => crate::commands::journal::run(asked, style),
-        Command::Init(asked) => crate::commands::init::run(asked),
-        Command::Import(asked) => crate::commands::import::run(asked),
-        Command::Workbench(asked) => crate::commands::workbench::run(asked, style),
-        Command::Serve(asked) => crate::commands::serve::run(asked),
-        Command::Schema(asked) => crate::commands::schema::run(asked),
-        Command::Completions(asked) => crate::commands::reference::completions(asked),
-        Command::Man => crate::commands::reference::man(),
-        Command::Pearson(asked) => crate::commands::pearson::run(asked, style),
+        Command::Simulate(asked) => simulate::run(asked, style),
+        Command::Compare(asked) => compare::run(asked, style),
+        Command::Sweep(asked) => sweep::run(asked, style),
+        Command::Allocate(asked) => allocate::run(asked, style),
+        Command::Plan(asked) => plan::run(asked, style),
+        Command::Check(asked) => check::run(asked, style),
+        Command::Expand(asked) => expand::run(asked, style),
+        Command::Models(asked) => models::run(asked, style),
+        Command::Probe(asked) => probe::run(asked, style),
+        Command::Evaluate(asked) => evaluate::run(asked, style),
+        Command::Journal(asked) => journal::run(asked, style),
+        Command::Init(asked) => init::run(asked),
+        Command::Import(asked) => import::run(asked),
+        Command::Workbench(asked) => workbench::run(asked, style),
+        Command::Serve(asked) => serve::run(asked),
+        Command::Schema(asked) => schema::run(asked),
+        Command::Completions(asked) => reference::completions(asked),
+        Command::Man => reference::man(),
+        Command::Pearson(asked) => pearson::run(asked, style),
     };
     // Errors that were not printed so far are printed here.
     let exit = result.unwrap_or_else(|failure| {

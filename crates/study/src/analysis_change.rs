@@ -1,5 +1,6 @@
 //! Changes of the options of a study.
 
+use crate::build::inflation;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -35,7 +36,7 @@ impl Study {
         let read = || -> Result<(_, _), Faults> {
             let keys = Tree::of_json(keys)?;
             let mut entry: AnalysisEntry = de::read(&keys).map_err(below_analysis)?;
-            crate::build::inflation::only_in_study(&entry)?;
+            inflation::only_in_study(&entry)?;
             // Read from the expanded text: the original text may hold geometric elements that are not plain dimensions.
             let own = Tree::of_toml(&self.expanded).ok().map(|tree| de::read::<StudyFile>(&tree)).transpose()?;
             if let Some(own) = own {

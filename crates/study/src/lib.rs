@@ -67,6 +67,8 @@ mod tree;
 mod typing_habits;
 pub mod write;
 
+use crate::build::sweep;
+use crate::entries::spanned;
 use crate::external_settings::Host;
 pub use crate::external_settings::{Externals, JournalPlace};
 pub use crate::folder::Format;
@@ -277,7 +279,7 @@ impl Study {
         let expanded = expand::expand(tree, source.externals.configuration.as_deref(), &mut data).map_err(failed)?;
         let mut file: crate::entries::file::StudyFile = crate::deserializer::read(&expanded.tree).map_err(failed)?;
         if let Some(parameter) = parameter {
-            crate::build::sweep::as_dimension(&mut file, parameter).map_err(|fault| failed(fault.into()))?;
+            sweep::as_dimension(&mut file, parameter).map_err(|fault| failed(fault.into()))?;
         }
         let built = crate::build::problem::build(&file, &source, data, &expanded.elements).map_err(failed)?;
         let mut hash = Sha256::new_with_prefix(text.as_bytes());
@@ -287,7 +289,7 @@ impl Study {
             about: file.about.cells(),
             problem: built.problem,
             options: built.options,
-            seed: file.analysis.seed.map(crate::entries::spanned::Spanned::into_inner),
+            seed: file.analysis.seed.map(spanned::Spanned::into_inner),
             lines: crate::dimension_text::of(&expanded.tree),
             expanded: expanded.toml(text),
             configurations: expanded.configurations,

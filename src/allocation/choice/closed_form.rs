@@ -10,6 +10,7 @@
 //! with q = 1 for a worst case and q = 2 for a root of the sum of squares. Source: K. W. Chase, A. R. Parkinson, "A survey of research
 //! in the application of tolerance analysis to the design of mechanical assemblies", Research in Engineering Design 3 (1991).
 
+use crate::allocation::optimise::separable;
 use crate::allocation::optimise::separable::Separable;
 use crate::allocation::requirement::constraint;
 
@@ -21,9 +22,7 @@ pub(in crate::allocation) fn closed_form(problem: &Separable<'_>) -> Option<(Vec
     }
     (0..problem.rows.len()).find_map(|k| {
         let at = bound_by(problem, k)?;
-        let kept = |(other, row): (usize, &crate::allocation::optimise::separable::Row)| {
-            other == k || constraint::kept(row.value(&at))
-        };
+        let kept = |(other, row): (usize, &separable::Row)| other == k || constraint::kept(row.value(&at));
         let inside =
             problem.priced.iter().zip(&at).all(|(group, t)| (group.offers[0].min..=group.offers[0].max).contains(t));
         let mut multipliers = vec![0.0; problem.rows.len()];

@@ -10,6 +10,7 @@
 
 use crate::allocation::cost::cost_curve::Priced;
 use crate::allocation::optimise::minimise::minimised;
+use crate::allocation::optimise::separable;
 use crate::allocation::optimise::separable::Separable;
 
 /// Iterations of the descent between two updates of the multipliers.
@@ -152,7 +153,7 @@ pub(in crate::allocation) fn augmented(problem: &Separable<'_>, start: &[f64]) -
     };
     let rows = |x: &[f64]| {
         let t = tolerances(x);
-        let of = |row: &crate::allocation::optimise::separable::Row| {
+        let of = |row: &separable::Row| {
             let slopes = row.terms.iter().zip(&t).map(|(term, &t)| term.power * term.value(t)).collect();
             (row.value(&t) - 1.0, slopes)
         };

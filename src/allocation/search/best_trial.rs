@@ -6,6 +6,7 @@
 //! follows. The tolerances before are tried too. An allocation is therefore never dearer than its start, and has a
 //! result if the start keeps everything.
 
+use crate::allocation::cost::cost_curve;
 use std::rc::Rc;
 
 use crate::allocation::choice::process_selection::remade;
@@ -293,7 +294,7 @@ impl Driver<'_> {
 
     /// Tolerances of the study clamped to their offers. For a list it is the tolerance of the process that holds it.
     fn offered(&self, trial: &Trial) -> Tolerances {
-        let of = |((group, &t), &offer): ((&crate::allocation::cost::cost_curve::Priced, &f64), &usize)| {
+        let of = |((group, &t), &offer): ((&cost_curve::Priced, &f64), &usize)| {
             t.clamp(group.offers[offer].min, group.offers[offer].max)
         };
         (self.task.priced.iter().zip(&trial.at).zip(&trial.offers).map(of).collect(), trial.offers.clone())

@@ -155,16 +155,11 @@ fn sample(
         found = more;
         spent += found.points;
     }
-    // Shares of variance cost many points: they are computed only if the surface leaves too much of the variance unexplained.
     let open = beside.and_then(|beside| unexplained(problem, c, beside, seed, run));
-    let shares = open
-        .filter(|&share| {
-            share > UNTRUSTED && !run.stopped() && affords(spent, most_points_of_shares(outcome.plan.varying().len()))
-        })
-        .and_then(|_| variance_shares_during(problem, c, seed, run));
-    let dimension = |d: usize| problem.dimensions()[d].name().to_owned();
-    let share = |(d, [first, total]): (usize, [Verified; 2])| VarianceShare { dimension: dimension(d), first, total };
-    let shares = shares.map(|shares| shares.into_iter().map(share).collect());
+    // Shares of variance cost many points: they are computed only if the surface leaves too much of the variance unexplained.
+    let shares_are_due =
+        |share: f64| share > UNTRUSTED && affords(spent, most_points_of_shares(outcome.plan.varying().len()));
+    let shares = open.filter(|&share| shares_are_due(share)).and_then(|_| named_shares(problem, c, seed, run));
     // With `model_figures`, a surface that is not trusted gives way to the model's figures.
     let refuted = options.model_figures && open.is_none_or(|share| share > TRUSTED);
     let replaced = (options.method == Method::Auto || refuted) && replace(one, &found);
@@ -206,6 +201,16 @@ fn sample(
             .map(Arc::new),
     });
     true
+}
+
+/// Returns the shares of the variance with the names of their dimensions. Returns None if the run was stopped before.
+fn named_shares(problem: &Problem, c: usize, seed: u64, run: &Run<'_>) -> Option<Vec<VarianceShare>> {
+    if run.stopped() {
+        return None;
+    }
+    let dimension = |d: usize| problem.dimensions()[d].name().to_owned();
+    let share = |(d, [first, total]): (usize, [Verified; 2])| VarianceShare { dimension: dimension(d), first, total };
+    variance_shares_during(problem, c, seed, run).map(|shares| shares.into_iter().map(share).collect())
 }
 
 /// Replaces figures that the model contradicts by the model's. Returns true if any was replaced.

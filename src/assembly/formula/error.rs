@@ -1,5 +1,6 @@
 //! Errors of a formula: in its text, and at one point.
 
+use crate::assembly::formula::functions;
 use std::ops::Range;
 
 use crate::assembly::formula::name::is_plain;
@@ -143,10 +144,9 @@ impl FormulaFault {
             Self::MissingOperator { .. } => Some("multiplication is written with `*`".into()),
             Self::ChainedComparison => Some("write `if(a < b, b < c, 0)`".into()),
             Self::UnknownFunction { nearest: Some(name), .. } => Some(format!("did you mean `{name}`?")),
-            Self::UnknownFunction { .. } => Some(format!(
-                "functions are {}",
-                crate::assembly::formula::functions::Callable::names().collect::<Vec<_>>().join(", ")
-            )),
+            Self::UnknownFunction { .. } => {
+                Some(format!("functions are {}", functions::Callable::names().collect::<Vec<_>>().join(", ")))
+            }
             Self::BareFunction { name } => {
                 Some(format!("write `{name}(...)`; a dimension of this name has to be renamed"))
             }

@@ -5,6 +5,7 @@
 //! one direction of the sampled ones. The control variate is the nearest surface with an exact distribution, which lacks the products that
 //! prevent it: `P = P_exact + mean(1 - 1_control)` at the same points.
 
+use crate::law::tail_table;
 use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -326,7 +327,7 @@ impl Sampled {
                 (0..self.surface.len()).filter(|j| self.direction.members().binary_search(j).is_err()).collect();
             (places, table.slopes(law, &self.surface, nearer))
         });
-        let exact: Option<(Vec<usize>, crate::law::tail_table::Slopes)> = exact;
+        let exact: Option<(Vec<usize>, tail_table::Slopes)> = exact;
         let n = self.surface.len();
         let rows = visit(&self.direction, &self.tilts, proposal.as_deref(), self.points, self.seed, |z, weight| {
             let mut sums = vec![0.0; n];

@@ -1,5 +1,6 @@
 //! Documents as fragments of HTML. The page around them holds the style sheet for their classes.
 
+use crate::document::html;
 use crate::document::svg::{escaped, figure};
 use crate::document::{Bar, Bars, Cell, Chart, DataTable, Document, Element, Fill, Flow, Line, Section, Tone, spread};
 use sensitol_numeric::names::clean;
@@ -95,11 +96,11 @@ fn figure_first(all: &[Element], id: &str) -> String {
     for (place, block) in rest.iter().enumerate() {
         let without = |inside: &str| blocks(&rest[..place]) + inside + &blocks(&rest[place + 1..]);
         match block {
-            one if drawn(one) => return beside(crate::document::html::block(one) + &findings) + &without(""),
+            one if drawn(one) => return beside(html::block(one) + &findings) + &without(""),
             Element::Detail(inner) => {
                 let Some(inside) = inner.iter().position(drawn) else { continue };
                 let others = blocks(&inner[..inside]) + &blocks(&inner[inside + 1..]);
-                return beside(crate::document::html::block(&inner[inside]) + &findings) + &without(&others);
+                return beside(html::block(&inner[inside]) + &findings) + &without(&others);
             }
             _ => {}
         }

@@ -1,6 +1,8 @@
 //! Answers to the next questions of a review, for each characteristic: the tails, the difference of mean and nominal value, the chain of
 //! dimensions.
 
+use crate::document::number;
+use crate::html::map;
 use std::fmt::Write;
 
 use crate::analysis::analysis_document::SHARES;
@@ -59,7 +61,7 @@ pub(super) fn add(report: &Report, sections: &mut [Section]) {
         drawn("Dimension chain", chain(one, &report.dimensions).map(Element::Markup));
         let shifts = shifts(one, &report.dimensions).map(|bars| Element::Chart(Chart::Bars(bars)));
         drawn("From the nominal value to the mean", shifts);
-        drawn("Interactions", crate::html::map::map(one).map(Element::Markup));
+        drawn("Interactions", map::map(one).map(Element::Markup));
     }
 }
 
@@ -464,12 +466,8 @@ fn drawing(one: &CharacteristicAnalysis, links: &[(&DimensionReport, f64)], clas
         let head = if b >= a { -7.0 } else { 7.0 };
         let _ = writeln!(svg, "<path class=\"{class}\" d=\"M{a:.1} {y}H{b:.1}m{head} -4l{} 4l{head} 4\"/>", -head);
         let _ = writeln!(svg, "<path class=\"axis\" d=\"M{b:.1} {y}V{}\"/>", y + ROW);
-        let _ = writeln!(
-            svg,
-            "<text class=\"name\" x=\"0\" y=\"{:.1}\">{}</text>",
-            y + 4.0,
-            escaped(&crate::document::number::short(name))
-        );
+        let _ =
+            writeln!(svg, "<text class=\"name\" x=\"0\" y=\"{:.1}\">{}</text>", y + 4.0, escaped(&number::short(name)));
         let _ = writeln!(
             svg,
             "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{value}</text>",

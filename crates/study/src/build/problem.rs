@@ -1,5 +1,6 @@
 //! Builds the problem from the parsed study file: names, model, formulas and characteristics are checked and put together.
 
+use crate::build::inflation;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -109,7 +110,7 @@ pub(crate) fn build(
     idle_formula(program, &composite, &written, &elements.made)?;
     warnings.extend(unused(file, evaluated.as_ref(), &composite, &written, &used, &elements.made));
     // Costs and [analysis] may change dimensions: the end of the band that stays, and the factors of the RSS.
-    let dimensions = crate::build::inflation::taken(file, holding(file, dimensions)?)?;
+    let dimensions = inflation::taken(file, holding(file, dimensions)?)?;
     let problem = Problem::new(dimensions, composite)
         .and_then(|problem| problem.asking(characteristics))
         .map_err(|error| Fault { span: None, key: String::new(), fault: Box::new(error.into()) })?;

@@ -1,5 +1,6 @@
 //! Types of the study file, for TOML and JSON alike.
 
+use crate::entries::vocabulary;
 use std::fmt;
 use std::ops::Range;
 
@@ -200,7 +201,7 @@ pub(crate) struct DimensionEntry {
     /// Standard deviation: half the band by sigmas unless given, and none of a kind whose sigma follows from its band.
     pub(crate) sigma: Option<Spanned<f64>>,
     /// How many sigmas half the tolerance band has.
-    #[cfg_attr(feature = "schema", schemars(extend("default" = crate::entries::vocabulary::SIGMAS)))]
+    #[cfg_attr(feature = "schema", schemars(extend("default" = vocabulary::SIGMAS)))]
     pub(crate) sigmas: Option<Spanned<f64>>,
     /// Process capability, another way to say sigmas: cp = sigmas/3.
     pub(crate) cp: Option<Spanned<f64>>,

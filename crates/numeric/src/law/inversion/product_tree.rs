@@ -9,6 +9,7 @@
 //! The message is `exp` of a parabola in `u` if the branch consists of parabolas of normal inputs. Otherwise it is a table over the
 //! parent's nodes. Every message is divided by its value at the real part of `s`, so that nothing overflows.
 
+use crate::law::input;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -50,7 +51,7 @@ pub(in crate::law) struct Tree {
 struct Node {
     /// Index of the input in the surface.
     input: usize,
-    law: Arc<crate::law::input::Input>,
+    law: Arc<input::Input>,
     part: Quartic,
     children: Vec<usize>,
     /// Coefficient of the product with the parent.

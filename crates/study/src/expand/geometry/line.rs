@@ -2,6 +2,7 @@
 
 use crate::decimal::{KEPT, decimal};
 use crate::error::{Fault, StudyFault, fault};
+use crate::expand::geometry;
 use crate::expand::{OWN, Tree, Value, quoted, wrong_type};
 use crate::tree::Key;
 use sensitol::assembly::formula::{Formula, is_plain};
@@ -188,11 +189,7 @@ pub(super) fn unit_of(entry: &Tree) -> Option<&str> {
 pub(super) fn names(study: &Tree) -> Vec<String> {
     let of = |section: &str| study.get(section).map_or(&[][..], Tree::entries);
     let dimensions = of("dimensions").iter().flat_map(|(key, entry)| {
-        crate::expand::geometry::shape(entry)
-            .axes()
-            .iter()
-            .map(|axis| format!("{}{axis}", key.name))
-            .collect::<Vec<_>>()
+        geometry::shape(entry).axes().iter().map(|axis| format!("{}{axis}", key.name)).collect::<Vec<_>>()
     });
     let characteristics = of("characteristics").iter().filter(|(_, entry)| entry.get("formula").is_some());
     (["formulas", "constants", "unknowns"].into_iter().flat_map(of))

@@ -1,5 +1,6 @@
 //! Plain lines that replace a geometric element.
 
+use crate::expand::geometry::plain;
 use std::ops::Range;
 
 use crate::expand::geometry::line::Line;
@@ -35,7 +36,7 @@ impl Plain {
     pub(super) fn dimension(&mut self, line: &Line<'_>, name: String, of: Of, keys: Vec<(Key, Tree)>) {
         let unit = unit(line, of).map(|unit| ("unit", text(line, unit)));
         let mut keys = keys;
-        keys.extend(unit.map(|(key, tree)| (crate::expand::geometry::plain::key(line, key), tree)));
+        keys.extend(unit.map(|(key, tree)| (plain::key(line, key), tree)));
         self.dimensions.push((named(line, name), table(line, keys)));
     }
 
