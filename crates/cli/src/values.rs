@@ -58,6 +58,7 @@ pub(super) fn whole(text: &str) -> Result<u64, String> {
 
 /// Parses the number of points of a sample.
 pub(super) fn samples(text: &str) -> Result<u64, String> {
+    /// Points that a double counts exactly.
     const MOST: u64 = 1 << 52;
     match whole(text)? {
         count @ 2..=MOST => Ok(count),

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::{About, Head, WarningReport};
+#[cfg(feature = "schema")]
 use sensitol::allocation::ProofShape;
 use sensitol::allocation::{
     Allocated, Allocation, Attainable, CostBasis, FrontPoint, Goal, JointKept, JointYield, Kept, Moved, Proof, SetUp,

@@ -15,6 +15,7 @@ use crate::{About, Head, head};
 use sensitol::compare::ErrorShape;
 use sensitol::compare::{Comparison, Errors, Figures, NotRun, RESOLVED, Ran};
 use sensitol::simulation::SimulatedCharacteristic;
+#[cfg(feature = "schema")]
 use sensitol::simulation::SimulatedShape;
 use sensitol::summary::RunSummary;
 use sensitol_numeric::verdict::Verdict;

@@ -54,6 +54,7 @@ mod expand;
 mod external_settings;
 mod files;
 mod folder;
+#[cfg(feature = "import")]
 pub mod import;
 mod labels;
 mod rewrite;

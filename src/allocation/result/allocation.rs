@@ -4,7 +4,9 @@ use serde::{Serialize, Serializer};
 
 use crate::allocation::cost::default_costs::CostBasis;
 use crate::allocation::cost::setup_cost::SetUp;
+#[cfg(feature = "schema")]
 use crate::allocation::result::json::RequiredOf;
+#[cfg(feature = "schema")]
 use crate::allocation::result::json::Sampled;
 use crate::allocation::result::json::{After, Before, FrontRequirement, required, sampled};
 use crate::allocation::surface::joint_yield::JointYield;

@@ -1,5 +1,6 @@
 //! Types of the study file, for TOML and JSON alike.
 
+#[cfg(feature = "schema")]
 use crate::entries::vocabulary;
 use std::fmt;
 use std::ops::Range;

@@ -68,6 +68,7 @@ pub(crate) const KINDS: [KnownKind; 18] = [
 ];
 
 /// Names of all kinds, with their parameters.
+#[cfg(feature = "schema")]
 pub(crate) fn kinds() -> impl Iterator<Item = (&'static str, &'static [&'static str])> {
     KINDS.iter().map(|known| (known.0, known.2))
 }

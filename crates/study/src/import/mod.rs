@@ -5,12 +5,10 @@ mod fault;
 mod sheet;
 mod stack;
 mod tolerance;
-#[cfg(feature = "xlsx")]
 pub mod workbook;
 
 pub use columns::{ColumnRole, ROLES, named};
 pub use fault::{ImportFault, ImportProblem};
 pub use sheet::Sheet;
 pub use stack::{has_header, import};
-#[cfg(feature = "xlsx")]
 pub use workbook::{WorkbookFault, is_workbook, workbook};

@@ -3,6 +3,7 @@
 mod number;
 mod text;
 
+#[cfg(feature = "import")]
 pub(crate) use number::clean;
 pub use number::{NumberFault, NumberStyle};
 pub use text::{delimiter, records};
