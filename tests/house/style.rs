@@ -15,7 +15,7 @@ const REJECTED: [&str; 18] = [
 
 /// Documents that begin with a rejected word, by package. Those that are left are descriptions of the JSON Schema. The numbers only fall.
 const LEFT: [(&str, usize); 7] =
-    [("cli", 11), ("engine", 0), ("external", 0), ("models", 0), ("numeric", 0), ("report", 59), ("study", 49)];
+    [("cli", 11), ("engine", 0), ("external", 0), ("models", 0), ("numeric", 0), ("report", 0), ("study", 0)];
 
 /// Functions of a file with more lines than `most`: name and lines.
 fn long_functions(text: &str, most: usize) -> Vec<(String, usize)> {

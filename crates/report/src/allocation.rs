@@ -32,12 +32,12 @@ pub struct AllocationReport {
     pub(crate) method: Method,
     /// `optimal`, `local-optimum`, `almost-optimal`, `infeasible`, `no-feasible-point-found`, `inconclusive` or `out-of-time`.
     pub(crate) status: Status,
-    /// Whether the model was evaluated at the tolerances found.
+    /// True if the model was evaluated at the tolerances found.
     pub(crate) confirmed: bool,
-    /// Its points and time, and why it ended early.
+    /// Points, time, and the reason of an early end.
     #[serde(flatten)]
     pub(crate) run: RunSummary,
-    /// How often derivatives were taken.
+    /// Number of times that derivatives were taken.
     pub(crate) rounds: usize,
     /// Points of a cheap model by which moments were corrected, worst cases followed and tolerances tried, beside the evaluations.
     pub(crate) model_points: u64,
@@ -53,7 +53,7 @@ pub struct AllocationReport {
     pub(crate) setups: Vec<SetUp>,
     /// The objective, and the most that may be spent on it.
     pub(crate) goal: Goal,
-    /// Where the costs come from: given, or relative to the tolerance unit of ISO 286.
+    /// Source of the costs: given, or relative to the tolerance unit of ISO 286.
     pub(crate) cost_basis: CostBasis,
     /// Every dimension with a cost, in the study's order.
     pub(crate) tolerances: Vec<AllocatedReport>,
@@ -70,7 +70,7 @@ pub struct AllocationReport {
     /// The evidence that nothing is cheaper.
     #[cfg_attr(feature = "schema", schemars(with = "ProofShape"))]
     pub(crate) proof: Proof,
-    /// By which one factor all tolerances may be multiplied until some requirement is just kept.
+    /// Factor of all tolerances at which some requirement is just kept.
     pub(crate) loosest_scaling: BeforeAfter<Option<f64>>,
     /// The share of assemblies that keep all limits at once; null with fewer than two characteristics with limits.
     pub(crate) joint_yield: BeforeAfter<Option<JointYield>>,
@@ -82,7 +82,7 @@ pub struct AllocationReport {
     pub(crate) confirmation: Option<ConfirmationReport>,
     /// The entries of dimensions that have changed, ready to paste into the study.
     pub(crate) dimensions_table: Option<String>,
-    /// Where an assumption fails.
+    /// Warnings about assumptions that fail.
     pub warnings: Vec<WarningReport>,
 }
 
@@ -111,9 +111,9 @@ pub(crate) struct BeforeAfter<T> {
 pub(crate) struct OfDimension<T> {
     /// The dimension.
     pub(crate) dimension: String,
-    /// Its unit.
+    /// Unit of the dimension.
     pub(crate) unit: Option<String>,
-    /// Its result.
+    /// Result of the dimension.
     #[serde(flatten)]
     pub(crate) of: T,
 }
@@ -124,7 +124,7 @@ pub(crate) struct OfDimension<T> {
 pub(crate) struct OfCharacteristic<T> {
     /// The characteristic.
     pub(crate) characteristic: String,
-    /// Its result.
+    /// Result of the characteristic.
     #[serde(flatten)]
     pub(crate) of: T,
 }
@@ -138,7 +138,7 @@ pub(crate) struct AllocatedReport {
     pub(crate) of: OfDimension<Allocated>,
     /// Lower and upper deviation from the nominal before and after, where there is a band.
     pub(crate) deviations: BeforeAfter<Option<[f64; 2]>>,
-    /// Its share of each characteristic's variance.
+    /// Share of each characteristic's variance.
     pub(crate) contributions: Vec<OfCharacteristic<BeforeAfter<Option<f64>>>>,
 }
 
@@ -146,14 +146,14 @@ pub(crate) struct AllocatedReport {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(crate) struct AllocatedCharacteristic {
-    /// Its name.
+    /// Name of the characteristic.
     pub(crate) name: String,
-    /// Its unit.
+    /// Unit of the characteristic.
     pub(crate) unit: Option<String>,
-    /// As `analyze` reports it, at the tolerances before.
+    /// Results of `analyze` at the tolerances before.
     #[cfg_attr(feature = "schema", schemars(with = "CharacteristicShape"))]
     pub(crate) before: CharacteristicAnalysis,
-    /// And at those found; null where none were.
+    /// Results of `analyze` at the tolerances found; null if none were found.
     #[cfg_attr(feature = "schema", schemars(with = "Option<CharacteristicShape>"))]
     pub(crate) after: Option<CharacteristicAnalysis>,
 }

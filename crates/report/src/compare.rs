@@ -32,7 +32,7 @@ pub struct CompareReport {
     pub(crate) run: RunSummary,
     /// Points of the reference.
     pub(crate) reference_samples: u64,
-    /// How they were drawn.
+    /// Sampler that drew them.
     pub(crate) reference_method: &'static str,
     /// The results of every characteristic asked for.
     pub(crate) characteristics: Vec<ComparedReport>,
@@ -44,7 +44,7 @@ pub struct CompareReport {
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(crate) struct ComparedReport {
-    /// Its name.
+    /// Name of the characteristic.
     pub(crate) name: String,
     /// The reference for all methods.
     #[cfg_attr(feature = "schema", schemars(with = "SimulatedShape"))]
@@ -57,11 +57,11 @@ pub(crate) struct ComparedReport {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(crate) struct MethodReport {
-    /// Its name; of samples with the number of points.
+    /// Name of the method; that of samples has the number of points.
     pub(crate) method: String,
     /// Points that it takes.
     pub(crate) evaluations: u64,
-    /// Those of them that were known already.
+    /// Evaluations that were known already.
     pub(crate) cached: u64,
     /// The cost of its run by itself.
     pub(crate) run: RunSummary,
@@ -69,15 +69,15 @@ pub(crate) struct MethodReport {
     pub(crate) evaluation_s: f64,
     /// Seconds besides.
     pub(crate) engine_s: f64,
-    /// Its figures.
+    /// Figures of the method.
     #[serde(flatten)]
     pub(crate) figures: Figures,
-    /// How far that is off the reference.
+    /// Difference from the reference.
     #[cfg_attr(feature = "schema", schemars(with = "ErrorShape"))]
     pub(crate) error_vs_reference: Errors,
-    /// Whether no other method has a smaller error for as many evaluations or fewer.
+    /// True if no other method has a smaller error for as many evaluations or fewer.
     pub(crate) pareto: bool,
-    /// Its verdict on the target yield; null without one.
+    /// Verdict on the target yield; null without a target.
     pub(crate) verdict: Option<Verdict>,
 }
 

@@ -22,7 +22,7 @@ pub struct DifferenceReport {
     pub(crate) head: Head,
     /// The two studies, the older one first.
     pub(crate) studies: [String; 2],
-    /// Their hashes, in this order.
+    /// Hashes of the two studies, in this order.
     pub(crate) sha256: [String; 2],
     /// Evaluations of both.
     pub(crate) evaluations: [u64; 2],
@@ -38,11 +38,11 @@ pub struct DifferenceReport {
 pub(crate) struct Changed {
     /// A dimension or a characteristic.
     pub(crate) name: String,
-    /// Its key in the study; `all` where it is in one study only.
+    /// Key in the study; `all` if it is in one study only.
     pub(crate) key: &'static str,
-    /// As it was; null where it was not.
+    /// Old value; null if new.
     pub(crate) old: Option<String>,
-    /// As it is; null where it is not.
+    /// New value; null if removed.
     pub(crate) new: Option<String>,
 }
 
@@ -50,11 +50,11 @@ pub(crate) struct Changed {
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(crate) struct Compared {
-    /// Its name.
+    /// Name of the characteristic.
     pub(crate) name: String,
-    /// Its unit.
+    /// Unit of the characteristic.
     pub(crate) unit: Option<String>,
-    /// Whether its target was met; null without a target.
+    /// Verdicts on the target yield, old and new; null without a target.
     pub(crate) verdicts: [Option<Verdict>; 2],
     /// Mean, sigma, Cpk and yield.
     pub(crate) figures: Vec<FigurePair>,
@@ -66,13 +66,13 @@ pub(crate) struct Compared {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(crate) struct FigurePair {
-    /// Its name.
+    /// Name of the figure.
     pub(crate) figure: &'static str,
     /// The two values.
     pub(crate) values: [Option<f64>; 2],
-    /// Their estimated errors.
+    /// Estimated errors of both values.
     pub(crate) errors: [Option<f64>; 2],
-    /// Whether they differ by more than three times their errors together; null where an error is unknown.
+    /// True if they differ by more than three times their errors together; null if an error is unknown.
     pub(crate) differs: Option<bool>,
 }
 

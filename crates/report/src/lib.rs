@@ -79,7 +79,7 @@ pub struct Report {
     pub(crate) dimensions: Vec<DimensionReport>,
     /// The dimensions that vary together.
     pub(crate) correlation: Vec<Pair>,
-    /// Where an assumption fails, in the study or in the analysis.
+    /// Warnings about assumptions that fail, in the study or in the analysis.
     pub warnings: Vec<WarningReport>,
 }
 
@@ -87,9 +87,9 @@ pub struct Report {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct DimensionReport {
-    /// Its name.
+    /// Name of the dimension.
     pub name: String,
-    /// Its unit.
+    /// Unit of the dimension.
     pub unit: Option<String>,
     /// The value on the drawing.
     pub nominal: f64,
@@ -99,9 +99,9 @@ pub struct DimensionReport {
     pub zone: Option<String>,
     /// The kind of its distribution; null when it does not vary.
     pub distribution: Option<&'static str>,
-    /// Its mean.
+    /// Mean.
     pub mean: f64,
-    /// Its standard deviation.
+    /// Standard deviation.
     pub sigma: f64,
     /// Texts beside its name.
     #[serde(flatten)]
@@ -126,7 +126,7 @@ pub struct WarningReport {
     pub(crate) data: serde_json::Map<String, serde_json::Value>,
     /// Remedies, the most promising first.
     pub advice: Vec<Advice>,
-    /// Of a sweep, the values of the parameter at which it is so.
+    /// Values of the parameter of a sweep at which the warning holds.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) at: Vec<f64>,
 }

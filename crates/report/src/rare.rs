@@ -35,7 +35,7 @@ pub struct RareReport {
     pub(crate) dimensions: Vec<DimensionReport>,
     /// The dimensions that vary together.
     pub(crate) correlation: Vec<Pair>,
-    /// Where an assumption fails.
+    /// Warnings about assumptions that fail.
     pub warnings: Vec<WarningReport>,
 }
 

@@ -39,7 +39,7 @@ pub struct SimulationReport {
     pub(crate) dimensions: Vec<DimensionReport>,
     /// The dimensions that vary together.
     pub(crate) correlation: Vec<Pair>,
-    /// Where an assumption fails.
+    /// Warnings about assumptions that fail.
     pub warnings: Vec<WarningReport>,
 }
 

@@ -37,12 +37,12 @@ pub struct SweepReport {
     pub(crate) parameter: ParameterReport,
     /// The method that was run; null where nothing was done.
     pub(crate) method: Option<&'static str>,
-    /// Its points and time, and why it ended early.
+    /// Points, time, and the reason of an early end.
     #[serde(flatten)]
     pub(crate) run: RunSummary,
     /// The results of every characteristic asked for.
     pub characteristics: Vec<SweptReport>,
-    /// Where an assumption fails, each once, with the values at which it does.
+    /// Warnings, each once, with the values of the parameter at which an assumption fails.
     pub warnings: Vec<WarningReport>,
 }
 
@@ -50,13 +50,13 @@ pub struct SweepReport {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(crate) struct ParameterReport {
-    /// Its name.
+    /// Name of the parameter.
     pub(crate) name: String,
-    /// Its unit.
+    /// Unit of the parameter.
     pub(crate) unit: Option<String>,
-    /// Its standard deviation at every value.
+    /// Standard deviation of the parameter, the same at every value.
     pub(crate) sigma: f64,
-    /// Its nominal values.
+    /// Values of the parameter.
     pub(crate) values: Vec<f64>,
 }
 
@@ -64,9 +64,9 @@ pub(crate) struct ParameterReport {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SweptReport {
-    /// Its name.
+    /// Name of the characteristic.
     pub(crate) name: String,
-    /// Its unit.
+    /// Unit of the characteristic.
     pub(crate) unit: Option<String>,
     /// Lower limit.
     pub(crate) lower: Option<f64>,
@@ -76,13 +76,13 @@ pub struct SweptReport {
     pub points: Vec<SweptPointReport>,
 }
 
-/// One characteristic at one value of the parameter.
+/// One characteristic at one value of the characteristic.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SweptPointReport {
     /// The parameter.
     pub(crate) at: f64,
-    /// With every dimension at its nominal value.
+    /// Value with every dimension at its nominal value.
     pub(crate) nominal: Option<f64>,
     /// First moment.
     pub mean: Option<f64>,
@@ -92,18 +92,18 @@ pub struct SweptPointReport {
     pub(crate) skewness: Option<f64>,
     /// Fourth standardised moment.
     pub(crate) kurtosis: Option<f64>,
-    /// How far all that may be off, by what the method did not see; null without moments.
+    /// Estimated errors of the figures; null without moments.
     pub(crate) error_estimate: Option<ErrorEstimate>,
     /// Root of the sum of squares.
     pub(crate) rss: Option<f64>,
-    /// By the law of the surface where there is one, by the Pearson fit elsewhere.
+    /// Quantiles of the surface distribution if there is one, else of the Pearson fit.
     pub(crate) quantiles: Quantiles<Option<f64>>,
     /// Share of assemblies within the limits.
     #[serde(rename = "yield")]
     pub(crate) yield_: Option<f64>,
     /// Within which that is known, measured samples included; null where it is not known.
     pub(crate) yield_interval: Option<[f64; 2]>,
-    /// Its source; null without limits.
+    /// Source of the yield; null without limits.
     pub(crate) yield_source: Option<YieldSource>,
     /// Rejected below the lower limit, in parts per million.
     pub(crate) ppm_below: Option<f64>,
@@ -113,7 +113,7 @@ pub struct SweptPointReport {
     #[serde(flatten, serialize_with = "through::<RejectIntervals, _, _>")]
     #[cfg_attr(feature = "schema", schemars(with = "RejectIntervals"))]
     pub(crate) reject_intervals: [Option<[f64; 2]>; 2],
-    /// Whether the target yield is met; null where that is not known, and without one.
+    /// True if the target yield is met; null if that is unknown, and without a target.
     pub(crate) met: Option<bool>,
     /// The same in a word.
     pub(crate) verdict: Option<Verdict>,

@@ -31,21 +31,21 @@ pub enum Asked {
     Analyze {},
     /// The model itself at many points.
     Simulate {
-        /// How many points.
+        /// Number of points.
         samples: Option<u64>,
-        /// How they are drawn.
+        /// Sampler that draws them.
         sampler: Option<SamplerName>,
         /// Until sigma has this relative error.
         until: Option<f64>,
         /// Until the yield has this error.
         until_yield: Option<f64>,
-        /// With the fitted surface as control variate.
+        /// True if the fitted surface is a control variate.
         #[serde(default)]
         control_variate: bool,
     },
     /// Small probabilities by importance sampling.
     Rare {
-        /// How many points for each characteristic.
+        /// Number of points for each characteristic.
         samples: Option<u64>,
         /// Until a probability has this relative error.
         until: Option<f64>,
@@ -59,7 +59,7 @@ pub enum Asked {
     Sweep {
         /// The parameter.
         over: String,
-        /// Its values.
+        /// Values of the parameter.
         values: Vec<f64>,
     },
     /// The cheapest tolerances that keep what is required.
@@ -126,7 +126,7 @@ impl GoalName {
     }
 }
 
-/// How points are drawn.
+/// Sampler of points.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SamplerName {

@@ -13,7 +13,7 @@ pub(crate) struct AboutEntry {
     drawing: Option<String>,
     /// The revision of the drawing.
     revision: Option<String>,
-    /// Who made the study.
+    /// Author of the study.
     author: Option<String>,
     /// Anything else, in one line.
     note: Option<String>,

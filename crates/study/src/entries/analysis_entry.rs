@@ -41,20 +41,20 @@ pub(crate) struct AnalysisEntry {
     /// Pairs of names of dimensions whose product a formula has, such as size and place of a bonus: every method of second order takes in
     /// their exact mixed derivative, without an evaluation. Geometric elements write their own.
     pub(crate) products: Option<Spanned<Vec<Product>>>,
-    /// How six-n evaluates an interaction.
+    /// Stencil by which six-n evaluates an interaction.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = registry::stencils())))]
     pub(crate) stencil: Option<Spanned<String>>,
-    /// How many nodes the quadrature rules of dimension-reduction have, univariate or bivariate.
+    /// Number of nodes that the quadrature rules of dimension-reduction have, univariate or bivariate.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = [3, 5, 7], "default" = 5)))]
     pub(crate) nodes: Option<Spanned<u64>>,
     /// Sensitivities of all dimensions, at two evaluations more for each without tolerance, or of the varying ones alone.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = registry::sensitivities(), "default" = "varying")))]
     pub(crate) sensitivities: Option<Spanned<String>>,
-    /// Where derivatives come from, for sensitivities and moments alike. Left out: exact sensitivities where the model gives them,
+    /// Source of derivatives, for sensitivities and moments alike. Left out: exact sensitivities where the model gives them,
     /// moments by differences.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = registry::derivatives())))]
     pub(crate) derivatives: Option<Spanned<String>>,
-    /// Whether the true extremes in the box of the tolerance bands are searched too.
+    /// True if the extremes in the box of the tolerance bands are searched too.
     #[cfg_attr(feature = "schema", schemars(extend("default" = false)))]
     pub(crate) extremes: Option<bool>,
     /// Seed of random numbers, for what draws some.
@@ -72,7 +72,7 @@ pub(crate) struct AnalysisEntry {
     /// The share that coverage intervals and expanded uncertainties hold, from 0.5 to below 1: every characteristic then has the interval with
     /// equal tails and the shortest.
     pub(crate) coverage: Option<Spanned<f64>>,
-    /// How many check points of a costly model verify every figure, 18 at most; a cheap model is sampled instead. 0 for no
+    /// Number of check points of a costly model that verify every figure, 18 at most; a cheap model is sampled instead. 0 for no
     /// verification.
     #[cfg_attr(feature = "schema", schemars(extend("default" = Options::VERIFY)))]
     pub(crate) verify: Option<u64>,

@@ -21,7 +21,7 @@ pub(crate) struct Correlations(pub(crate) Vec<Spanned<CorrelationEntry>>);
 pub(crate) struct CorrelationEntry {
     /// The two dimensions.
     pub(crate) between: Spanned<(String, String)>,
-    /// Their coefficient of correlation, from -1 to 1.
+    /// Coefficient of correlation, from -1 to 1.
     pub(crate) value: Spanned<f64>,
 }
 
@@ -39,7 +39,7 @@ pub(crate) struct JointEntry {
     pub(crate) of: Spanned<Vec<Spanned<String>>>,
     /// A CSV file whose rows are one part each. A dimension without a `column` takes that of its own name.
     pub(crate) measured: Option<Spanned<String>>,
-    /// Where the point of two dimensions is, with the same probability everywhere: in a disc, on its rim, or in a diamond,
+    /// Zone in which the point of two dimensions has the same probability everywhere: in a disc, on its rim, or in a diamond,
     /// |x|/X + |y|/Y <= 1. Their tolerances are the zone's half widths.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = registry::zones())))]
     pub(crate) law: Option<Spanned<String>>,

@@ -25,9 +25,9 @@ pub(crate) struct CostEntry {
     pub(crate) a: Option<Spanned<f64>>,
     /// The factor of what falls as the tolerance opens.
     pub(crate) b: Option<Spanned<f64>>,
-    /// Of a reciprocal power its exponent.
+    /// Exponent of a reciprocal power.
     pub(crate) k: Option<Spanned<f64>>,
-    /// Of an exponential cost the half band over which it falls to 1/e.
+    /// Half band over which an exponential cost falls to 1/e.
     pub(crate) c: Option<Spanned<f64>>,
     /// The cost as a formula of T, the half band in the unit of the dimension, in place of a model: "0.02/T + 0.0004/T^2".
     pub(crate) formula: Option<Spanned<String>>,
@@ -68,7 +68,7 @@ pub(crate) struct LossEntry {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, expecting = "a process such as { name = \"grind\", tolerance = 0.002, cost = 19.4 }")]
 pub(crate) struct ProcessEntry {
-    /// Its name.
+    /// Name of the process.
     pub(crate) name: Spanned<String>,
     /// The half band that it holds.
     pub(crate) tolerance: Option<Spanned<f64>>,
@@ -84,9 +84,9 @@ pub(crate) struct ProcessEntry {
     pub(crate) a: Option<Spanned<f64>>,
     /// The factor of what falls as the tolerance opens.
     pub(crate) b: Option<Spanned<f64>>,
-    /// Of a reciprocal power its exponent.
+    /// Exponent of a reciprocal power.
     pub(crate) k: Option<Spanned<f64>>,
-    /// Of an exponential cost the half band over which it falls to 1/e.
+    /// Half band over which an exponential cost falls to 1/e.
     pub(crate) c: Option<Spanned<f64>>,
     /// Least half band that it holds.
     pub(crate) min: Option<Spanned<f64>>,
@@ -96,23 +96,23 @@ pub(crate) struct ProcessEntry {
     #[serde(default, rename = "process")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<String>"))]
     pub(crate) _process: Option<IgnoredAny>,
-    /// How its parts are distributed, as of a dimension; beside `tolerance`. Where one process of a list says how its parts lie, each does, and
+    /// Distribution of its parts, as of a dimension; beside `tolerance`. Where one process of a list says how its parts lie, each does, and
     /// what the dimension says of that does not count.
     #[serde(default, deserialize_with = "distribution")]
     #[cfg_attr(feature = "schema", schemars(schema_with = "registry::word_or_table"))]
     pub(crate) distribution: Option<Spanned<DistributionEntry>>,
     /// Standard deviation of its parts.
     pub(crate) sigma: Option<Spanned<f64>>,
-    /// How many sigmas half its tolerance band has.
+    /// Number of sigmas in half its tolerance band.
     pub(crate) sigmas: Option<Spanned<f64>>,
-    /// Its capability: half band by three sigma.
+    /// Capability: half band by three sigma.
     pub(crate) cp: Option<Spanned<f64>>,
-    /// Its capability with the place of the mean, as of a dimension.
+    /// Capability with the place of the mean, as of a dimension.
     pub(crate) cpk: Option<Spanned<f64>>,
     /// Beside cp and cpk "+" or "-": where the mean lies.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = ["+", "-"])))]
     pub(crate) side: Option<Spanned<String>>,
-    /// How far the mean of a lot lies off the mean of all, at most.
+    /// Greatest distance of the mean of a lot from the mean of all.
     pub(crate) drift: Option<Spanned<f64>>,
 }
 

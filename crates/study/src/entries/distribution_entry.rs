@@ -19,29 +19,29 @@ pub(crate) struct DistributionEntry {
     /// The kind of distribution.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = registry::kinds())))]
     pub(crate) kind: String,
-    /// Of a triangular distribution its most probable value; the band's middle unless given.
+    /// Most probable value of a triangular distribution; the band's middle unless given.
     pub(crate) mode: Option<Spanned<f64>>,
-    /// Of a trapezoidal distribution the share of the band over which it is flat, from 0 to 1.
+    /// Share of the band of a trapezoidal distribution over which it is flat, from 0 to 1.
     pub(crate) top: Option<Spanned<f64>>,
-    /// Of a beta distribution the exponent at the lower end, above 0.
+    /// Exponent of a beta distribution at the lower end, above 0.
     pub(crate) alpha: Option<Spanned<f64>>,
-    /// Of a beta distribution the exponent at the upper end, above 0.
+    /// Exponent of a beta distribution at the upper end, above 0.
     pub(crate) beta: Option<Spanned<f64>>,
-    /// Of a curvilinear trapezoid by how much the two ends of the band may be off, above 0 and below half the band.
+    /// Distance by which the two ends of the band of a curvilinear trapezoid may be off, above 0 and below half the band.
     pub(crate) inexactness: Option<Spanned<f64>>,
-    /// Of a student distribution the degrees of freedom, above 2.
+    /// Degrees of freedom of a student distribution, above 2.
     pub(crate) degrees: Option<Spanned<f64>>,
-    /// Of a student distribution the scale, in place of sigma: sigma is scale sqrt(degrees/(degrees - 2)). A standard uncertainty with
+    /// Scale of a student distribution, in place of sigma: sigma is scale sqrt(degrees/(degrees - 2)). A standard uncertainty with
     /// degrees of freedom is a scale.
     pub(crate) scale: Option<Spanned<f64>>,
-    /// Where a distribution with a tail begins.
+    /// Origin of a distribution with a tail.
     #[cfg_attr(feature = "schema", schemars(extend("default" = 0)))]
     pub(crate) origin: Option<Spanned<f64>>,
     /// The parts of a mixture by name.
     pub(crate) parts: Option<Spanned<Entries<PartEntry>>>,
-    /// Of a table of quantiles the normal scores, ascending: the value at the score z has the probability Phi(z) below it.
+    /// Normal scores of a table of quantiles, ascending: the value at the score z has the probability Phi(z) below it.
     pub(crate) scores: Option<Spanned<Vec<f64>>>,
-    /// Of a table of quantiles the values of the dimension at its scores, ascending; the first and last are its ends.
+    /// Values of the dimension at the scores of a table of quantiles, ascending; the first and last are its ends.
     pub(crate) values: Option<Spanned<Vec<f64>>>,
 }
 
@@ -50,25 +50,25 @@ pub(crate) struct DistributionEntry {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, expecting = "a table such as { weight = 0.6, shift = 0.02, sigma = 0.01 }")]
 pub(crate) struct PartEntry {
-    /// Its share, relative to those of the other parts.
+    /// Weight, relative to those of the other parts.
     pub(crate) weight: Spanned<f64>,
-    /// Its nominal value; that of the dimension unless given.
+    /// Nominal value; that of the dimension unless given.
     pub(crate) nominal: Option<Spanned<f64>>,
-    /// Its tolerance; that of the dimension unless given.
+    /// Tolerance; that of the dimension unless given.
     pub(crate) tolerance: Option<Spanned<ToleranceEntry>>,
-    /// Its limits, in place of a tolerance.
+    /// Limits, in place of a tolerance.
     pub(crate) limits: Option<Spanned<[f64; 2]>>,
-    /// How it is distributed: the name of a kind, or a table with its parameters.
+    /// Distribution: the name of a kind, or a table with its parameters.
     #[serde(default, deserialize_with = "distribution")]
     #[cfg_attr(feature = "schema", schemars(schema_with = "registry::distribution::<DistributionEntry>", extend("default" = "normal")))]
     pub(crate) distribution: Option<Spanned<DistributionEntry>>,
     /// Standard deviation.
     pub(crate) sigma: Option<Spanned<f64>>,
-    /// How many sigmas half a tolerance band has.
+    /// Number of sigmas in half a tolerance band.
     pub(crate) sigmas: Option<Spanned<f64>>,
     /// Process capability: sigmas/3.
     pub(crate) cp: Option<Spanned<f64>>,
-    /// How far its mean lies off the middle of the band.
+    /// Distance of the mean from the middle of the band.
     pub(crate) shift: Option<Spanned<f64>>,
 }
 

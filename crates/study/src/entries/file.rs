@@ -27,7 +27,7 @@ use crate::entries::values::{NominalEntry, ToleranceEntry};
 #[cfg_attr(feature = "schema", schemars(title = "Study of sensitol", extend("required" = ["dimensions", "characteristics"])))]
 #[serde(deny_unknown_fields, expecting = "a table of sections")]
 pub(crate) struct StudyFile {
-    /// Where editors find the schema; it means nothing here.
+    /// Place of the schema, for editors; it has no effect.
     #[serde(rename = "$schema")]
     pub(crate) _schema: Option<String>,
     /// The subject of the study, in one line.
@@ -35,7 +35,7 @@ pub(crate) struct StudyFile {
     /// The title block of pages: part, drawing, revision, author, a note.
     #[serde(default)]
     pub(crate) about: AboutEntry,
-    /// How units are held: labels (not at all), warn, check (units that do not go together are errors) or convert (every name times its
+    /// Handling of units: labels (not at all), warn, check (units that do not go together are errors) or convert (every name times its
     /// factor to SI, results to their own unit).
     #[cfg_attr(feature = "schema", schemars(extend("enum" = registry::unit_modes(), "default" = registry::unit_modes()[1])))]
     pub(crate) units: Option<Spanned<String>>,
@@ -90,7 +90,7 @@ pub(crate) struct StudyFile {
     pub(crate) _processes: Option<IgnoredAny>,
     /// A built-in model or an external program, evaluated next to the formulas.
     pub(crate) model: Option<Spanned<ModelEntry>>,
-    /// How the study is analysed; flags of the command line win.
+    /// Options of the analysis; flags of the command line win.
     #[serde(default)]
     pub(crate) analysis: AnalysisEntry,
 }
@@ -184,7 +184,7 @@ pub(crate) struct DimensionEntry {
     #[serde(default, rename = "length")]
     #[cfg_attr(feature = "schema", schemars(schema_with = "registry::zone"))]
     pub(crate) _length: Option<IgnoredAny>,
-    /// Whether an orientation is that of an axis, in a cylindrical zone.
+    /// True if an orientation is that of an axis, in a cylindrical zone.
     #[serde(default, rename = "axis")]
     #[cfg_attr(feature = "schema", schemars(schema_with = "registry::truth"))]
     pub(crate) _axis: Option<IgnoredAny>,
@@ -195,13 +195,13 @@ pub(crate) struct DimensionEntry {
     pub(crate) side: Option<Spanned<String>>,
     /// The unit of its numbers: a label, checked or converted as `units` says.
     pub(crate) unit: Option<String>,
-    /// How it is distributed: the name of a kind, or a table with its parameters.
+    /// Distribution: the name of a kind, or a table with its parameters.
     #[serde(default, deserialize_with = "distribution")]
     #[cfg_attr(feature = "schema", schemars(schema_with = "registry::distribution::<DistributionEntry>", extend("default" = "normal")))]
     pub(crate) distribution: Option<Spanned<DistributionEntry>>,
     /// Standard deviation: half the band by sigmas unless given, and none of a kind whose sigma follows from its band.
     pub(crate) sigma: Option<Spanned<f64>>,
-    /// How many sigmas half the tolerance band has.
+    /// Number of sigmas in half the tolerance band.
     #[cfg_attr(feature = "schema", schemars(extend("default" = vocabulary::SIGMAS)))]
     pub(crate) sigmas: Option<Spanned<f64>>,
     /// Process capability, another way to say sigmas: cp = sigmas/3.
@@ -209,7 +209,7 @@ pub(crate) struct DimensionEntry {
     /// Process capability with the place of the mean. Alone: another way to say cp, and the mean lies in the middle. Beside cp: the mean lies
     /// half a band times 1 - cpk/cp off the middle.
     pub(crate) cpk: Option<Spanned<f64>>,
-    /// How far the mean of a lot lies off the mean of all, at most: lots are uniform within it on either side.
+    /// Greatest distance of the mean of a lot from the mean of all: lots are uniform within it on either side.
     pub(crate) drift: Option<Spanned<f64>>,
     /// A process of [processes]: its keys count where the dimension does not have them.
     #[serde(default, rename = "process")]
@@ -221,7 +221,7 @@ pub(crate) struct DimensionEntry {
     pub(crate) mean_shift: Option<Spanned<f64>>,
     /// Degrees of freedom of its standard uncertainty, for the budget that `analyze --gum` prints; infinite unless given.
     pub(crate) degrees: Option<Spanned<f64>>,
-    /// How far the mean lies off the middle of the band; of a kind with a tail, off the nominal.
+    /// Distance of the mean from the middle of the band; of a kind with a tail, from the nominal.
     #[cfg_attr(feature = "schema", schemars(extend("default" = 0)))]
     pub(crate) shift: Option<Spanned<f64>>,
     /// Central moments 2 to 8 about the mean, where nothing else is known of the distribution; it cannot be sampled then.
@@ -230,7 +230,7 @@ pub(crate) struct DimensionEntry {
     pub(crate) measured: Option<Spanned<String>>,
     /// The column of the measured file, by the name in its first line; its only one where it is left out.
     pub(crate) column: Option<Spanned<String>>,
-    /// Whether rows of the measured file are the same parts as those of other columns of it, which then vary together; false for values
+    /// True if rows of the measured file are the same parts as those of other columns of it, which then vary together; false for values
     /// of other parts; true unless given.
     pub(crate) joint: Option<Spanned<bool>>,
     /// The column with the number of the part: rows of several files with the same one belong together.
@@ -298,9 +298,9 @@ impl FormulaEntry {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, expecting = "a vector such as { length = \"R - r\", angle = \"phi\" }")]
 pub(crate) struct LinkEntry {
-    /// Its length: a formula or a number.
+    /// Length: a formula or a number.
     pub(crate) length: Spanned<TermEntry>,
-    /// Its absolute angle in radians: a formula or a number.
+    /// Absolute angle in radians: a formula or a number.
     pub(crate) angle: Spanned<TermEntry>,
 }
 
@@ -334,7 +334,7 @@ pub(crate) struct CharacteristicEntry {
     pub(crate) require: Option<Spanned<RequireEntry>>,
     /// The standard deviation of the gauge by which parts are accepted: the report then has the risks of that.
     pub(crate) gauge: Option<Spanned<f64>>,
-    /// By how much the limits are tightened for acceptance, or `{ false_accept = 0.001 }` for the share of all parts that may be bad and accepted.
+    /// Amount by which the limits are tightened for acceptance, or `{ false_accept = 0.001 }` for the share of all parts that may be bad and accepted.
     pub(crate) guard: Option<Spanned<GuardEntry>>,
     /// A few words on its meaning: shown in reports, of no meaning to the analysis, as part, drawing, revision and feature.
     pub(crate) description: Option<String>,
@@ -374,10 +374,10 @@ pub(crate) struct ModelEntry {
     /// Seconds that the program may take to start.
     #[cfg_attr(feature = "schema", schemars(extend("default" = registry::program().start_timeout.as_secs())))]
     pub(crate) start_timeout_s: Option<Spanned<f64>>,
-    /// How often a point that failed is tried again.
+    /// Number of retries of a point that failed.
     #[cfg_attr(feature = "schema", schemars(extend("default" = registry::program().retries)))]
     pub(crate) retries: Option<Spanned<u64>>,
-    /// How many answers are replayed in a fresh process, to see whether they depend on the points before; 0 for none. By default 5 %, at
+    /// Number of answers that are replayed in a fresh process, to see whether they depend on the points before; 0 for none. By default 5 %, at
     /// least 5, and 2 more.
     pub(crate) verify: Option<Spanned<u64>>,
     /// Files that the model depends on, relative to the study's folder: with other contents nothing kept in the journal is used.
