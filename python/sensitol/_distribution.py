@@ -8,10 +8,15 @@ from typing import TYPE_CHECKING, Any, Tuple, Union
 from . import _core
 
 if TYPE_CHECKING:
-    from ._study import Study
+    from typing import Protocol
+
+    class Source(Protocol):
+        """A study: what has the distributions of its dimensions."""
+
+        _core: _core.Study
 
     #: A dimension of a study, or four moments.
-    Made = Union[Tuple[Study, str], Tuple[float, float, float, float]]
+    Made = Union[Tuple[Source, str], Tuple[float, float, float, float]]
 
 __all__ = ["Distribution"]
 

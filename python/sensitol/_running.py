@@ -13,7 +13,7 @@ from ._evaluate import Answer, Call, Hello, Scalar, Vectorized, fails_point, rea
 from ._model import Model
 
 if TYPE_CHECKING:
-    from ._study import _Run
+    from ._run_options import RunOptions
 
 #: How long a task of an executor should take, in seconds: long beside the cost of sending it, which is 20 to 100 us.
 TASK = 0.02
@@ -23,7 +23,7 @@ MOST = 4096
 TICK = 0.05
 
 
-def evaluator(model: Model, hello: Hello, how: _Run) -> Any:
+def evaluator(model: Model, hello: Hello, how: RunOptions) -> Any:
     """The evaluator of a run."""
     one: Any
     if how.executor is not None:

@@ -15,6 +15,7 @@ from ._errors import SensitolWarning, StudyError
 from ._model import Model
 from ._progress import Progress, Shown
 from ._records import Record, Result
+from ._run_options import Names, Path, RunOptions, names
 from ._reports import (
     AllocationResult,
     AnalysisResult,
@@ -35,8 +36,6 @@ if TYPE_CHECKING:
 __all__ = ["Characteristic", "Dimension", "Study", "read"]
 
 R = TypeVar("R", bound=Result)
-Path = Union[str, "os.PathLike[str]"]
-Names = Union[str, Iterable[str], None]
 #: A function, the name of a built-in model, or a program and its arguments.
 ModelLike = Union[Model, Callable[..., Any], str, Sequence[str], Mapping[str, Any], None]
 Entries = Mapping[str, Any]
@@ -395,7 +394,7 @@ class Study:
             "seed": seed,
             "verify": verify,
         }
-        run = _Run(characteristics, threads, time, executor, chunksize, cache, progress, on_interrupt)
+        run = RunOptions(characteristics, threads, time, executor, chunksize, cache, progress, on_interrupt)
         return self._run(AnalysisResult, {"command": "analyze"}, keys, run)
 
     def worst_case(
@@ -415,7 +414,7 @@ class Study:
     ) -> AnalysisResult:
         """The analysis with the true extremes in the box of the tolerance bands: `r["gap"].worst_case`."""
         keys = {"method": method, "budget": budget, "seed": seed, "extremes": True}
-        run = _Run(characteristics, threads, time, executor, chunksize, cache, progress, on_interrupt)
+        run = RunOptions(characteristics, threads, time, executor, chunksize, cache, progress, on_interrupt)
         return self._run(AnalysisResult, {"command": "analyze"}, keys, run)
 
     def simulate(
@@ -449,7 +448,7 @@ class Study:
             "until_yield": until_yield,
             "control_variate": control_variate,
         }
-        run = _Run(characteristics, threads, time, executor, chunksize, cache, progress, on_interrupt)
+        run = RunOptions(characteristics, threads, time, executor, chunksize, cache, progress, on_interrupt)
         return self._run(SimulationResult, asked, {"seed": seed, "method": method}, run)
 
     def rare(
@@ -470,7 +469,7 @@ class Study:
     ) -> RareResult:
         """Small reject rates by importance sampling, with confidence intervals."""
         asked = {"command": "rare", "samples": samples, "until": until}
-        run = _Run(characteristics, threads, time, executor, chunksize, cache, progress, on_interrupt)
+        run = RunOptions(characteristics, threads, time, executor, chunksize, cache, progress, on_interrupt)
         return self._run(RareResult, asked, {"seed": seed, "method": method}, run)
 
     def compare(
@@ -489,7 +488,7 @@ class Study:
         on_interrupt: Interrupt = "raise",
     ) -> ComparisonResult:
         """Every method beside a reference of `samples` points: what each costs, and how far it is off."""
-        run = _Run(characteristics, threads, time, executor, chunksize, cache, progress, on_interrupt)
+        run = RunOptions(characteristics, threads, time, executor, chunksize, cache, progress, on_interrupt)
         return self._run(ComparisonResult, {"command": "compare", "samples": samples}, {"budget": budget, "seed": seed}, run)
 
     def sweep(
@@ -515,7 +514,7 @@ class Study:
         if not isinstance(found, list) or any(isinstance(one, (str, list, dict)) for one in found):
             raise TypeError("values must be a sequence of numbers")
         asked = {"command": "sweep", "over": over, "values": [float(one) for one in found]}
-        run = _Run(characteristics, threads, time, executor, chunksize, cache, progress, on_interrupt)
+        run = RunOptions(characteristics, threads, time, executor, chunksize, cache, progress, on_interrupt)
         return self._run(SweepResult, asked, {"method": method, "accuracy": accuracy, "budget": budget, "seed": seed}, run)
 
     def allocate(
@@ -546,19 +545,19 @@ class Study:
         costs in place of the study's own. `minimise="rejects"` or `maximise="cpk"` seeks the best that `cost_limit` pays for, in
         place of the least cost.
         """
-        asked: dict[str, Any] = {"command": "allocate", "recentre": _names(recentre), "front": front, "confirm": confirm}
+        asked: dict[str, Any] = {"command": "allocate", "recentre": names(recentre), "front": front, "confirm": confirm}
         asked["cost"] = cost
         asked["goal"], asked["cost_limit"] = _goal(minimise, maximise, cost_limit, front), cost_limit
         if isinstance(recentre, Mapping):
             asked["nominal_bounds"] = [[name, list(ends)] for name, ends in recentre.items() if ends is not None]
-        for name in _names(recentre):
+        for name in names(recentre):
             if name not in self._about_dimensions():
                 known = ", ".join(f"`{one}`" for one in self._about_dimensions())
                 raise StudyError(f"there is no dimension `{name}` to recentre; there are {known}", key="recentre")
-        run = _Run(characteristics, threads, time, executor, chunksize, cache, progress, on_interrupt)
+        run = RunOptions(characteristics, threads, time, executor, chunksize, cache, progress, on_interrupt)
         return self._run(AllocationResult, asked, {"method": method, "budget": budget, "seed": seed}, run)
 
-    def _run(self, cls: type[R], asked: Mapping[str, Any], analysis: Mapping[str, Any], how: _Run) -> R:
+    def _run(self, cls: type[R], asked: Mapping[str, Any], analysis: Mapping[str, Any], how: RunOptions) -> R:
         analysis = {key: value for key, value in analysis.items() if value is not None}
         asked = {key: value for key, value in asked.items() if value is not None}
         evaluators: list[Any] = []
@@ -616,45 +615,11 @@ class Study:
 def _on_disk(data: Mapping[str, Any], folder: Path, files: dict[str, bytes]) -> None:
     """Beside files in memory the engine looks for none in the folder: those that the study names there are read."""
     entries = [*data.get("dimensions", {}).values(), *(data.get("joint") or ())]
-    names = [entry.get("measured") for entry in entries if isinstance(entry, Mapping)]
-    for name in [*names, data.get("processes")] if files else ():
+    measured = [entry.get("measured") for entry in entries if isinstance(entry, Mapping)]
+    for name in [*measured, data.get("processes")] if files else ():
         if isinstance(name, str) and name not in files and os.path.isfile(os.path.join(folder, name)):
             with open(os.path.join(folder, name), "rb") as file:
                 files[name] = file.read()
-
-
-class _Run:
-    """How a run is done, whatever it computes."""
-
-    def __init__(
-        self,
-        characteristics: Names,
-        threads: int | None,
-        time: float | None,
-        executor: Any,
-        chunksize: int | str,
-        cache: Path | bool | None,
-        progress: Progress,
-        on_interrupt: str,
-    ) -> None:
-        if on_interrupt not in ("raise", "partial"):
-            raise ValueError(f'on_interrupt must be "raise" or "partial", got {on_interrupt!r}')
-        if threads is not None and (isinstance(threads, bool) or int(threads) < 1):
-            raise ValueError(f"threads must be 1 or more, got {threads!r}")
-        if time is not None and not float(time) > 0:
-            raise ValueError(f"time must be positive, in seconds, got {time!r}")
-        if chunksize != "auto" and (isinstance(chunksize, (str, bool)) or int(chunksize) < 1):
-            raise ValueError(f'chunksize must be "auto" or 1 or more, got {chunksize!r}')
-        if executor is not None and not hasattr(executor, "submit"):
-            raise TypeError(f"an executor has a method submit, and {type(executor).__name__} has none")
-        self.characteristics = _names(characteristics)
-        self.threads = 0 if threads is None else int(threads)
-        self.time = None if time is None else float(time)
-        self.executor = executor
-        self.chunksize = chunksize
-        self.cache = cache
-        self.progress = progress
-        self.partial = on_interrupt == "partial"
 
 
 def _goal(minimise: Any, maximise: Any, cost_limit: Any, front: Any) -> str | None:
@@ -677,12 +642,6 @@ def _goal(minimise: Any, maximise: Any, cost_limit: Any, front: Any) -> str | No
     if front is not None:
         raise ValueError(f"front is for the least cost: leave out front or {said}")
     return "fewest-rejects" if minimise else "most-cpk"
-
-
-def _names(names: Names) -> list[str]:
-    if names is None:
-        return []
-    return [names] if isinstance(names, str) else [str(name) for name in names]
 
 
 def _hosted(model: Model | None) -> bool | None:
