@@ -1,16 +1,20 @@
-//! Files of one top module do not import each other in circles: each can be read after those that it imports.
+//! Files do not import each other in circles: each can be read after those that it imports.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::sources::{code, modules, packages};
 
 /// Modules by their path (`allocation/choose`, and `allocation` for its `mod.rs`), with their code without comments and tests.
-struct Sources(BTreeMap<String, String>);
+struct Sources {
+    code: BTreeMap<String, String>,
+    /// True if circles are sought among all files of the package; false if only among those of one top module, as layers order the others.
+    whole: bool,
+}
 
 impl Sources {
     /// Modules of one package.
     fn of(package: &str) -> Self {
-        Self(modules(package))
+        Self { code: modules(package), whole: !["engine", "numeric"].contains(&package) }
     }
 
     /// The module that a path leads to from this one, and the name that is taken of it; None where it leads out of the crate.
@@ -30,12 +34,12 @@ impl Sources {
                     at.pop();
                 }
             }
-            child if self.0.contains_key(&format!("{from}/{child}")) => {}
+            child if self.code.contains_key(&format!("{from}/{child}")) => {}
             _ => return None,
         }
         while let Some(&next) = rest.peek() {
             at.push(next);
-            if !self.0.contains_key(&at.join("/")) {
+            if !self.code.contains_key(&at.join("/")) {
                 at.pop();
                 break;
             }
@@ -48,7 +52,7 @@ impl Sources {
     /// it on.
     fn imports(&self) -> BTreeMap<&str, BTreeSet<String>> {
         let mut passed: BTreeMap<(String, String), String> = BTreeMap::new();
-        for (module, code) in &self.0 {
+        for (module, code) in &self.code {
             for path in uses(code).filter(|(public, _)| *public).flat_map(|(_, tree)| paths(tree)) {
                 if let Some((target, Some(name))) = self.resolved(module, &path) {
                     passed.insert((module.clone(), name), target);
@@ -61,7 +65,7 @@ impl Sources {
                 let (mut target, name) = self.resolved(module, &path)?;
                 let name = name.unwrap_or_default();
                 // No name is passed on more often than there are modules.
-                for _ in 0..self.0.len() {
+                for _ in 0..self.code.len() {
                     match passed.get(&(target.clone(), name.clone())) {
                         Some(next) if *next != target => target.clone_from(next),
                         _ => break,
@@ -73,11 +77,12 @@ impl Sources {
                 let apart = |a: &str, b: &str| !a.starts_with(&format!("{b}/"));
                 let top = |path: &str| path.split('/').next().unwrap_or_default().to_owned();
                 // A folder's `mod.rs` and its files belong together.
-                target != module && top(target) == top(module) && apart(target, module) && apart(module, target)
+                let together = self.whole || top(target) == top(module);
+                !target.is_empty() && target != module && together && apart(target, module) && apart(module, target)
             };
             targets.filter(within).collect()
         };
-        self.0.iter().map(|entry| (entry.0.as_str(), imports(entry))).collect()
+        self.code.iter().map(|entry| (entry.0.as_str(), imports(entry))).collect()
     }
 }
 
@@ -170,7 +175,8 @@ fn files_do_not_import_each_other_in_circles() {
 #[test]
 fn the_check_of_circles_sees_every_form() {
     let of = |files: &[(&str, &str)]| {
-        let sources = Sources(files.iter().map(|&(path, text)| (path.to_owned(), code(text))).collect());
+        let code = files.iter().map(|&(path, text)| (path.to_owned(), code(text))).collect();
+        let sources = Sources { code, whole: false };
         circles(&sources.imports())
     };
     let both = vec![vec!["a/b".to_owned(), "a/c".to_owned()]];

@@ -142,6 +142,9 @@ impl Figures for SimulatedCharacteristic {
 
 /// Figures of the fitted distribution of a characteristic.
 pub(crate) trait FittedFigures {
+    /// Scale that sets the printed digits: sigma, or the RSS if sigma is 0.
+    fn scale(&self) -> f64;
+
     /// Returns the distribution with the moments of the characteristic, or None if there is none.
     fn fitted(&self) -> Option<&Law>;
 
@@ -157,6 +160,10 @@ pub(crate) trait FittedFigures {
 }
 
 impl FittedFigures for CharacteristicAnalysis {
+    fn scale(&self) -> f64 {
+        self.sigma().filter(|&sigma| sigma > 0.0).or(self.rss).unwrap_or(0.0)
+    }
+
     fn fitted(&self) -> Option<&Law> {
         self.law.as_ref()?.as_ref().ok()
     }

@@ -24,7 +24,7 @@ use crate::output_correlation::{all_limits, together, together_table};
 use crate::requirement::{judged, lines};
 use crate::sampling::sampled;
 use crate::{DimensionReport, Report};
-use sensitol::analysis::{CharacteristicAnalysis, EstimatedShare, IndexSource, Sensitivity, SobolIndices};
+use sensitol::analysis::{CharacteristicAnalysis, Sensitivity};
 use sensitol::extremes::{Extreme, Place};
 use sensitol::method::Basis;
 use sensitol_numeric::capability::{Capability, Law, Quantiles, TAIL};
@@ -209,13 +209,6 @@ pub(crate) trait CharacteristicSections {
 
     /// Table of the contributions of the dimensions, strongest first.
     fn contributions(&self, dimensions: &[DimensionReport]) -> DataTable;
-
-    /// Adds the contributions of dimensions that vary together, each group as one factor. They are a detail unless the contributions come
-    /// from the model.
-    fn together(&self, section: &mut Section);
-
-    /// Sentence on the source of the contributions if they do not come from the surface.
-    fn of_model(&self, of: &SobolIndices) -> String;
 }
 
 impl CharacteristicSections for CharacteristicAnalysis {
@@ -461,38 +454,6 @@ impl CharacteristicSections for CharacteristicAnalysis {
             .table("sensitivities", all.iter().copied())
             .seen(view)
             .at_most([CONTRIBUTIONS, usize::MAX], rest)
-    }
-
-    fn together(&self, section: &mut Section) {
-        let Some(of) = &self.indices else { return };
-        let percents =
-            |index: Option<EstimatedShare>| known(index.map(|of| of.value), |share| format!("{} %", percent(share)));
-        let mut lines = Vec::new();
-        for factor in &of.factors {
-            let names: Vec<String> = factor.dimensions.iter().map(|name| short(name)).collect();
-            let (first, total) = (percents(factor.first_order), percents(factor.total));
-            lines.wrapped(2, format!("{} together: contribution {first}, with interactions {total}", names.join(", ")));
-        }
-        match self.is_of_model() {
-            false => section.detail(lines),
-            true => section.brief(lines),
-        }
-    }
-
-    fn of_model(&self, of: &SobolIndices) -> String {
-        // A negative estimate is 0 within its error.
-        let rest = of.interactions.map(|share| format!("{} %", percent(share.max(0.0))));
-        match (of.source, rest) {
-            (_, None) => {
-                "contributions unknown: the surface is not trusted, and no sample of the model has them".to_owned()
-            }
-            (IndexSource::Ranks, Some(rest)) => {
-                format!("contributions by the ranks of the model's points; interactions and what is left: {rest}")
-            }
-            (_, Some(rest)) => {
-                format!("contributions by points of the model; interactions have {rest} of the variance")
-            }
-        }
     }
 }
 

@@ -1,13 +1,15 @@
 //! Interactions of a characteristic: number, sum and strongest ones.
 
-use crate::analysis::analysis_document::CharacteristicSections;
 use crate::analysis::statistics::CharacteristicStatistics;
 use crate::analysis::statistics::{derivative, part};
+use crate::document::number::known;
 use crate::document::number::{NEWS, percent, short};
 use crate::document::{Blocks, Cell, Columns, DataTable, Section, Value};
 use crate::figures::FittedFigures;
 use crate::figures::Named;
-use sensitol::analysis::{CharacteristicAnalysis, DerivativeOrigin, Interaction, VerificationKind};
+use sensitol::analysis::{
+    CharacteristicAnalysis, DerivativeOrigin, EstimatedShare, IndexSource, Interaction, SobolIndices, VerificationKind,
+};
 
 /// Most interactions on a terminal unless all are asked for.
 pub(crate) const SHOWN: usize = 2;
@@ -26,6 +28,13 @@ pub(crate) trait InteractionSections {
     fn interactions_in_words(&self, possible: usize, examined: usize) -> String;
 
     fn interaction_table(&self, rows: usize) -> DataTable;
+
+    /// Adds the contributions of dimensions that vary together, each group as one factor. They are a detail unless the contributions come
+    /// from the model.
+    fn together(&self, section: &mut Section);
+
+    /// Sentence on the source of the contributions if they do not come from the surface.
+    fn of_model(&self, of: &SobolIndices) -> String;
 }
 
 impl InteractionSections for CharacteristicAnalysis {
@@ -95,5 +104,37 @@ impl InteractionSections for CharacteristicAnalysis {
             .data("origin", |pair| Cell::optional(pair.origin.map(DerivativeOrigin::name)))
             .table("interactions", self.interactions.iter().take(rows))
             .at_most(most, String::new())
+    }
+
+    fn together(&self, section: &mut Section) {
+        let Some(of) = &self.indices else { return };
+        let percents =
+            |index: Option<EstimatedShare>| known(index.map(|of| of.value), |share| format!("{} %", percent(share)));
+        let mut lines = Vec::new();
+        for factor in &of.factors {
+            let names: Vec<String> = factor.dimensions.iter().map(|name| short(name)).collect();
+            let (first, total) = (percents(factor.first_order), percents(factor.total));
+            lines.wrapped(2, format!("{} together: contribution {first}, with interactions {total}", names.join(", ")));
+        }
+        match self.is_of_model() {
+            false => section.detail(lines),
+            true => section.brief(lines),
+        }
+    }
+
+    fn of_model(&self, of: &SobolIndices) -> String {
+        // A negative estimate is 0 within its error.
+        let rest = of.interactions.map(|share| format!("{} %", percent(share.max(0.0))));
+        match (of.source, rest) {
+            (_, None) => {
+                "contributions unknown: the surface is not trusted, and no sample of the model has them".to_owned()
+            }
+            (IndexSource::Ranks, Some(rest)) => {
+                format!("contributions by the ranks of the model's points; interactions and what is left: {rest}")
+            }
+            (_, Some(rest)) => {
+                format!("contributions by points of the model; interactions have {rest} of the variance")
+            }
+        }
     }
 }

@@ -1,10 +1,10 @@
 //! Bars of a characteristic's ranges beside its limits, and the variance that its contributions leave out.
 
-use crate::analysis::statistics::CharacteristicStatistics;
 use crate::analysis::worst_case::KnownWorstCaseFigures;
 use crate::analysis::worst_case::WorstCaseKind;
 use crate::document::number::{NEWS, beside, outward, percent};
 use crate::document::{Bar, Bars, Extent, Fill, Line, Tone};
+use crate::figures::FittedFigures;
 use crate::figures::{Figures, Named};
 use sensitol::analysis::CharacteristicAnalysis;
 use sensitol::extremes::Extremes;

@@ -5,6 +5,7 @@ use crate::analysis::worst_case::KnownWorstCaseFigures;
 use crate::document::number::{UNKNOWN, carried, known, outward, percent, plain, shape_with, significant, uncertainty};
 use crate::document::{Blocks, Cell, Columns, DataTable, Section, Value};
 use crate::figures::Figures;
+use crate::figures::FittedFigures;
 use sensitol::analysis::{CharacteristicAnalysis, IndexSource, Sensitivity};
 use sensitol::method::{ErrorEstimate, ErrorSource};
 use sensitol_numeric::names::element;
@@ -42,9 +43,6 @@ impl Shown {
 pub(crate) trait CharacteristicStatistics {
     /// Returns nominal value, mean, mean shift, sigma, skewness and kurtosis.
     fn first_figures(&self) -> [Shown; 6];
-
-    /// Scale that sets the printed digits: sigma, or the RSS if sigma is 0.
-    fn scale(&self) -> f64;
 
     /// Adds the statistics on the left and the intervals on the right.
     fn statistics(&self, section: &mut Section);
@@ -87,10 +85,6 @@ impl CharacteristicStatistics for CharacteristicAnalysis {
             shown("skewness", self.skewness(), &|value| shape_with(value, of_skewness), error(of_skewness)),
             shown("kurtosis", self.kurtosis(), &|value| shape_with(value, of_kurtosis), error(of_kurtosis)),
         ]
-    }
-
-    fn scale(&self) -> f64 {
-        self.sigma().filter(|&sigma| sigma > 0.0).or(self.rss).unwrap_or(0.0)
     }
 
     fn statistics(&self, section: &mut Section) {

@@ -3,8 +3,8 @@
 //! Proven ends are rounded outward to the printed digits: no assembly lies beyond the numbers on the page.
 //! A linear worst case is not a bound, and is called linear.
 
-use crate::analysis::statistics::CharacteristicStatistics;
 use crate::document::number::{carried, outward};
+use crate::figures::FittedFigures;
 use sensitol::analysis::CharacteristicAnalysis;
 
 /// Greatest relative difference of totals that the order of sums may cause.
