@@ -51,7 +51,7 @@ macro_rules! warnings {
             }
 
             /// Characteristic that the warning concerns. Returns None if it concerns none or all.
-            #[allow(unused_variables, unused_mut, unused_assignments)]
+            #[allow(unused_variables, unused_mut, unused_assignments, reason = "many variants have no such field")]
             pub fn characteristic(&self) -> Option<&str> {
                 let mut found = None;
                 match self {
@@ -61,7 +61,7 @@ macro_rules! warnings {
             }
 
             /// Dimension that the warning concerns, the worst of several. Returns None if it concerns none or many alike.
-            #[allow(unused_variables, unused_mut, unused_assignments)]
+            #[allow(unused_variables, unused_mut, unused_assignments, reason = "many variants have no such field")]
             pub fn dimension(&self) -> Option<&str> {
                 let mut found = None;
                 match self {

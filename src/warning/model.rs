@@ -88,7 +88,7 @@ fn nominal(
     ))
 }
 
-#[allow(clippy::too_many_arguments)]
+#[allow(clippy::too_many_arguments, reason = "one argument for each field of the warning")]
 pub(super) fn restarts(
     starts: &u64,
     crashes: &u64,

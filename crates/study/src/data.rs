@@ -9,6 +9,9 @@ use crate::table::{DELIMITERS, NumberFault, NumberStyle, delimiter, records};
 use sensitol::warning::Warning;
 use sensitol_numeric::names::nearest;
 
+/// Cells of a column with their lines.
+pub(crate) type NumberedCells = Vec<(u64, String)>;
+
 /// Cells that stand for a missing value, compared in lower case.
 const MISSING: [&str; 5] = ["", "-", "na", "n/a", "nan"];
 
@@ -263,12 +266,7 @@ impl<'s> Data<'s> {
     }
 
     /// Column names of a file, and the text of one column with its lines. The column is None if the file has none of this name.
-    #[allow(clippy::type_complexity)]
-    pub(super) fn texts(
-        &mut self,
-        file: &str,
-        name: &str,
-    ) -> Result<(Vec<String>, Option<Vec<(u64, String)>>), DataFault> {
+    pub(super) fn texts(&mut self, file: &str, name: &str) -> Result<(Vec<String>, Option<NumberedCells>), DataFault> {
         let table = self.table(file)?;
         let texts = table.names.iter().position(|known| known == name).map(|index| {
             table.rows.iter().map(|(line, row)| (*line, row.get(index).unwrap_or("").to_owned())).collect()

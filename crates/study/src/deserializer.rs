@@ -360,7 +360,7 @@ mod tests {
     use super::*;
 
     #[derive(Debug, Deserialize)]
-    #[allow(dead_code)]
+    #[allow(dead_code, reason = "the test reads faults, and no field")]
     struct Entry {
         nominal: f64,
         count: u64,
