@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use crate::files::{FileRole, NamedFile};
-use crate::folder::{Place, UnreadKey};
+use crate::folder::{Place, UnreadableFile};
 use crate::table::{DELIMITERS, NumberFault, NumberStyle, delimiter, records};
 use sensitol::warning::Warning;
 use sensitol_numeric::names::nearest;
@@ -321,8 +321,8 @@ impl<'s> Data<'s> {
         }
         let bytes = self.place.read(file).map_err(|unread| {
             let problem = Box::new(match unread {
-                UnreadKey::Failed(error) => DataProblem::Unreadable { reason: error.to_string() },
-                UnreadKey::NotGiven { known } => {
+                UnreadableFile::Failed(error) => DataProblem::Unreadable { reason: error.to_string() },
+                UnreadableFile::NotGiven { known } => {
                     let nearest = nearest(file, known.iter().map(String::as_str)).map(str::to_owned);
                     DataProblem::NotGiven { nearest, known }
                 }

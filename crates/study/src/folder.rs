@@ -116,19 +116,19 @@ impl Place {
         &self.folder
     }
 
-    pub(super) fn read(&self, file: &str) -> Result<Arc<[u8]>, UnreadKey> {
+    pub(super) fn read(&self, file: &str) -> Result<Arc<[u8]>, UnreadableFile> {
         match &self.memory {
             Some(files) => {
-                let other = || UnreadKey::NotGiven { known: files.keys().cloned().collect() };
+                let other = || UnreadableFile::NotGiven { known: files.keys().cloned().collect() };
                 files.get(file).cloned().ok_or_else(other)
             }
-            None => std::fs::read(self.folder.join(file)).map(Arc::from).map_err(UnreadKey::Failed),
+            None => std::fs::read(self.folder.join(file)).map(Arc::from).map_err(UnreadableFile::Failed),
         }
     }
 }
 
 /// Reasons why a file cannot be read.
-pub(super) enum UnreadKey {
+pub(super) enum UnreadableFile {
     /// The file is not among those in memory.
     NotGiven {
         /// Names of the files in memory.

@@ -6,7 +6,7 @@ use crate::analysis::result::yield_error::of_yield;
 use crate::analysis::sampling::accuracy_target::{MORE, PART, excess};
 use crate::analysis::sampling::cross_fit::{Beside, CrossFit, CrossFitFigures};
 use crate::analysis::sampling::known_answers::KnownAnswersFunction;
-use crate::analysis::sampling::recorded_points::RecordedPoints;
+use crate::analysis::sampling::recorded_points::RecordingModel;
 use crate::analysis::{CharacteristicAnalysis, SampledModel};
 use crate::assembly::{NonRepeatable, Run};
 use crate::method::{AutoAccount, ErrorEstimate, ErrorSource, Outcome};
@@ -84,7 +84,7 @@ pub(in crate::analysis) fn fall_back(
     let mut samples = ((needed / (PART * finest)).powi(2) as u64).clamp(FIRST, MOST).min(most);
     // Points that were evaluated in strides are not evaluated again.
     let most = most + if sampler == Sampler::Sobol { spent.run.evaluations } else { 0 };
-    let recorded = Arc::new(RecordedPoints::new(problem));
+    let recorded = Arc::new(RecordingModel::new(problem));
     // A cheap model is evaluated again, and answers several batches at a time.
     let recording = costly.then(|| problem.with_function(recorded.clone()));
     let problem = recording.as_ref().unwrap_or(problem);

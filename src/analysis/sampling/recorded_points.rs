@@ -13,7 +13,7 @@ const MOST: usize = 1 << 14;
 /// Model that stores its points and answers.
 ///
 /// A costly model is evaluated one batch after the other, so that the order of the points does not depend on threads.
-pub(in crate::analysis) struct RecordedPoints {
+pub(in crate::analysis) struct RecordingModel {
     problem: Problem,
     kept: Mutex<Kept>,
 }
@@ -25,7 +25,7 @@ struct Kept {
     y: Vec<Vec<f64>>,
 }
 
-impl RecordedPoints {
+impl RecordingModel {
     pub(in crate::analysis) fn new(problem: &Problem) -> Self {
         Self { problem: problem.clone(), kept: Mutex::default() }
     }
@@ -49,7 +49,7 @@ pub(in crate::analysis) fn ranked(dimension: usize, x: &[f64], y: &[f64]) -> Opt
     Some((dimension, Share { value, error }))
 }
 
-impl AssemblyFunction for RecordedPoints {
+impl AssemblyFunction for RecordingModel {
     fn signature(&self) -> &Signature {
         self.problem.function().signature()
     }
