@@ -27,6 +27,7 @@ use sensitol_numeric::verdict::Verdict;
 /// assert_eq!(CompareOptions::default().budget, None);
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct CompareOptions {
     /// Greatest number of evaluations of one method, the reference excepted. None for the default rules.
     pub budget: Option<usize>,

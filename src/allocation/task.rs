@@ -159,6 +159,7 @@ impl AllocationTask {
 
 /// Options of an allocation.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct AllocationOptions {
     /// Options of the analyses. Their budget holds for all evaluations together. [`Method::Auto`](crate::Method::Auto)
     /// means `full` for few dimensions and `six-n` for many, because every round must evaluate the same points.

@@ -17,6 +17,7 @@ use sensitol_numeric::names::UnknownName;
 /// assert_eq!((options.budget, options.stencil), (Some(100), None));
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Options {
     /// Method that is run.
     pub method: Method,

@@ -64,6 +64,7 @@ use target::Target;
 
 /// Options of a search for rare events.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct RareOptions {
     /// Greatest number of model points in addition to those of the surrogate.
     pub samples: u64,

@@ -13,6 +13,7 @@ use crate::simulation::inspection::inspected;
 use crate::simulation::json::value;
 use crate::simulation::rare_switch_side::RareSwitchSides;
 use crate::simulation::replicate_error::of_replicates;
+use crate::simulation::replicate_moments::{moments, pooled, quantile};
 use crate::simulation::surface_difference::{
     Controlled, Difference, Shares, carried, largest, moments as controlled, shares,
 };
@@ -24,7 +25,7 @@ use sensitol_numeric::json_form::{RejectIntervals, through};
 use sensitol_numeric::json_form::{millionths, text};
 use sensitol_numeric::power::rescale;
 use sensitol_numeric::requirement::Requirement;
-use sensitol_numeric::sampling::{Estimate, FEWEST, Fine, Summary, of_moments, wilson};
+use sensitol_numeric::sampling::{Estimate, FEWEST, Summary, of_moments, wilson};
 use sensitol_numeric::sampling::{LargestShare, SamplingInterval, clopper_pearson, one_error, settled};
 use sensitol_numeric::verdict::{self, Judged, Verdict};
 
@@ -171,8 +172,6 @@ pub struct Histogram {
 
 const QUANTILES: [f64; 7] = [TAIL, 0.01, 0.05, 0.5, 0.95, 0.99, 1.0 - TAIL];
 
-/// Fewest values beyond a quantile with which its standard error is meaningful.
-const BEYOND: f64 = 5.0;
 /// Rejects for each replicate, on average, from which on the scatter of the replicates gives the interval of the yield.
 pub(super) const REJECTED: u64 = 5;
 /// Largest value whose powers are safe: the eighth power of a larger one is close to the largest double, 1.8e308. The standard error of a
@@ -589,55 +588,4 @@ fn reduction(plain: Option<Estimate>, controlled: Option<Estimate>) -> Option<f6
     let error = |estimate: Option<Estimate>| estimate.and_then(|estimate| estimate.standard_error);
     let times = error(plain)? / error(controlled).filter(|&error| error > 0.0)?;
     times.is_finite().then_some(times)
-}
-
-fn pooled(replicates: &[Replicate]) -> Option<Fine> {
-    let mut fines = replicates.iter().filter_map(|replicate| replicate.fine.as_ref());
-    let mut all = fines.next()?.clone();
-    fines.for_each(|fine| all.merge(fine));
-    Some(all)
-}
-
-/// Moments of the points of all replicates. The standard errors come from the sample if it is random, else from the replicates.
-fn moments(all: &Summary, replicates: &[Replicate]) -> [Option<Estimate>; 4] {
-    let mut estimates = of_moments(all);
-    if replicates.len() > 1 {
-        let each: Vec<[Option<Estimate>; 4]> =
-            replicates.iter().map(|replicate| of_moments(&replicate.summary)).collect();
-        for (moment, estimate) in estimates.iter_mut().enumerate() {
-            if let Some(estimate) = estimate {
-                let values = each.iter().map(|of| of[moment].map(|estimate| estimate.value));
-                let known = replicates.iter().all(|replicate| replicate.summary.count() >= FEWEST);
-                estimate.standard_error = of_replicates(values).filter(|_| known);
-            }
-        }
-    }
-    estimates
-}
-
-/// Quantile with its standard error: half the distance of the quantiles one standard deviation of the binomial count below and above it, or
-/// the scatter of the replicates.
-fn quantile(p: f64, fine: &Fine, [least, greatest]: [f64; 2], replicates: &[Replicate]) -> Option<Estimate> {
-    let n = fine.total() as f64;
-    // If fewer than one value is expected beyond it, it would be the least or the greatest one for any tail.
-    if p.min(1.0 - p) * n < 1.0 {
-        return None;
-    }
-    let value = fine.at_rank(p * n)?.clamp(least, greatest);
-    let beyond = p.min(1.0 - p) * n / replicates.len() as f64;
-    let standard_error = match replicates.len() {
-        _ if beyond < BEYOND => None,
-        1 => {
-            let ranks = (p * (1.0 - p) * n).sqrt();
-            let at = |rank: f64| fine.at_rank(rank);
-            at(p * n + ranks).zip(at(p * n - ranks)).map(|(high, low)| 0.5 * (high - low))
-        }
-        _ => of_replicates(replicates.iter().map(|replicate| {
-            let fine = replicate.fine.as_ref()?;
-            fine.at_rank(p * fine.total() as f64)
-        })),
-    };
-    // Includes the error of the interpolation within a bin.
-    let standard_error = standard_error.map(|error| libm::hypot(error, fine.blur(p * n)));
-    Some(Estimate { value, standard_error })
 }

@@ -10,6 +10,7 @@ mod json;
 mod measured_interval;
 mod rare_switch_side;
 mod replicate_error;
+mod replicate_moments;
 mod sample_groups;
 mod serialisation;
 mod surface_difference;
@@ -55,6 +56,7 @@ use tally::{Block, Tally};
 /// assert_eq!((options.samples, options.seed), (10_000, 1));
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct SimulationOptions {
     /// Most points. Sobol' points are rounded up to the next power of two in each replicate.
     pub samples: u64,

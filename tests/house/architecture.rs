@@ -50,7 +50,7 @@ const LAYERS: &[(&str, &[&[&str]])] = &[
             &["distribution", "fits", "requirement", "inspection"],
             &["pearson"],
             &["names", "elementary", "time", "unit", "labels", "points"],
-            &["shape", "parallel"],
+            &["json_form", "parallel", "power"],
         ],
     ),
 ];

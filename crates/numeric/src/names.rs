@@ -90,6 +90,7 @@ fn slips(from: &str, to: &str) -> usize {
 /// Name that is unknown in a list of things.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("there is no {what} `{name}`; {}", self.help())]
+#[non_exhaustive]
 pub struct UnknownName {
     /// Kind of thing that the name should denote, such as `method`.
     pub what: &'static str,

@@ -99,7 +99,7 @@ fn an_analysis_is_all_in_its_report() {
 
 #[test]
 fn samples_are_all_in_their_reports() {
-    let found = simulate(&problem(), &SimulationOptions { samples: 2000, ..SimulationOptions::default() }).unwrap();
+    let found = simulate(&problem(), &SimulationOptions::default().with_samples(2000)).unwrap();
     let of = json(&SimulationReport::of(&problem(), &found, About::default()));
     run_of(&of, &found.run);
     // Doubts are in the report as warnings.
@@ -110,7 +110,7 @@ fn samples_are_all_in_their_reports() {
     });
     simulated(of.pointer("/characteristics/0").unwrap(), &found.characteristics[0]);
 
-    let found = rare(&problem(), &RareOptions { samples: 200, ..RareOptions::default() }).unwrap();
+    let found = rare(&problem(), &RareOptions::default().with_samples(200)).unwrap();
     let of = json(&RareReport::of(&problem(), &found, About::default()));
     run_of(&of, &found.run);
     complete!(of, &found => RareEvents {
@@ -144,15 +144,15 @@ fn a_result_is_written_as_in_its_report() {
     let mut found = analyze(&problem, &Method::Rss.into()).unwrap();
     found.warnings.push(Warning::NothingToWrite);
     same(&found, &Report::of(&problem, &found, About::default()));
-    let found = simulate(&problem, &SimulationOptions { samples: 2000, ..SimulationOptions::default() }).unwrap();
+    let found = simulate(&problem, &SimulationOptions::default().with_samples(2000)).unwrap();
     same(&found, &SimulationReport::of(&problem, &found, About::default()));
-    let found = rare(&problem, &RareOptions { samples: 200, ..RareOptions::default() }).unwrap();
+    let found = rare(&problem, &RareOptions::default().with_samples(200)).unwrap();
     same(&found, &RareReport::of(&problem, &found, About::default()));
 }
 
 #[test]
 fn comparisons_and_sweeps_are_all_in_their_reports() {
-    let options = CompareOptions { budget: Some(100), reference: Some(500), seed: 1 };
+    let options = CompareOptions::default().with_budget(100).with_reference(500).with_seed(1);
     let found = compare(&problem(), &options).unwrap();
     let of = json(&CompareReport::of(&found, About::default()));
     run_of(&of, &found.run);

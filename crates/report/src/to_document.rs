@@ -14,7 +14,7 @@ use crate::{AllocationReport, CompareReport, DifferenceReport, RareReport, Repor
 /// # Ok::<(), sensitol::Error>(())
 /// ```
 pub trait ToDocument {
-    /// Builds the sections, tables and charts of the report. [`text`](crate::text), [`csv`](crate::csv), [`markdown`](crate::markdown)
+    /// Builds the sections, tables and charts of the report. [`text`](crate::text), [`csv`](crate::csv()), [`markdown`](crate::markdown)
     /// and [`svg`](crate::svg) write it. Nothing is evaluated.
     fn document(&self) -> Document;
 

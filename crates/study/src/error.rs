@@ -255,7 +255,7 @@ pub enum StudyFault {
         /// Thing that has the name already.
         by: &'static str,
     },
-    /// A name in both [dimensions] and [formulas].
+    /// A name in both `[dimensions]` and `[formulas]`.
     #[error("`{name}` is a dimension and a formula")]
     DimensionAndFormula {
         /// The name.
@@ -552,7 +552,7 @@ fn way(path: &[String]) -> String {
 }
 
 impl From<UnknownName> for StudyFault {
-    fn from(UnknownName { what, name, nearest, known }: UnknownName) -> Self {
+    fn from(UnknownName { what, name, nearest, known, .. }: UnknownName) -> Self {
         let known = known.into_iter().map(str::to_owned).collect();
         Self::UnknownWord { what, found: name, nearest, known }
     }

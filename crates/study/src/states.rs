@@ -37,9 +37,10 @@ impl Study {
         };
         self.requirements = configurations.iter().flat_map(again).collect();
         let losses = |state: usize| {
-            let of = move |loss: &QualityLoss| QualityLoss {
-                characteristic: state * per_state + loss.characteristic,
-                ..*loss
+            let of = move |loss: &QualityLoss| {
+                let mut moved = *loss;
+                moved.characteristic += state * per_state;
+                moved
             };
             self.losses.iter().map(of).collect::<Vec<_>>()
         };

@@ -5,8 +5,8 @@
 //! ```
 //!
 //! Redundant rows are left out, and options that another one of the list beats in cost and in every row. One row is
-//! solved by a dynamic program on the linear relaxation ([`one_row`](crate::allocation::choice::single_row)), several by branch and bound on
-//! the Lagrangian one ([`several_rows`](crate::allocation::choice::several_rows)). Sources: P. Sinha, A. A. Zoltners, "The multiple-choice
+//! solved by a dynamic program on the linear relaxation (`single_row`), several by branch and bound on
+//! the Lagrangian one (`several_rows`). Sources: P. Sinha, A. A. Zoltners, "The multiple-choice
 //! knapsack problem", Operations Research 27 (1979); D. Pisinger, "A minimal algorithm for the multiple-choice knapsack
 //! problem", European J. Operational Research 83 (1995).
 

@@ -24,6 +24,7 @@ use crate::allocation::surface::response::Responses;
 /// # Ok::<(), sensitol::allocation::CostError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct QualityLoss {
     /// Index of the characteristic in the problem.
     pub characteristic: usize,

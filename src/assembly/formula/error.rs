@@ -9,6 +9,7 @@ use sensitol_numeric::names::shortened_to;
 /// Fault in the text of a formula, with its position.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{fault}")]
+#[non_exhaustive]
 pub struct FormulaError {
     /// Byte range in the formula's text.
     pub span: Range<usize>,
@@ -18,6 +19,7 @@ pub struct FormulaError {
 
 /// Faults of a formula's text.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum FormulaFault {
     /// The text is empty.
     #[error("the formula is empty")]

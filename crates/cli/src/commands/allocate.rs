@@ -30,15 +30,14 @@ pub(crate) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
     asked.write.as_deref().map_or(Ok(()), |path| stays_beside(path, &asked.study.study, &study))?;
     let written = files.file(asked.write.as_deref())?;
     let clock = Clock::start(asked.work.time);
-    let options = AllocationOptions {
-        analysis: study.options.clone(),
-        recentre: asked.recentre.iter().map(|one| one.name.clone()).collect(),
-        nominal_bounds: asked.recentre.iter().filter_map(|one| Some((one.name.clone(), one.bounds?))).collect(),
-        front: asked.front.or(asked.svg.is_some().then_some(FRONT)),
-        confirm: None,
-        seed: asked.seed.or(study.seed).unwrap_or(Options::SEED),
-    }
-    .with_confirm_or_default(&study.problem, asked.confirm);
+    let mut options = AllocationOptions::default();
+    options.analysis = study.options.clone();
+    options.recentre = asked.recentre.iter().map(|one| one.name.clone()).collect();
+    options.nominal_bounds = asked.recentre.iter().filter_map(|one| Some((one.name.clone(), one.bounds?))).collect();
+    options.front = asked.front.or(asked.svg.is_some().then_some(FRONT));
+    options.confirm = None;
+    options.seed = asked.seed.or(study.seed).unwrap_or(Options::SEED);
+    let options = options.with_confirm_or_default(&study.problem, asked.confirm);
     let task = task(&study, asked);
     let allocation = allocate(&study, &task, &options, asked.threads, &clock, look)?;
     // An allocation that was stopped before the model confirmed it is printed, but not written to the study.

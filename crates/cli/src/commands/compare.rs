@@ -24,11 +24,10 @@ pub(crate) fn run(asked: &CompareArgs, look: Look) -> Result<Exit, Failure> {
     let table = files.folder(asked.csv.as_deref(), &names)?;
     let chart = files.file(asked.svg.as_deref())?;
     let page = files.file(asked.html.as_deref())?;
-    let options = CompareOptions {
-        budget: asked.budget.or(study.options.budget),
-        reference: asked.samples,
-        seed: asked.of.seed.or(study.seed).unwrap_or(Options::SEED),
-    };
+    let mut options = CompareOptions::default();
+    options.budget = asked.budget.or(study.options.budget);
+    options.reference = asked.samples;
+    options.seed = asked.of.seed.or(study.seed).unwrap_or(Options::SEED);
     let clock = Clock::start(asked.of.work.time);
     let stop = || clock.stop();
     let run = Run::to_the_end().stopping_when(&stop).abandoning_when(&interrupt::abandoned);

@@ -25,12 +25,11 @@ pub(crate) fn run(asked: &SimulateArgs, study: &Study, look: Look) -> Result<Exi
     let folder = files.folder(asked.csv.as_deref(), &names)?;
     let page = files.file(asked.html.as_deref())?;
     let costly = study.problem.function().signature().costly;
-    let options = RareOptions {
-        samples: asked.samples.unwrap_or(SAMPLES[usize::from(costly)]),
-        seed: asked.of.seed.or(study.seed).unwrap_or(Options::SEED),
-        until: asked.until,
-        surrogate: surrogate(study, asked),
-    };
+    let mut options = RareOptions::default();
+    options.samples = asked.samples.unwrap_or(SAMPLES[usize::from(costly)]);
+    options.seed = asked.of.seed.or(study.seed).unwrap_or(Options::SEED);
+    options.until = asked.until;
+    options.surrogate = surrogate(study, asked);
     let clock = Clock::start(asked.of.work.time);
     let threads = asked.of.threads;
     let found = sampling(threads, &clock, look, |run, pace| rare_with(&study.problem, &options, run, pace));

@@ -42,20 +42,19 @@ pub(crate) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
     let folder = files.folder(asked.csv.as_deref(), &names)?;
     let page = files.file(asked.html.as_deref())?;
     let wanted = asked.until.is_some() || asked.until_yield.is_some();
-    let options = SimulationOptions {
-        samples: asked.samples.unwrap_or(if wanted { 1 << 52 } else { SAMPLES }),
-        sampler: match asked.sampler {
-            SamplerArg::Random => Sampler::Random,
-            SamplerArg::Sobol => Sampler::Sobol,
-        },
-        seed: asked.of.seed.or(study.seed).unwrap_or(Options::SEED),
-        until: asked.until,
-        until_yield: asked.until_yield,
-        control: asked.surrogate_control.then(|| surrogate(&study, asked)),
-        target_joint_yield: study.options.target_joint_yield,
-        sobol: asked.sobol.then(|| asked.samples.unwrap_or(SOBOL)),
-        budget: asked.budget,
+    let mut options = SimulationOptions::default();
+    options.samples = asked.samples.unwrap_or(if wanted { 1 << 52 } else { SAMPLES });
+    options.sampler = match asked.sampler {
+        SamplerArg::Random => Sampler::Random,
+        SamplerArg::Sobol => Sampler::Sobol,
     };
+    options.seed = asked.of.seed.or(study.seed).unwrap_or(Options::SEED);
+    options.until = asked.until;
+    options.until_yield = asked.until_yield;
+    options.control = asked.surrogate_control.then(|| surrogate(&study, asked));
+    options.target_joint_yield = study.options.target_joint_yield;
+    options.sobol = asked.sobol.then(|| asked.samples.unwrap_or(SOBOL));
+    options.budget = asked.budget;
     let clock = Clock::start(asked.of.work.time);
     let simulation = simulate(&study, asked.of.threads, &options, &clock, look);
     kept(&study.problem)?;

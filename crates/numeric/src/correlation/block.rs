@@ -71,6 +71,7 @@ impl Rows {
     }
 
     /// Number of rows.
+    #[allow(clippy::len_without_is_empty, reason = "a block has at least one row")]
     pub fn len(&self) -> usize {
         self.standardised.first().map_or(0, Vec::len)
     }

@@ -260,8 +260,7 @@ fn faults(case: &Case, law: &SurfaceLaw) -> Vec<String> {
 
 /// Checks the distribution of a case. Returns its branch, or None if it was refused for a reason.
 fn checked(case: &Case) -> Result<Option<Branch>, String> {
-    let mut options = LawOptions::default();
-    options.points = LAW_POINTS;
+    let options = LawOptions { points: LAW_POINTS, ..LawOptions::default() };
     let law = match SurfaceLaw::of(&case.surrogate, &case.laws(), None, &options) {
         Ok(law) => law,
         // An input whose tail falls as a power has no transform. A surface without remaining parts has no variance.

@@ -303,7 +303,7 @@ fn plot(svg: &mut String, plot: &Plot, mut sheet: Sheet) {
     }
     let [left, right, ..] = sheet.margin;
     let x = Ruler::over(plot.values(0), plot.x.scale, [left, sheet.width - right]);
-    grid(svg, (x.ticks(&plot.x, sheet.ticks[0]), upwards), &sheet);
+    grid(svg, [x.ticks(&plot.x, sheet.ticks[0]), upwards], &sheet);
     axis_labels(svg, plot, &sheet);
     let (texts, held) = end_names(names, &sheet);
     layers(svg, plot, [&x, &y], &sheet, &held);
@@ -311,7 +311,7 @@ fn plot(svg: &mut String, plot: &Plot, mut sheet: Sheet) {
 }
 
 /// Draws the grid with the numbers at it.
-fn grid(svg: &mut String, (across, upwards): (Vec<(f64, String)>, Vec<(f64, String)>), sheet: &Sheet) {
+fn grid(svg: &mut String, [across, upwards]: [Vec<(f64, String)>; 2], sheet: &Sheet) {
     let [left, right, above, below] = sheet.margin;
     let (far, floor) = (sheet.width - right, sheet.height - below);
     let grid = sheet.ink(Ink::Grid);

@@ -55,20 +55,18 @@ pub(crate) fn options(entry: &AnalysisEntry, problem: &Problem) -> Result<Option
         }
         given => Ok(given.as_ref().map(|given| *given.get_ref())),
     };
-    let mut options = Options {
-        accuracy: positive(&entry.accuracy, "accuracy")?,
-        accuracies: Accuracies {
-            skewness: positive(&entry.accuracy_skewness, "accuracy_skewness")?,
-            kurtosis: positive(&entry.accuracy_kurtosis, "accuracy_kurtosis")?,
-            yield_: positive(&entry.accuracy_yield, "accuracy_yield")?,
-        },
-        step: positive(&entry.step, "step")?,
-        seed: entry.seed.as_ref().map(|seed| *seed.get_ref()),
-        extremes: entry.extremes.unwrap_or(false),
-        verify: entry.verify.map(|points| usize::try_from(points).unwrap_or(usize::MAX)),
-        budget: entry.budget.as_ref().map(|budget| usize::try_from(*budget.get_ref()).unwrap_or(usize::MAX)),
-        ..Options::default()
+    let mut options = Options::default();
+    options.accuracy = positive(&entry.accuracy, "accuracy")?;
+    options.accuracies = Accuracies {
+        skewness: positive(&entry.accuracy_skewness, "accuracy_skewness")?,
+        kurtosis: positive(&entry.accuracy_kurtosis, "accuracy_kurtosis")?,
+        yield_: positive(&entry.accuracy_yield, "accuracy_yield")?,
     };
+    options.step = positive(&entry.step, "step")?;
+    options.seed = entry.seed.as_ref().map(|seed| *seed.get_ref());
+    options.extremes = entry.extremes.unwrap_or(false);
+    options.verify = entry.verify.map(|points| usize::try_from(points).unwrap_or(usize::MAX));
+    options.budget = entry.budget.as_ref().map(|budget| usize::try_from(*budget.get_ref()).unwrap_or(usize::MAX));
     if let Some(target) = &entry.target_joint_yield {
         options.target_joint_yield = Some(joint_target(target, problem)?);
     }

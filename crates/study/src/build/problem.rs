@@ -455,7 +455,11 @@ fn of_several_words(file: &StudyFile, formula: &str, error: FormulaError) -> For
         places.find(|place| place.contains(&error.span.start)).map(|place| (name.clone(), place))
     });
     match meant {
-        Some((name, span)) => FormulaError { span, fault: FormulaFault::NeedsBackquotes { name } },
+        Some((name, span)) => {
+            let mut named = error;
+            (named.span, named.fault) = (span, FormulaFault::NeedsBackquotes { name });
+            named
+        }
         None => error,
     }
 }

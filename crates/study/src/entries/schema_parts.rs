@@ -9,7 +9,6 @@ use sensitol::allocation::CurveKind;
 use sensitol::method::{ALL as METHODS, DerivativeSource};
 use sensitol::plan::Stencil;
 use sensitol_external::Settings;
-use sensitol_models;
 
 pub(crate) fn methods() -> Vec<&'static str> {
     METHODS.iter().map(|method| method.name()).collect()

@@ -41,7 +41,7 @@ pub enum ColumnRole {
     Sigma,
 }
 
-/// Roles with their names and headers. Headers are in the form that [`plain`] gives.
+/// Roles with their names and headers. Headers are in the form that `plain` gives.
 pub const ROLES: [(ColumnRole, &str, &[&str]); 17] = [
     (
         ColumnRole::Name,
