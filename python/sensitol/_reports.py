@@ -7,51 +7,51 @@ from typing import Any, Dict, List, Literal, Optional, Tuple, Union
 from ._records import Fitted, Record, Result
 
 class Account(Record):
-    """The shapes that `auto` found for the dimensions, and the use of its points. As text it is a sentence."""
+    """Shapes of the dimensions that `auto` found, and the use of its points. The text form is a sentence."""
 
     checks: int
-    """Points that check the surrogate."""
+    """Check points of the surrogate."""
     curved: List[str]
-    """Those that are curved as a parabola is: two points each."""
+    """Dimensions that act along parabolas: two points each."""
     evaluations: int
-    """Evaluations of the search, those of such a sample excepted."""
+    """Evaluations of the search, without those of `samples`."""
     examined: int
     """Interactions that were examined one by one."""
     from_formulas: int
-    """Interactions that the formulas give, in every characteristic."""
+    """Interactions that are known from the formulas, in every characteristic."""
     full_evaluations: int
     """Evaluations that every second derivative would take, `N² + N + 1`."""
     possible_interactions: int
-    """Interactions that there can be."""
+    """Possible interactions."""
     probes: int
-    """Probes that move all dimensions, of one point each or two, by which interactions were sought."""
+    """Probes of one or two points that move all dimensions to search for interactions."""
     refined: List[str]
-    """Those that are more than a parabola: four points each."""
+    """Dimensions that need more than a parabola: four points each."""
     rest: Literal['reached', 'budget', 'exhausted', 'stopped']
-    """Why it ended."""
+    """Reason of the end of the search."""
     samples: Optional[int]
-    """Points of the model that the moments rest on, where the surrogate was not trusted."""
+    """Points of the model from which the moments follow, if the surrogate was not trusted."""
     straight: List[str]
-    """Those that act along straight lines: two points each."""
+    """Dimensions that act along straight lines: two points each."""
     varying: int
     """Dimensions that vary and matter."""
 
 
 class Advice(Record):
-    """Something to do about a warning or an error. Every front end shows it in its own words: the command line as
+    """Action advised by a warning or an error. Every front end shows it in its own words: the command line as
     options, a page as sentences, JSON as `{ "action": ... }` with the fields. `Display` writes a plain sentence
     without the name of any option.
     """
 
     action: Literal['use-method', 'raise-budget', 'check-limits', 'set-budget', 'raise-time-limit', 'limit-time', 'sample', 'sample-rare-events', 'sample-plainly', 'more-points', 'analyze', 'smaller-step', 'use-differences', 'include-fixed-dimensions', 'leave-out-correlation', 'use-formula', 'check-names', 'check-units', 'write-direction-as-rim', 'check-nominal', 'check-position', 'check-inputs', 'check-configuration', 'check-moments', 'check-column', 'find-missing-values', 'remove-wrong-values', 'measure-more', 'measure-finer', 'repair-model', 'read-model-log', 'name-model-files', 'keep-defined', 'reset-model', 'signed-measure', 'nearer-datum', 'larger-unit', 'ordinary-unit', 'tighten-solver', 'split-branches', 'nearest-fit', 'require-more', 'analyze-written-study', 'write-costs', 'name-movable-dimensions', 'write-missing-points', 'append-answers', 'analyze-stages', 'edit-study']
     methods: Optional[List[str]]
-    """The methods."""
+    """The methods, the best first."""
     points: Optional[int]
-    """With this many points; None where the usual number will do."""
+    """The number of points. None if the usual number suffices."""
     dimension: Optional[str]
-    """Along this dimension; None for all."""
+    """The dimension with the shorter step. None for all."""
     values: Optional[int]
-    """So many in all."""
+    """The total number of parts."""
     file: Optional[str]
     """The file of the written points."""
 
@@ -60,13 +60,13 @@ class AllocatedCharacteristic(Record):
     """One characteristic before and after."""
 
     after: Optional[CharacteristicResult]
-    """And at those found; null where none were."""
+    """Results of `analyze` at the tolerances found; null if none were found."""
     before: CharacteristicResult
-    """As `analyze` reports it, at the tolerances before."""
+    """Results of `analyze` at the tolerances before."""
     name: str
-    """Its name."""
+    """Name of the characteristic."""
     unit: Optional[str]
-    """Its unit."""
+    """Unit of the characteristic."""
 
 
 class AllocatedTolerance(Record):
@@ -75,27 +75,27 @@ class AllocatedTolerance(Record):
     after: float
     """Half band after."""
     at_bound: Optional[Literal['min', 'max']]
-    """The bound that it has met."""
+    """Bound that the tolerance has met."""
     before: float
     """Half band before."""
     bound_price: Optional[float]
-    """The saving per unit by which that bound gives way, all else unchanged; None within the bounds, and where it is
+    """Saving per unit by which that bound is widened, with all else unchanged. None within the bounds, and if it is
     not known.
     """
     contributions: List[AllocatedToleranceContributions]
-    """Its share of each characteristic's variance."""
+    """Share of each characteristic's variance."""
     cost_after: Optional[float]
-    """Its cost."""
+    """Cost after."""
     cost_before: Optional[float]
-    """Its cost before; None where no process holds that tolerance."""
+    """Cost before. None if no process holds the tolerance."""
     deviations: AllocatedToleranceDeviations
     """Lower and upper deviation from the nominal before and after, where there is a band."""
     dimension: str
     """The dimension."""
     process: Optional[str]
-    """The process, where several compete."""
+    """Name of the process, if several compete."""
     unit: Optional[str]
-    """Its unit."""
+    """Unit of the dimension."""
 
 
 class AllocatedToleranceContributions(Record):
@@ -132,11 +132,11 @@ class AllocationResult(Result):
     confirmation: Optional[Confirmation]
     """The model itself at the tolerances found, by Monte Carlo."""
     confirmed: bool
-    """Whether the model was evaluated at the tolerances found."""
+    """True if the model was evaluated at the tolerances found."""
     cost_after: Optional[float]
     """All costs after."""
     cost_basis: Literal['given', 'tolerance-unit', 'constant-precision', 'equal-shares']
-    """Where the costs come from: given, or relative to the tolerance unit of ISO 286."""
+    """Source of the costs: given, or relative to the tolerance unit of ISO 286."""
     cost_before: Optional[float]
     """All costs before; null where no process holds some tolerance, and without costs."""
     cost_unrounded: Optional[float]
@@ -144,11 +144,11 @@ class AllocationResult(Result):
     dimensions_table: Optional[str]
     """The entries of dimensions that have changed, ready to paste into the study."""
     evaluations: int
-    """Points sent to the model, those sent again included."""
+    """Points sent to the model, including those sent again."""
     evaluator: Optional[EvaluatorSummary]
-    """Starts, crashes and retries of the processes of an external model; None where no such model ran."""
+    """Starts, crashes and retries of the processes of an external model. None if there is no external model."""
     failed: int
-    """Points that lost at least one characteristic."""
+    """Points without a value of at least one characteristic."""
     front: List[FrontPoint]
     """Cost against what is required."""
     goal: Goal
@@ -160,7 +160,7 @@ class AllocationResult(Result):
     joint_yield: AllocationResultJointYield
     """The share of assemblies that keep all limits at once; null with fewer than two characteristics with limits."""
     loosest_scaling: AllocationResultLoosestScaling
-    """By which one factor all tolerances may be multiplied until some requirement is just kept."""
+    """Factor of all tolerances at which some requirement is just kept."""
     loss: AllocationResultLoss
     """The part of them that is quality loss and scrap; null without losses."""
     method: str
@@ -176,13 +176,13 @@ class AllocationResult(Result):
     requirements: List[AllocationResultRequirements]
     """Every requirement."""
     retried: int
-    """Points sent again: because an answer was a failure, or was not trusted."""
+    """Points sent again, because an answer was a failure or was not trusted."""
     rounds: int
-    """How often derivatives were taken."""
+    """Number of times that derivatives were taken."""
     schema: int
     """The version of this shape."""
     seed: Optional[int]
-    """The seed, where random numbers were drawn."""
+    """The seed, if random numbers were drawn."""
     sensitol: str
     """The version of the program."""
     setups: List[SetUp]
@@ -196,7 +196,7 @@ class AllocationResult(Result):
     of-time`.
     """
     stopped: Optional[Literal['time-limit', 'budget', 'interrupted', 'requested']]
-    """Why it ended early; None where it did not."""
+    """Reason for an early end. None if the run was completed."""
     study_sha256: str
     """SHA-256 of the study file and the files of measured values that it reads."""
     title: Optional[str]
@@ -206,7 +206,7 @@ class AllocationResult(Result):
     wall_s: float
     """Time from the first evaluation to the result."""
     warnings: List[ReportedWarning]
-    """Where an assumption fails."""
+    """Warnings about assumptions that fail."""
 
     def __getitem__(self, name: str) -> AllocatedCharacteristic:
         """The characteristic of this name."""
@@ -218,23 +218,23 @@ class AllocationResultAttainable(Record):
     """Something of a characteristic, with its name."""
 
     because: List[str]
-    """The dimensions without cost that alone break the requirement, most harmful first; empty where the others are
-    to blame too.
+    """Dimensions without cost that alone break the requirement, most harmful first. The list is empty if the others
+    contribute too.
     """
     best: Optional[float]
-    """The best that the bounds of the tolerances allow, in the requirement's own measure."""
+    """Best value within the bounds of the tolerances, in the measure of the requirement."""
     characteristic: str
     """The characteristic."""
     joint: bool
-    """Whether it is the joint yield of all characteristics with limits."""
+    """True if it is the joint yield of all characteristics with limits."""
     required: float
-    """How much of it; of `rss` and `worst-case` at most all of the room that the limits leave, 1."""
+    """Required amount. For `rss` and `worst-case`, the fraction of the limits used, at most 1."""
     requirement: str
-    """`yield`, `cpk`, `sigma`, `rss` or `worst-case`."""
+    """Name of the requirement: `yield`, `cpk`, `sigma`, `rss` or `worst-case`."""
     together: bool
-    """Whether it could be kept if it were the only one."""
+    """True if it could be kept as the only requirement."""
     unit: Optional[str]
-    """Its unit."""
+    """Unit of the characteristic."""
 
 
 class AllocationResultJointYield(Record):
@@ -268,72 +268,74 @@ class AllocationResultRecentred(Record):
     """Something of a dimension, with its name."""
 
     after: float
-    """The nominal value after."""
+    """Nominal value after."""
     before: float
-    """The nominal value before."""
+    """Nominal value before."""
     dimension: str
     """The dimension."""
     unit: Optional[str]
-    """Its unit."""
+    """Unit of the dimension."""
 
 
 class AllocationResultRequirements(Record):
     """Something of a characteristic, with its name."""
 
     after: Optional[float]
-    """The value found."""
+    """Value at the tolerances found."""
     before: Optional[float]
-    """The value before."""
+    """Value before."""
     characteristic: str
     """The characteristic."""
     interval: Optional[List[Optional[float]]]
-    """Within which that is known, an end null where there is none; null where it is not known at all."""
+    """Interval of the value, with null for an unbounded end; null if the value is not known."""
     met: Optional[bool]
-    """Whether it is kept; null where that is not known, and where nothing was found."""
+    """True if the requirement is kept; null if that is not known, and if no tolerances were found."""
     met_before: Optional[bool]
-    """Whether it was kept; null where that is not known."""
+    """True if the requirement was kept before; null if that is not known."""
     required: float
-    """How much of it; of `rss` and `worst-case` at most all of the room that the limits leave, 1."""
+    """Required amount. For `rss` and `worst-case`, the fraction of the limits used, at most 1."""
     requirement: str
-    """`yield`, `cpk`, `sigma`, `rss` or `worst-case`."""
+    """Name of the requirement: `yield`, `cpk`, `sigma`, `rss` or `worst-case`."""
     sampled: Optional[AllocationResultRequirementsSampled]
-    """The verdict of a sample of the model there, of a worst case by points in the box of the bands; None without
-    one, and of rss, of which samples know nothing.
+    """Verdict from a sample of the model at the tolerances found; for a worst case from points in the box of the
+    bands. None if there is no sample, and for rss, which samples cannot judge.
     """
     verdict: Optional[Literal['met', 'missed', 'inconclusive']]
-    """The same in a word; null where nothing was found."""
+    """Verdict on the requirement; null if no tolerances were found."""
     verdict_before: Literal['met', 'missed', 'inconclusive']
-    """The same in a word."""
+    """Verdict on the requirement before."""
 
 
 class AllocationResultRequirementsSampled(Record):
-    """The verdict of a sample on a requirement, as it is written."""
+    """Verdict of a sample on a requirement, as it is written."""
 
     interval: Optional[List[Optional[float]]]
-    """Within which that is known, three errors on either side; null where it is not known at all."""
+    """Interval of the value, three errors on either side; null if the value is not known."""
     value: Optional[float]
-    """The figure of the sample."""
+    """Value from the sample."""
     verdict: Literal['met', 'missed', 'inconclusive']
-    """The verdict on the requirement from that."""
+    """Verdict on the requirement from the interval."""
 
 
 class AllocationResultShadowPrices(Record):
     """Something of a characteristic, with its name."""
 
     both: Optional[float]
-    """Per unit by which both limits go outwards, or the only one; None where that is not what they cost inwards."""
+    """Saving per unit by which both limits, or the only one, are widened. None if it differs from the cost of
+    narrowing them.
+    """
     characteristic: str
     """The characteristic."""
     lower: Optional[float]
-    """Per unit by which its lower limit goes down."""
+    """Saving per unit by which the lower limit goes down."""
     narrow: Optional[float]
-    """The extra cost per unit by which they go inwards."""
+    """Extra cost per unit by which the limits are narrowed."""
     sigma: Optional[float]
-    """Per unit of a required sigma."""
+    """Saving per unit by which a required sigma grows."""
     upper: Optional[float]
-    """Per unit by which its upper limit goes up."""
+    """Saving per unit by which the upper limit goes up."""
     widen: Optional[float]
-    """The saving per unit by which the limits go outwards, or a required sigma grows, all else unchanged."""
+    """Saving per unit by which the limits are widened or a required sigma grows, with all else unchanged."""
 
 
 class AnalysisResult(Result):
@@ -342,11 +344,11 @@ class AnalysisResult(Result):
     account: Optional[Account]
     """The findings of `auto` and the use of its points; None for any other method."""
     basis: Literal['exact', 'differences', 'least-squares', 'quadrature']
-    """The basis of the moments."""
+    """Basis of the moments."""
     cached: int
     """Points whose answers were known from an earlier run."""
     characteristic_correlation: List[OutputCorrelation]
-    """How every two characteristics vary together; empty with one characteristic, and with more than 40."""
+    """Correlations of every two characteristics. Empty with one characteristic, and with more than 40."""
     characteristics: List[CharacteristicResult]
     """The results of every characteristic, in the problem's order."""
     command: str
@@ -354,43 +356,43 @@ class AnalysisResult(Result):
     correlation: List[Pair]
     """The dimensions that vary together."""
     derivatives: Optional[str]
-    """Where the derivatives that the moments rest on come from: `exact` or `difference`; null where they rest on
+    """Source of the derivatives from which the moments follow: `exact` or `difference`; null if they follow from
     none.
     """
     dimensions: List[DimensionResult]
     """The dimensions, in the study's order."""
     evaluations: int
-    """Points sent to the model, those sent again included."""
+    """Points sent to the model, including those sent again."""
     evaluator: Optional[EvaluatorSummary]
-    """Starts, crashes and retries of the processes of an external model; None where no such model ran."""
+    """Starts, crashes and retries of the processes of an external model. None if there is no external model."""
     failed: int
-    """Points that lost at least one characteristic."""
+    """Points without a value of at least one characteristic."""
     in_model_s: float
     """Time within the model, of all threads together."""
     joint_requirement: Optional[Judged]
-    """Whether that share reaches the target for all characteristics at once; None without such a target."""
+    """Verdict on the target for the joint yield. None if there is no such target."""
     joint_yield: Optional[Verified]
-    """The share of assemblies that keep the limits of all characteristics at once, and its error; None with fewer
-    than two that have limits, and where it is not known.
+    """Share of assemblies that keep the limits of all characteristics at once, with its error. None if fewer than
+    two characteristics have limits, or if it is unknown.
     """
     joint_yield_interval: Optional[List[float]]
-    """Within which that share is known: two errors on either side, with what measured samples leave open; None where
-    it is not known.
+    """Interval of the joint yield: two errors on either side, widened by the uncertainty of measured samples. None
+    if it is unknown.
     """
     method: str
-    """The method that was run: for `auto`, what it stands for."""
+    """Method that was run. For `auto`, the method that it chose."""
     retried: int
-    """Points sent again: because an answer was a failure, or was not trusted."""
+    """Points sent again, because an answer was a failure or was not trusted."""
     schema: int
     """The version of this shape."""
     seed: Optional[int]
-    """The seed, where random numbers were drawn."""
+    """The seed, if random numbers were drawn."""
     sensitol: str
     """The version of the program."""
     stages: int
     """Batches in which points were sent."""
     stopped: Optional[Literal['time-limit', 'budget', 'interrupted', 'requested']]
-    """Why it ended early; None where it did not."""
+    """Reason for an early end. None if the run was completed."""
     study_sha256: str
     """SHA-256 of the study file and the files of measured values that it reads."""
     title: Optional[str]
@@ -400,7 +402,7 @@ class AnalysisResult(Result):
     wall_s: float
     """Time from the first evaluation to the result."""
     warnings: List[ReportedWarning]
-    """Where an assumption fails, in the study or in the analysis."""
+    """Warnings about assumptions that fail, in the study or in the analysis."""
 
     def __getitem__(self, name: str) -> CharacteristicResult:
         """The characteristic of this name."""
@@ -412,184 +414,192 @@ class Beyond(Record):
     """Rejects beyond one limit, as they are written."""
 
     bounds: Optional[List[float]]
-    """If no point without a value lies beyond, and if all do; null where every point has a value."""
+    """Probability if no point without a value lies beyond, and if all do; null if every point has a value."""
     design_point: Optional[DesignPoint]
-    """The most likely assembly at the limit, as the surrogate and rejects of the model show it; None where none is
-    known.
-    """
+    """Most likely assembly at the limit, from the surrogate and from rejects of the model. None if none is known."""
     effective_samples: float
-    """Equally weighted points that would tell as much: `(sum of weights)^2 / sum of their squares`."""
+    """Number of equally weighted points with the same information: `(sum of weights)^2 / sum of their squares`."""
     greatest_part: Optional[float]
-    """The part of the estimate that the heaviest point has: where that is large, the surrogate has missed where
-    rejects are.
+    """Part of the estimate that the heaviest point has. If it is large, the surrogate has missed the place of the
+    rejects.
     """
     hits: int
-    """Points beyond."""
+    """Number of points beyond the limit."""
     interval: List[float]
-    """95 % interval."""
+    """95 % interval of the probability."""
     limit: float
-    """The limit."""
+    """Limit as it was given."""
     plain_samples: Optional[float]
-    """Points of a plain random sample that would have the same standard error."""
+    """Number of points of a plain random sample with the same standard error."""
     ppm: Optional[float]
-    """The probability in millionths."""
+    """Probability in parts per million."""
     probability: Optional[float]
-    """The probability of an assembly beyond it; null where none was seen."""
+    """Probability of an assembly beyond the limit; null if no point lies there."""
     standard_error: Optional[float]
-    """Its standard error."""
+    """Standard error of the probability."""
 
 
 class Capability(Record):
-    """How limits are kept, as it is written."""
+    """Capability as serialised in results."""
 
     cp: Optional[float]
-    """Width of the limits by six sigma."""
+    """Width of the limits, divided by six sigma."""
     cp_percentile: Optional[float]
-    """Width of the limits by that between the quantiles 0.00135 and 0.99865."""
+    """Width of the limits, divided by the width between the quantiles 0.00135 and 0.99865."""
     cpk: Optional[float]
-    """Distance of the nearer limit by three sigma."""
+    """Distance of the nearer limit, divided by three sigma."""
     cpk_percentile: Optional[float]
-    """Distance of the nearer limit from the median by that of the quantile on its side."""
+    """Distance of the nearer limit from the median, divided by that of the quantile on its side."""
     ppm_above: Optional[float]
     """Assemblies above the upper limit, per million."""
     ppm_below: Optional[float]
     """Assemblies below the lower limit, per million."""
     sigma_level: Optional[float]
-    """Sigmas of a normal beyond which, on one side, as many lie as are rejected."""
+    """Distance from the mean of a normal distribution, in sigmas, beyond which one side holds the share of all
+    rejects.
+    """
     yield_: Optional[float]
-    """The share of assemblies within the limits."""
+    """Share of assemblies within the limits."""
 
 
 class CharacteristicResult(Fitted):
-    """A characteristic with its verdicts and intervals, as it is written."""
+    """A characteristic with its verdicts and intervals, in JSON."""
 
     constant: bool
-    """Whether it can depend on nothing that varies, so that its one value is all that there is."""
+    """True if the characteristic depends on nothing that varies, so that it has a single value."""
     coverage: Optional[CoverageIntervals]
-    """Intervals that hold the share of assemblies that was asked for; None where none was."""
+    """Intervals that hold the requested share of assemblies. None if none was requested."""
     cp: Optional[float]
-    """Width of the limits by six sigma."""
+    """Width of the limits, divided by six sigma."""
     cp_percentile: Optional[float]
-    """Width of the limits by that between the quantiles 0.00135 and 0.99865."""
+    """Width of the limits, divided by the width between the quantiles 0.00135 and 0.99865."""
     cpk: Optional[float]
-    """Distance of the nearer limit by three sigma."""
+    """Distance of the nearer limit, divided by three sigma."""
     cpk_percentile: Optional[float]
-    """Distance of the nearer limit from the median by that of the quantile on its side."""
+    """Distance of the nearer limit from the median, divided by that of the quantile on its side."""
     description: Optional[str]
-    """A few words on its meaning."""
+    """Description in a few words."""
     distribution: Optional[Law]
-    """The distribution that has these moments, or why none has."""
+    """Distribution of the Pearson system with these moments, or the reason why there is none."""
     drawing: Optional[str]
-    """The number of its drawing."""
+    """Number of the drawing."""
     error_estimate: Optional[ErrorEstimate]
-    """How far these results may be off; None without moments."""
+    """Estimated errors of these results. None if there are no moments."""
     examined_interactions: int
-    """How many of them were examined, or are known from its formula."""
+    """Number of interactions that were examined, or are known from the formula."""
     feature: Optional[str]
-    """The feature of the part, or its number on the drawing."""
+    """Feature of the part, or its number on the drawing."""
     inflated_rss: Optional[float]
     """1.5 times the RSS (Bender 1962, 1968), or by the factors of the study."""
     inspection: Optional[InspectionRisks]
-    """The risks of its inspection; None without a gauge."""
+    """Risks of the inspection. None if there is no gauge."""
     interactions: List[Interaction]
-    """The interactions examined, strongest first."""
+    """Examined interactions, strongest first."""
     interactions_remainder: Optional[Remainder]
-    """The sum of the interactions that are not listed one by one; None where all are."""
+    """Sum of the interactions that are not listed one by one. None if all are listed."""
     kurtosis: Optional[float]
-    """Fourth standardised moment, 3 for a normal."""
+    """Value for the fourth standardised moment, which is 3 for a normal."""
     least_squares: Optional[Residual]
-    """How far a fitted surface misses the values that it was fitted to; None where nothing was fitted."""
+    """Residual of a fitted surface at the values that it was fitted to. None if nothing was fitted."""
     left_out_share: Optional[float]
-    """The share of the variance that no contribution accounts for; None where it is unknown."""
+    """Share of the variance that no contribution explains. None if it is unknown."""
     lower: Optional[float]
     """Lower limit."""
     mean: Optional[float]
-    """First moment."""
+    """Value for the expected value."""
     mean_shift_rss: Optional[float]
-    """RSS with means that are off by half their half bands, 1.5 sigma of 3, all the wrong way: `0.5 sum of |slope| x
-    half band + 0.5 rss` (Greenwood and Chase 1987 with m = 0.5).
+    """RSS with means that are all shifted in the unfavourable direction by half of their half-widths, 1.5 sigma of
+    3: `0.5 sum of |slope| x half-width + 0.5 rss` (Greenwood and Chase 1987 with m = 0.5).
     """
     met: Optional[bool]
-    """Whether the target yield is kept; null where that is not known."""
+    """True if the target yield is met; null if unknown."""
     middle: Optional[float]
-    """The value of a linear model with every dimension in the middle of its band: the middle of the worst case, of
-    the RSS and of the two inflations of it. The nominal where all bands are symmetric.
+    """Value of a linear model with every dimension in the middle of its band: the middle of the worst case, of the
+    RSS and of the two inflations of it. It is the nominal value if all bands are symmetric.
     """
     model_sampling: Optional[SampledModel]
-    """Points of the model that the moments rest on, in place of a surrogate that was not trusted."""
+    """Points of the model from which the moments follow, in place of a surrogate that was not trusted."""
     name: str
-    """Its name."""
+    """Name of the characteristic."""
     nominal: Optional[float]
-    """Its value at the nominal dimensions."""
+    """Value at the nominal dimensions."""
     normal_fit: Optional[Capability]
-    """How the normal distribution with the same mean and sigma would."""
+    """Capability by the normal distribution with the same mean and sigma."""
     part: Optional[str]
-    """The part that it belongs to."""
+    """Part that it belongs to."""
     pearson_fit: Optional[Capability]
-    """How the distribution with its moments keeps them: the Pearson fit."""
+    """Capability by the Pearson fit."""
     possible_interactions: int
-    """How many interactions it can have."""
+    """Number of possible interactions."""
     ppm_above: Optional[float]
     """Assemblies above the upper limit, per million."""
     ppm_above_interval: Optional[List[float]]
-    """The same above the upper limit."""
+    """95 % interval of the assemblies above the upper limit alone, per million, in the same form."""
     ppm_below: Optional[float]
     """Assemblies below the lower limit, per million."""
     ppm_below_interval: Optional[List[float]]
-    """The 95 % interval of the assemblies below the lower limit by themselves, per million; 0 to 0 where a proof
-    excludes them, null where it is not known.
+    """95 % interval of the assemblies below the lower limit alone, per million. 0 to 0 if a proof excludes them,
+    null if it is unknown.
     """
     requirements: List[Judged]
-    """Everything that is required of it, the target yield included."""
+    """Verdicts on all requirements, the target yield included."""
     revision: Optional[str]
-    """The revision of the drawing."""
+    """Revision of the drawing."""
     rss: Optional[float]
-    """`sqrt(t'R t)` with `t` = slope x half band (three sigma where a dimension has no band) and the correlation
-    `R`: without correlation the root of the sum of squares.
+    """`sqrt(t'R t)` with `t` = slope x half-width (three sigma if a dimension has no band) and the correlation `R`.
+    Without correlation it is the root of the sum of squares.
     """
     sampling_interval: Optional[SamplingInterval]
-    """How far the results may be off because measured dimensions are known by samples; None where there are none."""
+    """Uncertainty of the results because measured dimensions are known by samples. None if there are no measured
+    dimensions.
+    """
     sensitivities: List[Sensitivity]
-    """For every dimension of the problem, in order."""
+    """Sensitivities to every dimension of the problem, in order."""
     sigma: Optional[float]
-    """Standard deviation."""
+    """Value for the standard deviation."""
     sigma_level: Optional[float]
-    """Sigmas of a normal beyond which, on one side, as many lie as are rejected."""
+    """Distance from the mean of a normal distribution, in sigmas, beyond which one side holds the share of all
+    rejects.
+    """
     six_sigma: Optional[float]
-    """`sqrt(sum of (slope x sigma/(1 - k))^2)` with sigma of a lot and the shift `k` of its mean in half bands, by
-    `cpk`, `drift` or `shift` (Harry and Stewart 1988): a sigma, not an interval. None where every mean is in the
-    middle of its band, or one at its end.
+    """`sqrt(sum of (slope x sigma/(1 - k))^2)` with the sigma of a lot and the shift `k` of its mean in half-widths,
+    from `cpk`, `drift` or `shift` (Harry and Stewart 1988). It is a sigma, not an interval. None if every mean is
+    in the middle of its band, or one is at an end.
     """
     skewness: Optional[float]
-    """Third standardised moment."""
+    """Value for the third standardised moment."""
     sobol: Optional[SobolIndices]
-    """The source of the Sobol' indices of its [`sensitivities`](Self::sensitivities); None where it does not vary."""
+    """Source of the Sobol' indices of the [`sensitivities`](Self::sensitivities). None if the characteristic does
+    not vary.
+    """
     surface_law: Optional[SurfaceLaw]
-    """The results of its surface distribution; None where its moments follow from no surface."""
+    """Results of the surface distribution. None if the moments follow from no surface."""
     surrogate_sampling: Optional[Sampled]
-    """Their uncertainty from sampling the surrogate of correlated inputs; None where they are exact."""
+    """Standard errors of the moments from sampling the surrogate of correlated inputs. None if the moments are
+    exact.
+    """
     target_yield: Optional[float]
-    """The share of assemblies that must keep the limits."""
+    """Share of assemblies that must keep the limits."""
     unfinished: bool
-    """Whether planned points were not evaluated because the run was stopped: no verdict follows from the others."""
+    """True if the run was stopped before all planned points were evaluated. There is no verdict then."""
     unit: Optional[str]
-    """Its unit."""
+    """Unit, which is shown and never converted."""
     upper: Optional[float]
     """Upper limit."""
     verdict: Optional[Literal['met', 'missed', 'inconclusive']]
-    """The same in a word; null without a target."""
+    """Verdict on the target yield; null without a target."""
     verification: Optional[Verification]
-    """The verification of these results by the model itself; None where they were not verified."""
+    """Verification of these results by the model itself. None if they were not verified."""
     without_value: int
-    """Evaluated points at which it has no value."""
+    """Evaluated points without a value of the characteristic."""
     worst_case: WorstCase
     """Intervals that no assembly leaves."""
     yield_: Optional[float]
-    """The share of assemblies within the limits."""
+    """Share of assemblies within the limits."""
     yield_interval: Optional[List[float]]
-    """Within which the share is known that keeps the limits; null where that is not known."""
+    """Interval of the yield; null if unknown."""
     yield_source: Optional[Literal['proof', 'samples', 'surface-law', 'pearson']]
-    """The source of its yield; None without a yield."""
+    """Source of the yield. None if there is no yield."""
 
 
 class ComparedCharacteristic(Record):
@@ -598,7 +608,7 @@ class ComparedCharacteristic(Record):
     methods: List[ComparedMethod]
     """The methods, fewest evaluations first."""
     name: str
-    """Its name."""
+    """Name of the characteristic."""
     reference: SimulatedCharacteristic
     """The reference for all methods."""
 
@@ -607,11 +617,11 @@ class ComparedMethod(Record):
     """One method on one characteristic."""
 
     cached: int
-    """Those of them that were known already."""
+    """Evaluations that were known already."""
     engine_s: float
     """Seconds besides."""
     error_vs_reference: ErrorVsReference
-    """How far that is off the reference."""
+    """Difference from the reference."""
     evaluation_s: float
     """Seconds within the model."""
     evaluations: int
@@ -619,11 +629,11 @@ class ComparedMethod(Record):
     kurtosis: Optional[float]
     """Fourth standardised moment."""
     mean: Optional[float]
-    """First moment."""
+    """Expected value."""
     method: str
-    """Its name; of samples with the number of points."""
+    """Name of the method; that of samples has the number of points."""
     pareto: bool
-    """Whether no other method has a smaller error for as many evaluations or fewer."""
+    """True if no other method has a smaller error for as many evaluations or fewer."""
     run: RunSummary
     """The cost of its run by itself."""
     sigma: Optional[float]
@@ -631,7 +641,7 @@ class ComparedMethod(Record):
     skewness: Optional[float]
     """Third standardised moment."""
     verdict: Optional[Literal['met', 'missed', 'inconclusive']]
-    """Its verdict on the target yield; null without one."""
+    """Verdict on the target yield; null without a target."""
     yield_: Optional[float]
     """Share within the limits."""
 
@@ -646,31 +656,31 @@ class ComparisonResult(Result):
     command: str
     """The command that made the report."""
     evaluations: int
-    """Points sent to the model, those sent again included."""
+    """Points sent to the model, including those sent again."""
     evaluator: Optional[EvaluatorSummary]
-    """Starts, crashes and retries of the processes of an external model; None where no such model ran."""
+    """Starts, crashes and retries of the processes of an external model. None if there is no external model."""
     failed: int
-    """Points that lost at least one characteristic."""
+    """Points without a value of at least one characteristic."""
     in_model_s: float
     """Time within the model, of all threads together."""
     not_run: List[NotRun]
     """Methods that were not run, and why."""
     reference_method: str
-    """How they were drawn."""
+    """Sampler that drew them."""
     reference_samples: int
     """Points of the reference."""
     retried: int
-    """Points sent again: because an answer was a failure, or was not trusted."""
+    """Points sent again, because an answer was a failure or was not trusted."""
     schema: int
     """The version of this shape."""
     seed: Optional[int]
-    """The seed, where random numbers were drawn."""
+    """The seed, if random numbers were drawn."""
     sensitol: str
     """The version of the program."""
     stages: int
     """Batches in which points were sent."""
     stopped: Optional[Literal['time-limit', 'budget', 'interrupted', 'requested']]
-    """Why it ended early; None where it did not."""
+    """Reason for an early end. None if the run was completed."""
     study_sha256: str
     """SHA-256 of the study file and the files of measured values that it reads."""
     title: Optional[str]
@@ -694,36 +704,36 @@ class Confirmation(Record):
 
 
 class Control(Record):
-    """The effect of a surrogate as control variate, as it is written."""
+    """Effect of a surrogate as control variate, in JSON."""
 
     evaluations: int
-    """The evaluations that it took, of all characteristics together."""
+    """Evaluations of the surrogate, for all characteristics together."""
     method: str
-    """The method that it comes from."""
+    """Method of the surrogate."""
     reduction: Reduction
-    """By how much standard errors have shrunk."""
+    """Reduction of standard errors."""
 
 
 class CoverageIntervals(Record):
     """Two intervals that hold a share `p` of all assemblies. Source: JCGM 101:2008, 5.3.2 to 5.3.4 and 7.7."""
 
     equal_tails: List[float]
-    """With as many assemblies below as above."""
+    """Interval with equal shares of assemblies below and above it."""
     probability: float
-    """The share of assemblies that each holds."""
+    """Share of assemblies that each interval holds."""
     shortest: List[float]
-    """The shortest of all."""
+    """Shortest interval."""
     source: Literal['proof', 'samples', 'surface-law', 'pearson']
-    """Where they come from: a surface that is trusted, else points of the model, else the Pearson fit."""
+    """Source of the intervals: a surface that is trusted, else points of the model, else the Pearson fit."""
 
 
 class DesignPoint(Record):
-    """The most likely assembly at a limit."""
+    """Most likely assembly at a limit."""
 
     distance: float
-    """How far it is from the middle, in standard deviations of independent normal variables."""
+    """Distance from the middle, in standard deviations of independent normal variables."""
     values: List[float]
-    """The value of every dimension, in the problem's order."""
+    """Value of every dimension, in the problem's order."""
 
 
 class DimensionResult(Record):
@@ -732,35 +742,35 @@ class DimensionResult(Record):
     degrees: Optional[float]
     """Degrees of freedom of its standard uncertainty; null where the study says none."""
     description: Optional[str]
-    """A few words on its meaning."""
+    """Description in a few words."""
     distribution: Optional[str]
     """The kind of its distribution; null when it does not vary."""
     drawing: Optional[str]
-    """The number of its drawing."""
+    """Number of the drawing."""
     feature: Optional[str]
-    """The feature of the part, or its number on the drawing."""
+    """Feature of the part, or its number on the drawing."""
     mean: float
-    """Its mean."""
+    """Mean."""
     name: str
-    """Its name."""
+    """Name of the dimension."""
     nominal: float
     """The value on the drawing."""
     part: Optional[str]
-    """The part that it belongs to."""
+    """Part that it belongs to."""
     revision: Optional[str]
-    """The revision of the drawing."""
+    """Revision of the drawing."""
     sigma: float
-    """Its standard deviation."""
+    """Standard deviation."""
     tolerance: Optional[List[float]]
     """Lower and upper deviation from the nominal."""
     unit: Optional[str]
-    """Its unit."""
+    """Unit of the dimension."""
     zone: Optional[str]
     """The circular zone of which it is a coordinate."""
 
 
 class Empirical(Record):
-    """A distribution that is known by a sample."""
+    """Distribution that is known by a sample."""
 
     family: str
     """Always `empirical`."""
@@ -769,49 +779,49 @@ class Empirical(Record):
 
 
 class ErrorEstimate(Record):
-    """The estimated error of each result, in its own unit; None where nothing is known."""
+    """Estimated error of each result, in the unit of the result; None if the error is unknown."""
 
     kurtosis: Optional[float]
-    """Of the kurtosis."""
+    """Error of the kurtosis."""
     mean: Optional[float]
-    """Of the mean."""
+    """Error of the mean."""
     sigma: Optional[float]
-    """Of sigma."""
+    """Error of sigma."""
     skewness: Optional[float]
-    """Of the skewness."""
+    """Error of the skewness."""
     sources: List[ErrorSource]
-    """Its basis."""
+    """Sources that the estimate is made of."""
     yield_: Optional[float]
-    """Of the share within the limits."""
+    """Error of the share within the limits."""
 
 
 class ErrorSource(Record):
-    """The basis of an estimate."""
+    """Source of an estimated error."""
 
     kind: Literal['checked', 'powers', 'taylor', 'curvature', 'exact-pairs', 'similar-pairs', 'unknown-pairs', 'triples', 'scatter', 'lost', 'proven', 'sampled']
     points: Optional[int]
-    """How many."""
+    """Number of check points with a value."""
     nodes: Optional[int]
-    """Nodes of the axes with the fewest, the mean included."""
+    """Nodes of the axes with the fewest, including the mean."""
     pairs: Optional[int]
-    """How many."""
+    """Number of pairs that were not examined."""
     degree: Optional[int]
-    """The degree."""
+    """Degree of the polynomial that the formula is."""
 
 
 class ErrorVsReference(Record):
-    """Errors with what follows from them, as they are written."""
+    """Errors with derived figures, as serialised."""
 
     kurtosis: Optional[float]
     """Fourth standardised moment."""
     mean: Optional[float]
-    """First moment."""
+    """Expected value."""
     overall: Optional[float]
-    """Root of the sum of squares of the errors of mean and sigma."""
+    """Overall error, in sigmas: root of the sum of squares of the errors of mean and sigma."""
     reference_standard_error: Figures
-    """The reference's own standard error, in the same units: what is not larger than twice this is not resolved."""
+    """Standard errors of the reference, in the same units. Differences up to twice these are not resolved."""
     resolved: bool
-    """Whether the reference tells that from 0."""
+    """True if the reference resolves the overall error."""
     sigma: Optional[float]
     """Standard deviation."""
     skewness: Optional[float]
@@ -821,12 +831,12 @@ class ErrorVsReference(Record):
 
 
 class EstimatedShare(Record):
-    """A share that is estimated: of the variance, or of all parts."""
+    """Estimated share: of the variance, or of all parts."""
 
     error: Optional[float]
-    """Three of these reach the truth; None where nothing is known of it."""
+    """Error of the share: the true value lies within three of these. None if it is unknown."""
     value: float
-    """Its value; an estimate from a sample may be below 0 by its error."""
+    """Estimated share. An estimate from a sample may be below 0 by its error."""
 
 
 class EvaluatorSummary(Record):
@@ -835,48 +845,48 @@ class EvaluatorSummary(Record):
     crashes: int
     """Processes that ended while points were under way, or before they were ready."""
     garbage: int
-    """Lines that were no answers."""
+    """Lines that were no valid answers."""
     lost_s: float
-    """Seconds from the last answer of a process that failed until another one was ready in its place."""
+    """Seconds from the last answer of each failed process until its replacement was ready."""
     retried: int
     """Points that were sent again."""
     starts: int
-    """Processes that were started, the first one of every worker included."""
+    """Processes that were started, including the first one of every worker."""
     timeouts: int
-    """Deadlines that passed."""
+    """Deadlines that were missed."""
     unconfirmed: int
-    """Answers that depend on the points before them, and that no fresh process confirmed: they have no value, or
-    results were made of them before that was known.
+    """Answers that depend on the points before them, and that no fresh process confirmed. They have no value, or
+    entered results before that was known.
     """
 
 
 class ExtremesAt(Record):
-    """Where the extremes are."""
+    """Places of the extremes."""
 
     lower: Dict[str, float]
-    """The dimensions at the least value."""
+    """Values of the dimensions at the least value."""
     upper: Dict[str, float]
-    """The dimensions at the greatest value."""
+    """Values of the dimensions at the greatest value."""
 
 
 class FactorIndices(Record):
     """Dimensions that vary together, as one factor."""
 
     dimensions: List[str]
-    """The dimensions."""
+    """Names of the dimensions."""
     first_order: Optional[EstimatedShare]
-    """The part of the variance that they explain by themselves."""
+    """Part of the variance that the factor explains alone."""
     total: Optional[EstimatedShare]
-    """The same with everything in which they have a part."""
+    """Part of the variance with all interactions of the factor."""
 
 
 class Figures(Record):
-    """The results of a method for one characteristic. Unknown values are None."""
+    """Results of a method for one characteristic. Unknown values are None."""
 
     kurtosis: Optional[float]
     """Fourth standardised moment."""
     mean: Optional[float]
-    """First moment."""
+    """Expected value."""
     sigma: Optional[float]
     """Standard deviation."""
     skewness: Optional[float]
@@ -886,229 +896,231 @@ class Figures(Record):
 
 
 class FoundSwitch(Record):
-    """A switch on both sides of which there are assemblies within eight sigmas."""
+    """A switch with assemblies within eight sigmas on both of its sides."""
 
     kind: Literal['kink', 'jump', 'edge', 'pole']
-    """The behaviour of the output there."""
+    """Behaviour of the output at the switch."""
     name: str
-    """The part of the formula that does it, as it is written there."""
+    """Part of the formula that causes it, as written there."""
     probability: float
-    """The probability of its smaller side."""
+    """Probability of the smaller side."""
 
 
 class FrontPoint(Record):
-    """One point of the front: the cheapest tolerances for a requirement."""
+    """Point of the front: the cheapest tolerances for a requirement."""
 
     cost: Optional[float]
-    """The cost of that; None where it cannot be kept."""
+    """Cost of the tolerances. None if the requirement cannot be kept."""
     required: List[RequiredOf]
-    """The requirement of every characteristic that has one, in the order of the problem; of all together last."""
+    """Required amount of every characteristic with a requirement, in the order of the problem. The joint yield comes
+    last.
+    """
     tolerances: Optional[List[float]]
     """Half bands, in the order of [`Allocation::tolerances`]."""
 
 
 class Goal(Record):
-    """The objective."""
+    """Objective of an allocation."""
 
     kind: Literal['least-cost', 'most-cpk', 'fewest-rejects']
     cost_limit: Optional[float]
-    """The most that may be spent."""
+    """Most that may be spent."""
 
 
 class Histogram(Record):
-    """How many values lie in which interval."""
+    """Counts of values in intervals."""
 
     counts: List[int]
-    """How many values in each."""
+    """Number of values in each interval."""
     edges: List[float]
-    """One more than there are intervals, ascending."""
+    """Ends of the intervals, ascending: one more than there are intervals."""
 
 
 class IndexEstimate(Record):
-    """An index with what the sample leaves uncertain of it."""
+    """Estimate of an index with its uncertainty."""
 
     interval: List[float]
-    """Its 95 % interval."""
+    """95 % interval of the index."""
     standard_error: float
-    """Its standard error."""
+    """Standard error of the estimate."""
     value: float
-    """The estimate; of an index near 0 it may be below."""
+    """Estimate, which may be negative if the index is near 0."""
 
 
 class InspectionRisks(Record):
-    """The risks of an inspection with a gauge that errs. Shares are of all parts unless something else is said."""
+    """Risks of an inspection with a gauge that has an error. Shares are of all parts unless stated otherwise."""
 
     acceptance: List[Optional[float]]
-    """The tightened limits."""
+    """Tightened limits."""
     accepted: Optional[EstimatedShare]
-    """Accepted."""
+    """Share of parts that are accepted."""
     bad_among_accepted: Optional[EstimatedShare]
-    """Of the accepted parts, those that are bad."""
+    """Share of bad parts among the accepted ones."""
     false_accept: Optional[EstimatedShare]
-    """Bad and accepted: the consumer's risk."""
+    """Share of parts that are bad and accepted: the consumer's risk."""
     false_reject: Optional[EstimatedShare]
-    """Good and rejected: the producer's risk."""
+    """Share of parts that are good and rejected: the producer's risk."""
     gauge: float
-    """The standard deviation of the gauge."""
+    """Standard deviation of the gauge."""
     guard: Optional[float]
-    """By how much the limits are tightened; None where no guard reaches the rate that is wanted."""
+    """Amount by which the limits are tightened. None if no guard reaches the wanted rate."""
 
 
 class Interaction(Record):
-    """The joint effect of two dimensions."""
+    """Joint effect of two dimensions."""
 
     dimensions: List[str]
-    """The two dimensions."""
+    """Names of the two dimensions."""
     exact: bool
-    """Whether it is exact rather than a difference."""
+    """True if the derivative is exact rather than a difference."""
     mean_shift: Optional[float]
-    """How far it moves the mean: not at all unless the two are correlated."""
+    """Mean shift by the interaction: none unless the two dimensions are correlated."""
     missing: Optional[Literal['failed', 'not-evaluated']]
-    """Why it is missing; None where it is not."""
+    """Reason why the derivative is missing. None if it is known."""
     mixed: Optional[float]
-    """Mixed second derivative at the means; None where it is missing."""
+    """Mixed second derivative at the means. None if it is missing."""
     origin: Optional[Literal['exact', 'evaluated', 'screened']]
-    """The source of its share: `exact`, `evaluated`, or `screened` where it is an estimate without an evaluation of
-    its own. None where it has no share.
+    """Source of the share: `exact`, `evaluated`, or `screened` if it is an estimate without an evaluation of its
+    own. None if there is no share.
     """
     rounding: Optional[float]
-    """The largest effect of rounding errors of the characteristic's own size on it."""
+    """Largest effect of a rounding error of the characteristic on the derivative."""
     share: Optional[float]
     """Share of the variance."""
 
 
 class JointKept(Record):
-    """The joint yield that all characteristics with limits must keep, and what there is of it."""
+    """Required joint yield, and its values."""
 
     after: Optional[float]
-    """The value found."""
+    """Value at the tolerances found."""
     before: Optional[float]
-    """The value before."""
+    """Value before."""
     interval: Optional[List[Optional[float]]]
-    """Within which that is known, an end null where there is none; null where it is not known at all."""
+    """Interval of the value, with null for an unbounded end; null if the value is not known."""
     met: Optional[bool]
-    """Whether it is kept; null where that is not known, and where nothing was found."""
+    """True if the requirement is kept; null if that is not known, and if no tolerances were found."""
     met_before: Optional[bool]
-    """Whether it was kept; null where that is not known."""
+    """True if the requirement was kept before; null if that is not known."""
     required: float
-    """How much of it; of `rss` and `worst-case` at most all of the room that the limits leave, 1."""
+    """Required amount. For `rss` and `worst-case`, the fraction of the limits used, at most 1."""
     requirement: str
-    """`yield`, `cpk`, `sigma`, `rss` or `worst-case`."""
+    """Name of the requirement: `yield`, `cpk`, `sigma`, `rss` or `worst-case`."""
     sampled: Optional[JointKeptSampled]
-    """The verdict of a sample of the model there; None without one."""
+    """Verdict from a sample of the model at the tolerances found. None if there is no sample."""
     verdict: Optional[Literal['met', 'missed', 'inconclusive']]
-    """The same in a word; null where nothing was found."""
+    """Verdict on the requirement; null if no tolerances were found."""
     verdict_before: Literal['met', 'missed', 'inconclusive']
-    """The same in a word."""
+    """Verdict on the requirement before."""
 
 
 class JointKeptSampled(Record):
-    """The verdict of a sample on a requirement, as it is written."""
+    """Verdict of a sample on a requirement, as it is written."""
 
     interval: Optional[List[Optional[float]]]
-    """Within which that is known, three errors on either side; null where it is not known at all."""
+    """Interval of the value, three errors on either side; null if the value is not known."""
     value: Optional[float]
-    """The figure of the sample."""
+    """Value from the sample."""
     verdict: Literal['met', 'missed', 'inconclusive']
-    """The verdict on the requirement from that."""
+    """Verdict on the requirement from the interval."""
 
 
 class JointYield(Record):
-    """A share of a sample."""
+    """Joint yield from a sample."""
 
     interval: List[float]
     """95 % interval."""
     samples: int
-    """Points of the surrogates; none of them is evaluated by the model."""
+    """Number of points of the surrogates. The model is not evaluated at them."""
     standard_error: Optional[float]
-    """Its standard error; None where all or none are."""
+    """Standard error of the share. None if all or no points lie within the limits."""
     yield_: float
-    """The share of assemblies within all limits."""
+    """Share of assemblies within all limits."""
 
 
 class Judged(Record):
-    """A judged requirement as it is written."""
+    """Judged requirement as serialised in results."""
 
     interval: Optional[List[Optional[float]]]
-    """Within which that is known, an end null where there is none; null where it is not known at all."""
+    """Interval of the value, an end null if it is unbounded. Null as a whole if it is unknown."""
     met: Optional[bool]
-    """Whether it is kept; null where that is not known."""
+    """True if the requirement is met. Null if that is unknown."""
     required: float
-    """How much of it; of `rss` and `worst-case` at most all of the room that the limits leave, 1."""
+    """Required amount. For `rss` and `worst-case`, the fraction of the limits used, at most 1."""
     requirement: str
-    """`yield`, `cpk`, `sigma`, `rss` or `worst-case`."""
+    """Name of the requirement: `yield`, `cpk`, `sigma`, `rss` or `worst-case`."""
     value: Optional[float]
-    """The value found."""
+    """Value found, null if it is unknown."""
     verdict: Literal['met', 'missed', 'inconclusive']
-    """The same in a word."""
+    """Verdict in a word: met, missed or inconclusive."""
 
 
 class Law(Record):
-    """A distribution with the four moments of a characteristic."""
+    """Distribution with the four moments of a characteristic."""
 
     at: Optional[float]
-    """The value."""
+    """Value of every assembly."""
     family: Literal['point', 'pearson']
     quantiles: Optional[Dict[str, float]]
-    """Quantiles."""
+    """Quantiles of the distribution."""
     support: Optional[List[Optional[float]]]
-    """Lower and upper end, where there are any."""
+    """Lower and upper end of the support, null if infinite."""
     type: Optional[str]
-    """Its type."""
+    """Type in the Pearson system: `normal`, or `I` to `VII`."""
 
 
 class LawRefutation(Record):
-    """A refutation as it is written."""
+    """A refutation in JSON."""
 
     counted: float
     """Share of points below the limit."""
     error: float
     """Standard error of that share."""
     law: float
-    """Share of assemblies below the limit by the law."""
+    """Share of assemblies below the limit by the distribution."""
     limit: float
-    """The limit at which the law failed."""
+    """Limit at which the distribution failed."""
     test: str
     """`monotone` (quantiles or shares fall) or `count` (points contradict a share)."""
 
 
 class NotRun(Record):
-    """One method that was not run."""
+    """Method that was not run, with the reason."""
 
     evaluations: Optional[int]
-    """The evaluations that it needs."""
+    """Evaluations that the method needs, if that is known."""
     method: str
-    """Which."""
+    """Method or sample that was not run."""
     projected_s: Optional[float]
-    """Seconds that the model would have taken, at the speed of those that ran."""
+    """Time in seconds that the model would have taken, at the speed of the methods that ran."""
     reason: NotRunReason
-    """Why not."""
+    """Reason for not running it."""
 
 
 class NotRunReason(Record):
-    """Why a method was not run."""
+    """Reason for not running a method."""
 
     kind: Literal['over-reference', 'longer-than-reference', 'over-budget', 'stopped-before', 'stopped', 'impossible']
     message: Optional[str]
-    """Why, in words."""
+    """Error message in words."""
 
 
 class OutputCorrelation(Record):
-    """How two characteristics vary together."""
+    """Correlation of two characteristics."""
 
     between: List[str]
-    """The two characteristics."""
+    """Names of the two characteristics."""
     error: Optional[float]
-    """The error of the coefficient; null where the model was not asked."""
+    """Error of the coefficient; null if the model was not evaluated for it."""
     value: Optional[float]
-    """Their coefficient of correlation; null where one of them does not vary, or is not known."""
+    """Coefficient of correlation; null if one of them does not vary, or is unknown."""
 
 
 class Pair(Record):
-    """Two dimensions and their coefficient of correlation."""
+    """Pair of dimensions with its coefficient of correlation."""
 
     between: List[str]
-    """The dimensions."""
+    """Names of the two dimensions."""
     value: float
     """Pearson's coefficient, from -1 to 1."""
 
@@ -1117,87 +1129,85 @@ class Parameter(Record):
     """The parameter."""
 
     name: str
-    """Its name."""
+    """Name of the parameter."""
     sigma: float
-    """Its standard deviation at every value."""
+    """Standard deviation of the parameter, the same at every value."""
     unit: Optional[str]
-    """Its unit."""
+    """Unit of the parameter."""
     values: List[float]
-    """Its nominal values."""
+    """Values of the parameter."""
 
 
 class Proof(Record):
-    """A proof with the kind of its bound, as it is written."""
+    """Proof with the kind of its bound, as it is written."""
 
     bound: Optional[float]
-    """No choice of processes costs less; None without lists, or where no bound is known."""
+    """Lower bound of the cost of every choice of processes. None if there are no lists, and if no bound is known."""
     bound_is_exact: Optional[bool]
-    """Whether the bound is exact, rather than resting on a sample of choices; null without one."""
+    """True if the bound is exact, false if it rests on a sample of choices; null without a bound."""
     closed_form: bool
-    """Whether Lagrange's condition had the answer in closed form."""
+    """True if Lagrange's condition gave the result in closed form."""
     gap: Optional[float]
-    """By what part of the cost it may be above the bound."""
+    """Greatest possible excess of the cost over the bound, as a part of the cost."""
     kkt_residual: Optional[float]
-    """The largest violation of the conditions of Karush, Kuhn and Tucker; None where everything is chosen from
-    lists.
-    """
+    """Largest violation of the conditions of Karush, Kuhn and Tucker. None if everything is chosen from lists."""
     nodes: int
-    """Nodes of the branch and bound."""
+    """Number of nodes of the branch and bound."""
     other_optimum: Optional[float]
-    """The cost of the next cheapest optimum that one of them ended at; None where there was no other."""
+    """Cost of the next cheapest optimum among them. None if there was no other."""
     reached: Optional[int]
-    """How many of them ended at the tolerances found."""
+    """Number of them that ended at the tolerances found."""
     solver: Optional[Literal['dual-newton', 'separable', 'sequential-quadratic', 'augmented-lagrangian', 'branch-and-bound', 'root', 'verified-search']]
-    """The solver that found the tolerances; None where none were found."""
+    """Solver that found the tolerances. None if none were found."""
     starts: Optional[int]
-    """Searches from different tolerances, where there may be several optima; None where one search is enough."""
+    """Number of searches from different tolerances, if there may be several optima. None if one search is enough."""
 
 
 class RareCharacteristic(Record):
-    """A characteristic with its verdicts, as it is written."""
+    """Characteristic with its verdicts, as it is written."""
 
     above: Optional[Beyond]
-    """Rejects above the upper limit; null without one."""
+    """Rejects above the upper limit; null if there is no upper limit."""
     below: Optional[Beyond]
-    """Rejects below the lower limit; null without one."""
+    """Rejects below the lower limit; null if there is no lower limit."""
     description: Optional[str]
-    """A few words on its meaning."""
+    """Description in a few words."""
     drawing: Optional[str]
-    """The number of its drawing."""
+    """Number of the drawing."""
     error: Optional[str]
-    """Why not, of the first of them."""
+    """Error at the first of these points."""
     failed: int
-    """Points at which it has no value."""
+    """Number of points at which the characteristic has no value."""
     feature: Optional[str]
-    """The feature of the part, or its number on the drawing."""
+    """Feature of the part, or its number on the drawing."""
     lower: Optional[float]
     """Lower limit."""
     met: Optional[bool]
-    """Whether the interval of the yield lies above the target (true), below (false), or around it (null)."""
+    """True if the interval of the yield lies above the target, false if below, null if around it."""
     name: str
-    """Its name."""
+    """Name of the characteristic."""
     part: Optional[str]
-    """The part that it belongs to."""
+    """Part that it belongs to."""
     requirements: List[Judged]
-    """Everything that is required of it, the target yield included."""
+    """Verdicts on all requirements, including the target yield."""
     revision: Optional[str]
-    """The revision of the drawing."""
+    """Revision of the drawing."""
     sampling_interval: Optional[SamplingInterval]
-    """How far the yield may be off because measured dimensions are known by samples; None where there are none."""
+    """Error of the yield from the size of measured samples. None if no dimension is measured."""
     target_yield: Optional[float]
-    """The share of assemblies that must keep the limits."""
+    """Share of assemblies that must keep the limits."""
     unfinished: bool
-    """Whether the search was stopped before all points were drawn: no verdict follows from the others."""
+    """True if the run was stopped before all planned points were evaluated. There is no verdict then."""
     unit: Optional[str]
-    """Its unit."""
+    """Unit, which is shown and never converted."""
     upper: Optional[float]
     """Upper limit."""
     verdict: Optional[Literal['met', 'missed', 'inconclusive']]
-    """The same in a word; null without a target."""
+    """Verdict on the target yield; null if there is no target."""
     yield_: Optional[float]
-    """The share of assemblies within the limits; None where that beyond one of them is unknown."""
+    """Yield. None if the probability beyond one of the limits is unknown."""
     yield_interval: Optional[List[float]]
-    """95 % interval of that."""
+    """95 % interval of the yield."""
 
 
 class RareResult(Result):
@@ -1206,7 +1216,7 @@ class RareResult(Result):
     cached: int
     """Points whose answers were known from an earlier run."""
     characteristics: List[RareCharacteristic]
-    """The results of every characteristic, in the problem's order."""
+    """Results of every characteristic, in the problem's order."""
     command: str
     """The command that made the report."""
     correlation: List[Pair]
@@ -1214,43 +1224,43 @@ class RareResult(Result):
     dimensions: List[DimensionResult]
     """The dimensions, in the study's order."""
     evaluations: int
-    """Points sent to the model, those sent again included."""
+    """Points sent to the model, including those sent again."""
     evaluator: Optional[EvaluatorSummary]
-    """Starts, crashes and retries of the processes of an external model; None where no such model ran."""
+    """Starts, crashes and retries of the processes of an external model. None if there is no external model."""
     failed: int
-    """Points that lost at least one characteristic."""
+    """Points without a value of at least one characteristic."""
     in_model_s: float
     """Time within the model, of all threads together."""
     joint_requirement: Optional[Judged]
-    """Whether that share reaches the target for all characteristics at once; None without such a target."""
+    """Verdict on the target of the joint yield. None if there is no target."""
     joint_yield: Optional[float]
-    """The share of assemblies within the limits of all characteristics at once; None with fewer than two that have
-    limits, where the means lie beyond one of them, and where no point lies beyond any.
+    """Joint yield. None for fewer than two characteristics with limits, if the means lie beyond a limit, and if no
+    point lies beyond any.
     """
     joint_yield_interval: Optional[List[float]]
-    """95 % interval of that."""
+    """95 % interval of the joint yield."""
     method: str
     """`importance-sampling`."""
     reached: Optional[bool]
-    """Whether what was wanted was reached; None where nothing was."""
+    """True if the wanted accuracy was reached. None if none was wanted."""
     retried: int
-    """Points sent again: because an answer was a failure, or was not trusted."""
+    """Points sent again, because an answer was a failure or was not trusted."""
     samples: int
-    """Points that were drawn and answered."""
+    """Points that were drawn and evaluated."""
     schema: int
     """The version of this shape."""
     seed: Optional[int]
-    """The seed, where random numbers were drawn."""
+    """The seed, if random numbers were drawn."""
     sensitol: str
     """The version of the program."""
     stages: int
     """Batches in which points were sent."""
     stopped: Optional[Literal['time-limit', 'budget', 'interrupted', 'requested']]
-    """Why it ended early; None where it did not."""
+    """Reason for an early end. None if the run was completed."""
     study_sha256: str
     """SHA-256 of the study file and the files of measured values that it reads."""
     surrogate: str
-    """The method of the surrogate."""
+    """Method of the surrogate."""
     surrogate_evaluations: int
     """Evaluations of the surrogate."""
     title: Optional[str]
@@ -1258,7 +1268,7 @@ class RareResult(Result):
     wall_s: float
     """Time from the first evaluation to the result."""
     warnings: List[ReportedWarning]
-    """Where an assumption fails."""
+    """Warnings about assumptions that fail."""
 
     def __getitem__(self, name: str) -> RareCharacteristic:
         """The characteristic of this name."""
@@ -1267,23 +1277,23 @@ class RareResult(Result):
 
 
 class Reduction(Record):
-    """The standard error without the surrogate by that with it; null where that is unknown or 0."""
+    """Ratios of the standard errors without and with the surrogate; null if unknown or if the denominator is 0."""
 
     mean: Optional[float]
-    """Of the mean."""
+    """Ratio for the mean."""
     sigma: Optional[float]
-    """Of sigma."""
+    """Ratio for sigma."""
 
 
 class Remainder(Record):
     """Interactions that are not listed one by one."""
 
     count: int
-    """How many."""
+    """Number of interactions."""
     not_evaluated: int
-    """How many of them were not evaluated before the run was stopped."""
+    """Number of interactions that were not evaluated before the run was stopped."""
     share: float
-    """Their shares of the variance, added up; of those whose share is known."""
+    """Sum of their shares of the variance, as far as they are known."""
 
 
 class ReportedWarning(Record):
@@ -1292,7 +1302,7 @@ class ReportedWarning(Record):
     advice: List[Advice]
     """Remedies, the most promising first."""
     at: Optional[List[float]]
-    """Of a sweep, the values of the parameter at which it is so."""
+    """Values of the parameter of a sweep at which the warning holds."""
     characteristic: Optional[str]
     """The characteristic concerned."""
     code: str
@@ -1306,65 +1316,76 @@ class ReportedWarning(Record):
 
 
 class RequiredOf(Record):
-    """A requirement of a characteristic, as it is written."""
+    """Requirement of a characteristic, as it is written."""
 
     characteristic: str
-    """The characteristic."""
+    """Name of the characteristic."""
     required: float
-    """How much of it; of `rss` and `worst-case` at most all of the room that the limits leave, 1."""
+    """Required amount. For `rss` and `worst-case`, the fraction of the limits used, at most 1."""
     requirement: str
-    """`yield`, `cpk`, `sigma`, `rss` or `worst-case`."""
+    """Name of the requirement: `yield`, `cpk`, `sigma`, `rss` or `worst-case`."""
 
 
 class Residual(Record):
-    """How far a surrogate misses the values that it was fitted to."""
+    """Residuals of a surrogate at the points that it was fitted to."""
 
     coefficients: int
-    """Coefficients."""
+    """Number of coefficients of the fit."""
     mean_standard_error: Optional[float]
-    """The standard error of the mean from that; None where it is unknown or inputs are correlated."""
+    """Standard error of the mean that follows from the residuals; None if it is unknown or inputs are correlated."""
     points: int
-    """Points that were fitted."""
+    """Number of points of the fit."""
     residual_standard_error: Optional[float]
-    """`sqrt(sum of squares / (points - coefficients))`, in the characteristic's unit; None where there are no more
+    """`sqrt(sum of squares / (points - coefficients))`, in the characteristic's unit; None if there are no more
     points than coefficients.
     """
     sigma_standard_error: Optional[float]
-    """The same of sigma."""
+    """Standard error of sigma that follows from the residuals; None if it is unknown or inputs are correlated."""
 
 
 class RunSummary(Record):
-    """The cost of a run and the reason for its end. Every result has one."""
+    """Cost of a run and the reason for its end. Every result has one."""
 
     cached: int
     """Points whose answers were known from an earlier run."""
     evaluations: int
-    """Points sent to the model, those sent again included."""
+    """Points sent to the model, including those sent again."""
     evaluator: Optional[EvaluatorSummary]
-    """Starts, crashes and retries of the processes of an external model; None where no such model ran."""
+    """Starts, crashes and retries of the processes of an external model. None if there is no external model."""
     failed: int
-    """Points that lost at least one characteristic."""
+    """Points without a value of at least one characteristic."""
     in_model_s: float
     """Time within the model, of all threads together."""
     retried: int
-    """Points sent again: because an answer was a failure, or was not trusted."""
+    """Points sent again, because an answer was a failure or was not trusted."""
     seed: Optional[int]
-    """The seed, where random numbers were drawn."""
+    """The seed, if random numbers were drawn."""
     stages: int
     """Batches in which points were sent."""
     stopped: Optional[Literal['time-limit', 'budget', 'interrupted', 'requested']]
-    """Why it ended early; None where it did not."""
+    """Reason for an early end. None if the run was completed."""
     wall_s: float
     """Time from the first evaluation to the result."""
 
 
+class SampleTails(Record):
+    """Tails of a sample, on every side that has a limit: from 10 % to 1 ppm, or to the share of the last few points,
+    in even steps of its logarithm.
+    """
+
+    above: List[TailPoint]
+    """Tail towards the upper limit. Empty if there is none."""
+    below: List[TailPoint]
+    """Tail towards the lower limit. Empty if there is none."""
+
+
 class Sampled(Record):
-    """Standard errors of moments that were sampled, from a surrogate and not from the model."""
+    """Standard errors of moments that were sampled from a surrogate, not from the model."""
 
     kurtosis: float
     """Standard error of the kurtosis."""
     samples: int
-    """Points."""
+    """Number of points sampled."""
     sigma: float
     """Standard error of sigma."""
     skewness: float
@@ -1372,210 +1393,213 @@ class Sampled(Record):
 
 
 class SampledFactor(Record):
-    """The indices of one factor."""
+    """Sobol' indices of one factor."""
 
     dimensions: List[str]
-    """The dimension, or those that vary together."""
+    """Names of the dimension, or of those that vary together."""
     first_order: IndexEstimate
-    """The part of the variance that it explains by itself."""
+    """Part of the variance that the factor explains alone."""
     total: IndexEstimate
-    """The same with every interaction in which it has a part."""
+    """Part of the variance with all interactions of the factor."""
 
 
 class SampledModel(Record):
     """Points of the model in place of a surrogate that was not trusted."""
 
     beyond: List[Optional[float]]
-    """Its shares below the lower and above the upper limit; None without that limit."""
+    """Shares of the sample below the lower and above the upper limit. None if that limit does not exist."""
     error: Optional[str]
-    """Why not, of the first."""
+    """Error of the first of them."""
     failed: int
-    """Points at which the model has no value, beside these."""
+    """Number of further points at which the model has no value."""
     histogram: Optional[Histogram]
-    """The sample, counted in some tens of intervals."""
+    """Histogram of the sample, with some tens of intervals."""
     kurtosis: Optional[float]
-    """Fourth standardised moment, 3 for a normal."""
+    """Value for the fourth standardised moment, which is 3 for a normal."""
     left: float
-    """The share of the variance that the surrogate left unexplained at the check."""
+    """Share of the variance that the surrogate left unexplained at the check points."""
     mean: Optional[float]
-    """First moment."""
+    """Value for the expected value."""
     samples: int
-    """Points."""
+    """Number of points with a value."""
     sigma: Optional[float]
-    """Standard deviation."""
+    """Value for the standard deviation."""
     skewness: Optional[float]
-    """Third standardised moment."""
+    """Value for the third standardised moment."""
     yield_: Optional[float]
-    """The share of the sample within the limits."""
+    """Share of the sample within the limits."""
     yield_interval: Optional[List[float]]
-    """Its 95 % interval."""
+    """95 % interval of `yield`."""
 
 
 class SamplingInterval(Record):
-    """Intervals that cover the true results with a probability of `level`, as far as the size of measured samples
-    decides. Mean, sigma, skewness, kurtosis and Cpk: by the bias-corrected and accelerated bootstrap (Efron 1987)
-    of all measured dimensions on which the characteristic depends, with the surrogate kept. An interval is None
-    where the result itself is unknown, where there is no surrogate, and where some resample has none: a resample
-    without variation has no skewness, and a Pearson law fitted to it may have infinite moments. Of a simulation:
-    mean, sigma and Cpk by the variances that rows of the samples make of them among its points, as far as normal
-    distributions go; skewness and kurtosis have none. The share outside the limits: by the rows themselves. Where
-    all that varies is measured, it is the interval of a count among as many rows as the smallest sample has
-    (Clopper and Pearson 1934). Where other dimensions vary too, a row counts as far as it decides a reject, one
-    further part may lie five sigmas out, and the interval holds that of the bootstrap. Coverage of the nominal 95
-    % by the bootstrap, measured over 300 samples each of a normal law and of one with skewness 1.2: | | | normal,
-    50 values | 200 | skewed, 50 values | 200 | |---|---|--:|--:|--:|--:| | linear | mean | 92 % | 96 % | 94 % |
-    94 % | | | sigma | 93 % | 93 % | 87 % | 91 % | | quadratic | mean | 93 % | 93 % | 92 % | 91 % | | | sigma | 86
-    % | 90 % | 78 % | 84 % | Of skewness and kurtosis the intervals are too narrow by far in samples of this size:
-    a sample seldom has the rare values that decide them.
+    """Intervals that contain the true results with a probability of `level`, as far as the size of the measured
+    samples determines them. Mean, sigma, skewness, kurtosis and Cpk: by the bias-corrected and accelerated
+    bootstrap (Efron 1987) of all measured dimensions on which the characteristic depends, with the surrogate
+    kept. An interval is None if the result itself is unknown, if there is no surrogate, or if a resample has no
+    such figure. A resample without variation has no skewness, and a Pearson distribution fitted to it may have
+    infinite moments. In a simulation: mean, sigma and Cpk by the variances that the rows of the samples explain
+    among its points, with the formulas for normal distributions. Skewness and kurtosis have no interval. Share
+    outside the limits: by the rows themselves. If all inputs that vary are measured, it is the interval of a
+    count among as many rows as the smallest sample has (Clopper and Pearson 1934). If other dimensions vary too,
+    a row counts as far as it decides a reject, and one further part may lie five sigmas out. The interval then
+    contains that of the bootstrap. Coverage of the nominal 95 % by the bootstrap, measured over 300 samples each
+    of a normal distribution and of one with skewness 1.2: | | | normal, 50 values | 200 | skewed, 50 values | 200
+    | |---|---|--:|--:|--:|--:| | linear | mean | 92 % | 96 % | 94 % | 94 % | | | sigma | 93 % | 93 % | 87 % | 91
+    % | | quadratic | mean | 93 % | 93 % | 92 % | 91 % | | | sigma | 86 % | 90 % | 78 % | 84 % | For skewness and
+    kurtosis the intervals are far too narrow in samples of this size. A sample seldom has the rare values that
+    decide them.
     """
 
     cpk: Optional[List[float]]
-    """Of Cpk."""
+    """Interval of Cpk."""
     kurtosis: Optional[List[float]]
-    """Of the kurtosis."""
+    """Interval of the kurtosis."""
     level: float
-    """The probability with which each covers the truth."""
+    """Probability with which each interval contains the true value."""
     mean: Optional[List[float]]
-    """Of the mean."""
+    """Interval of the mean."""
     resamples: int
-    """How many resamples they come from; 0 where the samples were not drawn anew."""
+    """Number of resamples; 0 if the samples were not resampled."""
     samples: Dict[str, int]
-    """The measured dimensions that the characteristic depends on, with the number of values of each."""
+    """Measured dimensions that the characteristic depends on, with the number of values of each."""
     sigma: Optional[List[float]]
-    """Of sigma."""
+    """Interval of sigma."""
     skewness: Optional[List[float]]
-    """Of the skewness."""
+    """Interval of the skewness."""
     yield_: Optional[List[float]]
     """Of the share within the limits."""
 
 
 class Sensitivity(Record):
-    """The effect of one dimension on a characteristic."""
+    """Effect of one dimension on a characteristic."""
 
     curvature_share: Optional[float]
-    """Share of the variance that its curvature adds."""
+    """Share of the variance that the curvature adds."""
     dimension: str
-    """The dimension."""
+    """Name of the dimension."""
     exact: bool
-    """Whether both are exact rather than differences."""
+    """True if both derivatives are exact rather than differences."""
     first: Optional[float]
     """First derivative at the mean, in units of the characteristic per unit of the dimension."""
     first_order: Optional[EstimatedShare]
-    """First-order Sobol' index: the part of the variance that it explains by itself; None of a dimension that varies
-    together with others.
+    """First-order Sobol' index: the part of the variance that the dimension explains alone. None for a dimension
+    that varies together with others.
     """
     linear_share: Optional[float]
-    """Share of the variance that the best straight line through its own part explains."""
+    """Share of the variance that the best straight line through the univariate part explains."""
     mean_shift: Optional[float]
-    """How far its curvature moves the mean."""
+    """Mean shift by the curvature."""
     origin: Optional[Literal['exact', 'evaluated', 'screened']]
-    """The source of its shares: `exact`, `evaluated`, or `screened` where an estimate has a part in them. None where
-    it has no shares.
+    """Source of the shares: `exact`, `evaluated`, or `screened` if an estimate has a part in them. None if there are
+    no shares.
     """
     rounding: Optional[List[float]]
-    """The largest effect of a rounding error of the characteristic's own size on the two derivatives: at the steps
-    taken, over a sigma where they are exact.
+    """Largest effect on the two derivatives of a rounding error of the characteristic. It is computed for the steps
+    used, and for one sigma if the derivatives are exact.
     """
     second: Optional[float]
     """Second derivative at the mean."""
     steps: List[float]
-    """Where the model was evaluated along it, off its mean and in its unit, ascending: the nodes that answered;
-    empty where none was asked.
+    """Nodes along the dimension at which the model has a value, relative to the mean and in the unit of the
+    dimension, ascending. Empty if none was evaluated.
     """
     total: Optional[EstimatedShare]
-    """Total Sobol' index: with every interaction in which it has a part."""
+    """Total Sobol' index: the part of the variance including all interactions of the dimension."""
 
 
 class SetUp(Record):
-    """A machine and what it costs to set it up, once for all dimensions whose processes need it."""
+    """Machine with its set-up cost, which is paid once for all dimensions whose processes need it."""
 
     cost: float
-    """Its cost."""
+    """Cost of setting it up."""
     machine: str
-    """The machine."""
+    """Name of the machine."""
 
 
 class SimulatedCharacteristic(Record):
-    """A characteristic with the standard errors beside the values, as it is written."""
+    """A characteristic with standard errors next to the values, in JSON."""
 
     control: Optional[Control]
-    """The surrogate that stood beside the model; None where none was asked for, or it does not vary."""
+    """Effect of the surrogate as control variate. None if none was requested, or it does not vary."""
     cp: Optional[float]
-    """Width of the limits by six sigma; None unless there are two, and where nothing varies."""
+    """Width of the limits divided by six sigma. None unless there are two limits, and if nothing varies."""
     cpk: Optional[float]
-    """Distance of the nearer limit by three sigma."""
+    """Distance of the nearer limit from the mean, divided by three sigma."""
     description: Optional[str]
-    """A few words on its meaning."""
+    """Description in a few words."""
     distribution: Empirical
-    """The sample's own distribution."""
+    """Distribution of the sample."""
     drawing: Optional[str]
-    """The number of its drawing."""
+    """Number of the drawing."""
     error: Optional[str]
-    """Why not, of the first of them."""
+    """Error of the first point without a value."""
     failed: int
-    """Points at which it has none."""
+    """Number of points without a value."""
     feature: Optional[str]
-    """The feature of the part, or its number on the drawing."""
+    """Feature of the part, or its number on the drawing."""
     histogram: Optional[Histogram]
-    """The sample, counted in some tens of intervals."""
+    """Histogram of the sample, with some tens of intervals."""
     inspection: Optional[InspectionRisks]
-    """The risks of its inspection, among the points of the sample; None without a gauge."""
+    """Risks of the inspection, among the points of the sample. None if there is no gauge."""
     kurtosis: Optional[float]
-    """Fourth standardised moment, 3 for a normal; None where nothing varies."""
+    """Fourth standardised moment, 3 for a normal distribution. None if nothing varies."""
     lower: Optional[float]
     """Lower limit."""
     mean: Optional[float]
-    """First moment."""
+    """Mean value."""
     met: Optional[bool]
-    """Whether the interval of the yield lies above the target (true), below (false), or around it (null)."""
+    """True if the interval of the yield is above the target, false if below, null if it contains the target."""
     name: str
-    """Its name."""
+    """Name of the characteristic."""
     part: Optional[str]
-    """The part that it belongs to."""
+    """Part that it belongs to."""
     ppm_above: Optional[float]
     """Assemblies above the upper limit, per million."""
     ppm_above_interval: Optional[List[float]]
-    """The same above the upper limit."""
+    """95 % interval of the assemblies above the upper limit alone, per million, in the same form."""
     ppm_below: Optional[float]
     """Assemblies below the lower limit, per million."""
     ppm_below_interval: Optional[List[float]]
-    """The 95 % interval of the assemblies below the lower limit by themselves, per million; 0 to 0 where a proof
-    excludes them, null where it is not known.
+    """95 % interval of the assemblies below the lower limit alone, per million. 0 to 0 if a proof excludes them,
+    null if it is unknown.
     """
     range: Optional[List[float]]
-    """The least and the greatest value seen."""
+    """Least and greatest value of the sample."""
     requirements: List[Judged]
-    """Everything that is required of it, the target yield included."""
+    """Verdicts on all requirements, the target yield included."""
     revision: Optional[str]
-    """The revision of the drawing."""
+    """Revision of the drawing."""
     samples: int
-    """Points at which it has a value."""
+    """Number of points with a value."""
     sampling_interval: Optional[SamplingInterval]
-    """How far the results may be off because measured dimensions are known by samples; None where there are none."""
+    """Uncertainty of the results because measured dimensions are known by samples. None if there are no measured
+    dimensions.
+    """
     sigma: Optional[float]
     """Standard deviation."""
     skewness: Optional[float]
-    """Third standardised moment; None where nothing varies."""
+    """Third standardised moment. None if nothing varies."""
     sobol: Optional[List[SampledFactor]]
-    """Its Sobol' indices, of every input; None where none were asked for, or the sample does not tell."""
+    """Sobol' indices of every input. None if none were requested, or the sample does not determine them."""
     standard_error: StandardErrors
-    """How uncertain the sample leaves all this."""
+    """Standard errors of the values."""
     target_yield: Optional[float]
-    """The share of assemblies that must keep the limits."""
+    """Share of assemblies that must keep the limits."""
     unfinished: bool
-    """Whether the sample was stopped before all its points were drawn: no verdict follows from the others."""
+    """True if the sample was stopped before all its points were drawn. There is no verdict then."""
     unit: Optional[str]
-    """Its unit."""
+    """Unit, which is shown and never converted."""
     upper: Optional[float]
     """Upper limit."""
     verdict: Optional[Literal['met', 'missed', 'inconclusive']]
-    """The same in a word; null without a target."""
+    """Verdict on the target yield; null if there is no target."""
     yield_: Optional[float]
-    """The share of assemblies within the limits; None without any limit."""
+    """Share of assemblies within the limits. None if there are no limits."""
     yield_bounds: Optional[List[float]]
-    """If all points without a value are rejected, and if none is; null where every point has one."""
+    """Yield if all points without a value are rejected, and if none is; null if every point has one."""
     yield_interval: Optional[List[float]]
-    """95 % interval of the yield, with what measured samples leave open; null without limits."""
+    """95 % interval of the yield, with the uncertainty of measured samples; null if there are no limits."""
 
 
 class SimulationResult(Result):
@@ -1584,7 +1608,7 @@ class SimulationResult(Result):
     cached: int
     """Points whose answers were known from an earlier run."""
     characteristic_correlation: List[OutputCorrelation]
-    """How every two characteristics vary together; empty with one characteristic, and with more than 40."""
+    """Correlations of every two characteristics. Empty with one characteristic, and with more than 40."""
     characteristics: List[SimulatedCharacteristic]
     """The results of every characteristic, in the problem's order."""
     command: str
@@ -1594,49 +1618,47 @@ class SimulationResult(Result):
     dimensions: List[DimensionResult]
     """The dimensions, in the study's order."""
     evaluations: int
-    """Points sent to the model, those sent again included."""
+    """Points sent to the model, including those sent again."""
     evaluator: Optional[EvaluatorSummary]
-    """Starts, crashes and retries of the processes of an external model; None where no such model ran."""
+    """Starts, crashes and retries of the processes of an external model. None if there is no external model."""
     failed: int
-    """Points that lost at least one characteristic."""
+    """Points without a value of at least one characteristic."""
     in_model_s: float
     """Time within the model, of all threads together."""
     joint_requirement: Optional[Judged]
-    """Whether that share reaches the target for all characteristics at once; None without such a target."""
+    """Verdict on the target for the joint yield. None if there is no such target."""
     joint_yield: Optional[YieldEstimate]
-    """The share of assemblies that keep the limits of all characteristics at once; None with fewer than two that
-    have limits.
-    """
+    """Share of assemblies that keep the limits of all characteristics at once. None if fewer than two have limits."""
     method: str
     """`monte-carlo` or `quasi-monte-carlo`."""
     reached: Optional[bool]
-    """Whether what was wanted was reached; None where nothing was."""
+    """True if the requested accuracy was reached. None if none was requested."""
     retried: int
-    """Points sent again: because an answer was a failure, or was not trusted."""
+    """Points sent again, because an answer was a failure or was not trusted."""
     sampler: str
     """`random` or `sobol`."""
     samples: int
-    """Points that were answered."""
+    """Number of points that were answered."""
     schema: int
     """The version of this shape."""
     seed: Optional[int]
-    """The seed, where random numbers were drawn."""
+    """The seed, if random numbers were drawn."""
     sensitol: str
     """The version of the program."""
     stages: int
     """Batches in which points were sent."""
     stopped: Optional[Literal['time-limit', 'budget', 'interrupted', 'requested']]
-    """Why it ended early; None where it did not."""
+    """Reason for an early end. None if the run was completed."""
     study_sha256: str
     """SHA-256 of the study file and the files of measured values that it reads."""
     surrogate_evaluations: Optional[int]
-    """Evaluations of the surrogate; None where none was asked for."""
+    """Evaluations of the surrogate. None if none was requested."""
     title: Optional[str]
     """The study's title."""
     wall_s: float
     """Time from the first evaluation to the result."""
     warnings: List[ReportedWarning]
-    """Where an assumption fails."""
+    """Warnings about assumptions that fail."""
 
     def __getitem__(self, name: str) -> SimulatedCharacteristic:
         """The characteristic of this name."""
@@ -1645,56 +1667,56 @@ class SimulationResult(Result):
 
 
 class SobolIndices(Record):
-    """Where the indices of a characteristic come from, and those of factors that are no single dimension."""
+    """Source of the indices of a characteristic, and the indices of factors with several dimensions."""
 
     factors: List[FactorIndices]
-    """Dimensions that vary together: these have indices as one factor only."""
+    """Dimensions that vary together and have indices as one factor only."""
     interactions: Optional[float]
-    """1 less the sum of all first orders: interactions, and what the first orders are off."""
+    """One minus the sum of all first orders: interactions, and the errors of the first orders."""
     source: str
-    """Their source: `surface`, `exchange` of inputs of the model, or `ranks` of a sample."""
+    """Source: `surface`, `exchange` of inputs of the model, or `ranks` of a sample."""
 
 
 class StandardErrors(Record):
     """Standard errors, and the 95 % interval of the yield."""
 
     kurtosis: Optional[float]
-    """Fourth standardised moment, 3 for a normal."""
+    """Value for the fourth standardised moment, which is 3 for a normal."""
     mean: Optional[float]
-    """First moment."""
+    """Value for the expected value."""
     quantiles: Dict[str, Optional[float]]
-    """Of the quantiles."""
+    """Standard errors of the quantiles."""
     sigma: Optional[float]
-    """Standard deviation."""
+    """Value for the standard deviation."""
     skewness: Optional[float]
-    """Third standardised moment."""
+    """Value for the third standardised moment."""
     yield_: Optional[List[float]]
-    """95 % interval, as far as the number of points decides."""
+    """95 % interval of the yield, by the number of points only."""
 
 
 class SurfaceLaw(Record):
-    """The results of the surface distribution, as they are written."""
+    """Results of the surface distribution, in JSON."""
 
     branch: str
-    """`exact`, `single` or `sampled`: how it is computed."""
+    """Kind of computation of the distribution: `exact`, `single` or `sampled`."""
     counted_points: Optional[int]
-    """Points of the surface at which the law was counted, where it could not be computed or is refuted; null where
-    it was computed.
+    """Number of surface points that were counted because the distribution could not be computed or is refuted; null
+    if it was computed.
     """
     ppm_above: Optional[float]
     """Assemblies above the upper limit, per million."""
     ppm_below: Optional[float]
     """Assemblies below the lower limit, per million."""
     quantiles: Optional[Dict[str, float]]
-    """Quantiles; null where one of them is unknown."""
+    """Quantiles; null if one of them is unknown."""
     refuted: Optional[LawRefutation]
-    """The contradiction for which points took the place of the law; null where there is none."""
+    """Contradiction because of which points replace the distribution; null without one."""
     step_function: bool
-    """Whether the law is a step function, because every input that counts has measured values only."""
+    """True if the distribution is a step function, because every input with an effect has measured values only."""
     yield_: Optional[float]
-    """The share within the limits; null without any."""
+    """Share within the limits; null without limits."""
     yield_error: Optional[float]
-    """The numerical error of the share within the limits: of the law of this surface, not of the surface."""
+    """Numerical error of the share within the limits: of the distribution of this surface, not of the surface."""
 
 
 class SweepResult(Result):
@@ -1707,11 +1729,11 @@ class SweepResult(Result):
     command: str
     """The command that made the report."""
     evaluations: int
-    """Points sent to the model, those sent again included."""
+    """Points sent to the model, including those sent again."""
     evaluator: Optional[EvaluatorSummary]
-    """Starts, crashes and retries of the processes of an external model; None where no such model ran."""
+    """Starts, crashes and retries of the processes of an external model. None if there is no external model."""
     failed: int
-    """Points that lost at least one characteristic."""
+    """Points without a value of at least one characteristic."""
     in_model_s: float
     """Time within the model, of all threads together."""
     method: Optional[str]
@@ -1719,17 +1741,17 @@ class SweepResult(Result):
     parameter: Parameter
     """The swept parameter."""
     retried: int
-    """Points sent again: because an answer was a failure, or was not trusted."""
+    """Points sent again, because an answer was a failure or was not trusted."""
     schema: int
     """The version of this shape."""
     seed: Optional[int]
-    """The seed, where random numbers were drawn."""
+    """The seed, if random numbers were drawn."""
     sensitol: str
     """The version of the program."""
     stages: int
     """Batches in which points were sent."""
     stopped: Optional[Literal['time-limit', 'budget', 'interrupted', 'requested']]
-    """Why it ended early; None where it did not."""
+    """Reason for an early end. None if the run was completed."""
     study_sha256: str
     """SHA-256 of the study file and the files of measured values that it reads."""
     title: Optional[str]
@@ -1737,7 +1759,7 @@ class SweepResult(Result):
     wall_s: float
     """Time from the first evaluation to the result."""
     warnings: List[ReportedWarning]
-    """Where an assumption fails, each once, with the values at which it does."""
+    """Warnings, each once, with the values of the parameter at which an assumption fails."""
 
     def __getitem__(self, name: str) -> SweptCharacteristic:
         """The characteristic of this name."""
@@ -1751,42 +1773,42 @@ class SweptCharacteristic(Record):
     lower: Optional[float]
     """Lower limit."""
     name: str
-    """Its name."""
+    """Name of the characteristic."""
     points: List[SweptPoint]
     """In the order of the parameter's values."""
     unit: Optional[str]
-    """Its unit."""
+    """Unit of the characteristic."""
     upper: Optional[float]
     """Upper limit."""
 
 
 class SweptPoint(Record):
-    """One characteristic at one value of the parameter."""
+    """One characteristic at one value of the characteristic."""
 
     at: float
     """The parameter."""
     error_estimate: Optional[ErrorEstimate]
-    """How far all that may be off, by what the method did not see; null without moments."""
+    """Estimated errors of the figures; null without moments."""
     kurtosis: Optional[float]
     """Fourth standardised moment."""
     mean: Optional[float]
     """First moment."""
     met: Optional[bool]
-    """Whether the target yield is met; null where that is not known, and without one."""
+    """True if the target yield is met; null if that is unknown, and without a target."""
     nominal: Optional[float]
-    """With every dimension at its nominal value."""
+    """Value with every dimension at its nominal value."""
     ppm_above: Optional[float]
     """Rejected above the upper limit."""
     ppm_above_interval: Optional[List[float]]
-    """The same above the upper limit."""
+    """95 % interval of the assemblies above the upper limit alone, per million, in the same form."""
     ppm_below: Optional[float]
     """Rejected below the lower limit, in parts per million."""
     ppm_below_interval: Optional[List[float]]
-    """The 95 % interval of the assemblies below the lower limit by themselves, per million; 0 to 0 where a proof
-    excludes them, null where it is not known.
+    """95 % interval of the assemblies below the lower limit alone, per million. 0 to 0 if a proof excludes them,
+    null if it is unknown.
     """
     quantiles: Dict[str, Optional[float]]
-    """By the law of the surface where there is one, by the Pearson fit elsewhere."""
+    """Quantiles of the surface distribution if there is one, else of the Pearson fit."""
     requirements: List[Judged]
     """Everything that is required of it, the target yield included."""
     rss: Optional[float]
@@ -1802,133 +1824,122 @@ class SweptPoint(Record):
     yield_interval: Optional[List[float]]
     """Within which that is known, measured samples included; null where it is not known."""
     yield_source: Optional[Literal['proof', 'samples', 'surface-law', 'pearson']]
-    """Its source; null without limits."""
+    """Source of the yield; null without limits."""
 
 
 class TailPoint(Record):
     """A value of the characteristic, and the share of the assemblies at or beyond it."""
 
     at: float
-    """The value."""
+    """Value of the characteristic."""
     error: Optional[float]
-    """Its estimated error; null where one randomisation has all values, so that none differs from it."""
+    """Estimated error of the share; null if all values are of one randomisation, so that there is no scatter."""
     share: float
-    """The share."""
-
-
-class Tails(Record):
-    """The tails of a sample, of every side that has a limit: from 10 % to 1 ppm, or to the share of the last few
-    points, in even steps of its logarithm.
-    """
-
-    above: List[TailPoint]
-    """Towards the upper limit; empty without one."""
-    below: List[TailPoint]
-    """Towards the lower limit; empty without one."""
+    """Share of the assemblies at or beyond the value."""
 
 
 class VarianceShare(Record):
-    """The part of the variance that a dimension explains, by the model itself."""
+    """Part of the variance that a dimension explains, by the model itself."""
 
     dimension: str
-    """The dimension."""
+    """Name of the dimension."""
     first: Verified
-    """By itself."""
+    """Share of the dimension alone."""
     total: Verified
-    """With all interactions in which it has a part."""
+    """Share with all interactions of the dimension."""
 
 
 class Verification(Record):
-    """A verification as it is written."""
+    """A verification in JSON."""
 
     degree: Optional[int]
-    """The degree of the polynomial that the formula is; null where it was not verified so."""
+    """Degree of the polynomial that the formula is; null for other kinds."""
     difference: Optional[List[Verified]]
-    """How much more of the model than of its surface lies within the limits, below and above them; None without a
+    """Difference of the shares of model and surface within the limits, below and above them. None if there is no
     sample of both.
     """
     figures: VerifiedFigures
-    """By the model itself; null without a sample of it."""
+    """Figures of the model itself; null without a sample of it."""
     kind: str
     """`sample`, `checks` or `exact`."""
     left: Optional[float]
-    """The share of the variance that the surface leaves unexplained."""
+    """Share of the variance that the surface leaves unexplained."""
     points: int
-    """Points of the model that were evaluated for it."""
+    """Evaluated points of the model."""
     replaced: bool
-    """Whether figures of the characteristic are the model's, in place of the surface's."""
+    """True if figures of the characteristic are the model's, in place of the surface's."""
     shares: Optional[List[VarianceShare]]
-    """Shares of the variance from the model, where the surface is not trusted."""
+    """Shares of the variance from the model, if the surface is not trusted."""
     switches: Optional[List[FoundSwitch]]
-    """The switches that are met; None where the model does not tell where it changes its form."""
-    tails: Optional[Tails]
-    """The tails of the sample towards the limits; None without either."""
+    """Switches that were met. None if the model does not report where it changes its form."""
+    tails: Optional[SampleTails]
+    """Tails of the sample towards the limits. None if there are no limits."""
     unseen: Optional[float]
-    """The share of the assemblies that may do anything else where all points agree, at 95 %; None where points are
-    many.
+    """Greatest share of the assemblies that may behave differently although all points agree, at 95 %. None for a
+    sample, which has many points.
     """
     valid_share: Optional[Verified]
-    """The share of the assemblies that have a value; None where points do not tell."""
+    """Share of the assemblies that have a value. None if there is no sample."""
 
 
 class Verified(Record):
-    """A figure as the model itself gives it, and its error: three of it reach the truth whenever three standard
-    errors do.
+    """A figure by the model itself, with its error. The true value lies within three of these errors whenever it
+    lies within three standard errors.
     """
 
     error: float
-    """Its estimated error."""
+    """Estimated error of the value."""
     value: float
     """The value."""
 
 
 class VerifiedFigures(Record):
-    """The figures of a verification."""
+    """Figures of a verification."""
 
     above: Optional[Verified]
-    """Above the upper limit."""
+    """Value above the upper limit."""
     below: Optional[Verified]
-    """Below the lower limit."""
+    """Value below the lower limit."""
     kurtosis: Optional[Verified]
-    """Fourth standardised moment, 3 for a normal."""
+    """Value for the fourth standardised moment, which is 3 for a normal."""
     mean: Optional[Verified]
-    """First moment."""
+    """Value for the expected value."""
     sigma: Optional[Verified]
-    """Standard deviation."""
+    """Value for the standard deviation."""
     skewness: Optional[Verified]
-    """Third standardised moment."""
+    """Value for the third standardised moment."""
     yield_: Optional[Verified]
-    """The share within the limits; by the surface with the error that checks give it, where there is no sample."""
+    """Share within the limits: by the sample, or by the surface with the error from check points."""
 
 
 class WorstCase(Record):
-    """Intervals that no assembly leaves, as they are written."""
+    """Intervals that no assembly leaves, in JSON."""
 
     at: Optional[ExtremesAt]
-    """Where the extremes are: every dimension that matters by name."""
+    """Points at which the extremes are: every dimension that matters by name."""
     bounds: Optional[List[float]]
-    """An interval that no assembly leaves, by interval arithmetic; of formulas only."""
+    """Interval that no assembly leaves, by interval arithmetic. Only for formulas."""
     bounds_reached: Optional[bool]
-    """Whether values next to both bounds exist."""
+    """True if values next to both bounds exist."""
     evaluations: Optional[int]
     """Evaluations of the search; a point that serves several characteristics counts for each."""
     extremes: Optional[List[float]]
-    """Of the model itself, where they were searched."""
+    """Interval of the model itself, if it was searched."""
     linear: Optional[List[float]]
-    """Of the linear model."""
+    """Worst case of the linear model, an interval."""
     proven: Optional[bool]
-    """Whether it is proven that no assembly lies beyond the extremes."""
+    """True if it is proven that no assembly lies beyond the extremes."""
 
 
 class YieldEstimate(Record):
-    """The share of assemblies that keep the limits."""
+    """Estimate of the share of assemblies that keep the limits."""
 
     bounds: List[float]
-    """If every point without a value is rejected, and if none is."""
+    """Share if every point without a value is rejected, and if none is."""
     interval: List[float]
-    """95 % interval of that, as far as the number of points decides."""
+    """95 % interval of the share, by the number of points only."""
     value: float
-    """Among the points that have a value."""
+    """Share among the points that have a value."""
 
 
 #: The classes of the objects within each.
@@ -1957,6 +1968,7 @@ _INNER: Dict[str, Dict[str, type]] = {
     "RareResult": {"characteristics": RareCharacteristic, "correlation": Pair, "dimensions": DimensionResult, "evaluator": EvaluatorSummary, "joint_requirement": Judged, "warnings": ReportedWarning},
     "ReportedWarning": {"advice": Advice},
     "RunSummary": {"evaluator": EvaluatorSummary},
+    "SampleTails": {"above": TailPoint, "below": TailPoint},
     "SampledFactor": {"first_order": IndexEstimate, "total": IndexEstimate},
     "SampledModel": {"histogram": Histogram},
     "Sensitivity": {"first_order": EstimatedShare, "total": EstimatedShare},
@@ -1967,9 +1979,8 @@ _INNER: Dict[str, Dict[str, type]] = {
     "SweepResult": {"characteristics": SweptCharacteristic, "evaluator": EvaluatorSummary, "parameter": Parameter, "warnings": ReportedWarning},
     "SweptCharacteristic": {"points": SweptPoint},
     "SweptPoint": {"error_estimate": ErrorEstimate, "requirements": Judged},
-    "Tails": {"above": TailPoint, "below": TailPoint},
     "VarianceShare": {"first": Verified, "total": Verified},
-    "Verification": {"difference": Verified, "figures": VerifiedFigures, "shares": VarianceShare, "switches": FoundSwitch, "tails": Tails, "valid_share": Verified},
+    "Verification": {"difference": Verified, "figures": VerifiedFigures, "shares": VarianceShare, "switches": FoundSwitch, "tails": SampleTails, "valid_share": Verified},
     "VerifiedFigures": {"above": Verified, "below": Verified, "kurtosis": Verified, "mean": Verified, "sigma": Verified, "skewness": Verified, "yield_": Verified},
     "WorstCase": {"at": ExtremesAt},
 }
