@@ -52,6 +52,7 @@ pub mod prelude {
 pub mod prelude {
     /// Conversion into an iterator, under the name of rayon.
     pub trait IntoParallelIterator: IntoIterator + Sized {
+        /// Iterator over the items.
         fn into_par_iter(self) -> Self::IntoIter {
             self.into_iter()
         }
@@ -61,9 +62,13 @@ pub mod prelude {
 
     /// Iterators over a slice, under the names of rayon.
     pub trait ParallelSlice<T> {
+        /// Iterator over references.
         fn par_iter(&self) -> std::slice::Iter<'_, T>;
+        /// Iterator over mutable references.
         fn par_iter_mut(&mut self) -> std::slice::IterMut<'_, T>;
+        /// Iterator over chunks of this size.
         fn par_chunks(&self, size: usize) -> std::slice::Chunks<'_, T>;
+        /// Iterator over mutable chunks of this size.
         fn par_chunks_mut(&mut self, size: usize) -> std::slice::ChunksMut<'_, T>;
     }
 
@@ -87,6 +92,7 @@ pub mod prelude {
 
     /// Further adapters of iterators, under the names of rayon.
     pub trait ParallelIterator: Iterator + Sized {
+        /// Iterator over the items of the iterators that a function returns.
         fn flat_map_iter<U: IntoIterator, F: FnMut(Self::Item) -> U>(self, each: F) -> std::iter::FlatMap<Self, U, F> {
             self.flat_map(each)
         }
