@@ -23,11 +23,11 @@ COMMANDS = [
 VARYING = [
     (re.compile(r'"(wall_s|in_model_s|engine_s|cpu_s|seconds|time_s)": *[-0-9.e+]+'), r'"\1": 0'),
     (re.compile(r'"sensitol": *"[^"]*"'), '"sensitol": ""'),
-    (re.compile(r"sensitol \d+\.\d+\.\d+"), "sensitol"),
-    (re.compile(r"\b[0-9.]+ (ms|s|us|µs|min)\b"), "TIME"),
+    (re.compile(r"sensitol \d+\.\d+\.\d+|(?<=<dt>sensitol</dt><dd>)[0-9.]+"), "sensitol"),
+    (re.compile(r"\b[0-9][-0-9.e]* (ms|s|us|µs|min)\b"), "TIME"),
     # Comments of a page's scripts, and the hash of a script that changes with them.
     (re.compile(r"sha256-[A-Za-z0-9+/=]+"), "sha256"),
-    (re.compile(r"^\s*//.*$", re.M), ""),
+    (re.compile(r"^(<script>)?\s*//.*$", re.M), ""),
 ]
 
 
