@@ -26,7 +26,7 @@ IMAGES = {".png", ".svg"}
 # Languages that mdBook highlights, by the ending of a file; others are shown plainly.
 LANGUAGES = {".toml": "toml", ".py": "python", ".json": "json", ".yaml": "yaml", ".c": "c", ".csv": "text", ".m": "text"}
 # Folders of the source code.
-SOURCES = ("src", "docs/book", "tests", "fuzz", "web", "commands", ".ci", "python/src", "python/tests", "python/tools")
+SOURCES = ("src", "crates", "docs/book", "tests", "fuzz", "web", "commands", ".ci", "python/src", "python/tests", "python/tools")
 
 
 class Broken(Exception):
