@@ -140,7 +140,7 @@ impl Verified {
     /// use sensitol::analysis::Verified;
     /// assert_eq!(Verified { value: 1.0, error: 3.0 }.error_of(5.0), 5.0);
     /// ```
-    pub(crate) fn error_of(&self, value: f64) -> f64 {
+    pub fn error_of(&self, value: f64) -> f64 {
         libm::hypot(value - self.value, self.error)
     }
 }

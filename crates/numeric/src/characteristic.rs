@@ -10,10 +10,10 @@ use crate::requirement::{Requirement, RequirementError};
 /// Key characteristic: its name, its unit, and the limits it should keep.
 ///
 /// ```
-/// use crate::characteristic::{Characteristic, SpecLimits};
+/// use sensitol_numeric::characteristic::{Characteristic, SpecLimits};
 /// let gap = Characteristic::new("gap").with_unit("mm").with_limits(SpecLimits::new(Some(5.0), Some(7.0))?);
 /// assert_eq!((gap.limits().lower(), gap.limits().upper()), (Some(5.0), Some(7.0)));
-/// # Ok::<(), crate::characteristic::LimitsError>(())
+/// # Ok::<(), sensitol_numeric::characteristic::LimitsError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -92,8 +92,8 @@ impl Characteristic {
     /// If the number is impossible, or the requirement needs limits that are missing.
     ///
     /// ```
-    /// use crate::characteristic::{Characteristic, SpecLimits};
-    /// use crate::requirement::Requirement;
+    /// use sensitol_numeric::characteristic::{Characteristic, SpecLimits};
+    /// use sensitol_numeric::requirement::Requirement;
     /// let gap = Characteristic::new("gap").with_limits(SpecLimits::new(Some(5.0), Some(7.0))?);
     /// let gap = gap.with_target_yield(0.99)?.with_requirement(Requirement::Cpk(1.33))?;
     /// assert_eq!(gap.requirements(), [Requirement::Yield(0.99), Requirement::Cpk(1.33)]);

@@ -12,12 +12,12 @@ const SIGMAS_OF_AN_UNBOUNDED_DIMENSION: f64 = 3.0;
 /// One input of the assembly function: a name, a nominal value, and a distribution.
 ///
 /// ```
-/// use crate::dimension::Dimension;
+/// use sensitol_numeric::dimension::Dimension;
 /// let a = Dimension::normal("a", 10.0, 0.3)?.with_unit("mm");
 /// assert_eq!((a.mean(), a.sigma(), a.half_band()), (10.0, 0.3 / 3.0, 0.3));
 /// let b = Dimension::normal_between("b", 30.0, [-0.1, 0.3])?; // the band's middle is the mean
 /// assert!((b.mean() - 30.1).abs() < 1e-12 && (b.half_band() - 0.2).abs() < 1e-15);
-/// # Ok::<(), crate::dimension::DimensionError>(())
+/// # Ok::<(), sensitol_numeric::dimension::DimensionError>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct Dimension {
@@ -198,12 +198,12 @@ impl Dimension {
     /// If the factor is not a number above 0, or the distribution cannot have such a sigma.
     ///
     /// ```
-    /// use crate::dimension::Dimension;
+    /// use sensitol_numeric::dimension::Dimension;
     /// let b = Dimension::normal_between("b", 30.0, [-0.25, 0.75])?;
     /// let half = b.scaled(0.5).expect("a normal dimension scales")?;
     /// assert_eq!(half.tolerance(), Some([0.0, 0.5]));
     /// assert!((half.mean() - 30.25).abs() < 1e-14 && (half.sigma() - 0.25 / 3.0).abs() < 1e-15);
-    /// # Ok::<(), crate::dimension::DimensionError>(())
+    /// # Ok::<(), sensitol_numeric::dimension::DimensionError>(())
     /// ```
     pub fn scaled(&self, factor: f64) -> Option<Result<Self, DimensionError>> {
         let distribution = self.distribution()?;
@@ -251,12 +251,12 @@ impl Dimension {
     /// If the nominal is not a finite number, or so large that the tolerance vanishes beside it.
     ///
     /// ```
-    /// use crate::dimension::Dimension;
+    /// use sensitol_numeric::dimension::Dimension;
     /// let b = Dimension::normal_between("b", 30.0, [-0.1, 0.3])?;
     /// let moved = b.moved(50.0).expect("a normal dimension moves")?;
     /// assert_eq!((moved.nominal(), moved.tolerance()), (50.0, Some([-0.1, 0.3])));
     /// assert!((moved.mean() - 50.1).abs() < 1e-12);
-    /// # Ok::<(), crate::dimension::DimensionError>(())
+    /// # Ok::<(), sensitol_numeric::dimension::DimensionError>(())
     /// ```
     pub fn moved(&self, nominal: f64) -> Option<Result<Self, DimensionError>> {
         let by = nominal - self.nominal;
@@ -283,7 +283,7 @@ impl Dimension {
     /// middles then lie within one circle or sphere, rather than each within its own band.
     ///
     /// ```
-    /// use crate::dimension::Dimension;
+    /// use sensitol_numeric::dimension::Dimension;
     /// let [x, y] = ["x", "y"].map(|name| Dimension::normal(name, 0.0, 0.1).unwrap().within_zone("hole"));
     /// // The worst case of 3 x + 4 y is then 0.1 hypot(3, 4), not 0.1 (3 + 4).
     /// assert_eq!((x.zone(), y.zone()), (Some("hole"), Some("hole")));

@@ -8,8 +8,8 @@ use crate::power::Power;
 /// about the true one, with sigma `gauge`.
 ///
 /// ```
-/// use crate::inspection::{Guard, Inspection};
-/// use crate::characteristic::{Characteristic, SpecLimits};
+/// use sensitol_numeric::inspection::{Guard, Inspection};
+/// use sensitol_numeric::characteristic::{Characteristic, SpecLimits};
 /// let inspection = Inspection::new(0.015)?.with_guard(Guard::Width(0.01))?;
 /// let gap = Characteristic::new("gap").with_limits(SpecLimits::new(Some(9.95), Some(10.05))?).with_inspection(inspection)?;
 /// assert_eq!(gap.inspection().unwrap().gauge(), 0.015);

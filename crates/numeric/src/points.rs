@@ -3,7 +3,7 @@
 /// Set of `R` points in `N` dimensions, stored one column per dimension.
 ///
 /// ```
-/// use crate::points::Points;
+/// use sensitol_numeric::points::Points;
 /// let points = Points::from_rows(&[[10.0, 30.0], [10.5, 30.0], [10.0, 30.0]]);
 /// assert_eq!(points.column(0), [10.0, 10.5, 10.0]);
 /// assert_eq!(points.row(1), [10.5, 30.0]);

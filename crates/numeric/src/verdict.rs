@@ -58,8 +58,8 @@ impl Verdict {
     /// Verdict from an interval, inconclusive without one.
     ///
     /// ```
-    /// use crate::requirement::Requirement;
-    /// use crate::verdict::Verdict;
+    /// use sensitol_numeric::requirement::Requirement;
+    /// use sensitol_numeric::verdict::Verdict;
     /// let yield_ = Requirement::Yield(0.99);
     /// assert_eq!(Verdict::of(yield_, Some([0.991, 0.999])), Verdict::Met);
     /// assert_eq!(Verdict::of(yield_, Some([0.98, 0.985])), Verdict::Missed);
@@ -224,14 +224,14 @@ pub fn losing([low, high]: [f64; 2], lost: Option<f64>) -> [f64; 2] {
 /// `cpk(sigma - 2 e)`. The two are independent. Returns None if an error is unknown, or there is no Cpk.
 ///
 /// ```
-/// use crate::characteristic::SpecLimits;
-/// use crate::verdict::of_cpk;
+/// use sensitol_numeric::characteristic::SpecLimits;
+/// use sensitol_numeric::verdict::of_cpk;
 /// let limits = SpecLimits::new(Some(-4.0), Some(4.0))?;
 /// // 4/3, and 2 x 0.03/3 by the mean alone.
 /// let [low, high] = of_cpk((0.0, Some(0.03)), (1.0, Some(0.0)), limits).unwrap();
 /// assert!((low - 3.94 / 3.0).abs() < 1e-12 && (high - 4.06 / 3.0).abs() < 1e-12);
 /// assert_eq!(of_cpk((0.0, None), (1.0, Some(0.0)), limits), None);
-/// # Ok::<(), crate::characteristic::LimitsError>(())
+/// # Ok::<(), sensitol_numeric::characteristic::LimitsError>(())
 /// ```
 pub fn of_cpk(
     (mean, mean_error): (f64, Option<f64>),

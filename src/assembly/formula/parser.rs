@@ -126,7 +126,7 @@ impl Formula {
 /// True if formulas use this name for a function or constant.
 ///
 /// ```
-/// use sensitol::assembly::formula::parser::is_reserved;
+/// use sensitol::assembly::formula::is_reserved;
 /// assert!(is_reserved("pi") && is_reserved("hypot") && !is_reserved("e") && !is_reserved("g"));
 /// ```
 pub fn is_reserved(name: &str) -> bool {

@@ -111,9 +111,9 @@ impl Capability {
     /// Source: ISO 22514-2 (2017), where the percentile forms are Pp and Ppk by its method M2.
     ///
     /// ```
-    /// use crate::capability::{Capability, Law};
-    /// use crate::characteristic::SpecLimits;
-    /// use crate::moments::Moments;
+    /// use sensitol_numeric::capability::{Capability, Law};
+    /// use sensitol_numeric::characteristic::SpecLimits;
+    /// use sensitol_numeric::moments::Moments;
     /// let moments = Moments::new(6.0, 0.25, 0.0, 0.0);
     /// let limits = SpecLimits::new(Some(5.0), Some(7.0))?;
     /// let capability = Capability::of(&Law::fit(&moments)?, 6.0, 0.25, limits);

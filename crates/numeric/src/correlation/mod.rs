@@ -66,8 +66,8 @@ pub struct Pair {
 /// Correlation of some of the dimensions. The others are independent of them and of each other.
 ///
 /// ```
-/// use crate::correlation::{Correlation, Pair};
-/// use crate::dimension::Dimension;
+/// use sensitol_numeric::correlation::{Correlation, Pair};
+/// use sensitol_numeric::dimension::Dimension;
 /// let dimensions = [Dimension::normal("a", 10.0, 0.3)?, Dimension::uniform("b", 5.0, 0.1)?];
 /// let pair = Pair { between: ["a".into(), "b".into()], value: 0.4 };
 /// let correlation = Correlation::new(&dimensions, &[pair])?;

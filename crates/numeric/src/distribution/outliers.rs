@@ -20,7 +20,7 @@ const LEAST: usize = 7;
 /// distribution does not have. They are flagged too, and a person must judge them.
 ///
 /// ```
-/// use crate::distribution::outliers::outliers;
+/// use sensitol_numeric::distribution::outliers::outliers;
 /// let mut values: Vec<f64> = (0..40).map(|i| 10.0 + 0.01 * f64::from(i % 7)).collect();
 /// values[3] = 10.9; // a slip of the pen
 /// assert_eq!(outliers(&values), [3]);

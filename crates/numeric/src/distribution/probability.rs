@@ -13,13 +13,13 @@ use crate::distribution::standard_normal;
 /// 1e-12 to 1e-12 sigma.
 ///
 /// ```
-/// use crate::distribution::{Distribution, Normal};
+/// use sensitol_numeric::distribution::{Distribution, Normal};
 /// let bore = Normal::new(25.0, 0.01)?;
 /// let law = bore.probability().expect("a normal distribution is known whole");
 /// assert_eq!(law.cdf(25.0), 0.5);
 /// assert!((law.sf(25.03) - 1.349_898_031_630_095e-3).abs() < 1e-15);
 /// assert!((law.upper_quantile(1e-9) - 25.0 - 0.059_978_070_150_076_87).abs() < 1e-14);
-/// # Ok::<(), crate::distribution::DistributionError>(())
+/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
 /// ```
 pub trait Probability: Send + Sync {
     /// Density per unit of `x`. Returns None if there is none, as for measured values, which are atoms.

@@ -126,12 +126,12 @@ impl Rule {
     /// Moments 2 to 8 alone determine rules of at most five nodes. Of five nodes one is the mean, and the rule is exact up to degree 8.
     ///
     /// ```
-    /// use crate::distribution::{Distribution, Exponential};
-    /// use crate::distribution::rule::Rule;
+    /// use sensitol_numeric::distribution::{Distribution, Exponential};
+    /// use sensitol_numeric::distribution::rule::Rule;
     /// // E u^5 = 44 of an exponential distribution, by three nodes.
     /// let rule = Rule::of(&Exponential::new(0.0, 1.0)?, 3);
     /// assert!((rule.mean(|u| u.powi(5)) - 44.0).abs() < 1e-12);
-    /// # Ok::<(), crate::distribution::DistributionError>(())
+    /// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
     /// ```
     pub fn of(distribution: &dyn Distribution, nodes: usize) -> Self {
         let jacobi = distribution.jacobi(nodes);
@@ -162,10 +162,10 @@ impl Rule {
     /// Expectation `E[f(u)]` by this rule.
     ///
     /// ```
-    /// use crate::distribution::{Distribution, Normal};
+    /// use sensitol_numeric::distribution::{Distribution, Normal};
     /// let rule = Normal::new(0.0, 1.0)?.jacobi(5).gauss();
     /// assert!((rule.mean(|u| u.powi(8)) - 105.0).abs() < 1e-11);
-    /// # Ok::<(), crate::distribution::DistributionError>(())
+    /// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
     /// ```
     pub fn mean(&self, f: impl Fn(f64) -> f64) -> f64 {
         self.nodes.iter().zip(&self.weights).map(|(&u, &weight)| weight * f(u)).sum()

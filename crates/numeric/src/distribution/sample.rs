@@ -49,11 +49,11 @@ impl Sample {
     /// Returns an error if a value is not finite, or if there are not two different ones.
     ///
     /// ```
-    /// use crate::distribution::sample::Sample;
+    /// use sensitol_numeric::distribution::sample::Sample;
     /// let sample = Sample::new(&[2.0, 1.0, 2.0, 3.0])?;
     /// assert_eq!((sample.len(), sample.values(), sample.counts()), (4, &[1.0, 2.0, 3.0][..], &[1, 2, 1][..]));
     /// assert_eq!((sample.mean(), sample.sigma()), (2.0, 0.5f64.sqrt()));
-    /// # Ok::<(), crate::distribution::DistributionError>(())
+    /// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
     /// ```
     pub fn new(measured: &[f64]) -> Result<Self, DistributionError> {
         for &value in measured {

@@ -43,7 +43,7 @@ impl StandardMoments {
     /// The standard deviation is divided out one power at a time, so that no power of it overflows or underflows.
     ///
     /// ```
-    /// use crate::distribution::StandardMoments;
+    /// use sensitol_numeric::distribution::StandardMoments;
     /// // A normal distribution with sigma 2.
     /// let m = StandardMoments::from_central(&[4.0, 0.0, 48.0, 0.0, 960.0, 0.0, 26880.0]);
     /// assert_eq!(m, StandardMoments::NORMAL);
@@ -84,7 +84,7 @@ impl StandardMoments {
     /// digits of its difference from the normal one.
     ///
     /// ```
-    /// use crate::distribution::StandardMoments;
+    /// use sensitol_numeric::distribution::StandardMoments;
     /// // Exponential: k_n = (n - 1)!
     /// let m = StandardMoments::from_cumulants([2.0, 6.0, 24.0, 120.0, 720.0, 5040.0]);
     /// assert_eq!((m.kurtosis(), m.m5, m.m8), (9.0, 44.0, 14833.0));

@@ -42,7 +42,7 @@ const LARGEST: f64 = 500.0;
 /// If `class` is not a tolerance class, or the standard has no value for it at this size. The error lists the existing ones.
 ///
 /// ```
-/// use crate::fits::deviations;
+/// use sensitol_numeric::fits::deviations;
 /// assert_eq!(deviations(25.0, "H7"), Ok([0.0, 0.021]));
 /// assert_eq!(deviations(25.0, "g6"), Ok([-0.020, -0.007]));
 /// assert_eq!(deviations(40.0, "N7"), Ok([-0.033, -0.008]));

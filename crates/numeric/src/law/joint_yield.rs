@@ -23,11 +23,11 @@ use crate::parallel::prelude::*;
 ///
 /// ```
 /// use std::sync::Arc;
-/// use crate::characteristic::SpecLimits;
-/// use crate::distribution::{Distribution, Normal};
-/// use crate::law::{LawOptions, SurfaceLaw, joint_yield};
-/// use crate::moments::Interactions;
-/// use crate::surrogate::{Surrogate, Univariate};
+/// use sensitol_numeric::characteristic::SpecLimits;
+/// use sensitol_numeric::distribution::{Distribution, Normal};
+/// use sensitol_numeric::law::{LawOptions, SurfaceLaw, joint_yield};
+/// use sensitol_numeric::moments::Interactions;
+/// use sensitol_numeric::surrogate::{Surrogate, Univariate};
 /// let inputs: Vec<Arc<dyn Distribution>> = vec![Arc::new(Normal::new(0.0, 1.0)?), Arc::new(Normal::new(0.0, 1.0)?)];
 /// let law = |slopes: [f64; 2]| {
 ///     let parts = slopes.map(|slope| Some(Univariate::of_coefficients(&[slope]))).to_vec();

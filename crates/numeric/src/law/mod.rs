@@ -216,10 +216,10 @@ impl Default for LawOptions {
 ///
 /// ```
 /// use std::sync::Arc;
-/// use crate::distribution::{Distribution, Uniform};
-/// use crate::law::{LawOptions, SurfaceLaw};
-/// use crate::moments::Interactions;
-/// use crate::surrogate::{Surrogate, Univariate};
+/// use sensitol_numeric::distribution::{Distribution, Uniform};
+/// use sensitol_numeric::law::{LawOptions, SurfaceLaw};
+/// use sensitol_numeric::moments::Interactions;
+/// use sensitol_numeric::surrogate::{Surrogate, Univariate};
 /// // Three uniform inputs: the probability beyond a limit d below the greatest value sqrt(27) is d^3/(6 (2 sqrt 3)^3).
 /// let uniform: Arc<dyn Distribution> = Arc::new(Uniform::new(-1.0, 1.0)?);
 /// let parts = vec![Some(Univariate::of_coefficients(&[1.0])); 3];

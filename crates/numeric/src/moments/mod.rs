@@ -188,8 +188,8 @@ impl Contributions {
 /// and parabola of an input with only two values cancel in this way.
 ///
 /// ```
-/// use crate::distribution::StandardMoments;
-/// use crate::moments::{Interactions, Term, contributions};
+/// use sensitol_numeric::distribution::StandardMoments;
+/// use sensitol_numeric::moments::{Interactions, Term, contributions};
 /// // y = u1 u2 of two normal inputs: kurtosis 9.
 /// let normal = &StandardMoments::NORMAL;
 /// let nothing = Term::Quadratic { linear: 0.0, curvature: 0.0, moments: normal };
@@ -246,8 +246,8 @@ fn unit_of(terms: &[Term<'_>], interactions: &Interactions) -> Option<(f64, f64)
 /// `b_j = sd_j dF/dx_j`, `a_j = sd_j^2/2 d2F/dx_j^2`, `A_jk = sd_j sd_k d2F/dx_j dx_k`, and `c = F + sum_j a_j` is the mean.
 ///
 /// ```
-/// use crate::distribution::StandardMoments;
-/// use crate::moments::{Interactions, of_quadratic};
+/// use sensitol_numeric::distribution::StandardMoments;
+/// use sensitol_numeric::moments::{Interactions, of_quadratic};
 /// // u^2 - 1 of a normal input is chi-squared with one degree of freedom: skewness sqrt 8, kurtosis 15.
 /// let moments = of_quadratic(0.0, &[0.0], &[1.0], &Interactions::none(1), &[StandardMoments::NORMAL]);
 /// assert!((moments.skewness().unwrap() - 8f64.sqrt()).abs() < 1e-14);

@@ -65,7 +65,7 @@ impl Tables<'_> {
     /// Moments of the sum, by its uncorrelated parts.
     ///
     /// ```
-    /// use crate::moments::Tables;
+    /// use sensitol_numeric::moments::Tables;
     /// // The product of two coins that show -1 or 1: mean 0, and always of size 1.
     /// let coin = [0.5, 0.5];
     /// let product = Tables {

@@ -14,7 +14,7 @@ impl TwoPoint {
     /// Distribution with the values `(s ± sqrt(s^2 + 4)) / 2`: their product is -1, and the mean fixes the probabilities.
     ///
     /// ```
-    /// use crate::pearson::TwoPoint;
+    /// use sensitol_numeric::pearson::TwoPoint;
     /// let coin = TwoPoint::with_skewness(0.0);
     /// assert_eq!((coin.values, coin.probabilities), ([-1.0, 1.0], [0.5, 0.5]));
     /// ```

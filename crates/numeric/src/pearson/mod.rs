@@ -44,14 +44,14 @@ use standard::Standard;
 /// Member of the Pearson system.
 ///
 /// ```
-/// use crate::pearson::{Pearson, PearsonType};
+/// use sensitol_numeric::pearson::{Pearson, PearsonType};
 /// // Skewness 2, kurtosis 9, mean and sigma 1: the exponential distribution.
 /// let law = Pearson::new(1.0, 1.0, 2.0, 9.0)?;
 /// assert_eq!(law.kind(), PearsonType::III);
 /// assert_eq!(law.support(), [0.0, f64::INFINITY]);
 /// assert!((law.sf(3.0) - (-3.0f64).exp()).abs() < 1e-15);
 /// assert!((law.upper_quantile(1e-9) - 1e9f64.ln()).abs() < 1e-12);
-/// # Ok::<(), crate::pearson::PearsonError>(())
+/// # Ok::<(), sensitol_numeric::pearson::PearsonError>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct Pearson {

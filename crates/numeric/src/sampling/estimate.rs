@@ -41,7 +41,7 @@ pub const FEWEST: u64 = 10;
 /// ```
 ///
 /// For a kurtosis of 10 or more the error depends on the eighth moment, which a sample of less than a million values hardly determines. The
-/// standard error is then too small, and [`settled`](crate::sampling::settled) removes it.
+/// standard error is then too small, and [`settled`](sensitol_numeric::sampling::settled) removes it.
 pub fn of_moments(summary: &Summary) -> [Option<Estimate>; 4] {
     let n = summary.count() as f64;
     if summary.count() == 0 {
@@ -93,7 +93,7 @@ pub fn one_error(value: f64, [low, high]: [f64; 2]) -> f64 {
 /// 95 % interval of a share from `hits` among `n` points (Wilson 1927). It is never empty and stays within 0 to 1.
 ///
 /// ```
-/// use crate::sampling::wilson;
+/// use sensitol_numeric::sampling::wilson;
 /// let [low, high] = wilson(1000.0, 1000.0);
 /// assert!(low < 0.9963 && low > 0.996 && high == 1.0); // all of a thousand is not all
 /// ```
@@ -117,7 +117,7 @@ pub fn wilson(hits: f64, n: f64) -> [f64; 2] {
 /// Source: Clopper and Pearson, Biometrika 26 (1934).
 ///
 /// ```
-/// use sensitol::internals::clopper_pearson;
+/// use sensitol_numeric::sampling::clopper_pearson;
 /// // None of 195 leaves 1 - 0.025^(1/195).
 /// let [low, high] = clopper_pearson(0.0, 195.0);
 /// assert!(low == 0.0 && (high - 0.018739).abs() < 1e-6);

@@ -14,7 +14,7 @@ const FEWEST: usize = 16;
 /// Shapes: `x` and `y` have equal lengths. Points with a value that is not finite are left out. Cost: `n log n`.
 ///
 /// ```
-/// use crate::sampling::rank_first;
+/// use sensitol_numeric::sampling::rank_first;
 /// let x: Vec<f64> = (0..512).map(|i| (f64::from(i) * 0.618_033_988_749_895).fract()).collect();
 /// let (share, error) = rank_first(&x, &x).unwrap();
 /// assert!((share - 1.0).abs() < 0.02 && error < 0.02); // all of it, but for the step from the last to the first

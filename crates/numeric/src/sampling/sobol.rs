@@ -20,7 +20,7 @@ type Directions = [u64; DIGITS as usize];
 /// balance: each digit is flipped by a random bit that depends on the digits before it.
 ///
 /// ```
-/// use crate::sampling::Sobol;
+/// use sensitol_numeric::sampling::Sobol;
 /// let plain = Sobol::new(3).expect("there are direction numbers for three dimensions");
 /// let mut column = [0.0; 4];
 /// plain.column(1, 0, None, &mut column);

@@ -10,7 +10,7 @@ const ORDER: usize = 8;
 /// Sums are about the sample's own mean and are merged pairwise (Pébay 2008, equation 2.1), so that a mean far from 0 costs no digits.
 ///
 /// ```
-/// use crate::sampling::Summary;
+/// use sensitol_numeric::sampling::Summary;
 /// let mut sample = Summary::of(&[1.0, 2.0]);
 /// sample.merge(&Summary::of(&[3.0, 4.0]));
 /// assert_eq!((sample.count(), sample.mean(), sample.moment(2)), (4, 2.5, 1.25));

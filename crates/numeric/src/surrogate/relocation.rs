@@ -25,9 +25,9 @@ impl Surrogate {
     /// Shapes: `moved` has length N. No evaluation is needed.
     ///
     /// ```
-    /// use crate::moments::Interactions;
-    /// use crate::surrogate::{Surrogate, Univariate};
-    /// use crate::surrogate::Relocation;
+    /// use sensitol_numeric::moments::Interactions;
+    /// use sensitol_numeric::surrogate::{Surrogate, Univariate};
+    /// use sensitol_numeric::surrogate::Relocation;
     /// // y = u0 + u0 u1, and the mean of u1 moves by half a sigma: y = 1.5 u0 + u0 v1.
     /// let parts = vec![Some(Univariate::of_coefficients(&[1.0])), Some(Univariate::of_coefficients(&[0.0]))];
     /// let product = Interactions::of_pairs(2, [(0, 1, 1.0)]);

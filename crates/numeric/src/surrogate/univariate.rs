@@ -31,7 +31,7 @@ impl Univariate {
     /// so that an even function has slope 0 to the last bit.
     ///
     /// ```
-    /// use crate::surrogate::Univariate;
+    /// use sensitol_numeric::surrogate::Univariate;
     /// let parabola = Univariate::through(&[(-1.0, 2.0), (2.0, 8.0)]).unwrap();
     /// assert_eq!((parabola.slope(), parabola.second(), parabola.degree()), (0.0, Some(4.0), 2));
     /// ```

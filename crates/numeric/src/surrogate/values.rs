@@ -21,8 +21,8 @@ impl Surrogate {
     /// and point, and no evaluation.
     ///
     /// ```
-    /// use crate::moments::Interactions;
-    /// use crate::surrogate::{Surrogate, Univariate};
+    /// use sensitol_numeric::moments::Interactions;
+    /// use sensitol_numeric::surrogate::{Surrogate, Univariate};
     /// // 7 + 2 u0 + u1^2 + 3 u0 u1
     /// let parts = vec![Some(Univariate::of_coefficients(&[2.0])), Some(Univariate::of_coefficients(&[0.0, 1.0]))];
     /// let surrogate = Surrogate { centre: 7.0, parts, interactions: Interactions::of_pairs(2, [(0, 1, 3.0)]) };

@@ -15,11 +15,11 @@ use crate::distribution::{
 /// Beta distribution over an interval, with density `t^(alpha-1) (1-t)^(beta-1)` at the fraction `t` of the interval.
 ///
 /// ```
-/// use crate::distribution::{Beta, Distribution};
+/// use sensitol_numeric::distribution::{Beta, Distribution};
 /// let slot = Beta::new(0.0, 7.0, 2.0, 5.0)?;
 /// assert_eq!(slot.mean(), 2.0);
 /// assert!((slot.sigma().powi(2) - 49.0 * 10.0 / (49.0 * 8.0)).abs() < 1e-15);
-/// # Ok::<(), crate::distribution::DistributionError>(())
+/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Beta {

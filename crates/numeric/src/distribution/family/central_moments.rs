@@ -7,13 +7,13 @@ use crate::distribution::{Distribution, DistributionError, Jacobi, Probability, 
 /// The derivative methods need only these. Sampling needs the whole distribution and rejects such a dimension.
 ///
 /// ```
-/// use crate::distribution::{CentralMoments, Distribution};
+/// use sensitol_numeric::distribution::{CentralMoments, Distribution};
 /// // An exponential distribution with mean 10 and sigma 1.
 /// let wear = CentralMoments::new(10.0, [1.0, 2.0, 9.0, 44.0, 265.0, 1854.0, 14833.0])?;
 /// assert_eq!(wear.standard_moments().skewness, 2.0);
 /// // A kurtosis must exceed the squared skewness by 1 at least.
 /// assert!(CentralMoments::new(10.0, [1.0, 2.0, 4.5, 44.0, 265.0, 1854.0, 14833.0]).is_err());
-/// # Ok::<(), crate::distribution::DistributionError>(())
+/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct CentralMoments {

@@ -16,10 +16,10 @@ use crate::distribution::{
 /// settings, or one setting after another. The variance is `sigma^2 + drift^2/3`.
 ///
 /// ```
-/// use crate::distribution::{Distribution, Drifting};
+/// use sensitol_numeric::distribution::{Distribution, Drifting};
 /// let turned = Drifting::new(25.0, 0.01, 0.03)?;
 /// assert!((turned.sigma() - (0.0001f64 + 0.0003).sqrt()).abs() < 1e-16);
-/// # Ok::<(), crate::distribution::DistributionError>(())
+/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drifting {

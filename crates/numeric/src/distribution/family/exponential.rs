@@ -9,10 +9,10 @@ use crate::distribution::{Distribution, DistributionError, Jacobi, Probability, 
 /// It does not scale with a tolerance, because its mean fixes it.
 ///
 /// ```
-/// use crate::distribution::{Distribution, Exponential};
+/// use sensitol_numeric::distribution::{Distribution, Exponential};
 /// let film = Exponential::new(0.0, 0.5)?;
 /// assert_eq!((film.sigma(), film.standard_moments().excess), (0.5, 6.0));
-/// # Ok::<(), crate::distribution::DistributionError>(())
+/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Exponential {

@@ -14,10 +14,10 @@ use crate::distribution::{Distribution, DistributionError, Jacobi, Probability, 
 /// Gamma distribution from an origin on, with given mean and sigma.
 ///
 /// ```
-/// use crate::distribution::{Distribution, Gamma};
+/// use sensitol_numeric::distribution::{Distribution, Gamma};
 /// let wear = Gamma::new(0.0, 2.0, 1.0)?; // shape 4, scale 1/2
 /// assert_eq!(wear.standard_moments().skewness, 1.0); // 2 by the root of the shape
-/// # Ok::<(), crate::distribution::DistributionError>(())
+/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Gamma {

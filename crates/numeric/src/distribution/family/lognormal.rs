@@ -12,11 +12,11 @@ use crate::distribution::{
 /// Lognormal distribution from an origin on, with given mean and sigma. The logarithm of the distance from the origin is normal.
 ///
 /// ```
-/// use crate::distribution::{Distribution, Lognormal};
+/// use sensitol_numeric::distribution::{Distribution, Lognormal};
 /// let runout = Lognormal::new(0.0, 1.0, 0.5)?;
 /// let v: f64 = 0.25;
 /// assert!((runout.standard_moments().skewness - (3.0 + v) * v.sqrt()).abs() < 1e-15);
-/// # Ok::<(), crate::distribution::DistributionError>(())
+/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lognormal {

@@ -12,12 +12,12 @@ use crate::distribution::{
 /// those of this distribution: see [`Sample`].
 ///
 /// ```
-/// use crate::distribution::{Distribution, Measured};
+/// use sensitol_numeric::distribution::{Distribution, Measured};
 /// let pin = Measured::new(&[9.98, 10.00, 10.00, 10.01, 10.03])?;
 /// assert_eq!(pin.support(), [9.98, 10.03]);
 /// let law = pin.probability().expect("measured values are known whole");
 /// assert_eq!((law.quantile(0.5), law.cdf(10.0), law.density(10.0)), (10.0, 0.6, None));
-/// # Ok::<(), crate::distribution::DistributionError>(())
+/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {

@@ -14,14 +14,14 @@ use crate::power::Power;
 ///
 /// ```
 /// use std::sync::Arc;
-/// use crate::distribution::{Distribution, Mixture, Normal, Part};
-/// let part = |name: &str, weight: f64, mean: f64| -> Result<Part, crate::distribution::DistributionError> {
+/// use sensitol_numeric::distribution::{Distribution, Mixture, Normal, Part};
+/// let part = |name: &str, weight: f64, mean: f64| -> Result<Part, sensitol_numeric::distribution::DistributionError> {
 ///     Ok(Part { name: name.into(), weight, distribution: Arc::new(Normal::new(mean, 0.1)?) })
 /// };
 /// let bore = Mixture::new(vec![part("machine 1", 3.0, 10.0)?, part("machine 2", 1.0, 10.4)?])?;
 /// assert!((bore.mean() - 10.1).abs() < 1e-14);
 /// assert!((bore.sigma().powi(2) - (0.01 + 0.75 * 0.25 * 0.16)).abs() < 1e-14);
-/// # Ok::<(), crate::distribution::DistributionError>(())
+/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct Mixture {

@@ -12,10 +12,10 @@ use crate::distribution::{
 /// Normal distribution with given mean and sigma.
 ///
 /// ```
-/// use crate::distribution::{Distribution, Normal};
+/// use sensitol_numeric::distribution::{Distribution, Normal};
 /// let bore = Normal::new(25.0, 0.01)?;
 /// assert_eq!(bore.standard_moments().m6, 15.0);
-/// # Ok::<(), crate::distribution::DistributionError>(())
+/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Normal {

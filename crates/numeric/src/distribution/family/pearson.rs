@@ -13,14 +13,14 @@ use crate::pearson::Pearson;
 /// in the report's sampling interval.
 ///
 /// ```
-/// use crate::distribution::{Distribution, PearsonLaw};
+/// use sensitol_numeric::distribution::{Distribution, PearsonLaw};
 /// // Skewness 2 and kurtosis 9: the exponential distribution, with moments 44, 265, 1854 and 14833.
 /// let wear = PearsonLaw::new(1.0, 1.0, 2.0, 6.0)?;
 /// let moments = wear.standard_moments();
 /// assert_eq!([moments.m5, moments.m6, moments.m7, moments.m8], [44.0, 265.0, 1854.0, 14833.0]);
 /// // The tails of a kurtosis of 6 without skewness are so long that the sixth moment is infinite.
 /// assert!(PearsonLaw::new(1.0, 1.0, 0.0, 6.0).is_err());
-/// # Ok::<(), crate::distribution::DistributionError>(())
+/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct PearsonLaw {

@@ -11,10 +11,10 @@ use crate::distribution::{Distribution, DistributionError, Jacobi, Probability, 
 /// It is the Weibull distribution of shape 2. It does not scale with a tolerance, because its mean fixes it.
 ///
 /// ```
-/// use crate::distribution::{Distribution, Rayleigh};
+/// use sensitol_numeric::distribution::{Distribution, Rayleigh};
 /// let offset = Rayleigh::new(0.0, 1.0)?;
 /// assert!((offset.sigma() - (4.0 / std::f64::consts::PI - 1.0).sqrt()).abs() < 1e-15);
-/// # Ok::<(), crate::distribution::DistributionError>(())
+/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rayleigh {

@@ -19,13 +19,13 @@ use crate::pearson::Pearson;
 /// skewness. With 2 or fewer there is no sigma, and such a dimension is an error.
 ///
 /// ```
-/// use crate::distribution::{Distribution, Student};
+/// use sensitol_numeric::distribution::{Distribution, Student};
 /// // A standard uncertainty of 25 nm with 18 degrees of freedom is the scale.
 /// let block = Student::with_scale(50_000_623.0, 25.0, 18.0)?;
 /// assert!((block.sigma() - 25.0 * (18.0f64 / 16.0).sqrt()).abs() < 1e-13);
 /// assert_eq!(Student::new(0.0, 1.0, 10.0)?.standard_moments().excess, 1.0);
 /// assert!(Student::new(0.0, 1.0, 4.0)?.standard_moments().excess.is_nan());
-/// # Ok::<(), crate::distribution::DistributionError>(())
+/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Student {

@@ -16,13 +16,13 @@ use crate::distribution::{
 /// is spread over the table, so that the total is 1. Over scores most distributions are nearly straight, over probabilities they are not.
 ///
 /// ```
-/// use crate::distribution::{Distribution, Tabulated};
+/// use sensitol_numeric::distribution::{Distribution, Tabulated};
 /// // A straight line over the scores is a normal distribution, cut at the ends of the table.
 /// let pin = Tabulated::new(&[-6.0, 0.0, 6.0], &[9.94, 10.0, 10.06])?;
 /// assert!((pin.sigma() - 0.01).abs() < 1e-8);
 /// let law = pin.probability().expect("a table is known whole");
 /// assert!((law.sf(10.03) - 1.349_898e-3).abs() < 1e-8);
-/// # Ok::<(), crate::distribution::DistributionError>(())
+/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tabulated {

@@ -12,10 +12,10 @@ use crate::distribution::{
 /// uniform variables.
 ///
 /// ```
-/// use crate::distribution::{Distribution, Trapezoidal, Uniform};
+/// use sensitol_numeric::distribution::{Distribution, Trapezoidal, Uniform};
 /// let flat = Trapezoidal::new(16.0, 18.0, 1.0)?;
 /// assert!((flat.sigma() - Uniform::new(16.0, 18.0)?.sigma()).abs() < 1e-15);
-/// # Ok::<(), crate::distribution::DistributionError>(())
+/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Trapezoidal {

@@ -11,11 +11,11 @@ use crate::distribution::{
 /// Triangular distribution over an interval: its density rises in a straight line from one end to the mode and falls to the other end.
 ///
 /// ```
-/// use crate::distribution::{Distribution, Triangular};
+/// use sensitol_numeric::distribution::{Distribution, Triangular};
 /// let slot = Triangular::new(9.9, 10.0, 10.1)?;
 /// assert!((slot.sigma() - 0.1 / 6f64.sqrt()).abs() < 1e-15);
 /// assert_eq!(slot.standard_moments().excess, -0.6);
-/// # Ok::<(), crate::distribution::DistributionError>(())
+/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Triangular {

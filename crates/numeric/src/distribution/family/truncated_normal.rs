@@ -21,11 +21,11 @@ use crate::distribution::{
 /// wide relative to the limits leaves a uniform distribution, a narrow one stays normal.
 ///
 /// ```
-/// use crate::distribution::{Distribution, TruncatedNormal};
+/// use sensitol_numeric::distribution::{Distribution, TruncatedNormal};
 /// // Sorted at two sigma: the variance is 1 - 4 density(2)/P(|z| < 2).
 /// let pin = TruncatedNormal::new(-2.0, 2.0, 0.0, 1.0)?;
 /// assert!((pin.sigma() - 0.879_625_661_034_239_8).abs() < 1e-14);
-/// # Ok::<(), crate::distribution::DistributionError>(())
+/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct TruncatedNormal {

@@ -12,10 +12,10 @@ use crate::distribution::{
 /// Distribution of two values, each with probability one half, such as a pin that lies on one side of its hole or the other.
 ///
 /// ```
-/// use crate::distribution::{Distribution, TwoValues};
+/// use sensitol_numeric::distribution::{Distribution, TwoValues};
 /// let side = TwoValues::new(-0.05, 0.05)?;
 /// assert_eq!((side.mean(), side.sigma()), (0.0, 0.05));
-/// # Ok::<(), crate::distribution::DistributionError>(())
+/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TwoValues {

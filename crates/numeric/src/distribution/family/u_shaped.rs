@@ -14,10 +14,10 @@ use crate::distribution::{
 /// It describes values that stay near either end, such as a size that is reworked until it just fits.
 ///
 /// ```
-/// use crate::distribution::{Distribution, UShaped};
+/// use sensitol_numeric::distribution::{Distribution, UShaped};
 /// let reworked = UShaped::new(9.0, 11.0)?;
 /// assert!((reworked.sigma() - 0.6f64.sqrt()).abs() < 1e-15);
-/// # Ok::<(), crate::distribution::DistributionError>(())
+/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UShaped {

@@ -12,11 +12,11 @@ use crate::distribution::{
 /// Uniform distribution between two limits.
 ///
 /// ```
-/// use crate::distribution::{Distribution, Uniform};
+/// use sensitol_numeric::distribution::{Distribution, Uniform};
 /// let angle = Uniform::new(16.0, 18.0)?;
 /// assert_eq!(angle.mean(), 17.0);
 /// assert!((angle.sigma() - 1.0 / 3f64.sqrt()).abs() < 1e-15);
-/// # Ok::<(), crate::distribution::DistributionError>(())
+/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Uniform {

@@ -14,11 +14,11 @@ use crate::distribution::{
 /// from the origin in units of the scale.
 ///
 /// ```
-/// use crate::distribution::{Distribution, Weibull};
+/// use sensitol_numeric::distribution::{Distribution, Weibull};
 /// // Shape 1 is the exponential distribution.
 /// let life = Weibull::new(0.0, 3.0, 3.0)?;
 /// assert!((life.standard_moments().skewness - 2.0).abs() < 1e-13);
-/// # Ok::<(), crate::distribution::DistributionError>(())
+/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Weibull {
