@@ -68,7 +68,7 @@ impl Verdict {
     /// // At most 0.05, not at least.
     /// assert_eq!(Verdict::of(Requirement::Sigma(0.05), Some([0.03, 0.04])), Verdict::Met);
     /// ```
-    pub(crate) fn of(requirement: Requirement, interval: Option<[f64; 2]>) -> Self {
+    pub fn of(requirement: Requirement, interval: Option<[f64; 2]>) -> Self {
         let Some([low, high]) = interval.filter(|[low, high]| low <= high) else { return Self::Inconclusive };
         let slack = |room: f64| ROUNDING * room.abs();
         let [worst, best, target] = match requirement {

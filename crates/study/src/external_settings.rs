@@ -107,7 +107,7 @@ impl Externals {
     /// let study = Study::from_text(StudyText::toml("gap.toml", text).with_externals(externals))?;
     /// let found = analyze(&study.problem, &study.options)?;
     /// assert!((found.characteristics[1].moments.unwrap().mean() - 40.0).abs() < 1e-9);
-    /// # Ok::<(), sensitol::Error>(())
+    /// # Ok::<(), sensitol_study::AnyError>(())
     /// ```
     #[must_use]
     pub fn with_host(

@@ -30,7 +30,7 @@ pub enum Format {
 /// let pins = "pin\n7.99\n8.01\n8.02\n7.98\n8.00\n8.01\n7.99\n8.00\n";
 /// let study = Study::from_text(StudyText::toml("fit.toml", text).with_file("pin.csv", pins))?;
 /// assert_eq!(study.problem.dimensions().len(), 2);
-/// # Ok::<(), sensitol::Error>(())
+/// # Ok::<(), sensitol_study::StudyError>(())
 /// ```
 #[derive(Clone)]
 pub struct StudyText {

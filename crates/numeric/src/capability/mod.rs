@@ -119,7 +119,7 @@ impl Capability {
     /// let capability = Capability::of(&Law::fit(&moments)?, 6.0, 0.25, limits);
     /// assert!((capability.cp.unwrap() - 4.0 / 3.0).abs() < 1e-12);
     /// assert!((capability.cpk_percentile.unwrap() - 4.0 / 3.0).abs() < 1e-12);
-    /// Both limits are 4 sigma off the mean.
+    /// // Both limits are 4 sigma off the mean.
     /// assert!((1e6 * (capability.below.unwrap() + capability.above.unwrap()) - 63.342).abs() < 1e-3);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```

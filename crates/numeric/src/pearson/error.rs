@@ -18,7 +18,7 @@ impl TwoPoint {
     /// let coin = TwoPoint::with_skewness(0.0);
     /// assert_eq!((coin.values, coin.probabilities), ([-1.0, 1.0], [0.5, 0.5]));
     /// ```
-    pub(crate) fn with_skewness(skewness: f64) -> Self {
+    pub fn with_skewness(skewness: f64) -> Self {
         let far = 0.5 * (skewness.abs() + libm::hypot(skewness.abs(), 2.0));
         let rare = 1.0 / (1.0 + far * far);
         let law = Self { values: [-1.0 / far, far], probabilities: [1.0 - rare, rare] };

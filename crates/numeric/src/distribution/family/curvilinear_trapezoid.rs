@@ -21,11 +21,11 @@ use crate::power::Power;
 /// Source: GUM Supplement 1 (JCGM 101:2008), 6.4.3, CTrap.
 ///
 /// ```
-/// use crate::distribution::{CurvilinearTrapezoid, Distribution};
+/// use sensitol_numeric::distribution::{CurvilinearTrapezoid, Distribution};
 /// let given = CurvilinearTrapezoid::new(-0.1, 0.1, 0.025)?;
 /// assert!((given.sigma().powi(2) - (0.01 / 3.0 + 0.025 * 0.025 / 9.0)).abs() < 1e-17);
 /// assert_eq!(given.support(), [-0.125, 0.125]);
-/// # Ok::<(), crate::distribution::DistributionError>(())
+/// # Ok::<(), sensitol_numeric::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurvilinearTrapezoid {
