@@ -8,7 +8,7 @@
 //! The place is found by the descents that also begin a search of the extremes. The slope comes from the envelope
 //! theorem. At the linearization point itself interval arithmetic may give the true worst case. `W` is then multiplied
 //! by the ratio of the true one to it, so that a search ends at the true one. If the two differ and the model is cheap,
-//! `W` is that of the formula itself at [its corners](sensitol::allocation::surface::corners). Source of the correction: N. M. Alexandrov, R.
+//! `W` is that of the formula itself at [its corners](crate::allocation::surface::corners). Source of the correction: N. M. Alexandrov, R.
 //! M. Lewis, Optimization and Engineering 2 (2001).
 
 use crate::allocation::surface::corners::Corners;

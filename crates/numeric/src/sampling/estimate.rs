@@ -41,7 +41,7 @@ pub const FEWEST: u64 = 10;
 /// ```
 ///
 /// For a kurtosis of 10 or more the error depends on the eighth moment, which a sample of less than a million values hardly determines. The
-/// standard error is then too small, and [`settled`](sensitol_numeric::sampling::settled) removes it.
+/// standard error is then too small, and [`settled`](crate::sampling::settled) removes it.
 pub fn of_moments(summary: &Summary) -> [Option<Estimate>; 4] {
     let n = summary.count() as f64;
     if summary.count() == 0 {
