@@ -77,7 +77,7 @@ impl Driver<'_> {
         Ok(())
     }
 
-    /// The requirements at a station, on the tolerances of the task.
+    /// Requirements at a linearization point, on the tolerances of the task.
     fn setting<'s>(
         &'s self,
         station: &'s LinearizationPoint,
@@ -351,7 +351,7 @@ impl Driver<'_> {
 
 /// The requirements at the end of a search.
 struct JudgedEnd<'e> {
-    /// The analysis of the trial, or of the station where none was made.
+    /// Analysis of the trial, or of the linearization point if there was no trial.
     analysis: &'e Analysis,
     /// The values of the constraints; kept where they are at most 1.
     values: Vec<f64>,
@@ -396,7 +396,7 @@ impl<'e> JudgedEnd<'e> {
     }
 }
 
-/// The cost of the cheapest tolerances that need not be steps or grades; None where none need be, or they are not found.
+/// Cost of the cheapest tolerances without steps and grades. Returns None if no group has steps or grades, or nothing is found.
 fn unrounded(setting: &Setting<'_>, solved: &Solved) -> Option<f64> {
     if setting.priced.iter().all(|group| group.rounded.is_none()) {
         return None;

@@ -226,7 +226,7 @@ impl Driver<'_> {
 
 /// Transition after a round of a search.
 enum Next {
-    /// Another round, at the station that was reached.
+    /// Another round, at the linearization point that was reached.
     Round,
     /// End of the search, with the tolerances chosen last.
     End,
@@ -234,7 +234,7 @@ enum Next {
     NothingFound,
 }
 
-/// Station that keeps everything by the model, to which a search falls back where derivatives lead astray.
+/// Linearization point that keeps everything by the model. The search returns to it if derivatives mislead.
 struct Fallback {
     station: Rc<LinearizationPoint>,
     at: Vec<f64>,
@@ -242,7 +242,7 @@ struct Fallback {
     cost: f64,
 }
 
-/// Search along derivatives: every round chooses tolerances by those of one station, and asks the model there.
+/// Search along derivatives: every round chooses tolerances by the derivatives of one linearization point and evaluates the model there.
 struct DerivativeSearch<'s, 'd> {
     driver: &'s mut Driver<'d>,
     original: Problem,
@@ -252,9 +252,9 @@ struct DerivativeSearch<'s, 'd> {
     /// The requirements with the levels that are sought for a cost.
     current: Vec<Constraint>,
     station: Rc<LinearizationPoint>,
-    /// Half bands of the groups at the station.
+    /// Half bands of the groups at the linearization point.
     at: Vec<f64>,
-    /// The choice that led to the station; None where something else did.
+    /// Choice that led to the linearization point. None if there was no choice.
     last: Option<Chosen>,
     fallback: Option<Fallback>,
     steps: Steps,
@@ -268,7 +268,7 @@ struct DerivativeSearch<'s, 'd> {
 }
 
 impl<'s, 'd> DerivativeSearch<'s, 'd> {
-    /// A search that begins at a station with these half bands.
+    /// Search that begins at a linearization point with these half bands.
     fn new(
         driver: &'s mut Driver<'d>,
         original: Problem,
@@ -295,7 +295,7 @@ impl<'s, 'd> DerivativeSearch<'s, 'd> {
         }
     }
 
-    /// Returns the last station with the choice that led to it.
+    /// Returns the last linearization point with the choice that led to it.
     fn end(self) -> SearchEnd {
         let Self { station, last, current: constraints, ended, .. } = self;
         SearchEnd { station, last, constraints, ended, trial: None, is_start: false }
@@ -338,7 +338,7 @@ impl<'s, 'd> DerivativeSearch<'s, 'd> {
         Ok(ControlFlow::Continue((next, false)))
     }
 
-    /// Makes a problem the station of the next round.
+    /// Makes a problem the linearization point of the next round.
     fn move_to(&mut self, problem: Problem) -> Result<Next, AllocateError> {
         match self.driver.station(problem)? {
             Some(there) if !self.driver.spent.stopped => {
@@ -352,7 +352,7 @@ impl<'s, 'd> DerivativeSearch<'s, 'd> {
         }
     }
 
-    /// Chooses tolerances by the derivatives of the station, and asks the model there unless it would not choose others.
+    /// Chooses tolerances by the derivatives of the linearization point. Evaluates the model there unless the choice is unchanged.
     fn choose(&mut self, allocation: &mut Allocation, next: Problem, still: bool) -> Result<Next, AllocateError> {
         let (task, run, station) = (self.driver.task, self.driver.run, Rc::clone(&self.station));
         let stopped = || run.stopped();
@@ -402,7 +402,7 @@ impl<'s, 'd> DerivativeSearch<'s, 'd> {
         self.ask(next, chosen, safe.then_some(cost_here))
     }
 
-    /// The factor up to which the derivatives of the station are followed; that of samples is limited.
+    /// Factor up to which the derivatives of the linearization point are followed. It is limited if they come from samples.
     fn followed_reach(&self) -> f64 {
         let responses = &self.station.responses;
         let sampled = self.constraints.iter().any(|one| responses.is_sampled(one.characteristic));
@@ -417,7 +417,7 @@ impl<'s, 'd> DerivativeSearch<'s, 'd> {
         }
     }
 
-    /// Returns to the station that kept everything, for shorter steps from there.
+    /// Returns to the linearization point that kept everything, for shorter steps from there.
     fn fall_back(&mut self) -> Next {
         if let Some(Fallback { station, at, last, .. }) = self.fallback.take() {
             (self.station, self.at, self.last) = (station, at, last);
@@ -461,7 +461,7 @@ impl<'s, 'd> DerivativeSearch<'s, 'd> {
         (proof.starts, proof.reached, proof.other_optimum) = (self.searched[0], self.searched[1], self.other);
     }
 
-    /// Returns true if the choice is the one that led to the station.
+    /// Returns true if the choice is the one that led to the linearization point.
     fn is_chosen_again(&self, priced: &[Priced], solved: &Solved, offers: &[usize]) -> bool {
         let change = farthest(&self.at, &solved.at);
         // Processes of one tolerance may differ in how their parts lie.
@@ -493,7 +493,7 @@ impl<'s, 'd> DerivativeSearch<'s, 'd> {
         (solved, offers, proof)
     }
 
-    /// Asks the model at chosen tolerances. The station left is a place to come back to if it has a cost.
+    /// Evaluates the model at chosen tolerances. The previous linearization point is kept as fallback if it has a cost.
     fn ask(&mut self, next: Problem, chosen: Chosen, kept_at_cost: Option<f64>) -> Result<Next, AllocateError> {
         let (solved, offers, _) = &chosen;
         let from = std::mem::replace(&mut self.at, solved.at.clone());

@@ -98,7 +98,7 @@ impl Correction {
         if libm::log(factors[dimension]).abs() < FAR { self.slopes[dimension] } else { 0.0 }
     }
 
-    /// At a station; None where the mean lies beyond a limit, or the law answers nothing.
+    /// Correction at a linearization point. Returns None if the mean lies beyond a limit, or the distribution has no tail there.
     pub(super) fn of(about: &About<'_>, rejected: f64) -> Option<Self> {
         let moments = (about.moments)(&vec![1.0; about.dimensions])?;
         let (mean, sigma) = (moments.mean(), moments.sigma());
@@ -154,12 +154,13 @@ impl Side {
     }
 }
 
-/// `R(r)` by a law about `mean`; the limits are nearer to it by `shift` than at the station.
+/// `R(r)` by a distribution about `mean`. The limits are nearer to the mean by `shift` than at the linearization point.
 fn share_beyond(sides: &[Side], law: &SurfaceLaw, mean: f64, (r, shift): (f64, f64)) -> f64 {
     sides.iter().map(|side| side.held.tail(law, mean + r * (side.distance - shift)).value).sum()
 }
 
-/// The law of a station at limits moved to `r` times their distance from the mean, where it leaves just the allowed share.
+/// Distribution at a linearization point. Its limits are moved to `r` times their distance from the mean, so that it rejects just the
+/// allowed share.
 struct MovedLimits<'a, 'r> {
     about: &'a About<'r>,
     mean: f64,
@@ -236,7 +237,7 @@ impl<'a, 'r> MovedLimits<'a, 'r> {
     }
 }
 
-/// A station beside another one.
+/// Linearization point beside another one.
 struct Neighbour {
     moments: Moments,
     room: f64,

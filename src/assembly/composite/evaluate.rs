@@ -102,7 +102,7 @@ struct Block<'b> {
     evaluation: &'b Evaluation<'b>,
     points: &'b Points,
     rows: Range<usize>,
-    /// None where no unknowns are needed, or no nominal state of them is known.
+    /// Solved unknowns. None if no unknowns are needed, or no nominal state of them is known.
     solved: Option<RowSolution>,
     /// Values of unknowns that are not solved.
     nothing: Vec<f64>,

@@ -181,7 +181,7 @@ struct Panel<'t> {
 }
 
 impl<'t> Panel<'t> {
-    /// Chooses the scales. None where the limit is too far out.
+    /// Chooses the scales. Returns None if the limit is too far out.
     fn new(tail: &'t Tail<'t>) -> Option<Self> {
         let seen = [tail.surface, tail.model.map(|model| model.0), Some(tail.beyond(tail.limit))];
         let least = seen.into_iter().flatten().filter(|share| *share > 0.0).fold(TO, f64::min);

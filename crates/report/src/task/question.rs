@@ -152,7 +152,7 @@ pub type Counted<'c> = &'c dyn Fn(u64, u64);
 /// Runs a command on a study.
 ///
 /// # Errors
-/// Of a question that cannot be answered.
+/// Returns the reason if a question cannot be answered.
 pub fn done(study: &Study, asked: &Asked, run: &Run<'_>, counted: Counted<'_>) -> Result<TaskReport, Box<AnyError>> {
     let seed = study.seed.or(study.options.seed).unwrap_or(Options::SEED);
     let task = StudyTask { study, run, counted, seed };
