@@ -20,6 +20,7 @@ pub use crate::analysis::result::coverage_intervals::CoverageIntervals;
 pub use crate::analysis::result::interaction::{Interaction, InteractionList, Missing};
 use crate::analysis::result::interaction_listing;
 pub use crate::analysis::result::interaction_remainder::Remainder;
+pub use crate::analysis::result::quantile_estimates::QuantileEstimates;
 pub use crate::analysis::result::sampled_model::SampledModel;
 pub use crate::analysis::result::serialisation::CharacteristicShape;
 pub use crate::analysis::result::sobol_indices::{FactorIndices, IndexSource, SobolIndices};

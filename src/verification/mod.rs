@@ -16,6 +16,7 @@ mod normal_space;
 mod output_correlation;
 mod residual_error;
 mod sample;
+mod sample_quantile;
 mod strata;
 mod switch_side;
 mod tails;
@@ -32,6 +33,7 @@ pub use crate::verification::switch_side::{Crossing, FoundSwitch};
 pub use crate::verification::variance_shares::Share;
 pub(crate) use figures::{MOMENTS, carried_by, effective, jackknife, standard, student, totals};
 pub(crate) use sample::REPLICATES;
+pub(crate) use sample_quantile::{SampleQuantile, reported_quantiles};
 pub use tails::{SampleTails, TailPoint};
 pub(crate) use weighted::WeightedSample;
 
@@ -43,6 +45,7 @@ use figures::moments;
 use model::Model;
 use sample::Sample;
 use sensitol_numeric::correlation::factors;
+use sensitol_numeric::law::REPORTED_QUANTILES;
 use sensitol_numeric::power::{Losable, Rescale, Rescaling};
 use sensitol_numeric::sampling::Normals;
 use sensitol_numeric::surrogate::Surrogate;
@@ -128,7 +131,9 @@ pub struct SampledFigures {
     pub switches: Option<Vec<FoundSwitch>>,
     /// True if the model reported all of its switches.
     pub switches_complete: bool,
-    /// The sample itself, for a characteristic that has limits or is inspected.
+    /// Quantiles at the reported probabilities, beside those of the surface. None at one that the sample does not resolve.
+    pub(crate) quantiles: [Option<SampleQuantile>; 7],
+    /// The sample itself.
     pub(crate) sample: Option<WeightedSample>,
 }
 
@@ -316,32 +321,38 @@ pub(crate) fn verify_characteristic(
     if model.len() == 0 {
         return Some(constant(&model, [low, high])).filter(|_| !model.stopped());
     }
-    let sample = Sample::draw(&model, seed, core, beside.filter(|_| limits.exist()));
+    let sample = Sample::draw(&model, seed, core, beside);
     if model.stopped() {
         return None;
     }
     let sides = sample.sides.clone();
     let beyond = [[f64::NEG_INFINITY, low.next_down()], [high.next_up(), f64::INFINITY]];
     let figures = sample.figures(&[[low, high], beyond[0], beyond[1]]);
+    let void = sample.is_void();
     let known = |index: usize| {
         let (value, error) = (figures.values[index], figures.errors[index]);
-        (!sample.is_void() && value.is_finite()).then_some(Verified { value, error })
+        (!void && value.is_finite()).then_some(Verified { value, error })
     };
     let varies = known(1).is_some_and(|sigma| sigma.value > 0.0);
+    let difference = sample.difference(&[[low, high], beyond[0], beyond[1]]).filter(|_| limits.exist());
+    let (points, point) = (sample.points, sample.point());
+    let sample = sample.kept();
+    let quantiles = sample.quantiles(&REPORTED_QUANTILES).try_into().unwrap_or([None; 7]);
     Some(SampledFigures {
-        points: sample.points,
+        points,
         mean: known(0),
         sigma: known(1),
         skewness: known(2).filter(|_| varies),
         kurtosis: known(3).filter(|_| varies),
         yield_: known(4).filter(|_| limits.exist()),
         beyond: [known(5).filter(|_| limits.lower().is_some()), known(6).filter(|_| limits.upper().is_some())],
-        point: sample.point(),
-        difference: sample.difference(&[[low, high], beyond[0], beyond[1]]),
+        point,
+        difference,
         valid: Verified { value: figures.valid.0, error: figures.valid.1 },
         switches: sides.switches,
         switches_complete: sides.complete,
-        sample: (limits.exist() || problem.characteristics()[c].inspection().is_some()).then(|| sample.kept()),
+        quantiles: quantiles.map(|found: Option<SampleQuantile>| found.filter(|_| varies)),
+        sample: Some(sample),
     })
 }
 
@@ -368,6 +379,7 @@ fn constant(model: &Model<'_>, [low, high]: [f64; 2]) -> SampledFigures {
         valid: Verified { value: f64::from(u8::from(known)), error: 0.0 },
         switches: None,
         switches_complete: true,
+        quantiles: [None; 7],
         sample: None,
     }
 }

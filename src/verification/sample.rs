@@ -18,7 +18,7 @@ use crate::verification::model::Model;
 use crate::verification::normal_space::Columns;
 use crate::verification::strata::{HalfSpace, between, unit};
 use crate::verification::switch_side::{Sides, sides};
-use crate::verification::weighted::WeightedSample;
+use crate::verification::weighted::{WeightedPart, WeightedSample};
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::sampling::Normals;
 use sensitol_numeric::surrogate::Surrogate;
@@ -36,17 +36,9 @@ const WINSORISED: f64 = 4.0;
 /// Distance at which the tails begin, in sigmas along their direction.
 pub(super) const FAR: f64 = 2.5;
 
-/// Points of one stratum in one randomisation that no earlier stratum contains.
-struct Part {
-    replicate: usize,
-    values: Vec<f64>,
-    weights: Vec<f64>,
-    /// Values of the surface at the same points. Empty if they are unknown.
-    surface: Vec<f64>,
-}
-
 pub(super) struct Sample {
-    parts: Vec<Part>,
+    /// Points of each stratum in each randomisation that no earlier stratum contains.
+    parts: Vec<WeightedPart>,
     /// Weight of one point of the core.
     one: f64,
     /// Number of evaluated points, including those that searched for strata.
@@ -81,7 +73,7 @@ impl Sample {
         let strata = spaces.len() + 1;
         let most = (NUMBERS / model.len().max(1) / REPLICATES).max(1);
         let rows = |stratum: usize| (if stratum + 1 < strata { TAIL } else { core } / REPLICATES).min(most);
-        let part = |index: usize| -> Part {
+        let part = |index: usize| -> WeightedPart {
             let (replicate, stratum) = (index / strata, index % strata);
             // A stopped run does not wait for the rest of the points.
             let rows = if model.stopped() { 0 } else { rows(stratum) };
@@ -100,9 +92,9 @@ impl Sample {
             z.iter_mut().for_each(|column| *column = kept(column));
             let weights = kept(&weights).into_iter().map(|weight| weight / rows as f64).collect();
             let surface = beside.and_then(|(varying, surrogate)| model.surface(&z, varying, surrogate));
-            Part { replicate, values: model.values(&z), weights, surface: surface.unwrap_or_default() }
+            WeightedPart { replicate, values: model.values(&z), weights, surface: surface.unwrap_or_default() }
         };
-        let parts: Vec<Part> = (0..REPLICATES * strata).into_par_iter().map(part).collect();
+        let parts: Vec<WeightedPart> = (0..REPLICATES * strata).into_par_iter().map(part).collect();
         let core = rows(strata - 1);
         let one = between(&mut vec![vec![0.0]], &[1.0], FAR) / (core * REPLICATES) as f64;
         let drawn: usize = parts.iter().map(|part| part.values.len()).sum();
@@ -163,7 +155,8 @@ impl Sample {
     /// Difference of the shares of model and surface within each interval, ends included: `mean(1_model - 1_surface)`. Returns None if
     /// there is no surface, or if some points have no value, because the shares refer to different assemblies then.
     pub(super) fn difference<const N: usize>(&self, intervals: &[[f64; 2]; N]) -> Option<[Verified; N]> {
-        let whole = |part: &Part| part.surface.len() == part.values.len() && part.values.iter().all(|y| y.is_finite());
+        let whole =
+            |part: &WeightedPart| part.surface.len() == part.values.len() && part.values.iter().all(|y| y.is_finite());
         if !self.parts.iter().all(whole) {
             return None;
         }
@@ -192,8 +185,7 @@ impl Sample {
 
     /// Converts it to a sample for tails and shares that are computed later.
     pub(super) fn kept(self) -> WeightedSample {
-        let parts = self.parts.into_iter().map(|part| (part.replicate, part.values, part.weights));
-        WeightedSample::new(parts, REPLICATES, self.one)
+        WeightedSample::new(self.parts, REPLICATES, self.one)
     }
 
     /// True if no point has a value.

@@ -5,5 +5,6 @@ mod comparison;
 mod coverage;
 mod published;
 mod published_figures;
+mod quantiles;
 mod rare_coverage;
 mod trust;

@@ -6,11 +6,11 @@ use sensitol::analysis::{Branch, Relocation, YieldSource};
 use sensitol::distribution::{Distribution, Measured, Normal, Triangular, Uniform};
 
 use sensitol::analysis::distribution::relocated_law::law_at;
-use sensitol::analysis::distribution::surface_law::QUANTILES;
 use sensitol::{
     Analysis, Characteristic, CharacteristicAnalysis, Closure, Dimension, Method, Options, Problem, SpecLimits, analyze,
 };
 use sensitol_numeric::distribution::rule::Rule;
+use sensitol_numeric::law::REPORTED_QUANTILES as QUANTILES;
 use sensitol_numeric::law::{LawOptions, LawTail, SurfaceLaw};
 use sensitol_numeric::moments::Interactions;
 use sensitol_numeric::surrogate::{Surrogate, Univariate};

@@ -58,7 +58,7 @@ fn characteristic(json: &Value, one: &CharacteristicAnalysis) {
         extremes: "/worst_case/extremes", bounds: "/worst_case/bounds", middle: "/middle", rss: "/rss", inflated_rss: "/inflated_rss",
         mean_shift_rss: "/mean_shift_rss", six_sigma: "/six_sigma", sensitivities: "/sensitivities/1", interactions: "/interactions/0", interactions_remainder: "/interactions_remainder",
         possible_interactions: "/possible_interactions", examined_interactions: "/examined_interactions", left_out_share: "/left_out_share", constant: "/constant",
-        verification: "/verification", indices: "/sobol", inspection: "/inspection", coverage: "/coverage",
+        verification: "/verification", indices: "/sobol", inspection: "/inspection", coverage: "/coverage", quantiles: "/quantiles",
     });
     let sensitivity = json.pointer("/sensitivities/0").unwrap();
     complete!(sensitivity, &one.sensitivities[0] => Sensitivity {

@@ -3,7 +3,7 @@
 use sensitol::analysis::{CharacteristicAnalysis, DerivativeOrigin, Interaction, Missing};
 use sensitol::rare::RareCharacteristic;
 use sensitol::simulation::SimulatedCharacteristic;
-use sensitol_numeric::capability::{Capability, Law, Quantiles};
+use sensitol_numeric::capability::{Capability, Law};
 use sensitol_numeric::characteristic::Characteristic;
 use sensitol_numeric::moments::Moments;
 use sensitol_numeric::sampling::Estimate;
@@ -154,9 +154,6 @@ pub(crate) trait FittedFigures {
 
     /// Interactions that are only screened guesses.
     fn screened(&self) -> impl Iterator<Item = Interaction<'_>>;
-
-    /// Returns the quantiles: of the surface distribution if there is one, else of the Pearson fit.
-    fn quantiles(&self) -> Option<Quantiles>;
 }
 
 impl FittedFigures for CharacteristicAnalysis {
@@ -175,14 +172,6 @@ impl FittedFigures for CharacteristicAnalysis {
 
     fn screened(&self) -> impl Iterator<Item = Interaction<'_>> {
         self.interactions.iter().filter(|pair| pair.origin == Some(DerivativeOrigin::Screened))
-    }
-
-    fn quantiles(&self) -> Option<Quantiles> {
-        let own = self.surface_law.as_ref().and_then(|law| law.named_quantiles());
-        own.or_else(|| match self.fitted()? {
-            Law::Pearson(law) => Some(Quantiles::of(law)),
-            Law::Point { .. } => None,
-        })
     }
 }
 

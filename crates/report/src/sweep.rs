@@ -5,13 +5,12 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::document::number::{UNKNOWN, beside, known, limits, plain, plural, shape, short, significant};
+use crate::document::number::{UNKNOWN, beside, carried, known, limits, plain, plural, shape, short, significant};
 use crate::document::rejects::Rejects;
 use crate::document::{
     Blocks, Cell, Chart, Columns, DataTable, Document, Element, Layer, Paragraph, Plot, PlotAxis, PlotScale, Section,
     Stroke, Value,
 };
-use crate::figures::FittedFigures;
 use crate::figures::{Figures, QUANTILES};
 use crate::head;
 use crate::head::findings;
@@ -22,7 +21,7 @@ use sensitol::method::ErrorEstimate;
 use sensitol::problem::Problem;
 use sensitol::summary::RunSummary;
 use sensitol::sweep::Sweep;
-use sensitol_numeric::capability::{Law, Quantiles};
+use sensitol_numeric::capability::Quantiles;
 use sensitol_numeric::json_form::{RejectIntervals, through};
 use sensitol_numeric::verdict::{Judged, Verdict};
 
@@ -96,8 +95,12 @@ pub struct SweptPointReport {
     pub(crate) error_estimate: Option<ErrorEstimate>,
     /// Root of the sum of squares.
     pub(crate) rss: Option<f64>,
-    /// Quantiles of the surface distribution if there is one, else of the Pearson fit.
+    /// Quantiles; null at a probability that their source does not resolve.
     pub(crate) quantiles: Quantiles<Option<f64>>,
+    /// Errors of the quantiles; null if unknown.
+    pub(crate) quantile_errors: Quantiles<Option<f64>>,
+    /// Source of the quantiles; null if there are none.
+    pub(crate) quantile_source: Option<YieldSource>,
     /// Share of assemblies within the limits.
     #[serde(rename = "yield")]
     pub(crate) yield_: Option<f64>,
@@ -274,7 +277,13 @@ impl SweptReport {
             .wide("kurtosis", "kurtosis", |point| Cell::number(point.kurtosis, shape))
             .wide("rss", "rss", |point| rounded(point.rss, point));
         for (index, key) in QUANTILES.into_iter().enumerate() {
-            let quantile = move |point: &&SweptPointReport| rounded(point.quantiles.0[index], point);
+            let quantile = move |point: &&SweptPointReport| {
+                let error = point.quantile_errors.0[index];
+                Cell::number(point.quantiles.0[index], |value| match point.sigma.filter(|sigma| *sigma > 0.0) {
+                    Some(sigma) => carried(value, sigma, error),
+                    None => significant(value, 6),
+                })
+            };
             columns = match index {
                 0 => columns.column(key, "0.135 %", quantile),
                 3 => columns.column(key, "50 %", quantile),
@@ -355,10 +364,8 @@ fn warnings(sweep: &Sweep, parameter: &str, about: &About) -> Vec<WarningReport>
 impl SweptPointReport {
     fn of(at: f64, analysis: Option<&CharacteristicAnalysis>) -> Self {
         let of = |figure: fn(&CharacteristicAnalysis) -> Option<f64>| analysis.and_then(figure);
-        let quantiles = analysis.and_then(|one| match (one.quantiles(), one.fitted()) {
-            (None, Some(Law::Point { at })) => Some(Quantiles([*at; 7])),
-            (known, _) => known,
-        });
+        let quantiles = analysis.and_then(|one| one.quantiles);
+        let values = quantiles.map_or([None; 7], |of| of.values.0);
         Self {
             at,
             nominal: of(|one| one.nominal),
@@ -368,7 +375,9 @@ impl SweptPointReport {
             kurtosis: of(Figures::kurtosis),
             error_estimate: analysis.and_then(|one| one.error_estimate.clone()),
             rss: of(|one| one.rss),
-            quantiles: Quantiles(quantiles.map_or([None; 7], |all| all.0.map(Some))),
+            quantiles: Quantiles(values.map(|found| found.map(|of| of.value))),
+            quantile_errors: Quantiles(values.map(|found| found.and_then(|of| of.error))),
+            quantile_source: quantiles.map(|of| of.source),
             yield_: of(Figures::yield_),
             yield_interval: analysis.and_then(CharacteristicAnalysis::yield_interval),
             yield_source: analysis.and_then(|one| one.yield_source),

@@ -112,7 +112,7 @@ fn error(count: f64, points: usize) -> f64 {
 }
 
 /// Value of the quantile at probability `p`. Its error comes from the values at the count plus and minus its error.
-fn quantile(values: &[f64], tail: LawTail, p: f64) -> LawFigure {
+pub(in crate::analysis) fn quantile(values: &[f64], tail: LawTail, p: f64) -> LawFigure {
     let n = values.len();
     let at = |beyond: f64| {
         let rank = (beyond.max(0.0) as usize).min(n - 1);

@@ -10,26 +10,16 @@ use crate::analysis::distribution::law_guard::{FaultyQuantiles, LawGuard, LawRef
 use crate::analysis::result::verification::{Verification, VerificationKind};
 use crate::method::Outcome;
 use crate::problem::Problem;
-use sensitol_numeric::capability::{Law, Quantiles, TAIL};
+use sensitol_numeric::capability::{Law, Quantiles};
 use sensitol_numeric::characteristic::SpecLimits;
 use sensitol_numeric::correlation::Correlation;
 use sensitol_numeric::distribution::{Distribution, Normal};
-use sensitol_numeric::law::{Branch, LawError, LawFigure, LawOptions, LawTail, Sought, SurfaceLaw};
+use sensitol_numeric::law::{Branch, LawError, LawFigure, LawOptions, LawTail, REPORTED_QUANTILES, Sought, SurfaceLaw};
 use sensitol_numeric::moments::Interactions;
 use sensitol_numeric::pearson::Pearson;
 use sensitol_numeric::power::rescale;
 use sensitol_numeric::surrogate::{Surrogate, Univariate};
 
-/// Probabilities of the quantiles in reports, lowest first, each with the tail that it leaves.
-pub const QUANTILES: [(LawTail, f64); 7] = [
-    (LawTail::Lower, TAIL),
-    (LawTail::Lower, 0.01),
-    (LawTail::Lower, 0.05),
-    (LawTail::Lower, 0.5),
-    (LawTail::Upper, 0.05),
-    (LawTail::Upper, 0.01),
-    (LawTail::Upper, TAIL),
-];
 /// Indices of the outer two and the median among them.
 const OUTER: [usize; 3] = [0, 3, 6];
 
@@ -88,8 +78,6 @@ pub(in crate::analysis) struct GuardedLaw {
     pub(in crate::analysis) shares: SurfaceShares,
     /// Distribution that gives shares beyond limits. None if points replace it.
     pub(in crate::analysis) law: Option<SurfaceLaw>,
-    /// Distribution for quantiles, if these include an unexplained variance that `law` does not.
-    full: Option<SurfaceLaw>,
     /// Points of the surface that replace the distribution, ascending.
     pub(in crate::analysis) points: Option<Vec<f64>>,
 }
@@ -109,7 +97,7 @@ impl GuardedLaw {
     /// Computes and tests the distribution. Returns None if the moments do not follow from a surface, or only moments are known of an
     /// input. The search for quantiles starts at those of `fit`.
     ///
-    /// Unexplained variance is added as a normal input. A sample of the model contains it already: only quantiles include it in that case.
+    /// Unexplained variance is added as a normal input, unless there is a sample of the model, which contains it already.
     pub(in crate::analysis) fn of(request: LawRequest<'_>) -> Option<Self> {
         let LawRequest { problem, outcome, c, .. } = request;
         if outcome.fitted[c].integrated.is_some() {
@@ -117,9 +105,10 @@ impl GuardedLaw {
         }
         // A surface that is proven to equal the function leaves only rounding unexplained.
         let exact = request.verification.is_some_and(|of| matches!(of.kind, VerificationKind::Exact { .. }));
-        let unexplained = outcome.climbed.as_ref().and_then(|climbed| climbed.unexplained(c)).filter(|_| !exact);
         let beside = request.verification.is_some_and(|of| of.kind == VerificationKind::Sample);
-        let (surrogate, inputs) = surface(problem, outcome, c, unexplained.filter(|_| !beside))?;
+        let unexplained = outcome.climbed.as_ref().and_then(|climbed| climbed.unexplained(c));
+        let unexplained = unexplained.filter(|_| !exact && !beside);
+        let (surrogate, inputs) = surface(problem, outcome, c, unexplained)?;
         let correlation = outcome.plan.inputs().correlation();
         let options = options(problem, c, &surrogate);
         let limits = problem.characteristics()[c].limits();
@@ -135,21 +124,14 @@ impl GuardedLaw {
         if ![below, above].iter().flatten().all(known) {
             return Self::counted(request, None);
         }
-        let full = match unexplained.filter(|_| beside) {
-            Some(_) => {
-                let (surrogate, inputs) = surface(problem, outcome, c, unexplained)?;
-                SurfaceLaw::of(&surrogate, &inputs, correlation, &options).ok()
-            }
-            None => None,
-        };
-        let quantiles = quantiles(full.as_ref().unwrap_or(&whole), request.fit);
+        let quantiles = quantiles(&whole, request.fit);
         let (branch, steps) = (whole.branch(), whole.is_step_function());
         let shares = SurfaceShares { branch, counted: None, refuted: None, steps, below, above, quantiles };
         // A list of all values with their probabilities is a count itself.
-        let refuted = if steps { None } else { shares.refutation(request, limits, (unexplained, full.is_some())) };
+        let refuted = if steps { None } else { shares.refutation(request, limits, unexplained) };
         match refuted {
             Some(refutation) => Self::counted(request, Some(refutation)),
-            None => Some(Self { shares, law: Some(whole), full, points: None }),
+            None => Some(Self { shares, law: Some(whole), points: None }),
         }
     }
 
@@ -158,21 +140,20 @@ impl GuardedLaw {
         let LawRequest { problem, outcome, c, seed, .. } = request;
         let points = counted::points(problem, outcome, (c, seed), (counted::POINTS, None))?;
         let limits = (problem.characteristics()[c].limits(), problem.kept_limits(c));
-        let Counted { beyond: [below, above], quantiles, points: count } = counted::counted(&points, limits, QUANTILES);
+        let Counted { beyond: [below, above], quantiles, points: count } =
+            counted::counted(&points, limits, REPORTED_QUANTILES);
         let (branch, counted, quantiles) = (Branch::Sampled, Some(count), Some(quantiles));
         let shares = SurfaceShares { branch, counted, refuted, steps: false, below, above, quantiles };
-        Some(Self { shares, law: None, full: None, points: Some(points) })
+        Some(Self { shares, law: None, points: Some(points) })
     }
 
-    /// Returns the distribution that quantiles are taken from.
-    fn of_quantiles(&self) -> Option<&SurfaceLaw> {
-        self.full.as_ref().or(self.law.as_ref())
-    }
-
-    /// Quantiles at these tails and probabilities, at most one half each, by a distribution that has passed its tests. Returns None if one
-    /// of them is unknown.
+    /// Quantiles at these tails and probabilities, at most one half each, by a distribution that has passed its tests or by the points
+    /// that replace it. Returns None if one of them is unknown.
     pub(in crate::analysis) fn quantiles(&self, fit: Option<&Law>, of: &[(LawTail, f64)]) -> Option<Vec<LawFigure>> {
-        let law = self.of_quantiles()?;
+        if let Some(points) = &self.points {
+            return Some(of.iter().map(|&(tail, p)| counted::quantile(points, tail, p)).collect());
+        }
+        let law = self.law.as_ref()?;
         let found = law.quantiles(&sought(law, fit, of)).into_iter();
         found.map(|figure| Some(figure).filter(|figure| figure.value.is_finite())).collect()
     }
@@ -197,13 +178,13 @@ impl GuardedLaw {
 }
 
 impl SurfaceShares {
-    /// Tests shares and quantiles by points of the surface and by the sample of the model. `apart` is true if quantiles include an
-    /// unexplained variance that the shares leave to that sample: the shares are not compared with these points then.
+    /// Tests shares and quantiles by points of the surface and by the sample of the model. `unexplained` is the variance that the
+    /// distribution adds to the surface.
     fn refutation(
         &self,
         request: LawRequest<'_>,
         limits: SpecLimits,
-        (unexplained, apart): (Option<f64>, bool),
+        unexplained: Option<f64>,
     ) -> Option<LawRefutation> {
         let LawRequest { problem, outcome, c, seed, verification, .. } = request;
         let by_sample = verification.and_then(|of| by_sample(of, limits, [self.below, self.above]));
@@ -212,15 +193,13 @@ impl SurfaceShares {
         }
         let points = counted::points(problem, outcome, (c, seed), (counted::TESTED, unexplained))?;
         let guard = LawGuard::new(&points, problem.kept_limits(c).rounding());
-        let quantiles: Vec<_> = self.quantiles.iter().flat_map(|all| QUANTILES.into_iter().zip(*all)).collect();
+        let quantiles: Vec<_> =
+            self.quantiles.iter().flat_map(|all| REPORTED_QUANTILES.into_iter().zip(*all)).collect();
         let tails = [(limits.lower(), LawTail::Lower, self.below), (limits.upper(), LawTail::Upper, self.above)];
         let tail = |(limit, tail, share): (Option<f64>, LawTail, Option<LawFigure>)| {
             guard.tail((limit?, tail), share?, &quantiles)
         };
-        match guard.quantiles(&quantiles) {
-            None if !apart => tails.into_iter().find_map(tail),
-            found => found,
-        }
+        guard.quantiles(&quantiles).or_else(|| tails.into_iter().find_map(tail))
     }
 
     /// Numerical error of the share within the limits.
@@ -242,11 +221,6 @@ impl SurfaceShares {
     /// Quantiles by the names of their probabilities.
     pub fn named_quantiles(&self) -> Option<Quantiles> {
         self.quantiles.map(|all| Quantiles(all.map(|figure| figure.value)))
-    }
-
-    /// Lower, middle and upper quantile for percentile capability.
-    pub(in crate::analysis) fn capability_quantiles(&self) -> Option<[f64; 3]> {
-        self.quantiles.map(|all| OUTER.map(|index| all[index].value))
     }
 }
 
@@ -390,7 +364,7 @@ fn density(law: &SurfaceLaw, quantiles: Option<&[LawFigure; 7]>) -> Option<Vec<[
 /// All quantiles of reports. The search starts at those of the Pearson fit, or of a normal distribution if there is no fit. Returns None if
 /// one of them is unknown.
 fn quantiles(law: &SurfaceLaw, fit: Option<&Law>) -> Option<[LawFigure; 7]> {
-    let found = law.quantiles(&sought(law, fit, &QUANTILES));
+    let found = law.quantiles(&sought(law, fit, &REPORTED_QUANTILES));
     let known = found.iter().all(|figure| figure.value.is_finite());
     found.try_into().ok().filter(|_| known)
 }

@@ -19,8 +19,10 @@
 use crate::analysis::CharacteristicAnalysis;
 use crate::analysis::distribution::coverage::covered;
 use crate::analysis::distribution::inspection::inspected;
-use crate::analysis::distribution::surface_law::{GuardedLaw, LawRequest, SurfaceShares};
-use crate::analysis::distribution::unverified_rejects::error_of_shares;
+use crate::analysis::distribution::moment_shift::error_of_shares;
+use crate::analysis::distribution::quantile_selection::QuantileSelection;
+use crate::analysis::distribution::surface_law::{GuardedLaw, LawRequest};
+use crate::analysis::result::quantile_estimates::QuantileEstimates;
 use crate::analysis::result::verification::{TRUSTED, Verification, VerificationKind};
 use crate::analysis::result::yield_error::of_sides;
 use crate::analysis::result::yield_source::YieldSource;
@@ -139,14 +141,22 @@ pub(in crate::analysis) fn settle(
             continue;
         }
         let (mut guarded, density) = found.map_or((None, None), |SharesByLaw { law, density }| (Some(law), density));
-        one.density = density;
+        let measured = !samples_of(problem, outcome, c).is_empty();
         if let Some(probability) = options.coverage {
+            let found = QuantileSelection::of(one, guarded.as_ref(), measured).map(|of| covered(&of, probability));
             // Quantiles that give no intervals refute the distribution: points of the surface replace it.
-            one.coverage = covered(one, guarded.as_ref(), probability).unwrap_or_else(|faulty| {
-                guarded = GuardedLaw::without(request(problem, outcome, options, (c, one)), &faulty);
-                covered(one, guarded.as_ref(), probability).unwrap_or(None)
+            one.coverage = found.and_then(|found| {
+                found.unwrap_or_else(|faulty| {
+                    guarded = GuardedLaw::without(request(problem, outcome, options, (c, one)), &faulty);
+                    let of = QuantileSelection::of(one, guarded.as_ref(), measured);
+                    of.and_then(|of| covered(&of, probability).unwrap_or(None))
+                })
             });
         }
+        let limits = one.characteristic.limits();
+        one.quantiles = QuantileSelection::of(one, guarded.as_ref(), measured)
+            .map(|of| QuantileEstimates::new(of.source(), of.reported(), limits));
+        one.density = sampled_density(one, options).or(density);
         one.surface_law = guarded.as_ref().map(|law| law.shares);
         let points = guarded.as_mut().and_then(|law| law.points.take());
         laws[c] = guarded.and_then(|law| law.law);
@@ -463,16 +473,19 @@ fn pearson(one: &CharacteristicAnalysis) -> Option<Rejected> {
     Some(Rejected::new(YieldSource::Pearson, [own.below, own.above], error, by_moments(one)))
 }
 
-/// Capability with the rejects of the chosen source. Quantiles come from the surface distribution if there is one.
+/// Capability with the rejects of the chosen source, and the indices by the quantiles.
 fn capability(one: &CharacteristicAnalysis, [below, above]: [Option<f64>; 2]) -> Option<Capability> {
     let moments = one.moments?;
     let limits = one.characteristic.limits();
-    let own = one.pearson;
-    let quantiles = one.surface_law.as_ref().and_then(SurfaceShares::capability_quantiles);
-    let [cp_percentile, cpk_percentile] = match (quantiles, own) {
-        (Some(quantiles), _) => percentiles(quantiles, limits),
-        (None, own) => [own.and_then(|own| own.cp_percentile), own.and_then(|own| own.cpk_percentile)],
-    };
+    let [cp_percentile, cpk_percentile] = one.quantiles.map_or([None; 2], |of| of.indices(limits));
     let base = Capability::of_moments(moments.mean(), moments.sigma(), limits);
     Some(Capability { below, above, cp_percentile, cpk_percentile, ..base })
+}
+
+/// Density from points of the model, if these are the source of the quantiles and the surface is not trusted. Returns None if none is
+/// requested.
+fn sampled_density(one: &CharacteristicAnalysis, options: &Options) -> Option<Vec<[f64; 3]>> {
+    let verification =
+        one.verification.as_ref().filter(|of| of.kind == VerificationKind::Sample && options.densities)?;
+    verification.sample.as_deref().filter(|_| !verification.follows_surface())?.density()
 }

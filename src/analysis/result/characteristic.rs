@@ -10,7 +10,8 @@ use crate::analysis::result::sobol_indices::SobolIndices;
 use crate::analysis::result::variance_share::Shares;
 use crate::analysis::result::yield_error::of_yield;
 use crate::analysis::{
-    InteractionList, SampledModel, SamplingInterval, SurfaceShares, Verification, VerificationKind, YieldSource,
+    InteractionList, QuantileEstimates, SampledModel, SamplingInterval, SurfaceShares, Verification, VerificationKind,
+    YieldSource,
 };
 use crate::extremes::{Extremes, ExtremesProof};
 use crate::method::{ErrorEstimate, Order, Outcome, Residual, estimate};
@@ -76,8 +77,8 @@ pub struct CharacteristicAnalysis {
     #[serde(rename = "distribution", serialize_with = "fitted")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<Law>"))]
     pub law: Option<Result<Law, PearsonError>>,
-    /// Capability from the best available source ([`yield_source`](Self::yield_source)). Quantiles come from the surface distribution if
-    /// there is one.
+    /// Capability from the best available source ([`yield_source`](Self::yield_source)). Indices by quantiles come from
+    /// [`quantiles`](Self::quantiles).
     #[serde(flatten, serialize_with = "through::<CapabilityShape, _, _>")]
     #[cfg_attr(feature = "schema", schemars(with = "CapabilityShape"))]
     pub capability: Option<Capability>,
@@ -94,6 +95,8 @@ pub struct CharacteristicAnalysis {
     #[serde(rename = "normal_fit")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<CapabilityShape>"))]
     pub normal: Option<Capability>,
+    /// Quantiles with their errors. None if nothing is known of the distribution.
+    pub quantiles: Option<QuantileEstimates>,
     /// Intervals that hold the requested share of assemblies. None if none was requested.
     pub coverage: Option<CoverageIntervals>,
     /// Risks of the inspection. None if there is no gauge.
@@ -183,7 +186,7 @@ pub struct Sensitivity {
 }
 
 rescale!(CharacteristicAnalysis {
-    nominal, moments, sampled, model_sampled, verification, surface_law, error_estimate, residual, law, coverage, inspection, sampling,
+    nominal, moments, sampled, model_sampled, verification, surface_law, error_estimate, residual, law, quantiles, coverage, inspection, sampling,
     worst_case, curved, extremes, bounds, middle, rss, inflated_rss, mean_shift_rss, six_sigma, sensitivities, interactions,
 } without {
     characteristic, yield_source, unfinished, without_value, capability, pearson, normal, reject_intervals, interactions_remainder, possible_interactions, examined_interactions,
@@ -377,6 +380,7 @@ impl CharacteristicAnalysis {
             reject_intervals: [None; 2],
             law,
             sampling: None,
+            quantiles: None,
             coverage: None,
             inspection: None,
             characteristic,

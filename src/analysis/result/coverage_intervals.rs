@@ -16,10 +16,14 @@ pub struct CoverageIntervals {
     pub probability: f64,
     /// Interval with equal shares of assemblies below and above it.
     pub equal_tails: [f64; 2],
+    /// Errors of the ends of `equal_tails`; null if unknown.
+    pub equal_tails_errors: [Option<f64>; 2],
     /// Shortest interval.
     pub shortest: [f64; 2],
-    /// Source of the intervals: a surface that is trusted, else points of the model, else the Pearson fit.
+    /// Errors of the ends of `shortest`, as quantiles; null if unknown.
+    pub shortest_errors: [Option<f64>; 2],
+    /// Source of the intervals: that of the quantiles.
     pub source: YieldSource,
 }
 
-rescale!(CoverageIntervals { equal_tails, shortest } without { probability, source });
+rescale!(CoverageIntervals { equal_tails, equal_tails_errors, shortest, shortest_errors } without { probability, source });

@@ -7,6 +7,7 @@ pub(in crate::analysis) mod interaction_listing;
 pub(in crate::analysis) mod interaction_remainder;
 pub(in crate::analysis) mod json;
 pub(in crate::analysis) mod linear;
+pub(in crate::analysis) mod quantile_estimates;
 pub(in crate::analysis) mod sampled_model;
 pub(in crate::analysis) mod serialisation;
 pub(in crate::analysis) mod sobol_indices;

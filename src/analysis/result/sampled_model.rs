@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::simulation::Histogram;
 use crate::verification::Share;
+use sensitol_numeric::capability::EstimatedQuantile;
 use sensitol_numeric::json_form::{Four, through};
 use sensitol_numeric::power::{Losable, Rescale, Rescaling};
 
@@ -33,6 +34,9 @@ pub struct SampledModel {
     /// 95 % intervals of `beyond`.
     #[serde(skip)]
     pub(crate) intervals: [Option<[f64; 2]>; 2],
+    /// Quantiles of the sample at the reported probabilities. None at one that it does not resolve.
+    #[serde(skip)]
+    pub(crate) quantiles: [Option<EstimatedQuantile>; 7],
     /// Histogram of the sample, with some tens of intervals.
     pub histogram: Option<Histogram>,
     /// First-order indices of the dimensions, by the ranks of the sample. Empty if the model is cheap enough to be evaluated again.
@@ -45,6 +49,7 @@ impl Rescale for SampledModel {
         let [mean, sigma, ..] = &mut self.standard_errors;
         mean.rescale(by);
         sigma.rescale(by);
+        self.quantiles.rescale(by);
         self.histogram.rescale(by);
     }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde::{Serialize, Serializer};
 
-use crate::verification::{FoundSwitch, SampleTails, Share, Verified, WeightedSample};
+use crate::verification::{FoundSwitch, SampleQuantile, SampleTails, Share, Verified, WeightedSample};
 use sensitol_numeric::json_form::{Four, Sides, through};
 use sensitol_numeric::power::{Losable, Rescale, Rescaling};
 
@@ -73,7 +73,10 @@ pub struct Verification {
     pub tails: Option<SampleTails>,
     /// True if figures of the characteristic are the model's, in place of the surface's.
     pub replaced: bool,
-    /// Sample, kept if an inspection or a coverage interval needs its points.
+    /// Quantiles of the sample at the reported probabilities. None at one that it does not resolve, and without a sample.
+    #[serde(skip)]
+    pub(crate) quantiles: [Option<SampleQuantile>; 7],
+    /// Sample, kept if an inspection, a coverage interval or a density needs its points.
     #[serde(skip)]
     pub(crate) sample: Option<Arc<WeightedSample>>,
 }
@@ -97,6 +100,7 @@ impl Rescale for Verification {
         mean.rescale(by);
         sigma.rescale(by);
         self.tails.rescale(by);
+        self.quantiles.rescale(by);
         if let Some(sample) = &mut self.sample {
             Arc::make_mut(sample).rescale(by);
         }
@@ -106,6 +110,11 @@ impl Rescale for Verification {
 impl Losable for Verification {}
 
 impl Verification {
+    /// True if the surface leaves so little of the variance unexplained that its distribution is that of the model.
+    pub fn follows_surface(&self) -> bool {
+        self.left.is_some_and(|left| left <= TRUSTED)
+    }
+
     /// Describes the verification in one line.
     pub fn words(&self) -> String {
         match self.kind {

@@ -19,6 +19,16 @@ pub enum YieldSource {
 }
 
 impl YieldSource {
+    /// Name of the source in JSON and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Proof => "proof",
+            Self::Samples => "samples",
+            Self::SurfaceLaw => "surface-law",
+            Self::Pearson => "pearson",
+        }
+    }
+
     /// Name of the source in a sentence.
     pub fn words(self) -> &'static str {
         match self {

@@ -23,9 +23,10 @@ use crate::problem::Problem;
 use crate::simulation::{BINS, CHOICE, Histogram};
 use crate::summary::RunSummary;
 use crate::verification::{
-    MOMENTS, OVERLOOKED, OVERLOOKED_BY, REPLICATES, Share, TOO_SMALL, carried_by, effective, jackknife, standard,
-    student, totals,
+    MOMENTS, OVERLOOKED, OVERLOOKED_BY, REPLICATES, Share, TOO_SMALL, carried_by, effective, jackknife,
+    reported_quantiles, standard, student, totals,
 };
+use sensitol_numeric::capability::EstimatedQuantile;
 use sensitol_numeric::moments::Moments;
 use sensitol_numeric::sampling::{Draws, Estimate, Fine, Portion, SOBOL_DIMENSIONS, Sampler, Scale};
 use sensitol_numeric::surrogate::{Chaos, Places, Sparse, Surrogate};
@@ -258,10 +259,20 @@ impl<'p> CrossFit<'p> {
                 yield_: limits.exist().then(|| (share(MOMENTS + 2), around(MOMENTS + 2))),
                 beyond: [limits.lower().map(|_| share(MOMENTS)), limits.upper().map(|_| share(MOMENTS + 1))],
                 intervals: [limits.lower().map(|_| around(MOMENTS)), limits.upper().map(|_| around(MOMENTS + 1))],
+                quantiles: self.quantiles(c),
                 histogram: histogram(&valid),
                 ranks: self.ranks(c, &values),
             },
         })
+    }
+
+    /// Quantiles of the model's values at the points drawn so far.
+    fn quantiles(&self, c: usize) -> [Option<EstimatedQuantile>; 7] {
+        let points = self.strides.iter().flat_map(|stride| {
+            let rows = stride.rows;
+            stride.y[c].iter().enumerate().map(move |(row, &y)| (y, (row / rows) % REPLICATES))
+        });
+        reported_quantiles(points.filter(|(y, _)| y.is_finite()), REPLICATES)
     }
 
     /// First-order indices of the dimensions on which a characteristic depends, by the ranks of the points.

@@ -15,7 +15,7 @@ use crate::simulation::{REPLICATES, SimulatedCharacteristic, Simulation, Simulat
 use crate::summary::RunSummary;
 use crate::verification::{Share, carried_by, student};
 use crate::warning::Figure;
-use sensitol_numeric::capability::{Capability, Law};
+use sensitol_numeric::capability::{Capability, EstimatedQuantile, Law};
 use sensitol_numeric::moments::Moments;
 use sensitol_numeric::sampling::{Estimate, SOBOL_DIMENSIONS, Sampler, one_error};
 
@@ -228,6 +228,11 @@ fn replace(
         yield_: found.yield_.map(|share| (share.value, share.interval)),
         beyond: [found.below, found.above],
         intervals: found.reject_intervals,
+        // Quantiles without an error are not resolved.
+        quantiles: found.quantiles.map(|quantile| {
+            let Estimate { value, standard_error } = quantile?;
+            Some(EstimatedQuantile { value, error: Some(few * standard_error?) })
+        }),
         histogram: found.histogram.clone(),
         ranks,
     };

@@ -118,6 +118,7 @@ fn proven(outcome: &Outcome, c: usize, one: &mut CharacteristicAnalysis) -> bool
         shares: None,
         tails: None,
         replaced: false,
+        quantiles: [None; 7],
         sample: None,
     });
     true
@@ -132,10 +133,10 @@ fn sample(
     (c, mut core): (usize, usize),
     one: &mut CharacteristicAnalysis,
     (seed, run): (u64, &Run<'_>),
-) -> bool {
+) -> Option<usize> {
     let surrogate = outcome.fitted[c].surrogate.as_ref();
     let beside = surrogate.map(|surrogate| (outcome.plan.varying(), surrogate));
-    let Some(mut found) = verify_characteristic(problem, c, (seed, core), beside, run) else { return false };
+    let mut found = verify_characteristic(problem, c, (seed, core), beside, run)?;
     // The sample must resolve sigma to the accuracy, and the yield to its target.
     let climbed = outcome.climbed.as_ref();
     let wanted = climbed.map(|climbed| climbed.accuracy);
@@ -194,10 +195,11 @@ fn sample(
         shares,
         tails: found.sample.as_ref().filter(|_| limits.exist()).map(|sample| sample.tails(sides)),
         replaced,
-        // For the risks of an inspection, and for coverage intervals.
+        quantiles: found.quantiles,
+        // For the risks of an inspection, for coverage intervals and for a density.
         sample: found
             .sample
-            .filter(|_| one.characteristic.inspection().is_some() || options.coverage.is_some())
+            .filter(|_| one.characteristic.inspection().is_some() || options.coverage.is_some() || options.densities)
             .map(Arc::new),
     });
     true
@@ -325,6 +327,7 @@ fn judge(one: &mut CharacteristicAnalysis, checked: &Checked, found: &CheckedFig
         shares: None,
         tails: None,
         replaced: false,
+        quantiles: [None; 7],
         sample: None,
     });
 }

@@ -7,7 +7,7 @@ mod risks;
 
 pub use inspection_risks::{EstimatedShare, InspectionRisks};
 pub use law::Law;
-pub use quantiles::{PROBABILITIES, Quantiles};
+pub use quantiles::{EstimatedQuantile, PROBABILITIES, Quantiles};
 pub use risks::{Risks, Tails, acceptance, guard_for, guard_reaching};
 
 use std::sync::LazyLock;
@@ -92,6 +92,31 @@ pub fn cpk(mean: f64, sigma: f64, limits: SpecLimits) -> Option<f64> {
 pub fn percentiles([low, middle, high]: [f64; 3], limits: SpecLimits) -> [Option<f64>; 2] {
     let both = limits.upper().zip(limits.lower()).and_then(|(upper, lower)| width(upper - lower, high - low));
     [both, nearer(limits, middle, middle - low, high - middle)]
+}
+
+/// Errors of [`percentiles`]: their changes if each quantile in turn is off by its error, combined as the root of the sum of squares. None
+/// for an index that does not exist, and if the error of a quantile is unknown.
+pub fn percentile_errors(quantiles: [EstimatedQuantile; 3], limits: SpecLimits) -> [Option<f64>; 2] {
+    let values = quantiles.map(|quantile| quantile.value);
+    let own = percentiles(values, limits);
+    let mut squares = own.map(|index| index.map(|_| 0.0));
+    for (moved, quantile) in quantiles.iter().enumerate() {
+        let Some(error) = quantile.error else { return [None; 2] };
+        let mut changes = [Some(0.0f64); 2];
+        for side in [-error, error] {
+            let mut other = values;
+            other[moved] += side;
+            let other = percentiles(other, limits);
+            for (change, (index, other)) in changes.iter_mut().zip(own.into_iter().zip(other)) {
+                *change =
+                    change.zip(index.zip(other)).map(|(change, (index, other))| change.max((other - index).abs()));
+            }
+        }
+        for (square, change) in squares.iter_mut().zip(changes) {
+            *square = square.zip(change).map(|(square, change)| square + change * change);
+        }
+    }
+    squares.map(|square| square.map(f64::sqrt))
 }
 
 fn width(narrow: f64, wide: f64) -> Option<f64> {

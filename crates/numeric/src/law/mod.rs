@@ -49,6 +49,7 @@ pub use quantile::Sought;
 
 use std::sync::{Arc, OnceLock};
 
+use crate::capability::TAIL;
 use crate::characteristic::{KeptLimits, SpecLimits};
 use crate::correlation::Correlation;
 use crate::distribution::Distribution;
@@ -121,6 +122,17 @@ pub enum LawTail {
     /// Values above a limit.
     Upper,
 }
+
+/// Probabilities of the quantiles in reports, lowest first, each with the tail that it leaves.
+pub const REPORTED_QUANTILES: [(LawTail, f64); 7] = [
+    (LawTail::Lower, TAIL),
+    (LawTail::Lower, 0.01),
+    (LawTail::Lower, 0.05),
+    (LawTail::Lower, 0.5),
+    (LawTail::Upper, 0.05),
+    (LawTail::Upper, 0.01),
+    (LawTail::Upper, TAIL),
+];
 
 impl LawTail {
     /// Returns 1 for the upper tail, -1 for the lower one.

@@ -8,7 +8,7 @@ use crate::analysis::statistics::CharacteristicStatistics;
 use crate::analysis::statistics::{derivative, matters, part, size, total};
 use crate::analysis::yield_source::source;
 use crate::document::number::{
-    UNKNOWN, beside, index, known, limits, percent, plain, plural, short, significant, yielded,
+    UNKNOWN, beside, carried, index, index_with, known, limits, percent, plain, plural, short, significant, yielded,
 };
 use crate::document::rejects::Rejects;
 use crate::document::{
@@ -24,10 +24,10 @@ use crate::output_correlation::{all_limits, together, together_table};
 use crate::requirement::{judged, lines};
 use crate::sampling::sampled;
 use crate::{DimensionReport, Report};
-use sensitol::analysis::{CharacteristicAnalysis, Sensitivity};
+use sensitol::analysis::{CharacteristicAnalysis, Sensitivity, YieldSource};
 use sensitol::extremes::{Extreme, Place};
 use sensitol::method::Basis;
-use sensitol_numeric::capability::{Capability, Law, Quantiles, TAIL};
+use sensitol_numeric::capability::{Capability, EstimatedQuantile, Law, Quantiles};
 use sensitol_numeric::correlation::Pair;
 use sensitol_numeric::pearson::Pearson;
 use sensitol_numeric::sampling::one_error;
@@ -274,10 +274,13 @@ impl CharacteristicSections for CharacteristicAnalysis {
                 let (kind, sigma) = (law.kind().name(), self.sigma().unwrap_or(0.0));
                 let mut detail =
                     vec![Element::Gap, Element::Chart(Chart::Spread(Box::new(self.spread(law, kind)))), Element::Gap];
-                detail.table(match self.surface_law.as_ref().and_then(|law| law.named_quantiles()) {
-                    Some(of_surface) => quantile_table("surface law", &of_surface, sigma),
-                    None => quantile_table(&named(kind), &Quantiles::of(law), sigma),
-                });
+                match &self.quantiles {
+                    Some(of) => {
+                        detail.note(format!("quantiles by {}", of.source.words()));
+                        detail.table(quantile_table("share below", &of.values, sigma));
+                    }
+                    None => detail.note("the quantiles are unknown"),
+                }
                 section.detail(detail);
             }
         }
@@ -301,31 +304,31 @@ impl CharacteristicSections for CharacteristicAnalysis {
         let share = plain(100.0 * of.probability);
         let width = |[from, to]: [f64; 2]| to - from;
         let scale = self.sigma().filter(|sigma| *sigma > 0.0);
-        let interval = |ends: [f64; 2]| {
-            let [from, to] = ends.map(|end| scale.map_or_else(|| plain(end), |sigma| beside(end, sigma)));
-            format!("{from} .. {to}")
+        let end =
+            |(end, error): (f64, Option<f64>)| scale.map_or_else(|| plain(end), |sigma| carried(end, sigma, error));
+        let interval = |[from, to]: [f64; 2], [of_from, of_to]: [Option<f64>; 2]| {
+            format!("{} .. {}", end((from, of_from)), end((to, of_to)))
         };
-        section.note(format!("{share} % within {} (equal tails), by {}", interval(of.equal_tails), of.source.words()));
+        let equal_tails = interval(of.equal_tails, of.equal_tails_errors);
+        section.note(format!("{share} % within {equal_tails} (equal tails), by {}", of.source.words()));
         if width(of.shortest) < (1.0 - NOTABLE) * width(of.equal_tails) {
-            section.note(format!("  the shortest such interval: {}", interval(of.shortest)));
+            section.note(format!("  the shortest such interval: {}", interval(of.shortest, of.shortest_errors)));
         }
     }
 
     fn spread(&self, law: &Pearson, kind: &str) -> SpreadChart {
         let sample = self.model_sampled.as_ref().and_then(|sampling| sampling.histogram.as_ref());
         let bars = sample.map_or("", |_| " over the sample of the model; each bar with one standard error");
-        let of_surface = self.surface_law.as_ref().and_then(|law| law.quantiles).map(|all| [all[0], all[3], all[6]]);
-        let of_surface = of_surface.map(|all| all.map(|figure| figure.value));
-        let [low, middle, high] =
-            of_surface.unwrap_or_else(|| [law.quantile(TAIL), law.quantile(0.5), law.upper_quantile(TAIL)]);
-        let mut places = vec![
-            (low, "quantile", "0.135 % quantile"),
-            (middle, "quantile", "median"),
-            (high, "quantile", "99.865 % quantile"),
-        ];
+        let names = ["0.135 % quantile", "median", "99.865 % quantile"];
+        let outer = self.quantiles.map_or([None; 3], |of| [0, 3, 6].map(|index| of.values.0[index]));
+        let marked = names.into_iter().zip(outer).filter_map(|(name, found)| Some((found?.value, "quantile", name)));
+        let mut places: Vec<_> = marked.collect();
         let fit = if kind == "normal" { "normal".to_owned() } else { format!("Pearson type {kind}") };
+        let sampled = self.quantiles.is_some_and(|of| of.source == YieldSource::Samples)
+            && self.verification.as_ref().is_some_and(|of| !of.follows_surface());
+        let source = if sampled { "Distribution of the sample" } else { "Surface distribution" };
         let words = match &self.density {
-            Some(table) => format!("Surface distribution{}{bars}; dashed: the Pearson fit ({fit}).", accuracy(table)),
+            Some(table) => format!("{source}{}{bars}; dashed: the Pearson fit ({fit}).", accuracy(table)),
             None => format!("{fit}{bars}."),
         };
         places.extend(self.mean().map(|mean| (mean, "mean", "mean")));
@@ -346,12 +349,14 @@ impl CharacteristicSections for CharacteristicAnalysis {
     }
 
     fn quantile_data(&self) -> DataTable {
-        let quantiles = self.quantiles();
+        let source = self.quantiles.map_or("", |of| of.source.name());
         Columns::default()
             .data("characteristic", |_| Cell::text(self.name()))
-            .data("probability", |row: &(&'static str, &f64)| Cell::text(row.0))
-            .data("value", |row| Cell::data(*row.1))
-            .table("quantiles", quantiles.iter().flat_map(Quantiles::iter))
+            .data("probability", |row: &(&'static str, &Option<EstimatedQuantile>)| Cell::text(row.0))
+            .data("value", |row| Cell::data(row.1.map(|of| of.value)))
+            .data("error", |row| Cell::data(row.1.and_then(|of| of.error)))
+            .data("source", move |_| Cell::text(source))
+            .table("quantiles", self.quantiles.iter().flat_map(|of| of.values.iter()))
     }
 
     fn kept(&self, section: &mut Section) {
@@ -376,7 +381,11 @@ impl CharacteristicSections for CharacteristicAnalysis {
         // Indices of measured values are performance indices (Pp, Ppk), not those of a process in control (Cp, Cpk).
         let names = if self.sampling.is_some() { ["Pp", "Ppk"] } else { ["Cp", "Cpk"] };
         let indices = [of(|of| of.cp_percentile), of(|of| of.cpk_percentile)];
-        let quantiles = join(names.into_iter().zip(indices).map(|(name, index)| named(name, index)).collect());
+        let errors = self.quantiles.map_or([None; 2], |of| [of.cp_percentile_error, of.cpk_percentile_error]);
+        let with_error = |((name, index), error): ((&str, Option<f64>), Option<f64>)| {
+            index.map(|index| format!("{name} {}", index_with(index, error)))
+        };
+        let quantiles = join(names.into_iter().zip(indices).zip(errors).map(with_error).collect());
         if !quantiles.is_empty() {
             detail.note(format!("by quantiles (ISO 22514-2): {quantiles}"));
         }
@@ -503,7 +512,8 @@ pub fn law_text(law: &Pearson, style: Style) -> String {
         ..SpreadChart::default()
     })));
     document.gap();
-    document.table(quantile_table(&named(kind), &Quantiles::of(law), law.sigma()));
+    let exact = Quantiles::of(law).0.map(|value| Some(EstimatedQuantile { value, error: None }));
+    document.table(quantile_table(&named(kind), &Quantiles(exact), law.sigma()));
     terminal::text(&document, style)
 }
 
@@ -511,20 +521,31 @@ fn named(kind: &str) -> String {
     if kind == "normal" { kind.to_owned() } else { format!("Pearson {kind}") }
 }
 
-/// Table of quantiles side by side, with their probabilities above.
-fn quantile_table(law: &str, quantiles: &Quantiles, sigma: f64) -> DataTable {
-    let row = |name: String, cell: &dyn Fn((&'static str, &f64)) -> Cell| -> [Cell; 8] {
+/// Table of quantiles side by side, with their probabilities above and their errors below if one is known.
+fn quantile_table(title: &str, quantiles: &Quantiles<Option<EstimatedQuantile>>, sigma: f64) -> DataTable {
+    type Entry<'q> = (&'static str, &'q Option<EstimatedQuantile>);
+    let row = |name: &str, cell: &dyn Fn(Entry<'_>) -> Cell| -> [Cell; 8] {
         let mut cells = std::iter::once(Cell::text(name)).chain(quantiles.iter().map(cell));
         std::array::from_fn(|_| cells.next().unwrap_or_else(Cell::empty))
     };
-    let probability = |(p, _): (&'static str, &f64)| {
+    let probability = |(p, _): Entry<'_>| {
         // Rounded, so that `0.00135` becomes `0.135 %`.
         Cell::number(p.parse::<f64>().ok(), |p| format!("{} %", plain((1e5 * p).round() / 1e3)))
     };
-    DataTable::untitled([
-        row(law.to_owned(), &probability),
-        row("quantiles".to_owned(), &|(_, value)| Cell::number(*value, |value| beside(value, sigma))),
-    ])
+    let value = |(_, found): Entry<'_>| match found {
+        Some(of) => Cell::number(of.value, |value| carried(value, sigma, of.error)),
+        None => Cell::text(UNKNOWN),
+    };
+    let error = |(_, found): Entry<'_>| match found.and_then(|of| of.error) {
+        Some(error) => Cell::number(error, |error| significant(error, 2)),
+        None => Cell::text(UNKNOWN),
+    };
+    let mut rows = vec![row(title, &probability), row("quantiles", &value)];
+    // An error of 0 is that of a value that does not vary.
+    if quantiles.0.iter().flatten().any(|of| of.error.is_some_and(|error| error > 0.0)) {
+        rows.push(row("±", &error));
+    }
+    DataTable::untitled(rows)
 }
 
 /// Formats a mean shift with the digits of sigma, or as `0` if all of them are zeros.

@@ -184,6 +184,12 @@ pub(crate) fn index(value: f64) -> String {
     unsigned_zero(format!("{value:.3}"))
 }
 
+/// Formats a capability index with no more decimals than its error supports.
+pub(crate) fn index_with(value: f64, error: Option<f64>) -> String {
+    let decimals = of_error(error).map_or(3, |of_error| of_error.min(3));
+    unsigned_zero(format!("{value:.decimals$}"))
+}
+
 /// Least distinguishable reject rate: no distribution of a dimension is known so far out.
 pub(super) const FEWEST: f64 = 1e-9;
 

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use crate::analysis::analysis_document::CharacteristicSections;
 use crate::analysis::statistics::CharacteristicStatistics;
-use crate::document::number::index;
+use crate::document::number::{index, index_with};
 use crate::document::svg::escaped;
 use crate::figures::{Figures, Named};
 use crate::html::verdict::interval;
@@ -37,7 +37,10 @@ pub(super) fn facts(one: &CharacteristicAnalysis) -> String {
         };
         index_row(cpk, of(|of| of.cpk), true);
         index_row(cp, of(|of| of.cp), false);
-        index_row(&format!("{cpk}, by quantiles"), of(|of| of.cpk_percentile), false);
+        if let Some(value) = of(|of| of.cpk_percentile) {
+            let error = one.quantiles.and_then(|of| of.cpk_percentile_error);
+            row(&format!("{cpk}, by quantiles"), index_with(value, error), String::new(), false);
+        }
     }
     for (name, shown) in FIRST.into_iter().zip(one.first_figures()) {
         row(name, shown.text, shown.error, false);

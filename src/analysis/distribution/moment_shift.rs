@@ -1,4 +1,4 @@
-//! Error of the reject rate of a surface without verification by points of the model.
+//! Change of quantiles, and of the reject rate of a surface, by the errors of the moments.
 //!
 //! ```text
 //! shift(y) = sigma sqrt((dm/sigma)^2 + (z ds/sigma)^2 + ((z^2 - 1) dskew/6)^2 + ((z^3 - 3 z) dkurt/24)^2),    z = (y - m)/sigma
@@ -20,7 +20,7 @@ pub(in crate::analysis) fn error_of_shares(one: &CharacteristicAnalysis, law: &S
     let sides = [(limits.lower(), LawTail::Lower), (limits.upper(), LawTail::Upper)];
     let moved = |(limit, tail): (Option<f64>, LawTail)| {
         let Some(limit) = limit else { return 0.0 };
-        let shift = shift(limit, [law.mean(), law.sigma()], errors);
+        let shift = moment_shift(limit, [law.mean(), law.sigma()], errors);
         let towards = limit + (law.mean() - limit).clamp(-shift, shift);
         (law.tail(towards, tail).value - law.tail(limit, tail).value).abs()
     };
@@ -28,7 +28,11 @@ pub(in crate::analysis) fn error_of_shares(one: &CharacteristicAnalysis, law: &S
 }
 
 /// Distance by which the errors of mean, sigma, skewness and kurtosis move the quantile at a limit.
-fn shift(limit: f64, [mean, sigma]: [f64; 2], [of_mean, of_sigma, of_skewness, of_kurtosis]: [f64; 4]) -> f64 {
+pub(in crate::analysis) fn moment_shift(
+    limit: f64,
+    [mean, sigma]: [f64; 2],
+    [of_mean, of_sigma, of_skewness, of_kurtosis]: [f64; 4],
+) -> f64 {
     let z = (limit - mean) / sigma;
     let parts = [
         of_mean,
@@ -41,14 +45,14 @@ fn shift(limit: f64, [mean, sigma]: [f64; 2], [of_mean, of_sigma, of_skewness, o
 
 #[cfg(test)]
 mod tests {
-    use super::shift;
+    use super::moment_shift;
 
     /// The quantile of a normal distribution moves with its mean exactly, and with its sigma multiplied by its distance in sigmas.
     #[test]
     fn mean_and_sigma_move_a_limit_exactly() {
-        assert_eq!(shift(10.0, [4.0, 2.0], [0.5, 0.0, 0.0, 0.0]), 0.5);
+        assert_eq!(moment_shift(10.0, [4.0, 2.0], [0.5, 0.0, 0.0, 0.0]), 0.5);
         // Three sigmas out an error of 0.1 of sigma moves the quantile by 0.3.
-        assert!((shift(10.0, [4.0, 2.0], [0.0, 0.1, 0.0, 0.0]) - 0.3).abs() < 1e-15);
+        assert!((moment_shift(10.0, [4.0, 2.0], [0.0, 0.1, 0.0, 0.0]) - 0.3).abs() < 1e-15);
     }
 
     /// A gamma distribution of shape k has skewness 2/sqrt(k) and kurtosis 3 + 6/k. Its quantile differs from that of a normal distribution
@@ -59,7 +63,7 @@ mod tests {
         let (k, z) = (1e4f64, 2.326_347_874_040_841);
         let cube = (1.0 - 1.0 / (9.0 * k) + z / (3.0 * k.sqrt())).powi(3);
         let moved = (k * cube - k) / k.sqrt() - z;
-        let own = shift(z, [0.0, 1.0], [0.0, 0.0, 2.0 / k.sqrt(), 0.0]);
+        let own = moment_shift(z, [0.0, 1.0], [0.0, 0.0, 2.0 / k.sqrt(), 0.0]);
         assert!((own - moved).abs() < 2e-3 * moved, "{own:e} {moved:e}");
     }
 }
