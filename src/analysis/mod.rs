@@ -31,6 +31,7 @@ use crate::analysis::sampling::accuracy_target;
 use crate::analysis::sampling::jump;
 use crate::analysis::sampling::measured_interval;
 use crate::analysis::sampling::model_sample;
+use crate::analysis::sampling::sample_budget::SampleBudget;
 use crate::analysis::sampling::verification_stage;
 pub use crate::extremes::{Coordinate, Extreme, Extremes, ExtremesProof, Place};
 pub use crate::verification::{Crossing, FoundSwitch, OutputCorrelation, Share, Verified};
@@ -177,6 +178,8 @@ pub(crate) struct Findings {
     pub(crate) outcome: Outcome,
     /// Distributions of the surfaces by characteristic, if the yields use them.
     laws: Vec<Option<SurfaceLaw>>,
+    /// Rest of the budget for points of a cheap model.
+    left: SampleBudget,
 }
 
 /// The part of [`analyze_with`] that a search of tolerances needs for each of its trials. [`Analysis::complete`] adds the rest.
@@ -211,7 +214,9 @@ pub(crate) fn analyze_keeping(
     };
     outcome.evaluated.non_repeatable.extend(jumps.non_repeatable);
     let left = left.map(|left| left.saturating_sub(jumps.run.evaluations as usize));
-    let (verified, doubted) = verification_stage::verify(problem, &outcome, options, left, &mut characteristics, run);
+    let mut left = SampleBudget::new(left);
+    let (verified, doubted) =
+        verification_stage::verify(problem, &outcome, options, &mut left, &mut characteristics, run);
     outcome.evaluated.non_repeatable.extend(doubted);
     let bounded = options.verification(signature) > 0 && !run.stopped();
     let bounds = || if bounded { bounds(problem, &outcome, &characteristics, run) } else { Vec::new() };
@@ -229,8 +234,8 @@ pub(crate) fn analyze_keeping(
     for (c, (one, shares)) in characteristics.iter_mut().zip(shares).enumerate() {
         one.interactions = interaction_listing::listed(problem, &outcome, c, shares.as_ref());
     }
-    let joint =
-        options.target_joint_yield.and_then(|_| yield_selection::joint(problem, options, &characteristics, &laws));
+    let joint = (options.target_joint_yield)
+        .and_then(|_| yield_selection::joint(problem, options, &mut left, &characteristics, &laws));
     let spent = spent(&outcome, options).and(&fallback.run).and(&jumps.run).and(&verified);
     // The extremes do not affect shares: only the other runs decide whether a share is unfinished.
     characteristics.iter_mut().for_each(|one| one.unfinished = spent.unfinished());
@@ -257,22 +262,23 @@ pub(crate) fn analyze_keeping(
         correlations: Vec::new(),
         warnings,
     };
-    Ok((analysis, Findings { outcome, laws }))
+    Ok((analysis, Findings { outcome, laws, left }))
 }
 
 impl Analysis {
     /// Adds the results that no other one needs: the joint yield, the correlations of characteristics, and Sobol' indices.
     pub(crate) fn complete(&mut self, findings: &Findings, problem: &Problem, options: &Options, run: &Run<'_>) {
         let begun = Instant::now();
-        let Findings { outcome, laws } = findings;
+        let Findings { outcome, laws, left } = findings;
+        let mut left = *left;
         if self.joint.is_none() {
-            self.joint = yield_selection::joint(problem, options, &self.characteristics, laws);
+            self.joint = yield_selection::joint(problem, options, &mut left, &self.characteristics, laws);
             self.joint_interval = self.joint.and_then(|joint| joint_interval(joint, &self.characteristics));
         }
         self.correlations =
-            crate::analysis::output_correlation::correlations(problem, outcome, options, &self.characteristics);
+            output_correlation::correlations(problem, outcome, options, &mut left, &self.characteristics);
         // Last, because warnings and accounts also read the contributions of a surface that is not trusted.
-        crate::analysis::sobol_estimate::add(problem, outcome, options, &mut self.characteristics, run);
+        sobol_estimate::add(problem, outcome, options, &mut left, &mut self.characteristics, run);
         self.run.wall += begun.elapsed();
     }
 }

@@ -11,18 +11,20 @@
 
 use crate::analysis::CharacteristicAnalysis;
 use crate::analysis::result::verification::VerificationKind;
+use crate::analysis::sampling::sample_budget::SampleBudget;
 use crate::method::{Options, Outcome};
 use crate::problem::Problem;
-use crate::verification::{OutputCorrelation, Verified, output_correlations};
+use crate::verification::{OutputCorrelation, Verified, most_points_together, output_correlations};
 use sensitol_numeric::surrogate::Surrogate;
 
 /// Correlations of every pair of characteristics. Empty with one characteristic, and with more than 40.
 ///
-/// Evaluates a cheap model that is to be verified at 16 384 points, and a costly one never.
+/// Evaluates a cheap model that is to be verified at 16 384 points if the budget allows it, and a costly one never.
 pub(super) fn correlations(
     problem: &Problem,
     outcome: &Outcome,
     options: &Options,
+    left: &mut SampleBudget,
     characteristics: &[CharacteristicAnalysis],
 ) -> Vec<OutputCorrelation> {
     let count = characteristics.len();
@@ -32,14 +34,14 @@ pub(super) fn correlations(
     let sampled =
         |one: &CharacteristicAnalysis| one.verification.as_ref().is_some_and(|of| of.kind == VerificationKind::Sample);
     let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b)));
-    let by_model = match characteristics.iter().any(sampled) {
+    let by_model = match characteristics.iter().any(sampled) && left.take(most_points_together(count)) {
         true => output_correlations(problem, options.seed.unwrap_or(Options::SEED)),
         false => Vec::new(),
     };
     let known = |index: usize, (a, b): (usize, usize)| -> Option<(f64, Option<f64>)> {
         let ones = [&characteristics[a], &characteristics[b]];
-        if ones.iter().any(|one| sampled(one)) {
-            return by_model[index].map(|Verified { value, error }| (value, Some(error)));
+        if let Some(by_model) = by_model.get(index).filter(|_| ones.iter().any(|one| sampled(one))) {
+            return by_model.map(|Verified { value, error }| (value, Some(error)));
         }
         let (value, drawn) = of_surfaces(outcome, [a, b])?;
         let left = |one: &CharacteristicAnalysis| one.verification.as_ref().and_then(|of| of.left);

@@ -15,10 +15,11 @@ use std::collections::HashMap;
 use crate::analysis::CharacteristicAnalysis;
 use crate::analysis::result::sobol_indices::{FactorIndices, IndexSource, SobolIndices};
 use crate::analysis::result::verification::{UNTRUSTED, VerificationKind};
+use crate::analysis::sampling::sample_budget::SampleBudget;
 use crate::assembly::Run;
 use crate::method::{Options, Order, Outcome};
 use crate::problem::Problem;
-use crate::verification::factor_shares;
+use crate::verification::{factor_shares, most_points_of_shares};
 use sensitol_numeric::capability::EstimatedShare;
 use sensitol_numeric::correlation::factors;
 
@@ -30,6 +31,7 @@ pub(super) fn add(
     problem: &Problem,
     outcome: &Outcome,
     options: &Options,
+    left: &mut SampleBudget,
     characteristics: &mut [CharacteristicAnalysis],
     run: &Run<'_>,
 ) {
@@ -44,7 +46,7 @@ pub(super) fn add(
         let distrusted = one.is_distrusted();
         let (source, found) = match distrusted {
             false => (IndexSource::Surface, of_surface(one, &factors)),
-            true => of_model(problem, (c, options), one, &factors, run),
+            true => of_model(problem, (c, options), left, one, &factors, run),
         };
         // A method of first order reports the contributions of its own sum of squares, regardless of the model.
         if distrusted && outcome.order == Order::Second {
@@ -144,6 +146,7 @@ fn of_surface(one: &CharacteristicAnalysis, factors: &[Vec<usize>]) -> Vec<Pair>
 fn of_model(
     problem: &Problem,
     (c, options): (usize, &Options),
+    left: &mut SampleBudget,
     one: &CharacteristicAnalysis,
     factors: &[Vec<usize>],
     run: &Run<'_>,
@@ -158,9 +161,10 @@ fn of_model(
         };
         return (IndexSource::Exchange, factors.iter().map(of).collect());
     }
-    // A model that is sampled to verify results may be evaluated more, unless there is a budget.
+    // A model that is sampled to verify results may be evaluated more, if the budget allows it.
     let verified = one.verification.as_ref().is_some_and(|of| of.kind == VerificationKind::Sample);
-    let affordable = verified && options.budget.is_none() && !run.stopped();
+    let inputs = factors.iter().map(Vec::len).sum();
+    let affordable = verified && !run.stopped() && left.take(most_points_of_shares(inputs));
     let found = affordable.then(|| factor_shares(problem, c, options.seed.unwrap_or(Options::SEED), run)).flatten();
     let ranks = one.model_sampled.as_ref().map_or(&[][..], |of| &of.ranks);
     if found.is_none() && !ranks.is_empty() {

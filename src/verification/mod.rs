@@ -27,7 +27,7 @@ pub(crate) use crate::verification::costly_model::CONFIDENCE;
 pub use crate::verification::costly_model::{Checked, CheckedFigures, MOST_CHECKS, Target, unseen, verify_by_checks};
 pub(crate) use crate::verification::normal_space::{Columns, Space};
 pub use crate::verification::output_correlation::OutputCorrelation;
-pub(crate) use crate::verification::output_correlation::{common_rejects, output_correlations};
+pub(crate) use crate::verification::output_correlation::{common_rejects, most_points_together, output_correlations};
 pub(crate) use crate::verification::residual_error::{OVERLOOKED, OVERLOOKED_BY, TOO_SMALL};
 pub use crate::verification::switch_side::{Crossing, FoundSwitch};
 pub use crate::verification::variance_shares::Share;
@@ -54,7 +54,7 @@ use sensitol_numeric::surrogate::Surrogate;
 pub(crate) const CORE: usize = 1 << 15;
 
 /// Points for the share of the variance that a surface leaves unexplained.
-const BESIDE: usize = 1 << 10;
+pub(crate) const BESIDE: usize = 1 << 10;
 
 /// Most evaluations of a sample with `core` points in its core, including those of [`unexplained`].
 pub(crate) const fn most_points(core: usize) -> usize {

@@ -71,6 +71,11 @@ pub(crate) fn output_correlations(problem: &Problem, seed: u64) -> Vec<Option<Ve
         .collect()
 }
 
+/// Evaluations of [`output_correlations`], and of [`common_rejects`], over this number of characteristics.
+pub(crate) const fn most_points_together(characteristics: usize) -> usize {
+    characteristics * ROWS * REPLICATES
+}
+
 /// Mean number of broken characteristics beyond the first, over the points at which all of these have a value: the rejects that are counted
 /// more than once if reject rates are added. Returns None if no point has all values.
 ///

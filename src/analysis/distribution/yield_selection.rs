@@ -27,11 +27,12 @@ use crate::analysis::result::verification::{TRUSTED, Verification, VerificationK
 use crate::analysis::result::yield_error::of_sides;
 use crate::analysis::result::yield_source::YieldSource;
 use crate::analysis::sampling::measured_interval::samples_of;
+use crate::analysis::sampling::sample_budget::SampleBudget;
 use crate::extremes::keeps_by_proof;
 use crate::method::{ErrorEstimate, Options, Outcome};
 use crate::problem::Problem;
-use crate::verification::{Verified, common_rejects};
-use sensitol_numeric::capability::{Capability, Law, percentiles};
+use crate::verification::{Verified, common_rejects, most_points_together};
+use sensitol_numeric::capability::{Capability, Law};
 use sensitol_numeric::characteristic::SpecLimits;
 use sensitol_numeric::law::{Branch, SurfaceLaw, joint_yield};
 use sensitol_numeric::law::{LawFigure, joint_bounds};
@@ -188,6 +189,7 @@ pub(in crate::analysis) fn settle(
 pub(in crate::analysis) fn joint(
     problem: &Problem,
     options: &Options,
+    left: &mut SampleBudget,
     characteristics: &[CharacteristicAnalysis],
     laws: &[Option<SurfaceLaw>],
 ) -> Option<Verified> {
@@ -215,7 +217,7 @@ pub(in crate::analysis) fn joint(
         Some(found) if found.error <= CORRECTED => by_laws,
         // If model and surface keep different assemblies, the surface gives little information about the common rejects.
         _ => {
-            let by_points = by_points(problem, options, characteristics, &limited, &rejects);
+            let by_points = by_points(problem, options, left, characteristics, &limited, &rejects);
             by_laws.into_iter().chain(by_points).min_by(|a, b| a.error.total_cmp(&b.error))
         }
     };
@@ -254,12 +256,13 @@ fn by_laws(
 fn by_points(
     problem: &Problem,
     options: &Options,
+    left: &mut SampleBudget,
     characteristics: &[CharacteristicAnalysis],
     limited: &[usize],
     rejects: &[f64],
 ) -> Option<Verified> {
     let free = options.budget.is_none() || characteristics.iter().any(is_sampled);
-    if problem.function().signature().costly || !free {
+    if problem.function().signature().costly || !free || !left.take(most_points_together(limited.len())) {
         return None;
     }
     let common = common_rejects(problem, limited, options.seed.unwrap_or(Options::SEED))?;

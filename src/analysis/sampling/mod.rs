@@ -10,5 +10,6 @@ pub(in crate::analysis) mod measured_interval;
 pub(in crate::analysis) mod model_sample;
 pub(in crate::analysis) mod recorded_points;
 pub(in crate::analysis) mod resample_interval;
+pub(in crate::analysis) mod sample_budget;
 pub(in crate::analysis) mod surface_trust;
 pub(in crate::analysis) mod verification_stage;

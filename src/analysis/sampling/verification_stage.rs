@@ -10,12 +10,13 @@ use crate::analysis::CharacteristicAnalysis;
 use crate::analysis::result::verification::{TRUSTED, UNTRUSTED, VarianceShare, Verification, VerificationKind};
 use crate::analysis::result::yield_error::of_yield;
 use crate::analysis::sampling::accuracy_target::{MORE, PART};
+use crate::analysis::sampling::sample_budget::SampleBudget;
 use crate::assembly::{EvaluationError, NonRepeatable, Run};
 use crate::method::{ErrorEstimate, ErrorSource, Method, Options, Outcome, interpolated};
 use crate::problem::Problem;
 use crate::summary::RunSummary;
 use crate::verification::{
-    Checked, CheckedFigures, SampledFigures, Target, Verified, core_within, most_points, most_points_of_shares,
+    BESIDE, Checked, CheckedFigures, SampledFigures, Target, Verified, core_within, most_points, most_points_of_shares,
     unexplained, variance_shares_during, verify_by_checks, verify_characteristic,
 };
 use crate::warning::Warning;
@@ -49,7 +50,7 @@ pub(in crate::analysis) fn verify(
     problem: &Problem,
     outcome: &Outcome,
     options: &Options,
-    left: Option<usize>,
+    left: &mut SampleBudget,
     characteristics: &mut [CharacteristicAnalysis],
     run: &Run<'_>,
 ) -> (RunSummary, Vec<NonRepeatable>) {
@@ -64,20 +65,28 @@ pub(in crate::analysis) fn verify(
         return Default::default();
     }
     // A budget that is too small for a sample of each characteristic may suffice for check points.
-    let each = left.map(|left| left / open.len());
+    let each = left.each(open.len());
     let cores: Option<Vec<usize>> = open.iter().map(|&c| core_within(problem, c, each)).collect();
     let Some(cores) = cores.filter(|_| !costly) else {
-        return check(problem, outcome, options, most.min(left.unwrap_or(usize::MAX)), (&open, characteristics), run);
+        return check(
+            problem,
+            outcome,
+            options,
+            most.min(left.each(1).unwrap_or(usize::MAX)),
+            (&open, characteristics),
+            run,
+        );
     };
     let seed = options.seed.unwrap_or(Options::SEED);
     // A long formula takes a while for each of some 45 000 points. Characteristics that are not reached in time have no verification, and
     // the report states it.
     let one = |(c, one): (usize, &mut CharacteristicAnalysis)| {
         let core = open.binary_search(&c).map(|place| cores[place]);
-        core.map_or(true, |core| sample(problem, outcome, (options, each), (c, core), one, (seed, run)))
+        core.map_or(Some(0), |core| sample(problem, outcome, (options, each), (c, core), one, (seed, run)))
     };
-    let done: Vec<bool> = characteristics.par_iter_mut().enumerate().map(one).collect();
-    let stopped = done.contains(&false).then(|| run.why_open());
+    let spent: Vec<Option<usize>> = characteristics.par_iter_mut().enumerate().map(one).collect();
+    left.spend(spent.iter().flatten().sum());
+    let stopped = spent.contains(&None).then(|| run.why_open());
     (RunSummary { stopped, ..RunSummary::default() }, Vec::new())
 }
 
@@ -124,8 +133,8 @@ fn proven(outcome: &Outcome, c: usize, one: &mut CharacteristicAnalysis) -> bool
     true
 }
 
-/// Verifies one characteristic by a sample with `core` points in its core, within the evaluations that are left for it. Returns false if
-/// the run was stopped before there was a sample.
+/// Verifies one characteristic by a sample with `core` points in its core, within the evaluations that are left for it. Returns the
+/// evaluations that it took, or None if the run was stopped before there was a sample.
 fn sample(
     problem: &Problem,
     outcome: &Outcome,
@@ -157,14 +166,16 @@ fn sample(
         spent += found.points;
     }
     let open = beside.and_then(|beside| unexplained(problem, c, beside, seed, run));
+    spent += open.map_or(0, |_| BESIDE);
     // Shares of variance cost many points: they are computed only if the surface leaves too much of the variance unexplained.
     let shares_are_due =
         |share: f64| share > UNTRUSTED && affords(spent, most_points_of_shares(outcome.plan.varying().len()));
     let shares = open.filter(|&share| shares_are_due(share)).and_then(|_| named_shares(problem, c, seed, run));
+    spent += shares.as_ref().map_or(0, |_| most_points_of_shares(outcome.plan.varying().len()) - BESIDE);
     // With `model_figures`, a surface that is not trusted gives way to the model's figures.
     let refuted = options.model_figures && open.is_none_or(|share| share > TRUSTED);
     let replaced = (options.method == Method::Auto || refuted) && replace(one, &found);
-    let Some(moments) = one.moments else { return true };
+    let Some(moments) = one.moments else { return Some(spent) };
     let error = |of: Option<Verified>, value: Option<f64>| Some(of?.error_of(value?));
     let law = one.capability.and_then(|capability| capability.yield_());
     let limits = one.characteristic.limits();
@@ -202,7 +213,7 @@ fn sample(
             .filter(|_| one.characteristic.inspection().is_some() || options.coverage.is_some() || options.densities)
             .map(Arc::new),
     });
-    true
+    Some(spent)
 }
 
 /// Returns the shares of the variance with the names of their dimensions. Returns None if the run was stopped before.
