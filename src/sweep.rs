@@ -13,8 +13,8 @@ use serde::Serialize;
 use crate::analysis::{Analysis, analyze_with};
 use crate::assembly::EvaluatorAccount;
 use crate::assembly::{
-    AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, ModelInfo, Points, Request, Responses, Run,
-    Signature,
+    AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, ModelInfo, Points, RecordedFailure, Request,
+    Responses, Run, Signature,
 };
 use crate::evaluation::{BATCH, Restoration, Restore, at_any_size};
 use crate::method::{MethodError, Options};
@@ -356,6 +356,10 @@ impl AssemblyFunction for Gatherer {
 
     fn account(&self) -> Option<EvaluatorAccount> {
         self.function().account()
+    }
+
+    fn recorded_failures(&self, outputs: &[usize]) -> Vec<RecordedFailure> {
+        self.function().recorded_failures(outputs)
     }
 
     fn warnings(&self, outputs: &[usize]) -> Vec<Warning> {

@@ -31,6 +31,7 @@ use crate::analysis::sampling::accuracy_target;
 use crate::analysis::sampling::jump;
 use crate::analysis::sampling::measured_interval;
 use crate::analysis::sampling::model_sample;
+use crate::analysis::sampling::recorded_failures;
 use crate::analysis::sampling::sample_budget::SampleBudget;
 use crate::analysis::sampling::verification_stage;
 pub use crate::extremes::{Coordinate, Extreme, Extremes, ExtremesProof, Place};
@@ -218,6 +219,7 @@ pub(crate) fn analyze_keeping(
     let (verified, doubted) =
         verification_stage::verify(problem, &outcome, options, &mut left, &mut characteristics, run);
     outcome.evaluated.non_repeatable.extend(doubted);
+    let recorded = recorded_failures::add(problem, &mut characteristics);
     let bounded = options.verification(signature) > 0 && !run.stopped();
     let bounds = || if bounded { bounds(problem, &outcome, &characteristics, run) } else { Vec::new() };
     let laws = || yield_selection::laws(problem, &outcome, options, &characteristics);
@@ -239,7 +241,7 @@ pub(crate) fn analyze_keeping(
     let spent = spent(&outcome, options).and(&fallback.run).and(&jumps.run).and(&verified);
     // The extremes do not affect shares: only the other runs decide whether a share is unfinished.
     characteristics.iter_mut().for_each(|one| one.unfinished = spent.unfinished());
-    let warnings = warnings::of(problem, &outcome, &characteristics, jumps.warnings);
+    let warnings = warnings::of(problem, &outcome, &characteristics, [jumps.warnings, recorded].concat());
     let account = Account::of(problem, &outcome, &characteristics, outcome.evaluated.evaluations);
     let drawn = measured_interval::add_sampling_intervals(problem, &outcome, &mut characteristics, seed);
     let surface = Surface::of(&outcome, &characteristics);

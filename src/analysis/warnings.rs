@@ -42,14 +42,14 @@ const MARGIN: f64 = 0.1;
 /// at both ends, has 2/3.
 const MODES: f64 = 0.68;
 
-/// Warnings of all characteristics, aggregated; `jumps` are those of the search for jumps.
+/// Warnings of all characteristics, aggregated; `found` are those of the search for jumps and of recorded failures.
 pub(super) fn of(
     problem: &Problem,
     outcome: &Outcome,
     characteristics: &[CharacteristicAnalysis],
-    jumps: Vec<Warning>,
+    found: Vec<Warning>,
 ) -> Vec<Warning> {
-    let mut warnings = jumps;
+    let mut warnings = found;
     warnings.extend(unused(problem));
     for &d in outcome.plan.varying() {
         let moved = |moved: &crate::plan::MovedNode| Warning::SupportEdge {

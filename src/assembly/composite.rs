@@ -14,7 +14,7 @@ use super::formula::{Role, UnitFinding};
 use super::implicit::{Anchor, Assembler, AssemblyFailure, Conditions, ConditionsError};
 use super::{
     AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, Input, ModelInfo, Output, Points, Polynomial,
-    Request, Responses, Run, Signature, Switches,
+    RecordedFailure, Request, Responses, Run, Signature, Switches,
 };
 use crate::warning::Warning;
 use sensitol_numeric::unit::Unit;
@@ -456,6 +456,24 @@ impl AssemblyFunction for Composite {
 
     fn account(&self) -> Option<EvaluatorAccount> {
         self.model.as_ref()?.function.account()
+    }
+
+    /// Returns failures of a model that receives dimensions. The values of driving formulas belong to no single point: such failures are
+    /// left out.
+    fn recorded_failures(&self, outputs: &[usize]) -> Vec<RecordedFailure> {
+        let Some(model) = self.model.as_ref().filter(|model| model.driving().next().is_none()) else {
+            return Vec::new();
+        };
+        let needs: Vec<Needs> = outputs.iter().map(|&output| self.needs(self.outputs[output])).collect();
+        let of_model = model.function.recorded_failures(&Needs::all(&needs).answers);
+        let mut failures = Vec::new();
+        for failure in of_model {
+            let Some(point) = model.dimensions_of(&failure.point, self.signature.inputs.len()) else { continue };
+            // Every output that uses the answer has no value there.
+            let lost = outputs.iter().zip(&needs).filter(|(_, needs)| needs.answers.contains(&failure.output));
+            failures.extend(lost.map(|(&output, _)| RecordedFailure { output, point: point.clone() }));
+        }
+        failures
     }
 
     fn warnings(&self, outputs: &[usize]) -> Vec<Warning> {

@@ -29,7 +29,7 @@ mod switch;
 
 pub use crate::assembly::answer_table::GivenAnswers;
 pub use crate::assembly::answer_table::Table;
-pub use crate::assembly::model_description::{ModelInfo, NonRepeatable};
+pub use crate::assembly::model_description::{ModelInfo, NonRepeatable, RecordedFailure};
 pub use blocks::{in_blocks, in_ranges, near_rows};
 pub use bounds::Bounds;
 pub use closure::Closure;
@@ -175,6 +175,13 @@ pub trait AssemblyFunction: Send + Sync {
     /// Returns the account of the processes of an external model so far, or None for a function without processes.
     fn account(&self) -> Option<EvaluatorAccount> {
         None
+    }
+
+    /// Returns points of earlier runs at which the model answered that one of `outputs` has no value. Crashes and missed deadlines are
+    /// left out, since another attempt may succeed. Returns none for a function without a journal. This is not an evaluation.
+    fn recorded_failures(&self, outputs: &[usize]) -> Vec<RecordedFailure> {
+        let _ = outputs;
+        Vec::new()
     }
 
     /// Returns the warnings of the function about its answers for `outputs`, after it has given some.

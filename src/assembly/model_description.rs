@@ -1,5 +1,10 @@
 //! Description that an external model gives of itself, and observations of its answers.
 
+use sensitol_numeric::dimension::Dimension;
+
+/// Rounding of a coordinate by conversions of units and offsets of states, as a part of its size.
+const ROUNDING: f64 = 1e-12;
+
 /// Description that an external model gives of itself when it is ready.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct ModelInfo {
@@ -45,5 +50,42 @@ impl NonRepeatable {
         suspects: Vec<Vec<f64>>,
     ) -> Self {
         Self { output: output.into(), expected, found, spread, suspects }
+    }
+}
+
+/// Point of an earlier run at which the model answered that an output has no value.
+///
+/// ```
+/// use sensitol::Dimension;
+/// use sensitol::assembly::RecordedFailure;
+/// let dimensions = [Dimension::normal("a", 10.0, 0.1)?, Dimension::fixed("b", 5.0)?];
+/// let failure = |a: f64| RecordedFailure { output: 0, point: vec![Some(a), None] };
+/// assert!(failure(10.1).is_within(&dimensions) && !failure(10.2).is_within(&dimensions));
+/// # Ok::<(), sensitol::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordedFailure {
+    /// Index of the output in the function's signature.
+    pub output: usize,
+    /// Value of each input; None for an input that the model does not receive.
+    pub point: Vec<Option<f64>>,
+}
+
+impl RecordedFailure {
+    /// True if the point lies within the reach of every dimension, as [`Dimension::reach`] defines it.
+    pub fn is_within(&self, dimensions: &[Dimension]) -> bool {
+        self.point.iter().zip(dimensions).all(|(x, dimension)| {
+            x.is_none_or(|x| {
+                let [lower, upper] = dimension.reach().map(|end| dimension.nominal() + end);
+                let rounding = ROUNDING * x.abs().max(lower.abs()).max(upper.abs());
+                (lower - rounding..=upper + rounding).contains(&x)
+            })
+        })
+    }
+
+    /// True if the failure belongs to this point, within rounding.
+    pub(crate) fn is_at(&self, point: &[f64]) -> bool {
+        let near = |(own, x): (&Option<f64>, &f64)| own.is_none_or(|own| (own - x).abs() <= ROUNDING * x.abs());
+        self.point.iter().zip(point).all(near)
     }
 }

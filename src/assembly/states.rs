@@ -7,7 +7,7 @@ use crate::assembly::evaluator_account::EvaluatorAccount;
 use crate::assembly::request::bits;
 use crate::assembly::{
     AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, ModelInfo, NonRepeatable, Output, Points,
-    Polynomial, Request, Responses, Run, Signature, Switches,
+    Polynomial, RecordedFailure, Request, Responses, Run, Signature, Switches,
 };
 use crate::warning::Warning;
 
@@ -86,6 +86,16 @@ impl State {
     fn asked_for(&self, point: &[f64]) -> Vec<f64> {
         let asked = self.asked.lock().unwrap_or_else(PoisonError::into_inner);
         asked.get(&bits(point)).cloned().unwrap_or_else(|| point.to_vec())
+    }
+
+    /// Returns the point of the first state for a point of this one. A point that was asked is returned without rounding.
+    fn unshifted(&self, point: &[Option<f64>]) -> Vec<Option<f64>> {
+        let asked = self.asked.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = point.iter().copied().collect::<Option<Vec<f64>>>().and_then(|point| asked.get(&bits(&point)));
+        match known {
+            Some(known) => known.iter().copied().map(Some).collect(),
+            None => point.iter().zip(&self.moved).map(|(x, by)| Some((*x)? - by)).collect(),
+        }
     }
 
     fn points(&self, points: &Points) -> Points {
@@ -177,6 +187,18 @@ impl AssemblyFunction for States {
 
     fn account(&self) -> Option<EvaluatorAccount> {
         self.states.iter().filter_map(|state| state.function.account()).reduce(EvaluatorAccount::and)
+    }
+
+    fn recorded_failures(&self, outputs: &[usize]) -> Vec<RecordedFailure> {
+        let mut all = Vec::new();
+        for (state, asked, own) in self.by_state(outputs) {
+            // The journal holds the shifted point of the state.
+            all.extend(state.function.recorded_failures(&own).into_iter().filter_map(|failure| {
+                let place = own.iter().position(|&output| output == failure.output)?;
+                Some(RecordedFailure { output: outputs[asked[place]], point: state.unshifted(&failure.point) })
+            }));
+        }
+        all
     }
 
     fn derivatives(&self, outputs: &[usize], directions: &Directions<'_>) -> Vec<Option<Derivatives>> {

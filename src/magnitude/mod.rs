@@ -41,12 +41,17 @@ macro_rules! forward_unscaled {
             self.function.account()
         }
 
+        fn recorded_failures(&self, outputs: &[usize]) -> Vec<RecordedFailure> {
+            self.failures.without_own(self.function.recorded_failures(outputs))
+        }
+
         fn warnings(&self, outputs: &[usize]) -> Vec<Warning> {
             self.function.warnings(outputs)
         }
     };
 }
 
+mod failure_log;
 mod scaled;
 mod store;
 mod watch;
@@ -57,6 +62,7 @@ pub(crate) use watch::{Watch, WatchedFunction};
 use std::sync::Arc;
 
 use crate::assembly::AssemblyFunction;
+use failure_log::FailureLog;
 use sensitol_numeric::power::Power;
 use store::Store;
 
@@ -69,6 +75,8 @@ pub(crate) struct Magnitudes {
     watch: Option<Arc<Watch>>,
     /// Answers of a costly function that were held back, and those of the model within it.
     stores: [Arc<Store>; 2],
+    /// Failed points of this run, for each store.
+    failures: [Arc<FailureLog>; 2],
 }
 
 impl Magnitudes {
@@ -78,12 +86,13 @@ impl Magnitudes {
             powers: vec![Power::ONE; outputs].into(),
             watch: Some(Arc::new(Watch::new(outputs))),
             stores: Default::default(),
+            failures: Default::default(),
         }
     }
 
     /// Magnitudes of a run with outputs of these powers, which starts with the answers that this one has held back.
     pub(crate) fn known(&self, powers: Vec<Power>) -> Self {
-        Self { powers: powers.into(), watch: None, stores: self.stores.clone() }
+        Self { powers: powers.into(), watch: None, stores: self.stores.clone(), failures: self.failures.clone() }
     }
 
     /// Power of two by which an output of the function is divided.
@@ -98,20 +107,20 @@ impl Magnitudes {
 
     /// Wraps a function with these outputs for the run: watched or divided.
     pub(crate) fn wrapped(&self, function: Arc<dyn AssemblyFunction>) -> Arc<dyn AssemblyFunction> {
-        let store = Arc::clone(&self.stores[0]);
+        let (store, failures) = (Arc::clone(&self.stores[0]), Arc::clone(&self.failures[0]));
         match &self.watch {
-            Some(watch) => Arc::new(WatchedFunction::new(function, Arc::clone(watch), store)),
-            None => Arc::new(ScaledFunction::new(function, Arc::clone(&self.powers), store)),
+            Some(watch) => Arc::new(WatchedFunction::new(function, Arc::clone(watch), store, failures)),
+            None => Arc::new(ScaledFunction::new(function, Arc::clone(&self.powers), store, failures)),
         }
     }
 
     /// Wraps a model within the function such that nothing is evaluated twice: the next run reuses the answers of a run that was stopped.
     pub(crate) fn remembering(&self, model: Arc<dyn AssemblyFunction>) -> Arc<dyn AssemblyFunction> {
         let ones = vec![Power::ONE; model.signature().outputs.len()];
-        let store = Arc::clone(&self.stores[1]);
+        let (store, failures) = (Arc::clone(&self.stores[1]), Arc::clone(&self.failures[1]));
         match &self.watch {
-            Some(watch) => Arc::new(WatchedFunction::within(model, Arc::clone(watch), store)),
-            None => Arc::new(ScaledFunction::new(model, ones.into(), store)),
+            Some(watch) => Arc::new(WatchedFunction::within(model, Arc::clone(watch), store, failures)),
+            None => Arc::new(ScaledFunction::new(model, ones.into(), store, failures)),
         }
     }
 

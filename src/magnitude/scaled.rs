@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
+use super::failure_log::FailureLog;
 use super::store::Store;
 use crate::assembly::EvaluatorAccount;
 use crate::assembly::{
     AssemblyFunction, Bounds, Composite, Derivatives, Directions, EvaluationError, Input, ModelInfo, Points,
-    Polynomial, Request, Responses, Run, Signature, Switches,
+    Polynomial, RecordedFailure, Request, Responses, Run, Signature, Switches,
 };
 use crate::warning::Warning;
 use sensitol_numeric::power::Power;
@@ -18,11 +19,18 @@ pub(crate) struct ScaledFunction {
     powers: Arc<[Power]>,
     /// Answers of the first run that were held back.
     store: Arc<Store>,
+    /// Failed points of this run.
+    failures: Arc<FailureLog>,
 }
 
 impl ScaledFunction {
-    pub(super) fn new(function: Arc<dyn AssemblyFunction>, powers: Arc<[Power]>, store: Arc<Store>) -> Self {
-        Self { function, powers, store }
+    pub(super) fn new(
+        function: Arc<dyn AssemblyFunction>,
+        powers: Arc<[Power]>,
+        store: Arc<Store>,
+        failures: Arc<FailureLog>,
+    ) -> Self {
+        Self { function, powers, store, failures }
     }
 
     fn divide(&self, outputs: &[usize], out: &mut Responses) {
@@ -50,6 +58,9 @@ impl AssemblyFunction for ScaledFunction {
         match self.store.take(request) {
             Some(answers) => *out = answers,
             None => self.function.evaluate(request, run, out),
+        }
+        if self.signature().costly {
+            self.failures.note(request, out);
         }
         self.divide(request.outputs, out);
     }

@@ -3,11 +3,12 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use super::failure_log::FailureLog;
 use super::store::Store;
 use crate::assembly::EvaluatorAccount;
 use crate::assembly::{
     AssemblyFunction, Bounds, Composite, Derivatives, Directions, EvaluationError, Input, ModelInfo, Points,
-    Polynomial, Request, Responses, Run, Signature, Switches,
+    Polynomial, RecordedFailure, Request, Responses, Run, Signature, Switches,
 };
 use crate::warning::Warning;
 use sensitol_numeric::power::Power;
@@ -88,16 +89,28 @@ pub(crate) struct WatchedFunction {
     /// True if the outputs are watched, false for a model within the watched function.
     looks: bool,
     store: Arc<Store>,
+    /// Failed points of this run.
+    failures: Arc<FailureLog>,
 }
 
 impl WatchedFunction {
-    pub(super) fn new(function: Arc<dyn AssemblyFunction>, watch: Arc<Watch>, store: Arc<Store>) -> Self {
-        Self { function, watch, looks: true, store }
+    pub(super) fn new(
+        function: Arc<dyn AssemblyFunction>,
+        watch: Arc<Watch>,
+        store: Arc<Store>,
+        failures: Arc<FailureLog>,
+    ) -> Self {
+        Self { function, watch, looks: true, store, failures }
     }
 
     /// Model within the watched function, whose answers are only stored.
-    pub(super) fn within(function: Arc<dyn AssemblyFunction>, watch: Arc<Watch>, store: Arc<Store>) -> Self {
-        Self { function, watch, looks: false, store }
+    pub(super) fn within(
+        function: Arc<dyn AssemblyFunction>,
+        watch: Arc<Watch>,
+        store: Arc<Store>,
+        failures: Arc<FailureLog>,
+    ) -> Self {
+        Self { looks: false, ..Self::new(function, watch, store, failures) }
     }
 }
 
@@ -113,11 +126,16 @@ impl AssemblyFunction for WatchedFunction {
             return;
         }
         if self.watch.is_settled() {
-            return self.function.evaluate(request, run, out);
+            self.function.evaluate(request, run, out);
+            if self.signature().costly {
+                self.failures.note(request, out);
+            }
+            return;
         }
         let begun = Instant::now();
         self.function.evaluate(request, run, out);
         if self.signature().costly {
+            self.failures.note(request, out);
             self.store.keep(request, out, begun.elapsed());
         }
         if self.looks {

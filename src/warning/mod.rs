@@ -189,6 +189,15 @@ warnings! {
         /// The error there.
         error: String,
     };
+    /// The journal holds points within the tolerance bands at which the model had no value in earlier runs.
+    RecordedFailures = "recorded-failures" by model::recorded_failures {
+        /// The characteristic that has no value there.
+        characteristic: String,
+        /// Points without a value that this run did not evaluate.
+        failed: usize,
+        /// The first of them, in words.
+        point: String,
+    };
     /// The model failed at some points of a sample.
     FailedSamples = "failed-samples" by model::failed_samples {
         /// The characteristic that has no value there.

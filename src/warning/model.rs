@@ -12,6 +12,16 @@ pub(super) fn failed_points(characteristic: &str, failed: &usize, points: &usize
     .advise(Advice::RepairModel)
 }
 
+pub(super) fn recorded_failures(characteristic: &str, failed: &usize, point: &str) -> Text {
+    let (points, lie) =
+        if *failed == 1 { ("1 point", "It is at") } else { (&*format!("{failed} points"), "The first is at") };
+    say(format!(
+        "The journal holds {points} within the tolerance bands at which `{characteristic}` had no value in earlier runs. {lie} {point}. The share \
+         of assemblies without a value is unknown."
+    ))
+    .advise(Advice::Sample { points: None })
+}
+
 pub(super) fn failed_samples(characteristic: &str, failed: &u64, samples: &u64, error: &str) -> Text {
     say(format!(
         "`{characteristic}` has no value at {failed} of {samples} sampled points. The first error: {error}. The results are those of the other \

@@ -338,8 +338,23 @@ impl Inner {
         values.flat_map(|value| std::iter::repeat_n(value, rows)).collect()
     }
 
+    /// Returns the values of the dimensions for which the model receives these values, None for each that it does not receive. Returns
+    /// None if a fixed input has another value now.
+    pub(super) fn dimensions_of(&self, received: &[Option<f64>], dimensions: usize) -> Option<Vec<Option<f64>>> {
+        let mut point = vec![None; dimensions];
+        for (input, (source, &value)) in self.inputs.iter().zip(received).enumerate() {
+            let factor = self.factors[0].get(input).copied().unwrap_or(1.0);
+            match *source {
+                Source::Dimension(dimension) => point[dimension] = value.map(|value| value / factor),
+                Source::Fixed(fixed) if value.is_some_and(|value| value != fixed * factor) => return None,
+                Source::Fixed(_) | Source::Formula(_) => {}
+            }
+        }
+        Some(point)
+    }
+
     /// Returns the formulas that drive the model.
-    fn driving(&self) -> impl Iterator<Item = usize> + '_ {
+    pub(super) fn driving(&self) -> impl Iterator<Item = usize> + '_ {
         self.inputs.iter().filter_map(|source| match source {
             Source::Formula(formula) => Some(*formula),
             _ => None,

@@ -3,6 +3,7 @@
 #[path = "../support/command.rs"]
 #[allow(dead_code, reason = "each test binary uses a part of it")]
 mod command;
+mod failures;
 mod history;
 mod journal;
 mod long_runs;

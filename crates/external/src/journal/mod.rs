@@ -28,7 +28,7 @@ use self::store::{Answer, Recalled};
 use crate::Settings;
 use crate::process::{Kept, Process, Recheck};
 use sensitol::assembly::{
-    AssemblyFunction, EvaluationError, ModelInfo, Points, Progress, Request, Responses, Run, Signature,
+    AssemblyFunction, EvaluationError, ModelInfo, Points, Progress, RecordedFailure, Request, Responses, Run, Signature,
 };
 use sensitol::assembly::{EvaluatorAccount, OutdatedJournal, ProcessFault};
 use sensitol::summary::StopReason;
@@ -140,6 +140,21 @@ impl AssemblyFunction for Journaled {
             account.not_kept = open.failure.as_ref().map(ToString::to_string);
         }
         Some(account)
+    }
+
+    fn recorded_failures(&self, outputs: &[usize]) -> Vec<RecordedFailure> {
+        // Answers that no run has checked since the file was opened may belong to another model.
+        let open = self.opened_store();
+        let Some(open) = open.as_ref().filter(|open| open.rechecked && open.failure.is_none()) else {
+            return Vec::new();
+        };
+        // A journal that cannot be read any more is reported by the next evaluation.
+        let stored = open.store.failures(open.model).unwrap_or_default();
+        let output = |name: &str| outputs.iter().copied().find(|&of| self.signature().outputs[of].name == name);
+        let failure = |one: StoredAnswer| {
+            Some(RecordedFailure { output: output(&one.output)?, point: one.point.into_iter().map(Some).collect() })
+        };
+        stored.into_iter().filter_map(failure).collect()
     }
 
     fn evaluate(&self, ask: &Request<'_>, run: &Run<'_>, out: &mut Responses) {

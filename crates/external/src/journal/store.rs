@@ -483,8 +483,20 @@ impl Store {
     /// # Errors
     /// Fails if reading fails.
     pub fn answers(&self, model: i64) -> Result<Vec<StoredAnswer>, JournalError> {
-        let all = "SELECT point, output, value, error FROM answer WHERE model = ?1";
-        let answers = self.connection.prepare(all).and_then(|mut statement| {
+        self.stored("SELECT point, output, value, error FROM answer WHERE model = ?1", model)
+    }
+
+    /// Answers of a model that state that there is no value, point by point.
+    ///
+    /// # Errors
+    /// Fails if reading fails.
+    pub fn failures(&self, model: i64) -> Result<Vec<StoredAnswer>, JournalError> {
+        self.stored("SELECT point, output, value, error FROM answer WHERE model = ?1 AND value IS NULL", model)
+    }
+
+    /// Answers that a query of one model selects: point, output, value and error.
+    fn stored(&self, query: &str, model: i64) -> Result<Vec<StoredAnswer>, JournalError> {
+        let answers = self.connection.prepare(query).and_then(|mut statement| {
             let kept = |row: &rusqlite::Row<'_>| {
                 let bytes: Vec<u8> = row.get(0)?;
                 let coordinate = |eight: &[u8]| f64::from_le_bytes(eight.try_into().expect("eight bytes"));

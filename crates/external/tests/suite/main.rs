@@ -1,4 +1,5 @@
 //! Tests of external programs as models.
 
+mod failures;
 mod gradients;
 mod process;

@@ -180,6 +180,8 @@ fn every() -> Vec<Warning> {
             used: 1.0,
             others: names(0),
         },
+        Warning::RecordedFailures { characteristic: characteristic(), failed: 1, point: text("b = 12.3") },
+        Warning::RecordedFailures { characteristic: characteristic(), failed: 4, point: text("b = 12.3") },
         Warning::DomainEdgeWithin { characteristic: characteristic(), failed: 2, points: 12 },
         Warning::SupportEdge { dimension: dimension(), from: -2.287, to: -1.169, others: names(3) },
         Warning::LongTail {

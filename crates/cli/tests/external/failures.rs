@@ -1,0 +1,107 @@
+//! Failed points of earlier runs that the journal holds: a later analysis counts those within its bands.
+
+use std::path::PathBuf;
+use std::process::{Command, Output};
+
+use sensitol_external::journal::store::Store;
+use sensitol_testing::repository;
+
+/// Study of three dimensions whose model has no value where a and b together exceed their nominal values by `edge`.
+struct Corner {
+    folder: tempfile::TempDir,
+}
+
+impl Corner {
+    fn new(edge: f64) -> Self {
+        let study = Self { folder: tempfile::tempdir().unwrap() };
+        study.write("study.toml", edge, 0.1);
+        study
+    }
+
+    fn write(&self, name: &str, edge: f64, tolerance: f64) {
+        let script = repository("tests/children/corner.py").display().to_string();
+        let dimension =
+            |name: &str, nominal: f64| format!("{name} = {{ nominal = {nominal:?}, tolerance = {tolerance} }}\n");
+        let cost = |name: &str| format!("{name} = {{ model = \"reciprocal\", b = 1 }}\n");
+        let (a, b, c) = (dimension("a", 10.0), dimension("b", 10.0), dimension("c", 19.0));
+        let text = format!(
+            "[model]\ncommand = [\"python3\", {script:?}, \"{edge:?}\"]\nverify = 0\njournal = \"kept.sqlite\"\n\
+             [dimensions]\n{a}{b}{c}[characteristics]\ngap = {{ lower = 0.8, upper = 1.2, target_yield = 0.999 }}\n\
+             [costs]\n{}{}{}",
+            cost("a"),
+            cost("b"),
+            cost("c")
+        );
+        std::fs::write(self.path(name), text).unwrap();
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn run(&self, command: &str, name: &str, more: &[&str]) -> Output {
+        let mut run = Command::new(assert_cmd::cargo::cargo_bin!("sensitol"));
+        run.arg(command).arg(self.path(name)).args(more).output().unwrap()
+    }
+
+    /// Report of `analyze --check`, and true if it found the requirement to be met.
+    fn check(&self, name: &str) -> (serde_json::Value, bool) {
+        let output = self.run("analyze", name, &["--check", "--json"]);
+        let report = serde_json::from_slice(&output.stdout).unwrap();
+        (report, output.status.code() == Some(0))
+    }
+
+    /// Failed points of the journal whose deviations all lie within this tolerance.
+    fn recorded(&self, tolerance: f64) -> usize {
+        let store = Store::open(&self.path("kept.sqlite")).unwrap();
+        let model = store.models().unwrap().remove(0).id;
+        let within =
+            |point: &[f64]| point.iter().zip([10.0, 10.0, 19.0]).all(|(x, nominal)| (x - nominal).abs() <= tolerance);
+        store.answers(model).unwrap().iter().filter(|kept| kept.answer.is_err() && within(&kept.point)).count()
+    }
+}
+
+/// Numbers of points without a value: those that the report counts, and those in the warning of recorded failures.
+fn counts(report: &serde_json::Value) -> (u64, Option<u64>) {
+    let warnings = report["warnings"].as_array().unwrap();
+    let recorded = warnings.iter().find(|warning| warning["code"] == "recorded-failures");
+    let without = report["characteristics"][0]["without_value"].as_u64().unwrap();
+    (without, recorded.map(|warning| warning["data"]["failed"].as_u64().unwrap()))
+}
+
+/// The check of an allocation evaluates no point of the corner. It must not state a yield that the journal contradicts.
+#[test]
+fn a_check_counts_the_failures_that_an_allocation_left() {
+    let study = Corner::new(0.13);
+    let new = study.path("new.toml");
+    let allocated = study.run("allocate", "study.toml", &["--confirm", "400", "--write", new.to_str().unwrap()]);
+    assert!(allocated.status.success(), "{}", String::from_utf8_lossy(&allocated.stderr));
+    let text = std::fs::read_to_string(&new).unwrap();
+    let tolerance: f64 = text.split("tolerance = ").nth(1).unwrap().split([' ', '}']).next().unwrap().parse().unwrap();
+    let recorded = study.recorded(tolerance) as u64;
+    assert!(recorded > 0);
+    let (report, met) = study.check("new.toml");
+    assert_eq!(counts(&report), (recorded, Some(recorded)));
+    assert_eq!((report["characteristics"][0]["verdict"].as_str(), met), (Some("inconclusive"), false));
+    assert_eq!(report["characteristics"][0]["yield_interval"][0].as_f64(), Some(0.0));
+    // Bands that leave out the corner leave out its failures.
+    study.write("narrow.toml", 0.13, 0.06);
+    assert_eq!(study.recorded(0.06), 0);
+    let (report, met) = study.check("narrow.toml");
+    assert_eq!((counts(&report), met), ((0, None), true));
+}
+
+/// A run that evaluates the failed points itself counts them once.
+#[test]
+fn failures_of_the_run_itself_count_once() {
+    let study = Corner::new(0.08);
+    let (first, met) = study.check("study.toml");
+    assert!(counts(&first).0 > 0 && !met);
+    assert_eq!(counts(&first), (study.recorded(0.1) as u64, None));
+    let (second, _) = study.check("study.toml");
+    assert_eq!(counts(&second), counts(&first));
+    // Another method evaluates some of these points, and more of its own.
+    let output = study.run("analyze", "study.toml", &["--method", "second-order", "--json"]);
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(counts(&report).0, study.recorded(0.1) as u64);
+}
