@@ -1,21 +1,21 @@
 //! Evaluation of the points of a plan, with counts and times.
 
 mod any_size;
+mod evaluator;
 pub mod history;
 
 pub(crate) use any_size::{Restoration, Restore, at_any_size};
+pub use evaluator::{Evaluator, Ledger};
 pub use history::history;
 
 use std::collections::HashMap;
-use std::time::Duration;
 
-use crate::assembly::{NonRepeatable, Points, Request, Responses, Run, near_rows};
+use crate::assembly::{Points, Responses, near_rows};
 use crate::plan::{KnownAnswers, Plan, Point, Purpose, Stage};
 use crate::problem::Problem;
-use crate::summary::{RunSummary, StopReason};
+use crate::summary::StopReason;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::parallel::{Rooms, join};
-use sensitol_numeric::time::Instant;
 
 /// Greatest number of coordinates in one batch: 64 MiB. A million points in a thousand dimensions are divided into batches.
 pub(crate) const BATCH: usize = 1 << 23;
@@ -27,30 +27,18 @@ pub struct Evaluated {
     pub known: KnownAnswers,
     /// Derivatives by every dimension that the model returned, by point and characteristic.
     pub gradients: HashMap<(Point, usize), Vec<f64>>,
-    /// Points sent to the model.
-    pub evaluations: usize,
-    /// Points whose answers were known from an earlier run.
-    pub reused: usize,
-    /// Changed answers of the model to the nominal point.
-    pub non_repeatable: Vec<NonRepeatable>,
-    /// Stages evaluated.
-    pub stages: usize,
-    /// Points sent again because an answer was a failure, or was not trusted.
-    pub retried: usize,
-    /// Reason for the stop before the plan was done. None if it was not stopped.
-    pub stopped: Option<StopReason>,
-    /// Time within the model.
-    pub in_model: Duration,
+    /// Cost of the answers, and of further questions of the method.
+    pub ledger: Ledger,
 }
 
 /// Evaluates stage after stage until the plan needs no more points, or the run is stopped.
 ///
 /// Evaluations: those of [`Plan::cost`], and more only if the model fails.
-pub(crate) fn evaluate(problem: &Problem, plan: &dyn Plan, run: &Run<'_>) -> Evaluated {
-    let mut evaluated = Evaluated::nothing(problem);
+pub(crate) fn evaluate(evaluator: &Evaluator<'_>, plan: &dyn Plan) -> Evaluated {
+    let mut evaluated = Evaluated::nothing(evaluator.problem());
     while let Some(stage) = plan.next(&evaluated.known) {
-        evaluated.add(problem, plan, &stage, run);
-        if evaluated.stopped.is_some() {
+        evaluated.add(evaluator, plan, &stage);
+        if evaluator.stopped().is_some() {
             break;
         }
     }
@@ -60,128 +48,90 @@ pub(crate) fn evaluate(problem: &Problem, plan: &dyn Plan, run: &Run<'_>) -> Eva
 impl Evaluated {
     /// Result without any evaluation.
     pub(crate) fn nothing(problem: &Problem) -> Self {
-        Self {
-            known: KnownAnswers::nothing(problem.characteristics().len()),
-            gradients: HashMap::new(),
-            evaluations: 0,
-            reused: 0,
-            non_repeatable: Vec::new(),
-            stages: 0,
-            retried: 0,
-            stopped: None,
-            in_model: Duration::ZERO,
-        }
+        let known = KnownAnswers::nothing(problem.characteristics().len());
+        Self { known, gradients: HashMap::new(), ledger: Ledger::default() }
     }
 
-    /// Counts and times as a summary.
-    pub(crate) fn summary(&self) -> RunSummary {
-        RunSummary {
-            evaluations: self.evaluations as u64,
-            cached: self.reused as u64,
-            retried: self.retried as u64,
-            failed: self.known.failed_points() as u64,
-            stages: self.stages as u64,
-            in_model: self.in_model,
-            stopped: self.stopped,
-            ..RunSummary::default()
-        }
+    /// Reason for the stop before the plan was done. None if it was not stopped.
+    pub fn stopped(&self) -> Option<StopReason> {
+        self.ledger.stopped()
     }
 
     /// Evaluates one stage, whose points refer to the nodes of this plan.
-    pub(crate) fn add(&mut self, problem: &Problem, plan: &dyn Plan, stage: &Stage, run: &Run<'_>) {
-        self.stages += 1;
+    pub(crate) fn add(&mut self, evaluator: &Evaluator<'_>, plan: &dyn Plan, stage: &Stage) {
         self.known.reserve(stage.points.len());
-        let desk = StageEvaluation { problem, plan, centre: plan.centre(), run };
-        let many = stage.points.len() > near_rows(desk.centre.len());
-        match many && problem.function().signature().cheap && !run.tells() {
-            true => self.add_side_by_side(&desk, &stage.points),
-            false => self.add_in_batches(&desk, &stage.points),
-        }
+        let asked = StageEvaluation { evaluator, plan, centre: plan.centre() };
+        let many = stage.points.len() > near_rows(asked.centre.len());
+        let parts = match many && evaluator.problem().function().signature().cheap && !evaluator.run().tells() {
+            true => self.add_side_by_side(&asked, &stage.points),
+            false => self.add_in_batches(&asked, &stage.points),
+        };
+        evaluator.merge(Ledger::of_batch(parts));
+        self.ledger = evaluator.ledger();
     }
 
     /// Evaluates points in the largest batches, for a costly model.
-    fn add_in_batches(&mut self, desk: &StageEvaluation<'_>, points: &[(Point, Purpose)]) {
-        let rows = (BATCH / desk.centre.len()).max(1);
+    fn add_in_batches(&mut self, asked: &StageEvaluation<'_>, points: &[(Point, Purpose)]) -> Vec<Ledger> {
+        let rows = (BATCH / asked.centre.len()).max(1);
         let mut room = Points::repeated(&[], 0);
+        let mut parts = Vec::new();
         for batch in points.chunks(rows) {
-            let begun = Instant::now();
-            let out = desk.answers(&mut room, batch);
-            self.in_model += begun.elapsed();
-            self.take_in(batch, &out, desk.run);
-            if self.stopped.is_some() {
-                return;
+            let (out, ledger) = asked.answers(&mut room, batch);
+            self.take_in(batch, &out);
+            let stopped = ledger.stopped().is_some();
+            parts.push(ledger);
+            if stopped {
+                break;
             }
         }
+        parts
     }
 
     /// Evaluates points of a cheap function in small batches in parallel. Answers of one group of batches are stored while the next group
     /// is evaluated.
-    fn add_side_by_side(&mut self, desk: &StageEvaluation<'_>, points: &[(Point, Purpose)]) {
+    fn add_side_by_side(&mut self, asked: &StageEvaluation<'_>, points: &[(Point, Purpose)]) -> Vec<Ledger> {
         /// Batches between two checks of the stop of the run.
         const TASKS: usize = 64;
-        let rows = near_rows(desk.centre.len());
+        let rows = near_rows(asked.centre.len());
         let rooms = Rooms::none();
-        let mut waiting: (&[(Point, Purpose)], Vec<Responses>) = (&[], Vec::new());
+        let mut waiting: (&[(Point, Purpose)], Vec<(Responses, Ledger)>) = (&[], Vec::new());
+        let mut parts: Vec<Ledger> = Vec::new();
         for tasks in points.chunks(rows * TASKS).chain([&points[..0]]) {
-            let tasks = if self.stopped.is_some() { &points[..0] } else { tasks };
-            let answers = || {
-                let begun = Instant::now();
-                let one =
-                    |batch| rooms.within(|| Points::repeated(&[], 0), |room: &mut Points| desk.answers(room, batch));
-                let answers: Vec<Responses> = tasks.par_chunks(rows).map(one).collect();
-                (answers, begun.elapsed())
-            };
+            let stopped = waiting.1.iter().map(|(_, ledger)| ledger).chain(&parts).any(|part| part.stopped().is_some());
+            let tasks = if stopped { &points[..0] } else { tasks };
+            let one = |batch| rooms.within(|| Points::repeated(&[], 0), |room: &mut Points| asked.answers(room, batch));
             let (before, answered) = std::mem::take(&mut waiting);
             let take_in = || {
-                before.chunks(rows).zip(answered).for_each(|(batch, out)| self.take_in(batch, &out, desk.run));
+                for (batch, (out, ledger)) in before.chunks(rows).zip(answered) {
+                    self.take_in(batch, &out);
+                    parts.push(ledger);
+                }
             };
-            let ((), (answers, took)) = join(take_in, answers);
-            self.in_model += took;
+            let ((), answers) = join(take_in, || tasks.par_chunks(rows).map(one).collect());
             waiting = (tasks, answers);
         }
+        parts
     }
 
     /// Stores the answers of a batch.
-    fn take_in(&mut self, batch: &[(Point, Purpose)], out: &Responses, run: &Run<'_>) {
+    fn take_in(&mut self, batch: &[(Point, Purpose)], out: &Responses) {
         for (row, (point, _)) in batch.iter().enumerate() {
-            self.learn(point, row, out, run);
+            self.learn(point, row, out);
             for characteristic in 0..out.outputs() {
                 if let Some(gradient) = out.gradient(row, characteristic) {
                     self.gradients.insert((point.clone(), characteristic), gradient.to_vec());
                 }
             }
         }
-        self.evaluations = self.evaluations.saturating_add_signed(out.extra() as isize);
-        self.reused += out.count_reused();
-        self.retried += out.count_retried();
-        self.non_repeatable.extend(out.non_repeatable().iter().cloned());
     }
 
     /// Adds the cost of evaluations for another plan, whose answers are not used here.
     pub(crate) fn add_spent(&mut self, spent: Self) {
-        self.evaluations += spent.evaluations;
-        self.reused += spent.reused;
-        self.retried += spent.retried;
-        self.stages += spent.stages;
-        self.in_model += spent.in_model;
-        self.non_repeatable.extend(spent.non_repeatable);
+        self.ledger.add(spent.ledger);
     }
 
-    /// Adds the cost of an evaluation outside the plan.
-    pub(crate) fn count(&mut self, out: &Responses, run: &Run<'_>) {
-        let rows = out.answered().count();
-        if rows < out.rows() {
-            self.stopped.get_or_insert_with(|| run.why_open());
-        }
-        self.stages += 1;
-        self.evaluations = (self.evaluations + rows).saturating_add_signed(out.extra() as isize);
-        self.reused += out.count_reused();
-        self.retried += out.count_retried();
-        self.non_repeatable.extend(out.non_repeatable().iter().cloned());
-    }
-
-    /// Stores the answers of a row. An open row was not finished: it counts as evaluated only if some of its outputs have an answer.
-    fn learn(&mut self, point: &Point, row: usize, out: &Responses, run: &Run<'_>) {
+    /// Stores the answers of a row.
+    fn learn(&mut self, point: &Point, row: usize, out: &Responses) {
         let mut place = None;
         for characteristic in 0..out.outputs() {
             if let Some(value) = out.value(row, characteristic) {
@@ -190,26 +140,22 @@ impl Evaluated {
             } else if let Some(error) = out.error(row, characteristic) {
                 let place = *place.get_or_insert_with(|| self.known.place(point));
                 self.known.fail(place, characteristic, error.clone());
-            } else {
-                self.stopped.get_or_insert_with(|| run.why_open());
             }
         }
-        self.evaluations += usize::from(place.is_some());
     }
 }
 
-/// Model, plan and run that evaluate the points of a stage.
+/// Model and plan that evaluate the points of a stage.
 struct StageEvaluation<'a> {
-    problem: &'a Problem,
+    evaluator: &'a Evaluator<'a>,
     plan: &'a dyn Plan,
     centre: Vec<f64>,
-    run: &'a Run<'a>,
 }
 
 impl StageEvaluation<'_> {
-    /// Answers at some points. `room` holds copies of the centre before and after the call.
-    fn answers(&self, room: &mut Points, batch: &[(Point, Purpose)]) -> Responses {
-        let Self { problem, plan, centre, run } = self;
+    /// Answers at some points, with their ledger. `room` holds copies of the centre before and after the call.
+    fn answers(&self, room: &mut Points, batch: &[(Point, Purpose)]) -> (Responses, Ledger) {
+        let Self { evaluator, plan, centre } = self;
         if room.rows() != batch.len() {
             // Drop the old buffer before the new one is allocated, to save memory.
             *room = Points::repeated(&[], 0);
@@ -221,11 +167,11 @@ impl StageEvaluation<'_> {
                 room.set(row, dimension, plan.axis(dimension).nodes[at.node as usize].x);
             }
         }
-        let mut out = Responses::open(batch.len(), problem.outputs().len());
-        problem.function().evaluate(&Request::values(room, problem.outputs()), run, &mut out);
+        let part = evaluator.part();
+        let out = part.ask(room);
         for (row, (point, _)) in batch.iter().enumerate() {
             point.at().iter().for_each(|at| room.set(row, at.dimension as usize, centre[at.dimension as usize]));
         }
-        out
+        (out, part.into_ledger())
     }
 }

@@ -8,7 +8,8 @@
 use std::time::Duration;
 
 use crate::assembly::EvaluatorAccount;
-use crate::assembly::{EvaluationError, ModelInfo, Points, Request, Responses, Run};
+use crate::assembly::{EvaluationError, ModelInfo, Points, Responses, Run};
+use crate::evaluation::Evaluator;
 use crate::problem::Problem;
 use crate::summary::RunSummary;
 use sensitol_numeric::power::Power;
@@ -135,8 +136,7 @@ const RUNS: &str = "its processes go on running";
 
 /// Greatest number of evaluations of a probe. There are fewer if the nominal dimensions have no values.
 pub fn evaluations(problem: &Problem) -> usize {
-    let run = Run::to_the_end();
-    2 * Asked { problem, run: &run }.varying().len() + (1 + STEPS) * SCATTERED + LINE + 6
+    2 * ProbePoints { problem }.varying().len() + (1 + STEPS) * SCATTERED + LINE + 6
 }
 
 /// Probes the model of a problem. Without any value at the nominal dimensions, no other point is evaluated.
@@ -163,8 +163,13 @@ pub fn probe(problem: &Problem, run: &Run<'_>) -> Result<Probe, EvaluationError>
         LATER.into_iter().for_each(|what| probing.check(what, Finding::NotChecked));
         ([warming; 2], probing.unknown())
     };
-    let Probing { spent, checks, .. } = probing;
-    let run = RunSummary { wall: begun.elapsed(), stopped: run.stop_reason(), evaluator: problem.evaluator(), ..spent };
+    let Probing { evaluator, checks, .. } = probing;
+    let run = RunSummary {
+        wall: begun.elapsed(),
+        stopped: run.stop_reason(),
+        evaluator: problem.evaluator(),
+        ..evaluator.summary()
+    };
     Ok(Probe { adapter, run, start, alone, together, checks, characteristics })
 }
 
@@ -204,13 +209,13 @@ impl Passes {
     }
 }
 
-/// Evaluations and checks of a probe so far.
+/// Checks of a probe so far.
 struct Probing<'a> {
-    asked: Asked<'a>,
+    evaluator: Evaluator<'a>,
+    points: ProbePoints<'a>,
     nominal: Vec<f64>,
     /// Names of the characteristics.
     names: Vec<String>,
-    spent: RunSummary,
     checks: Vec<Check>,
 }
 
@@ -218,10 +223,10 @@ impl<'a> Probing<'a> {
     /// A probe of a problem's model of which nothing has been asked yet.
     fn new(problem: &'a Problem, run: &'a Run<'a>) -> Self {
         Self {
-            asked: Asked { problem, run },
+            evaluator: Evaluator::new(problem, run),
+            points: ProbePoints { problem },
             nominal: problem.dimensions().iter().map(|dimension| dimension.nominal()).collect(),
             names: problem.characteristics().iter().map(|one| one.name().to_owned()).collect(),
-            spent: RunSummary::default(),
             checks: Vec::new(),
         }
     }
@@ -231,43 +236,36 @@ impl<'a> Probing<'a> {
         self.checks.push(Check { what, verdict });
     }
 
-    /// Asks for points in one batch, and counts them.
-    fn ask(&mut self, rows: &[Vec<f64>]) -> Responses {
-        let begun = Instant::now();
-        let out = self.asked.rows(rows);
-        self.spent.evaluations += rows.len() as u64;
-        self.spent.retried += out.count_retried() as u64;
-        self.spent.failed += out.failed_among(&(0..rows.len()).collect::<Vec<_>>()) as u64;
-        self.spent.stages += 1;
-        self.spent.in_model += begun.elapsed();
-        out
+    /// Asks for points in one batch.
+    fn ask(&self, rows: &[Vec<f64>]) -> Responses {
+        self.evaluator.ask(&Points::from_rows(rows))
     }
 
     /// Asks for points, and returns the time that they took with the answers.
-    fn ask_timed(&mut self, rows: &[Vec<f64>]) -> (Responses, Duration) {
+    fn ask_timed(&self, rows: &[Vec<f64>]) -> (Responses, Duration) {
         let begun = Instant::now();
         let out = self.ask(rows);
         (out, begun.elapsed())
     }
 
     /// Asks for every point after the first one. Returns the times for a point by itself and for one of many, too.
-    fn ask_passes(&mut self, first: Responses) -> (Passes, [Duration; 2]) {
+    fn ask_passes(&self, first: Responses) -> (Passes, [Duration; 2]) {
         let nominal = self.nominal.clone();
         let (second, alone) = self.ask_timed(std::slice::from_ref(&nominal));
-        let scattered: Vec<Vec<f64>> = (0..SCATTERED).map(|index| self.asked.scattered(index)).collect();
+        let scattered: Vec<Vec<f64>> = (0..SCATTERED).map(|index| self.points.scattered(index)).collect();
         let (forward, forward_time) = self.ask_timed(&scattered);
         let together = forward_time / SCATTERED as u32;
         let walks: Vec<Vec<f64>> = SHUFFLED.iter().flat_map(|&row| walk(&nominal, &scattered[row])).collect();
         let walked = self.ask(&walks);
         let line: Vec<Vec<f64>> =
-            (0..LINE).map(|index| self.asked.along(&nominal, CLOSE * (index as f64 - 4.0))).collect();
+            (0..LINE).map(|index| self.points.along(&nominal, CLOSE * (index as f64 - 4.0))).collect();
         let close = self.ask(&line);
         let after = self.ask(std::slice::from_ref(&nominal));
         // Whether these fail is the model's business; what matters is what comes after.
-        let outside: Vec<Vec<f64>> = [FAR, -FAR].map(|far| self.asked.along(&nominal, far)).to_vec();
+        let outside: Vec<Vec<f64>> = [FAR, -FAR].map(|far| self.points.along(&nominal, far)).to_vec();
         self.ask(&outside);
         let failing = self.ask(std::slice::from_ref(&nominal));
-        let steps: Vec<Vec<f64>> = self.asked.steps(&nominal);
+        let steps: Vec<Vec<f64>> = self.points.steps(&nominal);
         let stepped = self.ask(&steps);
         let passes = Passes {
             first,
@@ -303,7 +301,7 @@ impl<'a> Probing<'a> {
         let moved: Vec<f64> = characteristics.clone().map(|c| spread(&evaluated, c)).collect();
         self.check(TWICE, repeats(&self.names, first, second, &moved));
         self.check(NOISE, quiet(&self.names, noise, &moved));
-        self.check(WITHIN, self.asked.within(&self.nominal, &[scattered, line, steps]));
+        self.check(WITHIN, self.points.within(&self.nominal, &[scattered, line, steps]));
         let ends: Vec<(usize, usize)> =
             SHUFFLED.iter().enumerate().map(|(turn, &row)| (row, STEPS * turn + STEPS - 1)).collect();
         // Values that repeat as well as that are the same.
@@ -320,8 +318,8 @@ impl<'a> Probing<'a> {
 
     /// The noise, steps and silent dimensions of one characteristic.
     fn probed_characteristic(&self, passes: &Passes, noise: Option<f64>, c: usize) -> Probed {
-        let dimensions = self.asked.problem.dimensions();
-        let (varying, stepped) = (self.asked.varying(), &passes.steps.out);
+        let dimensions = self.points.problem.dimensions();
+        let (varying, stepped) = (self.points.varying(), &passes.steps.out);
         let change = |index: usize| Some((stepped.value(2 * index, c)? - stepped.value(2 * index + 1, c)?).abs() / 2.0);
         // Over a step of h sigmas noise makes `noise / h` of a slope that is `change` per sigma.
         let step = |index: usize| {
@@ -346,7 +344,7 @@ impl<'a> Probing<'a> {
             name: name.clone(),
             nominal: None,
             noise: None,
-            least_step: vec![None; self.asked.problem.dimensions().len()],
+            least_step: vec![None; self.points.problem.dimensions().len()],
             silent: Vec::new(),
         };
         self.names.iter().map(unknown).collect()
@@ -378,19 +376,12 @@ fn walk(from: &[f64], to: &[f64]) -> Vec<Vec<f64>> {
     (0..STEPS).map(|step| from.iter().zip(to).map(|pair| part(step, pair)).collect()).collect()
 }
 
-struct Asked<'a> {
+/// Points of a probe about a problem.
+struct ProbePoints<'a> {
     problem: &'a Problem,
-    run: &'a Run<'a>,
 }
 
-impl Asked<'_> {
-    fn rows(&self, rows: &[Vec<f64>]) -> Responses {
-        let outputs = self.problem.outputs();
-        let mut out = Responses::open(rows.len(), outputs.len());
-        self.problem.function().evaluate(&Request::values(&Points::from_rows(rows), outputs), self.run, &mut out);
-        out
-    }
-
+impl ProbePoints<'_> {
     fn varying(&self) -> Vec<usize> {
         (0..self.problem.dimensions().len()).filter(|&d| self.problem.dimensions()[d].sigma() > 0.0).collect()
     }

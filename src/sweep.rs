@@ -6,7 +6,6 @@
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
 
 use serde::Serialize;
 
@@ -16,7 +15,7 @@ use crate::assembly::{
     AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, ModelInfo, Points, RecordedFailure, Request,
     Responses, Run, Signature,
 };
-use crate::evaluation::{BATCH, Restoration, Restore, at_any_size};
+use crate::evaluation::{BATCH, Evaluator, Ledger, Restoration, Restore, at_any_size};
 use crate::method::{MethodError, Options};
 use crate::problem::Problem;
 use crate::summary::RunSummary;
@@ -195,7 +194,7 @@ fn swept(
         dimension: place,
         values: values.to_vec(),
         analyses,
-        run: RunSummary { wall: begun.elapsed(), seed, stopped, evaluator: problem.evaluator(), ..memory.run },
+        run: RunSummary { wall: begun.elapsed(), seed, stopped, evaluator: problem.evaluator(), ..memory.ledger.run },
     })
 }
 
@@ -231,14 +230,8 @@ struct Memory {
     lacks: bool,
     /// True if points are evaluated directly on request.
     at_once: bool,
-    run: RunSummary,
+    ledger: Ledger,
     stopped: bool,
-}
-
-impl Memory {
-    fn count(&mut self, out: &Responses, in_model: Duration) {
-        self.run = self.run.and(&out.summary(in_model));
-    }
 }
 
 fn bits(point: &[f64]) -> Vec<u64> {
@@ -268,11 +261,10 @@ impl Gatherer {
         }
         let outputs = self.problem.outputs();
         for batch in wanted.chunks((BATCH / self.problem.dimensions().len()).max(1)) {
-            let mut out = Responses::open(batch.len(), outputs.len());
-            let begun = Instant::now();
-            self.function().evaluate(&Request::values(&Points::from_rows(batch), outputs), run, &mut out);
+            let evaluator = Evaluator::new(&self.problem, run);
+            let out = evaluator.ask(&Points::from_rows(batch));
             let mut memory = self.memory();
-            memory.count(&out, begun.elapsed());
+            memory.ledger.add(evaluator.into_ledger());
             for (row, point) in batch.iter().enumerate() {
                 let answer = |output: usize| {
                     let error = || out.error(row, output).cloned().map(Err);
@@ -318,10 +310,9 @@ impl AssemblyFunction for Gatherer {
             foreign || ((memory.at_once || rows >= MANY) && !(0..rows).all(known))
         };
         if at_once {
-            let begun = Instant::now();
-            self.function().evaluate(request, run, out);
-            let mut memory = self.memory();
-            memory.count(out, begun.elapsed());
+            let evaluator = Evaluator::new(&self.problem, run);
+            evaluator.ask_into(request.points, request.outputs, out);
+            self.memory().ledger.add(evaluator.into_ledger());
             return;
         }
         let mut memory = self.memory();

@@ -47,7 +47,7 @@ use serde::Serialize;
 
 use crate::analysis::result::variance_share::Shares;
 use crate::assembly::Run;
-use crate::evaluation::{Restoration, Restore, at_any_size};
+use crate::evaluation::{Evaluator, Restoration, Restore, at_any_size};
 use crate::extremes::{SearchedExtremes, enclose, search};
 use crate::method::{
     Basis, ClimbEnd, DerivativeSource, Method, MethodError, Options, Outcome, ReducedInputs, ReducedSurface,
@@ -191,11 +191,14 @@ pub(crate) fn analyze_keeping(
 ) -> Result<(Analysis, Findings), MethodError> {
     let begun = Instant::now();
     let mut outcome = run_method(problem, options, run)?;
-    let left = options.budget.map(|budget| budget.saturating_sub(outcome.evaluated.evaluations));
-    let found = if options.extremes { search(problem, &outcome, left, run) } else { SearchedExtremes::default() };
-    outcome.evaluated.non_repeatable.extend(found.spent.non_repeatable);
+    let left = options.budget.map(|budget| budget.saturating_sub(outcome.evaluated.ledger.evaluations()));
+    let found = match options.extremes {
+        true => search(&Evaluator::new(problem, run).with_budget(left), &outcome),
+        false => SearchedExtremes::default(),
+    };
+    outcome.evaluated.ledger.non_repeatable.extend(found.ledger.non_repeatable);
     let (mut characteristics, shares): (Vec<_>, Vec<_>) = of_all(problem, &outcome).into_iter().unzip();
-    let left = left.map(|left| left.saturating_sub(found.spent.run.evaluations as usize));
+    let left = left.map(|left| left.saturating_sub(found.ledger.run.evaluations as usize));
     let seed = options.seed.unwrap_or(Options::SEED);
     // A cheap model that is verified is sampled anyway, at points that need no surface: no fallback is needed.
     let signature = problem.function().signature();
@@ -204,7 +207,7 @@ pub(crate) fn analyze_keeping(
         true => model_sample::Spent::default(),
         false => model_sample::fall_back(problem, &outcome, (left, seed), &mut characteristics, run),
     };
-    outcome.evaluated.non_repeatable.extend(fallback.non_repeatable);
+    outcome.evaluated.ledger.non_repeatable.extend(fallback.non_repeatable);
     for (characteristic, extremes) in characteristics.iter_mut().zip(found.extremes) {
         characteristic.extremes = extremes;
     }
@@ -213,12 +216,12 @@ pub(crate) fn analyze_keeping(
         true => jump::find(problem, &outcome, &characteristics, left, run),
         false => jump::FoundJumps::default(),
     };
-    outcome.evaluated.non_repeatable.extend(jumps.non_repeatable);
+    outcome.evaluated.ledger.non_repeatable.extend(jumps.non_repeatable);
     let left = left.map(|left| left.saturating_sub(jumps.run.evaluations as usize));
     let mut left = SampleBudget::new(left);
     let (verified, doubted) =
         verification_stage::verify(problem, &outcome, options, &mut left, &mut characteristics, run);
-    outcome.evaluated.non_repeatable.extend(doubted);
+    outcome.evaluated.ledger.non_repeatable.extend(doubted);
     let recorded = recorded_failures::add(problem, &mut characteristics);
     let bounded = options.verification(signature) > 0 && !run.stopped();
     let bounds = || if bounded { bounds(problem, &outcome, &characteristics, run) } else { Vec::new() };
@@ -242,7 +245,7 @@ pub(crate) fn analyze_keeping(
     // The extremes do not affect shares: only the other runs decide whether a share is unfinished.
     characteristics.iter_mut().for_each(|one| one.unfinished = spent.unfinished());
     let warnings = warnings::of(problem, &outcome, &characteristics, [jumps.warnings, recorded].concat());
-    let account = Account::of(problem, &outcome, &characteristics, outcome.evaluated.evaluations);
+    let account = Account::of(problem, &outcome, &characteristics, outcome.evaluated.ledger.evaluations());
     let drawn = measured_interval::add_sampling_intervals(problem, &outcome, &mut characteristics, seed);
     let surface = Surface::of(&outcome, &characteristics);
     let analysis = Analysis {
@@ -252,7 +255,7 @@ pub(crate) fn analyze_keeping(
             wall: begun.elapsed(),
             seed: options.seed.or(drawn.then_some(seed)),
             evaluator: problem.evaluator(),
-            ..spent.and(&found.spent.run)
+            ..spent.and(&found.ledger.run)
         },
         account,
         basis: outcome.basis,
@@ -329,7 +332,7 @@ fn bounds(
 
 /// Points and time of the method, with the budget as stop reason if the method ended because of it.
 fn spent(outcome: &Outcome, options: &Options) -> RunSummary {
-    let spent = outcome.evaluated.summary();
+    let spent = outcome.evaluated.ledger.run;
     let rest = outcome.climbed.as_ref().map(|climbed| climbed.rest);
     let budget = options.budget.filter(|_| rest == Some(ClimbEnd::Budget)).map(|_| StopReason::Budget);
     RunSummary { stopped: spent.stopped.or(budget), ..spent }
@@ -343,7 +346,7 @@ fn run_method(problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Out
             ReducedSurface::Fitted(outcome) => return Ok(*outcome),
             ReducedSurface::Spent(spent) => spent,
         };
-        let budget = options.budget.map(|budget| budget.saturating_sub(spent.evaluations).max(1));
+        let budget = options.budget.map(|budget| budget.saturating_sub(spent.ledger.evaluations()).max(1));
         let mut outcome = options.method.procedure().run(problem, &Options { budget, ..options.clone() }, run)?;
         outcome.evaluated.add_spent(*spent);
         return Ok(outcome);

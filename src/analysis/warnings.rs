@@ -61,7 +61,7 @@ pub(super) fn of(
         warnings.extend(outcome.plan.axis(d).moved.iter().map(moved));
     }
     warnings.extend(not_resampled(problem, outcome));
-    warnings.extend(history(problem, &outcome.evaluated.non_repeatable));
+    warnings.extend(history(problem, &outcome.evaluated.ledger.non_repeatable));
     warnings.extend(problem.function().warnings(problem.outputs()));
     for (c, analysis) in characteristics.iter().enumerate() {
         warnings.extend(failed_points(problem, outcome, c));
@@ -174,7 +174,7 @@ fn described(problem: &Problem, outcome: &Outcome, point: &Point) -> String {
 /// Warning of missing moments of a method that integrates or fits by least squares.
 fn lost_moments(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Warning> {
     let because = match outcome.fitted[c].lacking? {
-        Lacking::Points { lost, of } if outcome.evaluated.stopped.is_some() => {
+        Lacking::Points { lost, of } if outcome.evaluated.stopped().is_some() => {
             format!("the run was stopped before {lost} of the {of} values of its quadrature were known")
         }
         Lacking::Points { lost, of } => {

@@ -138,11 +138,24 @@ impl Responses {
             evaluations: (self.answered().count() as i64 + self.extra).max(0) as u64,
             cached: self.reused as u64,
             retried: self.retried as u64,
-            failed: self.failed_among(&(0..self.rows).collect::<Vec<_>>()) as u64,
+            failed: self.failed_rows() as u64,
             stages: 1,
             in_model,
             ..RunSummary::default()
         }
+    }
+
+    /// True if an entry has neither value nor error.
+    pub(crate) fn has_open_entries(&self) -> bool {
+        // An entry with an error is NaN too, so every other NaN is an open entry.
+        self.values.iter().filter(|value| value.is_nan()).count() > self.errors.len()
+    }
+
+    /// Returns the number of rows with an error in some output.
+    pub(crate) fn failed_rows(&self) -> usize {
+        let mut last = None;
+        // Errors are in the order of their rows.
+        self.errors.keys().filter(|(row, _)| last.replace(*row) != Some(*row)).count()
     }
 
     /// Returns the value, if there is one.

@@ -2,7 +2,8 @@
 
 use std::time::Duration;
 
-use crate::assembly::{Points, Request, Responses, Run};
+use crate::assembly::{Points, Run};
+use crate::evaluation::Evaluator;
 use crate::problem::Problem;
 use crate::summary::{RunSummary, StopReason};
 use sensitol_numeric::power::Power;
@@ -109,9 +110,8 @@ fn sizes(problem: &Problem, seen: Vec<Power>) -> Vec<Power> {
         })
     });
     let rows: Vec<Vec<f64>> = std::iter::once(means.clone()).chain(beside).collect();
-    let mut out = Responses::open(rows.len(), problem.outputs().len());
-    let points = Points::from_rows(&rows);
-    function.evaluate(&Request::values(&points, problem.outputs()), &Run::to_the_end(), &mut out);
+    // These points belong to no result, so their ledger is left out.
+    let out = Evaluator::new(problem, &Run::to_the_end()).ask(&Points::from_rows(&rows));
     let mut powers = seen;
     for (column, &output) in problem.outputs().iter().enumerate() {
         let size = out.column(column).iter().fold(0.0f64, |size, value| size.max(value.abs()));

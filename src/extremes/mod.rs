@@ -37,7 +37,6 @@ mod zone;
 
 pub(crate) use crate::extremes::one_sided_proof::keeps_by_proof;
 pub use crate::warning::Ended;
-pub use answers::Spent;
 pub(crate) use model::{Model, Region};
 
 use crate::extremes::local_search::Climb;
@@ -47,6 +46,7 @@ use task::Task;
 use serde::Serialize;
 
 use crate::assembly::Run;
+use crate::evaluation::{Evaluator, Ledger};
 use crate::method::Outcome;
 use crate::problem::Problem;
 use sensitol_numeric::power::rescale;
@@ -63,8 +63,8 @@ const REPEATED: usize = 4;
 pub struct SearchedExtremes {
     /// Extremes in the order of the problem's characteristics. None if no point in the box has a value.
     pub extremes: Vec<Option<Extremes>>,
-    /// Cost of the search.
-    pub spent: Spent,
+    /// Cost of the search. The budget is the reason for an early end if points were left out because of it.
+    pub ledger: Ledger,
 }
 
 /// Least and greatest value of one characteristic.
@@ -152,10 +152,11 @@ pub enum Place {
 
 /// Searches the extremes of every characteristic, beginning with the values that a method has evaluated.
 ///
-/// Cost: as stated in the module, at most `budget` evaluations. A point that serves several characteristics is
-/// evaluated once. A point at which the model fails is never used.
-pub fn search(problem: &Problem, outcome: &Outcome, budget: Option<usize>, run: &Run<'_>) -> SearchedExtremes {
-    let mut answers = Answers::new(problem, budget, run);
+/// Cost: as stated in the module, at most what remains of the evaluator's budget. Its ledger stays as it is. A point
+/// that serves several characteristics is evaluated once. A point at which the model fails is never used.
+pub fn search(evaluator: &Evaluator<'_>, outcome: &Outcome) -> SearchedExtremes {
+    let (problem, run) = (evaluator.problem(), evaluator.run());
+    let mut answers = Answers::new(evaluator.part());
     let tasks: Vec<Task> = (0..problem.characteristics().len()).map(|c| Task::of(problem, outcome, c)).collect();
     tasks.iter().for_each(|task| task.learn_from(&mut answers, outcome));
     let mut asked = vec![0; tasks.len()];
@@ -185,7 +186,7 @@ pub fn search(problem: &Problem, outcome: &Outcome, budget: Option<usize>, run: 
     }
     let result = |((task, proof), asked)| Task::result(task, problem, &answers, asked, proof);
     let extremes = tasks.iter().zip(proofs).zip(asked).map(result).collect();
-    SearchedExtremes { extremes, spent: answers.spent }
+    SearchedExtremes { extremes, ledger: answers.evaluator.into_ledger() }
 }
 
 /// Bounds a characteristic over the box by interval arithmetic alone. Returns None if the assembly function has no

@@ -243,7 +243,7 @@ impl Task {
         let values = self.known(answers).map(|(_, value)| value);
         let [least, greatest] =
             values.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, greatest], y| [least.min(y), greatest.max(y)]);
-        let known = !answers.spent.run.unfinished() && least <= greatest;
+        let known = !answers.evaluator.summary().unfinished() && least <= greatest;
         let Some(whole) = known.then(|| self.bounds(problem, &region)).flatten() else { return (None, Vec::new()) };
         let allowed = PROVEN * (greatest - least) + ROUNDING * least.abs().max(greatest.abs());
         let round = if self.zones.is_empty() { 1 } else { ROUND };
@@ -280,10 +280,10 @@ impl Task {
             evaluations: asked,
             failed: failures.count,
             failure: failures.first.as_ref().map(ToString::to_string),
-            ended: match &answers.spent {
-                spent if spent.run.unfinished() => Ended::Stopped,
-                spent if spent.over_budget => Ended::Budget,
-                _ => Ended::Converged,
+            ended: match answers.evaluator.stopped() {
+                Some(reason) if reason.leaves_points_open() => Ended::Stopped,
+                Some(_) => Ended::Budget,
+                None => Ended::Converged,
             },
             proof,
         })

@@ -8,8 +8,8 @@
 //! All derivatives are checked. Between two points the difference of the values is the mean of the slopes times the step, except for a term
 //! of third order. Each axis therefore checks the derivatives by its dimension without further evaluations.
 
-use crate::assembly::{Points, Request, Responses, Run};
-use crate::evaluation::Evaluated;
+use crate::assembly::Points;
+use crate::evaluation::{Evaluated, Evaluator};
 use crate::method::exact_derivatives::ExactDerivatives;
 use crate::method::{MethodError, Options};
 use crate::plan::{AtNode, DifferencePlan, Mixed, Point};
@@ -128,7 +128,7 @@ pub(super) fn slopes(
     problem: &Problem,
     plan: &DifferencePlan,
     evaluated: &mut Evaluated,
-    run: &Run<'_>,
+    evaluator: &Evaluator<'_>,
 ) -> Result<Vec<Option<ExactDerivatives>>, MethodError> {
     let centre = plan.centre();
     let mut point = centre.clone();
@@ -136,9 +136,8 @@ pub(super) fn slopes(
         // Alternating signs of different size, so that equal errors of two derivatives do not cancel.
         point[d] += if position % 2 == 0 { STEP } else { -0.7 * STEP } * plan.axis(d).scale;
     }
-    let mut out = Responses::open(1, problem.outputs().len());
-    problem.function().evaluate(&Request::values(&Points::from_rows(&[&point]), problem.outputs()), run, &mut out);
-    evaluated.count(&out, run);
+    let out = evaluator.ask(&Points::from_rows(&[&point]));
+    evaluated.ledger = evaluator.ledger();
     let n = centre.len();
     let of = |c: usize| {
         let Some(value) = evaluated.known.value(&Point::Centre, c) else { return Ok(None) };

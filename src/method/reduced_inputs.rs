@@ -161,6 +161,8 @@ impl<'p> ReducedInputs<'p> {
         let (known, gradients) = (outcome.evaluated.known, outcome.evaluated.gradients);
         outcome.evaluated = over_inputs.evaluated;
         (outcome.evaluated.known, outcome.evaluated.gradients) = (known, gradients);
+        // The model has a value everywhere, while the formulas about it may fail.
+        outcome.evaluated.ledger.run.failed = outcome.evaluated.known.failed_points() as u64;
         outcome.asked = options.method;
         Ok(ReducedSurface::Fitted(Box::new(outcome)))
     }

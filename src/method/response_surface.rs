@@ -31,7 +31,7 @@ use faer::Mat;
 use faer::linalg::solvers::SolveLstsq;
 
 use crate::assembly::Run;
-use crate::evaluation::evaluate;
+use crate::evaluation::{Evaluator, evaluate};
 use crate::method::polynomial_surface::PolynomialSurface;
 use crate::method::{
     Basis, Cost, EvaluationLimit, ExactDerivatives, Fitted, Lacking, Method, MethodError, Options, Order, Outcome,
@@ -78,7 +78,7 @@ impl Procedure for ResponseSurface {
         let (design, places) = self.design(problem, options)?;
         Cost::of(&design).within(self.name(), problem, options)?;
         problem.function().prepare(problem.outputs()).map_err(|error| MethodError::Model { error })?;
-        let evaluated = evaluate(problem, &design, run);
+        let evaluated = evaluate(&Evaluator::new(problem, run), &design);
         let pairs = design.pairs();
         let exact = ExactDerivatives::beside(problem, &design, options, &pairs);
         let (basis, order) = (Basis::LeastSquares, Order::Second);

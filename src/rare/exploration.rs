@@ -86,7 +86,7 @@ impl Explored {
         let mut characteristics: Vec<usize> = targets.iter().map(|target| target.characteristic).collect();
         characteristics.dedup();
         let points: Vec<Vec<f64>> =
-            characteristics.iter().flat_map(|&c| seldom_points(model.problem, c, &varying, seed)).collect();
+            characteristics.iter().flat_map(|&c| seldom_points(model.problem(), c, &varying, seed)).collect();
         let rows = (2 * each / points.len().max(1)).min(each / 2).max(2);
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(!seed);
         let mut beside: Columns = vec![Vec::new(); n];

@@ -39,7 +39,7 @@ mod yield_estimate;
 use serde::Serialize;
 
 use crate::assembly::{EvaluationError, NonRepeatable, Run};
-use crate::evaluation::{Restoration, Restore, at_any_size, history};
+use crate::evaluation::{Evaluator, Restoration, Restore, at_any_size, history};
 use crate::method::{Method, MethodError, Options};
 use crate::problem::Problem;
 #[cfg(feature = "schema")]
@@ -341,7 +341,8 @@ fn sought(
     let surrogates = Surrogates::of(problem, &options.surrogate, run)?;
     let space = Space::new(problem, &surrogates.outcome)?;
     let targets = targets(problem, &surrogates, &space);
-    let mut model = Model::new(problem, &space, run);
+    let evaluator = Evaluator::new(problem, run).with_seed(options.seed);
+    let mut model = Model::new(evaluator, &space);
     let places: Vec<Place> = targets.iter().enumerate().flat_map(|(index, target)| places(index, target)).collect();
     // Each place is checked against the model, which may cross the limit elsewhere.
     let places = correct(places, &targets, (options.samples / 4) as usize, &mut model);
@@ -351,7 +352,7 @@ fn sought(
         let explored = Explored::new(&targets, &search.reached(), options.samples, !options.seed, &mut model);
         search.learn(&explored, (options.samples / 10) as usize, &mut model);
     }
-    let nothing_to_draw = surrogates.outcome.evaluated.stopped.is_some() || targets.is_empty();
+    let nothing_to_draw = surrogates.outcome.evaluated.stopped().is_some() || targets.is_empty();
     let mut sampled = SampledStages { problem, options, run, begun, model, search, reached: None };
     if !nothing_to_draw {
         sampled.draw(pace);
@@ -427,18 +428,8 @@ impl SampledStages<'_> {
 
     /// The points and time of the drawn points, without those of the surrogate.
     fn drawn(&self) -> RunSummary {
-        let model = &self.model;
-        RunSummary {
-            evaluations: model.answered.saturating_add_signed(model.extra),
-            cached: model.reused,
-            retried: model.retried,
-            failed: model.failed,
-            stages: model.stages,
-            wall: self.begun.elapsed(),
-            in_model: model.in_model,
-            seed: Some(self.options.seed),
-            ..RunSummary::default()
-        }
+        let evaluator = &self.model.evaluator;
+        RunSummary { wall: self.begun.elapsed(), seed: Some(evaluator.seed()), ..evaluator.summary() }
     }
 
     /// The results of all stages and of the surrogate.
@@ -446,11 +437,12 @@ impl SampledStages<'_> {
         let drawn = self.drawn();
         let Self { problem, options, run, model, search, reached, .. } = self;
         let surrogate = &surrogates.outcome.evaluated;
-        let spent = surrogate.summary();
+        let spent = surrogate.ledger.run;
         let open = || reached != Some(true) && model.answered < options.samples && !no_targets;
-        let stopped = surrogate.stopped.or_else(|| open().then(|| run.why_open()));
-        let non_repeatable: Vec<NonRepeatable> =
-            surrogate.non_repeatable.iter().chain(&model.non_repeatable).cloned().collect();
+        let stopped = surrogate.stopped().or_else(|| open().then(|| run.why_open()));
+        let mut ledger = surrogate.ledger.clone();
+        ledger.add(model.evaluator.ledger());
+        let non_repeatable = ledger.non_repeatable;
         let samples = search.points;
         let (joint, joint_interval) = search.within_all(problem).unzip();
         let joint = joint.flatten();

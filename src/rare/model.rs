@@ -1,35 +1,21 @@
-//! Model evaluated at points in normal space, with a count of its cost.
+//! Model evaluated at points in normal space.
 
-use std::time::Duration;
-
-use crate::assembly::{EvaluationError, NonRepeatable, Points, Request, Responses, Run};
+use crate::assembly::{EvaluationError, Points, Responses};
+use crate::evaluation::Evaluator;
 use crate::problem::Problem;
 use crate::rare::normal_space::{Columns, Space};
-use sensitol_numeric::time::Instant;
 
 /// Points that are evaluated between two checks of the time limit.
 const BATCH: usize = 1 << 14;
 
-/// Model with the counts of its evaluations.
+/// Model in normal space.
 pub(super) struct Model<'a> {
-    pub(super) problem: &'a Problem,
+    pub(super) evaluator: Evaluator<'a>,
     pub(super) space: &'a Space<'a>,
-    run: &'a Run<'a>,
-    /// Number of points that were answered.
+    /// Number of points that were answered: the size of all samples together.
     pub(super) answered: u64,
-    /// Evaluations in addition to these: points that were tried again, minus those that were known.
-    pub(super) extra: i64,
-    pub(super) reused: u64,
-    pub(super) retried: u64,
-    /// Number of batches.
-    pub(super) stages: u64,
-    /// Number of points without a value of at least one characteristic.
-    pub(super) failed: u64,
     /// For every characteristic, the number of points without a value, and the first error.
     pub(super) lost: Vec<(u64, Option<EvaluationError>)>,
-    pub(super) in_model: Duration,
-    /// Evaluations in which the model returned another value than before at the nominal point.
-    pub(super) non_repeatable: Vec<NonRepeatable>,
 }
 
 pub(super) struct Answers {
@@ -55,51 +41,33 @@ impl Answers {
 }
 
 impl<'a> Model<'a> {
-    pub(super) fn new(problem: &'a Problem, space: &'a Space<'a>, run: &'a Run<'a>) -> Self {
-        let lost = vec![(0, None); problem.characteristics().len()];
-        let (answered, extra, reused, failed) = (0, 0, 0, 0);
-        Self {
-            problem,
-            space,
-            run,
-            answered,
-            extra,
-            reused,
-            retried: 0,
-            stages: 0,
-            failed,
-            lost,
-            in_model: Duration::ZERO,
-            non_repeatable: Vec::new(),
-        }
+    pub(super) fn new(evaluator: Evaluator<'a>, space: &'a Space<'a>) -> Self {
+        let lost = vec![(0, None); evaluator.problem().characteristics().len()];
+        Self { evaluator, space, answered: 0, lost }
+    }
+
+    pub(super) fn problem(&self) -> &'a Problem {
+        self.evaluator.problem()
     }
 
     pub(super) fn middle(&self) -> Vec<f64> {
-        self.problem.dimensions().iter().map(|dimension| dimension.mean()).collect()
+        self.problem().dimensions().iter().map(|dimension| dimension.mean()).collect()
     }
 
     /// Evaluates these points, until the run is stopped.
     pub(super) fn ask(&mut self, normals: &Columns) -> Answers {
         let columns = self.space.values(normals);
         let (middle, rows) = (self.middle(), columns.first().map_or(0, Vec::len));
-        let outputs = self.problem.outputs();
-        let mut answers = Answers { columns: vec![vec![f64::NAN; rows]; outputs.len()], answered: vec![false; rows] };
+        let outputs = self.problem().outputs().len();
+        let mut answers = Answers { columns: vec![vec![f64::NAN; rows]; outputs], answered: vec![false; rows] };
         let mut first = 0;
-        while first < rows && !self.run.stopped() {
+        while first < rows && !self.evaluator.run().stopped() {
             let batch = BATCH.min(rows - first);
             let mut points = Points::repeated(&middle, batch);
             for (d, column) in self.space.dimensions().zip(&columns) {
                 points.column_mut(d).copy_from_slice(&column[first..first + batch]);
             }
-            let mut out = Responses::open(batch, outputs.len());
-            let begun = Instant::now();
-            self.problem.function().evaluate(&Request::values(&points, outputs), self.run, &mut out);
-            self.in_model += begun.elapsed();
-            self.extra += out.extra();
-            self.non_repeatable.extend(out.non_repeatable().iter().cloned());
-            self.reused += out.count_reused() as u64;
-            self.retried += out.count_retried() as u64;
-            self.stages += 1;
+            let out = self.evaluator.ask(&points);
             (0..batch).for_each(|row| self.learn(&out, row, first + row, &mut answers));
             first += batch;
         }
@@ -112,17 +80,14 @@ impl<'a> Model<'a> {
         }
         answers.answered[to] = true;
         self.answered += 1;
-        let mut failed = false;
         for (output, (lost, why)) in self.lost.iter_mut().enumerate() {
             if let Some(value) = out.value(row, output) {
                 answers.columns[output][to] = value;
             }
             if let Some(error) = out.error(row, output) {
-                failed = true;
                 *lost += 1;
                 why.get_or_insert_with(|| error.clone());
             }
         }
-        self.failed += u64::from(failed);
     }
 }

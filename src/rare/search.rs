@@ -464,7 +464,7 @@ impl<'a> Search<'a> {
                 unfinished,
             }
         };
-        model.problem.characteristics().iter().enumerate().map(characteristic).collect()
+        model.problem().characteristics().iter().enumerate().map(characteristic).collect()
     }
 }
 

@@ -88,7 +88,7 @@ impl<'p> Control<'p> {
 
     /// Reason of a stop before the surrogates were known.
     pub(super) fn stopped(&self) -> Option<StopReason> {
-        self.outcome.evaluated.stopped
+        self.outcome.evaluated.stopped()
     }
 
     /// Every surrogate with its rises at these points.
@@ -147,7 +147,7 @@ fn twins(problem: &Problem, outcome: &Outcome, known: Vec<Option<KnownSurrogate>
             centre: surrogate.centre,
             surrogate,
             method: outcome.method,
-            evaluations: outcome.evaluated.evaluations,
+            evaluations: outcome.evaluated.ledger.evaluations(),
             moments,
             sampled,
             limits: problem.kept_limits(c),

@@ -12,10 +12,9 @@
 
 use serde::Serialize;
 
-use crate::assembly::{Request, Responses, Run};
+use crate::evaluation::{Evaluator, Ledger};
 use crate::problem::Problem;
 use crate::simulation::{Pace, REPLICATES, SimulationError};
-use crate::summary::RunSummary;
 use crate::verification::{CONFIDENCE, Columns, Space, jackknife, totals};
 use sensitol_numeric::correlation::factors;
 use sensitol_numeric::parallel::prelude::*;
@@ -80,28 +79,27 @@ pub(super) fn affordable(problem: &Problem, points: u64, budget: Option<u64>) ->
     }
 }
 
-/// Indices of every characteristic, and their cost. None for a characteristic that does not vary, and for all of them if the run was
-/// stopped. Points without a value are left out.
+/// Indices of every characteristic. None for a characteristic that does not vary, and for all of them if the run was stopped. Points
+/// without a value are left out.
 ///
 /// Shapes: `origins` has a value near the mean of every characteristic.
 pub(super) fn indices(
-    problem: &Problem,
-    (points, seed): (u64, u64),
+    evaluator: &Evaluator<'_>,
+    points: u64,
     origins: &[f64],
-    run: &Run<'_>,
     pace: &dyn Fn(Pace),
-) -> (Vec<Option<Vec<SampledFactor>>>, RunSummary) {
-    let begun = Instant::now();
+) -> Vec<Option<Vec<SampledFactor>>> {
+    let (problem, begun) = (evaluator.problem(), Instant::now());
     let (varying, factors, rows) = design(problem, points);
     let none = || vec![None; problem.characteristics().len()];
     if varying.is_empty() {
-        return (none(), RunSummary::default());
+        return none();
     }
-    let exchange = Exchange { problem, space: Space::new(problem, &varying), factors: &factors, rows, origins, run };
-    let normals = Normals::new(2 * varying.len(), seed);
+    let exchange = Exchange { evaluator, space: Space::new(problem, &varying), factors: &factors, rows, origins };
+    let normals = Normals::new(2 * varying.len(), evaluator.seed());
     let expected = (REPLICATES as usize * rows * (factors.len() + 2)) as f64;
     let one = |replicate: u64| exchange.replicate(&normals, replicate);
-    let replicates: Vec<Replicate> = match problem.function().signature().costly {
+    let mut replicates: Vec<Replicate> = match problem.function().signature().costly {
         false => (0..REPLICATES).into_par_iter().map(one).collect(),
         // One batch after the other: all workers of an external model share each.
         true => (0..REPLICATES)
@@ -112,38 +110,33 @@ pub(super) fn indices(
             })
             .collect(),
     };
-    let summary = replicates.iter().fold(RunSummary::default(), |sum, replicate| sum.and(&replicate.run));
-    let unanswered = replicates.iter().any(|replicate| replicate.open);
-    let summary =
-        RunSummary { wall: begun.elapsed(), seed: Some(seed), stopped: unanswered.then(|| run.why_open()), ..summary };
-    if unanswered {
-        return (none(), summary);
+    // In the order of the scramblings, so that the ledger does not depend on threads.
+    replicates.iter_mut().for_each(|replicate| evaluator.merge(std::mem::take(&mut replicate.ledger)));
+    if evaluator.stopped().is_some() {
+        return none();
     }
     let of = |c: usize| {
         let sums: Vec<&[f64]> = replicates.iter().map(|replicate| replicate.sums[c].as_slice()).collect();
         estimated(problem, &varying, &factors, &sums)
     };
-    ((0..problem.characteristics().len()).map(of).collect(), summary)
+    (0..problem.characteristics().len()).map(of).collect()
 }
 
 struct Exchange<'p> {
-    problem: &'p Problem,
+    evaluator: &'p Evaluator<'p>,
     space: Space<'p>,
     factors: &'p [Vec<usize>],
     rows: usize,
     /// Values near the means of the characteristics. Sums are taken about them so that nothing large is squared.
     origins: &'p [f64],
-    run: &'p Run<'p>,
 }
 
-/// Sums of one scrambling, with its cost.
+/// Sums of one scrambling, with their cost.
 struct Replicate {
     /// Sums by characteristic: number of points, their sum and squares; then for every factor the number of points, and sums of means,
     /// products, mean squares, and squared differences.
     sums: Vec<Vec<f64>>,
-    run: RunSummary,
-    /// True if a point was not evaluated.
-    open: bool,
+    ledger: Ledger,
 }
 
 /// Number of sums of the whole sample: points, sum, squares.
@@ -155,17 +148,9 @@ impl Exchange<'_> {
     fn replicate(&self, normals: &Normals, replicate: u64) -> Replicate {
         let mut first = normals.columns(STREAM + replicate, self.rows);
         let mut second = first.split_off(self.space.len());
-        let (mut run, mut open) = (RunSummary::default(), false);
-        let mut evaluate = |z: &Columns| {
-            let begun = Instant::now();
-            let points = self.space.points(z);
-            let mut out = Responses::open(points.rows(), self.problem.outputs().len());
-            if !self.run.stopped() {
-                let request = Request::values(&points, self.problem.outputs());
-                self.problem.function().evaluate(&request, self.run, &mut out);
-            }
-            run = run.and(&out.summary(begun.elapsed()));
-            open |= (0..out.rows()).any(|row| (0..out.outputs()).any(|output| out.is_open(row, output)));
+        let part = self.evaluator.part();
+        let evaluate = |z: &Columns| {
+            let out = part.ask(&self.space.points(z));
             (0..out.outputs()).map(|output| out.column(output).to_vec()).collect::<Vec<_>>()
         };
         let (a, b) = (evaluate(&first), evaluate(&second));
@@ -190,7 +175,7 @@ impl Exchange<'_> {
                 sums.extend(own);
             }
         }
-        Replicate { sums, run, open }
+        Replicate { sums, ledger: part.into_ledger() }
     }
 }
 

@@ -28,8 +28,8 @@ use std::time::Duration;
 
 use serde::Serialize;
 
-use crate::assembly::{EvaluationError, NonRepeatable, Points, Request, Responses, Run, near_rows};
-use crate::evaluation::{Restoration, Restore, at_any_size};
+use crate::assembly::{EvaluationError, NonRepeatable, Points, Responses, Run, near_rows};
+use crate::evaluation::{Evaluator, Restoration, Restore, at_any_size};
 use crate::method::{Method, MethodError, Options, Outcome};
 use crate::problem::Problem;
 use crate::simulation::control_variate::Control;
@@ -416,8 +416,11 @@ impl Simulation {
     ) -> Self {
         let origins: Vec<f64> =
             self.characteristics.iter().map(|one| one.mean.map_or(0.0, |mean| mean.value)).collect();
-        let (found, spent) = indices::indices(problem, (points, seed), &origins, run, pace);
+        let evaluator = Evaluator::new(problem, run).with_seed(seed);
+        let begun = Instant::now();
+        let found = indices::indices(&evaluator, points, &origins, pace);
         self.characteristics.iter_mut().zip(found).for_each(|(one, found)| one.indices = found);
+        let spent = RunSummary { wall: begun.elapsed(), seed: Some(seed), ..evaluator.summary() };
         self.run = RunSummary { evaluator: problem.evaluator(), ..self.run.and(&spent) };
         self
     }
@@ -448,6 +451,7 @@ fn drawn(
     /// Duration below which the next batch has more tasks, and the factor on their number.
     const SHORT: (Duration, usize) = (Duration::from_millis(50), 4);
     let measured = MeasuredGroups::of(problem, options.samples);
+    let evaluator = Evaluator::new(problem, run).with_seed(options.seed);
     let mut tally = Tally::new(problem, control, options.sampler);
     let mut portions = Portions::new(options, problem.function().signature().costly, problem.dimensions().len());
     let rooms = Rooms::none();
@@ -457,7 +461,7 @@ fn drawn(
     let mut waiting: (Vec<Portion>, Vec<Block>) = Default::default();
     let (mut reached, mut expected) = (None, portions.total as f64);
     loop {
-        let ends = run.stopped() || tally.stopped || reached == Some(true);
+        let ends = run.stopped() || tally.stopped() || reached == Some(true);
         let batch = if ends { Vec::new() } else { portions.next_batch() };
         if batch.is_empty() && waiting.0.is_empty() {
             break;
@@ -466,7 +470,7 @@ fn drawn(
         let one = |portion: &Portion| {
             rooms.within(room, |(room, points, out)| {
                 draws.write(*portion, room, points);
-                block(problem, (points, out), *portion, run, (&lenses, control, measured.as_ref(), options.sampler))
+                block(&evaluator, (points, out), *portion, (&lenses, control, measured.as_ref(), options.sampler))
             })
         };
         let asked = Instant::now();
@@ -504,7 +508,7 @@ fn drawn(
     }
     // A sample whose moments have not settled is complete after `UNSETTLED` points: it was not stopped.
     let settles = !tally.shortfall(options).is_some_and(f64::is_infinite) || tally.samples() < UNSETTLED;
-    let open = tally.stopped || reached != Some(true) && settles && !portions.done();
+    let open = tally.stopped() || reached != Some(true) && settles && !portions.done();
     let stopped = control.and_then(Control::stopped).or_else(|| open.then(|| run.why_open()));
     let simulation = tally.finish(options, measured.as_ref(), stopped, reached);
     Simulation {
@@ -515,10 +519,9 @@ fn drawn(
 
 /// Evaluates one portion, with surrogates and groups of measured samples.
 fn block(
-    problem: &Problem,
+    evaluator: &Evaluator<'_>,
     (points, out): (&Points, &mut Responses),
     portion: Portion,
-    run: &Run<'_>,
     (lenses, control, measured, sampler): (
         &[CountingScale],
         Option<&Control<'_>>,
@@ -526,13 +529,11 @@ fn block(
         Sampler,
     ),
 ) -> Block {
-    out.reopen(portion.rows, problem.outputs().len());
-    let begun = Instant::now();
-    problem.function().evaluate(&Request::values(points, problem.outputs()), run, out);
-    let took = begun.elapsed();
+    let part = evaluator.part();
+    part.ask_into(points, evaluator.problem().outputs(), out);
     let beside = control.map_or_else(Vec::new, |control| control.beside(points));
     let groups = measured.map(|measured| (measured, measured.groups(points)));
-    Block::of(out, took, (lenses, sampler, portion.replicate), &beside, groups.as_ref())
+    Block::of(out, part.into_ledger(), (lenses, sampler, portion.replicate), &beside, groups.as_ref())
 }
 
 /// Portions of a sample, a batch at a time, with equal progress of all replicates.

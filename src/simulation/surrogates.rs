@@ -47,7 +47,7 @@ impl Surrogates {
         }
         let outcome = asked.method.procedure().run(problem, &asked, run)?;
         let mut surrogates = Self { known: Vec::new(), outcome };
-        if surrogates.outcome.evaluated.stopped.is_none() {
+        if surrogates.outcome.evaluated.stopped().is_none() {
             let known = (0..problem.characteristics().len()).map(|c| Self::of_one(problem, &surrogates.outcome, c));
             surrogates.known = known.collect::<Result<_, _>>()?;
         }

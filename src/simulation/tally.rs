@@ -1,10 +1,9 @@
 //! Accumulation of the values of a sample. The result does not depend on the order in which threads finish.
 
 use std::borrow::Cow;
-use std::time::Duration;
 
 use crate::assembly::{EvaluationError, NonRepeatable, Responses, Run};
-use crate::evaluation::history;
+use crate::evaluation::{Ledger, history};
 use crate::problem::Problem;
 use crate::simulation::characteristic::{Evidence, SimulatedCharacteristic};
 use crate::simulation::control_variate::{Control, Twin};
@@ -26,13 +25,7 @@ use sensitol_numeric::verdict::Judged;
 pub(super) struct Block {
     columns: Vec<Column>,
     answered: u64,
-    extra: i64,
-    reused: u64,
-    retried: u64,
-    failed: u64,
-    complete: bool,
-    non_repeatable: Vec<NonRepeatable>,
-    took: Duration,
+    ledger: Ledger,
     together: Option<Together>,
 }
 
@@ -59,19 +52,15 @@ impl Block {
     /// measured samples, with the group of every point for each.
     pub(super) fn of(
         out: &Responses,
-        took: Duration,
+        ledger: Ledger,
         (lenses, sampler, replicate): (&[CountingScale], Sampler, u64),
         beside: &[Option<(&Twin, Vec<f64>)>],
         groups: Option<&(&MeasuredGroups<'_>, Vec<Vec<usize>>)>,
     ) -> Self {
-        let open = |row: usize| (0..out.outputs()).all(|output| out.is_open(row, output));
-        let full = |output: usize| out.column(output).iter().fold(true, |all, value| all & !value.is_nan());
-        let answered = match (0..out.outputs()).any(full) {
-            true => out.rows(),
-            false => (0..out.rows()).filter(|&row| !open(row)).count(),
+        let answered = match ledger.stopped() {
+            None => out.rows(),
+            Some(_) => out.answered().count(),
         };
-        let mut lost: Vec<usize> = out.errors().map(|(row, ..)| row).collect();
-        lost.dedup();
         Self {
             columns: (lenses.iter().enumerate())
                 .map(|(output, lens)| {
@@ -81,13 +70,7 @@ impl Block {
                 })
                 .collect(),
             answered: answered as u64,
-            extra: out.extra(),
-            reused: out.count_reused() as u64,
-            retried: out.count_retried() as u64,
-            failed: lost.len() as u64,
-            complete: answered == out.rows(),
-            non_repeatable: out.non_repeatable().to_vec(),
-            took,
+            ledger,
             together: Together::of(out, lenses, sampler, replicate),
         }
     }
@@ -128,11 +111,8 @@ pub(super) struct Tally<'a> {
     /// Seldom sides of every characteristic, after the search for them. None if standard errors are not watched.
     seldom: Option<Vec<Option<RareSwitchSides>>>,
     answered: u64,
-    extra: i64,
     /// Cost of the points drawn so far.
-    run: RunSummary,
-    non_repeatable: Vec<NonRepeatable>,
-    pub(super) stopped: bool,
+    ledger: Ledger,
 }
 
 impl<'a> Tally<'a> {
@@ -165,15 +145,17 @@ impl<'a> Tally<'a> {
             together: Together::default(),
             seldom: None,
             answered: 0,
-            extra: 0,
-            run: RunSummary::default(),
-            non_repeatable: Vec::new(),
-            stopped: false,
+            ledger: Ledger::default(),
         }
     }
 
     pub(super) fn lenses(&self) -> &[CountingScale] {
         &self.lenses
+    }
+
+    /// True if points of the sample were not evaluated.
+    pub(super) fn stopped(&self) -> bool {
+        self.ledger.stopped().is_some()
     }
 
     pub(super) fn samples(&self) -> u64 {
@@ -189,20 +171,14 @@ impl<'a> Tally<'a> {
     }
 
     fn add_stage(&mut self, portions: &[Portion], blocks: Vec<Block>) {
-        self.run.stages += 1;
         if self.lenses.iter().any(|lens| lens.scale.is_none()) {
             self.look(&blocks);
         }
         let mut uncounted: Vec<(usize, usize, Values)> = Vec::with_capacity(portions.len() * self.counts.len());
+        let mut parts = Vec::with_capacity(portions.len());
         for (portion, block) in portions.iter().zip(blocks) {
             self.answered += block.answered;
-            self.extra += block.extra;
-            self.run.cached += block.reused;
-            self.run.retried += block.retried;
-            self.run.failed += block.failed;
-            self.run.in_model += block.took;
-            self.stopped |= !block.complete;
-            self.non_repeatable.extend(block.non_repeatable);
+            parts.push(block.ledger);
             block.together.iter().for_each(|parts| self.together.merge(parts));
             for (c, (count, column)) in self.counts.iter_mut().zip(block.columns).enumerate() {
                 count.groups.merge(&column.groups);
@@ -218,6 +194,7 @@ impl<'a> Tally<'a> {
                 uncounted.push((c, place, column.values));
             }
         }
+        self.ledger.add(Ledger::of_batch(parts));
         // The counts of all replicates exceed a nearby cache: each replicate is counted as a whole before the next.
         uncounted.sort_by_key(|&(c, replicate, _)| (c, replicate));
         for (c, replicate, values) in uncounted {
@@ -255,7 +232,7 @@ impl<'a> Tally<'a> {
             RareSwitchSides::of(self.problem, c, self.control, (seed, count.summary().sigma()), run)
         };
         let found: Vec<Option<RareSwitchSides>> = self.counts.iter().enumerate().map(seldom).collect();
-        self.extra += found.iter().flatten().map(|seldom| seldom.evaluations() as i64).sum::<i64>();
+        self.ledger.run.evaluations += found.iter().flatten().map(RareSwitchSides::evaluations).sum::<u64>();
         self.seldom = Some(found);
     }
 
@@ -324,15 +301,11 @@ impl<'a> Tally<'a> {
         });
         let correlations = together::correlations(self.problem, &self.together);
         let surrogate = self.control.map(|control| &control.outcome.evaluated);
-        let spent = surrogate.map(|evaluated| evaluated.summary()).unwrap_or_default();
-        let drawn = RunSummary {
-            evaluations: self.answered.saturating_add_signed(self.extra),
-            seed: Some(options.seed),
-            ..self.run
-        };
+        let spent = surrogate.map(|evaluated| evaluated.ledger.run).unwrap_or_default();
+        let drawn = RunSummary { seed: Some(options.seed), ..self.ledger.run };
         // Points of the surrogate are evaluated before those of the sample.
-        let before = surrogate.iter().flat_map(|evaluated| &evaluated.non_repeatable).cloned();
-        let non_repeatable: Vec<NonRepeatable> = before.chain(self.non_repeatable).collect();
+        let before = surrogate.iter().flat_map(|evaluated| &evaluated.ledger.non_repeatable).cloned();
+        let non_repeatable: Vec<NonRepeatable> = before.chain(self.ledger.non_repeatable).collect();
         let failures =
             characteristics.iter().flat_map(|one| [one.failures(), one.overflow(), one.unsettled()]).flatten();
         let seldom = self.seldom.iter().flatten().zip(&characteristics);

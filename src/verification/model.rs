@@ -1,6 +1,7 @@
 //! One characteristic of a cheap model as a function of independent normal variables.
 
-use crate::assembly::{Points, Request, Responses, Run};
+use crate::assembly::{Points, Run};
+use crate::evaluation::Evaluator;
 use crate::problem::Problem;
 use crate::verification::normal_space::{Columns, Space};
 use sensitol_numeric::parallel::prelude::*;
@@ -8,10 +9,9 @@ use sensitol_numeric::surrogate::Surrogate;
 
 /// A characteristic of a cheap model over independent standard normal variables.
 pub(super) struct Model<'p> {
-    problem: &'p Problem,
+    evaluator: Evaluator<'p>,
     output: usize,
     space: Space<'p>,
-    run: Run<'p>,
 }
 
 impl<'p> Model<'p> {
@@ -26,17 +26,18 @@ impl<'p> Model<'p> {
     /// Creates it over the given dimensions of the problem.
     pub(super) fn over(problem: &'p Problem, characteristic: usize, dimensions: &[usize]) -> Self {
         let space = Space::new(problem, dimensions);
-        Self { problem, output: problem.outputs()[characteristic], space, run: Run::to_the_end() }
+        let evaluator = Evaluator::new(problem, &Run::to_the_end());
+        Self { evaluator, output: problem.outputs()[characteristic], space }
     }
 
     /// Evaluates under the conditions of a run: points that are unanswered when it stops have no value.
     pub(super) fn during(self, run: &Run<'p>) -> Self {
-        Self { run: run.quiet(), ..self }
+        Self { evaluator: Evaluator::new(self.problem(), &run.quiet()), ..self }
     }
 
     /// True if the run was stopped, so that some points have no value for that reason.
     pub(super) fn stopped(&self) -> bool {
-        self.run.stopped()
+        self.evaluator.run().stopped()
     }
 
     /// Standardised inputs at some points.
@@ -60,10 +61,8 @@ impl<'p> Model<'p> {
 
     /// Points in the form of the problem, and the values there.
     pub(super) fn points_and_values(&self, z: &Columns) -> (Points, Vec<f64>) {
-        let (points, outputs) = (self.space.points(z), [self.output]);
-        let mut out = Responses::open(points.rows(), 1);
-        self.problem.function().evaluate(&Request::values(&points, &outputs), &self.run, &mut out);
-        let values = out.column(0).to_vec();
+        let points = self.space.points(z);
+        let values = self.evaluator.ask_outputs(&points, &[self.output]).column(0).to_vec();
         (points, values)
     }
 
@@ -80,7 +79,7 @@ impl<'p> Model<'p> {
 
     /// Margins of the switches at some points. Returns None if the function does not report them.
     pub(super) fn margins(&self, z: &Columns) -> Option<Vec<Vec<f64>>> {
-        let of = |z: &Columns| self.problem.function().margins(self.output, &self.space.points(z));
+        let of = |z: &Columns| self.problem().function().margins(self.output, &self.space.points(z));
         let rows = z.first().map_or(1, Vec::len);
         if rows < 256 {
             return of(z);
@@ -100,7 +99,7 @@ impl<'p> Model<'p> {
     }
 
     pub(super) fn problem(&self) -> &'p Problem {
-        self.problem
+        self.evaluator.problem()
     }
 
     pub(super) fn output(&self) -> usize {

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use sensitol::analysis::{Crossing, VerificationKind, Verified};
 use sensitol::assembly::Run;
 use sensitol::correlation::Pair;
+use sensitol::evaluation::Evaluator;
 
 use sensitol::method::registry::procedure;
 use sensitol::verification::{SampledFigures, Target, variance_shares, verify_by_checks, verify_by_sampling};
@@ -134,7 +135,8 @@ fn a_dozen_points_cover_the_figures_of_a_surface() {
             for seed in [1, 2] {
                 let run = Run::to_the_end();
                 let varying = outcome.plan.varying();
-                let found = verify_by_checks(problem, varying, &targets, seed, usize::MAX, &run).unwrap();
+                let found =
+                    verify_by_checks(&Evaluator::new(problem, &run).with_seed(seed), varying, &targets).unwrap();
                 assert!((12..=18).contains(&found.count()), "{}: {} points", truth.name, found.count());
                 let [one, middle] = [&found.characteristics[0], &found.characteristics[1]];
                 let Some(errors) = one.errors else { continue };

@@ -100,5 +100,5 @@ pub(in crate::analysis) fn listed(
 pub(in crate::analysis) fn missing(outcome: &Outcome, c: usize, dimensions: &[usize]) -> Missing {
     let within = |point: &Point| point.at().iter().all(|at| dimensions.contains(&(at.dimension as usize)));
     let failed = || outcome.evaluated.known.errors().any(|(point, of, _)| of == c && within(point));
-    if outcome.evaluated.stopped.is_some() && !failed() { Missing::NotEvaluated } else { Missing::Failed }
+    if outcome.evaluated.stopped().is_some() && !failed() { Missing::NotEvaluated } else { Missing::Failed }
 }

@@ -69,7 +69,7 @@ pub(in crate::analysis) fn find(
     run: &Run<'_>,
 ) -> FoundJumps {
     let mut found = FoundJumps::default();
-    if outcome.basis != Basis::Differences || outcome.climbed.is_some() || outcome.evaluated.stopped.is_some() {
+    if outcome.basis != Basis::Differences || outcome.climbed.is_some() || outcome.evaluated.stopped().is_some() {
         return found;
     }
     let mut sides: Vec<Side> =

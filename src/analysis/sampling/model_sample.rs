@@ -48,7 +48,9 @@ pub(in crate::analysis) fn fall_back(
     run: &Run<'_>,
 ) -> Spent {
     let mut spent = Spent::default();
-    let Some(climbed) = outcome.climbed.as_ref().filter(|_| outcome.evaluated.stopped.is_none()) else { return spent };
+    let Some(climbed) = outcome.climbed.as_ref().filter(|_| outcome.evaluated.stopped().is_none()) else {
+        return spent;
+    };
     let short: Vec<usize> =
         (0..characteristics.len()).filter(|&c| shortfall(&characteristics[c], climbed, c).is_some()).collect();
     if short.is_empty() {

@@ -12,6 +12,7 @@ use crate::analysis::result::yield_error::of_yield;
 use crate::analysis::sampling::accuracy_target::{MORE, PART};
 use crate::analysis::sampling::sample_budget::SampleBudget;
 use crate::assembly::{EvaluationError, NonRepeatable, Run};
+use crate::evaluation::Evaluator;
 use crate::method::{ErrorEstimate, ErrorSource, Method, Options, Outcome, interpolated};
 use crate::problem::Problem;
 use crate::summary::RunSummary;
@@ -24,7 +25,6 @@ use sensitol_numeric::capability::{Capability, Law};
 use sensitol_numeric::moments::Moments;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::surrogate::Surrogate;
-use sensitol_numeric::time::Instant;
 
 /// Greatest error of a share, as a part of the reject rate that the target allows (of 1e-4: 1e-5). Above it a larger sample is drawn.
 const TARGET: f64 = 0.1;
@@ -56,7 +56,7 @@ pub(in crate::analysis) fn verify(
 ) -> (RunSummary, Vec<NonRepeatable>) {
     let most = options.verification(problem.function().signature());
     let costly = problem.function().signature().costly;
-    if most == 0 || outcome.evaluated.stopped.is_some() || costly && run.stopped() {
+    if most == 0 || outcome.evaluated.stopped().is_some() || costly && run.stopped() {
         return Default::default();
     }
     let open: Vec<usize> =
@@ -273,7 +273,6 @@ fn check(
     run: &Run<'_>,
 ) -> (RunSummary, Vec<NonRepeatable>) {
     let varying = outcome.plan.varying();
-    let begun = Instant::now();
     let integrated: Vec<Option<Surrogate>> = (0..characteristics.len()).map(|c| interpolated(outcome, c)).collect();
     let surface = |c: usize| outcome.fitted[c].surrogate.as_ref().or(integrated[c].as_ref());
     let shares = |(one, integrated): (&CharacteristicAnalysis, &Option<Surrogate>)| -> Vec<f64> {
@@ -285,7 +284,8 @@ fn check(
         .map(|(c, shares)| Target { surrogate: surface(c).filter(|_| open.contains(&c)), shares })
         .collect();
     let seed = options.seed.unwrap_or(Options::SEED);
-    let Some(checked) = verify_by_checks(problem, varying, &targets, seed, budget, run) else {
+    let evaluator = Evaluator::new(problem, run).with_budget(Some(budget)).with_seed(seed);
+    let Some(checked) = verify_by_checks(&evaluator, varying, &targets) else {
         return Default::default();
     };
     let Checked { answers, .. } = &checked;
@@ -300,7 +300,9 @@ fn check(
             judge(&mut characteristics[c], &checked, &checked.characteristics[c], exact);
         }
     }
-    (answers.summary(begun.elapsed()), answers.non_repeatable().to_vec())
+    let ledger = evaluator.into_ledger();
+    // Open check points leave the figures of the method complete.
+    (RunSummary { stopped: None, ..ledger.run }, ledger.non_repeatable)
 }
 
 /// Derives the errors of a method's figures: the error of the surface, and the difference between method and surface.

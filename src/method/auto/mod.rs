@@ -27,7 +27,7 @@ mod start;
 use std::sync::Arc;
 
 use crate::assembly::Run;
-use crate::evaluation::Evaluated;
+use crate::evaluation::{Evaluated, Evaluator};
 use crate::method::auto::characteristic_state::View;
 use crate::method::auto::next_stage::Climb;
 use crate::method::auto_account::{AutoAccount, ClimbEnd};
@@ -133,17 +133,18 @@ pub fn climb_until(
     AUTO.fits(problem, options)?;
     problem.function().prepare(problem.outputs()).map_err(|error| MethodError::Model { error })?;
     let mut climb = climb(problem, options)?;
+    let evaluator = Evaluator::new(problem, run).with_budget(options.budget);
     let mut evaluated = Evaluated::nothing(problem);
     loop {
-        while let Some(stage) = climb.next(&evaluated.known, evaluated.evaluations) {
-            evaluated.add(problem, &climb.plan, &stage, run);
-            if evaluated.stopped.is_some() {
+        while let Some(stage) = climb.next(&evaluated.known, evaluator.ledger().evaluations()) {
+            evaluated.add(&evaluator, &climb.plan, &stage);
+            if evaluator.stopped().is_some() {
                 break;
             }
         }
         let found = outcome(problem, options, &climb, &evaluated);
         let excess = excess(&found);
-        if evaluated.stopped.is_some() || excess <= 1.0 || !climb.tighten(1.0 / excess) {
+        if evaluator.stopped().is_some() || excess <= 1.0 || !climb.tighten(1.0 / excess) {
             return Ok(found);
         }
     }
@@ -199,7 +200,7 @@ fn outcome(problem: &Problem, options: &Options, climb: &Climb<'_>, evaluated: &
     let climbed = AutoAccount {
         accuracy: options.accuracy.unwrap_or(ACCURACY),
         accuracies: options.accuracies,
-        rest: if evaluated.stopped.is_some() { ClimbEnd::Stopped } else { climb.rest.unwrap_or(ClimbEnd::Budget) },
+        rest: if evaluated.stopped().is_some() { ClimbEnd::Stopped } else { climb.rest.unwrap_or(ClimbEnd::Budget) },
         refined: (0..climb.refined.len()).filter(|&j| climb.refined[j]).collect(),
         direct: climb.bought.direct.len(),
         probes: climb.bought.judging.len() + climb.bought.fitted.len(),

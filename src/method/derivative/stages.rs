@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::assembly::Run;
-use crate::evaluation::{Evaluated, evaluate};
+use crate::evaluation::{Evaluated, Evaluator, evaluate};
 pub(in crate::method) use crate::method::Order;
 use crate::method::exact_derivatives::{ExactDerivatives, fits, known};
 use crate::method::model_gradients as gradients;
@@ -85,7 +85,7 @@ impl Procedure for Ladder {
         if exact {
             known(problem, &plan)?;
         }
-        let evaluated = evaluate(problem, &plan, run);
+        let evaluated = evaluate(&Evaluator::new(problem, run), &plan);
         let (pairs, derivatives) = self.derivatives(problem, options, &plan, &evaluated)?;
         let polynomials = PolynomialSurface::all(problem, &plan, options);
         let fit = |(c, derivatives): (usize, Option<ExactDerivatives>)| {
@@ -138,10 +138,11 @@ impl Ladder {
         cost.within(self.name(), problem, options)?;
         let first = self.order == Order::First;
         let one_node = self.method == Method::SecondOrder;
-        let mut evaluated = evaluate(problem, &plan, run);
+        let evaluator = Evaluator::new(problem, run);
+        let mut evaluated = evaluate(&evaluator, &plan);
         let pairs = whole.pairs(None);
         let fitted: Vec<Fitted> = if first {
-            let slopes = gradients::slopes(problem, &plan, &mut evaluated, run)?;
+            let slopes = gradients::slopes(problem, &plan, &mut evaluated, &evaluator)?;
             let fit = |(c, slopes)| self.fit(&plan, &evaluated, c, &pairs, slopes, true);
             // Derivatives that a model sends are answers of the model.
             slopes.into_iter().enumerate().map(fit).map(Fitted::evaluated).collect()

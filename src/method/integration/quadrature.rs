@@ -15,7 +15,7 @@ use std::sync::Arc;
 use faer::{Mat, Side};
 
 use crate::assembly::Run;
-use crate::evaluation::{Evaluated, evaluate};
+use crate::evaluation::{Evaluated, Evaluator, evaluate};
 use crate::method::principal_axes::ZERO;
 use crate::method::{
     Basis, Cost, DerivativeSource, ExactDerivatives, Fitted, Integrated, Lacking, Method, MethodError, Options, Order,
@@ -326,7 +326,7 @@ impl<'p> Quadrature<'p> {
     ) -> Result<Evaluated, MethodError> {
         Cost::of(&self.design).within(method, problem, options)?;
         problem.function().prepare(problem.outputs()).map_err(|error| MethodError::Model { error })?;
-        Ok(evaluate(problem, &self.design, run))
+        Ok(evaluate(&Evaluator::new(problem, run), &self.design))
     }
 
     /// Returns the values of a characteristic at these points minus `above`; None for each value that is lost.
