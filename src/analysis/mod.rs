@@ -47,7 +47,7 @@ use serde::Serialize;
 
 use crate::analysis::result::variance_share::Shares;
 use crate::assembly::Run;
-use crate::evaluation::{Evaluator, Restoration, Restore, at_any_size};
+use crate::evaluation::{Evaluator, Ledger, Restoration, Restore, at_any_size};
 use crate::extremes::{SearchedExtremes, enclose, search};
 use crate::method::{
     Basis, ClimbEnd, DerivativeSource, Method, MethodError, Options, Outcome, ReducedInputs, ReducedSurface,
@@ -183,6 +183,52 @@ pub(crate) struct Findings {
     left: SampleBudget,
 }
 
+/// Figures of the method after their comparison with the model.
+struct Checked {
+    characteristics: Vec<CharacteristicAnalysis>,
+    /// Shares of the variance by characteristic, for the list of interactions.
+    shares: Vec<Option<Shares>>,
+    /// Ledger of the search for extremes.
+    extremes: Ledger,
+    /// Warnings of jumps and of failures in the journal.
+    found: Vec<Warning>,
+    /// Rest of the budget for points of a cheap model.
+    left: SampleBudget,
+    /// Ledger of the method and of all other questions.
+    ledger: Ledger,
+}
+
+/// Compares the figures of a method with the model: extremes, points in place of a surface that misses its accuracy, jumps, verification,
+/// and failures that the journal holds.
+fn check(problem: &Problem, outcome: &Outcome, options: &Options, run: &Run<'_>) -> Checked {
+    let seed = options.seed.unwrap_or(Options::SEED);
+    let method = outcome.evaluated.ledger.clone();
+    let left = options.budget.map(|budget| budget.saturating_sub(method.evaluations()));
+    let SearchedExtremes { extremes: searched, ledger: extremes } = match options.extremes {
+        true => search(&Evaluator::new(problem, run).with_budget(left).with_seed(seed), outcome),
+        false => SearchedExtremes::default(),
+    };
+    // All further questions continue the ledger of the method. The budget is what the extremes leave of it.
+    let budget = options.budget.map(|budget| budget.saturating_sub(extremes.evaluations()));
+    let evaluator = Evaluator::new(problem, run).with_budget(budget).with_seed(seed).with_ledger(method);
+    let (mut characteristics, shares): (Vec<_>, Vec<_>) = of_all(problem, outcome).into_iter().unzip();
+    let signature = problem.function().signature();
+    let verified = options.verification(signature) > 0;
+    // A cheap model that is verified is sampled anyway, at points that need no surface: no fallback is needed.
+    if signature.costly || !verified {
+        model_sample::fall_back(&evaluator, outcome, &mut characteristics);
+    }
+    characteristics.iter_mut().zip(searched).for_each(|(one, extremes)| one.extremes = extremes);
+    let mut found = match signature.costly && verified {
+        true => jump::find(&evaluator, outcome, &characteristics),
+        false => Vec::new(),
+    };
+    let mut left = SampleBudget::new(evaluator.remaining());
+    verification_stage::verify(&evaluator, outcome, options, &mut left, &mut characteristics);
+    found.extend(recorded_failures::add(problem, &mut characteristics));
+    Checked { characteristics, shares, extremes, found, left, ledger: evaluator.into_ledger() }
+}
+
 /// The part of [`analyze_with`] that a search of tolerances needs for each of its trials. [`Analysis::complete`] adds the rest.
 pub(crate) fn analyze_keeping(
     problem: &Problem,
@@ -190,40 +236,11 @@ pub(crate) fn analyze_keeping(
     run: &Run<'_>,
 ) -> Result<(Analysis, Findings), MethodError> {
     let begun = Instant::now();
-    let mut outcome = run_method(problem, options, run)?;
-    let left = options.budget.map(|budget| budget.saturating_sub(outcome.evaluated.ledger.evaluations()));
-    let found = match options.extremes {
-        true => search(&Evaluator::new(problem, run).with_budget(left), &outcome),
-        false => SearchedExtremes::default(),
-    };
-    outcome.evaluated.ledger.non_repeatable.extend(found.ledger.non_repeatable);
-    let (mut characteristics, shares): (Vec<_>, Vec<_>) = of_all(problem, &outcome).into_iter().unzip();
-    let left = left.map(|left| left.saturating_sub(found.ledger.run.evaluations as usize));
+    let outcome = run_method(problem, options, run)?;
     let seed = options.seed.unwrap_or(Options::SEED);
-    // A cheap model that is verified is sampled anyway, at points that need no surface: no fallback is needed.
-    let signature = problem.function().signature();
-    let sampled = options.verification(signature) > 0 && !signature.costly;
-    let fallback = match sampled {
-        true => model_sample::Spent::default(),
-        false => model_sample::fall_back(problem, &outcome, (left, seed), &mut characteristics, run),
-    };
-    outcome.evaluated.ledger.non_repeatable.extend(fallback.non_repeatable);
-    for (characteristic, extremes) in characteristics.iter_mut().zip(found.extremes) {
-        characteristic.extremes = extremes;
-    }
-    let left = left.map(|left| left.saturating_sub(fallback.run.evaluations as usize));
-    let jumps = match signature.costly && options.verification(signature) > 0 {
-        true => jump::find(problem, &outcome, &characteristics, left, run),
-        false => jump::FoundJumps::default(),
-    };
-    outcome.evaluated.ledger.non_repeatable.extend(jumps.non_repeatable);
-    let left = left.map(|left| left.saturating_sub(jumps.run.evaluations as usize));
-    let mut left = SampleBudget::new(left);
-    let (verified, doubted) =
-        verification_stage::verify(problem, &outcome, options, &mut left, &mut characteristics, run);
-    outcome.evaluated.ledger.non_repeatable.extend(doubted);
-    let recorded = recorded_failures::add(problem, &mut characteristics);
-    let bounded = options.verification(signature) > 0 && !run.stopped();
+    let Checked { mut characteristics, shares, extremes, found, mut left, ledger } =
+        check(problem, &outcome, options, run);
+    let bounded = options.verification(problem.function().signature()) > 0 && !run.stopped();
     let bounds = || if bounded { bounds(problem, &outcome, &characteristics, run) } else { Vec::new() };
     let laws = || yield_selection::laws(problem, &outcome, options, &characteristics);
     // Both need matrices of all inputs. From four megabytes on they are computed one after the other, so that only one is in memory.
@@ -241,10 +258,11 @@ pub(crate) fn analyze_keeping(
     }
     let joint = (options.target_joint_yield)
         .and_then(|_| yield_selection::joint(problem, options, &mut left, &characteristics, &laws));
-    let spent = spent(&outcome, options).and(&fallback.run).and(&jumps.run).and(&verified);
-    // The extremes do not affect shares: only the other runs decide whether a share is unfinished.
+    let spent = spent(&outcome, options, ledger.run);
+    // The extremes do not affect shares: only the other questions decide whether a share is unfinished.
     characteristics.iter_mut().for_each(|one| one.unfinished = spent.unfinished());
-    let warnings = warnings::of(problem, &outcome, &characteristics, [jumps.warnings, recorded].concat());
+    let non_repeatable = [ledger.non_repeatable, extremes.non_repeatable].concat();
+    let warnings = warnings::of(problem, &outcome, &characteristics, &non_repeatable, found);
     let account = Account::of(problem, &outcome, &characteristics, outcome.evaluated.ledger.evaluations());
     let drawn = measured_interval::add_sampling_intervals(problem, &outcome, &mut characteristics, seed);
     let surface = Surface::of(&outcome, &characteristics);
@@ -255,7 +273,7 @@ pub(crate) fn analyze_keeping(
             wall: begun.elapsed(),
             seed: options.seed.or(drawn.then_some(seed)),
             evaluator: problem.evaluator(),
-            ..spent.and(&found.ledger.run)
+            ..spent.and(&extremes.run)
         },
         account,
         basis: outcome.basis,
@@ -330,9 +348,8 @@ fn bounds(
     characteristics.par_iter().enumerate().map(of).collect()
 }
 
-/// Points and time of the method, with the budget as stop reason if the method ended because of it.
-fn spent(outcome: &Outcome, options: &Options) -> RunSummary {
-    let spent = outcome.evaluated.ledger.run;
+/// Points and time of all questions, with the budget as stop reason if the method ended because of it.
+fn spent(outcome: &Outcome, options: &Options, spent: RunSummary) -> RunSummary {
     let rest = outcome.climbed.as_ref().map(|climbed| climbed.rest);
     let budget = options.budget.filter(|_| rest == Some(ClimbEnd::Budget)).map(|_| StopReason::Budget);
     RunSummary { stopped: spent.stopped.or(budget), ..spent }

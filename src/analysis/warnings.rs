@@ -8,6 +8,7 @@ use crate::analysis::result::characteristic::curvature;
 use crate::analysis::result::interaction_listing::missing;
 use crate::analysis::sampling::surface_trust as trust;
 use crate::analysis::{CharacteristicAnalysis, Missing};
+use crate::assembly::NonRepeatable;
 use crate::evaluation::history;
 use crate::method::{Basis, Lacking, Order, Outcome};
 use crate::plan::Point;
@@ -47,6 +48,7 @@ pub(super) fn of(
     problem: &Problem,
     outcome: &Outcome,
     characteristics: &[CharacteristicAnalysis],
+    non_repeatable: &[NonRepeatable],
     found: Vec<Warning>,
 ) -> Vec<Warning> {
     let mut warnings = found;
@@ -61,7 +63,7 @@ pub(super) fn of(
         warnings.extend(outcome.plan.axis(d).moved.iter().map(moved));
     }
     warnings.extend(not_resampled(problem, outcome));
-    warnings.extend(history(problem, &outcome.evaluated.ledger.non_repeatable));
+    warnings.extend(history(problem, non_repeatable));
     warnings.extend(problem.function().warnings(problem.outputs()));
     for (c, analysis) in characteristics.iter().enumerate() {
         warnings.extend(failed_points(problem, outcome, c));

@@ -1,11 +1,9 @@
 //! Answers of an assembly function.
 
 use std::collections::BTreeMap;
-use std::time::Duration;
 
 use crate::assembly::EvaluationError;
 use crate::assembly::NonRepeatable;
-use crate::summary::RunSummary;
 use sensitol_numeric::power::Power;
 
 /// Answers of a batch: a column per asked output, and an error for each entry without a value.
@@ -130,19 +128,6 @@ impl Responses {
     /// Returns the rows with an answer in some output. A row that is open in every output was not sent, or not finished.
     pub fn answered(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.rows).filter(|&row| (0..self.outputs).any(|output| !self.is_open(row, output)))
-    }
-
-    /// Returns the summary of this batch, as one stage that took the model this long.
-    pub(crate) fn summary(&self, in_model: Duration) -> RunSummary {
-        RunSummary {
-            evaluations: (self.answered().count() as i64 + self.extra).max(0) as u64,
-            cached: self.reused as u64,
-            retried: self.retried as u64,
-            failed: self.failed_rows() as u64,
-            stages: 1,
-            in_model,
-            ..RunSummary::default()
-        }
     }
 
     /// True if an entry has neither value nor error.

@@ -29,6 +29,11 @@ impl Ledger {
         usize::try_from(self.run.evaluations).unwrap_or(usize::MAX)
     }
 
+    /// Ledger without a question, with the reason for an early end.
+    pub(crate) fn stopped_by(stopped: Option<StopReason>) -> Self {
+        Self { run: RunSummary { stopped, ..RunSummary::default() }, non_repeatable: Vec::new() }
+    }
+
     /// Adds the ledger of later questions.
     pub fn add(&mut self, later: Self) {
         self.run = self.run.and(&later.run);

@@ -16,12 +16,12 @@
 use crate::analysis::SampledModel;
 use crate::analysis::sampling::known_answers::KnownAnswersFunction;
 use crate::analysis::sampling::recorded_points::ranked;
-use crate::assembly::{EvaluationError, NonRepeatable, Points, Request, Responses, Run};
+use crate::assembly::{EvaluationError, Points};
+use crate::evaluation::Evaluator;
 use crate::method::{AutoAccount, Outcome};
 use crate::plan::Point;
 use crate::problem::Problem;
 use crate::simulation::{BINS, CHOICE, Histogram};
-use crate::summary::RunSummary;
 use crate::verification::{
     MOMENTS, OVERLOOKED, OVERLOOKED_BY, REPLICATES, Share, TOO_SMALL, carried_by, effective, jackknife,
     reported_quantiles, standard, student, totals,
@@ -30,7 +30,6 @@ use sensitol_numeric::capability::EstimatedQuantile;
 use sensitol_numeric::moments::Moments;
 use sensitol_numeric::sampling::{Draws, Estimate, Fine, Portion, SOBOL_DIMENSIONS, Sampler, Scale};
 use sensitol_numeric::surrogate::{Chaos, Places, Sparse, Surrogate};
-use sensitol_numeric::time::Instant;
 
 /// Number of parts into which the scramblings are divided.
 const PARTS: usize = 4;
@@ -71,8 +70,6 @@ pub(in crate::analysis) struct CrossFit<'p> {
     failed: Vec<(usize, Option<EvaluationError>)>,
     /// All answers, so that a later sample can reuse them.
     pub(in crate::analysis) answers: KnownAnswersFunction,
-    pub(in crate::analysis) run: RunSummary,
-    pub(in crate::analysis) non_repeatable: Vec<NonRepeatable>,
 }
 
 /// Basis of the regression that serves as control variate.
@@ -145,8 +142,6 @@ impl<'p> CrossFit<'p> {
             knots,
             failed: vec![(0, None); characteristics],
             answers: KnownAnswersFunction::new(problem),
-            run: RunSummary::default(),
-            non_repeatable: Vec::new(),
         })
     }
 
@@ -162,33 +157,16 @@ impl<'p> CrossFit<'p> {
     }
 
     /// Evaluates the points of the next stride. Returns true if all of it was answered.
-    pub(in crate::analysis) fn draw(&mut self, most: usize, run: &Run<'_>) -> bool {
+    pub(in crate::analysis) fn draw(&mut self, most: usize, evaluator: &Evaluator<'_>) -> bool {
         let rows = self.next(most) / REPLICATES;
         let points = points(&self.draws, self.rows(), rows);
-        let mut out = Responses::open(points.rows(), self.problem.outputs().len());
-        let begun = Instant::now();
-        self.problem.function().evaluate(&Request::values(&points, self.problem.outputs()), run, &mut out);
-        let open = |row: usize| (0..out.outputs()).all(|output| out.is_open(row, output));
-        let answered = (0..out.rows()).filter(|&row| !open(row)).count();
-        let whole = (0..out.rows()).all(|row| (0..out.outputs()).all(|output| !out.is_open(row, output)));
-        let mut lost = std::collections::BTreeSet::new();
-        lost.extend(out.errors().map(|(row, ..)| row));
-        self.run = self.run.and(&RunSummary {
-            evaluations: (answered as u64).saturating_add_signed(out.extra()),
-            cached: out.count_reused() as u64,
-            retried: out.count_retried() as u64,
-            failed: lost.len() as u64,
-            stages: 1,
-            in_model: begun.elapsed(),
-            stopped: (!whole).then(|| run.why_open()),
-            ..RunSummary::default()
-        });
+        let out = evaluator.ask(&points);
+        let whole = !out.has_open_entries();
         for (_, output, error) in out.errors() {
             let (count, first) = &mut self.failed[output];
             *count += 1;
             first.get_or_insert_with(|| error.clone());
         }
-        self.non_repeatable.extend(out.non_repeatable().iter().cloned());
         let u = self.problem.standardised(&points, self.outcome.plan.varying());
         let y = (0..out.outputs()).map(|output| out.column(output).to_vec()).collect();
         self.strides.push(Stride { rows, u, y });

@@ -6,12 +6,11 @@
 //!
 //! Evaluations: three for an axis with `c > 0.5 g`, three more if these confirm it, for the three most curved axes at most: 18.
 
-use crate::assembly::{NonRepeatable, Points, Request, Responses, Run};
+use crate::assembly::Points;
+use crate::evaluation::Evaluator;
 use crate::method::{Basis, Outcome};
 use crate::problem::Problem;
-use crate::summary::RunSummary;
 use crate::warning::Warning;
-use sensitol_numeric::time::Instant;
 
 use crate::analysis::CharacteristicAnalysis;
 
@@ -28,14 +27,6 @@ const ALL: usize = 6;
 /// Part of the change that a jump has in the last interval. A smooth function has 24 % of its change in the last eighth of a side, and 3 %
 /// in the last of 64 parts.
 const WHOLE: f64 = 0.5;
-
-/// Found jumps, and the cost of the search.
-#[derive(Default)]
-pub(in crate::analysis) struct FoundJumps {
-    pub(in crate::analysis) warnings: Vec<Warning>,
-    pub(in crate::analysis) run: RunSummary,
-    pub(in crate::analysis) non_repeatable: Vec<NonRepeatable>,
-}
 
 /// A side of an axis along which a characteristic may jump.
 struct Side {
@@ -62,20 +53,18 @@ impl Side {
 
 /// Searches for jumps if the method has two nodes an axis and the model is costly. Uses no more evaluations than are left.
 pub(in crate::analysis) fn find(
-    problem: &Problem,
+    evaluator: &Evaluator<'_>,
     outcome: &Outcome,
     characteristics: &[CharacteristicAnalysis],
-    left: Option<usize>,
-    run: &Run<'_>,
-) -> FoundJumps {
-    let mut found = FoundJumps::default();
+) -> Vec<Warning> {
     if outcome.basis != Basis::Differences || outcome.climbed.is_some() || outcome.evaluated.stopped().is_some() {
-        return found;
+        return Vec::new();
     }
+    let run = evaluator.run();
     let mut sides: Vec<Side> =
         (0..characteristics.len()).flat_map(|c| suspicious(outcome, c, &characteristics[c])).collect();
     sides.sort_by(|a, b| b.curvature.total_cmp(&a.curvature).then(a.dimension.cmp(&b.dimension)));
-    sides.truncate(AXES.min(left.unwrap_or(usize::MAX) / ALL));
+    sides.truncate(AXES.min(evaluator.remaining().unwrap_or(usize::MAX) / ALL));
     for step in 0..ALL {
         if step == FIRST {
             sides.retain(Side::is_jump);
@@ -83,16 +72,13 @@ pub(in crate::analysis) fn find(
         if sides.is_empty() || run.stopped() {
             break;
         }
-        found.halve(problem, outcome, &mut sides, run);
+        halve(evaluator, outcome, &mut sides);
     }
-    if !run.stopped() {
-        found.warnings = sides
-            .iter()
-            .filter(|side| side.is_jump())
-            .map(|side| warning(problem, outcome, side, characteristics))
-            .collect();
+    if run.stopped() {
+        return Vec::new();
     }
-    found
+    let jumps = sides.iter().filter(|side| side.is_jump());
+    jumps.map(|side| warning(evaluator.problem(), outcome, side, characteristics)).collect()
 }
 
 /// Sides of axes with nearly all of a change, with the curvature in sigmas.
@@ -120,34 +106,27 @@ fn suspicious(outcome: &Outcome, c: usize, one: &CharacteristicAnalysis) -> Vec<
     plan.varying().iter().filter_map(side).collect()
 }
 
-impl FoundJumps {
-    // One point for each side, all in one batch.
-    /// Evaluates the middle of every interval, and keeps the half with the larger change.
-    fn halve(&mut self, problem: &Problem, outcome: &Outcome, sides: &mut [Side], run: &Run<'_>) {
-        let centre = outcome.plan.centre();
-        let middle = |side: &Side| 0.5 * (side.ends[0].0 + side.ends[1].0);
-        let point = |side: &Side| {
-            let mut point = centre.clone();
-            point[side.dimension] += middle(side) * (side.end - centre[side.dimension]);
-            point
+/// Evaluates the middle of every interval, all in one batch, and keeps the half with the larger change.
+fn halve(evaluator: &Evaluator<'_>, outcome: &Outcome, sides: &mut [Side]) {
+    let centre = outcome.plan.centre();
+    let middle = |side: &Side| 0.5 * (side.ends[0].0 + side.ends[1].0);
+    let point = |side: &Side| {
+        let mut point = centre.clone();
+        point[side.dimension] += middle(side) * (side.end - centre[side.dimension]);
+        point
+    };
+    let rows: Vec<Vec<f64>> = sides.iter().map(point).collect();
+    let out = evaluator.ask(&Points::from_rows(&rows));
+    for (row, side) in sides.iter_mut().enumerate() {
+        let value = out.value(row, side.characteristic).zip(outcome.fitted[side.characteristic].centre);
+        let Some((value, centre)) = value else {
+            side.lost = true;
+            continue;
         };
-        let rows: Vec<Vec<f64>> = sides.iter().map(point).collect();
-        let mut out = Responses::open(rows.len(), problem.outputs().len());
-        let begun = Instant::now();
-        problem.function().evaluate(&Request::values(&Points::from_rows(&rows), problem.outputs()), run, &mut out);
-        self.run = self.run.and(&out.summary(begun.elapsed()));
-        self.non_repeatable.extend(out.non_repeatable().iter().cloned());
-        for (row, side) in sides.iter_mut().enumerate() {
-            let value = out.value(row, side.characteristic).zip(outcome.fitted[side.characteristic].centre);
-            let Some((value, centre)) = value else {
-                side.lost = true;
-                continue;
-            };
-            let between = (middle(side), value - centre);
-            let [from, to] = side.ends;
-            let first = (between.1 - from.1).abs() > (to.1 - between.1).abs();
-            side.ends = if first { [from, between] } else { [between, to] };
-        }
+        let between = (middle(side), value - centre);
+        let [from, to] = side.ends;
+        let first = (between.1 - from.1).abs() > (to.1 - between.1).abs();
+        side.ends = if first { [from, between] } else { [between, to] };
     }
 }
 

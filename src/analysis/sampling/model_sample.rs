@@ -8,11 +8,9 @@ use crate::analysis::sampling::cross_fit::{Beside, CrossFit, CrossFitFigures};
 use crate::analysis::sampling::known_answers::KnownAnswersFunction;
 use crate::analysis::sampling::recorded_points::RecordingModel;
 use crate::analysis::{CharacteristicAnalysis, SampledModel};
-use crate::assembly::{NonRepeatable, Run};
+use crate::evaluation::{Evaluator, Ledger};
 use crate::method::{AutoAccount, ErrorEstimate, ErrorSource, Outcome};
-use crate::problem::Problem;
-use crate::simulation::{REPLICATES, SimulatedCharacteristic, Simulation, SimulationOptions, simulate_beside};
-use crate::summary::RunSummary;
+use crate::simulation::{REPLICATES, SimulatedCharacteristic, SimulationOptions, simulate_beside};
 use crate::verification::{Share, carried_by, student};
 use crate::warning::Figure;
 use sensitol_numeric::capability::{Capability, EstimatedQuantile, Law};
@@ -31,45 +29,35 @@ const STRIDES: usize = 512;
 /// Part of a costly model's budget that strides may use (one in four), because the points of its sample are others.
 const COSTLY_PART: usize = 4;
 
-/// Cost of the fallback.
-#[derive(Debug, Default)]
-pub(in crate::analysis) struct Spent {
-    pub(in crate::analysis) run: RunSummary,
-    pub(in crate::analysis) non_repeatable: Vec<NonRepeatable>,
-}
-
-/// Replaces moments that miss the requested accuracy by those of points of the model, if the budget allows it. `left` is the rest of the
-/// budget, if there is one.
+/// Replaces moments that miss the requested accuracy by those of points of the model, if the budget allows it.
 pub(in crate::analysis) fn fall_back(
-    problem: &Problem,
+    evaluator: &Evaluator<'_>,
     outcome: &Outcome,
-    (left, seed): (Option<usize>, u64),
     characteristics: &mut [CharacteristicAnalysis],
-    run: &Run<'_>,
-) -> Spent {
-    let mut spent = Spent::default();
-    let Some(climbed) = outcome.climbed.as_ref().filter(|_| outcome.evaluated.stopped().is_none()) else {
-        return spent;
-    };
+) {
+    let (problem, run, seed) = (evaluator.problem(), evaluator.run(), evaluator.seed());
+    let begun = evaluator.summary().evaluations;
+    let spent = || evaluator.summary().evaluations - begun;
+    let Some(climbed) = outcome.climbed.as_ref().filter(|_| outcome.evaluated.stopped().is_none()) else { return };
     let short: Vec<usize> =
         (0..characteristics.len()).filter(|&c| shortfall(&characteristics[c], climbed, c).is_some()).collect();
     if short.is_empty() {
-        return spent;
+        return;
     }
     let remembered;
     let costly = problem.function().signature().costly;
     // A costly model is sampled only within its budget.
-    let most = match (costly, left.map(|left| left as u64)) {
+    let most = match (costly, evaluator.remaining().map(|left| left as u64)) {
         (true, None) => 0,
         (true, Some(left)) => left,
         (false, left) => left.unwrap_or(MOST).min(MOST),
     };
     if most < FEWEST {
-        return spent;
+        return;
     }
     let strided = if costly { most as usize / COSTLY_PART } else { most as usize }.min(STRIDES);
-    let problem = match stride((problem, outcome, climbed), (seed, strided), &short, characteristics, run, &mut spent) {
-        Strided::Enough => return spent,
+    let problem = match stride(evaluator, outcome, climbed, strided, &short, characteristics) {
+        Strided::Enough => return,
         Strided::Known(answers) => {
             // The sample begins with these points. They are not evaluated again.
             remembered = problem.replacing(0, problem.dimensions()[0].clone(), Arc::new(*answers));
@@ -85,34 +73,33 @@ pub(in crate::analysis) fn fall_back(
     let few_scramblings = if sampler == Sampler::Sobol { student(REPLICATES as usize) } else { 1.0 };
     let mut samples = ((needed / (PART * finest)).powi(2) as u64).clamp(FIRST, MOST).min(most);
     // Points that were evaluated in strides are not evaluated again.
-    let most = most + if sampler == Sampler::Sobol { spent.run.evaluations } else { 0 };
+    let most = most + if sampler == Sampler::Sobol { spent() } else { 0 };
     let recorded = Arc::new(RecordingModel::new(problem));
     // A cheap model is evaluated again, and answers several batches at a time.
     let recording = costly.then(|| problem.with_function(recorded.clone()));
     let problem = recording.as_ref().unwrap_or(problem);
-    while spent.run.evaluations + samples <= most {
+    while spent() + samples <= most {
         recorded.clear();
         // Sobol' points come in powers of two: the greatest power that is allowed.
         let points = if sampler == Sampler::Sobol { (samples + 1).next_power_of_two() / 2 } else { samples };
         let wish = SimulationOptions { samples: points.max(2), sampler, seed, ..SimulationOptions::default() };
-        let Ok(found) = simulate_beside(problem, &wish, outcome, run) else { return spent };
-        spent.add(&found);
+        let Ok(found) = simulate_beside(problem, &wish, outcome, run) else { return };
+        evaluator.merge(Ledger { run: found.run, non_repeatable: found.non_repeatable.clone() });
         if found.run.unfinished() {
-            return spent;
+            return;
         }
         let enough = short.iter().all(|&c| known(&found.characteristics[c], climbed));
-        let last = enough || spent.run.evaluations + MORE as u64 * samples > most;
+        let last = enough || spent() + MORE as u64 * samples > most;
         if last {
             for &c in &short {
                 let depends = outcome.plan.varying().iter().copied().filter(|&d| outcome.plan.depends(c, d));
                 let ranks = recorded.ranks(c, &depends.collect::<Vec<usize>>());
                 replace(&mut characteristics[c], climbed, c, (&found.characteristics[c], few_scramblings), ranks);
             }
-            return spent;
+            return;
         }
         samples *= MORE as u64;
     }
-    spent
 }
 
 /// Result of the attempt with strides.
@@ -126,19 +113,20 @@ enum Strided {
 
 /// Samples in strides with sparse regressions as control variates. Takes their figures if all have the requested accuracy.
 fn stride(
-    (problem, outcome, climbed): (&Problem, &Outcome, &AutoAccount),
-    (seed, most): (u64, usize),
+    evaluator: &Evaluator<'_>,
+    outcome: &Outcome,
+    climbed: &AutoAccount,
+    most: usize,
     short: &[usize],
     characteristics: &mut [CharacteristicAnalysis],
-    run: &Run<'_>,
-    spent: &mut Spent,
 ) -> Strided {
-    let strides = CrossFit::new(problem, outcome, seed).filter(|strides| strides.next(most) > 0);
+    let strides =
+        CrossFit::new(evaluator.problem(), outcome, evaluator.seed()).filter(|strides| strides.next(most) > 0);
     let Some(mut strides) = strides else { return Strided::Nothing };
     let mut beside: Vec<Vec<Beside<'_>>> = short.iter().map(|&c| strides.beside(c)).collect();
     let mut enough = false;
     while !enough && strides.next(most) > 0 {
-        enough = !strides.draw(most, run);
+        enough = !strides.draw(most, evaluator);
         if enough {
             break;
         }
@@ -150,8 +138,6 @@ fn stride(
             enough = true;
         }
     }
-    spent.run = spent.run.and(&strides.run);
-    spent.non_repeatable.extend(strides.non_repeatable.iter().cloned());
     if enough { Strided::Enough } else { Strided::Known(Box::new(strides.answers)) }
 }
 
@@ -271,11 +257,4 @@ fn take(one: &mut CharacteristicAnalysis, CrossFitFigures { moments, sampled }: 
     one.sampled = None;
     one.without_value += sampled.failed as usize;
     one.model_sampled = Some(sampled);
-}
-
-impl Spent {
-    fn add(&mut self, found: &Simulation) {
-        self.run = self.run.and(&found.run);
-        self.non_repeatable.extend(found.non_repeatable.iter().cloned());
-    }
 }

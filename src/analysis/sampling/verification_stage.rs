@@ -11,8 +11,8 @@ use crate::analysis::result::verification::{TRUSTED, UNTRUSTED, VarianceShare, V
 use crate::analysis::result::yield_error::of_yield;
 use crate::analysis::sampling::accuracy_target::{MORE, PART};
 use crate::analysis::sampling::sample_budget::SampleBudget;
-use crate::assembly::{EvaluationError, NonRepeatable, Run};
-use crate::evaluation::Evaluator;
+use crate::assembly::{EvaluationError, Run};
+use crate::evaluation::{Evaluator, Ledger};
 use crate::method::{ErrorEstimate, ErrorSource, Method, Options, Outcome, interpolated};
 use crate::problem::Problem;
 use crate::summary::RunSummary;
@@ -44,40 +44,33 @@ const ORDINARY: f64 = 0.01;
 /// Largest error of a difference, in roundings of the value at the means.
 const ROUNDINGS: f64 = 8.0;
 
-/// Verifies every characteristic, unless that is switched off (see [`Options::verify`]). Returns the spent points and time, and the points
-/// at which the model was not repeatable.
+/// Verifies every characteristic, unless that is switched off (see [`Options::verify`]). Points of a costly model enter the ledger, those
+/// of a cheap one use up `left`.
 pub(in crate::analysis) fn verify(
-    problem: &Problem,
+    evaluator: &Evaluator<'_>,
     outcome: &Outcome,
     options: &Options,
     left: &mut SampleBudget,
     characteristics: &mut [CharacteristicAnalysis],
-    run: &Run<'_>,
-) -> (RunSummary, Vec<NonRepeatable>) {
+) {
+    let (problem, run, seed) = (evaluator.problem(), evaluator.run(), evaluator.seed());
     let most = options.verification(problem.function().signature());
     let costly = problem.function().signature().costly;
     if most == 0 || outcome.evaluated.stopped().is_some() || costly && run.stopped() {
-        return Default::default();
+        return;
     }
     let open: Vec<usize> =
         (0..characteristics.len()).filter(|&c| !proven(outcome, c, &mut characteristics[c])).collect();
     if open.is_empty() {
-        return Default::default();
+        return;
     }
     // A budget that is too small for a sample of each characteristic may suffice for check points.
     let each = left.each(open.len());
     let cores: Option<Vec<usize>> = open.iter().map(|&c| core_within(problem, c, each)).collect();
     let Some(cores) = cores.filter(|_| !costly) else {
-        return check(
-            problem,
-            outcome,
-            options,
-            most.min(left.each(1).unwrap_or(usize::MAX)),
-            (&open, characteristics),
-            run,
-        );
+        check(evaluator, outcome, most, &open, characteristics);
+        return;
     };
-    let seed = options.seed.unwrap_or(Options::SEED);
     // A long formula takes a while for each of some 45 000 points. Characteristics that are not reached in time have no verification, and
     // the report states it.
     let one = |(c, one): (usize, &mut CharacteristicAnalysis)| {
@@ -87,7 +80,7 @@ pub(in crate::analysis) fn verify(
     let spent: Vec<Option<usize>> = characteristics.par_iter_mut().enumerate().map(one).collect();
     left.spend(spent.iter().flatten().sum());
     let stopped = spent.contains(&None).then(|| run.why_open());
-    (RunSummary { stopped, ..RunSummary::default() }, Vec::new())
+    evaluator.merge(Ledger::stopped_by(stopped));
 }
 
 /// True if the surface is proven to equal the function. Its errors are roundings then.
@@ -263,15 +256,14 @@ fn replace(one: &mut CharacteristicAnalysis, found: &SampledFigures) -> bool {
     true
 }
 
-/// Verifies the `open` characteristics of a costly model at check points.
+/// Verifies the `open` characteristics of a costly model at up to `most` check points.
 fn check(
-    problem: &Problem,
+    evaluator: &Evaluator<'_>,
     outcome: &Outcome,
-    options: &Options,
-    budget: usize,
-    (open, characteristics): (&[usize], &mut [CharacteristicAnalysis]),
-    run: &Run<'_>,
-) -> (RunSummary, Vec<NonRepeatable>) {
+    most: usize,
+    open: &[usize],
+    characteristics: &mut [CharacteristicAnalysis],
+) {
     let varying = outcome.plan.varying();
     let integrated: Vec<Option<Surrogate>> = (0..characteristics.len()).map(|c| interpolated(outcome, c)).collect();
     let surface = |c: usize| outcome.fitted[c].surrogate.as_ref().or(integrated[c].as_ref());
@@ -283,11 +275,9 @@ fn check(
     let targets: Vec<Target<'_>> = (shares.iter().enumerate())
         .map(|(c, shares)| Target { surrogate: surface(c).filter(|_| open.contains(&c)), shares })
         .collect();
-    let seed = options.seed.unwrap_or(Options::SEED);
-    let evaluator = Evaluator::new(problem, run).with_budget(Some(budget)).with_seed(seed);
-    let Some(checked) = verify_by_checks(&evaluator, varying, &targets) else {
-        return Default::default();
-    };
+    let part = evaluator.part();
+    let part = part.with_budget(Some(evaluator.remaining().map_or(most, |left| left.min(most))));
+    let Some(checked) = verify_by_checks(&part, varying, &targets) else { return };
     let Checked { answers, .. } = &checked;
     let not_given = |c: usize| {
         let given = |row: usize| !matches!(answers.error(row, c), Some(EvaluationError::NotGiven));
@@ -300,9 +290,9 @@ fn check(
             judge(&mut characteristics[c], &checked, &checked.characteristics[c], exact);
         }
     }
-    let ledger = evaluator.into_ledger();
+    let ledger = part.into_ledger();
     // Open check points leave the figures of the method complete.
-    (RunSummary { stopped: None, ..ledger.run }, ledger.non_repeatable)
+    evaluator.merge(Ledger { run: RunSummary { stopped: None, ..ledger.run }, ..ledger });
 }
 
 /// Derives the errors of a method's figures: the error of the surface, and the difference between method and surface.
