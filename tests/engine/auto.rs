@@ -1,6 +1,7 @@
 //! `auto`: counts, budgets, determinism, warnings, and extreme cases.
 
 use std::collections::HashMap;
+use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex};
 
 use sensitol::analysis::{YieldSource, analyze_with};
@@ -13,7 +14,7 @@ use sensitol::{
     Analysis, Characteristic, Closure, Dimension, Method, Options, Problem, SpecLimits, StopReason, analyze,
 };
 use sensitol_study::Study;
-use sensitol_testing::{Asked, close, normals, refusing, relative, repository, standard};
+use sensitol_testing::{Asked, close, counted, normals, refusing, relative, repository, standard};
 
 /// Options for the refinement and the sample that replaces an untrusted surface, without the verification, which takes points of its own.
 fn auto(accuracy: f64) -> Options {
@@ -427,6 +428,25 @@ fn points_that_check_are_of_the_distribution() {
     analyze(&problem, &auto(0.01)).unwrap();
     let points = asked.points();
     assert!(points.iter().flatten().all(|x| x.abs() <= 1.0));
+}
+
+/// A budget limits all points of a cheap model: of its plan, its verification, the joint yield, correlations and Sobol' indices.
+#[test]
+fn a_budget_limits_every_point_of_a_cheap_model() {
+    let kink = |x: &[f64]| x[0].max(0.5 * x[1]) + 0.2 * x[2] * x[2];
+    let sum = |x: &[f64]| (x[0] + x[1]).exp() + x[2];
+    let limits = SpecLimits::new(Some(-2.0), Some(6.0)).unwrap();
+    let asked = ["kink", "sum"].map(|name| Characteristic::new(name).with_limits(limits));
+    let function = Closure::new(["kink", "sum"], move |x| [kink(x), sum(x)]);
+    let problem = Problem::new(standard(3), function).unwrap().asking(asked).unwrap();
+    for method in [Method::Auto, Method::SecondOrder, Method::Full] {
+        for budget in [40, 5_000, 60_000, 90_000, 130_000, 200_000, 400_000] {
+            let (counted, asked) = counted(&problem, false);
+            analyze(&counted, &Options::from(method).with_budget(budget)).unwrap();
+            let points = asked.load(Ordering::Relaxed);
+            assert!(points <= budget, "{method:?}: {points} points with a budget of {budget}");
+        }
+    }
 }
 
 /// The reason why a refinement ended is reported: a budget, or the caller.

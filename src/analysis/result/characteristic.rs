@@ -16,6 +16,7 @@ use crate::analysis::{
 use crate::extremes::{Extremes, ExtremesProof};
 use crate::method::{ErrorEstimate, Order, Outcome, Residual, estimate};
 use crate::problem::Problem;
+use crate::verification::Verified;
 use sensitol_numeric::capability::{Capability, CapabilityShape, EstimatedShare, InspectionRisks, Law};
 use sensitol_numeric::characteristic::{Characteristic, SpecLimits};
 use sensitol_numeric::json_form::{Four, RejectIntervals, through};
@@ -330,6 +331,16 @@ impl CharacteristicAnalysis {
     pub fn is_proven_linear(&self) -> bool {
         let kind = self.verification.as_ref().map(|of| of.kind);
         matches!(kind, Some(VerificationKind::Exact { degree: 0 | 1 }))
+    }
+
+    /// Coefficient of variation, `sigma / |mean|`, with its error from those of mean and sigma. Returns None if one of them is unknown, and
+    /// if a mean of 0 lies within three errors.
+    pub fn coefficient_of_variation(&self) -> Option<Verified> {
+        let (moments, estimate) = (self.moments?, self.error_estimate.as_ref()?);
+        let (mean, sigma) = (moments.mean().abs(), moments.sigma());
+        let [of_mean, of_sigma] = [estimate.mean?, estimate.sigma?];
+        let value = sigma / mean;
+        (mean > 3.0 * of_mean).then(|| Verified { value, error: libm::hypot(of_sigma, value * of_mean) / mean })
     }
 
     /// Verdicts on all requirements of the characteristic, its target yield included.

@@ -4,6 +4,7 @@ use serde::{Serialize, Serializer};
 
 use crate::analysis::{Analysis, CharacteristicAnalysis};
 use crate::extremes::{Coordinate, Extremes};
+use crate::verification::Verified;
 use crate::warning::warnings_last;
 use sensitol_numeric::verdict::{Judged, Verdict};
 
@@ -27,6 +28,8 @@ pub struct CharacteristicShape<'r> {
     requirements: Vec<Judged>,
     /// Interval of the yield; null if unknown.
     yield_interval: Option<[f64; 2]>,
+    /// Sigma divided by the magnitude of the mean; null if unknown, and if the mean may be 0.
+    coefficient_of_variation: Option<Verified>,
 }
 
 impl Serialize for CharacteristicAnalysis {
@@ -38,6 +41,7 @@ impl Serialize for CharacteristicAnalysis {
             verdict: self.verdict(),
             requirements: self.requirements(),
             yield_interval: self.yield_interval(),
+            coefficient_of_variation: self.coefficient_of_variation(),
         };
         shape.serialize(serializer)
     }

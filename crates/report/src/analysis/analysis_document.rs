@@ -8,7 +8,8 @@ use crate::analysis::statistics::CharacteristicStatistics;
 use crate::analysis::statistics::{derivative, matters, part, size, total};
 use crate::analysis::yield_source::source;
 use crate::document::number::{
-    UNKNOWN, beside, carried, index, index_with, known, limits, percent, plain, plural, short, significant, yielded,
+    UNKNOWN, beside, carried, index, index_with, known, limits, percent, plain, plural, short, significant, within,
+    yielded,
 };
 use crate::document::rejects::Rejects;
 use crate::document::{
@@ -240,6 +241,10 @@ impl CharacteristicSections for CharacteristicAnalysis {
                 "the surface is not trusted: mean to kurtosis from {} points of the model, with the surface as control variate",
                 sampled.samples
             ));
+        }
+        if let Some(of) = self.coefficient_of_variation() {
+            let percent = within(100.0 * of.value, 4, Some(100.0 * of.error));
+            detail.note(format!("coefficient of variation {percent} %"));
         }
         if let Some(sampled) = &self.sampled {
             let [sigma, skewness, kurtosis] =
