@@ -115,6 +115,27 @@ impl Requirement {
         }
     }
 
+    /// Requirement of the same kind with another amount. Rss and worst case have none, and stay.
+    ///
+    /// ```
+    /// use sensitol_numeric::requirement::Requirement;
+    /// assert_eq!(Requirement::Cpk(1.0).with_amount(1.33), Requirement::Cpk(1.33));
+    /// ```
+    #[must_use]
+    pub fn with_amount(self, amount: f64) -> Self {
+        match self {
+            Self::Yield(_) => Self::Yield(amount),
+            Self::Cpk(_) => Self::Cpk(amount),
+            Self::Sigma(_) => Self::Sigma(amount),
+            Self::Rss | Self::WorstCase => self,
+        }
+    }
+
+    /// True if the amount has the unit of the characteristic, false if it has no unit.
+    pub fn has_unit(&self) -> bool {
+        matches!(self, Self::Sigma(_))
+    }
+
     /// Checks the requirement for a characteristic with or without limits.
     ///
     /// # Errors
