@@ -4,6 +4,7 @@ use crate::allocation::cost::cost_curve::Priced;
 use crate::allocation::cost::default_costs::{CostBasis, relative, unscalable};
 use crate::allocation::cost::setup_cost::{MOST as MOST_MACHINES, SetUp};
 use crate::allocation::requirement::quality_loss::QualityLoss;
+use crate::allocation::requirement::registry::form_of;
 use serde::Serialize;
 
 use crate::method::{Method, MethodError, Options};
@@ -126,7 +127,7 @@ impl AllocationTask {
     #[must_use]
     pub fn towards(mut self, goal: Goal) -> Self {
         if goal != Goal::LeastCost {
-            let stays = |one: &Requirement| matches!(one, Requirement::Sigma(_) | Requirement::WorstCase);
+            let stays = |one: &Requirement| !form_of(one).is_replaced_by_goals();
             self.requirements.iter_mut().for_each(|one| *one = one.filter(stays));
         }
         self.goal = goal;

@@ -11,19 +11,16 @@ use crate::allocation::choice::outcome::Choice;
 use crate::allocation::choice::single_offer::Setting;
 use crate::allocation::cost::cost_curve::{Offer, Priced};
 use crate::allocation::requirement::constraint::{Constraint, kept};
+use crate::allocation::requirement::form::Basis;
+use crate::allocation::requirement::process_options::{OptionUses, ProcessOptions};
 use crate::allocation::result::allocation::{AllocationSolver, Attainable, Proof};
 use crate::allocation::result::solver_result::{Solved, Starts};
-use crate::allocation::surface::reject_rate::of_scores;
 use crate::allocation::surface::response::Responses;
 use crate::problem::Problem;
 use sensitol_numeric::dimension::Dimension;
-use sensitol_numeric::law::rejected;
-use sensitol_numeric::requirement::Requirement;
 
 /// Most choices that are all examined.
 const ALL: usize = 20_000;
-/// Difference of means, in sigmas, within which they are the same.
-const SAME: f64 = 1e-12;
 
 /// True if some process has a distribution of its own.
 pub(in crate::allocation) fn any(priced: &[Priced]) -> bool {
@@ -89,7 +86,7 @@ impl<'s, 'a> Judge<'s, 'a> {
                 dimensions[d] = dimension.clone();
             }
         }
-        let by_law = |one: &Constraint| matches!(one.requirement, Requirement::Yield(_));
+        let by_law = |one: &Constraint| one.form().basis() == Basis::Distribution;
         self.setting.responses.remade(&dimensions, self.setting.constraints.iter().any(by_law))
     }
 
@@ -99,7 +96,7 @@ impl<'s, 'a> Judge<'s, 'a> {
         let base = self.setting.responses;
         let at = self.at(offers);
         let mut value: f64 = 0.0;
-        let by_band = |one: &&Constraint| matches!(one.requirement, Requirement::WorstCase | Requirement::Rss);
+        let by_band = |one: &&Constraint| one.form().basis().is_by_band();
         for one in self.setting.constraints.iter().filter(by_band) {
             value = value.max(one.value(base, self.setting.priced, &at));
             if !whole && !kept(value) {
@@ -109,30 +106,13 @@ impl<'s, 'a> Judge<'s, 'a> {
         let Some(own) = self.responses(offers) else { return (f64::INFINITY, None) };
         let ones = vec![1.0; own.dimensions.len()];
         for one in self.setting.constraints.iter().filter(|one| !by_band(one)) {
-            value = value.max(self.of_own(one, &own, &ones));
+            value = value.max(one.form().value_of_choice(one, &own, &ones));
             if !whole && !kept(value) {
                 return (value, None);
             }
         }
         let lost: Option<f64> = self.setting.losses.iter().map(|loss| loss.at(&own, &ones, None)).sum();
         (value, lost)
-    }
-
-    /// Value of a requirement of sigma, Cpk or yield with the distributions of a choice.
-    fn of_own(&self, one: &Constraint, own: &Responses, ones: &[f64]) -> f64 {
-        let Requirement::Yield(_) = one.requirement else { return one.value_at(own, ones) };
-        let of = one.characteristics(own);
-        if !one.is_joint() && own.is_plain(of[0]) {
-            return one.value_at(own, ones);
-        }
-        let laws: Option<Vec<_>> = of.iter().map(|&c| Some((own.law(c)?, own.of[c].limits))).collect();
-        match laws {
-            Some(laws) => {
-                let (tails, twice) = rejected(&laws);
-                of_scores((tails - twice.value).max(0.0), 1.0 - one.target(own))
-            }
-            None => one.value_at(own, ones),
-        }
     }
 
     /// Lists with the use of every requirement by each option. Returns None if a requirement is not such a sum.
@@ -152,85 +132,22 @@ impl<'s, 'a> Judge<'s, 'a> {
                 group.offers.iter().enumerate().map(option).collect()
             })
             .collect();
+        let options = ProcessOptions { responses, priced, dimensions: &self.options };
         for one in constraints {
-            let c = one.characteristic;
-            let (room, of_group): (f64, Box<dyn Fn(usize, usize) -> f64>) = match one.requirement {
-                _ if one.is_joint() => return None,
-                Requirement::WorstCase => {
-                    let (room, coefficients) = one.linear_room(responses, priced)?;
-                    (room, Box::new(move |g, i| coefficients[g] * priced[g].offers[i].min))
-                }
-                Requirement::Rss => {
-                    let room = one.still_room(responses, priced)?;
-                    let squares = responses.squares_of_bands(c, priced)?;
-                    (room * room - squares.0, Box::new(move |g, i| squares.1[g] * priced[g].offers[i].min.powi(2)))
-                }
-                _ => {
-                    let slopes = responses.slopes_of_sum(c)?;
-                    let normal = matches!(one.requirement, Requirement::Yield(_));
-                    if normal && !responses.is_plain(c) && !self.all_normal() {
-                        return None;
-                    }
-                    if !matches!(one.requirement, Requirement::Sigma(_)) && !self.means_stay(c) {
-                        return None;
-                    }
-                    let most = one.most_sigma(responses, normal)?;
-                    let sigma = |d: usize| responses.dimensions[d].sigma();
-                    let priced_one = |d: usize| priced.iter().any(|group| group.members.contains(&d));
-                    let fixed: f64 =
-                        (0..slopes.len()).filter(|&d| !priced_one(d)).map(|d| (slopes[d] * sigma(d)).powi(2)).sum();
-                    let options = &self.options;
-                    let of = move |g: usize, i: usize| -> f64 {
-                        let members = priced[g].members.iter().zip(&options[g][i]);
-                        members.map(|(&d, dimension)| (slopes[d] * dimension.sigma()).powi(2)).sum()
-                    };
-                    (most * most - fixed, Box::new(of))
-                }
-            };
-            if !(room > 0.0 && room.is_finite()) {
+            let OptionUses { slack, of_options } = one.form().option_uses(one, &options)?;
+            if !(slack > 0.0 && slack.is_finite()) {
                 return None;
             }
-            for (g, list) in lists.iter_mut().enumerate() {
-                list.iter_mut().enumerate().for_each(|(i, option)| option.uses.push(of_group(g, i) / room));
+            for (list, uses) in lists.iter_mut().zip(of_options) {
+                list.iter_mut().zip(uses).for_each(|(option, own)| option.uses.push(own / slack));
             }
         }
         lists.iter().flatten().all(|one| one.uses.iter().all(|&use_| use_ >= 0.0)).then_some(lists)
     }
 
-    /// True if every option of every group and every other dimension is normal.
-    fn all_normal(&self) -> bool {
-        let normal = |dimension: &Dimension| {
-            let law = dimension.distribution();
-            law.is_none_or(|law| law.standard_moments() == sensitol_numeric::distribution::StandardMoments::NORMAL)
-        };
-        self.options.iter().flatten().flatten().all(normal) && self.setting.responses.dimensions.iter().all(normal)
-    }
-
-    /// True if no option moves the mean of a characteristic.
-    fn means_stay(&self, c: usize) -> bool {
-        let responses = self.setting.responses;
-        self.setting.priced.iter().zip(&self.options).all(|(group, options)| {
-            !responses.depends(c, group)
-                || options.iter().all(|option| {
-                    group.members.iter().zip(option).all(|(&d, dimension)| {
-                        let old = &responses.dimensions[d];
-                        let blur = 8.0 * f64::EPSILON * old.mean().abs();
-                        (dimension.mean() - old.mean()).abs() <= SAME * old.sigma() + blur
-                    })
-                })
-        })
-    }
-
     /// True if the surfaces represent the requirements exactly: they are straight, or slopes determine the worst case.
     fn is_exact(&self) -> bool {
-        let exact = |one: &Constraint| {
-            let responses = self.setting.responses;
-            one.characteristics(responses).into_iter().all(|c| match one.requirement {
-                Requirement::WorstCase => responses.has_linear_worst_case(c),
-                Requirement::Rss => true,
-                _ => responses.is_straight(c),
-            })
-        };
+        let exact = |one: &Constraint| one.form().is_exact_for_processes(one, self.setting.responses);
         self.setting.constraints.iter().all(exact)
     }
 
@@ -352,10 +269,10 @@ impl<'s, 'a> Judge<'s, 'a> {
         let Some(own) = self.responses(&offers) else { return Choice::Stopped };
         let (base, priced) = (self.setting.responses, self.setting.priced);
         let ones = vec![1.0; own.dimensions.len()];
-        let by_band = |one: &Constraint| matches!(one.requirement, Requirement::WorstCase | Requirement::Rss);
+        let by_band = |one: &Constraint| one.form().basis().is_by_band();
         let value = |one: &&Constraint| match by_band(one) {
             true => one.value(base, priced, &at),
-            false => self.of_own(one, &own, &ones),
+            false => one.form().value_of_choice(one, &own, &ones),
         };
         let worst = self.setting.constraints.iter().max_by(|a, b| value(a).total_cmp(&value(b)));
         let of = |one: &Constraint| Attainable {

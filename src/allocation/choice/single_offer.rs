@@ -1,7 +1,7 @@
 //! Cheapest tolerances when every group has one offer.
 //!
 //! Each constraint is replaced by the sum of powers with its value and slopes at the present tolerances
-//! ([`Linearised::row`](crate::allocation::requirement::constraint::Linearised::row)). The resulting separable convex problem is solved exactly,
+//! ([`Linearised::row`]). The resulting separable convex problem is solved exactly,
 //! and the next one begins at its solution. Worst cases and sums of squares are such sums, so that one step is enough.
 //! For second-order moments the steps shrink in proportion to the curvature's part of the variance. At the end the true
 //! slopes fulfil the conditions of Karush, Kuhn and Tucker. Source: the idea of convex approximations, C. Fleury,
@@ -14,12 +14,12 @@ use crate::allocation::cost::setup_cost::SetUp;
 use crate::allocation::optimise::augmented_lagrangian::augmented;
 use crate::allocation::optimise::minimise::swarmed;
 use crate::allocation::optimise::separable::{Row, Separable};
-use crate::allocation::requirement::constraint::{Constraint, Linearised, kept};
+use crate::allocation::requirement::constraint::{Constraint, kept};
+use crate::allocation::requirement::linearised::Linearised;
 use crate::allocation::requirement::quality_loss::{QualityLoss, losses_at};
 use crate::allocation::result::solver_result::{Ends, Solved, Starts};
 use crate::allocation::surface::response::Responses;
 use sensitol_numeric::parallel::prelude::*;
-use sensitol_numeric::requirement::Requirement;
 
 /// Problem of one search: constraints, costs, and the responses at the linearization point.
 #[derive(Clone, Copy)]
@@ -88,10 +88,7 @@ impl Setting<'_> {
 
     /// True if sums of powers represent every requirement and loss exactly.
     pub(in crate::allocation) fn is_exact(&self) -> bool {
-        let exact = |one: &Constraint| match one.requirement {
-            Requirement::WorstCase => self.responses.has_linear_worst_case(one.characteristic),
-            _ => !one.is_joint() && self.responses.is_plain(one.characteristic),
-        };
+        let exact = |one: &Constraint| one.form().is_sum(one, self.responses);
         self.constraints.iter().all(exact) && self.losses.iter().all(|loss| loss.is_exact(self.responses))
     }
 
@@ -100,10 +97,7 @@ impl Setting<'_> {
     /// Convex requirements are worst cases of straight surfaces, roots of sums of squares with any correlation, and
     /// squares of deviations about fixed means.
     pub(in crate::allocation) fn is_convex(&self) -> bool {
-        let rows = self.constraints.iter().all(|one| match one.requirement {
-            Requirement::WorstCase => self.responses.has_linear_worst_case(one.characteristic),
-            _ => !one.is_joint() && self.responses.is_norm(one.characteristic),
-        });
+        let rows = self.constraints.iter().all(|one| one.form().is_convex(one, self.responses));
         rows && self.losses.iter().all(|loss| loss.is_exact(self.responses)) && self.costs_are_convex()
     }
 

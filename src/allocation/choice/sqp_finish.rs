@@ -1,15 +1,14 @@
 //! Search that follows if sums of powers do not converge: sequential quadratic programming on the requirements
 //! themselves.
 //!
-//! A Cpk is a row `(mean ± 3 C sigma - limit)/w`, which has slopes at every mean. The ratio of [`Constraint::value`]
-//! has a pole where the mean passes the limit. All other requirements are rows `value - 1`.
+//! Every requirement is a row that its form writes ([`smooth_row`](crate::allocation::requirement::form::RequirementForm::smooth_row)).
 
 use crate::allocation::choice::single_offer::{SMALL, Setting};
 use crate::allocation::optimise::augmented_lagrangian::{Ended, Near, Slope, Smooth, cost};
 use crate::allocation::optimise::quadratic_program::dot;
-use crate::allocation::requirement::constraint::{Constraint, Linearised};
+use crate::allocation::requirement::constraint::Constraint;
+use crate::allocation::requirement::linearised::Linearised;
 use crate::allocation::result::solver_result::{Ends, Solved};
-use sensitol_numeric::requirement::Requirement;
 
 /// Most unknowns and rows. Beyond it the dense matrices of a step take longer than a round of the model.
 const MOST: usize = 300;
@@ -72,18 +71,6 @@ impl Setting<'_> {
 
     /// Excess of a requirement, with slopes by `ln T`.
     fn excess(&self, one: &Constraint, width: f64, at: &[f64]) -> Option<Slope> {
-        let (responses, priced) = (self.responses, self.priced);
-        if !matches!(one.requirement, Requirement::Cpk(_)) {
-            let linearised = one.linearised(responses, priced, at)?;
-            return Some((linearised.value - 1.0, linearised.slopes));
-        }
-        let factors = responses.factors(priced, at);
-        let still = vec![0.0; factors.len()];
-        let value = one.excess(responses, &factors, &still, width)?;
-        let sigma = responses.moments(one.characteristic, &factors)?.sigma();
-        let sign = if one.is_above() { 1.0 } else { -1.0 };
-        let reach = 3.0 * one.target(responses) * sigma;
-        let of = |by: &[f64; 4]| (sign * by[0] + reach * by[1]) / width;
-        Some((value, responses.moment_slopes(one.characteristic, priced, &factors)?.iter().map(of).collect()))
+        one.form().smooth_row(one, self.responses, (self.priced, at), width)
     }
 }

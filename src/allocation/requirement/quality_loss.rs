@@ -11,7 +11,7 @@
 
 use crate::allocation::cost::cost_curve::Priced;
 use crate::allocation::cost::cost_error::CostError;
-use crate::allocation::requirement::constraint::Linearised;
+use crate::allocation::requirement::linearised::Linearised;
 use crate::allocation::surface::response::Responses;
 
 /// Cost of deviations and rejects of a characteristic, per assembly.

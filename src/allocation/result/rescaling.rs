@@ -4,7 +4,6 @@ use crate::allocation::result::allocation::{Allocation, Attainable, FrontPoint, 
 use crate::allocation::task::AllocateError;
 use crate::evaluation::{Restoration, Restore};
 use sensitol_numeric::power::{Power, Rescaling};
-use sensitol_numeric::requirement::Requirement;
 
 impl Restore for Allocation {
     fn restore(&mut self, back: &Restoration<'_>) {
@@ -57,7 +56,7 @@ impl ShadowPrice {
 
 impl Attainable {
     fn times(&mut self, power: Power) {
-        if matches!(self.requirement, Requirement::Sigma(_)) {
+        if self.requirement.has_unit() {
             self.requirement = self.requirement.times(power);
             self.best = self.best.and_then(|best| power.checked(best));
         }
@@ -67,7 +66,7 @@ impl Attainable {
 impl FrontPoint {
     fn times(&mut self, back: &Restoration<'_>) {
         for required in &mut self.required {
-            if matches!(required.requirement, Requirement::Sigma(_)) {
+            if required.requirement.has_unit() {
                 let power = back.power_of(&required.characteristic);
                 required.requirement = required.requirement.times(power);
                 Rescaling::by(power).multiply(&mut required.amount);

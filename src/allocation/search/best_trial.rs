@@ -11,17 +11,17 @@ use std::rc::Rc;
 
 use crate::allocation::choice::process_selection::remade;
 use crate::allocation::requirement::constraint::Constraint;
+use crate::allocation::requirement::registry::form_of;
 use crate::allocation::result::allocation::{Allocation, AllocationSolver, Proof, Status};
 use crate::allocation::result::solver_result::{Chosen, Solved, Starts};
 use crate::allocation::search::driver::{Driver, Ended};
 use crate::allocation::search::linearization_point::{LinearizationPoint, Seen};
 use crate::allocation::search::trial::{Trial, is_offered};
 use crate::allocation::search::trial_search::{Tolerances, VerifiedSearch};
-use crate::allocation::surface::uncertainty::Unknown;
+use crate::allocation::surface::uncertainty::Uncertainty;
 use crate::allocation::task::{AllocateError, Goal};
 use crate::problem::Problem;
 use sensitol_numeric::dimension::Dimension;
-use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::verdict::Verdict;
 
 /// Most repeated searches with stricter requirements.
@@ -207,19 +207,18 @@ impl Driver<'_> {
     fn require_more(&mut self, end: &SearchEnd) -> bool {
         let Some(trial) = &end.trial else { return false };
         let kept_by_station = self.judged_by(&end.station.analysis);
-        let (mut more, mut joint) = (vec![Unknown::default(); end.station.responses.of.len()], 0.0);
+        let (mut more, mut joint) = (vec![Uncertainty::default(); end.station.responses.of.len()], 0.0);
         for (place, (judged, station)) in trial.judged.iter().zip(&kept_by_station).enumerate() {
             if judged.verdict == Verdict::Met {
                 continue;
             }
-            let Some([low, high]) = judged.interval.filter(|_| station.verdict == Verdict::Met) else { return false };
-            let own = self.required.get(place);
-            match (judged.requirement, own) {
-                (Requirement::Yield(target), None) => joint = MARGIN * (target - low),
-                (Requirement::Yield(target), Some(&(c, _))) => more[c].yield_ = MARGIN * (target - low),
-                (Requirement::Cpk(target), Some(&(c, _))) => more[c].cpk = MARGIN * (target - low),
-                (Requirement::Sigma(target), Some(&(c, _))) => more[c].sigma = MARGIN * (high - target),
-                _ => return false,
+            let Some(interval) = judged.interval.filter(|_| station.verdict == Verdict::Met) else { return false };
+            let requirement = judged.requirement;
+            let Some(miss) = form_of(&requirement).missed(requirement.amount(), interval) else { return false };
+            match self.required.get(place) {
+                Some(&(c, _)) => more[c].set(&requirement, MARGIN * miss),
+                // The joint yield stands after those of the characteristics.
+                None => joint = MARGIN * miss,
             }
         }
         self.spent.require_more(&more, joint);

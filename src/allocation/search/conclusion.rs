@@ -6,6 +6,8 @@ use crate::allocation::choice::single_offer::Setting;
 use crate::allocation::cost::cost_curve::{Offer, Priced};
 use crate::allocation::cost::setup_cost::needed;
 use crate::allocation::requirement::constraint::Constraint;
+use crate::allocation::requirement::form::Basis;
+use crate::allocation::requirement::registry::form_of;
 use crate::allocation::result::allocation::{
     Allocated, Allocation, AllocationSolver, Attainable, Bound, Kept, Moved, Proof, Status,
 };
@@ -24,7 +26,6 @@ use crate::problem::Problem;
 use crate::simulation::{SimulationOptions, simulate_with};
 use crate::summary::StopReason;
 use crate::warning::Warning;
-use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::verdict::worst;
 use sensitol_numeric::verdict::{Judged, Verdict};
 
@@ -160,8 +161,7 @@ impl Driver<'_> {
             !station.responses.is_sampled(c) && left.is_none_or(|left| left <= TRUSTED)
         };
         constraints.iter().all(|one| {
-            one.characteristics(&station.responses).into_iter().all(followed)
-                || one.requirement == Requirement::WorstCase
+            one.characteristics(&station.responses).into_iter().all(followed) || one.form().basis() == Basis::Box
         }) && self.task.losses.iter().all(|loss| followed(loss.characteristic))
     }
 
@@ -219,7 +219,7 @@ impl Driver<'_> {
             self.task.losses.is_empty() && priced.iter().zip(&solved.at).all(|(group, &t)| t >= group.loosest());
         let stopped = || false;
         let setting = self.setting(station, constraints, &stopped);
-        let bilinear = recentred && constraints.iter().any(|one| matches!(one.requirement, Requirement::Yield(_)));
+        let bilinear = recentred && constraints.iter().any(|one| one.form().basis() == Basis::Distribution);
         free && loosest
             || free && setting.is_convex() && !bilinear
             || !free && proof.rigorous && !recentred && setting.costs_are_convex()
@@ -245,17 +245,17 @@ impl Driver<'_> {
         let simulation = simulate_with(problem, &options, self.run, &|_| {})?;
         self.spent.run = self.spent.run.and(&simulation.run);
         let cheap = !problem.function().signature().costly && self.options.analysis.budget.is_none();
-        let worst = allocation.requirements.iter().any(|one| one.requirement == Requirement::WorstCase) && cheap;
+        let worst = allocation.requirements.iter().any(|one| form_of(&one.requirement).basis() == Basis::Box) && cheap;
         let in_box = match worst {
             true => worst_in_box(problem, analysed, self.options.seed, self.run),
             false => vec![None; analysed.len()],
         };
         for one in &mut allocation.requirements {
             let found = &simulation.characteristics[one.characteristic];
-            one.sampled = match one.requirement {
-                Requirement::Rss => None,
-                Requirement::WorstCase => in_box[one.characteristic],
-                _ => Some(found.judge_widely(one.requirement)),
+            one.sampled = match form_of(&one.requirement).basis() {
+                Basis::Bands => None,
+                Basis::Box => in_box[one.characteristic],
+                Basis::Moments | Basis::Distribution => Some(found.judge_widely(one.requirement)),
             };
         }
         let joint = simulation.joint_requirement.map(Judged::widely);

@@ -7,11 +7,13 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use crate::allocation::choice::process_selection::remade;
 use crate::allocation::cost::cost_curve::Priced;
 use crate::allocation::requirement::constraint::{Constraint, kept};
+use crate::allocation::requirement::form::Basis;
+use crate::allocation::requirement::registry::form_of;
 use crate::allocation::search::linearization_point::{LinearizationPoint, Seen};
 use crate::allocation::surface::corners::Places;
 use crate::allocation::surface::response::Responses;
 use crate::allocation::surface::sampled_moments::SampledCorrection;
-use crate::allocation::surface::uncertainty::Unknown;
+use crate::allocation::surface::uncertainty::Uncertainty;
 use crate::allocation::task::{AllocateError, AllocationOptions, AllocationTask, Goal};
 use crate::analysis::{Analysis, CharacteristicAnalysis, Findings, analyze_keeping};
 use crate::assembly::Run;
@@ -33,11 +35,11 @@ pub(in crate::allocation) struct Spent {
     pub(in crate::allocation) rounds: usize,
     pub(in crate::allocation) stopped: bool,
     /// Greatest uncertainty of every characteristic since the rounds have [settled](SETTLED).
-    unknown: Vec<Unknown>,
+    uncertainty: Vec<Uncertainty>,
     /// Greatest uncertainty of the joint yield since then.
-    joint_unknown: f64,
+    joint_uncertainty: f64,
     /// Additional requirement of every characteristic, because trials missed it.
-    stricter: Vec<Unknown>,
+    stricter: Vec<Uncertainty>,
     /// Additional requirement of the joint yield, because trials missed it.
     joint_stricter: f64,
     /// Cheapest linearization point that kept everything.
@@ -51,12 +53,14 @@ pub(in crate::allocation) struct Spent {
 /// Rounds after which uncertainties only grow. The uncertainty of a sample jumps when an assembly passes a limit. The
 /// search could otherwise alternate between two neighbouring linearization points.
 const SETTLED: usize = 4;
+/// Level of a goal, in sigmas. The uncertainty of a figure does not depend on the level.
+const ANY_LEVEL: f64 = 3.0;
 
 impl Spent {
     /// Adds to the requirements from the next linearization point on.
-    pub(in crate::allocation) fn require_more(&mut self, more: &[Unknown], joint: f64) {
-        self.stricter.resize(more.len(), Unknown::default());
-        self.stricter.iter_mut().zip(more).for_each(|(all, more)| *all = all.and(*more));
+    pub(in crate::allocation) fn require_more(&mut self, more: &[Uncertainty], joint: f64) {
+        self.stricter.resize(more.len(), Uncertainty::default());
+        self.stricter.iter_mut().zip(more).for_each(|(all, more)| all.add(more));
         self.joint_stricter += joint;
     }
 }
@@ -147,20 +151,9 @@ impl Driver<'_> {
         self.spent.run = self.spent.run.and(&analysis.run);
         self.spent.rounds += 1;
         self.spent.stopped |= analysis.run.unfinished();
-        let mut responses = Responses::of(&problem, &findings.outcome, &analysis, &self.task.requirements);
-        if self.spent.rounds > SETTLED {
-            self.spent.unknown.resize(responses.of.len(), Unknown::default());
-            for (one, most) in responses.of.iter_mut().zip(&mut self.spent.unknown) {
-                *most = most.most(one.unknown);
-                one.unknown = *most;
-            }
-            self.spent.joint_unknown = self.spent.joint_unknown.max(responses.joint_unknown);
-            responses.joint_unknown = self.spent.joint_unknown;
-        }
-        for (one, more) in responses.of.iter_mut().zip(&self.spent.stricter) {
-            one.unknown = one.unknown.and(*more);
-        }
-        responses.joint_unknown += self.spent.joint_stricter;
+        let over_box: Vec<bool> = self.task.requirements.iter().map(is_over_box).collect();
+        let mut responses = Responses::of(&problem, &findings.outcome, &analysis, &over_box);
+        self.require_certainty(&analysis, &mut responses);
         self.correct(&problem, &analysis, &mut responses);
         if !problem.function().signature().costly {
             let Spent { places, points, .. } = &mut self.spent;
@@ -170,6 +163,29 @@ impl Driver<'_> {
             self.constraints(&problem, &self.task.requirements).par_iter().for_each(|one| one.prepare(&responses));
         }
         Ok(LinearizationPoint { problem, analysis, findings, responses })
+    }
+
+    /// Adds the uncertainty of an analysis, and misses of earlier trials, to the requirements.
+    fn require_certainty(&mut self, analysis: &Analysis, responses: &mut Responses) {
+        for (c, one) in responses.of.iter_mut().enumerate() {
+            for requirement in self.task.requirements[c].into_iter().chain(self.task.goal.at(ANY_LEVEL)) {
+                let distance = form_of(&requirement).uncertainty(requirement, &analysis.characteristics[c]);
+                one.uncertainty.set(&requirement, distance);
+            }
+        }
+        if self.spent.rounds > SETTLED {
+            self.spent.uncertainty.resize(responses.of.len(), Uncertainty::default());
+            for (one, most) in responses.of.iter_mut().zip(&mut self.spent.uncertainty) {
+                most.raise_to(&one.uncertainty);
+                one.uncertainty.clone_from(most);
+            }
+            self.spent.joint_uncertainty = self.spent.joint_uncertainty.max(responses.joint_uncertainty);
+            responses.joint_uncertainty = self.spent.joint_uncertainty;
+        }
+        for (one, more) in responses.of.iter_mut().zip(&self.spent.stricter) {
+            one.uncertainty.add(more);
+        }
+        responses.joint_uncertainty += self.spent.joint_stricter;
     }
 
     /// Analysis of a linearization point, with the results that are only reported.
@@ -188,8 +204,7 @@ impl Driver<'_> {
     fn correct(&self, problem: &Problem, analysis: &Analysis, responses: &mut Responses) {
         let of = |(c, one): (usize, &CharacteristicAnalysis)| {
             let refuted = one.verification.as_ref().is_some_and(|of| of.replaced);
-            let moments =
-                self.task.requirements[c].is_some_and(|of| !matches!(of, Requirement::Rss | Requirement::WorstCase));
+            let moments = self.task.requirements[c].is_some_and(|of| !form_of(&of).basis().is_by_band());
             (refuted && moments).then_some((c, one.moments?))
         };
         let verified: Vec<(usize, Moments)> = analysis.characteristics.iter().enumerate().filter_map(of).collect();
@@ -228,6 +243,11 @@ impl Driver<'_> {
             Err(error) => Err(error),
         }
     }
+}
+
+/// True if a requirement needs the extremes over the box of the tolerance bands.
+fn is_over_box(requirement: &Option<Requirement>) -> bool {
+    requirement.is_some_and(|one| form_of(&one).basis() == Basis::Box)
 }
 
 pub(in crate::allocation) fn unit(problem: &Problem, characteristic: usize) -> Option<String> {

@@ -6,8 +6,8 @@
 use crate::allocation::cost::cost_curve::{Offer, Priced};
 use crate::allocation::cost::setup_cost::needed;
 use crate::allocation::requirement::quality_loss::QualityLoss;
+use crate::allocation::requirement::registry::form_of;
 use crate::allocation::search::driver::{Driver, cost, with_choice};
-use crate::allocation::surface::reject_rate::of_scores;
 use crate::allocation::task::Goal;
 use crate::analysis::{Analysis, Findings, analyze_keeping};
 use crate::method::{Method, MethodError, Options};
@@ -63,18 +63,10 @@ impl Trial {
     }
 }
 
-/// Used part of a requirement. For sums of normal dimensions it is a sum of squares of the tolerances, for a worst case
-/// a sum.
+/// Used part of a requirement: at most 1 if its verdict is met, and above 1 if not.
 fn use_of(judged: &Judged) -> f64 {
-    let Some([low, high]) = judged.interval else { return f64::INFINITY };
-    let used = match judged.requirement {
-        Requirement::Yield(target) => of_scores((1.0 - low).max(0.0), 1.0 - target).powi(2),
-        Requirement::Cpk(target) if low > 0.0 => (target / low).powi(2),
-        Requirement::Cpk(_) => f64::INFINITY,
-        Requirement::Sigma(target) => (high / target).powi(2),
-        Requirement::Rss => high * high,
-        Requirement::WorstCase => high,
-    };
+    let Some(interval) = judged.interval else { return f64::INFINITY };
+    let used = form_of(&judged.requirement).used(judged.requirement.amount(), interval);
     match judged.verdict {
         _ if used.is_nan() => f64::INFINITY,
         Verdict::Met => used.min(1.0),

@@ -21,11 +21,12 @@ use std::sync::atomic::Ordering;
 
 use crate::allocation::cost::cost_curve::{Offer, Priced};
 use crate::allocation::optimise::separable::{Row, Separable};
-use crate::allocation::requirement::constraint::Linearised;
+use crate::allocation::requirement::form::Basis;
+use crate::allocation::requirement::linearised::Linearised;
+use crate::allocation::requirement::registry::form_of;
 use crate::allocation::search::driver::Driver;
 use crate::allocation::search::trial::Trial;
 use crate::problem::Problem;
-use sensitol_numeric::requirement::Requirement;
 
 /// Most trials of one search.
 const MOST: usize = 300;
@@ -256,7 +257,7 @@ impl<'s, 'a> VerifiedSearch<'s, 'a> {
     fn slopes(&mut self, free: &[usize]) -> Option<Slopes> {
         let best = self.best.as_ref()?;
         let (centre, offers) = (Measured::of(best), best.offers.clone());
-        let linear: Vec<bool> = best.judged.iter().map(|one| one.requirement == Requirement::WorstCase).collect();
+        let linear: Vec<bool> = best.judged.iter().map(|one| form_of(&one.requirement).basis() == Basis::Box).collect();
         let (groups, rows) = (centre.at.len(), centre.uses.len());
         let mut slopes =
             Slopes { centre, offers, linear, of_uses: vec![vec![0.0; groups]; rows], of_loss: vec![0.0; groups] };

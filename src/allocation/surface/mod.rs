@@ -4,6 +4,7 @@ pub(in crate::allocation) mod band;
 pub(in crate::allocation) mod corners;
 pub(in crate::allocation) mod joint_yield;
 pub(in crate::allocation) mod pearson_slack;
+pub(in crate::allocation) mod process_response;
 pub(in crate::allocation) mod reject_fit;
 pub(in crate::allocation) mod reject_rate;
 pub(in crate::allocation) mod response;

@@ -15,7 +15,7 @@ use sensitol_numeric::pearson::Pearson;
 const STEP: f64 = 1e-4;
 
 /// Greatest sigma for an allowed reject rate, with limits at these distances from the mean and a fit of this shape.
-pub(in crate::allocation) struct YieldRoom {
+pub(in crate::allocation) struct YieldSlack {
     law: Box<Pearson>,
     shape: [f64; 2],
     below: Option<f64>,
@@ -23,7 +23,7 @@ pub(in crate::allocation) struct YieldRoom {
     sigma: f64,
 }
 
-impl YieldRoom {
+impl YieldSlack {
     /// Computes the slack. Returns None if no distribution has these moments, and if no sigma rejects so little.
     pub(in crate::allocation) fn of(
         moments: &Moments,
@@ -130,7 +130,7 @@ mod tests {
     fn slopes_are_the_differences_of_the_room() {
         let at = |[mean, skewness, excess]: [f64; 3], limits: [Option<f64>; 2]| {
             let moments = Moments::new(mean, 1.0, skewness, excess);
-            YieldRoom::of(&moments, [limits[0].map(|low| mean - low), limits[1].map(|high| high - mean)], 0.0027)
+            YieldSlack::of(&moments, [limits[0].map(|low| mean - low), limits[1].map(|high| high - mean)], 0.0027)
                 .unwrap()
         };
         let sides = [[Some(-1.0), Some(1.2)], [Some(-1.0), None], [None, Some(1.2)]];

@@ -13,7 +13,7 @@ use crate::allocation::surface::band::{Reach, Scaling};
 use crate::allocation::surface::reject_fit::RejectFit;
 use crate::allocation::surface::sampled_moments::SampledCorrection;
 use crate::allocation::surface::surface_slack::{About, Correction, Follows};
-use crate::allocation::surface::uncertainty::Unknown;
+use crate::allocation::surface::uncertainty::Uncertainty;
 use crate::allocation::surface::worst_case::{NO_CORRECTION, WorstCase, WorstCaseCorrection, correction, is_off};
 use crate::analysis::{Analysis, CharacteristicAnalysis, law_over, surface_law};
 use crate::method::Outcome;
@@ -23,7 +23,6 @@ use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::distribution::Distribution;
 use sensitol_numeric::law::SurfaceLaw;
 use sensitol_numeric::moments::Moments;
-use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::surrogate::{InputShape, Inputs, Relocation, Surrogate, shapes};
 
 /// Characteristics at tolerances near a linearization point.
@@ -44,7 +43,7 @@ pub(in crate::allocation) struct Responses {
     /// Rejects of several characteristics together, by their indices.
     pub(in crate::allocation) reject_fits: Mutex<BTreeMap<Vec<usize>, Arc<RejectFit>>>,
     /// Additional rejects of the joint yield by its interval, beyond those of the surface distributions.
-    pub(in crate::allocation) joint_unknown: f64,
+    pub(in crate::allocation) joint_uncertainty: f64,
 }
 
 pub(in crate::allocation) struct Response {
@@ -60,7 +59,8 @@ pub(in crate::allocation) struct Response {
     pub(in crate::allocation) rounding: f64,
     /// Surface distribution, if it gives the yield.
     pub(in crate::allocation) law: Option<SurfaceLaw>,
-    pub(in crate::allocation) unknown: Unknown,
+    /// Uncertainty of the figures that are required, added to the requirements.
+    pub(in crate::allocation) uncertainty: Uncertainty,
     /// Correction of the moments by samples of the model, if these refute the surface.
     pub(in crate::allocation) sampled: Option<SampledCorrection>,
     /// Worst case, if it is required. None if the slopes determine it.
@@ -75,12 +75,13 @@ const SAME: f64 = 1e-12;
 const STEP: f64 = 3e-5;
 
 impl Responses {
-    /// Responses from the outcome and analysis of a method, with the requirement of every characteristic.
+    /// Responses from the outcome and analysis of a method. `over_box` is true for each characteristic whose extremes
+    /// over the box of the bands are required.
     pub(in crate::allocation) fn of(
         problem: &Problem,
         outcome: &Outcome,
         analysis: &Analysis,
-        requirements: &[Option<Requirement>],
+        over_box: &[bool],
     ) -> Self {
         let dimensions = problem.dimensions().to_vec();
         let varying = outcome.plan.varying().to_vec();
@@ -101,8 +102,7 @@ impl Responses {
                 };
                 let found = &analysis.characteristics[c];
                 let limits = found.characteristic.limits();
-                // A counted surface distribution has no slopes.
-                let by_law = limits.exist() && found.surface_law.is_some_and(|law| law.counted.is_none());
+                let by_law = is_judged_by_law(found);
                 Response {
                     surrogate: fitted.surrogate.clone(),
                     nominal: fitted.nominal,
@@ -111,9 +111,9 @@ impl Responses {
                     limits,
                     rounding: problem.kept_limits(c).rounding(),
                     law: by_law.then(|| surface_law(problem, outcome, c)?.ok()).flatten(),
-                    unknown: Unknown::of(found, by_law),
+                    uncertainty: Uncertainty::default(),
                     sampled: None,
-                    worst: (requirements[c] == Some(Requirement::WorstCase))
+                    worst: over_box[c]
                         .then(|| worst_case(problem, &varying, &reach, fitted.surrogate.as_ref(), found))
                         .flatten(),
                     over_zones: [NO_CORRECTION; 2],
@@ -134,17 +134,17 @@ impl Responses {
             laws,
             corrections,
             reject_fits,
-            joint_unknown: 0.0,
+            joint_uncertainty: 0.0,
         };
         for (c, found) in analysis.characteristics.iter().enumerate() {
-            if requirements[c] == Some(Requirement::WorstCase) && shares_a_zone(problem, &all.varying) {
+            if over_box[c] && shares_a_zone(problem, &all.varying) {
                 all.of[c].over_zones = all.zone_corrections(c, found).unwrap_or([NO_CORRECTION; 2]);
             }
         }
         if let Some([low, _]) = analysis.joint_requirement.and_then(|of| of.interval) {
             let ones = vec![1.0; n];
             let own = all.rejects(&all.limited()).share(&all, &ones, None);
-            all.joint_unknown = own.map_or(0.0, |own| (1.0 - low - own).max(0.0));
+            all.joint_uncertainty = own.map_or(0.0, |own| (1.0 - low - own).max(0.0));
         }
         all
     }
@@ -164,14 +164,14 @@ impl Responses {
         matches!(self.scaling[position], Scaling::Similar { alpha } if alpha == 0.0)
     }
 
-    /// Correction of the slack (four-moment estimate in `room`) by the surface distribution. Returns None if there is
-    /// no surface distribution, and if none is needed.
+    /// Correction of the slack (four-moment estimate in `slack`) by the surface distribution, for a required yield and
+    /// the reject rate that is then allowed. Returns None if there is no surface distribution, and if none is needed.
     pub(in crate::allocation) fn correction(
         &self,
         c: usize,
-        required: f64,
-        room: &dyn Fn(&Moments) -> Option<f64>,
-        room_slopes: &dyn Fn(&Moments) -> Option<[f64; 3]>,
+        (required, allowed): (f64, f64),
+        slack: &dyn Fn(&Moments) -> Option<f64>,
+        slack_slopes: &dyn Fn(&Moments) -> Option<[f64; 3]>,
     ) -> Option<Arc<Correction>> {
         let one = &self.of[c];
         let law = one.law.as_ref().filter(|_| !self.is_plain(c))?;
@@ -180,7 +180,6 @@ impl Responses {
         if let Some(found) = known().get(&key) {
             return Some(Arc::clone(found));
         }
-        let rejected = Correction::allowed(required, one.unknown.yield_);
         let follows = |(&d, scaling): (&usize, &Scaling)| match scaling {
             Scaling::Still => (d, Follows::Still),
             _ if !one.depends[d] => (d, Follows::Still),
@@ -194,11 +193,11 @@ impl Responses {
             varying: self.varying.iter().zip(&self.scaling).map(follows).collect(),
             moments: &|factors| self.moments(c, factors),
             law_at: &|factors| self.law_at(c, factors),
-            room,
-            room_slopes,
+            slack,
+            slack_slopes,
             slopes: self.exact_slopes(c, &vec![1.0; self.dimensions.len()]),
         };
-        let found = Correction::of(&about, rejected).unwrap_or_else(|| Correction::none(self.dimensions.len()));
+        let found = Correction::of(&about, allowed).unwrap_or_else(|| Correction::none(self.dimensions.len()));
         let found = Arc::new(found);
         known().insert(key, Arc::clone(&found));
         Some(found)
@@ -546,6 +545,11 @@ impl Responses {
             matches!(scaling, Scaling::Similar { alpha } if *alpha == 0.0) || matches!(scaling, Scaling::Still)
         })
     }
+}
+
+/// True if the surface distribution gives the yield. A counted one has no slopes.
+pub(in crate::allocation) fn is_judged_by_law(found: &CharacteristicAnalysis) -> bool {
+    found.characteristic.limits().exist() && found.surface_law.is_some_and(|law| law.counted.is_none())
 }
 
 /// True if some of these dimensions share a zone, so that they do not reach the whole box of their bands.

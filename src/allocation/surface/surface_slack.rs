@@ -55,9 +55,9 @@ pub(in crate::allocation) struct About<'r> {
     pub(in crate::allocation) moments: &'r dyn Fn(&[f64]) -> Option<Moments>,
     pub(in crate::allocation) law_at: &'r dyn Fn(&[f64]) -> Option<SurfaceLaw>,
     /// Slack by four moments.
-    pub(in crate::allocation) room: &'r dyn Fn(&Moments) -> Option<f64>,
+    pub(in crate::allocation) slack: &'r dyn Fn(&Moments) -> Option<f64>,
     /// Derivatives of the logarithm of the slack by mean, skewness and excess.
-    pub(in crate::allocation) room_slopes: &'r dyn Fn(&Moments) -> Option<[f64; 3]>,
+    pub(in crate::allocation) slack_slopes: &'r dyn Fn(&Moments) -> Option<[f64; 3]>,
     /// Exact derivatives of mean, `ln sigma`, skewness and excess by `ln T` of every dimension. They exist only if
     /// every shape stays.
     pub(in crate::allocation) slopes: Option<Vec<[f64; 4]>>,
@@ -106,10 +106,10 @@ impl Correction {
         if sides.is_empty() || sides.iter().any(Side::is_beyond_mean) || sigma <= 0.0 {
             return None;
         }
-        let fitted = (about.room)(&moments)?;
+        let fitted = (about.slack)(&moments)?;
         let r = level(&|r| share_beyond(&sides, about.law, mean, (r, 0.0)), rejected, sigma / fitted)?;
         let moved = MovedLimits::new(about, mean, r, sides);
-        let partial = about.slopes.as_ref().and_then(|_| (about.room_slopes)(&moments));
+        let partial = about.slopes.as_ref().and_then(|_| (about.slack_slopes)(&moments));
         let mut slopes: Vec<f64> = vec![0.0; about.dimensions];
         let moving = about.varying.iter().enumerate().filter(|(_, (_, follows))| *follows != Follows::Still);
         for (position, &(d, follows)) in moving {
@@ -204,8 +204,8 @@ impl<'a, 'r> MovedLimits<'a, 'r> {
     fn exact_slope(&self, position: usize, d: usize, partial: [f64; 3]) -> Option<f64> {
         let [by_mean, by_sigma, by_skewness, by_excess] = self.about.slopes.as_ref()?[d];
         let by_law = self.share_slope(position, by_mean).filter(|_| self.density < 0.0)?;
-        let by_room = partial[0] * by_mean + partial[1] * by_skewness + partial[2] * by_excess;
-        Some(by_sigma + by_law / self.density - by_room)
+        let by_slack = partial[0] * by_mean + partial[1] * by_skewness + partial[2] * by_excess;
+        Some(by_sigma + by_law / self.density - by_slack)
     }
 
     /// The slope by differences of the moments, and of the law where the dimension does not keep its shape.
@@ -220,15 +220,15 @@ impl<'a, 'r> MovedLimits<'a, 'r> {
         let by_law = by_law.filter(|_| self.density < 0.0)?;
         let by_sigma = central(libm::log(up.moments.sigma()), libm::log(down.moments.sigma()));
         // ln s = ln sigma - ln r, and r answers a change of the share at fixed r.
-        Some(by_sigma + by_law / self.density - central(libm::log(up.room), libm::log(down.room)))
+        Some(by_sigma + by_law / self.density - central(libm::log(up.slack), libm::log(down.slack)))
     }
 
-    /// The moments and their room with the tolerance of one dimension changed by a step of `ln T`.
+    /// The moments and their slack with the tolerance of one dimension changed by a step of `ln T`.
     fn neighbour(&self, d: usize, step: f64) -> Option<Neighbour> {
         let mut factors = vec![1.0; self.about.dimensions];
         factors[d] = libm::exp(step);
         let moments = (self.about.moments)(&factors)?;
-        Some(Neighbour { moments, room: (self.about.room)(&moments)?, factors })
+        Some(Neighbour { moments, slack: (self.about.slack)(&moments)?, factors })
     }
 
     /// The share beyond the limits by another law. The distance of a limit from the mean changes with the mean.
@@ -240,7 +240,7 @@ impl<'a, 'r> MovedLimits<'a, 'r> {
 /// Linearization point beside another one.
 struct Neighbour {
     moments: Moments,
-    room: f64,
+    slack: f64,
     factors: Vec<f64>,
 }
 

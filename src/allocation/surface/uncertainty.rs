@@ -1,41 +1,58 @@
 //! Uncertainty of a characteristic at a linearization point.
 
-use crate::analysis::CharacteristicAnalysis;
+use std::collections::BTreeMap;
+
 use sensitol_numeric::requirement::Requirement;
 
-/// Distances of the pessimistic ends of the intervals from the figures that judge trial tolerances. They are 0 if an
-/// error is unknown.
-#[derive(Debug, Clone, Copy, Default)]
-pub(in crate::allocation) struct Unknown {
-    /// Distance from the yield by the surface distribution, or by the Pearson fit.
-    pub(in crate::allocation) yield_: f64,
-    pub(in crate::allocation) cpk: f64,
-    pub(in crate::allocation) sigma: f64,
+/// Distances of the pessimistic ends of the intervals from the figures that judge trial tolerances, by kind of
+/// requirement and in the unit of its amount. A kind that is missing has none.
+#[derive(Debug, Clone, Default)]
+pub(in crate::allocation) struct Uncertainty {
+    by_kind: BTreeMap<&'static str, f64>,
 }
 
-impl Unknown {
-    pub(in crate::allocation) fn of(found: &CharacteristicAnalysis, by_law: bool) -> Self {
-        let law = found.surface_law.as_ref().filter(|_| by_law).and_then(|law| law.yield_());
-        let judged = law.or_else(|| found.pearson?.yield_());
-        let yield_ = judged.zip(found.yield_interval()).map(|(value, [low, _])| value - low);
-        // The interval does not depend on the target of the requirement.
-        let cpk = found.judge(Requirement::Cpk(1.0));
-        let sigma = found.judge(Requirement::Sigma(1.0));
-        let of = |value: Option<f64>, end: Option<f64>| value.zip(end).map_or(0.0, |(value, end)| (value - end).abs());
-        Self {
-            yield_: yield_.unwrap_or(0.0),
-            cpk: of(cpk.value, cpk.interval.map(|[low, _]| low)),
-            sigma: of(sigma.value, sigma.interval.map(|[_, high]| high)),
+impl Uncertainty {
+    /// Uncertainty of the figure of a requirement, 0 if none is known.
+    pub(in crate::allocation) fn of(&self, requirement: &Requirement) -> f64 {
+        self.by_kind.get(requirement.key()).copied().unwrap_or(0.0)
+    }
+
+    /// Sets the uncertainty of the figure of a requirement.
+    pub(in crate::allocation) fn set(&mut self, requirement: &Requirement, distance: f64) {
+        self.by_kind.insert(requirement.key(), distance);
+    }
+
+    /// Adds another uncertainty.
+    pub(in crate::allocation) fn add(&mut self, other: &Self) {
+        for (kind, distance) in &other.by_kind {
+            *self.by_kind.entry(kind).or_default() += distance;
         }
     }
 
-    /// Sum of two uncertainties.
-    pub(in crate::allocation) fn and(self, other: Self) -> Self {
-        Self { yield_: self.yield_ + other.yield_, cpk: self.cpk + other.cpk, sigma: self.sigma + other.sigma }
+    /// Raises every figure to that of another uncertainty, if that is greater.
+    pub(in crate::allocation) fn raise_to(&mut self, other: &Self) {
+        for (kind, distance) in &other.by_kind {
+            let own = self.by_kind.entry(kind).or_insert(*distance);
+            *own = own.max(*distance);
+        }
     }
+}
 
-    /// Greater of two uncertainties, for each figure.
-    pub(in crate::allocation) fn most(self, other: Self) -> Self {
-        Self { yield_: self.yield_.max(other.yield_), cpk: self.cpk.max(other.cpk), sigma: self.sigma.max(other.sigma) }
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn kinds_add_and_rise_apart_from_each_other() {
+        let (cpk, sigma) = (Requirement::Cpk(1.0), Requirement::Sigma(0.2));
+        let (mut first, mut second) = (Uncertainty::default(), Uncertainty::default());
+        first.set(&cpk, 0.125);
+        second.set(&Requirement::Cpk(1.33), 0.5);
+        second.set(&sigma, 0.25);
+        let mut sum = first.clone();
+        sum.add(&second);
+        assert_eq!([sum.of(&cpk), sum.of(&sigma), sum.of(&Requirement::Rss)], [0.625, 0.25, 0.0]);
+        second.raise_to(&first);
+        assert_eq!([second.of(&cpk), second.of(&sigma)], [0.5, 0.25]);
     }
 }

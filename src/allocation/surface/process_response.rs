@@ -4,13 +4,10 @@
 use std::sync::Mutex;
 
 use crate::allocation::cost::cost_curve::Priced;
-use crate::allocation::requirement::constraint::Constraint;
 use crate::allocation::surface::band::{Reach, Scaling};
 use crate::allocation::surface::response::{Response, Responses, is_straight, shapes_of};
 use crate::analysis::law_over;
 use sensitol_numeric::dimension::Dimension;
-use sensitol_numeric::moments::Moments;
-use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::surrogate::{Inputs, Relocation};
 
 impl Responses {
@@ -44,7 +41,7 @@ impl Responses {
                 limits: one.limits,
                 rounding: one.rounding,
                 law,
-                unknown: one.unknown,
+                uncertainty: one.uncertainty.clone(),
                 sampled: None,
                 worst: None,
                 over_zones: one.over_zones,
@@ -61,7 +58,7 @@ impl Responses {
             laws: of_inputs,
             corrections: Mutex::default(),
             reject_fits: Mutex::default(),
-            joint_unknown: self.joint_unknown,
+            joint_uncertainty: self.joint_uncertainty,
             inputs,
         })
     }
@@ -85,42 +82,5 @@ impl Responses {
         let fixed = (0..slopes.len()).filter(|d| !is_priced(d)).map(|d| (slopes[d] * self.reach[d].half).powi(2)).sum();
         let of = |group: &Priced| group.members.iter().map(|&d| slopes[d].powi(2)).sum();
         Some((fixed, priced.iter().map(of).collect()))
-    }
-}
-
-impl Constraint {
-    /// Slack of a linear worst case, minus the part of bands without a cost, and factors of every group's `T`. Returns
-    /// None for another worst case.
-    pub(in crate::allocation) fn linear_room(
-        &self,
-        responses: &Responses,
-        priced: &[Priced],
-    ) -> Option<(f64, Vec<f64>)> {
-        if !responses.has_linear_worst_case(self.characteristic) {
-            return None;
-        }
-        let (constant, coefficients) = responses.worst_case(self.characteristic, priced, self.is_above())?;
-        Some((self.nominal_room(responses)? * self.part - constant, coefficients))
-    }
-
-    /// Slack of an rss. Returns None if a tolerance moves the middle.
-    pub(in crate::allocation) fn still_room(&self, responses: &Responses, priced: &[Priced]) -> Option<f64> {
-        let members = || priced.iter().flat_map(|group| &group.members);
-        if members().any(|&d| responses.reach[d].lean != 0.0) {
-            return None;
-        }
-        let ones = vec![1.0; responses.dimensions.len()];
-        Some(self.part * self.room_about(responses.middle(self.characteristic, &ones, None)?)?)
-    }
-
-    /// Greatest sigma at the present mean, for the present shape or, if `normal`, for a normal distribution.
-    pub(in crate::allocation) fn most_sigma(&self, responses: &Responses, normal: bool) -> Option<f64> {
-        let ones = vec![1.0; responses.dimensions.len()];
-        let found = responses.moments(self.characteristic, &ones)?;
-        let moments = if normal { Moments::new(found.mean(), found.sigma(), 0.0, 0.0) } else { found };
-        match self.requirement {
-            Requirement::Rss | Requirement::WorstCase => None,
-            _ => Some(self.room(&moments, self.target(responses))?.sigma()),
-        }
     }
 }
