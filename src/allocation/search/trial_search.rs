@@ -82,18 +82,17 @@ impl<'s, 'a> VerifiedSearch<'s, 'a> {
         if self.best.is_none() {
             self.enter(aim.as_ref().or(starts.first()));
         }
-        let mut cost = self.best.as_ref()?.cost;
-        loop {
-            self.approach(aim.as_ref());
-            self.descend();
-            self.exchange();
-            let now = self.best.as_ref()?.cost;
-            if now > cost - GAIN * cost.abs() || self.is_over() {
-                break;
+        let mut phase = Phase::Approach { cost: self.best.as_ref()?.cost };
+        while phase != Phase::Done {
+            match phase {
+                Phase::Approach { .. } => self.approach(aim.as_ref()),
+                Phase::Descend { .. } => self.descend(),
+                Phase::Exchange { .. } => while self.exchange() {},
+                Phase::Open => self.open_all(),
+                Phase::Done => {}
             }
-            cost = now;
+            phase = phase.next(self.best.as_ref()?.cost, self.is_over());
         }
-        self.open_all();
         self.best
     }
 
@@ -231,21 +230,29 @@ impl<'s, 'a> VerifiedSearch<'s, 'a> {
     fn descend(&mut self) {
         let mut reach = REACH[0];
         for _ in 0..ROUNDS {
-            let Some(best) = self.best.as_ref() else { return };
-            let (offers, cost) = (best.offers.clone(), best.cost);
-            let free: Vec<usize> = (0..offers.len()).filter(|&g| self.is_free(g, offers[g])).collect();
-            if free.is_empty() || self.is_over() || reach < REACH[1] {
+            if reach < REACH[1] {
                 return;
             }
-            let slopes = if free.len() <= SLOPES { self.slopes(&free) } else { None };
-            let followed = slopes.is_some_and(|slopes| self.follow(&slopes, reach));
-            if !followed {
-                self.poll(&free, reach);
-            }
-            let now = self.best.as_ref().map_or(cost, |best| best.cost);
-            let worth = now < cost - GAIN * cost.abs();
-            reach = if worth { (1.5 * reach).min(1.0) } else { 0.3 * reach };
+            let Some([before, after]) = self.step(reach) else { return };
+            reach = next_reach(reach, is_worth_it(before, after));
         }
+    }
+
+    /// Takes one step within a reach. Returns the least cost before and after it, or None if no tolerance is free or the
+    /// search is over.
+    fn step(&mut self, reach: f64) -> Option<[f64; 2]> {
+        let best = self.best.as_ref()?;
+        let (offers, cost) = (&best.offers, best.cost);
+        let free: Vec<usize> = (0..offers.len()).filter(|&g| self.is_free(g, offers[g])).collect();
+        if free.is_empty() || self.is_over() {
+            return None;
+        }
+        let slopes = if free.len() <= SLOPES { self.slopes(&free) } else { None };
+        let followed = slopes.is_some_and(|slopes| self.follow(&slopes, reach));
+        if !followed {
+            self.poll(&free, reach);
+        }
+        Some([cost, self.best.as_ref().map_or(cost, |best| best.cost)])
     }
 
     fn is_free(&self, g: usize, offer: usize) -> bool {
@@ -288,15 +295,8 @@ impl<'s, 'a> VerifiedSearch<'s, 'a> {
         let Some(before) = self.best.as_ref().map(|best| best.cost) else { return false };
         let (mut here, mut outside) = (slopes.centre.clone(), None);
         for _ in 0..CORRECTIONS {
-            let Some(to) = slopes.solved(self.priced(), &here, reach, !self.driver.task.losses.is_empty()) else {
-                break;
-            };
-            let far = to.iter().zip(&here.at).map(|(to, t)| libm::log(to / t).abs()).fold(0.0, f64::max);
-            if far < STILL {
-                break;
-            }
-            let Some(trial) = self.trial(&to, &slopes.offers) else { break };
-            here = self.remembered(trial);
+            let Some(next) = self.corrected(slopes, &here, reach) else { break };
+            here = next;
             if !here.kept {
                 outside = Some(here.clone());
             }
@@ -308,6 +308,17 @@ impl<'s, 'a> VerifiedSearch<'s, 'a> {
             self.interpolate(outside, BETWEEN);
         }
         self.best.as_ref().is_some_and(|best| best.cost < before - 0.1 * GAIN * before.abs())
+    }
+
+    /// Tries the solution by slopes with the values of a place. Returns None if it is that place, or has no answer.
+    fn corrected(&mut self, slopes: &Slopes, here: &Measured, reach: f64) -> Option<Measured> {
+        let to = slopes.solved(self.priced(), here, reach, !self.driver.task.losses.is_empty())?;
+        let far = to.iter().zip(&here.at).map(|(to, t)| libm::log(to / t).abs()).fold(0.0, f64::max);
+        if far < STILL {
+            return None;
+        }
+        let trial = self.trial(&to, &slopes.offers)?;
+        Some(self.remembered(trial))
     }
 
     /// Opens each free tolerance alone.
@@ -323,41 +334,37 @@ impl<'s, 'a> VerifiedSearch<'s, 'a> {
         }
     }
 
-    /// Exchanges one process, then two, as long as an exchange is cheaper and keeps everything.
-    fn exchange(&mut self) {
-        loop {
-            let Some(best) = self.best.as_ref() else { return };
-            let (at, offers, cost) = (best.at.clone(), best.offers.clone(), best.cost);
-            let single = self.exchanges(&at, &offers);
-            let mut all: Vec<(f64, Tolerances)> =
-                single.iter().map(|to| (self.held_and_lost(to), to.clone())).collect();
-            // Long lists have too many exchanges of two.
-            let pairs = if single.len() <= PAIRED { &single[..] } else { &[] };
-            for (place, (first, of_first)) in pairs.iter().enumerate() {
-                for (second, of_second) in &pairs[place + 1..] {
-                    let both = |own: usize| match own {
-                        g if of_first[g] != offers[g] => Some((first[g], of_first[g])),
-                        g if of_second[g] != offers[g] => Some((second[g], of_second[g])),
-                        _ => None,
-                    };
-                    let to: Tolerances = (0..at.len()).map(|g| both(g).unwrap_or((at[g], offers[g]))).unzip();
-                    all.push((self.held_and_lost(&to), to));
-                }
-            }
-            all.retain(|(predicted, _)| *predicted < cost - 1e-9 * cost.abs());
-            all.sort_by(|a, b| a.0.total_cmp(&b.0));
-            let mut found = false;
-            for (_, (at, offers)) in all.into_iter().take(EXCHANGES) {
-                let _: Option<bool> = self.ask(&at, &offers);
-                found = self.best.as_ref().is_some_and(|best| best.cost < cost);
-                if found || self.is_over() {
-                    break;
-                }
-            }
-            if !found || self.is_over() {
-                return;
+    /// Exchanges one process, or two. Returns true if an exchange is cheaper and keeps everything.
+    fn exchange(&mut self) -> bool {
+        let Some(cost) = self.best.as_ref().map(|best| best.cost) else { return false };
+        for (_, (at, offers)) in self.cheaper_exchanges().into_iter().take(EXCHANGES) {
+            let _: Option<bool> = self.ask(&at, &offers);
+            let found = self.best.as_ref().is_some_and(|best| best.cost < cost);
+            if found || self.is_over() {
+                return found && !self.is_over();
             }
         }
+        false
+    }
+
+    /// Exchanges of one and of two processes with their predicted costs, if these are less than the present cost, the
+    /// cheapest first.
+    fn cheaper_exchanges(&self) -> Vec<(f64, Tolerances)> {
+        let Some(best) = self.best.as_ref() else { return Vec::new() };
+        let (at, offers, cost) = (&best.at, &best.offers, best.cost);
+        let single = self.exchanges(at, offers);
+        let mut all: Vec<(f64, Tolerances)> = single.iter().map(|to| (self.held_and_lost(to), to.clone())).collect();
+        // Long lists have too many exchanges of two.
+        let pairs = if single.len() <= PAIRED { &single[..] } else { &[] };
+        for (place, first) in pairs.iter().enumerate() {
+            for second in &pairs[place + 1..] {
+                let to = both_exchanges((at, offers), first, second);
+                all.push((self.held_and_lost(&to), to));
+            }
+        }
+        all.retain(|(predicted, _)| *predicted < cost - 1e-9 * cost.abs());
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        all
     }
 
     /// Cost of an exchange with the present losses.
@@ -382,20 +389,72 @@ impl<'s, 'a> VerifiedSearch<'s, 'a> {
     fn open_all(&mut self) {
         let (mut step, halvings) = FACTOR;
         for _ in 0..=halvings {
-            while let Some(best) = self.best.as_ref() {
-                let (from, offers, cost) = (best.at.clone(), best.offers.clone(), best.cost);
-                let at: Vec<f64> =
-                    (0..from.len()).map(|g| self.within(g, offers[g], from[g] * libm::exp(step))).collect();
-                if at == from || self.is_over() || self.ask(&at, &offers) != Some(true) {
-                    break;
-                }
-                if self.best.as_ref().is_none_or(|best| best.cost >= cost) {
-                    break;
-                }
-            }
+            while self.open(step) {}
             step *= 0.5;
         }
     }
+
+    /// Opens all free tolerances by a step in `ln T`. Returns true if everything is kept at a lower cost.
+    fn open(&mut self, step: f64) -> bool {
+        let Some(best) = self.best.as_ref() else { return false };
+        let (from, offers, cost) = (best.at.clone(), best.offers.clone(), best.cost);
+        let at: Vec<f64> = (0..from.len()).map(|g| self.within(g, offers[g], from[g] * libm::exp(step))).collect();
+        let kept = at != from && !self.is_over() && self.ask(&at, &offers) == Some(true);
+        kept && self.best.as_ref().is_some_and(|best| best.cost < cost)
+    }
+}
+
+/// Phase of a search among trials. `cost` is the least cost before the round.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Phase {
+    /// Way towards the result of the search by derivatives.
+    Approach {
+        cost: f64,
+    },
+    /// Steps of free tolerances.
+    Descend {
+        cost: f64,
+    },
+    /// Exchanges of processes.
+    Exchange {
+        cost: f64,
+    },
+    /// Common factor of all free tolerances.
+    Open,
+    Done,
+}
+
+impl Phase {
+    /// Phase that follows, with the least cost `now`. Another round begins if this one was worth it.
+    fn next(self, now: f64, is_over: bool) -> Self {
+        match self {
+            Self::Approach { cost } => Self::Descend { cost },
+            Self::Descend { cost } => Self::Exchange { cost },
+            Self::Exchange { cost } if now <= cost - GAIN * cost.abs() && !is_over => Self::Approach { cost: now },
+            Self::Exchange { .. } => Self::Open,
+            Self::Open | Self::Done => Self::Done,
+        }
+    }
+}
+
+/// True if a step saves enough for another one.
+fn is_worth_it(before: f64, after: f64) -> bool {
+    after < before - GAIN * before.abs()
+}
+
+/// Reach of the next step: wider after one that was worth it, and much narrower after another.
+fn next_reach(reach: f64, worth_it: bool) -> f64 {
+    if worth_it { (1.5 * reach).min(1.0) } else { 0.3 * reach }
+}
+
+/// Tolerances after two exchanges at once. The first counts where both exchange the same process.
+fn both_exchanges((at, offers): (&[f64], &[usize]), first: &Tolerances, second: &Tolerances) -> Tolerances {
+    let of_group = |g: usize| match g {
+        g if first.1[g] != offers[g] => (first.0[g], first.1[g]),
+        g if second.1[g] != offers[g] => (second.0[g], second.1[g]),
+        _ => (at[g], offers[g]),
+    };
+    (0..at.len()).map(of_group).unzip()
 }
 
 /// Values of a trial at its tolerances.
@@ -459,4 +518,42 @@ impl Slopes {
 /// Half bands at a part of the way between two others, in logarithms.
 fn between(from: &[f64], to: &[f64], part: f64) -> Vec<f64> {
     from.iter().zip(to).map(|(from, to)| libm::exp((1.0 - part) * libm::log(*from) + part * libm::log(*to))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounds_follow_each_other_as_long_as_they_save() {
+        let start = Phase::Approach { cost: 10.0 };
+        let end_of_round = start.next(9.0, false).next(9.0, false);
+        assert_eq!(end_of_round, Phase::Exchange { cost: 10.0 });
+        assert_eq!(end_of_round.next(9.0, false), Phase::Approach { cost: 9.0 });
+        // A saving below a five-thousandth, and the end of all trials, leave the common factor alone.
+        assert_eq!(end_of_round.next(9.9999, false), Phase::Open);
+        assert_eq!(end_of_round.next(9.0, true), Phase::Open);
+        assert_eq!(Phase::Open.next(9.0, false), Phase::Done);
+    }
+
+    #[test]
+    fn a_phase_in_a_round_does_not_end_it() {
+        assert_eq!(Phase::Approach { cost: 10.0 }.next(1.0, true), Phase::Descend { cost: 10.0 });
+    }
+
+    #[test]
+    fn the_reach_follows_the_saving() {
+        assert!(is_worth_it(10.0, 9.9) && !is_worth_it(10.0, 9.999) && is_worth_it(-10.0, -10.1));
+        assert_eq!([next_reach(0.5, true), next_reach(0.9, true), next_reach(0.5, false)], [0.75, 1.0, 0.15]);
+    }
+
+    #[test]
+    fn two_exchanges_change_two_processes() {
+        let (at, offers) = ([0.1, 0.2, 0.3], [0, 0, 0]);
+        let first = (vec![0.5, 0.2, 0.3], vec![1, 0, 0]);
+        let second = (vec![0.1, 0.2, 0.7], vec![0, 0, 2]);
+        assert_eq!(both_exchanges((&at, &offers), &first, &second), (vec![0.5, 0.2, 0.7], vec![1, 0, 2]));
+        let same_process = (vec![0.9, 0.2, 0.3], vec![2, 0, 0]);
+        assert_eq!(both_exchanges((&at, &offers), &first, &same_process), first);
+    }
 }
