@@ -14,8 +14,10 @@ use crate::allocation::requirement::constraint::Constraint;
 use crate::allocation::requirement::registry::form_of;
 use crate::allocation::result::allocation::{Allocation, AllocationSolver, Proof, Status};
 use crate::allocation::result::solver_result::{Chosen, Solved, Starts};
-use crate::allocation::search::driver::{Driver, Ended};
+use crate::allocation::search::driver::Driver;
+use crate::allocation::search::end_choice::{AfterSearch, Origin, SAME, Standing, cheapest};
 use crate::allocation::search::linearization_point::{LinearizationPoint, Seen};
+use crate::allocation::search::search_state::Ended;
 use crate::allocation::search::trial::{Trial, is_offered};
 use crate::allocation::search::trial_search::{Tolerances, VerifiedSearch};
 use crate::allocation::surface::uncertainty::Uncertainty;
@@ -28,8 +30,6 @@ use sensitol_numeric::verdict::Verdict;
 const STRICTER: usize = 3;
 /// Factor of a miss by which a requirement is made stricter. The excess over 1 makes sure that the miss is made up for.
 const MARGIN: f64 = 1.01;
-/// Relative difference of costs within which they are the same.
-const SAME: f64 = 1e-9;
 /// Parts of the way back from tolerances that keep everything, but not with their written digits.
 const BACK: [f64; 4] = [1e-4, 1e-3, 1e-2, 1e-1];
 
@@ -117,43 +117,59 @@ impl Driver<'_> {
         if self.task.basis.is_proportion() {
             return self.best_in_proportion(end);
         }
-        let kept_start = start.trial.as_ref().is_some_and(Trial::is_kept)
-            && (start.offered || self.task.priced.is_empty())
-            && self.start_is_kept(&start, end.as_ref());
-        let kept_end = match &end {
-            Some(end) => end.is_kept() && self.is_kept_as_written(&end.station.problem),
-            None => false,
-        };
-        let dearer = kept_start && end.as_ref().is_some_and(|end| self.dearer_than_start(&start, end));
-        let agreed = end.as_ref().is_some_and(|end| end.ended.agreed || self.task.priced.is_empty());
-        if kept_end && agreed && !dearer {
-            return Ok(end);
+        let standing = self.standing(allocation.status, &start, end.as_ref());
+        match standing.next() {
+            AfterSearch::TakeEnd => Ok(end),
+            AfterSearch::TakeNothing => Ok(None),
+            AfterSearch::SearchByTrials => self.cheapest_result(allocation, start, end, standing),
         }
-        // That no tolerances keep everything is proven.
-        if end.is_none() && allocation.status == Status::Infeasible && !kept_start {
-            return Ok(None);
+    }
+
+    /// Facts that decide if the end of a search is the result.
+    fn standing(&mut self, status: Status, start: &AllocationStart, end: Option<&SearchEnd>) -> Standing {
+        let nothing_to_choose = self.task.priced.is_empty();
+        let start_kept = start.trial.as_ref().is_some_and(Trial::is_kept)
+            && (start.offered || nothing_to_choose)
+            && self.start_is_kept(start, end);
+        Standing {
+            start_kept,
+            end_exists: end.is_some(),
+            end_kept: end.is_some_and(|end| end.is_kept() && self.is_kept_as_written(&end.station.problem)),
+            end_agreed: end.is_some_and(|end| end.ended.agreed || nothing_to_choose),
+            end_dearer: start_kept && end.is_some_and(|end| self.dearer_than_start(start, end)),
+            infeasible: status == Status::Infeasible,
         }
+    }
+
+    /// Cheapest of the end, the start, and the result of a search by trials.
+    fn cheapest_result(
+        &mut self,
+        allocation: &mut Allocation,
+        start: AllocationStart,
+        end: Option<SearchEnd>,
+        Standing { start_kept, end_kept, .. }: Standing,
+    ) -> Result<Option<SearchEnd>, AllocateError> {
         let seen = self.spent.seen.take();
         let found = match self.is_cheap(&start.station.problem) {
-            true => self.search_by_trials(&start, kept_start, (end.as_ref(), seen.as_ref())),
+            true => self.search_by_trials(&start, start_kept, (end.as_ref(), seen.as_ref())),
             false => self.tried_again(seen, end.as_ref()),
         };
-        let known = end.as_ref().filter(|_| kept_end).and_then(|end| Some(end.trial.as_ref()?.cost));
-        let start_cost = start.trial.as_ref().filter(|_| kept_start).map(|trial| trial.cost);
-        let cheaper = |cost: f64, other: Option<f64>| other.is_none_or(|other| cost < other * (1.0 - SAME));
-        match found {
-            Some(trial) if cheaper(trial.cost, known) && cheaper(trial.cost, start_cost) => {
+        let end_cost = end.as_ref().filter(|_| end_kept).and_then(|end| Some(end.trial.as_ref()?.cost));
+        let start_trial = start.trial.filter(|_| start_kept);
+        let costs = [found.as_ref(), start_trial.as_ref()].map(|trial| Some(trial?.cost));
+        match (cheapest(costs[0], costs[1], end_cost), found, start_trial) {
+            (Origin::Trials, Some(trial), _) => {
                 allocation.attainable = None;
                 let constraints = self.constraints(&trial.problem, &self.task.requirements);
                 let station = self.station(trial.problem.clone())?;
                 let proof = Proof { solver: Some(AllocationSolver::VerifiedSearch), ..Proof::default() };
                 Ok(station.map(|station| ended_at(Rc::new(station), constraints, trial, proof, false)))
             }
-            _ if kept_start && known.is_none_or(|known| !cheaper(known, start_cost)) => {
+            (Origin::Start, _, Some(trial)) => {
                 allocation.attainable = None;
                 let constraints = self.constraints(&start.station.problem, &self.task.requirements);
                 let proof = Proof { residual: Some(f64::INFINITY), ..Proof::default() };
-                Ok(start.trial.map(|trial| ended_at(start.station, constraints, trial, proof, true)))
+                Ok(Some(ended_at(start.station, constraints, trial, proof, true)))
             }
             _ => Ok(end),
         }
@@ -163,27 +179,42 @@ impl Driver<'_> {
     fn tried(&mut self, allocation: &mut Allocation, end: SearchEnd) -> Result<Option<SearchEnd>, AllocateError> {
         let mut end = self.with_trial(end);
         for _ in 0..STRICTER {
-            let Some(trial) = end.trial.as_ref().filter(|_| end.ended.agreed && self.task.goal == Goal::LeastCost)
-            else {
-                break;
-            };
-            let again = end.last.is_some() && !self.task.basis.is_proportion() && self.is_cheap(&trial.problem);
-            if trial.is_kept() || trial.is_unknown() || !again || !self.require_more(&end) {
+            if !self.may_be_stricter(&end) || !self.require_more(&end) {
                 break;
             }
-            let at = end.last.as_ref().map(|(solved, ..)| solved.at.clone()).unwrap_or_default();
-            let constraints = self.constraints(&end.station.problem, &self.task.requirements);
-            let Some(station) = self.station(end.station.problem.clone())? else { break };
-            match self.search(allocation, Rc::new(station), &constraints, &at)? {
-                Some(next) if next.ended.within_budget && !self.spent.stopped => end = self.with_trial(next),
-                // The search found nothing more, so the last end stays.
-                _ => {
-                    allocation.attainable = None;
-                    break;
-                }
+            match self.searched_again(allocation, &end)? {
+                Some(next) => end = self.with_trial(next),
+                None => break,
             }
         }
         Ok(Some(end))
+    }
+
+    /// True if an end misses a requirement, and a cheap model allows another search.
+    fn may_be_stricter(&self, end: &SearchEnd) -> bool {
+        let Some(trial) = &end.trial else { return false };
+        let confirmed = end.ended.agreed && end.last.is_some();
+        let repeatable = self.task.goal == Goal::LeastCost && !self.task.basis.is_proportion();
+        let missed = !trial.is_kept() && !trial.is_unknown();
+        confirmed && repeatable && missed && self.is_cheap(&trial.problem)
+    }
+
+    /// Repeats the search from an end, with requirements that were made stricter. Returns None if it finds nothing more,
+    /// so that the last end stays.
+    fn searched_again(
+        &mut self,
+        allocation: &mut Allocation,
+        end: &SearchEnd,
+    ) -> Result<Option<SearchEnd>, AllocateError> {
+        let at = end.last.as_ref().map(|(solved, ..)| solved.at.clone()).unwrap_or_default();
+        let constraints = self.constraints(&end.station.problem, &self.task.requirements);
+        let Some(station) = self.station(end.station.problem.clone())? else { return Ok(None) };
+        let next = self.search(allocation, Rc::new(station), &constraints, &at)?;
+        let next = next.filter(|next| next.ended.within_budget && !self.spent.stopped);
+        if next.is_none() {
+            allocation.attainable = None;
+        }
+        Ok(next)
     }
 
     /// Adds the trial to an end. It is the analysis of the linearization point, if this was made as a trial is.

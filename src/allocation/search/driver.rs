@@ -103,13 +103,6 @@ impl Near {
     }
 }
 
-pub(in crate::allocation) struct Ended {
-    pub(in crate::allocation) agreed: bool,
-    pub(in crate::allocation) within_budget: bool,
-    /// Residual of nominal values and tolerances together, if both may change.
-    pub(in crate::allocation) at_rest: Option<f64>,
-}
-
 /// True if a constraint with this value is kept. A level that is sought for a cost is not promised, so it may differ by
 /// as much as another round would change it.
 pub(in crate::allocation) fn kept_within(value: f64, goal: Goal) -> bool {

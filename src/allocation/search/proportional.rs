@@ -8,8 +8,9 @@ use crate::allocation::result::allocation::{Allocation, AllocationSolver, Proof,
 use crate::allocation::result::solver_result::{Solved, Starts};
 use crate::allocation::search::best_trial::SearchEnd;
 use crate::allocation::search::common_factor::loosest_of;
-use crate::allocation::search::driver::{Driver, Ended, Near, ROUNDS, cost, with_tolerances};
+use crate::allocation::search::driver::{Driver, Near, ROUNDS, cost, with_tolerances};
 use crate::allocation::search::linearization_point::LinearizationPoint;
+use crate::allocation::search::search_state::Ended;
 use crate::allocation::task::AllocateError;
 
 impl Driver<'_> {
