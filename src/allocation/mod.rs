@@ -23,7 +23,6 @@
 
 pub mod choice;
 mod cost;
-mod optimise;
 mod requirement;
 mod result;
 mod search;

@@ -49,7 +49,7 @@ const LAYERS: &[(&str, &[&[&str]])] = &[
             &["dimension", "characteristic"],
             &["distribution", "fits", "requirement", "inspection"],
             &["pearson"],
-            &["names", "elementary", "time", "unit", "labels", "points"],
+            &["names", "elementary", "time", "unit", "labels", "points", "optimise"],
             &["json_form", "parallel", "power"],
         ],
     ),
@@ -146,7 +146,10 @@ fn nothing_prints_outside_the_command_line() {
 #[test]
 fn one_file_knows_each_solver() {
     let knows = sources().into_iter().filter(|file| file.code().contains("argmin::")).map(|file| file.name());
-    assert_eq!(knows.collect::<Vec<_>>(), ["src/allocation/optimise/minimise.rs", "src/allocation/optimise/root.rs"]);
+    assert_eq!(
+        knows.collect::<Vec<_>>(),
+        ["crates/numeric/src/optimise/minimise.rs", "crates/numeric/src/optimise/root.rs"]
+    );
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Mathematics of tolerance analysis: distributions, moments, the Pearson system, correlation, samples and surface distributions.
+//! Mathematics of tolerance analysis: distributions, moments, the Pearson system, correlation, samples, surface distributions and solvers.
 //!
 //! This crate evaluates no model and reads no file.
 
@@ -17,6 +17,7 @@ pub mod labels;
 pub mod law;
 pub mod moments;
 pub mod names;
+pub mod optimise;
 pub mod parallel;
 pub mod pearson;
 pub mod points;

@@ -1,6 +1,6 @@
 //! Cheapest choice of processes: branch and bound on the dual of the convex relaxation.
 //!
-//! A node allows a range of processes for every group. Its bound is a dual value ([`separable`](crate::allocation::optimise::separable)). No
+//! A node allows a range of processes for every group. Its bound is a dual value ([`separable`](sensitol_numeric::optimise::separable)). No
 //! choice from these ranges can cost less, for any multipliers. Rounding and unfinished searches of multipliers make
 //! the bound weaker, never wrong. Each split takes the group whose two best processes are nearest in priced value, and
 //! divides its range between them. Source of the relaxation: A. M. Geoffrion, "Lagrangean relaxation for integer
@@ -23,10 +23,10 @@ use crate::allocation::choice::knapsack::cheapest;
 use crate::allocation::choice::option_list::ListOption;
 use crate::allocation::choice::single_offer::Setting;
 use crate::allocation::cost::cost_curve::{Offer, Priced};
-use crate::allocation::optimise::separable::{Best, Row, Separable};
 use crate::allocation::requirement::constraint::{KEPT, kept};
 use crate::allocation::requirement::quality_loss::losses_at;
 use crate::allocation::result::solver_result::{Solved, Starts};
+use sensitol_numeric::optimise::separable::{BestOption, PowerRow, SeparableProblem};
 
 /// Cheapest choice found.
 #[derive(Debug, Clone, PartialEq)]
@@ -82,8 +82,8 @@ const SAME: f64 = 1e-12;
 
 struct Search<'a> {
     setting: Setting<'a>,
-    rows: Vec<Row>,
-    losses: Vec<Row>,
+    rows: Vec<PowerRow>,
+    losses: Vec<PowerRow>,
     incumbent: Option<(Solved, Vec<usize>)>,
     nodes: usize,
 }
@@ -92,7 +92,7 @@ struct Search<'a> {
 pub(in crate::allocation) fn branch(setting: Setting<'_>, start: &[f64]) -> Option<Chosen> {
     let exact = setting.is_exact();
     let reference = reference(&setting, start)?;
-    let mut rows: Vec<Row> = setting.linearised(&reference)?.iter().map(|one| one.row(&reference)).collect();
+    let mut rows: Vec<PowerRow> = setting.linearised(&reference)?.iter().map(|one| one.row(&reference)).collect();
     rows.iter_mut().for_each(|row| row.constant -= KEPT);
     let losses = setting.loss_rows(&reference)?;
     let mut search = Search { setting, rows, losses, incumbent: None, nodes: 0 };
@@ -176,7 +176,7 @@ impl Search<'_> {
             }
             let priced = self.setting.priced;
             let (rows, losses) = (std::mem::take(&mut self.rows), std::mem::take(&mut self.losses));
-            let problem = Separable { priced, rows: &rows, losses: &losses };
+            let problem = SeparableProblem { unknowns: priced, rows: &rows, losses: &losses };
             let (value, best) = problem.bounded(&node.ranges, &mut node.multipliers, known, steps);
             node.bound = node.bound.max(value);
             let split = split(&problem, &node, &best);
@@ -218,8 +218,8 @@ impl Search<'_> {
 
     /// Repairs a choice, and keeps it if it is better than the best so far. It is tightened until it keeps the
     /// constraints, then loosened as far as it does.
-    fn try_from(&mut self, best: &[Best]) {
-        let mut offers: Vec<usize> = best.iter().map(|best| best.offer).collect();
+    fn try_from(&mut self, best: &[BestOption]) {
+        let mut offers: Vec<usize> = best.iter().map(|best| best.option).collect();
         let mut value = self.judged(&offers).map_or_else(|| self.quick(&offers).max(1.0 + 1e-9), |(_, value)| value);
         while !kept(value) {
             let mut better: Option<(f64, usize, usize, f64)> = None;
@@ -378,14 +378,14 @@ impl Search<'_> {
 
 /// Group whose two best processes are nearest in priced value, and the place of the split in its range. Returns None if
 /// every group has a single one.
-fn split(problem: &Separable<'_>, node: &Node, best: &[Best]) -> Option<(usize, usize)> {
+fn split(problem: &SeparableProblem<'_, Priced>, node: &Node, best: &[BestOption]) -> Option<(usize, usize)> {
     let mut nearest: Option<(f64, usize, usize)> = None;
     for (g, range) in node.ranges.iter().enumerate().filter(|(_, range)| range.len() > 1) {
-        for offer in range.clone().filter(|&offer| offer != best[g].offer) {
+        for offer in range.clone().filter(|&offer| offer != best[g].option) {
             let other = problem.best(g, &node.multipliers, offer..offer + 1);
             let regret = other.value - best[g].value;
             if nearest.is_none_or(|(least, ..)| regret < least) {
-                nearest = Some((regret, g, offer.max(best[g].offer)));
+                nearest = Some((regret, g, offer.max(best[g].option)));
             }
         }
     }

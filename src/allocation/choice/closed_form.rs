@@ -10,24 +10,24 @@
 //! with q = 1 for a worst case and q = 2 for a root of the sum of squares. Source: K. W. Chase, A. R. Parkinson, "A survey of research
 //! in the application of tolerance analysis to the design of mechanical assemblies", Research in Engineering Design 3 (1991).
 
-use crate::allocation::optimise::separable;
-use crate::allocation::optimise::separable::Separable;
+use crate::allocation::cost::cost_curve::Priced;
 use crate::allocation::requirement::constraint;
+use sensitol_numeric::optimise::separable::{PowerRow, SeparableProblem};
 
 /// Tolerances and multipliers of the optimum. Returns None if costs differ in kind, there are losses, several
 /// constraints are active, or a tolerance meets a bound.
-pub(in crate::allocation) fn closed_form(problem: &Separable<'_>) -> Option<(Vec<f64>, Vec<f64>)> {
+pub(in crate::allocation) fn closed_form(problem: &SeparableProblem<'_, Priced>) -> Option<(Vec<f64>, Vec<f64>)> {
     if !problem.losses.is_empty() {
         return None;
     }
     (0..problem.rows.len()).find_map(|k| {
         let at = bound_by(problem, k)?;
-        let kept = |(other, row): (usize, &separable::Row)| other == k || constraint::kept(row.value(&at));
+        let kept = |(other, row): (usize, &PowerRow)| other == k || constraint::kept(row.value(&at));
         let inside =
-            problem.priced.iter().zip(&at).all(|(group, t)| (group.offers[0].min..=group.offers[0].max).contains(t));
+            problem.unknowns.iter().zip(&at).all(|(group, t)| (group.offers[0].min..=group.offers[0].max).contains(t));
         let mut multipliers = vec![0.0; problem.rows.len()];
         // The ratio of saving to use by a wider tolerance is the same for every group.
-        let (group, term) = (&problem.priced[0], &problem.rows[k].terms[0]);
+        let (group, term) = (&problem.unknowns[0], &problem.rows[k].terms[0]);
         let saved = -group.parts * group.offers[0].curve.log_derivatives(at[0], libm::log(at[0]))[0];
         multipliers[k] = saved / (term.power * term.value(at[0]));
         (inside && problem.rows.iter().enumerate().all(kept)).then_some((at, multipliers))
@@ -35,11 +35,11 @@ pub(in crate::allocation) fn closed_form(problem: &Separable<'_>) -> Option<(Vec
 }
 
 /// Optimum with only this constraint.
-fn bound_by(problem: &Separable<'_>, k: usize) -> Option<Vec<f64>> {
+fn bound_by(problem: &SeparableProblem<'_, Priced>, k: usize) -> Option<Vec<f64>> {
     let row = &problem.rows[k];
-    let (_, exponent) = problem.priced.first()?.offers[0].curve.power()?;
+    let (_, exponent) = problem.unknowns.first()?.offers[0].curve.power()?;
     let power = row.terms[0].power;
-    let ratio = problem.priced.iter().zip(&row.terms).map(|(group, term)| {
+    let ratio = problem.unknowns.iter().zip(&row.terms).map(|(group, term)| {
         let (b, k) = group.offers[0].curve.power()?;
         let same = group.offers.len() == 1 && k == exponent && term.power == power && term.coefficient > 0.0;
         // Ratio in units of the tolerance at which the term was taken.

@@ -11,14 +11,14 @@
 use crate::allocation::choice::closed_form::closed_form;
 use crate::allocation::cost::cost_curve::Priced;
 use crate::allocation::cost::setup_cost::SetUp;
-use crate::allocation::optimise::augmented_lagrangian::augmented;
-use crate::allocation::optimise::minimise::swarmed;
-use crate::allocation::optimise::separable::{Row, Separable};
 use crate::allocation::requirement::constraint::{Constraint, kept};
 use crate::allocation::requirement::linearised::Linearised;
 use crate::allocation::requirement::quality_loss::{QualityLoss, losses_at};
 use crate::allocation::result::solver_result::{Ends, Solved, Starts};
 use crate::allocation::surface::response::Responses;
+use sensitol_numeric::optimise::augmented_lagrangian::solve_separable;
+use sensitol_numeric::optimise::minimise::minimise_by_swarm;
+use sensitol_numeric::optimise::separable::{PowerRow, SeparableProblem};
 use sensitol_numeric::parallel::prelude::*;
 
 /// Problem of one search: constraints, costs, and the responses at the linearization point.
@@ -76,7 +76,7 @@ impl Setting<'_> {
     }
 
     /// Losses as sums of powers with their values and slopes at these half bands. Returns None if one is unknown.
-    pub(in crate::allocation) fn loss_rows(&self, at: &[f64]) -> Option<Vec<Row>> {
+    pub(in crate::allocation) fn loss_rows(&self, at: &[f64]) -> Option<Vec<PowerRow>> {
         let row = |loss: &QualityLoss| Some(loss.linearised(self.responses, self.priced, at)?.row(at));
         self.losses.iter().map(row).collect()
     }
@@ -209,7 +209,7 @@ impl Setting<'_> {
             if kept(value) { self.cost(&at) } else { dearest.max(1.0) * value }
         };
         let logarithms: Vec<[f64; 2]> = bounds.iter().map(|bounds| bounds.map(libm::log)).collect();
-        swarmed(&function, &logarithms).map(|x| self.within(&tolerances(&x)))
+        minimise_by_swarm(&function, &logarithms).map(|x| self.within(&tolerances(&x)))
     }
 
     /// Tolerances between the tightest ones and the start, as far towards the start as all constraints are kept.
@@ -291,15 +291,15 @@ impl Setting<'_> {
             if (self.stopped)() {
                 break;
             }
-            let rows: Vec<Row> = linearised.iter().map(|one| one.row(&at)).collect();
+            let rows: Vec<PowerRow> = linearised.iter().map(|one| one.row(&at)).collect();
             let Some(losses) = self.loss_rows(&at) else { break };
-            let problem = Separable { priced: self.priced, rows: &rows, losses: &losses };
+            let problem = SeparableProblem { unknowns: self.priced, rows: &rows, losses: &losses };
             if step == 0 {
                 let direct = closed_form(&problem);
                 closed = direct.is_some() && exact;
                 multipliers = Some(match direct {
                     Some((_, multipliers)) => multipliers,
-                    None => augmented(&problem, &at).1,
+                    None => solve_separable(&problem, &at).1,
                 });
             }
             let (found, next) = problem.solve(&multipliers.take().unwrap_or_default());
@@ -326,8 +326,8 @@ impl Setting<'_> {
         best.converged = converged;
         self.tighten(&mut best);
         if closed {
-            let rows: Vec<Row> = self.linearised(&best.at)?.iter().map(|one| one.row(&best.at)).collect();
-            let direct = closed_form(&Separable { priced: self.priced, rows: &rows, losses: &[] });
+            let rows: Vec<PowerRow> = self.linearised(&best.at)?.iter().map(|one| one.row(&best.at)).collect();
+            let direct = closed_form(&SeparableProblem { unknowns: self.priced, rows: &rows, losses: &[] });
             let same = |direct: &Vec<f64>| direct.iter().zip(&best.at).all(|(a, b)| (a / b - 1.0).abs() <= SAME);
             best.closed = direct.is_some_and(|(direct, _)| same(&direct));
         }

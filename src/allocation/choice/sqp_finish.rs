@@ -4,16 +4,17 @@
 //! Every requirement is a row that its form writes ([`smooth_row`](crate::allocation::requirement::form::RequirementForm::smooth_row)).
 
 use crate::allocation::choice::single_offer::{SMALL, Setting};
-use crate::allocation::optimise::augmented_lagrangian::{Ended, Near, Slope, Smooth, cost};
-use crate::allocation::optimise::quadratic_program::dot;
 use crate::allocation::requirement::constraint::Constraint;
 use crate::allocation::requirement::linearised::Linearised;
 use crate::allocation::result::solver_result::{Ends, Solved};
+use sensitol_numeric::optimise::augmented_lagrangian::{
+    EndConditions, SmoothProblem, SmoothSolution, ValueAndSlopes, cost,
+};
 
 /// Most unknowns and rows. Beyond it the dense matrices of a step take longer than a round of the model.
 const MOST: usize = 300;
 /// End conditions: the tolerance of rows and bounds, and the most steps.
-const NEAR: Near = Near { by: 1e-11, updates: 100 };
+const NEAR: EndConditions = EndConditions { by: 1e-11, updates: 100 };
 
 impl Setting<'_> {
     /// Searches from any start. Returns the end, or that of an earlier search that it approaches. Returns None if
@@ -46,20 +47,20 @@ impl Setting<'_> {
             let t = tolerances(x);
             self.constraints.iter().zip(&widths).map(|(one, &width)| self.excess(one, width, &t)).collect()
         };
-        let smooth = Smooth { objective: &objective, rows: &rows, bounds: &bounds };
+        let smooth = SmoothProblem { objective: &objective, rows: &rows, bounds: &bounds };
         let x: Vec<f64> = start.iter().map(|t| libm::log(*t)).collect();
         let near = |x: &[f64], residual: f64| ends.near(&tolerances(x), residual).is_some();
-        let Ended { x, multipliers, residual } = smooth.sequential(&x, NEAR, &near)?;
+        let SmoothSolution { x, multipliers, residual } = smooth.solve_by_sqp(&x, NEAR, &near)?;
         let at = self.within(&tolerances(&x));
         if let Some(known) = ends.near(&at, residual) {
             return Some(known.clone());
         }
         let linearised = self.linearised(&at)?;
         // Both rows of a requirement are 0 at the same place, so that their slopes are proportional.
-        let scaled = |((multiplier, own), value): ((&f64, &Slope), &Linearised)| match dot(&value.slopes, &value.slopes)
-        {
-            0.0 => 0.0,
-            square => multiplier * scale * dot(&value.slopes, &own.1) / square,
+        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let scaled = |((multiplier, own), value): ((&f64, &ValueAndSlopes), &Linearised)| {
+            let square = product(&value.slopes, &value.slopes);
+            if square == 0.0 { 0.0 } else { multiplier * scale * product(&value.slopes, &own.1) / square }
         };
         let own = rows(&x)?;
         let multipliers: Vec<f64> = multipliers.iter().zip(&own).zip(&linearised).map(scaled).collect();
@@ -70,7 +71,7 @@ impl Setting<'_> {
     }
 
     /// Excess of a requirement, with slopes by `ln T`.
-    fn excess(&self, one: &Constraint, width: f64, at: &[f64]) -> Option<Slope> {
+    fn excess(&self, one: &Constraint, width: f64, at: &[f64]) -> Option<ValueAndSlopes> {
         one.form().smooth_row(one, self.responses, (self.priced, at), width)
     }
 }

@@ -1,6 +1,6 @@
 //! Value and slopes of a requirement, and the sum of powers that has them.
 
-use crate::allocation::optimise::separable::{Row, Term};
+use sensitol_numeric::optimise::separable::{PowerRow, PowerTerm};
 
 /// Value and slopes of a requirement at some tolerances. It is kept if `value` is at most 1.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,7 +40,7 @@ impl Linearised {
 
     /// Sum of powers of the tolerances with the same value and slopes at `at`. It is exact for worst cases and for sums
     /// of squares. A term that grows as a tolerance shrinks gets its inverse square, so that the sum is convex.
-    pub(in crate::allocation) fn row(&self, at: &[f64]) -> Row {
+    pub(in crate::allocation) fn row(&self, at: &[f64]) -> PowerRow {
         let mut constant = self.value;
         let terms = self.slopes.iter().zip(at).map(|(&slope, &t)| {
             let power = match (self.linear, slope < 0.0) {
@@ -50,9 +50,9 @@ impl Linearised {
             };
             let coefficient = slope / power;
             constant -= coefficient;
-            Term { coefficient, power, at: t }
+            PowerTerm { coefficient, power, at: t }
         });
         let terms = terms.collect();
-        Row { constant, terms }
+        PowerRow { constant, terms }
     }
 }

@@ -2,9 +2,9 @@
 
 use std::cell::Cell;
 
-use crate::allocation::optimise::root::root;
 use crate::allocation::requirement::constraint::{Constraint, kept};
 use crate::allocation::surface::response::Responses;
+use sensitol_numeric::optimise::root::root;
 
 /// Accuracy of the factor, in its logarithm.
 const NEAR: f64 = 1e-10;

@@ -10,12 +10,12 @@
 use crate::allocation::choice::machine::choose;
 use crate::allocation::choice::selection::Choice;
 use crate::allocation::choice::single_offer::Setting;
-use crate::allocation::optimise::root::root;
 use crate::allocation::requirement::constraint::Constraint;
 use crate::allocation::search::driver::Driver;
 use crate::allocation::task::Goal;
 use crate::problem::Problem;
 use sensitol_numeric::distribution::standard_normal;
+use sensitol_numeric::optimise::root::root;
 use sensitol_numeric::requirement::Requirement;
 
 /// Range of levels, in sigmas: from half of the assemblies within limits to the end of doubles.

@@ -1,7 +1,6 @@
 //! Moves nominal values, together with the tolerances or to the fewest rejects.
 
 use crate::allocation::choice::single_offer::Setting;
-use crate::allocation::optimise::minimise::minimised;
 use crate::allocation::requirement::constraint::Constraint;
 use crate::allocation::search::driver::{Driver, Near};
 use crate::allocation::search::linearization_point::LinearizationPoint;
@@ -13,6 +12,7 @@ use sensitol_numeric::capability::Law;
 use sensitol_numeric::characteristic::SpecLimits;
 use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::moments::Moments;
+use sensitol_numeric::optimise::minimise::minimise;
 
 /// Step of the central differences, in sigmas.
 const STEP: f64 = 1e-4;
@@ -130,7 +130,7 @@ fn shifts(problem: &Problem, responses: &Responses, of: &[usize]) -> Option<Vec<
     };
     let start = vec![0.0; of.len()];
     value(&start)?;
-    Some(minimised(&function, &start, REST, DESCENT))
+    Some(minimise(&function, &start, REST, DESCENT))
 }
 
 /// Logarithms of the shares rejected and kept.

@@ -15,13 +15,15 @@
 
 use crate::allocation::choice::single_offer::Setting;
 use crate::allocation::cost::cost_curve::Priced;
-use crate::allocation::optimise::augmented_lagrangian::{Ended, Near, Slope, Smooth, cost};
 use crate::allocation::requirement::constraint::Constraint;
+use sensitol_numeric::optimise::augmented_lagrangian::{
+    EndConditions, SmoothProblem, SmoothSolution, ValueAndSlopes, cost,
+};
 
 /// Step of the differences, in `ln T` and in sigmas. Truncation and rounding are both 1e-10.
 const STEP: f64 = 1e-5;
 /// End conditions: the tolerance of rows and bounds, and the most updates of the multipliers.
-const NEAR: Near = Near { by: 1e-9, updates: 40 };
+const NEAR: EndConditions = EndConditions { by: 1e-9, updates: 40 };
 /// Most unknowns times rows, because differences take long. Beyond it nominal values move to the fewest rejects
 /// instead.
 const MOST: usize = 2000;
@@ -56,7 +58,7 @@ pub(in crate::allocation) fn together(
         setting.constraints.iter().map(|one| one.width(setting.responses, &ones)).collect::<Option<Vec<f64>>>()?;
     let scale = setting.cost(at).abs().max(f64::MIN_POSITIVE);
     let unknowns = Unknowns { setting, of, bounds, widths, scale };
-    let Ended { x, residual, .. } = unknowns.cheapest(at)?;
+    let SmoothSolution { x, residual, .. } = unknowns.cheapest(at)?;
     let [ln, shifts] = [&x[..groups], &x[groups..]];
     Some(Together { shifts: shifts.to_vec(), at: ln.iter().map(|x| libm::exp(*x)).collect(), residual })
 }
@@ -95,8 +97,9 @@ impl Unknowns<'_> {
     }
 
     /// The excess of every constraint with its slopes.
-    fn rows(&self, x: &[f64]) -> Option<Vec<Slope>> {
-        let mut rows: Vec<Slope> = self.values(x)?.into_iter().map(|value| (value, vec![0.0; x.len()])).collect();
+    fn rows(&self, x: &[f64]) -> Option<Vec<ValueAndSlopes>> {
+        let mut rows: Vec<ValueAndSlopes> =
+            self.values(x)?.into_iter().map(|value| (value, vec![0.0; x.len()])).collect();
         let mut moved = x.to_vec();
         for j in 0..x.len() {
             moved[j] = x[j] + STEP;
@@ -119,7 +122,7 @@ impl Unknowns<'_> {
     }
 
     /// The cost of tolerances and losses, with its slopes.
-    fn objective(&self, x: &[f64]) -> Slope {
+    fn objective(&self, x: &[f64]) -> ValueAndSlopes {
         let scale = self.scale;
         let (value, mut slopes) = cost(self.setting.priced, &self.half_bands(x), x);
         slopes.resize(x.len(), 0.0);
@@ -146,17 +149,17 @@ impl Unknowns<'_> {
     }
 
     /// The cheapest end that keeps all constraints, from these half bands, from the tightest, and from between them.
-    fn cheapest(&self, at: &[f64]) -> Option<Ended> {
+    fn cheapest(&self, at: &[f64]) -> Option<SmoothSolution> {
         let priced = self.setting.priced;
         let of_groups = priced.iter().map(|group| [libm::log(group.tightest()), libm::log(group.loosest())]);
         let bounds: Vec<[f64; 2]> = of_groups.chain(self.bounds.iter().copied()).collect();
         let (objective, rows) = (|x: &[f64]| self.objective(x), |x: &[f64]| self.rows(x));
-        let smooth = Smooth { objective: &objective, rows: &rows, bounds: &bounds };
+        let smooth = SmoothProblem { objective: &objective, rows: &rows, bounds: &bounds };
         let tight: Vec<f64> = priced.iter().map(Priced::tightest).collect();
         let middle: Vec<f64> = at.iter().zip(&tight).map(|(at, tight)| (at * tight).sqrt()).collect();
-        let mut best: Option<(f64, Ended)> = None;
+        let mut best: Option<(f64, SmoothSolution)> = None;
         for start in [at, &middle, &tight] {
-            let Some(ended) = smooth.minimised(&self.within(start), NEAR) else { continue };
+            let Some(ended) = smooth.minimise(&self.within(start), NEAR) else { continue };
             let kept = self.values(&ended.x).is_some_and(|values| values.iter().all(|&value| value <= KEPT));
             let cost = self.objective(&ended.x).0;
             if kept && best.as_ref().is_none_or(|(least, _)| cost < least * (1.0 - KEPT)) {

@@ -20,13 +20,13 @@
 use std::sync::atomic::Ordering;
 
 use crate::allocation::cost::cost_curve::{Offer, Priced};
-use crate::allocation::optimise::separable::{Row, Separable};
 use crate::allocation::requirement::form::Basis;
 use crate::allocation::requirement::linearised::Linearised;
 use crate::allocation::requirement::registry::form_of;
 use crate::allocation::search::driver::Driver;
 use crate::allocation::search::trial::Trial;
 use crate::problem::Problem;
+use sensitol_numeric::optimise::separable::{PowerRow, SeparableProblem};
 
 /// Most trials of one search.
 const MOST: usize = 300;
@@ -499,9 +499,9 @@ impl Slopes {
         let row = |(k, slopes): (usize, &Vec<f64>)| {
             Linearised::of_uses(here.uses[k], slopes.clone(), self.linear[k]).row(&here.at)
         };
-        let rows: Vec<Row> = self.of_uses.iter().enumerate().map(row).collect();
+        let rows: Vec<PowerRow> = self.of_uses.iter().enumerate().map(row).collect();
         let lost = with_loss.then(|| Linearised::of_squares(here.loss, self.of_loss.clone()).row(&here.at));
-        let losses: Vec<Row> = lost.into_iter().collect();
+        let losses: Vec<PowerRow> = lost.into_iter().collect();
         let near = |(g, group): (usize, &Priced)| {
             let mut offer = group.offers[self.offers[g]].clone();
             let t = self.centre.at[g].clamp(offer.min, offer.max);
@@ -509,7 +509,7 @@ impl Slopes {
             Priced { offers: vec![offer], ..group.clone() }
         };
         let priced: Vec<Priced> = priced.iter().enumerate().map(near).collect();
-        let separable = Separable { priced: &priced, rows: &rows, losses: &losses };
+        let separable = SeparableProblem { unknowns: &priced, rows: &rows, losses: &losses };
         let (_, to) = separable.solve(&vec![0.0; rows.len()]);
         to.iter().all(|t| t.is_finite() && *t > 0.0).then_some(to)
     }

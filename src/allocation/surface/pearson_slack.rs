@@ -6,9 +6,9 @@
 //! d ln s/d g = -(dF/dg)/(dF/d ln s),  dF/d ln s = (below p_b + above p_a)/s,  and alike for e
 //! ```
 
-use crate::allocation::optimise::root::root;
 use sensitol_numeric::capability::Law;
 use sensitol_numeric::moments::Moments;
+use sensitol_numeric::optimise::root::root;
 use sensitol_numeric::pearson::Pearson;
 
 /// Step of differences in skewness and excess. Truncation and rounding are both near 1e-8.

@@ -16,10 +16,10 @@
 //! along held contours. Source: N. M. Alexandrov, R. M. Lewis, "An overview of first-order model management for
 //! engineering optimization", Optimization and Engineering 2 (2001).
 
-use crate::allocation::optimise::root::root;
 use sensitol_numeric::characteristic::SpecLimits;
 use sensitol_numeric::law::{LawTail, SurfaceLaw, TailChoices};
 use sensitol_numeric::moments::Moments;
+use sensitol_numeric::optimise::root::root;
 
 /// Least part of the allowed rejects that remains after the uncertainty is subtracted. A greater uncertainty cannot be
 /// met.

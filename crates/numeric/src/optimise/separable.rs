@@ -1,38 +1,71 @@
-//! Separable problem of every step of the allocation, and its dual.
+//! Separable problem with a choice of convex costs for every unknown, and its dual.
 //!
 //! ```text
-//! min  sum_g parts_g C_g(T_g)     subject to   constant_k + sum_g p_kg (T_g/at_kg)^q_kg <= 1  for every k,   min_g <= T_g <= max_g
-//! D(lambda) = sum_k lambda_k (constant_k - 1) + sum_g min over offers and T of [ parts_g C_g(T) + sum_k lambda_k p_kg (T/at_kg)^q_kg ]
+//! min  sum_g w_g C_g(T_g)     subject to   constant_k + sum_g p_kg (T_g/at_kg)^q_kg <= 1  for every k,   min_g <= T_g <= max_g
+//! D(lambda) = sum_k lambda_k (constant_k - 1) + sum_g min over options and T of [ w_g C_g(T) + sum_k lambda_k p_kg (T/at_kg)^q_kg ]
 //! ```
 //!
 //! Losses are further such sums, which are added to the cost. Costs are convex in `T`, and `q` is 1, 2 or -2, with a
-//! coefficient above 0 unless `q = 1`. With one offer a group the problem is convex: the greatest `D` over `lambda >=
-//! 0` is the least cost. With several, `D` of any `lambda` is a lower bound of the cost of every choice of processes
+//! coefficient above 0 unless `q = 1`. With one option an unknown the problem is convex: the greatest `D` over `lambda >=
+//! 0` is the least cost. With several, `D` of any `lambda` is a lower bound of the cost of every choice of options
 //! (weak duality). The greatest one is the bound of the convex relaxation.
 
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 
-use crate::allocation::cost::cost_curve::{Offer, Priced};
+/// Convex cost of an unknown `T` between two bounds.
+pub trait BoundedCost {
+    /// Least and greatest `T`.
+    fn bounds(&self) -> [f64; 2];
+
+    /// Cost at `T`.
+    fn cost(&self, t: f64) -> f64;
+
+    /// Cost at `T`, whose logarithm is given.
+    fn cost_by(&self, t: f64, ln: f64) -> f64;
+
+    /// First and second derivative of the cost by `ln T`.
+    fn log_derivatives(&self, t: f64, ln: f64) -> [f64; 2];
+
+    /// Cost and its derivative by `ln T`.
+    fn with_slope(&self, t: f64, ln: f64) -> [f64; 2];
+}
+
+/// Unknown with a choice among bounded costs.
+pub trait CostedUnknown {
+    /// Cost that may be chosen.
+    type Option: BoundedCost;
+
+    /// Factor of every cost.
+    fn weight(&self) -> f64;
+
+    /// Costs to choose from, at least one.
+    fn options(&self) -> &[Self::Option];
+}
 
 /// One constraint.
 #[derive(Debug, Clone, PartialEq)]
-pub(in crate::allocation) struct Row {
-    pub(in crate::allocation) constant: f64,
-    /// Terms of all groups.
-    pub(in crate::allocation) terms: Vec<Term>,
+pub struct PowerRow {
+    /// Part that no unknown changes.
+    pub constant: f64,
+    /// Terms of all unknowns.
+    pub terms: Vec<PowerTerm>,
 }
 
 /// Term `coefficient (T/at)^power`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::allocation) struct Term {
-    pub(in crate::allocation) coefficient: f64,
-    pub(in crate::allocation) power: f64,
-    pub(in crate::allocation) at: f64,
+pub struct PowerTerm {
+    /// Value of the term at `at`.
+    pub coefficient: f64,
+    /// Power: 1, 2 or -2.
+    pub power: f64,
+    /// Unknown at which the coefficient is the value.
+    pub at: f64,
 }
 
-impl Term {
-    pub(in crate::allocation) fn value(&self, t: f64) -> f64 {
+impl PowerTerm {
+    /// Value of the term.
+    pub fn value(&self, t: f64) -> f64 {
         let x = t / self.at;
         self.coefficient
             * match self.power {
@@ -43,34 +76,78 @@ impl Term {
     }
 }
 
-impl Row {
+impl PowerRow {
     /// Value of the constraint. It is kept if the value is at most 1.
-    pub(in crate::allocation) fn value(&self, at: &[f64]) -> f64 {
+    pub fn value(&self, at: &[f64]) -> f64 {
         self.constant + self.terms.iter().zip(at).map(|(term, &t)| term.value(t)).sum::<f64>()
     }
 }
 
-/// Separable problem, in which every group has the offers that are still allowed.
-pub(in crate::allocation) struct Separable<'a> {
-    pub(in crate::allocation) priced: &'a [Priced],
-    pub(in crate::allocation) rows: &'a [Row],
+/// Separable problem, in which every unknown has the options that are still allowed.
+///
+/// ```
+/// use sensitol_numeric::optimise::separable::{BoundedCost, CostedUnknown, PowerRow, PowerTerm, SeparableProblem};
+/// /// Cost `b/T`.
+/// struct Reciprocal(f64);
+/// impl BoundedCost for Reciprocal {
+///     fn bounds(&self) -> [f64; 2] {
+///         [0.01, 1.0]
+///     }
+///     fn cost(&self, t: f64) -> f64 {
+///         self.0 / t
+///     }
+///     fn cost_by(&self, t: f64, _: f64) -> f64 {
+///         self.cost(t)
+///     }
+///     fn log_derivatives(&self, t: f64, _: f64) -> [f64; 2] {
+///         [-self.cost(t), self.cost(t)]
+///     }
+///     fn with_slope(&self, t: f64, _: f64) -> [f64; 2] {
+///         [self.cost(t), -self.cost(t)]
+///     }
+/// }
+/// struct Single([Reciprocal; 1]);
+/// impl CostedUnknown for Single {
+///     type Option = Reciprocal;
+///     fn weight(&self) -> f64 {
+///         1.0
+///     }
+///     fn options(&self) -> &[Reciprocal] {
+///         &self.0
+///     }
+/// }
+/// let unknowns = [0.1, 0.4].map(|b| Single([Reciprocal(b)]));
+/// let term = PowerTerm { coefficient: 1.0, power: 1.0, at: 0.2 };
+/// let rows = [PowerRow { constant: 0.0, terms: vec![term; 2] }];
+/// let problem = SeparableProblem { unknowns: &unknowns, rows: &rows, losses: &[] };
+/// // Lagrange: unknowns as the roots of the costs, 0.2 together.
+/// let (_, found) = problem.solve(&[0.0]);
+/// assert!((found[0] - 0.2 / 3.0).abs() < 1e-12 && (found[1] - 0.4 / 3.0).abs() < 1e-12);
+/// ```
+pub struct SeparableProblem<'a, U> {
+    /// Unknowns with their costs.
+    pub unknowns: &'a [U],
+    /// Constraints.
+    pub rows: &'a [PowerRow],
     /// Sums that are added to the cost.
-    pub(in crate::allocation) losses: &'a [Row],
+    pub losses: &'a [PowerRow],
 }
 
-/// Best offer and tolerance of a group for given multipliers.
+/// Best option and value of an unknown for given multipliers.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::allocation) struct Best {
-    pub(in crate::allocation) offer: usize,
-    pub(in crate::allocation) t: f64,
+pub struct BestOption {
+    /// Position of the option.
+    pub option: usize,
+    /// Value of the unknown.
+    pub t: f64,
     /// Cost plus priced use of the constraints.
-    pub(in crate::allocation) value: f64,
+    pub value: f64,
     /// Second derivative of the value by `ln T`, 0 at a bound.
     curvature: f64,
 }
 
 /// Greatest relative excess of a constraint that is kept.
-pub(in crate::allocation) const KEPT: f64 = 1e-13;
+pub const KEPT: f64 = 1e-13;
 /// Greatest relative rise of the dual that may be rounding.
 const FLAT: f64 = 1e-12;
 /// Most Newton steps on the dual between two sweeps.
@@ -78,27 +155,40 @@ const NEWTON: usize = 60;
 /// Most sweeps over the multipliers.
 const SWEEPS: usize = 40;
 
-impl Separable<'_> {
-    /// Best offer and tolerance of one group among the offers from `range`.
-    pub(in crate::allocation) fn best(&self, g: usize, multipliers: &[f64], range: std::ops::Range<usize>) -> Best {
+impl<U: CostedUnknown> SeparableProblem<'_, U> {
+    /// Best option and value of one unknown among the options of `range`.
+    pub fn best(&self, g: usize, multipliers: &[f64], range: std::ops::Range<usize>) -> BestOption {
         self.best_near(g, multipliers, range, None)
     }
 
-    /// Best offer and tolerance, found sooner if it is near a known one.
-    fn best_near(&self, g: usize, multipliers: &[f64], range: std::ops::Range<usize>, near: Option<&Best>) -> Best {
-        let offers = self.priced[g].offers[range.clone()].iter().zip(range);
-        let best = offers.map(|(offer, index)| {
-            let near = near.filter(|near| near.offer == index).map(|near| near.t);
-            self.of_offer(g, offer, index, multipliers, near)
+    /// Best option and value, found sooner if it is near a known one.
+    fn best_near(
+        &self,
+        g: usize,
+        multipliers: &[f64],
+        range: std::ops::Range<usize>,
+        near: Option<&BestOption>,
+    ) -> BestOption {
+        let options = self.unknowns[g].options()[range.clone()].iter().zip(range);
+        let best = options.map(|(option, index)| {
+            let near = near.filter(|near| near.option == index).map(|near| near.t);
+            self.of_option(g, option, index, multipliers, near)
         });
-        best.reduce(|a, b| if b.value < a.value { b } else { a }).expect("every group has an offer")
+        best.reduce(|a, b| if b.value < a.value { b } else { a }).expect("every unknown has an option")
     }
 
-    fn of_offer(&self, g: usize, offer: &Offer, index: usize, multipliers: &[f64], near: Option<f64>) -> Best {
-        let parts = self.priced[g].parts;
+    fn of_option(
+        &self,
+        g: usize,
+        option: &U::Option,
+        index: usize,
+        multipliers: &[f64],
+        near: Option<f64>,
+    ) -> BestOption {
+        let weight = self.unknowns[g].weight();
         let slope = |t: f64, ln: f64| {
-            let [first, second] = offer.curve.log_derivatives(t, ln);
-            let (mut first, mut second) = (parts * first, parts * second);
+            let [first, second] = option.log_derivatives(t, ln);
+            let (mut first, mut second) = (weight * first, weight * second);
             for (row, multiplier) in self.weighted(multipliers) {
                 let term = &row.terms[g];
                 if term.coefficient != 0.0 {
@@ -109,45 +199,48 @@ impl Separable<'_> {
             }
             (first, second)
         };
-        let (t, cost, curvature) = if offer.min == offer.max {
-            (offer.min, offer.curve.cost(offer.min), 0.0)
+        let [min, max] = option.bounds();
+        let (t, cost, curvature) = if min == max {
+            (min, option.cost(min), 0.0)
         } else {
-            let bounds = [offer.min, offer.max].map(|t| (t, libm::log(t)));
+            let bounds = [min, max].map(|t| (t, libm::log(t)));
             let (t, ln, curvature) = least(&slope, bounds, near);
-            (t, offer.curve.cost_by(t, ln), curvature)
+            (t, option.cost_by(t, ln), curvature)
         };
         let used: f64 = self.weighted(multipliers).map(|(row, multiplier)| multiplier * row.terms[g].value(t)).sum();
-        Best { offer: index, t, value: parts * cost + used, curvature }
+        BestOption { option: index, t, value: weight * cost + used, curvature }
     }
 
     /// Rows with a price: constraints by their multipliers, and losses at 1.
-    fn weighted<'m>(&'m self, multipliers: &'m [f64]) -> impl Iterator<Item = (&'m Row, f64)> {
+    fn weighted<'m>(&'m self, multipliers: &'m [f64]) -> impl Iterator<Item = (&'m PowerRow, f64)> {
         let priced = self.rows.iter().zip(multipliers.iter().copied()).filter(|(_, multiplier)| *multiplier > 0.0);
         priced.chain(self.losses.iter().map(|row| (row, 1.0)))
     }
 
-    fn all(&self, multipliers: &[f64]) -> Vec<Best> {
-        (0..self.priced.len()).map(|g| self.best(g, multipliers, 0..self.priced[g].offers.len())).collect()
+    fn all(&self, multipliers: &[f64]) -> Vec<BestOption> {
+        (0..self.unknowns.len()).map(|g| self.best(g, multipliers, 0..self.unknowns[g].options().len())).collect()
     }
 
-    /// Best offers and tolerances of all groups, searched near known ones.
-    fn all_near(&self, multipliers: &[f64], near: &[Best]) -> Vec<Best> {
-        let of = |(g, near): (usize, &Best)| self.best_near(g, multipliers, 0..self.priced[g].offers.len(), Some(near));
+    /// Best options and values of all unknowns, searched near known ones.
+    fn all_near(&self, multipliers: &[f64], near: &[BestOption]) -> Vec<BestOption> {
+        let of = |(g, near): (usize, &BestOption)| {
+            self.best_near(g, multipliers, 0..self.unknowns[g].options().len(), Some(near))
+        };
         near.iter().enumerate().map(of).collect()
     }
 
-    fn bound(&self, multipliers: &[f64], best: &[Best]) -> f64 {
+    fn bound(&self, multipliers: &[f64], best: &[BestOption]) -> f64 {
         let constants = self.rows.iter().zip(multipliers).map(|(row, multiplier)| multiplier * (row.constant - 1.0));
         let lost: f64 = self.losses.iter().map(|row| row.constant).sum();
         lost + constants.sum::<f64>() + best.iter().map(|best| best.value).sum::<f64>()
     }
 
-    /// Multipliers with the greatest dual value, and the tolerances that belong to them. This is the optimum if every
-    /// group has one offer and the problem has a solution.
+    /// Multipliers with the greatest dual value, and the unknowns that belong to them. This is the optimum if every
+    /// unknown has one option and the problem has a solution.
     ///
     /// Each multiplier alone comes first, which brings any start near the optimum. Newton steps follow on those above
-    /// 0, whose Hessian is `-sum_g j_g j_g' / curvature_g` over the groups within their bounds.
-    pub(in crate::allocation) fn solve(&self, start: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    /// 0, whose Hessian is `-sum_g j_g j_g' / curvature_g` over the unknowns within their bounds.
+    pub fn solve(&self, start: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let mut multipliers = start.to_vec();
         let mut best = self.all(&multipliers);
         for round in 0..SWEEPS {
@@ -166,7 +259,7 @@ impl Separable<'_> {
         (multipliers, best.iter().map(|best| best.t).collect())
     }
 
-    fn misses(&self, best: &[Best]) -> Vec<f64> {
+    fn misses(&self, best: &[BestOption]) -> Vec<f64> {
         let at: Vec<f64> = best.iter().map(|best| best.t).collect();
         self.rows.iter().map(|row| row.value(&at) - 1.0).collect()
     }
@@ -179,7 +272,7 @@ impl Separable<'_> {
 
     /// Newton steps as long as the dual rises. Steps that only lower the violations could alternate with
     /// [`alone`](Self::alone) without end.
-    fn newton(&self, multipliers: &mut Vec<f64>, best: &mut Vec<Best>) -> bool {
+    fn newton(&self, multipliers: &mut Vec<f64>, best: &mut Vec<BestOption>) -> bool {
         for _ in 0..NEWTON {
             let misses = self.misses(best);
             let error = Self::error(multipliers, &misses);
@@ -203,7 +296,7 @@ impl Separable<'_> {
             if largest == 0.0 {
                 return false;
             }
-            // Two sides of a characteristic may use the tolerances in the same proportions. Any split of the price
+            // Two rows may use the unknowns in the same proportions. Any split of the price
             // between them is then right.
             (0..n).for_each(|a| matrix[(a, a)] += 1e-13 * largest);
             let right = Mat::from_fn(n, 1, |a, _| misses[active[a]]);
@@ -251,8 +344,11 @@ impl Separable<'_> {
             multipliers[k] = 0.0;
             return;
         }
-        let scale: f64 =
-            self.priced.iter().map(|group| group.parts * group.offers[0].curve.cost(group.offers[0].min)).sum();
+        let dearest = |unknown: &U| {
+            let option = &unknown.options()[0];
+            unknown.weight() * option.cost(option.bounds()[0])
+        };
+        let scale: f64 = self.unknowns.iter().map(dearest).sum();
         let (mut low, mut high) = (0.0, scale.max(f64::MIN_POSITIVE) * 1e-6);
         while miss(high) > 0.0 {
             (low, high) = (high, 16.0 * high);
@@ -271,16 +367,16 @@ impl Separable<'_> {
         multipliers[k] = high;
     }
 
-    /// Near the greatest lower bound of the cost of any choice from these ranges of offers. It takes at most `steps`
+    /// Near the greatest lower bound of the cost of any choice from these ranges of options. It takes at most `steps`
     /// steps from `multipliers`, which are set to the best ones found. `known` is the cost of a known choice.
-    pub(in crate::allocation) fn bounded(
+    pub fn bounded(
         &self,
         ranges: &[std::ops::Range<usize>],
         multipliers: &mut Vec<f64>,
         known: f64,
         steps: usize,
-    ) -> (f64, Vec<Best>) {
-        let all = |multipliers: &[f64]| -> Vec<Best> {
+    ) -> (f64, Vec<BestOption>) {
+        let all = |multipliers: &[f64]| -> Vec<BestOption> {
             ranges.iter().enumerate().map(|(g, range)| self.best(g, multipliers, range.clone())).collect()
         };
         let mut at = multipliers.clone();

@@ -12,30 +12,30 @@
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 
-use crate::allocation::optimise::augmented_lagrangian::Slope;
+use crate::optimise::augmented_lagrangian::ValueAndSlopes;
 
 /// Greatest excess of a row that is kept. Rows and bounds are near 1 in size.
 const KEPT: f64 = 1e-13;
 /// Part of a direction outside the span of the active rows, up to which it counts as within the span.
 const DEPENDENT: f64 = 1e-14;
 
-pub(in crate::allocation) struct Quadratic<'a> {
+pub(crate) struct Quadratic<'a> {
     /// Matrix `H`, row by row.
-    pub(in crate::allocation) inverse: &'a [Vec<f64>],
-    pub(in crate::allocation) gradient: &'a [f64],
-    pub(in crate::allocation) rows: &'a [Slope],
+    pub(crate) inverse: &'a [Vec<f64>],
+    pub(crate) gradient: &'a [f64],
+    pub(crate) rows: &'a [ValueAndSlopes],
     /// Bounds of every unknown.
-    pub(in crate::allocation) bounds: &'a [[f64; 2]],
-    pub(in crate::allocation) weight: f64,
+    pub(crate) bounds: &'a [[f64; 2]],
+    pub(crate) weight: f64,
 }
 
 #[derive(Clone)]
-pub(in crate::allocation) struct Step {
-    pub(in crate::allocation) d: Vec<f64>,
+pub(crate) struct Step {
+    pub(crate) d: Vec<f64>,
     /// Excess `t` of the rows.
-    pub(in crate::allocation) slack: f64,
+    pub(crate) slack: f64,
     /// Multipliers of the rows, then of the lower and the upper bound of every unknown.
-    pub(in crate::allocation) multipliers: Vec<f64>,
+    pub(crate) multipliers: Vec<f64>,
 }
 
 /// Condition `normal . (d, t) <= bound`.
@@ -58,7 +58,7 @@ struct Active {
 
 impl Quadratic<'_> {
     /// Solves the problem. Returns None if rounding prevents further steps.
-    pub(in crate::allocation) fn solved(&self) -> Option<Step> {
+    pub(crate) fn solved(&self) -> Option<Step> {
         let n = self.gradient.len();
         let mut z: Vec<f64> = self.inverse.iter().map(|row| -dot(row, self.gradient)).chain([0.0]).collect();
         // Without rows t is 0, which the weight `w` enforces.
@@ -182,7 +182,7 @@ impl Quadratic<'_> {
 }
 
 /// Product over the positions that both vectors have.
-pub(in crate::allocation) fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 

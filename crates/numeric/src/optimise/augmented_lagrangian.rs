@@ -8,10 +8,8 @@
 //! methods", J. Optimization Theory and Applications 4 (1969); R. T. Rockafellar, same journal 12 (1973), for
 //! inequalities.
 
-use crate::allocation::cost::cost_curve::Priced;
-use crate::allocation::optimise::minimise::minimised;
-use crate::allocation::optimise::separable;
-use crate::allocation::optimise::separable::Separable;
+use crate::optimise::minimise::minimise;
+use crate::optimise::separable::{BoundedCost, CostedUnknown, PowerRow, SeparableProblem};
 
 /// Iterations of the descent between two updates of the multipliers.
 const DESCENT: u64 = 60;
@@ -21,46 +19,59 @@ const FALLS: f64 = 0.25;
 const WEIGHT: f64 = 10.0;
 
 /// Value with its derivatives.
-pub(in crate::allocation) type Slope = (f64, Vec<f64>);
+pub type ValueAndSlopes = (f64, Vec<f64>);
 
-pub(in crate::allocation) struct Smooth<'a> {
+/// Smooth objective under smooth rows and bounds.
+///
+/// ```
+/// use sensitol_numeric::optimise::augmented_lagrangian::{EndConditions, SmoothProblem};
+/// // The point of the line x + y >= 1 that is nearest to 0.
+/// let objective = |x: &[f64]| (x[0] * x[0] + x[1] * x[1], vec![2.0 * x[0], 2.0 * x[1]]);
+/// let rows = |x: &[f64]| Some(vec![(1.0 - x[0] - x[1], vec![-1.0, -1.0])]);
+/// let bounds = [[-9.0, 9.0]; 2];
+/// let problem = SmoothProblem { objective: &objective, rows: &rows, bounds: &bounds };
+/// let found = problem.solve_by_sqp(&[3.0, 0.0], EndConditions { by: 1e-11, updates: 50 }, &|_, _| false).unwrap();
+/// assert!((found.x[0] - 0.5).abs() < 1e-9 && (found.multipliers[0] - 1.0).abs() < 1e-8);
+/// ```
+pub struct SmoothProblem<'a> {
     /// Objective, scaled to a size near 1.
-    pub(in crate::allocation) objective: &'a dyn Fn(&[f64]) -> Slope,
+    pub objective: &'a dyn Fn(&[f64]) -> ValueAndSlopes,
     /// Rows, each kept if it is at most 0. Returns None if one is not defined.
-    pub(in crate::allocation) rows: &'a dyn Fn(&[f64]) -> Option<Vec<Slope>>,
-    pub(in crate::allocation) bounds: &'a [[f64; 2]],
+    pub rows: &'a dyn Fn(&[f64]) -> Option<Vec<ValueAndSlopes>>,
+    /// Least and greatest value of every unknown.
+    pub bounds: &'a [[f64; 2]],
 }
 
 /// End conditions of a search.
 #[derive(Clone, Copy)]
-pub(in crate::allocation) struct Near {
+pub struct EndConditions {
     /// Greatest violation of rows and bounds.
-    pub(in crate::allocation) by: f64,
+    pub by: f64,
     /// Most updates of the multipliers.
-    pub(in crate::allocation) updates: usize,
+    pub updates: usize,
 }
 
 /// Result of a search.
-pub(in crate::allocation) struct Ended {
+pub struct SmoothSolution {
     /// Unknowns, within their bounds.
-    pub(in crate::allocation) x: Vec<f64>,
+    pub x: Vec<f64>,
     /// Multipliers of the rows.
-    pub(in crate::allocation) multipliers: Vec<f64>,
+    pub multipliers: Vec<f64>,
     /// Largest violation of the conditions of Karush, Kuhn and Tucker. Stationarity is relative to the largest slope of
     /// the objective.
-    pub(in crate::allocation) residual: f64,
+    pub residual: f64,
 }
 
-impl Smooth<'_> {
+impl SmoothProblem<'_> {
     /// Searches from a start. Returns None if the rows are not defined there.
-    pub(in crate::allocation) fn minimised(&self, start: &[f64], near: Near) -> Option<Ended> {
+    pub fn minimise(&self, start: &[f64], near: EndConditions) -> Option<SmoothSolution> {
         let mut x = start.to_vec();
         let rows = (self.rows)(&x)?.len();
         let mut multipliers = vec![0.0; rows + 2 * x.len()];
         let mut weight = WEIGHT;
         let mut last = f64::INFINITY;
         for _ in 0..near.updates {
-            x = minimised(&|x| self.lagrangian(x, &multipliers, weight), &x, 0.1 * near.by, DESCENT);
+            x = minimise(&|x| self.lagrangian(x, &multipliers, weight), &x, 0.1 * near.by, DESCENT);
             let over = self.over(&(self.rows)(&x)?, &x);
             let mut error: f64 = 0.0;
             for (multiplier, over) in multipliers.iter_mut().zip(&over) {
@@ -78,16 +89,16 @@ impl Smooth<'_> {
         let residual = self.residual(&x, &multipliers)?;
         x.iter_mut().zip(self.bounds).for_each(|(x, &[low, high])| *x = x.clamp(low, high));
         multipliers.truncate(rows);
-        Some(Ended { x, multipliers, residual })
+        Some(SmoothSolution { x, multipliers, residual })
     }
 
     /// Excess of every row, and of every unknown below its lower and above its upper bound.
-    fn over(&self, rows: &[Slope], x: &[f64]) -> Vec<f64> {
+    fn over(&self, rows: &[ValueAndSlopes], x: &[f64]) -> Vec<f64> {
         let bounds = self.bounds.iter().zip(x).flat_map(|(&[low, high], &x)| [low - x, x - high]);
         rows.iter().map(|row| row.0).chain(bounds).collect()
     }
 
-    fn lagrangian(&self, x: &[f64], multipliers: &[f64], weight: f64) -> Option<Slope> {
+    fn lagrangian(&self, x: &[f64], multipliers: &[f64], weight: f64) -> Option<ValueAndSlopes> {
         let (mut value, mut slopes) = (self.objective)(x);
         let rows = (self.rows)(x)?;
         let (of_rows, of_bounds) = multipliers.split_at(rows.len());
@@ -114,13 +125,7 @@ impl Smooth<'_> {
 
     /// Largest violation of the conditions of Karush, Kuhn and Tucker, by the slopes of the objective and the rows at
     /// `x`.
-    pub(in crate::allocation) fn residual_of(
-        &self,
-        own: &[f64],
-        rows: &[Slope],
-        x: &[f64],
-        multipliers: &[f64],
-    ) -> f64 {
+    pub fn residual_of(&self, own: &[f64], rows: &[ValueAndSlopes], x: &[f64], multipliers: &[f64]) -> f64 {
         let scale = own.iter().fold(f64::MIN_POSITIVE, |scale, slope| scale.max(slope.abs()));
         let (of_rows, of_bounds) = multipliers.split_at(rows.len());
         let mut slopes = own.to_vec();
@@ -138,12 +143,12 @@ impl Smooth<'_> {
     }
 }
 
-/// Solves a separable problem from any start to near its optimum. Returns tolerances and multipliers, which Newton
-/// steps on the dual then refine. Every group must have one offer.
-pub(in crate::allocation) fn augmented(problem: &Separable<'_>, start: &[f64]) -> (Vec<f64>, Vec<f64>) {
-    const NEAR: Near = Near { by: 1e-3, updates: 12 };
+/// Solves a separable problem from any start to near its optimum. Returns unknowns and multipliers, which Newton steps
+/// on the dual then refine. Every unknown must have one option.
+pub fn solve_separable<U: CostedUnknown>(problem: &SeparableProblem<'_, U>, start: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    const NEAR: EndConditions = EndConditions { by: 1e-3, updates: 12 };
     let bounds: Vec<[f64; 2]> =
-        problem.priced.iter().map(|group| [libm::log(group.offers[0].min), libm::log(group.offers[0].max)]).collect();
+        problem.unknowns.iter().map(|unknown| unknown.options()[0].bounds().map(libm::log)).collect();
     let x: Vec<f64> = start.iter().map(|t| libm::log(*t)).collect();
     let scale = with_losses(problem, start, &x).0.abs().max(f64::MIN_POSITIVE);
     let tolerances = |x: &[f64]| x.iter().map(|x| libm::exp(*x)).collect::<Vec<f64>>();
@@ -153,24 +158,24 @@ pub(in crate::allocation) fn augmented(problem: &Separable<'_>, start: &[f64]) -
     };
     let rows = |x: &[f64]| {
         let t = tolerances(x);
-        let of = |row: &separable::Row| {
+        let of = |row: &PowerRow| {
             let slopes = row.terms.iter().zip(&t).map(|(term, &t)| term.power * term.value(t)).collect();
             (row.value(&t) - 1.0, slopes)
         };
         Some(problem.rows.iter().map(of).collect())
     };
-    let smooth = Smooth { objective: &objective, rows: &rows, bounds: &bounds };
-    match smooth.minimised(&x, NEAR) {
-        Some(Ended { x, multipliers, .. }) => {
+    let smooth = SmoothProblem { objective: &objective, rows: &rows, bounds: &bounds };
+    match smooth.minimise(&x, NEAR) {
+        Some(SmoothSolution { x, multipliers, .. }) => {
             (tolerances(&x), multipliers.into_iter().map(|multiplier| multiplier * scale).collect())
         }
         None => (start.to_vec(), vec![0.0; problem.rows.len()]),
     }
 }
 
-/// Cost of all groups and losses at tolerances and their logarithms, with the derivatives by `ln T`.
-fn with_losses(problem: &Separable<'_>, at: &[f64], x: &[f64]) -> Slope {
-    let (mut value, mut slopes) = cost(problem.priced, at, x);
+/// Cost of all unknowns and losses at unknowns and their logarithms, with the derivatives by `ln T`.
+fn with_losses<U: CostedUnknown>(problem: &SeparableProblem<'_, U>, at: &[f64], x: &[f64]) -> ValueAndSlopes {
+    let (mut value, mut slopes) = cost(problem.unknowns, at, x);
     for row in problem.losses {
         value += row.value(at);
         let terms = row.terms.iter().zip(at).map(|(term, &t)| term.power * term.value(t));
@@ -179,11 +184,11 @@ fn with_losses(problem: &Separable<'_>, at: &[f64], x: &[f64]) -> Slope {
     (value, slopes)
 }
 
-/// Cost of all groups at tolerances and their logarithms, by the first offer of each, with the derivatives by `ln T`.
-pub(in crate::allocation) fn cost(priced: &[Priced], at: &[f64], x: &[f64]) -> Slope {
-    let of = priced.iter().zip(at.iter().zip(x)).map(|(group, (&t, &ln))| {
-        let [cost, slope] = group.offers[0].curve.with_slope(t, ln);
-        (group.parts * cost, group.parts * slope)
+/// Cost of all unknowns and their logarithms, by the first option of each, with the derivatives by `ln T`.
+pub fn cost<U: CostedUnknown>(unknowns: &[U], at: &[f64], x: &[f64]) -> ValueAndSlopes {
+    let of = unknowns.iter().zip(at.iter().zip(x)).map(|(unknown, (&t, &ln))| {
+        let [cost, slope] = unknown.options()[0].with_slope(t, ln);
+        (unknown.weight() * cost, unknown.weight() * slope)
     });
     let (costs, slopes): (Vec<f64>, Vec<f64>) = of.unzip();
     (costs.iter().sum(), slopes)

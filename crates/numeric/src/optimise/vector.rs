@@ -6,7 +6,7 @@ use argmin_math::{
 
 /// Numbers that are added, scaled and multiplied by position.
 #[derive(Clone)]
-pub(in crate::allocation) struct Vector(pub(in crate::allocation) Vec<f64>);
+pub(crate) struct Vector(pub(crate) Vec<f64>);
 
 impl Vector {
     fn with(&self, other: &Self, of: impl Fn(f64, f64) -> f64) -> Self {

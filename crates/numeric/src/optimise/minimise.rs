@@ -21,7 +21,7 @@ use argmin::solver::quasinewton::LBFGS;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use crate::allocation::optimise::vector::Vector;
+use crate::optimise::vector::Vector;
 
 /// Number of vectors that L-BFGS stores.
 const MEMORY: usize = 12;
@@ -82,12 +82,13 @@ impl Gradient for Asked<'_> {
 
 /// Best point of a descent from `start`. The descent ends when the gradient is shorter than `tolerance`, after
 /// `iterations`, or when the line search finds nothing better. Returns `start` if nothing is better.
-pub(in crate::allocation) fn minimised(
-    function: &Function<'_>,
-    start: &[f64],
-    tolerance: f64,
-    iterations: u64,
-) -> Vec<f64> {
+///
+/// ```
+/// use sensitol_numeric::optimise::minimise::minimise;
+/// let parabola = |x: &[f64]| Some(((x[0] - 3.0).powi(2), vec![2.0 * (x[0] - 3.0)]));
+/// assert!((minimise(&parabola, &[0.0], 1e-9, 50)[0] - 3.0).abs() < 1e-9);
+/// ```
+pub fn minimise(function: &Function<'_>, start: &[f64], tolerance: f64, iterations: u64) -> Vec<f64> {
     let watched = Watched { function, last: RefCell::new(None), best: RefCell::new((f64::INFINITY, start.to_vec())) };
     let solver = LBFGS::new(MoreThuenteLineSearch::new(), MEMORY)
         .with_tolerance_grad(tolerance)
@@ -206,7 +207,7 @@ fn with_best(state: PopulationState<Particle, f64>, particles: Vec<Particle>) ->
 }
 
 /// Best place of a swarm within these bounds. Returns None if no particle found a value.
-pub(in crate::allocation) fn swarmed(function: &PlaceValue<'_>, bounds: &[[f64; 2]]) -> Option<Vec<f64>> {
+pub fn minimise_by_swarm(function: &PlaceValue<'_>, bounds: &[[f64; 2]]) -> Option<Vec<f64>> {
     let swarm = Swarm { bounds, rng: Xoshiro256PlusPlus::seed_from_u64(SEED) };
     let flight = Executor::new(OfPlaces(function), swarm).ctrlc(false).configure(|state| state.max_iters(MOVES));
     let best = flight.run().ok()?.state.best_individual?;
@@ -225,13 +226,13 @@ mod tests {
         let rastrigin = |x: &[f64]| -> f64 {
             x.iter().map(|x| (x - 1.0) * (x - 1.0) + 10.0 - 10.0 * (turn * (x - 1.0)).cos()).sum()
         };
-        let found = swarmed(&rastrigin, &[[-5.0, 5.0]; 2]).unwrap();
+        let found = minimise_by_swarm(&rastrigin, &[[-5.0, 5.0]; 2]).unwrap();
         assert!(found.iter().all(|x| (x - 1.0).abs() < 0.5), "{found:?}");
         // The result is reproducible, keeps its bounds, and needs no values in most of the box.
-        assert_eq!(found, swarmed(&rastrigin, &[[-5.0, 5.0]; 2]).unwrap());
+        assert_eq!(found, minimise_by_swarm(&rastrigin, &[[-5.0, 5.0]; 2]).unwrap());
         let partly = |x: &[f64]| if x[0] > 3.0 { f64::NAN } else { -x[0] };
-        let found = swarmed(&partly, &[[0.0, 8.0]]).unwrap();
+        let found = minimise_by_swarm(&partly, &[[0.0, 8.0]]).unwrap();
         assert!(found[0] <= 3.0 && found[0] > 2.9, "{found:?}");
-        assert!(swarmed(&|_| f64::NAN, &[[0.0, 1.0]]).is_none());
+        assert!(minimise_by_swarm(&|_| f64::NAN, &[[0.0, 1.0]]).is_none());
     }
 }

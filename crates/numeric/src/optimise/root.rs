@@ -37,7 +37,13 @@ fn bounded(value: f64) -> f64 {
 
 /// Root of an increasing function, to `near` and the rounding of its argument. Returns the lower end if the function is
 /// not negative there, and the upper end if it is not positive there.
-pub(in crate::allocation) fn root(function: impl Fn(f64) -> f64, [low, high]: [f64; 2], near: f64) -> f64 {
+///
+/// ```
+/// use sensitol_numeric::optimise::root::root;
+/// assert!((root(|x| x * x - 2.0, [0.0, 2.0], 0.0) - 2f64.sqrt()).abs() < 1e-15);
+/// assert_eq!(root(|x| x + 1.0, [0.0, 5.0], 0.0), 0.0);
+/// ```
+pub fn root(function: impl Fn(f64) -> f64, [low, high]: [f64; 2], near: f64) -> f64 {
     let at_low = function(low);
     if at_low >= 0.0 {
         return low;

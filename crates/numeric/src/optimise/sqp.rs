@@ -1,13 +1,13 @@
 //! Sequential quadratic programming: minimises a smooth objective under smooth rows and bounds to the last digits.
 //!
-//! Every step solves the [quadratic problem](crate::allocation::optimise::quadratic_program) of the present slopes, with the matrix of the Lagrangian
+//! Every step solves the [quadratic problem](crate::optimise::quadratic_program) of the present slopes, with the matrix of the Lagrangian
 //! from earlier slopes (damped BFGS). It goes as far as the merit `f + w max(0, c)` falls. If a whole step does not
 //! lower the merit because rows are curved, the step is solved again with the rows at its end. Sources: M. J. D.
 //! Powell, "A fast algorithm for nonlinearly constrained optimization calculations" (1978), for the damped update; R.
 //! Fletcher, "Second order corrections for non-differentiable optimization" (1982).
 
-use crate::allocation::optimise::augmented_lagrangian::{Ended, Near, Slope, Smooth};
-use crate::allocation::optimise::quadratic_program::{Quadratic, Step, dot};
+use crate::optimise::augmented_lagrangian::{EndConditions, SmoothProblem, SmoothSolution, ValueAndSlopes};
+use crate::optimise::quadratic_program::{Quadratic, Step, dot};
 
 /// Longest step of an unknown. For a logarithm it is a factor of 4.5, beyond which slopes are of little use.
 const LONGEST: f64 = 1.5;
@@ -32,7 +32,7 @@ struct Place {
     x: Vec<f64>,
     value: f64,
     gradient: Vec<f64>,
-    rows: Vec<Slope>,
+    rows: Vec<ValueAndSlopes>,
 }
 
 impl Place {
@@ -55,20 +55,20 @@ impl Place {
     }
 }
 
-impl Smooth<'_> {
+impl SmoothProblem<'_> {
     /// Searches by quadratic problems from a start. Returns the end, or the first place at which `enough` returns true
     /// for it and its residual. Returns None if values or slopes are not defined at the start.
-    pub(in crate::allocation) fn sequential(
+    pub fn solve_by_sqp(
         &self,
         start: &[f64],
-        near: Near,
+        near: EndConditions,
         enough: &dyn Fn(&[f64], f64) -> bool,
-    ) -> Option<Ended> {
+    ) -> Option<SmoothSolution> {
         let within: Vec<f64> = start.iter().zip(self.bounds).map(|(x, &[low, high])| x.clamp(low, high)).collect();
         let mut here = self.place(within)?;
         let mut inverse = Inverse::new(start.len());
         let mut weight = 1.0;
-        let mut best: Option<Ended> = None;
+        let mut best: Option<SmoothSolution> = None;
         let (mut least, mut in_vain) = (f64::INFINITY, 0);
         for _ in 0..near.updates {
             let Some((step, of_step)) = self.step(&here, &inverse, weight) else { break };
@@ -78,11 +78,11 @@ impl Smooth<'_> {
             if residual < least {
                 least = residual;
                 let multipliers = step.multipliers[..here.rows.len()].to_vec();
-                best = Some(Ended { x: here.x.clone(), multipliers, residual });
+                best = Some(SmoothSolution { x: here.x.clone(), multipliers, residual });
             }
             if enough(&here.x, residual) {
                 let multipliers = step.multipliers[..here.rows.len()].to_vec();
-                return Some(Ended { x: here.x, multipliers, residual });
+                return Some(SmoothSolution { x: here.x, multipliers, residual });
             }
             if residual <= near.by || in_vain > PATIENCE && least <= NEAR_THE_END {
                 break;
@@ -127,7 +127,13 @@ impl Smooth<'_> {
         Some((step, (2.0 * sum).max(0.5 * (weight + 2.0 * sum)).clamp(WEIGHTS[0], WEIGHTS[1])))
     }
 
-    fn quadratic<'q>(&self, here: &'q Place, rows: &'q [Slope], inverse: &'q Inverse, weight: f64) -> Problem<'q> {
+    fn quadratic<'q>(
+        &self,
+        here: &'q Place,
+        rows: &'q [ValueAndSlopes],
+        inverse: &'q Inverse,
+        weight: f64,
+    ) -> Problem<'q> {
         let one = |(&x, &[low, high]): (&f64, &[f64; 2])| [(low - x).max(-LONGEST), (high - x).min(LONGEST)];
         Problem { here, rows, inverse, weight, bounds: here.x.iter().zip(self.bounds).map(one).collect() }
     }
@@ -151,7 +157,7 @@ impl Smooth<'_> {
                 return Some((there, step.clone(), part));
             }
             if halved == 0 && there.excess() > step.slack {
-                let bent: Vec<Slope> = (here.rows.iter().zip(&there.rows))
+                let bent: Vec<ValueAndSlopes> = (here.rows.iter().zip(&there.rows))
                     .map(|((_, by), (value, _))| (value - dot(by, &step.d), by.clone()))
                     .collect();
                 let corrected = self.quadratic(here, &bent, inverse, weight).solved();
@@ -168,7 +174,7 @@ impl Smooth<'_> {
 /// Quadratic problem with the data that it owns.
 struct Problem<'q> {
     here: &'q Place,
-    rows: &'q [Slope],
+    rows: &'q [ValueAndSlopes],
     inverse: &'q Inverse,
     weight: f64,
     bounds: Vec<[f64; 2]>,
@@ -254,10 +260,10 @@ mod tests {
                 row([2.0, 1.0, 1.0, 0.0], [2.0, -1.0, 0.0, -1.0], 5.0),
             ])
         };
-        let smooth = Smooth { objective: &objective, rows: &rows, bounds: &[[-10.0, 10.0]; 4] };
+        let smooth = SmoothProblem { objective: &objective, rows: &rows, bounds: &[[-10.0, 10.0]; 4] };
         // Starts at a point that keeps every row, and at one that breaks all.
         for start in [[0.0; 4], [9.0; 4]] {
-            let found = smooth.sequential(&start, Near { by: 1e-11, updates: 60 }, &|_, _| false).unwrap();
+            let found = smooth.solve_by_sqp(&start, EndConditions { by: 1e-11, updates: 60 }, &|_, _| false).unwrap();
             assert!(found.residual <= 1e-11, "{}", found.residual);
             let near = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-9);
             assert!(near(&found.x, &[0.0, 1.0, 2.0, -1.0]), "{:?}", found.x);
