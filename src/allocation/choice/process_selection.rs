@@ -16,28 +16,14 @@ use crate::allocation::requirement::process_options::{OptionUses, ProcessOptions
 use crate::allocation::result::allocation::{AllocationSolver, Attainable, Proof};
 use crate::allocation::result::solver_result::{Solved, Starts};
 use crate::allocation::surface::response::Responses;
-use crate::problem::Problem;
 use sensitol_numeric::dimension::Dimension;
 
 /// Most choices that are all examined.
 const ALL: usize = 20_000;
 
 /// True if some process has a distribution of its own.
-pub(in crate::allocation) fn any(priced: &[Priced]) -> bool {
+pub(in crate::allocation) fn have_distributions(priced: &[Priced]) -> bool {
     priced.iter().flat_map(|group| &group.offers).any(|offer| offer.made.is_some())
-}
-
-/// Dimensions with the distributions of the chosen processes, moved to their present nominal values.
-pub(in crate::allocation) fn remade(problem: &Problem, priced: &[Priced], offers: &[usize]) -> Vec<(usize, Dimension)> {
-    let mut all = Vec::new();
-    for (group, &offer) in priced.iter().zip(offers) {
-        let Some(made) = &group.offers[offer].made else { continue };
-        for (&d, dimension) in group.members.iter().zip(made.dimensions()) {
-            let moved = dimension.moved(problem.dimensions()[d].nominal()).and_then(Result::ok);
-            all.push((d, moved.unwrap_or_else(|| dimension.clone())));
-        }
-    }
-    all
 }
 
 /// Evaluation of choices against the requirements.
@@ -52,13 +38,7 @@ impl<'s, 'a> Judge<'s, 'a> {
     fn of(setting: &'s Setting<'a>) -> Option<Self> {
         let dimensions = &setting.responses.dimensions;
         let option = |group: &Priced, offer: &Offer| -> Option<Vec<Dimension>> {
-            let members = group.members.iter().enumerate();
-            members
-                .map(|(place, &d)| match &offer.made {
-                    Some(made) => made.dimensions()[place].moved(dimensions[d].nominal())?.ok(),
-                    None => dimensions[d].scaled(offer.min / dimensions[d].half_band())?.ok(),
-                })
-                .collect()
+            group.offered(offer, dimensions, |_| offer.min).map(|(_, made)| made?.ok()).collect()
         };
         let of = |group: &Priced| group.offers.iter().map(|offer| option(group, offer)).collect();
         let options = setting.priced.iter().map(of).collect::<Option<_>>()?;
@@ -87,7 +67,7 @@ impl<'s, 'a> Judge<'s, 'a> {
             }
         }
         let by_law = |one: &Constraint| one.form().basis() == Basis::Distribution;
-        self.setting.responses.remade(&dimensions, self.setting.constraints.iter().any(by_law))
+        self.setting.responses.with_dimensions(&dimensions, self.setting.constraints.iter().any(by_law))
     }
 
     /// Largest constraint at a choice, and its losses. Unless `whole`, the evaluation stops at the first constraint
@@ -292,7 +272,7 @@ impl<'s, 'a> Judge<'s, 'a> {
 }
 
 /// Cheapest choice of processes with one tolerance each.
-pub(in crate::allocation) fn choose_made(setting: &Setting<'_>) -> Choice {
+pub(in crate::allocation) fn choose_processes(setting: &Setting<'_>) -> Choice {
     let Some(judge) = Judge::of(setting) else { return Choice::Stopped };
     if let Some(lists) = judge.lists() {
         let found = cheapest(&lists, setting.stopped);

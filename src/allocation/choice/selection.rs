@@ -2,7 +2,7 @@
 
 use crate::allocation::choice::branch_and_bound::{Chosen, branch};
 pub(in crate::allocation) use crate::allocation::choice::outcome::Choice;
-use crate::allocation::choice::process_selection::{any, choose_made};
+use crate::allocation::choice::process_selection::{choose_processes, have_distributions};
 use crate::allocation::choice::single_offer::Setting;
 use crate::allocation::cost::cost_curve::Priced;
 use crate::allocation::requirement::constraint::{Constraint, kept};
@@ -11,8 +11,8 @@ use crate::allocation::result::solver_result::{Chosen as ChosenOffers, Solved, S
 
 /// Cheapest tolerances at fixed derivatives, without set-up costs.
 pub(in crate::allocation) fn choose_alone(setting: &Setting<'_>, start: &[f64]) -> Choice {
-    if any(setting.priced) {
-        return choose_made(setting);
+    if have_distributions(setting.priced) {
+        return choose_processes(setting);
     }
     let tight: Vec<f64> = setting.priced.iter().map(Priced::tightest).collect();
     let free = setting.priced.iter().all(|group| group.offers.len() == 1);

@@ -6,10 +6,9 @@
 //! follows. The tolerances before are tried too. An allocation is therefore never dearer than its start, and has a
 //! result if the start keeps everything.
 
-use crate::allocation::cost::cost_curve;
+use crate::allocation::cost::cost_curve::Priced;
 use std::rc::Rc;
 
-use crate::allocation::choice::process_selection::remade;
 use crate::allocation::requirement::constraint::Constraint;
 use crate::allocation::requirement::registry::form_of;
 use crate::allocation::result::allocation::{Allocation, AllocationSolver, Proof, Status};
@@ -74,7 +73,7 @@ impl Driver<'_> {
     ) -> AllocationStart {
         let at: Vec<f64> = self.task.priced.iter().map(|group| group.tightest_member(problem)).collect();
         let held = self.holding(problem);
-        let made = held.as_ref().is_some_and(|offers| is_made(problem, &remade(problem, &self.task.priced, offers)));
+        let made = held.as_ref().is_some_and(|offers| is_made(problem, &self.task.priced, offers));
         let offered = made && is_offered(&self.task.priced, &at);
         let offers = held.unwrap_or_else(|| vec![0; at.len()]);
         let known = self.stations_are_trials() || !self.is_cheap(problem);
@@ -324,7 +323,7 @@ impl Driver<'_> {
 
     /// Tolerances of the study clamped to their offers. For a list it is the tolerance of the process that holds it.
     fn offered(&self, trial: &Trial) -> Tolerances {
-        let of = |((group, &t), &offer): ((&cost_curve::Priced, &f64), &usize)| {
+        let of = |((group, &t), &offer): ((&Priced, &f64), &usize)| {
             t.clamp(group.offers[offer].min, group.offers[offer].max)
         };
         (self.task.priced.iter().zip(&trial.at).zip(&trial.offers).map(of).collect(), trial.offers.clone())
@@ -370,13 +369,17 @@ fn ended_at(
     SearchEnd { station, last, constraints, ended, trial: Some(trial), is_start }
 }
 
-/// True if the dimensions of the problem are those of its processes. Two processes of one tolerance may differ in mean
-/// and sigma.
-fn is_made(problem: &Problem, made: &[(usize, Dimension)]) -> bool {
-    made.iter().all(|(d, made)| {
-        let own = &problem.dimensions()[*d];
+/// True if the dimensions of the problem are those that the offers make of them. Two processes of one tolerance may
+/// differ in mean and sigma.
+fn is_made(problem: &Problem, priced: &[Priced], offers: &[usize]) -> bool {
+    let present = problem.dimensions();
+    let alike = |own: &Dimension, made: &Dimension| {
         let same = |a: f64, b: f64| (a - b).abs() <= SAME * a.abs().max(own.half_band());
         same(own.mean(), made.mean()) && same(own.sigma(), made.sigma()) && same(own.half_band(), made.half_band())
+    };
+    priced.iter().zip(offers).all(|(group, &offer)| {
+        let mut offered = group.offered(&group.offers[offer], present, Dimension::half_band);
+        offered.all(|(d, made)| made.is_some_and(|made| made.is_ok_and(|made| alike(&present[d], &made))))
     })
 }
 

@@ -4,7 +4,7 @@
 use std::rc::Rc;
 
 use crate::allocation::choice::machine::choose;
-use crate::allocation::choice::process_selection::{any, is_proof};
+use crate::allocation::choice::process_selection::{have_distributions, is_proof};
 use crate::allocation::choice::selection::{Choice, within_bounds};
 use crate::allocation::choice::single_offer::{Setting, tightened};
 use crate::allocation::cost::cost_curve::Priced;
@@ -161,7 +161,7 @@ impl DerivativeSearch<'_, '_> {
         };
         self.state.keep_starts(&mut chosen.2);
         // The model has been asked at these tolerances, and would not choose others.
-        if still && here && self.state.is_chosen_again(&chosen, self.near.agree, any(&priced)) {
+        if still && here && self.state.is_chosen_again(&chosen, self.near.agree, have_distributions(&priced)) {
             let (multipliers, otherwise) = (chosen.0.multipliers.clone(), chosen.0.residual);
             self.state.confirm(chosen, |at| setting.residual(at, &multipliers).unwrap_or(otherwise));
             return Next::Done(Finish::LastChoice);
@@ -188,7 +188,7 @@ impl DerivativeSearch<'_, '_> {
     /// End without tolerances that keep everything.
     fn infeasible(&self, setting: &Setting<'_>, attainable: Attainable) -> Finish {
         // If every tolerance does harm only, the tightest are the proof.
-        let exact = if any(setting.priced) { is_proof(setting) } else { setting.is_exact() };
+        let exact = if have_distributions(setting.priced) { is_proof(setting) } else { setting.is_exact() };
         let proven = exact && self.driver.options.recentre.is_empty();
         let status = if proven { Status::Infeasible } else { Status::NoFeasiblePointFound };
         let unit = unit(&self.original, attainable.characteristic);

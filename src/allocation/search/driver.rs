@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use crate::allocation::choice::process_selection::remade;
 use crate::allocation::cost::cost_curve::Priced;
 use crate::allocation::requirement::constraint::{Constraint, kept};
 use crate::allocation::requirement::form::Basis;
@@ -252,30 +251,12 @@ pub(in crate::allocation) fn cost(priced: &[Priced], at: &[f64], offers: &[usize
     priced.iter().zip(at).zip(offers).map(of).sum()
 }
 
-/// Problem with the groups at these half bands.
+/// Problem with the groups at these half bands, whatever offer holds them.
 pub(in crate::allocation) fn with_tolerances(
     problem: Problem,
     priced: &[Priced],
     at: &[f64],
 ) -> Result<Problem, AllocateError> {
-    let dimensions: Vec<Dimension> = scaled(&problem, priced, at)?;
-    Ok(problem.with_dimensions(dimensions)?)
-}
-
-/// Problem with the groups at these half bands, and with the distributions of the chosen processes.
-pub(in crate::allocation) fn with_choice(
-    problem: Problem,
-    priced: &[Priced],
-    at: &[f64],
-    offers: &[usize],
-) -> Result<Problem, AllocateError> {
-    let mut dimensions: Vec<Dimension> = scaled(&problem, priced, at)?;
-    remade(&problem, priced, offers).into_iter().for_each(|(d, dimension)| dimensions[d] = dimension);
-    Ok(problem.with_dimensions(dimensions)?)
-}
-
-/// Dimensions with the groups at these half bands.
-fn scaled(problem: &Problem, priced: &[Priced], at: &[f64]) -> Result<Vec<Dimension>, AllocateError> {
     let mut dimensions = problem.dimensions().to_vec();
     for (group, &t) in priced.iter().zip(at) {
         for &d in &group.members {
@@ -285,5 +266,23 @@ fn scaled(problem: &Problem, priced: &[Priced], at: &[f64]) -> Result<Vec<Dimens
             }
         }
     }
-    Ok(dimensions)
+    Ok(problem.with_dimensions(dimensions)?)
+}
+
+/// Problem with the groups at these half bands, as the chosen offers make them.
+pub(in crate::allocation) fn with_choice(
+    problem: Problem,
+    priced: &[Priced],
+    at: &[f64],
+    offers: &[usize],
+) -> Result<Problem, AllocateError> {
+    let mut dimensions = problem.dimensions().to_vec();
+    for ((group, &t), &offer) in priced.iter().zip(at).zip(offers) {
+        for (d, made) in group.offered(&group.offers[offer], problem.dimensions(), |_| t) {
+            if let Some(made) = made {
+                dimensions[d] = made?;
+            }
+        }
+    }
+    Ok(problem.with_dimensions(dimensions)?)
 }

@@ -14,7 +14,7 @@ impl Responses {
     /// Responses with these dimensions in place of those at which the derivatives were taken, with surface
     /// distributions if `laws`. Slopes and worst cases are those of the linearization point, because they depend on
     /// bands, not on distributions. Returns None if a distribution has no moments.
-    pub(in crate::allocation) fn remade(&self, dimensions: &[Dimension], laws: bool) -> Option<Self> {
+    pub(in crate::allocation) fn with_dimensions(&self, dimensions: &[Dimension], laws: bool) -> Option<Self> {
         let mut shapes = self.inputs.shapes().to_vec();
         let mut moved = Vec::with_capacity(self.varying.len());
         for (shape, &d) in shapes.iter_mut().zip(&self.varying) {
