@@ -173,7 +173,7 @@ pub fn solve_separable<U: CostedUnknown>(problem: &SeparableProblem<'_, U>, star
     }
 }
 
-/// Cost of all unknowns and losses at unknowns and their logarithms, with the derivatives by `ln T`.
+/// Cost of all unknowns plus the losses, with the derivatives by `ln T`. `x` are the logarithms of `at`.
 fn with_losses<U: CostedUnknown>(problem: &SeparableProblem<'_, U>, at: &[f64], x: &[f64]) -> ValueAndSlopes {
     let (mut value, mut slopes) = cost(problem.unknowns, at, x);
     for row in problem.losses {
@@ -184,7 +184,7 @@ fn with_losses<U: CostedUnknown>(problem: &SeparableProblem<'_, U>, at: &[f64], 
     (value, slopes)
 }
 
-/// Cost of all unknowns and their logarithms, by the first option of each, with the derivatives by `ln T`.
+/// Cost of all unknowns by the first option of each, with the derivatives by `ln T`. `x` are the logarithms of `at`.
 pub fn cost<U: CostedUnknown>(unknowns: &[U], at: &[f64], x: &[f64]) -> ValueAndSlopes {
     let of = unknowns.iter().zip(at.iter().zip(x)).map(|(unknown, (&t, &ln))| {
         let [cost, slope] = unknown.options()[0].with_slope(t, ln);
