@@ -8,8 +8,13 @@ const data = JSON.parse(scripts[0]);
 // All but what needs a document.
 const mathematics = scripts[1].slice(0, scripts[1].indexOf("// The what-if of the page"));
 const live = runInNewContext(`${mathematics}; live`);
-const figures = ({ mean, sigma, skewness, excess, below, above, cpk, linear, curvature, shares, by, error, pearson }) =>
-  ({ mean, sigma, skewness, excess, below, above, cpk, linear: [...linear], curvature: [...curvature], shares: [...shares], by, error, pearson });
+// Shares by the page's own source, rejects as shown, and the variance by part.
+const beyond = (sides, side) => sides[side]?.value ?? null;
+const figures = ({ mean, sigma, skewness, excess, cpk, linear, curvature, interactions, by, shares, rejects, interval }) => ({
+  mean, sigma, skewness, excess, cpk, linear, curvature, interactions, by, interval,
+  below: beyond(shares, 0), above: beyond(shares, 1), errors: shares.map((side) => side?.error ?? null),
+  rejects: [beyond(rejects, 0), beyond(rejects, 1)],
+});
 const found = JSON.parse(readFileSync(file, "utf8")).map((settings) => ({
   toml: live.toml(data, settings),
   cost: live.cost(data, settings),

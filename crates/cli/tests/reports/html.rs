@@ -9,10 +9,11 @@ use std::process::Command;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use sensitol::analysis::distribution::relocated_law::law_at;
-use sensitol::analysis::{LawFigure, Relocation};
+use sensitol::analysis::{LawFigure, Relocation, YieldSource};
 use sensitol::capability::{Capability, Law};
 
 use sensitol::{Analysis, Method, Options, analyze};
+use sensitol_numeric::dimension::Dimension;
 use sensitol_report::html::{WhatIf, analyze_html};
 use sensitol_report::{About, CompareReport, Report, SimulationReport, ToDocument};
 use sensitol_study::Study;
@@ -747,7 +748,8 @@ fn compared(found: &Value, expected: &Value, what: &str) -> f64 {
     for (key, scale) in [("mean", sigma), ("sigma", 0.0), ("skewness", 1.0), ("excess", 1.0), ("cpk", 1.0)] {
         worst = worst.max(off(key, &found[key], &expected[key], scale));
     }
-    for key in ["below", "above"] {
+    for (side, key) in ["below", "above"].into_iter().enumerate() {
+        let stated = &found["errors"][side];
         match found["by"].as_str().unwrap() {
             "pearson" => worst = worst.max(off(key, &found[key], &expected[key], 1e-6)),
             "points" => {
@@ -756,7 +758,7 @@ fn compared(found: &Value, expected: &Value, what: &str) -> f64 {
                     continue;
                 }
                 let of_engine = |at: usize| expected["surface"][key][at].as_f64().unwrap();
-                let (own, stated) = (found[key].as_f64().unwrap(), found["error"].as_f64().unwrap());
+                let (own, stated) = (found[key].as_f64().unwrap(), stated.as_f64().unwrap());
                 let (value, error) = (of_engine(0), of_engine(1));
                 assert!(
                     (own - value).abs() <= stated + error,
@@ -770,7 +772,7 @@ fn compared(found: &Value, expected: &Value, what: &str) -> f64 {
                 (None, None) => {}
                 (Some(own), Some(engine)) => {
                     let [value, error] = [0, 1].map(|at| engine[at].as_f64().unwrap());
-                    let stated = found["error"].as_f64().unwrap();
+                    let stated = stated.as_f64().unwrap();
                     let allowed = stated + error + 1e-9 * value + 1e-14;
                     assert!(
                         (own - value).abs() <= allowed,
@@ -789,21 +791,71 @@ fn compared(found: &Value, expected: &Value, what: &str) -> f64 {
     worst
 }
 
-/// Unchanged settings show the engine's own reject rates to the last digit, also if changes are counted.
+/// Unchanged settings show the report's own reject rates and yield interval to the last digit, from any source.
 #[test]
 fn an_unchanged_what_if_is_the_verdict() {
     if !node() {
         return skipped("unchanged what-if");
     }
-    let study = study(PRODUCTS);
-    let (analysis, page) = analysed(&study, &study.options);
-    let still: Vec<Value> = study.problem.dimensions().iter().map(|_| json!({ "factor": 1.0, "shift": 0.0 })).collect();
-    let found = by_node(&page, &json!([still]), "unchanged")["found"][0]["characteristics"][0].clone();
-    let law = analysis.characteristics[0].surface_law.unwrap();
-    assert_eq!((&found["by"], &found["error"]), (&json!("points"), &json!(0)));
-    for (key, share) in [("below", law.below), ("above", law.above)] {
-        assert_eq!(found[key].as_f64().unwrap().to_bits(), share.unwrap().value.to_bits(), "{key}");
+    let mut sources = Vec::new();
+    for (name, study, options) in
+        tried().into_iter().chain([("first-study", example("first-study"), Options::default())])
+    {
+        let (analysis, page) = analysed(&study, &options);
+        let still = vec![json!({ "factor": 1.0, "shift": 0.0 }); analysis.surface.varying.len()];
+        let answer = by_node(&page, &json!([still]), &format!("{name}-unchanged"));
+        let all = answer["found"][0]["characteristics"].as_array().unwrap();
+        for (found, one) in all.iter().zip(&analysis.characteristics) {
+            let shown = |side: usize| found["rejects"][side].as_f64().map(f64::to_bits);
+            let own = one.capability.unwrap();
+            assert_eq!([shown(0), shown(1)], [own.below, own.above].map(|share| share.map(f64::to_bits)), "{name}");
+            let Some([low, high]) = one.yield_interval().filter(|_| own.yield_().is_some()) else { continue };
+            let interval = [0, 1].map(|end| found["interval"][end].as_f64().unwrap());
+            assert!((interval[0] - low).abs() + (interval[1] - high).abs() < 1e-15, "{name}: {interval:?}");
+            sources.push(one.yield_source.unwrap());
+        }
     }
+    sources.sort_unstable();
+    sources.dedup();
+    assert_eq!(sources, [YieldSource::Proof, YieldSource::Samples]);
+}
+
+/// Reject rates that the page shows for other tolerances and means against an analysis of the changed study, whose model is sampled: the
+/// two intervals meet.
+#[test]
+fn a_changed_study_has_the_rejects_of_the_page() {
+    if !node() {
+        return skipped("the changed study");
+    }
+    let mut compared = 0;
+    for name in ["first-study", "stacked-blocks", "shaft-and-bore"] {
+        let text = std::fs::read_to_string(repository(&format!("examples/{name}/study.toml"))).unwrap();
+        let (head, rest) = text.split_once("[dimensions]").unwrap();
+        let rest = &rest[rest.find("\n[").unwrap()..];
+        let original = example(name);
+        let (analysis, page) = analysed(&original, &original.options);
+        let set = |factor: f64, part: f64| {
+            let dimensions = analysis.surface.varying.iter().map(|&d| &original.problem.dimensions()[d]);
+            let one = |of: &Dimension| json!({ "factor": factor, "shift": part * of.half_band() });
+            Value::Array(dimensions.map(one).collect())
+        };
+        let given = json!([set(1.0, 0.2), set(1.2, 0.0), set(1.6, -0.1), set(0.8, 0.1)]);
+        for found in by_node(&page, &given, &format!("{name}-changed"))["found"].as_array().unwrap() {
+            let changed = format!("{head}{}{rest}", found["toml"].as_str().unwrap());
+            let pasted = study(&changed);
+            let analysis = analyze(&pasted.problem, &pasted.options).unwrap();
+            let (one, found) = (&analysis.characteristics[0], &found["characteristics"][0]);
+            let [low, high] = one.yield_interval().unwrap();
+            let [from, to] = [0, 1].map(|end| found["interval"][end].as_f64().unwrap());
+            assert!(from <= high && low <= to, "{name}: {from} .. {to}, and {low} .. {high}: {changed}");
+            // A few hundred ppm at most: two samples of some 40,000 points.
+            assert!(to - from < 1e-3 && high - low < 1e-3, "{name}: {from} .. {to}, and {low} .. {high}");
+            let sigma = one.moments.unwrap().sigma();
+            assert!((found["sigma"].as_f64().unwrap() / sigma - 1.0).abs() < 1e-3, "{name}: {found} {sigma}");
+            compared += 1;
+        }
+    }
+    assert_eq!(compared, 12);
 }
 
 /// The copied text is a section of a study: pasted, it gives the results of the page. They are exact if the surrogate equals the

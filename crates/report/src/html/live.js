@@ -2,78 +2,69 @@
 const live = (() => {
   "use strict";
 
-  /// Shifts and stretches of all dimensions for these settings: the factor of the tolerance, and how far the mean moves.
-  const moved = (data, settings) => {
-    const shifts = new Float64Array(data.dimensions.length), stretches = new Float64Array(data.dimensions.length).fill(1);
-    data.dimensions.forEach((of, i) => {
-      const { factor, shift } = settings[i];
-      // The middle of a band stays; the mean of a skewed law over it moves as the band scales, and what a normal law is off the
-      // middle stays.
-      const scaling = of.normal ? 0 : of.offset;
-      shifts[i] = ((factor - 1) * scaling + shift) / of.sigma;
-      stretches[i] = factor;
-    });
-    return { shifts, stretches };
+  const isUnchanged = ({ factor, shift }) => factor === 1 && shift === 0;
+
+  /// The law of a characteristic by each source, best first; null where a source has none.
+  const SOURCES = {
+    surface: (one, { surrogate, shapes, mean, sigma }) => sigma === 0
+      ? { shares: (y) => [mean < y - one.rounding, mean > y + one.rounding, 0].map(Number) }
+      : one.law ? surface.law(surrogate, shapes, one.unexplained, sigma) : null,
+    points: (one, state, study) => one.counted ? { ...points.law(one, state, study), density: state.fit?.density } : null,
+    pearson: (_, { fit }) => fit,
+  };
+  /// Largest error of a share by a transform. Beyond it the nodes of an input resolve too little of it.
+  const LARGEST = 1e-3;
+
+  /// The shares beyond the limits by a source; null where it has none.
+  const sharesBy = (source, one, state, study) => {
+    const law = SOURCES[source](one, state, study), of = ([below, above, error], side) => ({ value: [below, above][side], error });
+    const shares = law && one.limits.map((y, side) => y === null ? null : of(law.shares(y), side));
+    return shares?.every((share) => share === null || source !== "surface" || share.error <= LARGEST) ? { law, shares } : null;
   };
 
-  const limited = (one, mean, sigma, tails) => {
-    const { lower, upper, target } = one, known = (x) => x !== null;
-    if (!known(lower) && !known(upper)) return { below: null, above: null, rejected: null, yield: null, cp: null, cpk: null, met: null };
-    const below = known(lower) ? tails(lower)[0] : null, above = known(upper) ? tails(upper)[1] : null;
-    const rejected = Math.min(1, (below ?? 0) + (above ?? 0));
-    const sides = [known(lower) ? mean - lower : Infinity, known(upper) ? upper - mean : Infinity];
-    return {
-      below, above, rejected,
-      yield: 1 - rejected,
-      cp: known(lower) && known(upper) && sigma > 0 ? (upper - lower) / (6 * sigma) : null,
-      cpk: sigma > 0 ? Math.min(...sides) / (3 * sigma) : null,
-      met: target === null ? null : rejected <= 1 - target,
-    };
+  /// The surface of a characteristic at these settings, its moments and their Pearson fit. The middle of a band stays. The mean of a skewed
+  /// law moves as the band scales, and what a normal law is off the middle stays.
+  const surfaceAt = ({ dimensions, shapes }, one, settings) => {
+    const shifts = dimensions.map((of, i) => ((settings[i].factor - 1) * (of.normal ? 0 : of.offset) + settings[i].shift) / of.sigma);
+    const surrogate = moments.relocated(one, shifts, settings.map(({ factor }) => factor)), inputs = dimensions.map((of) => shapes[of.shape]);
+    const found = moments.of(surrogate, inputs, one.unexplained);
+    const fit = found.skewness === null ? null : pearson(found.mean, found.sigma, found.skewness, found.excess);
+    return { surrogate, shapes: inputs, fit, by: {}, ...found };
   };
 
-  /// One characteristic at these settings.
+  /// Rejects of a side: the report's own, changed as the shares of one source change. Where fewer are rejected, the difference of report
+  /// and source shrinks with them.
+  const rejectsOf = (own, now, then) => {
+    if (own === null || then === null) return now && { ...now, low: null, high: null };
+    const off = (own.value - then.value) * (now.value < then.value ? now.value / then.value : 1), error = now.error + then.error;
+    const value = Math.min(1, Math.max(0, now.value + off)), end = (known, sign) => known === null ? null : known + value - own.value + sign * error;
+    return { value, error, low: end(own.low, -1), high: end(own.high, 1) };
+  };
+
+  /// One characteristic at these settings. Its intervals reach as far as those of the report and the error of the change.
+  const studies = new WeakMap();
   const evaluate = (data, one, settings) => {
-    const { shifts, stretches } = moved(data, settings);
-    const shapes = data.dimensions.map((of) => data.shapes[of.shape]);
-    const surrogate = mathematics.relocated(one, shifts, stretches);
-    let found = mathematics.moments(surrogate, shapes);
-    if (one.unexplained !== null) found = mathematics.beside(found, one.unexplained);
-    const { mean, sigma, skewness, excess } = found;
-    const shares = new Float64Array(surrogate.pairs.a.length);
-    for (let i = 0; i < shares.length; i++) shares[i] = (surrogate.pairs.a[i] * found.perSigma) ** 2;
-    const fit = skewness === null ? null : pearson.law(mean, sigma, skewness, excess);
-    const none = { below: null, above: null, rejected: null, yield: null, cp: null, cpk: null, met: null };
-    const of_fit = fit === null ? none : limited(one, mean, sigma, fit.tails);
-    // Everything is in units of the scale.
-    const scale = one.scale ?? 1;
-    const here = { ...found, scale, kurtosis: excess === null ? null : 3 + excess, shares, fit, pearson: of_fit.yield };
-    if (sigma === 0) {
-      return { ...here, law: null, by: "surface", error: 0, ...limited(one, mean, sigma, (x) => [mean < x - one.rounding ? 1 : 0, mean > x + one.rounding ? 1 : 0]) };
-    }
-    // The law of the surface where the page can compute it; elsewhere the engine's with what points of the surface say of changes, and last
-    // the Pearson fit, and the page says so.
-    const law = one.law ? surface.law(surrogate, shapes, one.unexplained) : null;
-    if (law !== null && !law.steps) {
-      const tails = new Map([one.lower, one.upper].filter((limit) => limit !== null).map((limit) => [limit, law.tails(limit)]));
-      if ([...tails.values()].flat().every(law.shown)) {
-        const kept = limited(one, mean, sigma, (x) => tails.get(x).map((tail) => tail.value));
-        const error = Math.hypot(one.lower === null ? 0 : tails.get(one.lower)[0].error, one.upper === null ? 0 : tails.get(one.upper)[1].error);
-        return { ...here, law, by: "surface", error, ...kept };
-      }
-    }
-    if (one.counted !== null) {
-      const still = new Float64Array(shifts.length), unchanged = mathematics.relocated(one, still, new Float64Array(still.length).fill(1));
-      const [below, above] = counting.shares(one, unchanged, surrogate, shapes);
-      const kept = limited(one, mean, sigma, () => [below.value, above.value]);
-      const error = Math.hypot(one.lower === null ? 0 : below.error, one.upper === null ? 0 : above.error);
-      return { ...here, law: fit, by: "points", error, ...kept };
-    }
-    return { ...here, law: fit, by: "pearson", error: null, ...of_fit };
+    const same = settings.every(isUnchanged);
+    if (!studies.has(one)) studies.set(one, surfaceAt(data, one, settings.map(() => ({ factor: 1, shift: 0 }))));
+    const study = studies.get(one), found = same ? study : surfaceAt(data, one, settings);
+    const known = (state, source) => state.by[source] ??= sharesBy(source, one, state, study), none = { law: null, shares: [null, null] };
+    const by = Object.keys(SOURCES).find((source) => known(found, source) !== null);
+    const { law, shares } = found.by[by] ?? none, then = (by && known(study, by)) ?? none;
+    const rejects = one.rejects.map((own, side) => same && own ? { ...own, error: 0 } : rejectsOf(own, shares[side], then.shares[side]));
+    const sum = (sides, of) => sides.reduce((sum, side) => sum + (side?.[of] ?? 0), 0), error = sum(rejects, "error");
+    const rejected = rejects.every((side) => side === null) ? null : Math.min(1, sum(rejects, "value"));
+    const isTied = one.interval !== null && rejects.every((side) => side === null || side.low !== null);
+    const [lower, upper] = one.limits, room = Math.min(found.mean - (lower ?? -Infinity), (upper ?? Infinity) - found.mean);
+    return {
+      ...found, by, law, shares, same, rejects, rejected, error,
+      interval: isTied ? one.interval.map((end, at) => end + sum(one.rejects, "value") - rejected + (at === 0 ? -error : error)) : null,
+      cpk: found.sigma > 0 && room < Infinity ? room / (3 * found.sigma) : null,
+    };
   };
 
   /// What these settings cost, by the cheapest process that holds the tightest member of each group, as the engine counts it
   /// (Priced::cost_to_hold); no finite number where no process does.
-  const cost = (data, settings) => mathematics.exact(data.costs.map(({ members, others, parts, offers }) => {
+  const cost = (data, settings) => data.costs.map(({ members, others, parts, offers }) => {
     const t = Math.min(others ?? Infinity, ...members.map((i) => settings[i].factor * data.dimensions[i].half));
     const alone = offers.length === 1;
     const along = (points, held) => {
@@ -85,52 +76,42 @@ const live = (() => {
     };
     const at = ({ exponential, a, b, shape, points, max }) => {
       const held = alone ? t : Math.min(t, max);
-      if (points) return parts * along(points, held);
-      return parts * (b === 0 ? a : a + b * (exponential ? Math.exp(-held / shape) : held ** -shape));
+      return parts * (points ? along(points, held) : b === 0 ? a : a + b * (exponential ? Math.exp(-held / shape) : held ** -shape));
     };
     const holds = ({ min, max }) => alone && min < max || min <= t * (1 + 1e-12);
     // What nothing holds makes the sum no number.
     return Math.min(...offers.filter(holds).map(at), Infinity);
-  }));
+  }).reduce((sum, one) => sum + one, 0);
 
-  const KEY = /^[A-Za-z0-9_-]+$/;
-  const quoted = (text) => JSON.stringify(text).replace(/\u007f/g, "\\u007f");
-  const key = (name) => KEY.test(name) ? name : quoted(name);
+  const key = (name) => /^[A-Za-z0-9_-]+$/.test(name) ? name : JSON.stringify(name).replace(/\u007f/g, "\\u007f");
   const number = (x) => Number.isInteger(x) && Math.abs(x) < 1e15 ? x.toFixed(1) : String(x);
 
   /// The keys of a dimension whose tolerance or mean has changed.
   const changed = (of, keys, { factor, shift }) => {
     const dropped = new Set(["tolerance", "limits", "fit", "sigma", "sigmas", "cp", "cpk", "side", "shift"]);
     const band = of.normal || of.band === null ? 0 : shift;
-    const kept = keys.filter(([name]) => !dropped.has(name)), given = new Map(keys);
-    const lines = kept.map(([name, text]) => {
-      // A mode is a value of the dimension, and moves with the band.
-      const mode = name === "distribution" && /\bmode = ([^,} ]+)/.exec(text);
-      if (!mode) return [name, text];
-      const middle = of.nominal + of.middle;
-      return [name, text.replace(/\bmode = [^,} ]+/, `mode = ${number(middle + factor * (Number(mode[1]) - middle) + shift)}`)];
-    });
+    // A mode is a value of the dimension, and moves with the band.
+    const middle = of.nominal + of.middle, mode = (_, at) => `mode = ${number(middle + factor * (Number(at) - middle) + shift)}`;
+    const lines = keys.filter(([name]) => !dropped.has(name))
+      .map(([name, text]) => [name, name === "distribution" ? text.replace(/\bmode = ([^,} ]+)/, mode) : text]);
     if (of.band !== null) {
       const [lower, upper] = of.band.map((end) => of.middle + factor * (end - of.middle) + band);
       lines.push(["tolerance", lower === -upper ? number(upper) : `[${number(lower)}, ${number(upper)}]`]);
     }
     if (of.normal) {
       lines.push(["sigma", number(factor * of.sigma)]);
-      const off = of.offset + shift;
-      if (off !== 0) lines.push(["shift", number(off)]);
+      if (of.offset + shift !== 0) lines.push(["shift", number(of.offset + shift)]);
     } else {
-      for (const name of ["sigmas", "cp", "cpk"]) if (given.has(name)) lines.push([name, given.get(name)]);
+      lines.push(...keys.filter(([name]) => ["sigmas", "cp", "cpk"].includes(name)));
     }
     return lines;
   };
 
   /// The section `[dimensions]` with what these settings change.
   const toml = (data, settings) => {
-    const at = new Map(data.dimensions.map((of, i) => [of.name, i]));
     const lines = data.lines.map(([name, keys]) => {
-      const i = at.get(name), set = i === undefined ? null : settings[i];
-      const same = set === null || (set.factor === 1 && set.shift === 0);
-      const written = same ? keys : changed(data.dimensions[i], keys, set);
+      const i = data.dimensions.findIndex((of) => of.name === name);
+      const written = i < 0 || isUnchanged(settings[i]) ? keys : changed(data.dimensions[i], keys, settings[i]);
       return `${key(name)} = { ${written.map(([k, text]) => `${key(k)} = ${text}`).join(", ")} }`;
     });
     return `[dimensions]\n${lines.join("\n")}\n`;

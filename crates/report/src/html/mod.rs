@@ -35,10 +35,10 @@ use sensitol::summary::RunSummary;
 const STYLE: &str = include_str!("page.css");
 /// Script of the what-if: first the mathematics, then the display.
 const SCRIPT: &str = concat!(
-    include_str!("what_if.js"),
+    include_str!("moments.js"),
     include_str!("pearson.js"),
     include_str!("law.js"),
-    include_str!("counted.js"),
+    include_str!("points.js"),
     include_str!("live.js"),
     include_str!("page.js")
 );

@@ -3,150 +3,131 @@
   "use strict";
   const data = JSON.parse(document.getElementById("data").textContent), panel = document.getElementById("what-if");
   const settings = data.dimensions.map(() => ({ factor: 1, shift: 0 }));
-  const tried = data.characteristics.map((one, index) => ({ one, index })).filter(({ one }) => one.why === null);
-  const cards = tried.map(({ index }) => panel.querySelector(`[data-kc="${index}"]`));
+  const tried = data.characteristics.flatMap((one, index) => one.why === null ? [{ one, index, card: panel.querySelector(`[data-kc="${index}"]`) }] : []);
   const rows = data.dimensions.map((_, i) => panel.querySelector(`[data-dimension="${i}"]`));
-  // Ten thousands of products are quicker as plain numbers.
-  for (const { pairs } of data.characteristics) {
-    Object.assign(pairs, { j: Int32Array.from(pairs.j), k: Int32Array.from(pairs.k), a: Float64Array.from(pairs.a) });
-  }
-  const bars = rows.map((row) => ({ rects: [...row.querySelectorAll(".bar rect")], text: row.querySelector("[data-share]") }));
-  const before = tried.map(({ one }) => live.evaluate(data, one, settings));
+  const before = tried.map(({ one }) => live.evaluate(data, one, settings)), paid = live.cost(data, settings);
   let results = before;
-  const paid = live.cost(data, settings);
 
+  // Numbers as the report has them: document/number.rs and document/rejects.rs.
+  const magnitude = (x) => Math.floor(Math.log10(Math.abs(x))), within = (x, least, most) => Math.min(most, Math.max(least, x));
   const significant = (x, digits) => {
+    const size = magnitude(x.toPrecision(digits));
     if (x === 0) return "0";
-    const text = Number(x.toPrecision(digits));
-    return Math.abs(text) < 1e9 && (Math.abs(text) >= 1e-4 || text === 0) ? x.toPrecision(digits) : text.toExponential();
+    return size < -4 || size > 8 ? String(Number(x.toPrecision(digits)).toExponential()) : x.toFixed(Math.max(0, digits - 1 - size));
   };
-  const beside = (x, sigma) => {
-    const decimals = sigma > 0 ? 4 - Math.floor(Math.log10(sigma)) : 6;
-    return decimals >= 0 && decimals <= 12 ? x.toFixed(decimals) : significant(x, 8);
+  /// With so many decimals at most, and down to the second digit of the error.
+  const carried = (x, most, error) => x.toFixed(within(error > 0 ? 1 - magnitude(error) : most, 0, most)).replace(/^-(0\.?0*)$/, "$1");
+  const beside = (x, sigma, error) => {
+    const decimals = sigma > 0 ? 4 - magnitude(sigma) : 6;
+    return decimals > 9 || Math.abs(x) > 1e9 ? significant(x, 8) : carried(x, Math.max(0, decimals), error);
   };
-  // A yield in percent, with three digits of what is rejected.
-  const share = (rejected) => {
-    const percent = 100 * rejected;
-    if (percent <= 0) return "100 %";
-    if (percent < 1e-7) return "> 99.9999999 %";
-    const text = (100 - percent).toFixed(Math.min(12, Math.max(2, 2 - Math.floor(Math.log10(percent)))));
-    return `${/^100\.0*$/.test(text) ? "100" : /^0\.0*$/.test(text) ? "0" : text} %`;
+  // The last digit of yields and rejects is the first one of the standard error, and what an interval does not tell from none is a bound. No law
+  // is known beyond one part in 10^9.
+  const FEWEST = 1e-9;
+  const upwards = (x, unit) => Math.ceil(x / unit - 1e-9) * unit, twoDigits = (x) => upwards(x, 10 ** (magnitude(x) - 1));
+  const ppm = ({ value, low, high, error }) => {
+    const [from, to] = low === null ? [value - error, value + error] : [low, high], isFew = value > 0 && value < FEWEST;
+    if (isFew || value < 0.5 * (to - from)) return `< ${significant(twoDigits(1e6 * within(to, FEWEST, 1)), 2)}`;
+    const digits = to > from ? within(magnitude(value) - magnitude(0.25 * (to - from)) + 1, 1, 4) : 4;
+    return significant(digits < 4 ? Number((1e6 * value).toPrecision(digits)) : 1e6 * value, digits);
   };
-  const figures = (found) => {
-    const or = (x, text) => x === null ? "-" : text(x), ppm = (x) => significant(1e6 * x, 4);
+  const share = (rejected, reach = 0) => {
+    const decimals = (x) => within(-magnitude(x), 0, 12), most = 100 * twoDigits(Math.max(FEWEST, rejected + reach));
+    if (rejected > 0 && rejected < FEWEST || rejected < reach) {
+      return most < 100 ? `> ${(100 - upwards(most, 10 ** -decimals(most))).toFixed(decimals(most))} %` : "unknown";
+    }
+    const digits = rejected > 0 ? within(2 - magnitude(100 * rejected), 2, 12) : 0;
+    return `${(100 - 100 * rejected).toFixed(reach > 0 ? Math.min(digits, decimals(50 * reach)) : digits).replace(/^(100|0)\.0*$/, "$1")} %`;
+  };
+  const figures = ({ scale = 1, errors }, found) => {
+    const [mean, sigma] = [found.mean, found.sigma].map((x) => scale * x), or = (x, text) => x === null ? "-" : text(x);
     return {
-      mean: beside(found.scale * found.mean, found.scale * found.sigma),
-      sigma: beside(found.scale * found.sigma, found.scale * found.sigma),
-      skewness: or(found.skewness, (x) => x.toFixed(4).replace(/^-(0\.0*)$/, "$1")),
-      kurtosis: or(found.kurtosis, (x) => x.toFixed(4)),
-      yield: or(found.rejected, share),
-      "ppm below": or(found.below, ppm),
-      "ppm above": or(found.above, ppm),
+      mean: beside(mean, sigma, errors[0]),
+      sigma: beside(sigma, sigma, errors[1]),
+      skewness: or(found.skewness, (x) => carried(x, 4, errors[2])),
+      kurtosis: or(found.excess, (x) => carried(3 + x, 4, errors[3])),
+      yield: or(found.rejected, (x) => share(x, found.interval === null ? found.error : 1 - x - found.interval[0])),
+      "ppm below": or(found.rejects[0], ppm),
+      "ppm above": or(found.rejects[1], ppm),
       Cpk: or(found.cpk, (x) => x.toFixed(3)),
     };
   };
-
-  // ---- drawing --------------------------------------------------------------------------------------------------------
+  // The counterpart of the module `verdict`, with its rounding of a target.
+  const judged = ({ interval, rejected }, { target }) => {
+    if (target === null || rejected === null) return "";
+    const least = target - 1e-8 * (1 - target);
+    return interval === null || interval[0] < least && interval[1] >= least ? "inconclusive" : interval[0] >= least ? "target met" : "target missed";
+  };
+  const source = ({ by, same, fit, rejected, shares }, one) => {
+    if (rejected === null) return "";
+    const sum = (sides) => sides.reduce((sum, side) => sum + (side ?? 0), 0), own = sum(shares.map((side) => side?.value));
+    const fitted = by === "surface" && fit !== null ? sum(one.limits.map((y, side) => y === null ? 0 : fit.shares(y)[side])) : own;
+    const how = {
+      surface: "the surface law", points: "points of the surface",
+      pearson: `the Pearson fit: ${one.law ? "the surface law is not accurate enough here" : one.why_fit}`,
+    }[by];
+    const changes = same || one.source === how ? `by ${one.source ?? how}` : one.source === null ? `by ${how}` : `by ${one.source}; changes by ${how}`;
+    return changes + (Math.abs(fitted - own) > Math.max(FEWEST, 0.01 * Math.max(fitted, own)) ? `; Pearson fit ${share(fitted)}` : "");
+  };
 
   const POINTS = 160, WIDTH = 640, BASE = 198, TOP = 6;
-  const drawing = (law, from, to) => {
-    const points = [];
-    for (let i = 0; law !== null && i <= POINTS; i++) {
-      const x = from + (to - from) * i / POINTS;
-      points.push([i * WIDTH / POINTS, law.density(x)]);
-    }
-    return points;
-  };
-  const path = (points, most) => points
-    .map(([x, y], i) => `${i === 0 ? "M" : "L"}${x.toFixed(1)} ${(BASE - (BASE - TOP) * Math.min(1, y / most)).toFixed(1)}`).join("");
-
-  const draw = (card, { one }, old, now) => {
-    const ends = [old, now].filter((of) => of.law !== null)
-      .flatMap((of) => [of.mean - 5 * of.sigma, of.mean + 5 * of.sigma]);
-    const limits = [one.lower, one.upper].filter((limit) => limit !== null && Math.abs(limit - old.mean) < 12 * old.sigma);
-    const from = Math.min(...ends, ...limits), to = Math.max(...ends, ...limits);
+  const draw = (card, { limits }, old, now) => {
+    const ends = [old, now].filter((of) => of.law?.density).flatMap((of) => [of.mean - 5 * of.sigma, of.mean + 5 * of.sigma]);
+    const near = limits.filter((limit) => limit !== null && Math.abs(limit - old.mean) < 12 * old.sigma);
+    const from = Math.min(...ends, ...near), to = Math.max(...ends, ...near);
     if (!(from < to)) return;
-    const [dashed, solid] = [old, now].map((of) => drawing(of.law, from, to));
-    // A density that is infinite at its end is cut.
-    const heights = dashed.concat(solid).map((point) => point[1]).filter(Number.isFinite);
-    const most = Math.min(Math.max(...heights), 4 / Math.min(old.sigma || Infinity, now.sigma || Infinity));
-    card.querySelector(".before").setAttribute("d", path(dashed, most));
-    card.querySelector(".now").setAttribute("d", path(solid, most));
     // The Pearson fit as a thin line beside a better law.
-    card.querySelector(".fit").setAttribute("d", now.by === "surface" ? path(drawing(now.fit, from, to), most) : "");
-    for (const side of ["lower", "upper"]) {
-      const x = one[side] === null ? NaN : WIDTH * (one[side] - from) / (to - from);
+    const densities = { before: old.law?.density, now: now.law?.density, fit: now.by === "surface" ? now.fit?.density : undefined };
+    const line = (density) => Array.from({ length: density ? POINTS + 1 : 0 }, (_, i) => density(from + (to - from) * i / POINTS));
+    const lines = Object.entries(densities).map(([name, density]) => [name, line(density)]);
+    // A density that is infinite at its end is cut.
+    const heights = lines.flatMap(([name, line]) => name === "fit" ? [] : line).filter(Number.isFinite);
+    const most = Math.min(Math.max(...heights), 4 / Math.min(old.sigma || Infinity, now.sigma || Infinity));
+    const point = (y, i) => `${i === 0 ? "M" : "L"}${(i * WIDTH / POINTS).toFixed(1)} ${(BASE - (BASE - TOP) * Math.min(1, y / most)).toFixed(1)}`;
+    for (const [name, line] of lines) card.querySelector(`.${name}`).setAttribute("d", line.map(point).join(""));
+    ["lower", "upper"].forEach((side, i) => {
+      const x = limits[i] === null ? NaN : WIDTH * (limits[i] - from) / (to - from);
       card.querySelector(`[data-limit="${side}"]`).setAttribute("d", x >= 0 && x <= WIDTH ? `M${x.toFixed(1)} 0V200` : "");
-    }
+    });
   };
 
   // The parts that dimensions have in the variance: straight line, curvature, half of each interaction.
+  const select = document.getElementById("share-of");
   const shares = () => {
-    const select = document.getElementById("share-of");
-    const place = Math.max(0, tried.findIndex(({ index }) => String(index) === select.value));
-    const { one } = tried[place], found = results[place];
+    const place = Math.max(0, tried.findIndex(({ index }) => String(index) === select.value)), { pairs } = tried[place].one, found = results[place];
     const half = new Float64Array(data.dimensions.length);
-    found.shares.forEach((of, i) => {
-      half[one.pairs.j[i]] += 0.5 * of;
-      half[one.pairs.k[i]] += 0.5 * of;
+    found.interactions.forEach((of, i) => {
+      half[pairs.j[i]] += 0.5 * of;
+      half[pairs.k[i]] += 0.5 * of;
     });
-    // What has not changed to the eye is not drawn again.
-    const set = (element, name, text) => {
-      if (element.getAttribute(name) !== text) element.setAttribute(name, text);
-    };
-    bars.forEach(({ rects, text }, i) => {
-      const parts = [found.linear[i], found.curvature[i], half[i]];
+    rows.forEach((row, i) => {
       let x = 0;
-      rects.forEach((rect, k) => {
-        set(rect, "x", x.toFixed(2));
-        set(rect, "width", (100 * parts[k]).toFixed(2));
-        x += 100 * parts[k];
+      [found.linear[i], found.curvature[i], half[i]].forEach((part, k) => {
+        const rect = row.querySelectorAll(".bar rect")[k];
+        rect.setAttribute("x", x.toFixed(2));
+        rect.setAttribute("width", (100 * part).toFixed(2));
+        x += 100 * part;
       });
-      const share = `${x.toFixed(2)} %`;
-      if (text.textContent !== share) text.textContent = share;
+      row.querySelector("[data-share]").textContent = `${x.toFixed(2)} %`;
     });
-  };
-
-  // The counterpart of the module `verdict`: the interval of the yield reaches as far as at the tolerances of the study, from the law
-  // by which it was computed there.
-  const judged = (found, then, { target, reach }) => {
-    if (reach === null || found.by !== then.by) return "inconclusive";
-    const counted = found.by === "points" ? found.error : 0;
-    if (found.yield - reach[0] - counted >= target) return "met";
-    return found.yield + reach[1] + counted < target ? "missed" : "inconclusive";
-  };
-  const source = (found, one) => {
-    if (found.by === "surface") {
-      const differs = found.pearson !== null && found.yield !== null && Math.abs(found.pearson - found.yield) > 0.01 * Math.max(1 - found.pearson, found.rejected);
-      return `by the surface law${differs ? `; Pearson fit ${share(1 - found.pearson)}` : ""}`;
-    }
-    if (found.by === "points") {
-      return `by the surface law; changes counted at points${found.error > 0 ? `, ± ${(100 * found.error).toPrecision(2)} %` : ""}`;
-    }
-    return `by the Pearson fit: ${one.law ? "the surface law is not accurate enough here" : one.why_fit}`;
   };
 
   const show = () => {
-    tried.forEach((of, i) => {
-      const texts = figures(results[i]), then = figures(before[i]), { met } = results[i];
-      for (const [name, text] of Object.entries(texts)) {
-        const cell = cards[i].querySelector(`[data-figure="${name}"]`);
+    tried.forEach(({ one, card }, i) => {
+      const then = figures(one, before[i]), verdict = judged(results[i], one), badge = card.querySelector('[data-figure="verdict"]');
+      for (const [name, text] of Object.entries(figures(one, results[i]))) {
+        const cell = card.querySelector(`[data-figure="${name}"]`);
         cell.textContent = text;
         cell.classList.toggle("changed", text !== then[name]);
-        cards[i].querySelector(`[data-before="${name}"]`).textContent = then[name];
+        card.querySelector(`[data-before="${name}"]`).textContent = then[name];
       }
-      const by = cards[i].querySelector('[data-by]');
-      by.textContent = source(results[i], of.one);
-      const badge = cards[i].querySelector('[data-figure="verdict"]');
-      const verdict = met === null ? null : judged(results[i], before[i], of.one);
-      badge.textContent = verdict === null ? "" : verdict === "inconclusive" ? verdict : `target ${verdict}`;
-      badge.classList.toggle("good", verdict === "met");
-      badge.classList.toggle("bad", verdict === "missed");
-      badge.classList.toggle("unsure", verdict === "inconclusive");
-      draw(cards[i], of, before[i], results[i]);
+      card.querySelector("[data-by]").textContent = source(results[i], one);
+      badge.textContent = verdict;
+      for (const [name, word] of [["good", "target met"], ["bad", "target missed"], ["unsure", "inconclusive"]]) badge.classList.toggle(name, verdict === word);
+      draw(card, one, before[i], results[i]);
     });
     shares();
-    const total = document.getElementById("cost");
+    const total = document.getElementById("cost"), text = document.getElementById("toml");
     if (total !== null) {
       const now = live.cost(data, settings), change = 100 * (now / paid - 1);
       total.textContent = !Number.isFinite(now) ? "no process holds these tolerances"
@@ -154,64 +135,51 @@
         : `${significant(now, 6)} (${Math.abs(change).toFixed(2)} % ${change < 0 ? "less" : "more"})`;
       total.classList.toggle("changed", now !== paid);
     }
-    panel.classList.toggle("touched", settings.some(({ factor, shift }) => factor !== 1 || shift !== 0));
-    const text = document.getElementById("toml");
+    panel.classList.toggle("touched", results.some(({ same }) => !same));
     if (text !== null) text.value = live.toml(data, settings);
   };
 
-  // ---- input ----------------------------------------------------------------------------------------------------------
-
-  let waiting = false;
+  let isWaiting = false;
   const update = () => {
+    isWaiting = false;
     results = tried.map(({ one }) => live.evaluate(data, one, settings));
     show();
   };
-  /// Once a frame, however fast a slider moves.
-  const soon = () => {
-    if (waiting) return;
-    waiting = true;
-    requestAnimationFrame(() => {
-      waiting = false;
-      update();
-    });
-  };
   const fill = (i, except) => {
-    const row = rows[i], { half } = data.dimensions[i], { factor, shift } = settings[i];
-    const set = (selector, text) => {
-      const input = row.querySelector(selector);
-      if (input !== null && input !== except) input.value = text;
+    const { half } = data.dimensions[i], { factor, shift } = settings[i];
+    const texts = {
+      "set=factor": Math.round(100 * factor), "number=factor": factor * half,
+      "set=shift": Math.round(100 * shift / half), "number=shift": shift,
     };
-    set('[data-set="factor"]', Math.round(100 * factor));
-    set('[data-number="factor"]', Number((factor * half).toPrecision(12)));
-    set('[data-set="shift"]', Math.round(100 * shift / half));
-    set('[data-number="shift"]', Number(shift.toPrecision(12)));
+    for (const [name, value] of Object.entries(texts)) {
+      const input = rows[i].querySelector(`[data-${name}]`);
+      if (input !== null && input !== except) input.value = Number(value.toPrecision(12));
+    }
   };
   rows.forEach((row, i) => row.addEventListener("input", ({ target }) => {
-    const { half } = data.dimensions[i], given = target.valueAsNumber;
+    const { half } = data.dimensions[i], given = target.valueAsNumber, { set, number } = target.dataset;
     if (!Number.isFinite(given)) return;
-    const of = settings[i], number = target.dataset.number !== undefined, what = target.dataset.set ?? target.dataset.number;
-    if (what === "factor") {
-      const factor = number ? given / half : given / 100;
-      target.setCustomValidity(factor > 0 ? "" : "above 0");
-      if (!(factor > 0)) return;
+    const relative = number === undefined ? given / 100 : given / half;
+    if ((set ?? number) === "factor") {
+      target.setCustomValidity(relative > 0 ? "" : "above 0");
+      if (!(relative > 0)) return;
       // The study's own number is the study's own tolerance.
-      of.factor = number && given === Number(half.toPrecision(12)) ? 1 : factor;
+      settings[i].factor = number !== undefined && given === Number(half.toPrecision(12)) ? 1 : relative;
     } else {
-      of.shift = number ? given : half * given / 100;
+      settings[i].shift = number === undefined ? half * relative : given;
     }
     fill(i, target);
-    soon();
+    // Once a frame, however fast a slider moves.
+    if (!isWaiting) requestAnimationFrame(update);
+    isWaiting = true;
   }));
   const reset = () => {
-    settings.forEach((of, i) => {
-      of.factor = 1;
-      of.shift = 0;
-      fill(i, null);
-    });
+    settings.forEach((of) => Object.assign(of, { factor: 1, shift: 0 }));
+    settings.forEach((_, i) => fill(i, null));
     update();
   };
   document.getElementById("reset").addEventListener("click", reset);
-  document.getElementById("share-of").addEventListener("change", shares);
+  select.addEventListener("change", shares);
   document.getElementById("copy")?.addEventListener("click", () => {
     const text = document.getElementById("toml"), told = document.getElementById("copied");
     text.closest("details").open = true;
@@ -222,7 +190,7 @@
     if (navigator.clipboard === undefined) byHand();
     else navigator.clipboard.writeText(text.value).then(() => done(true), byHand);
   });
-  if (document.getElementById("share-of").options.length < 2) document.getElementById("share-of").closest("label").hidden = true;
+  select.closest("label").hidden = select.options.length < 2;
   panel.hidden = false;
   // A browser may have kept what was typed before the page was loaded again.
   reset();

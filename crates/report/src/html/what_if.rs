@@ -3,13 +3,14 @@
 use serde::Serialize;
 
 use sensitol::allocation::{Curve, CurveKind, Priced};
-use sensitol::analysis::{Analysis, Branch, CharacteristicAnalysis, Fit, NoFit};
+use sensitol::analysis::{Analysis, Branch, CharacteristicAnalysis, Fit, NoFit, YieldSource};
+use sensitol::method::ErrorEstimate;
 use sensitol::problem::Problem;
 use sensitol_numeric::dimension::Dimension;
-use sensitol_numeric::distribution::StandardMoments;
+use sensitol_numeric::distribution::Rule;
 use sensitol_numeric::law::TabulatedInput;
 use sensitol_numeric::power::Power;
-use sensitol_numeric::surrogate::InputShape;
+use sensitol_numeric::surrogate::{InputShape, shapes};
 
 /// Entry of the study's `[dimensions]`: its name, and its keys with their values as TOML.
 type Line = (String, Vec<(String, String)>);
@@ -55,20 +56,25 @@ struct Offered {
     max: f64,
 }
 
-/// Moments of a standardised input, and the quadrature rule for parts that are not parabolas.
+/// Skewness and excess kurtosis of a standardised input, and quadrature rules for its parts.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 struct Shape {
     s: f64,
     k: f64,
-    m5: f64,
-    m6: f64,
-    h6: f64,
-    h7: f64,
-    h8: f64,
-    nodes: Vec<f64>,
-    weights: Vec<f64>,
+    #[serde(flatten)]
+    rule: Table,
+    /// Rule for parabolas, exact for their fourth power. Left out if it is `rule`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    parabola: Option<Table>,
     /// Distribution of the input. None if only its moments are known, or if its table is too large for a page.
     law: Option<TabulatedInput>,
+}
+
+/// Nodes and weights of a quadrature rule.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct Table {
+    nodes: Vec<f64>,
+    weights: Vec<f64>,
 }
 
 /// A dimension that varies.
@@ -95,8 +101,7 @@ pub(super) struct Tried {
 pub(super) struct Wanted {
     pub(super) name: String,
     pub(super) unit: Option<String>,
-    lower: Option<f64>,
-    upper: Option<f64>,
+    limits: [Option<f64>; 2],
     /// Rounding tolerance at a limit: a value that is beyond by less lies on it.
     rounding: f64,
     target: Option<f64>,
@@ -111,16 +116,30 @@ pub(super) struct Wanted {
     scale: f64,
     /// True if the page computes the surface distribution.
     law: bool,
-    /// Reject rates below and above by the surface distribution of the study. The page adds the changes by points of the surface. None if
-    /// the page computes the surface distribution, or shows the Pearson fit.
-    counted: Option<[Option<f64>; 2]>,
+    /// True if the page counts the surface at points instead.
+    counted: bool,
     /// Reason why the page does not compute the surface distribution. None if it does.
     why_fit: Option<&'static str>,
-    /// Distance of the ends of the confidence interval below and above the yield that the page computes. None if it is unknown.
-    reach: Option<[f64; 2]>,
+    /// Reject rates of the report below and above. The page adds the changes. None if there is no such limit, or no yield.
+    rejects: [Option<Reported>; 2],
+    /// Interval of the yield of the report. None if it is unknown.
+    interval: Option<[f64; 2]>,
+    /// Source of the yield of the report, in words.
+    source: Option<&'static str>,
+    /// Errors of mean, sigma, skewness and kurtosis, each None if it is unknown.
+    errors: [Option<f64>; 4],
     /// Number of interactions that are screened guesses.
     #[serde(skip)]
     pub(super) screened: usize,
+}
+
+/// Reject rate of the report on one side of the limits, with its interval.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+struct Reported {
+    value: f64,
+    /// Ends of the 95 % interval. None if it is unknown.
+    low: Option<f64>,
+    high: Option<f64>,
 }
 
 fn is_one(scale: &f64) -> bool {
@@ -141,15 +160,13 @@ fn endless(found: &CharacteristicAnalysis) -> Option<String> {
     lacks.then(|| "the tail of a dimension is so long that the kurtosis is infinite".to_owned())
 }
 
-/// Distance of the ends of the yield interval from the yield that the page computes. The page uses the surface distribution or the
-/// Pearson fit, so both ends may lie on one side of its yield.
-fn reach(found: &CharacteristicAnalysis, by_law: bool) -> Option<[f64; 2]> {
-    let value = match by_law {
-        true => found.surface_law.as_ref()?.yield_(),
-        false => found.pearson?.yield_(),
-    };
-    let (value, [low, high]) = value.zip(found.yield_interval().filter(|_| !found.unfinished))?;
-    Some([value - low, high - value])
+/// Reject rates of the report below and above.
+fn reported(found: &CharacteristicAnalysis) -> [Option<Reported>; 2] {
+    let values = found.capability.map_or([None; 2], |of| [of.below, of.above]);
+    [0, 1].map(|side| {
+        let interval = found.reject_intervals[side];
+        values[side].map(|value| Reported { value, low: interval.map(|of| of[0]), high: interval.map(|of| of[1]) })
+    })
 }
 
 /// Degree that selects a numeric rule: every closed form has a lower one.
@@ -204,15 +221,16 @@ impl WhatIf {
             surface.characteristics.iter().map(|fit| fit.as_ref().map(clean).map_err(|&no| no)).collect();
         let laws = tabulated(problem, &surface.varying, &fits);
         let mut shapes: Vec<Shape> = Vec::new();
-        let mut index = |shape: &InputShape, law: &Option<TabulatedInput>| {
-            let shape = Shape::of(shape, law);
+        let mut index = |dimension: &Dimension, shape: &InputShape, law: &Option<TabulatedInput>| {
+            let shape = Shape::of(dimension, shape, law);
             shapes.iter().position(|known| *known == shape).unwrap_or_else(|| {
                 shapes.push(shape);
                 shapes.len() - 1
             })
         };
         let dimension = |((&d, shape), law): ((&usize, &InputShape), &Option<TabulatedInput>)| {
-            Tried::of(&problem.dimensions()[d], index(shape, law))
+            let dimension = &problem.dimensions()[d];
+            Tried::of(dimension, index(dimension, shape, law))
         };
         let dimensions = surface.varying.iter().zip(&surface.shapes).zip(&laws).map(dimension).collect();
         let has_atoms = |j: usize| {
@@ -315,15 +333,11 @@ impl Wanted {
         let divided = limits.times(power.inverse());
         let why_fit = fit.as_ref().ok().and_then(|fit| why_fit(found, fit, laws, has_atoms));
         let law = fit.is_ok() && why_fit.is_none();
-        let of_surface = found.surface_law.as_ref().filter(|_| why_fit == Some(INTERACT));
-        let counted = of_surface
-            .map(|law| [law.below, law.above].map(|share| Some(share?.value)))
-            .filter(|shares| shares.iter().any(Option::is_some));
+        let error = |of: fn(&ErrorEstimate) -> Option<f64>| found.error_estimate.as_ref().and_then(of);
         Self {
             name: one.name().to_owned(),
             unit: one.unit().map(str::to_owned),
-            lower: divided.lower(),
-            upper: divided.upper(),
+            limits: [divided.lower(), divided.upper()],
             rounding: power.inverse().times(problem.kept_limits(c).rounding()),
             target: one.target_yield(),
             why: fit.as_ref().err().map(ToString::to_string).or_else(|| endless(found)),
@@ -333,9 +347,12 @@ impl Wanted {
             unexplained,
             scale: power.times(1.0),
             law,
-            counted,
+            counted: why_fit == Some(INTERACT) && limits.exist(),
             why_fit,
-            reach: reach(found, law || counted.is_some()),
+            rejects: reported(found),
+            interval: found.yield_interval().filter(|_| !found.unfinished),
+            source: found.yield_source.map(YieldSource::words),
+            errors: [error(|of| of.mean), error(|of| of.sigma), error(|of| of.skewness), error(|of| of.kurtosis)],
             screened: fit.as_ref().map_or(0, |fit| fit.screened),
         }
     }
@@ -382,10 +399,23 @@ impl Cost {
 }
 
 impl Shape {
-    fn of(shape: &InputShape, law: &Option<TabulatedInput>) -> Self {
-        let StandardMoments { skewness, excess, m5, m6, h6, h7, h8, .. } = shape.moments;
-        let (nodes, weights) = (shape.rule.nodes.clone(), shape.rule.weights.clone());
-        Self { s: skewness, k: excess, m5, m6, h6, h7, h8, nodes, weights, law: law.clone() }
+    fn of(dimension: &Dimension, shape: &InputShape, law: &Option<TabulatedInput>) -> Self {
+        // The nodes of a long tail, which replace the Gauss rule, are exact for no parabola.
+        let gauss = dimension.distribution().and_then(|distribution| shapes([distribution]).pop());
+        let replaced = gauss.filter(|gauss| gauss.rule != shape.rule);
+        Self {
+            s: shape.moments.skewness,
+            k: shape.moments.excess,
+            rule: Table::of(&shape.rule),
+            parabola: replaced.map(|gauss| Table::of(&gauss.rule)),
+            law: law.clone(),
+        }
+    }
+}
+
+impl Table {
+    fn of(rule: &Rule) -> Self {
+        Self { nodes: rule.nodes.clone(), weights: rule.weights.clone() }
     }
 }
 
