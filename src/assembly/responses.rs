@@ -132,6 +132,9 @@ impl Responses {
 
     /// True if an entry has neither value nor error.
     pub(crate) fn has_open_entries(&self) -> bool {
+        if self.errors.is_empty() {
+            return !all_finite(&self.values);
+        }
         // An entry with an error is NaN too, so every other NaN is an open entry.
         self.values.iter().filter(|value| value.is_nan()).count() > self.errors.len()
     }

@@ -156,6 +156,11 @@ impl<'a> Evaluator<'a> {
         allowed
     }
 
+    /// Number of evaluations so far.
+    pub fn evaluations(&self) -> usize {
+        self.locked().evaluations()
+    }
+
     /// Counts, times, and the reason for an early end so far.
     pub fn summary(&self) -> RunSummary {
         self.locked().run
@@ -203,5 +208,77 @@ impl<'a> Evaluator<'a> {
 
     fn locked(&self) -> MutexGuard<'_, Ledger> {
         self.ledger.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assembly::{AssemblyFunction, Signature};
+    use crate::{Closure, Dimension};
+
+    fn problem(function: impl AssemblyFunction + 'static) -> Problem {
+        Problem::new([Dimension::normal("a", 0.0, 1.0).unwrap()], function).unwrap()
+    }
+
+    fn points(a: &[f64]) -> Points {
+        Points::from_rows(&a.iter().map(|&a| [a]).collect::<Vec<_>>())
+    }
+
+    /// Function with two outputs that leaves open what it is asked after its first point, except for one output of the second.
+    struct Interrupted(Signature);
+
+    impl AssemblyFunction for Interrupted {
+        fn signature(&self) -> &Signature {
+            &self.0
+        }
+
+        fn evaluate(&self, _: &Request<'_>, _: &Run<'_>, out: &mut Responses) {
+            out.set(0, 0, 1.0);
+            out.set(0, 1, f64::NAN);
+            out.set(1, 0, 2.0);
+            out.spent(3);
+            out.retried(2);
+        }
+    }
+
+    /// A point that is open in all outputs was not evaluated, and has not failed.
+    #[test]
+    fn open_points_are_neither_evaluations_nor_failures() {
+        let problem = problem(Interrupted(Signature::of_names(["a"], ["y", "z"])));
+        let evaluator = Evaluator::new(&problem, &Run::to_the_end());
+        evaluator.ask(&points(&[0.0, 1.0, 2.0, 3.0]));
+        let run = evaluator.summary();
+        assert_eq!((run.evaluations, run.retried, run.failed, run.stages), (2 + 3, 2, 1, 1));
+        assert_eq!(run.stopped, Some(StopReason::Requested));
+    }
+
+    #[test]
+    fn a_budget_is_a_reason_only_if_points_are_left_out() {
+        let problem = problem(Closure::scalar("y", |x| x[0]));
+        let evaluator = Evaluator::new(&problem, &Run::to_the_end()).with_budget(Some(5));
+        assert_eq!((evaluator.affordable(5), evaluator.stopped()), (5, None));
+        evaluator.ask(&points(&[0.0, 1.0, 2.0]));
+        assert_eq!((evaluator.remaining(), evaluator.affordable(4)), (Some(2), 2));
+        assert_eq!(evaluator.stopped(), Some(StopReason::Budget));
+        // A continued ledger has used up its part of the budget.
+        let later = Evaluator::new(&problem, &Run::to_the_end()).with_budget(Some(5)).with_ledger(evaluator.ledger());
+        assert_eq!((later.remaining(), later.part().remaining()), (Some(2), Some(2)));
+    }
+
+    /// Parts of a batch have ledgers of their own, which add up to one stage.
+    #[test]
+    fn parts_add_up_to_one_batch() {
+        let problem = problem(Closure::scalar("y", |x| if x[0] > 1.5 { f64::NAN } else { x[0] }));
+        let evaluator = Evaluator::new(&problem, &Run::to_the_end()).with_seed(7);
+        let part = |a: &[f64]| {
+            let part = evaluator.part();
+            part.ask(&points(a));
+            assert_eq!(part.seed(), 7);
+            part.into_ledger()
+        };
+        evaluator.merge(Ledger::of_batch([part(&[0.0, 1.0]), part(&[2.0, 3.0, 1.0])]));
+        let run = evaluator.summary();
+        assert_eq!((run.evaluations, run.failed, run.stages, run.stopped), (5, 2, 1, None));
     }
 }

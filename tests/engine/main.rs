@@ -21,6 +21,7 @@ mod methods;
 mod plans;
 mod proofs;
 mod quadratures;
+mod recorded_failures;
 mod response_surface;
 mod settled;
 mod simulation;

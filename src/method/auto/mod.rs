@@ -136,7 +136,7 @@ pub fn climb_until(
     let evaluator = Evaluator::new(problem, run).with_budget(options.budget);
     let mut evaluated = Evaluated::nothing(problem);
     loop {
-        while let Some(stage) = climb.next(&evaluated.known, evaluator.ledger().evaluations()) {
+        while let Some(stage) = climb.next(&evaluated.known, &evaluator) {
             evaluated.add(&evaluator, &climb.plan, &stage);
             if evaluator.stopped().is_some() {
                 break;

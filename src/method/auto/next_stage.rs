@@ -3,6 +3,7 @@
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
+use crate::evaluation::Evaluator;
 use crate::method::Options;
 use crate::method::auto::characteristic_state::{View, skewed};
 use crate::method::auto::chosen_points::{ChosenPoints, Probe};
@@ -152,16 +153,16 @@ impl<'p> Climb<'p> {
         on
     }
 
-    /// Returns the next points, or None if the refinement is over. `evaluated` counts the points so far.
-    pub(super) fn next(&mut self, known: &KnownAnswers, evaluated: usize) -> Option<Stage> {
-        self.spent = evaluated;
+    /// Returns the next points after those that the evaluator has in its ledger, or None if the refinement is over.
+    pub(super) fn next(&mut self, known: &KnownAnswers, evaluator: &Evaluator<'_>) -> Option<Stage> {
+        self.spent = evaluator.evaluations();
         loop {
             let mut stage = self.wanted(known);
             if !stage.points.is_empty() {
-                let left = self.budget.saturating_sub(evaluated);
-                if stage.points.len() > left {
+                let allowed = evaluator.remaining().unwrap_or(usize::MAX);
+                if stage.points.len() > allowed {
                     // Replacements of failed points come in addition to the planned ones and may exceed the budget.
-                    stage.points.truncate(left);
+                    stage.points.truncate(allowed);
                     self.rest = Some(ClimbEnd::Budget);
                 }
                 return (!stage.points.is_empty()).then_some(stage);
@@ -212,9 +213,14 @@ impl<'p> Climb<'p> {
         self.plan.varying().len()
     }
 
+    /// Returns the evaluations that are left of the budget, without those that have been chosen.
+    fn remaining(&self) -> usize {
+        self.budget.saturating_sub(self.spent)
+    }
+
     /// Returns how many of `most` items of `each` evaluations the budget allows, and charges them.
     fn afford(&mut self, most: usize, each: usize) -> usize {
-        let count = most.min(self.budget.saturating_sub(self.spent) / each);
+        let count = most.min(self.remaining() / each);
         self.short_of_budget |= count < most;
         self.spent += count * each;
         count
@@ -269,7 +275,7 @@ impl<'p> Climb<'p> {
     /// True if points of the model can be sampled if the surface is not accurate enough.
     fn may_be_sampled(&self) -> bool {
         let free = !self.problem.function().signature().costly;
-        free || self.budget != usize::MAX && self.budget.saturating_sub(self.spent) >= SAMPLED
+        free || self.budget != usize::MAX && self.remaining() >= SAMPLED
     }
 
     fn multiplies(&self, view: &View, known: &KnownAnswers) -> bool {
@@ -532,7 +538,7 @@ impl<'p> Climb<'p> {
             self.bought.fitted.extend(probes);
             return more > 0;
         }
-        if self.budget.saturating_sub(self.spent) < pairs {
+        if self.remaining() < pairs {
             self.short_of_budget = true;
             return false;
         }
