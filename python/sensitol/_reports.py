@@ -465,6 +465,8 @@ class Capability(Record):
 class CharacteristicResult(Fitted):
     """A characteristic with its verdicts and intervals, in JSON."""
 
+    coefficient_of_variation: Optional[Verified]
+    """Sigma divided by the magnitude of the mean; null if unknown, and if the mean may be 0."""
     constant: bool
     """True if the characteristic depends on nothing that varies, so that it has a single value."""
     coverage: Optional[CoverageIntervals]
@@ -541,6 +543,8 @@ class CharacteristicResult(Fitted):
     """95 % interval of the assemblies below the lower limit alone, per million. 0 to 0 if a proof excludes them,
     null if it is unknown.
     """
+    quantiles: Optional[QuantileEstimates]
+    """Quantiles with their errors. None if nothing is known of the distribution."""
     requirements: List[Judged]
     """Verdicts on all requirements, the target yield included."""
     revision: Optional[str]
@@ -719,12 +723,16 @@ class CoverageIntervals(Record):
 
     equal_tails: List[float]
     """Interval with equal shares of assemblies below and above it."""
+    equal_tails_errors: List[Optional[float]]
+    """Errors of the ends of `equal_tails`; null if unknown."""
     probability: float
     """Share of assemblies that each interval holds."""
     shortest: List[float]
     """Shortest interval."""
+    shortest_errors: List[Optional[float]]
+    """Errors of the ends of `shortest`, as quantiles; null if unknown."""
     source: Literal['proof', 'samples', 'surface-law', 'pearson']
-    """Source of the intervals: a surface that is trusted, else points of the model, else the Pearson fit."""
+    """Source of the intervals: that of the quantiles."""
 
 
 class DesignPoint(Record):
@@ -828,6 +836,15 @@ class ErrorVsReference(Record):
     """Third standardised moment."""
     yield_: Optional[float]
     """Share within the limits."""
+
+
+class EstimatedQuantile(Record):
+    """A quantile and its error."""
+
+    error: Optional[float]
+    """Error of the value: the true quantile lies within three of these. None if it is unknown."""
+    value: float
+    """Value of the characteristic."""
 
 
 class EstimatedShare(Record):
@@ -1161,6 +1178,19 @@ class Proof(Record):
     """Solver that found the tolerances. None if none were found."""
     starts: Optional[int]
     """Number of searches from different tolerances, if there may be several optima. None if one search is enough."""
+
+
+class QuantileEstimates(Record):
+    """Quantiles with their errors, all from one source."""
+
+    cp_percentile_error: Optional[float]
+    """Error of `cp_percentile`. None if it is unknown."""
+    cpk_percentile_error: Optional[float]
+    """Error of `cpk_percentile`. None if it is unknown."""
+    source: Literal['proof', 'samples', 'surface-law', 'pearson']
+    """Source of the quantiles: that of the yield, unless that is a proof about the limits only."""
+    values: Dict[str, Optional[EstimatedQuantile]]
+    """Quantiles by their probabilities; null at a probability that the source does not resolve."""
 
 
 class RareCharacteristic(Record):
@@ -1807,8 +1837,12 @@ class SweptPoint(Record):
     """95 % interval of the assemblies below the lower limit alone, per million. 0 to 0 if a proof excludes them,
     null if it is unknown.
     """
+    quantile_errors: Dict[str, Optional[float]]
+    """Errors of the quantiles; null if unknown."""
+    quantile_source: Optional[Literal['proof', 'samples', 'surface-law', 'pearson']]
+    """Source of the quantiles; null if there are none."""
     quantiles: Dict[str, Optional[float]]
-    """Quantiles of the surface distribution if there is one, else of the Pearson fit."""
+    """Quantiles; null at a probability that their source does not resolve."""
     requirements: List[Judged]
     """Everything that is required of it, the target yield included."""
     rss: Optional[float]
@@ -1951,7 +1985,7 @@ _INNER: Dict[str, Dict[str, type]] = {
     "AllocationResultRequirements": {"sampled": AllocationResultRequirementsSampled},
     "AnalysisResult": {"account": Account, "characteristic_correlation": OutputCorrelation, "characteristics": CharacteristicResult, "correlation": Pair, "dimensions": DimensionResult, "evaluator": EvaluatorSummary, "joint_requirement": Judged, "joint_yield": Verified, "warnings": ReportedWarning},
     "Beyond": {"design_point": DesignPoint},
-    "CharacteristicResult": {"coverage": CoverageIntervals, "distribution": Law, "error_estimate": ErrorEstimate, "inspection": InspectionRisks, "interactions": Interaction, "interactions_remainder": Remainder, "least_squares": Residual, "model_sampling": SampledModel, "normal_fit": Capability, "pearson_fit": Capability, "requirements": Judged, "sampling_interval": SamplingInterval, "sensitivities": Sensitivity, "sobol": SobolIndices, "surface_law": SurfaceLaw, "surrogate_sampling": Sampled, "verification": Verification, "worst_case": WorstCase},
+    "CharacteristicResult": {"coefficient_of_variation": Verified, "coverage": CoverageIntervals, "distribution": Law, "error_estimate": ErrorEstimate, "inspection": InspectionRisks, "interactions": Interaction, "interactions_remainder": Remainder, "least_squares": Residual, "model_sampling": SampledModel, "normal_fit": Capability, "pearson_fit": Capability, "quantiles": QuantileEstimates, "requirements": Judged, "sampling_interval": SamplingInterval, "sensitivities": Sensitivity, "sobol": SobolIndices, "surface_law": SurfaceLaw, "surrogate_sampling": Sampled, "verification": Verification, "worst_case": WorstCase},
     "ComparedCharacteristic": {"methods": ComparedMethod, "reference": SimulatedCharacteristic},
     "ComparedMethod": {"error_vs_reference": ErrorVsReference, "run": RunSummary},
     "ComparisonResult": {"characteristics": ComparedCharacteristic, "evaluator": EvaluatorSummary, "not_run": NotRun},

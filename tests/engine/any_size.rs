@@ -219,7 +219,7 @@ fn is_figure(path: &str) -> bool {
     let places = before.ends_with("quantiles") || before.ends_with("worst_case") && key.starts_with("linear");
     let estimated =
         ["error", "control", "standard", "rounding", "verification"].iter().any(|part| before.contains(part));
-    (moments.contains(&key) || places) && !estimated
+    (moments.contains(&key) || places) && !estimated && !key.ends_with("_error")
 }
 
 /// Job that returns its results as JSON for some units.
