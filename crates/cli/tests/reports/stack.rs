@@ -208,7 +208,9 @@ fn csv_and_json_say_the_same() {
     compare("interactions.csv", &list(&gap["interactions"]), &["characteristic"]);
     compare("warnings.csv", &list(&json["warnings"]), &[]);
     for row in &table("quantiles.csv")[1..] {
-        assert!(row[0] == "gap" && same(&row[2], &gap["surface_law"]["quantiles"][&row[1]]));
+        let found = &gap["quantiles"]["values"][&row[1]];
+        assert!(row[0] == "gap" && same(&row[2], &found["value"]) && same(&row[3], &found["error"]), "{row:?}");
+        assert_eq!(row[4], gap["quantiles"]["source"].as_str().unwrap());
     }
     let stack = table("stack-gap.csv");
     let total = stack.iter().find(|row| row[2] == "rss").unwrap();
