@@ -94,7 +94,7 @@ impl Evaluated {
         const TASKS: usize = 64;
         let rows = near_rows(asked.centre.len());
         let rooms = Rooms::none();
-        let mut waiting: (&[(Point, Purpose)], Vec<(Responses, Ledger)>) = (&[], Vec::new());
+        let mut waiting: (&[(Point, Purpose)], Answered) = (&[], Vec::new());
         let mut parts: Vec<Ledger> = Vec::new();
         for tasks in points.chunks(rows * TASKS).chain([&points[..0]]) {
             let stopped = waiting.1.iter().map(|(_, ledger)| ledger).chain(&parts).any(|part| part.stopped().is_some());
@@ -144,6 +144,9 @@ impl Evaluated {
         }
     }
 }
+
+/// Answers of batches that were asked side by side, each with its ledger.
+type Answered = Vec<(Responses, Ledger)>;
 
 /// Model and plan that evaluate the points of a stage.
 struct StageEvaluation<'a> {

@@ -167,7 +167,7 @@ impl DerivativeSearch<'_, '_> {
             return Next::Done(Finish::LastChoice);
         }
         self.shortened(&setting, &mut chosen);
-        Next::Ask(Question::Choice { chosen, kept_at_cost: safe.then_some(cost_here) })
+        Next::Ask(Question::Choice { chosen: Box::new(chosen), kept_at_cost: safe.then_some(cost_here) })
     }
 
     /// Factor up to which the derivatives of the linearization point are followed. It is limited if they come from samples.
@@ -214,7 +214,7 @@ impl DerivativeSearch<'_, '_> {
         let problem = match &question {
             Question::MovedNominals => base,
             Question::Tolerances(at) => with_tolerances(base, priced, at)?,
-            Question::Choice { chosen: (solved, offers, _), .. } => with_choice(base, priced, &solved.at, offers)?,
+            Question::Choice { chosen, .. } => with_choice(base, priced, &chosen.0.at, &chosen.1)?,
         };
         let answer = match self.driver.station(problem)?.map(Rc::new) {
             None => Answer::OverBudget,

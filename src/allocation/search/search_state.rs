@@ -39,7 +39,7 @@ pub(in crate::allocation) enum Question {
     /// Half bands that no choice led to: the tightest, and those that belong to moved nominal values.
     Tolerances(Vec<f64>),
     /// Chosen tolerances. The present point becomes the fallback if it kept everything at this cost.
-    Choice { chosen: Chosen, kept_at_cost: Option<f64> },
+    Choice { chosen: Box<Chosen>, kept_at_cost: Option<f64> },
 }
 
 /// Answer of the model to a question.
@@ -225,7 +225,7 @@ impl<P> SearchState<P> {
                 (self.at, self.last) = (at, None);
                 self.move_to(answer)
             }
-            Question::Choice { chosen, kept_at_cost } => self.take_choice(chosen, kept_at_cost, answer),
+            Question::Choice { chosen, kept_at_cost } => self.take_choice(*chosen, kept_at_cost, answer),
         }
     }
 
@@ -304,7 +304,7 @@ mod tests {
     }
 
     fn choice(at: &[f64], kept_at_cost: Option<f64>) -> Question {
-        Question::Choice { chosen: chosen(at, &[0, 0]), kept_at_cost }
+        Question::Choice { chosen: Box::new(chosen(at, &[0, 0])), kept_at_cost }
     }
 
     /// State after a choice at `b`, from `a`, which kept everything at a cost of 5.

@@ -1,6 +1,6 @@
 //! Sequential quadratic programming: minimises a smooth objective under smooth rows and bounds to the last digits.
 //!
-//! Every step solves the [quadratic problem](crate::optimise::quadratic_program) of the present slopes, with the matrix of the Lagrangian
+//! Every step solves the quadratic problem (`quadratic_program`) of the present slopes, with the matrix of the Lagrangian
 //! from earlier slopes (damped BFGS). It goes as far as the merit `f + w max(0, c)` falls. If a whole step does not
 //! lower the merit because rows are curved, the step is solved again with the rows at its end. Sources: M. J. D.
 //! Powell, "A fast algorithm for nonlinearly constrained optimization calculations" (1978), for the damped update; R.
