@@ -29,6 +29,12 @@ pub(crate) struct SampleQuantile {
     paired: Option<PairedQuantile>,
 }
 
+/// Integer with the order of a double, as that of [`f64::total_cmp`].
+fn ordered_bits(value: f64) -> i64 {
+    let bits = value.to_bits().cast_signed();
+    bits ^ ((bits >> 63).cast_unsigned() >> 1).cast_signed()
+}
+
 /// Quantile of a surface at the points of the model's sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct PairedQuantile {
@@ -71,22 +77,27 @@ pub(super) struct OrderedSample {
 
 impl OrderedSample {
     /// Sorts values with their weights and randomisations. Returns None if there is no weight, or some value is not finite.
-    pub(super) fn of(mut all: Vec<(f64, f64, usize)>, replicates: usize) -> Option<Self> {
+    pub(super) fn of(all: &[(f64, f64, usize)], replicates: usize) -> Option<Self> {
         let total: f64 = all.iter().map(|(_, weight, _)| weight).sum();
         if total.is_nan() || total <= 0.0 || all.iter().any(|(value, ..)| !value.is_finite()) {
             return None;
         }
-        all.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.2.cmp(&b.2)).then(a.1.total_cmp(&b.1)));
+        // Integers of the same order are compared in one instruction.
+        let mut order: Vec<(i64, usize)> =
+            all.iter().enumerate().map(|(index, (value, ..))| (ordered_bits(*value), index)).collect();
+        order.sort_unstable();
         let mut whole = vec![0.0; replicates];
         let mut sum = 0.0;
-        let mut shares = Vec::with_capacity(all.len());
-        for &(_, weight, replicate) in &all {
+        let (mut values, mut shares, mut points) = (Vec::new(), Vec::new(), Vec::new());
+        for (_, index) in order {
+            let (value, weight, replicate) = all[index];
             whole[replicate] += weight;
             sum += weight;
+            values.push(value);
             shares.push(sum / total);
+            points.push((weight, replicate));
         }
-        let values = all.iter().map(|(value, ..)| *value).collect();
-        Some(Self { values, shares, whole, points: all.into_iter().map(|(_, weight, of)| (weight, of)).collect() })
+        Some(Self { values, shares, whole, points })
     }
 
     /// Quantile at a share.
@@ -125,7 +136,7 @@ pub(crate) fn reported_quantiles(
 ) -> [Option<EstimatedQuantile>; 7] {
     let points: Vec<(f64, f64, usize)> = points.map(|(value, replicate)| (value, 1.0, replicate)).collect();
     let one = 1.0 / points.len().max(1) as f64;
-    let Some(sample) = OrderedSample::of(points, replicates) else { return [None; 7] };
+    let Some(sample) = OrderedSample::of(&points, replicates) else { return [None; 7] };
     let found = quantiles(&sample, None, &REPORTED_QUANTILES, one).into_iter();
     let estimate =
         |found: SampleQuantile| EstimatedQuantile { value: found.plain.value, error: Some(found.plain.error) };
@@ -181,7 +192,7 @@ mod tests {
     fn normal(count: usize, of: impl Fn(f64) -> f64) -> OrderedSample {
         let law = Pearson::normal(0.0, 1.0).unwrap();
         let value = |i: usize| of(law.quantile((i as f64 + 0.5) / count as f64));
-        OrderedSample::of((0..count).map(|i| (value(i), 1.0, i % 16)).collect(), 16).unwrap()
+        OrderedSample::of(&(0..count).map(|i| (value(i), 1.0, i % 16)).collect::<Vec<_>>(), 16).unwrap()
     }
 
     /// Quantiles of a normal distribution, from tables: -2.326348, 0, 3.090232.
@@ -213,6 +224,13 @@ mod tests {
         let found = quantiles(&steps, Some(&smooth), &at, 1e-4)[0].unwrap();
         let law = LawFigure::counted(-0.5, 1e-9);
         assert!(found.with_law(Some(law)).error >= 1.0, "{found:?}");
+    }
+
+    /// Integers keep the order of doubles of either sign.
+    #[test]
+    fn integers_have_the_order_of_doubles() {
+        let values = [f64::MIN, -2.5, -1e-300, -0.0, 0.0, 1e-300, 1.0, 2.5, f64::MAX];
+        assert!(values.windows(2).all(|two| ordered_bits(two[0]) < ordered_bits(two[1])));
     }
 
     /// A share of less than the weight of one point is not resolved.

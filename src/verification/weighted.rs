@@ -69,8 +69,8 @@ impl WeightedSample {
     /// Quantiles of the model at probabilities below or above, those of the surface beside them. None for a probability that the sample
     /// does not resolve.
     pub(crate) fn quantiles(&self, tails: &[(LawTail, f64)]) -> Vec<Option<SampleQuantile>> {
-        let Some(model) = OrderedSample::of(self.valid(), self.replicates) else { return vec![None; tails.len()] };
-        let surface = self.of_surface().and_then(|all| OrderedSample::of(all, self.replicates));
+        let Some(model) = OrderedSample::of(&self.valid(), self.replicates) else { return vec![None; tails.len()] };
+        let surface = self.of_surface().and_then(|all| OrderedSample::of(&all, self.replicates));
         quantiles(&model, surface.as_ref(), tails, self.one)
     }
 
@@ -80,7 +80,7 @@ impl WeightedSample {
         const PLACES: usize = 96;
         /// Share of the assemblies that is left out on either side.
         const OUTSIDE: f64 = 1e-3;
-        let sample = OrderedSample::of(self.valid(), self.replicates)?;
+        let sample = OrderedSample::of(&self.valid(), self.replicates)?;
         let [from, to] = [OUTSIDE, 1.0 - OUTSIDE].map(|share| sample.quantile(share));
         let step = (to - from) / PLACES as f64;
         if step.is_nan() || step <= 0.0 {
