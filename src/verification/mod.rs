@@ -45,7 +45,6 @@ use figures::moments;
 use model::Model;
 use sample::Sample;
 use sensitol_numeric::correlation::factors;
-use sensitol_numeric::law::REPORTED_QUANTILES;
 use sensitol_numeric::power::{Losable, Rescale, Rescaling};
 use sensitol_numeric::sampling::Normals;
 use sensitol_numeric::surrogate::Surrogate;
@@ -131,8 +130,6 @@ pub struct SampledFigures {
     pub switches: Option<Vec<FoundSwitch>>,
     /// True if the model reported all of its switches.
     pub switches_complete: bool,
-    /// Quantiles at the reported probabilities, beside those of the surface. None at one that the sample does not resolve.
-    pub(crate) quantiles: [Option<SampleQuantile>; 7],
     /// The sample itself.
     pub(crate) sample: Option<WeightedSample>,
 }
@@ -336,8 +333,6 @@ pub(crate) fn verify_characteristic(
     let varies = known(1).is_some_and(|sigma| sigma.value > 0.0);
     let difference = sample.difference(&[[low, high], beyond[0], beyond[1]]).filter(|_| limits.exist());
     let (points, point) = (sample.points, sample.point());
-    let sample = sample.kept();
-    let quantiles = sample.quantiles(&REPORTED_QUANTILES).try_into().unwrap_or([None; 7]);
     Some(SampledFigures {
         points,
         mean: known(0),
@@ -351,8 +346,7 @@ pub(crate) fn verify_characteristic(
         valid: Verified { value: figures.valid.0, error: figures.valid.1 },
         switches: sides.switches,
         switches_complete: sides.complete,
-        quantiles: quantiles.map(|found: Option<SampleQuantile>| found.filter(|_| varies)),
-        sample: Some(sample),
+        sample: Some(sample.kept()),
     })
 }
 
@@ -379,7 +373,6 @@ fn constant(model: &Model<'_>, [low, high]: [f64; 2]) -> SampledFigures {
         valid: Verified { value: f64::from(u8::from(known)), error: 0.0 },
         switches: None,
         switches_complete: true,
-        quantiles: [None; 7],
         sample: None,
     }
 }

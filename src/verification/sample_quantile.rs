@@ -4,7 +4,9 @@
 //! plain   q         smallest value whose cumulative weight reaches p
 //!         error     greater distance of the quantiles at p - e and p + e, with e the error of the share up to q
 //! paired  q         q_model - q_surface + q_law,      all at p, the first two from the same points
-//!         error     the same distance, with e the error of the mean of 1[model <= q_model] - 1[surface <= q_surface]
+//!         error     the same distance, with e the error of the mean of 1[model <= q_model] - 1[surface <= q_surface],
+//!                   the error of q_law, and (q_law - q_surface) (1 - r), as the root of the sum of squares,
+//!                   with r the distance of neighbouring quantiles of the model, divided by that of the surface
 //! ```
 //!
 //! Points on which model and surface agree do not scatter the paired quantile: only the difference of the two is sampled. The error of a

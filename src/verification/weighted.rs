@@ -4,7 +4,7 @@ use crate::verification::Verified;
 use crate::verification::figures::{jackknife, student, totals};
 use crate::verification::sample_quantile::{OrderedSample, SampleQuantile, quantiles};
 use crate::verification::tails::{SampleTails, Weighed, tail};
-use sensitol_numeric::law::LawTail;
+use sensitol_numeric::law::{LawTail, REPORTED_QUANTILES};
 use sensitol_numeric::power::{Rescale, Rescaling};
 
 /// Points of one stratum in one randomisation.
@@ -64,6 +64,11 @@ impl WeightedSample {
             all.extend(part.surface.iter().zip(&part.weights).map(|(&y, &weight)| (y, weight, part.replicate)));
         }
         Some(all)
+    }
+
+    /// Quantiles at the probabilities of reports, as [`quantiles`](Self::quantiles).
+    pub(crate) fn reported_quantiles(&self) -> [Option<SampleQuantile>; 7] {
+        self.quantiles(&REPORTED_QUANTILES).try_into().unwrap_or([None; 7])
     }
 
     /// Quantiles of the model at probabilities below or above, those of the surface beside them. None for a probability that the sample

@@ -234,10 +234,21 @@ pub(in crate::allocation) trait RequirementForm: Sync {
         multiplier: f64,
     ) -> Option<[Option<f64>; 3]> {
         let moments = responses.moments(row.characteristic, &responses.factors(priced, at))?;
-        let doubled = 2.0 * multiplier * known_or_infinite(self.value(row, responses, priced, at));
+        let price = self.price_of_slack(row, responses, (priced, at), multiplier);
         let [lower, upper] = self.slack_by_limits(row, &moments, self.target(row, responses))?;
-        let of = |exists: bool, by: f64| (exists && by != 0.0).then_some(doubled * by);
+        let of = |exists: bool, by: f64| (exists && by != 0.0).then_some(price * by);
         Some([of(row.limits.lower().is_some(), lower), of(row.limits.upper().is_some(), upper), None])
+    }
+
+    /// Saving per relative growth of the slack. The value falls as the inverse square of the slack.
+    fn price_of_slack(
+        &self,
+        row: &Constraint,
+        responses: &Responses,
+        (priced, at): (&[Priced], &[f64]),
+        multiplier: f64,
+    ) -> f64 {
+        2.0 * multiplier * known_or_infinite(self.value(row, responses, priced, at))
     }
 
     /// Derivatives of the logarithm of the slack by an outward move of the lower and the upper limit, per unit.

@@ -5,7 +5,7 @@
 //! ```
 
 use crate::allocation::cost::cost_curve::Priced;
-use crate::allocation::requirement::constraint::{Constraint, known_or_infinite};
+use crate::allocation::requirement::constraint::Constraint;
 use crate::allocation::requirement::form::{Basis, RequirementForm};
 use crate::allocation::requirement::linearised::Linearised;
 use crate::allocation::requirement::process_options::{OptionUses, ProcessOptions};
@@ -85,9 +85,9 @@ impl RequirementForm for RequiredRss {
         (priced, at): (&[Priced], &[f64]),
         multiplier: f64,
     ) -> Option<[Option<f64>; 3]> {
-        let doubled = 2.0 * multiplier * known_or_infinite(self.value(row, responses, priced, at));
+        let price = self.price_of_slack(row, responses, (priced, at), multiplier);
         let middle = responses.middle(row.characteristic, &responses.factors(priced, at), None)?;
-        Some(row.price_of_side(doubled / row.slack_about(middle)?))
+        Some(row.price_of_side(price / row.slack_about(middle)?))
     }
 
     fn is_exact_for_processes(&self, _row: &Constraint, _responses: &Responses) -> bool {

@@ -5,7 +5,7 @@
 //! ```
 
 use crate::allocation::cost::cost_curve::Priced;
-use crate::allocation::requirement::constraint::{Constraint, known_or_infinite};
+use crate::allocation::requirement::constraint::Constraint;
 use crate::allocation::requirement::form::{Basis, FALLS, RequirementForm};
 use crate::allocation::requirement::process_options::{OptionUses, ProcessOptions};
 use crate::allocation::requirement::slack::Slack;
@@ -90,8 +90,8 @@ impl RequirementForm for RequiredSigma {
         (priced, at): (&[Priced], &[f64]),
         multiplier: f64,
     ) -> Option<[Option<f64>; 3]> {
-        let doubled = 2.0 * multiplier * known_or_infinite(self.value(row, responses, priced, at));
-        Some([None, None, Some(doubled / row.requirement.amount())])
+        let price = self.price_of_slack(row, responses, (priced, at), multiplier);
+        Some([None, None, Some(price / row.requirement.amount())])
     }
 
     fn option_uses(&self, row: &Constraint, options: &ProcessOptions<'_>) -> Option<OptionUses> {

@@ -11,7 +11,7 @@
 
 use crate::analysis::CharacteristicAnalysis;
 use crate::analysis::distribution::moment_shift::moment_shift;
-use crate::analysis::distribution::surface_law::GuardedLaw;
+use crate::analysis::distribution::surface_law::{GuardedLaw, of_pearson};
 use crate::analysis::result::verification::{Verification, VerificationKind};
 use crate::analysis::result::yield_source::YieldSource;
 use crate::verification::{SampleQuantile, Verified};
@@ -26,7 +26,8 @@ pub(in crate::analysis) enum QuantileSource<'a> {
     Constant(f64),
     /// Quantiles of a sample that replaced the surface, and the Pearson distribution with its moments.
     SampledModel(&'a [Option<EstimatedQuantile>; 7], Option<&'a Pearson>),
-    /// Sample of the verification, with the distribution of the surface.
+    /// Sample of the verification, with the distribution of the surface if that was computed. Counts of the surface are no control variate:
+    /// the sample is as accurate.
     Sample(&'a Verification, Option<&'a GuardedLaw>),
     /// Distribution of the surface. It is a proof if the surface is proven to be the function.
     Surface(&'a GuardedLaw, bool),
@@ -59,7 +60,9 @@ impl<'a> QuantileSelection<'a> {
         let source = match (fit, &one.model_sampled, sampled, law, pearson) {
             (Some(Law::Point { at }), ..) => QuantileSource::Constant(*at),
             (_, Some(sampled), ..) => QuantileSource::SampledModel(&sampled.quantiles, pearson),
-            (_, _, Some(of), ..) if of.quantiles.iter().any(Option::is_some) => QuantileSource::Sample(of, law),
+            (_, _, Some(of), ..) if of.quantiles.iter().any(Option::is_some) => {
+                QuantileSource::Sample(of, law.filter(|law| law.shares.counted.is_none()))
+            }
             (_, _, _, Some(law), _) if one.moments.is_some() => {
                 QuantileSource::Surface(law, proven && computed && !measured)
             }
@@ -84,9 +87,7 @@ impl<'a> QuantileSelection<'a> {
         let found = match &self.source {
             QuantileSource::SampledModel(quantiles, _) => quantiles.to_vec(),
             QuantileSource::Sample(of, law) => {
-                let own = law.filter(|law| law.shares.counted.is_none()).and_then(|law| law.shares.quantiles);
-                let figure = |index: usize| own.map(|all| all[index]);
-                of.quantiles.iter().enumerate().map(|(index, found)| with_law(*found, figure(index))).collect()
+                with_law(of.quantiles, law.and_then(|law| law.shares.quantiles).as_ref().map(<[_; 7]>::as_slice))
             }
             QuantileSource::Surface(law, _) => match law.shares.quantiles {
                 Some(all) => all.into_iter().map(|figure| self.of_law(figure)).collect(),
@@ -109,10 +110,7 @@ impl<'a> QuantileSelection<'a> {
             }
             QuantileSource::Sample(of, law) => {
                 let Some(sample) = of.sample.as_deref() else { return vec![None; tails.len()] };
-                let own = law.and_then(|law| law.quantiles(fit, tails));
-                let figure = |index: usize| own.as_ref().map(|all| all[index]);
-                let found = sample.quantiles(tails).into_iter().enumerate();
-                found.map(|(index, found)| with_law(found, figure(index))).collect()
+                with_law(sample.quantiles(tails), law.and_then(|law| law.quantiles(fit, tails)).as_deref())
             }
             QuantileSource::Surface(law, _) => match law.quantiles(fit, tails) {
                 Some(found) => found.into_iter().map(|figure| self.of_law(figure)).collect(),
@@ -143,17 +141,19 @@ impl<'a> QuantileSelection<'a> {
     }
 }
 
-/// Quantile of a Pearson distribution at a tail.
-pub(in crate::analysis) fn of_pearson(fit: &Pearson, (tail, p): (LawTail, f64)) -> f64 {
-    match tail {
-        LawTail::Lower => fit.quantile(p),
-        LawTail::Upper => fit.upper_quantile(p),
+/// Quantiles of a sample, with those of the surface distribution at the same probabilities as control variates.
+fn with_law(
+    found: impl IntoIterator<Item = Option<SampleQuantile>>,
+    law: Option<&[LawFigure]>,
+) -> Vec<Option<EstimatedQuantile>> {
+    let mut all = Vec::new();
+    for (index, quantile) in found.into_iter().enumerate() {
+        all.push(quantile.map(|quantile| {
+            let Verified { value, error } = quantile.with_law(law.map(|law| law[index]));
+            EstimatedQuantile { value, error: Some(error) }
+        }));
     }
-}
-
-fn with_law(found: Option<SampleQuantile>, law: Option<LawFigure>) -> Option<EstimatedQuantile> {
-    let Verified { value, error } = found?.with_law(law);
-    Some(EstimatedQuantile { value, error: Some(error) })
+    all
 }
 
 /// Quantile of a sample between two reported ones: that of the Pearson fit, corrected by the differences of sample and fit at its
@@ -176,7 +176,7 @@ fn between_reported(
     let part = (z - from) / (to - from);
     let corrections = [low.value - fit_low, high.value - fit_high];
     let value = of_pearson(fit, tail) + corrections[0] + part * (corrections[1] - corrections[0]);
-    // The correction may bend between the two: by no more than half of its change.
+    // Allowance for a bend of the correction between the two: half of its change.
     let bent = 0.5 * (corrections[1] - corrections[0]);
     let error = low.error.zip(high.error).map(|(low, high)| libm::hypot(low.max(high), bent));
     Some(EstimatedQuantile { value, error })

@@ -217,11 +217,6 @@ impl SurfaceShares {
     pub fn yield_(&self) -> Option<f64> {
         self.rejected().map(|rejected| 1.0 - rejected)
     }
-
-    /// Quantiles by the names of their probabilities.
-    pub fn named_quantiles(&self) -> Option<Quantiles> {
-        self.quantiles.map(|all| Quantiles(all.map(|figure| figure.value)))
-    }
 }
 
 /// True if measured values make the sums at the points of a contour too long, and the combinations of values are too many for a list.
@@ -369,6 +364,14 @@ fn quantiles(law: &SurfaceLaw, fit: Option<&Law>) -> Option<[LawFigure; 7]> {
     found.try_into().ok().filter(|_| known)
 }
 
+/// Quantile of a Pearson distribution at a tail.
+pub(in crate::analysis) fn of_pearson(fit: &Pearson, (tail, p): (LawTail, f64)) -> f64 {
+    match tail {
+        LawTail::Lower => fit.quantile(p),
+        LawTail::Upper => fit.upper_quantile(p),
+    }
+}
+
 fn sought(law: &SurfaceLaw, fit: Option<&Law>, of: &[(LawTail, f64)]) -> Vec<Sought> {
     let normal = || Pearson::normal(law.mean(), law.sigma()).ok();
     let start = match fit {
@@ -376,10 +379,7 @@ fn sought(law: &SurfaceLaw, fit: Option<&Law>, of: &[(LawTail, f64)]) -> Vec<Sou
         _ => normal(),
     };
     let one = |&(tail, p): &(LawTail, f64)| {
-        let near = start.as_ref().map(|fit| match tail {
-            LawTail::Lower => fit.quantile(p),
-            LawTail::Upper => fit.upper_quantile(p),
-        });
+        let near = start.as_ref().map(|fit| of_pearson(fit, (tail, p)));
         let density = start.as_ref().zip(near).map_or(f64::NAN, |(fit, near)| fit.pdf(near));
         Sought { tail, p, near: near.unwrap_or(f64::NAN), density }
     };
@@ -431,7 +431,7 @@ impl Serialize for SurfaceShares {
             ppm_below: ppm(self.below),
             ppm_above: ppm(self.above),
             yield_error: self.yield_().map(|_| self.error()),
-            quantiles: self.named_quantiles(),
+            quantiles: self.quantiles.map(|all| Quantiles(all.map(|figure| figure.value))),
         };
         shape.serialize(serializer)
     }

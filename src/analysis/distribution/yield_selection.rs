@@ -23,7 +23,7 @@ use crate::analysis::distribution::moment_shift::error_of_shares;
 use crate::analysis::distribution::quantile_selection::QuantileSelection;
 use crate::analysis::distribution::surface_law::{GuardedLaw, LawRequest};
 use crate::analysis::result::quantile_estimates::QuantileEstimates;
-use crate::analysis::result::verification::{TRUSTED, Verification, VerificationKind};
+use crate::analysis::result::verification::{Verification, VerificationKind};
 use crate::analysis::result::yield_error::of_sides;
 use crate::analysis::result::yield_source::YieldSource;
 use crate::analysis::sampling::measured_interval::samples_of;
@@ -235,7 +235,7 @@ fn by_laws(
     limited: &[usize],
 ) -> Option<Verified> {
     let refuted = |one: &CharacteristicAnalysis| {
-        is_sampled(one) && one.verification.as_ref().and_then(|of| of.left).is_none_or(|left| left > TRUSTED)
+        is_sampled(one) && !one.verification.as_ref().is_some_and(Verification::follows_surface)
     };
     if limited.iter().any(|&c| refuted(&characteristics[c])) {
         return None;
@@ -296,7 +296,7 @@ pub(in crate::analysis) fn have_joint_yield(characteristics: &[CharacteristicAna
 
 /// True if the moments are those of a surface, or the model's in place of those of a surface that is trusted nevertheless.
 fn follows_from_a_surface(one: &CharacteristicAnalysis) -> bool {
-    let replaced = |of: &Verification| of.replaced && of.left.is_none_or(|left| left > TRUSTED);
+    let replaced = |of: &Verification| of.replaced && !of.follows_surface();
     one.model_sampled.is_none() && !one.verification.as_ref().is_some_and(replaced)
 }
 

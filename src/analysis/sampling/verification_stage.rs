@@ -17,8 +17,8 @@ use crate::method::{ErrorEstimate, ErrorSource, Method, Options, Outcome, interp
 use crate::problem::Problem;
 use crate::summary::RunSummary;
 use crate::verification::{
-    BESIDE, Checked, CheckedFigures, SampledFigures, Target, Verified, core_within, most_points, most_points_of_shares,
-    unexplained, variance_shares_during, verify_by_checks, verify_characteristic,
+    BESIDE, Checked, CheckedFigures, SampleQuantile, SampledFigures, Target, Verified, core_within, most_points,
+    most_points_of_shares, unexplained, variance_shares_during, verify_by_checks, verify_characteristic,
 };
 use crate::warning::Warning;
 use sensitol_numeric::capability::{Capability, Law};
@@ -181,6 +181,7 @@ fn sample(
         yield_: error(found.yield_, law),
         sources: vec![ErrorSource::Sampled { points: found.points as u64 }],
     });
+    let quantiles = reported_quantiles(&found);
     one.verification = Some(Verification {
         kind: VerificationKind::Sample,
         points: found.points,
@@ -199,14 +200,23 @@ fn sample(
         shares,
         tails: found.sample.as_ref().filter(|_| limits.exist()).map(|sample| sample.tails(sides)),
         replaced,
-        quantiles: found.quantiles,
-        // For the risks of an inspection, for coverage intervals and for a density.
-        sample: found
-            .sample
-            .filter(|_| one.characteristic.inspection().is_some() || options.coverage.is_some() || options.densities)
-            .map(Arc::new),
+        quantiles,
+        sample: found.sample.filter(|_| is_kept(one, options, open)).map(Arc::new),
     });
     Some(spent)
+}
+
+/// Quantiles of a sample at the probabilities of reports. None if nothing varies: a single value is no sample of a distribution.
+fn reported_quantiles(found: &SampledFigures) -> [Option<SampleQuantile>; 7] {
+    let varies = found.sigma.is_some_and(|sigma| sigma.value > 0.0);
+    found.sample.as_ref().filter(|_| varies).map_or([None; 7], |sample| sample.reported_quantiles())
+}
+
+/// True if points of the sample are needed later: for the risks of an inspection, for coverage intervals, or for a density because the
+/// surface with this unexplained share of the variance is not trusted.
+fn is_kept(one: &CharacteristicAnalysis, options: &Options, open: Option<f64>) -> bool {
+    let drawn = options.densities && open.is_none_or(|share| share > TRUSTED);
+    one.characteristic.inspection().is_some() || options.coverage.is_some() || drawn
 }
 
 /// Returns the shares of the variance with the names of their dimensions. Returns None if the run was stopped before.
