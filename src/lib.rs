@@ -89,6 +89,7 @@ pub mod analysis;
 pub mod assembly;
 pub mod compare;
 pub mod error;
+mod estimate;
 pub mod evaluation;
 pub mod extremes;
 mod magnitude;

@@ -2,7 +2,7 @@
 
 use faer::{Mat, Side};
 
-use crate::rare::normal_space::Columns;
+use crate::estimate::Columns;
 use crate::rare::target::Target;
 
 /// Greatest distance in sigmas. Probabilities farther out are below the smallest double.

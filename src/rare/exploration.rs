@@ -8,9 +8,9 @@ use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
+use crate::estimate::Columns;
 use crate::rare::design_point::{BEFORE, FARTHEST, length, unit};
 use crate::rare::model::{Answers, Model};
-use crate::rare::normal_space::Columns;
 use crate::rare::plain_points::PlainPoints;
 use crate::rare::target::Target;
 use crate::verification::seldom_points;

@@ -1,8 +1,8 @@
 //! Search of the model's limit, from a reject to the likeliest point of the limit near it.
 
+use crate::estimate::Columns;
 use crate::rare::design_point::{FARTHEST, dot, length};
 use crate::rare::model::Model;
-use crate::rare::normal_space::Columns;
 use crate::rare::target::Target;
 
 /// Parts into which a way is cut at once. Their points are evaluated together.

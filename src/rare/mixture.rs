@@ -17,8 +17,8 @@ use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
+use crate::estimate::Columns;
 use crate::rare::design_point::{BEFORE, FARTHEST, Place, PlaceKind};
-use crate::rare::normal_space::Columns;
 use crate::rare::target::Target;
 use sensitol_numeric::distribution::standard_normal;
 use sensitol_numeric::parallel::prelude::*;

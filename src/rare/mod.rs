@@ -29,7 +29,6 @@ mod limit_point;
 mod measured;
 mod mixture;
 mod model;
-mod normal_space;
 mod plain_points;
 mod search;
 mod target;
@@ -39,6 +38,7 @@ mod yield_estimate;
 use serde::Serialize;
 
 use crate::assembly::{EvaluationError, NonRepeatable, Run};
+use crate::estimate::NormalSpace;
 use crate::evaluation::{Evaluator, Restoration, Restore, at_any_size, history};
 use crate::method::{Method, MethodError, Options};
 use crate::problem::Problem;
@@ -57,7 +57,6 @@ use sensitol_numeric::verdict::Judged;
 
 use crate::rare::design_point::{Place, places};
 use crate::rare::exploration::Explored;
-use crate::rare::normal_space::Space;
 use model::Model;
 use search::Search;
 use target::Target;
@@ -339,7 +338,7 @@ fn sought(
     // The surrogate comes first: its design points are the places at which points will be drawn.
     let begun = Instant::now();
     let surrogates = Surrogates::of(problem, &options.surrogate, run)?;
-    let space = Space::new(problem, &surrogates.outcome)?;
+    let space = NormalSpace::with_far_tails(problem, surrogates.outcome.plan.varying())?;
     let targets = targets(problem, &surrogates, &space);
     let evaluator = Evaluator::new(problem, run).with_seed(options.seed);
     let mut model = Model::new(evaluator, &space);
@@ -471,7 +470,7 @@ impl SampledStages<'_> {
 }
 
 /// Targets: every limit of every characteristic whose surrogate varies.
-fn targets<'a>(problem: &Problem, surrogates: &'a Surrogates, space: &'a Space<'a>) -> Vec<Target<'a>> {
+fn targets<'a>(problem: &Problem, surrogates: &'a Surrogates, space: &'a NormalSpace<'a>) -> Vec<Target<'a>> {
     let mut targets = Vec::new();
     for (c, characteristic) in problem.characteristics().iter().enumerate() {
         let Some(known) = surrogates.known.get(c).and_then(Option::as_ref) else { continue };

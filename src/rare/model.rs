@@ -1,9 +1,9 @@
 //! Model evaluated at points in normal space.
 
-use crate::assembly::{EvaluationError, Points, Responses};
+use crate::assembly::{EvaluationError, Responses};
+use crate::estimate::{Columns, NormalSpace};
 use crate::evaluation::Evaluator;
 use crate::problem::Problem;
-use crate::rare::normal_space::{Columns, Space};
 
 /// Points that are evaluated between two checks of the time limit.
 const BATCH: usize = 1 << 14;
@@ -11,7 +11,7 @@ const BATCH: usize = 1 << 14;
 /// Model in normal space.
 pub(super) struct Model<'a> {
     pub(super) evaluator: Evaluator<'a>,
-    pub(super) space: &'a Space<'a>,
+    pub(super) space: &'a NormalSpace<'a>,
     /// Number of points that were answered: the size of all samples together.
     pub(super) answered: u64,
     /// For every characteristic, the number of points without a value, and the first error.
@@ -41,7 +41,7 @@ impl Answers {
 }
 
 impl<'a> Model<'a> {
-    pub(super) fn new(evaluator: Evaluator<'a>, space: &'a Space<'a>) -> Self {
+    pub(super) fn new(evaluator: Evaluator<'a>, space: &'a NormalSpace<'a>) -> Self {
         let lost = vec![(0, None); evaluator.problem().characteristics().len()];
         Self { evaluator, space, answered: 0, lost }
     }
@@ -50,24 +50,16 @@ impl<'a> Model<'a> {
         self.evaluator.problem()
     }
 
-    pub(super) fn middle(&self) -> Vec<f64> {
-        self.problem().dimensions().iter().map(|dimension| dimension.mean()).collect()
-    }
-
     /// Evaluates these points, until the run is stopped.
     pub(super) fn ask(&mut self, normals: &Columns) -> Answers {
-        let columns = self.space.values(normals);
-        let (middle, rows) = (self.middle(), columns.first().map_or(0, Vec::len));
+        let rows = normals.first().map_or(0, Vec::len);
         let outputs = self.problem().outputs().len();
         let mut answers = Answers { columns: vec![vec![f64::NAN; rows]; outputs], answered: vec![false; rows] };
         let mut first = 0;
         while first < rows && !self.evaluator.run().stopped() {
             let batch = BATCH.min(rows - first);
-            let mut points = Points::repeated(&middle, batch);
-            for (d, column) in self.space.dimensions().zip(&columns) {
-                points.column_mut(d).copy_from_slice(&column[first..first + batch]);
-            }
-            let out = self.evaluator.ask(&points);
+            let part = normals.iter().map(|column| column[first..first + batch].to_vec()).collect();
+            let out = self.evaluator.ask(&self.space.points(&part));
             (0..batch).for_each(|row| self.learn(&out, row, first + row, &mut answers));
             first += batch;
         }

@@ -16,8 +16,8 @@ use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
+use crate::estimate::Columns;
 use crate::rare::estimate::ProbabilityEstimate;
-use crate::rare::normal_space::Columns;
 use crate::rare::target::Target;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::sampling::{Estimate, clopper_pearson};

@@ -1,12 +1,12 @@
 //! Points drawn and weighted in stages.
 
+use crate::estimate::Columns;
 use crate::problem::Problem;
 use crate::rare::design_point::{FAINT, Place, PlaceKind, dot, unit};
 use crate::rare::estimate::{ProbabilityEstimate, Weighed, best_parts};
 use crate::rare::exploration::Explored;
 use crate::rare::mixture::Mixture;
 use crate::rare::model::{Answers, Model};
-use crate::rare::normal_space::Columns;
 use crate::rare::plain_points::{PlainPoints, SurrogateShare};
 use crate::rare::target::Target;
 use crate::rare::yield_estimate::within;
@@ -424,9 +424,7 @@ impl<'a> Search<'a> {
             let place = mine.min_by(|a, b| a.distance.total_cmp(&b.distance));
             let design_point = place.map(|place| {
                 let normals = place.direction.iter().map(|part| vec![part * place.distance]).collect();
-                let mut values = model.middle();
-                space.dimensions().zip(space.values(&normals)).for_each(|(d, column)| values[d] = column[0]);
-                DesignPoint { distance: place.distance, values }
+                DesignPoint { distance: place.distance, values: space.points(&normals).row(0) }
             });
             let plain = |Estimate { value, standard_error }: Estimate| {
                 let error = standard_error.filter(|&error| error > 0.0)?;

@@ -1,10 +1,10 @@
 //! Rare event: a characteristic beyond one of its limits, by its surrogate.
 
-use crate::rare::normal_space::{Columns, Space};
+use crate::estimate::{Columns, NormalSpace};
 use sensitol_numeric::surrogate::Surrogate;
 
 pub(super) struct Target<'a> {
-    pub(super) space: &'a Space<'a>,
+    pub(super) space: &'a NormalSpace<'a>,
     pub(super) characteristic: usize,
     /// 1 if rejects lie above the limit, -1 if they lie below.
     pub(super) side: f64,

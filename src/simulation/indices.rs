@@ -12,10 +12,11 @@
 
 use serde::Serialize;
 
+use crate::estimate::{Columns, NormalSpace};
 use crate::evaluation::{Evaluator, Ledger};
 use crate::problem::Problem;
 use crate::simulation::{Pace, REPLICATES, SimulationError};
-use crate::verification::{CONFIDENCE, Columns, Space, jackknife, totals};
+use crate::verification::{CONFIDENCE, jackknife, totals};
 use sensitol_numeric::correlation::factors;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::sampling::Normals;
@@ -95,7 +96,7 @@ pub(super) fn indices(
     if varying.is_empty() {
         return none();
     }
-    let exchange = Exchange { evaluator, space: Space::new(problem, &varying), factors: &factors, rows, origins };
+    let exchange = Exchange { evaluator, space: NormalSpace::new(problem, &varying), factors: &factors, rows, origins };
     let normals = Normals::new(2 * varying.len(), evaluator.seed());
     let expected = (REPLICATES as usize * rows * (factors.len() + 2)) as f64;
     let one = |replicate: u64| exchange.replicate(&normals, replicate);
@@ -124,7 +125,7 @@ pub(super) fn indices(
 
 struct Exchange<'p> {
     evaluator: &'p Evaluator<'p>,
-    space: Space<'p>,
+    space: NormalSpace<'p>,
     factors: &'p [Vec<usize>],
     rows: usize,
     /// Values near the means of the characteristics. Sums are taken about them so that nothing large is squared.

@@ -14,7 +14,7 @@ use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use crate::verification::normal_space::Columns;
+use crate::estimate::Columns;
 use sensitol_numeric::distribution::standard_normal;
 
 /// Places along a line, in sigmas.

@@ -1,10 +1,10 @@
 //! Verification of a costly model: its surfaces at a dozen check points.
 
 use crate::assembly::{Points, Responses};
+use crate::estimate::{Columns, NormalSpace};
 use crate::evaluation::Evaluator;
 use crate::verification::check_points::{Design, Wish};
 use crate::verification::figures::moments;
-use crate::verification::normal_space::{Columns, Space};
 use crate::verification::residual_error::{Judged, Surface, judge, regression};
 use crate::verification::sample::{FAR, steepest};
 use crate::verification::strata::{HalfSpace, between};
@@ -109,7 +109,7 @@ pub fn verify_by_checks(evaluator: &Evaluator<'_>, varying: &[usize], targets: &
         return None;
     }
     let (problem, seed) = (evaluator.problem(), evaluator.seed());
-    let space = Space::new(problem, varying);
+    let space = NormalSpace::new(problem, varying);
     let normals = Normals::new(varying.len(), seed);
     let dependence = problem.dependence();
     // The surface at many points gives the direction of its line and the figures that residuals change.
@@ -177,7 +177,7 @@ impl CheckedFigures {
 }
 
 /// Points of a surrogate over its distribution. Returns None if a part of it is unknown.
-fn surface(space: &Space<'_>, normals: &Normals, surrogate: &Surrogate) -> Option<Surface> {
+fn surface(space: &NormalSpace<'_>, normals: &Normals, surrogate: &Surrogate) -> Option<Surface> {
     let work = space.len() + surrogate.interactions.each_pair().count();
     let knots = (WORK / work).clamp(FEWEST, KNOTS);
     let q = |z: &Columns| values(surrogate, &space.standardised(z));

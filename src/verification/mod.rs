@@ -12,7 +12,6 @@ mod check_points;
 mod costly_model;
 mod figures;
 mod model;
-mod normal_space;
 mod output_correlation;
 mod residual_error;
 mod sample;
@@ -25,7 +24,6 @@ mod weighted;
 
 pub(crate) use crate::verification::costly_model::CONFIDENCE;
 pub use crate::verification::costly_model::{Checked, CheckedFigures, MOST_CHECKS, Target, unseen, verify_by_checks};
-pub(crate) use crate::verification::normal_space::{Columns, Space};
 pub use crate::verification::output_correlation::OutputCorrelation;
 pub(crate) use crate::verification::output_correlation::{common_rejects, most_points_together, output_correlations};
 pub(crate) use crate::verification::residual_error::{OVERLOOKED, OVERLOOKED_BY, TOO_SMALL};
@@ -40,6 +38,7 @@ pub(crate) use weighted::WeightedSample;
 use serde::Serialize;
 
 use crate::assembly::{Points, Run};
+use crate::estimate::Columns;
 use crate::problem::Problem;
 use figures::moments;
 use model::Model;

@@ -1,9 +1,9 @@
 //! One characteristic of a cheap model as a function of independent normal variables.
 
 use crate::assembly::{Points, Run};
+use crate::estimate::{Columns, NormalSpace};
 use crate::evaluation::Evaluator;
 use crate::problem::Problem;
-use crate::verification::normal_space::{Columns, Space};
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::surrogate::Surrogate;
 
@@ -11,7 +11,7 @@ use sensitol_numeric::surrogate::Surrogate;
 pub(super) struct Model<'p> {
     evaluator: Evaluator<'p>,
     output: usize,
-    space: Space<'p>,
+    space: NormalSpace<'p>,
 }
 
 impl<'p> Model<'p> {
@@ -25,7 +25,7 @@ impl<'p> Model<'p> {
 
     /// Creates it over the given dimensions of the problem.
     pub(super) fn over(problem: &'p Problem, characteristic: usize, dimensions: &[usize]) -> Self {
-        let space = Space::new(problem, dimensions);
+        let space = NormalSpace::new(problem, dimensions);
         let evaluator = Evaluator::new(problem, &Run::to_the_end());
         Self { evaluator, output: problem.outputs()[characteristic], space }
     }

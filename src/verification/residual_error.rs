@@ -17,9 +17,9 @@
 //! quantile for a dozen points. The floor `0.004 sqrt(14/n)` allows for effects that a dozen points overlook: they give mean and sigma no
 //! better than to 1.5e-3 of sigma.
 
+use crate::estimate::Columns;
 use crate::verification::check_points::{Design, ON_AXIS, Wish, dot};
 use crate::verification::figures::{MOMENTS, moments};
-use crate::verification::normal_space::Columns;
 use crate::verification::strata;
 use crate::verification::strata::along;
 

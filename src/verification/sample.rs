@@ -12,10 +12,10 @@
 //! points that carry the variance of a power (Kish 1965), and by Student's quantile. The error of a share also includes the weight of one
 //! point, because a rare event may exist although no point shows it.
 
+use crate::estimate::Columns;
 use crate::verification::Verified;
 use crate::verification::figures::{MOMENTS, carried_by, effective, jackknife, moments, standard, student, totals};
 use crate::verification::model::Model;
-use crate::verification::normal_space::Columns;
 use crate::verification::strata::{HalfSpace, between, unit};
 use crate::verification::switch_side::{Sides, sides};
 use crate::verification::weighted::{WeightedPart, WeightedSample};

@@ -1,6 +1,6 @@
 //! Strata of the space of independent normal variables: half-spaces, and the slab between two of them.
 
-use crate::verification::normal_space::Columns;
+use crate::estimate::Columns;
 use sensitol_numeric::distribution::standard_normal;
 
 /// Greatest distance of a point in sigmas: 6e-16 of all assemblies are beyond.

@@ -10,8 +10,8 @@ use std::cell::OnceCell;
 use serde::Serialize;
 
 use crate::assembly::Switch;
+use crate::estimate::Columns;
 use crate::verification::model::Model;
-use crate::verification::normal_space::Columns;
 use crate::verification::strata::{HalfSpace, REACH, length};
 use crate::warning::{Change, Warning};
 use sensitol_numeric::sampling::Normals;

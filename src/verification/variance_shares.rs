@@ -9,9 +9,9 @@
 //! from the second. `S_j` is the share that the input explains alone, `T_j` adds all its interactions. Errors come from the jackknife over
 //! 8 scramblings, widened by Student's quantile.
 
+use crate::estimate::Columns;
 use crate::verification::figures::{jackknife, student, totals};
 use crate::verification::model::Model;
-use crate::verification::normal_space::Columns;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::sampling::Normals;
 

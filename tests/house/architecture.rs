@@ -27,6 +27,7 @@ const LAYERS: &[(&str, &[&[&str]])] = &[
             &["extremes"],
             &["method"],
             &["verification"],
+            &["estimate"],
             &["evaluation"],
             &["problem"],
             &["plan"],

@@ -5,7 +5,7 @@ use sensitol_testing::repository;
 use super::sources::sources;
 
 /// Where constants decide what is evaluated and how sure a result is.
-const FOLDERS: [&str; 5] = ["analysis", "method", "simulation", "surrogate", "verification"];
+const FOLDERS: [&str; 6] = ["analysis", "estimate", "method", "simulation", "surrogate", "verification"];
 const TYPES: [&str; 5] = ["f64", "usize", "u64", "u32", "i32"];
 
 /// Name and value of every number that is a constant in this code.

@@ -26,7 +26,7 @@ KINDS = Path(__file__).with_name("kinds.toml")
 PAGE = ROOT / "docs" / "reference" / "tuning.md"
 BUILD = ROOT / "target" / "tuning"
 # By package: the engine, and the mathematics below it.
-PACKAGES = {"src": ["analysis", "method", "simulation", "verification"], "crates/numeric/src": ["surrogate"]}
+PACKAGES = {"src": ["analysis", "estimate", "method", "simulation", "verification"], "crates/numeric/src": ["surrogate"]}
 FOLDERS = [f"{package}/{folder}" for package, folders in PACKAGES.items() for folder in folders]
 DEFINITION = re.compile(
     r"^(?P<indent>\s*)(?P<public>pub(?:\([a-z]+\))? )?const (?P<name>[A-Z][A-Z_0-9]*): (?P<type>f64|usize|u64|u32|i32) =\s+(?P<value>[^;]+);",

@@ -2,12 +2,13 @@
 //!
 //! An input is its own quantile function of a normal variable, `T(z) = F^-1(Phi(z))`. Correlated inputs are functions of correlated normal
 //! variables (Nataf's distribution, [`sensitol_numeric::correlation`]), which are computed from independent ones by a factor of their
-//! matrix. Correlated inputs need no case of their own: all of the verification works in `z`.
+//! matrix. Correlated inputs need no case of their own: all estimators work in `z`.
 
 use crate::assembly::Points;
 use crate::problem::Problem;
-use sensitol_numeric::correlation::Together;
+use sensitol_numeric::correlation::{Together, Transform};
 use sensitol_numeric::distribution::{Distribution, Normal, PearsonLaw, Probability, behind_normal};
+use sensitol_numeric::sampling::SamplingError;
 
 /// Points as columns, one for every variable.
 pub(crate) type Columns = Vec<Vec<f64>>;
@@ -19,7 +20,7 @@ const REACH: f64 = 9.0;
 const PER_UNIT: f64 = 64.0;
 
 /// Some of the varying dimensions of a problem, N of them.
-pub(crate) struct Space<'p> {
+pub(crate) struct NormalSpace<'p> {
     inputs: Vec<Input<'p>>,
     /// Correlation of some of the inputs.
     correlated: Option<Together>,
@@ -41,21 +42,40 @@ enum Law<'p> {
     Table(Vec<f64>, [f64; 2]),
     /// Measured values, between which nothing may be interpolated.
     Atoms(&'p dyn Probability),
+    /// Exact values for the model, without an end of the tails. Surfaces get values from a table that is continuous even between measured
+    /// values, because the search for a likeliest point takes differences.
+    FarTails(&'p dyn Probability, Transform),
 }
 
-impl<'p> Space<'p> {
-    /// Creates the space of these dimensions, which vary.
+impl<'p> NormalSpace<'p> {
+    /// Creates the space of these dimensions, which vary, up to 9 sigma.
     ///
     /// A dimension that is known by its moments only has the Pearson distribution with the first four of them.
     pub(crate) fn new(problem: &'p Problem, dimensions: &[usize]) -> Self {
-        let input = |&d: &usize| {
+        let law = |&d: &usize| problem.dimensions()[d].distribution().map_or(Law::Normal, Law::of);
+        Self::with_laws(problem, dimensions, dimensions.iter().map(law).collect())
+    }
+
+    /// Creates the space of these dimensions, which vary, without an end of the tails. Points of the model are exact, which costs a quantile
+    /// function each.
+    pub(crate) fn with_far_tails(problem: &'p Problem, dimensions: &[usize]) -> Result<Self, SamplingError> {
+        let law = |&d: &usize| {
             let dimension = &problem.dimensions()[d];
-            let law = dimension.distribution().map_or(Law::Normal, Law::of);
+            let law = dimension.distribution().and_then(Law::with_far_tails);
+            law.ok_or_else(|| SamplingError::MomentsOnly { dimension: dimension.name().to_owned() })
+        };
+        let laws = dimensions.iter().map(law).collect::<Result<_, _>>()?;
+        Ok(Self::with_laws(problem, dimensions, laws))
+    }
+
+    fn with_laws(problem: &'p Problem, dimensions: &[usize], laws: Vec<Law<'p>>) -> Self {
+        let input = |(&d, law): (&usize, Law<'p>)| {
+            let dimension = &problem.dimensions()[d];
             Input { dimension: d, mean: dimension.mean(), sigma: dimension.sigma(), law }
         };
         let correlation = problem.correlation().and_then(|correlation| correlation.among(dimensions));
         Self {
-            inputs: dimensions.iter().map(input).collect(),
+            inputs: dimensions.iter().zip(laws).map(input).collect(),
             correlated: correlation.as_ref().map(Together::of),
             centre: problem.dimensions().iter().map(|dimension| dimension.mean()).collect(),
         }
@@ -70,16 +90,16 @@ impl<'p> Space<'p> {
         self.inputs.iter().map(|input| input.dimension)
     }
 
-    /// Standardised inputs at some points.
+    /// Standardised inputs at some points, for surfaces.
     pub(crate) fn standardised(&self, normals: &Columns) -> Columns {
-        let mut columns = self.together(normals);
+        let mut columns = self.correlated.as_ref().map_or_else(|| normals.clone(), |together| together.apply(normals));
         for (input, column) in self.inputs.iter().zip(&mut columns) {
-            input.transform(column);
+            input.standardise(column);
         }
         columns
     }
 
-    /// Points in the form of the problem.
+    /// Points in the form of the problem, for the model.
     pub(crate) fn points(&self, normals: &Columns) -> Points {
         let mut points = Points::repeated(&self.centre, normals.first().map_or(1, Vec::len));
         let together = self.correlated.as_ref().map(|together| together.apply(normals));
@@ -87,24 +107,19 @@ impl<'p> Space<'p> {
             let values = points.column_mut(input.dimension);
             values.copy_from_slice(column);
             // A measured value is reproduced to the last digit.
-            if let Law::Atoms(law) = &input.law {
+            if let Law::Atoms(law) | Law::FarTails(law, _) = &input.law {
                 values.iter_mut().for_each(|x| *x = behind_normal(*law, *x));
                 continue;
             }
-            input.transform(values);
+            input.standardise(values);
             values.iter_mut().for_each(|x| *x = input.mean + input.sigma * *x);
         }
         points
     }
-
-    /// Normal variables with the correlation of the inputs.
-    fn together(&self, normals: &Columns) -> Columns {
-        self.correlated.as_ref().map_or_else(|| normals.clone(), |together| together.apply(normals))
-    }
 }
 
 impl Input<'_> {
-    fn transform(&self, column: &mut [f64]) {
+    fn standardise(&self, column: &mut [f64]) {
         match &self.law {
             Law::Normal => {}
             Law::Table(values, [low, high]) => {
@@ -117,6 +132,7 @@ impl Input<'_> {
                     *z = (behind_normal(*law, *z) - self.mean) / self.sigma;
                 }
             }
+            Law::FarTails(_, transform) => column.iter_mut().for_each(|z| *z = transform.value(*z)),
         }
     }
 }
@@ -140,6 +156,12 @@ impl<'p> Law<'p> {
             Some(_) => Self::table(law, [mean, sigma], distribution.support()),
             None => Self::Atoms(law),
         }
+    }
+
+    /// Returns None if only moments are known.
+    fn with_far_tails(distribution: &'p dyn Distribution) -> Option<Self> {
+        let (law, transform) = (distribution.probability()?, Transform::of(distribution)?);
+        Some(if transform.is_normal() { Self::Normal } else { Self::FarTails(law, transform) })
     }
 
     fn table(law: &dyn Probability, [mean, sigma]: [f64; 2], support: [f64; 2]) -> Self {
