@@ -12,9 +12,9 @@
 use crate::analysis::CharacteristicAnalysis;
 use crate::analysis::result::verification::VerificationKind;
 use crate::analysis::sampling::sample_budget::SampleBudget;
+use crate::estimate::{OutputCorrelation, Verified, most_points_together, output_correlations};
 use crate::method::{Options, Outcome};
 use crate::problem::Problem;
-use crate::verification::{OutputCorrelation, Verified, most_points_together, output_correlations};
 use sensitol_numeric::surrogate::Surrogate;
 
 /// Correlations of every pair of characteristics. Empty with one characteristic, and with more than 40.

@@ -17,9 +17,10 @@ use crate::analysis::result::sobol_indices::{FactorIndices, IndexSource, SobolIn
 use crate::analysis::result::verification::{UNTRUSTED, VerificationKind};
 use crate::analysis::sampling::sample_budget::SampleBudget;
 use crate::assembly::Run;
+use crate::estimate::factor_shares;
 use crate::method::{Options, Order, Outcome};
 use crate::problem::Problem;
-use crate::verification::{factor_shares, most_points_of_shares};
+use crate::verification::most_points_of_shares;
 use sensitol_numeric::capability::EstimatedShare;
 use sensitol_numeric::correlation::factors;
 

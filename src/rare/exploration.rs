@@ -9,11 +9,11 @@ use rand_distr::StandardNormal;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use crate::estimate::Columns;
+use crate::estimate::seldom_points;
 use crate::rare::design_point::{BEFORE, FARTHEST, length, unit};
 use crate::rare::model::{Answers, Model};
 use crate::rare::plain_points::PlainPoints;
 use crate::rare::target::Target;
-use crate::verification::seldom_points;
 use sensitol_numeric::distribution::standard_normal;
 
 /// Widths of the groups in sigmas.

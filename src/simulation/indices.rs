@@ -12,11 +12,11 @@
 
 use serde::Serialize;
 
-use crate::estimate::{Columns, NormalSpace};
+use crate::estimate::{Columns, NormalSpace, jackknife, totals};
 use crate::evaluation::{Evaluator, Ledger};
 use crate::problem::Problem;
 use crate::simulation::{Pace, REPLICATES, SimulationError};
-use crate::verification::{CONFIDENCE, jackknife, totals};
+use crate::verification::CONFIDENCE;
 use sensitol_numeric::correlation::factors;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::sampling::Normals;

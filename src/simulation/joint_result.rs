@@ -1,12 +1,12 @@
 //! Results of a sample for several characteristics at once: joint yield and correlations.
 
 use crate::assembly::{Responses, all_finite};
+use crate::estimate::{OutputCorrelation, REPLICATES, student};
 use crate::problem::Problem;
 use crate::simulation::SimulatedCharacteristic;
 use crate::simulation::characteristic::{REJECTED, YieldEstimate};
 use crate::simulation::count::CountingScale;
 use crate::simulation::replicate_error::of_replicates;
-use crate::verification::{OutputCorrelation, REPLICATES, student};
 use sensitol_numeric::elementary::{Work, on_this_processor};
 use sensitol_numeric::sampling::{Sampler, wilson};
 use sensitol_numeric::verdict;

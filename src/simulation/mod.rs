@@ -29,13 +29,13 @@ use std::time::Duration;
 use serde::Serialize;
 
 use crate::assembly::{EvaluationError, NonRepeatable, Points, Responses, Run, near_rows};
+use crate::estimate::OutputCorrelation;
 use crate::evaluation::{Evaluator, Restoration, Restore, at_any_size};
 use crate::method::{Method, MethodError, Options, Outcome};
 use crate::problem::Problem;
 use crate::simulation::control_variate::Control;
 use crate::simulation::sample_groups::MeasuredGroups;
 use crate::summary::RunSummary;
-use crate::verification::OutputCorrelation;
 use crate::warning::{Advice, Warning};
 use count::CountingScale;
 use sensitol_numeric::json_form::through;
@@ -166,7 +166,7 @@ impl SimulationOptions {
 }
 
 /// Number of replicates of Sobol' points, each scrambled independently: their scatter is the standard error.
-pub(crate) const REPLICATES: u64 = crate::verification::REPLICATES as u64;
+pub(crate) const REPLICATES: u64 = crate::estimate::REPLICATES as u64;
 /// Points that a task evaluates together.
 pub(crate) const ROWS: usize = 1024;
 /// Number of tasks between two checks of the clock and of the accuracy.

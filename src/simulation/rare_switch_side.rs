@@ -5,10 +5,10 @@
 //! the sums that give standard errors. A moment has not settled if one side adds more to its sum than all the points of the sample do.
 
 use crate::assembly::Run;
+use crate::estimate::{RareSides, seldom_sides};
 use crate::problem::Problem;
 use crate::simulation::control_variate::{Control, Twin};
 use crate::simulation::surface_difference::squares;
-use crate::verification::{RareSides, seldom_sides};
 use crate::warning::Warning;
 
 /// Switches of one characteristic, with points of the seldom sides.

@@ -1,13 +1,13 @@
 //! Verification of a costly model: its surfaces at a dozen check points.
 
 use crate::assembly::{Points, Responses};
+use crate::estimate::figures::moments;
+use crate::estimate::strata::{HalfSpace, between};
+use crate::estimate::stratified_sample::{FAR, steepest};
 use crate::estimate::{Columns, NormalSpace};
 use crate::evaluation::Evaluator;
 use crate::verification::check_points::{Design, Wish};
-use crate::verification::figures::moments;
 use crate::verification::residual_error::{Judged, Surface, judge, regression};
-use crate::verification::sample::{FAR, steepest};
-use crate::verification::strata::{HalfSpace, between};
 use sensitol_numeric::sampling::{Normals, clopper_pearson};
 use sensitol_numeric::surrogate::Surrogate;
 

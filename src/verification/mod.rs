@@ -10,41 +10,23 @@
 
 mod check_points;
 mod costly_model;
-mod figures;
-mod model;
-mod output_correlation;
 mod residual_error;
-mod sample;
-mod sample_quantile;
-mod strata;
-mod switch_side;
-mod tails;
-mod variance_shares;
-mod weighted;
 
+pub use crate::estimate::{
+    Crossing, FoundSwitch, OutputCorrelation, SampleTails, Share, TailPoint, Verified, variance_shares,
+};
+pub(crate) use crate::estimate::{SampleQuantile, WeightedSample, variance_shares_during};
 pub(crate) use crate::verification::costly_model::CONFIDENCE;
 pub use crate::verification::costly_model::{Checked, CheckedFigures, MOST_CHECKS, Target, unseen, verify_by_checks};
-pub use crate::verification::output_correlation::OutputCorrelation;
-pub(crate) use crate::verification::output_correlation::{common_rejects, most_points_together, output_correlations};
 pub(crate) use crate::verification::residual_error::{OVERLOOKED, OVERLOOKED_BY, TOO_SMALL};
-pub use crate::verification::switch_side::{Crossing, FoundSwitch};
-pub use crate::verification::variance_shares::Share;
-pub(crate) use figures::{MOMENTS, carried_by, effective, jackknife, standard, student, totals};
-pub(crate) use sample::REPLICATES;
-pub(crate) use sample_quantile::{SampleQuantile, reported_quantiles};
-pub use tails::{SampleTails, TailPoint};
-pub(crate) use weighted::WeightedSample;
 
-use serde::Serialize;
-
-use crate::assembly::{Points, Run};
-use crate::estimate::Columns;
+use crate::assembly::Run;
+use crate::estimate::cheap_model::CheapModel;
+use crate::estimate::figures::moments;
+use crate::estimate::stratified_sample::{PILOT, StratifiedSample, TAIL};
+use crate::estimate::switch_side;
+use crate::estimate::variance_shares::most_points as most_points_of_exchange;
 use crate::problem::Problem;
-use figures::moments;
-use model::Model;
-use sample::Sample;
-use sensitol_numeric::correlation::factors;
-use sensitol_numeric::power::{Losable, Rescale, Rescaling};
 use sensitol_numeric::sampling::Normals;
 use sensitol_numeric::surrogate::Surrogate;
 
@@ -56,7 +38,7 @@ pub(crate) const BESIDE: usize = 1 << 10;
 
 /// Most evaluations of a sample with `core` points in its core, including those of [`unexplained`].
 pub(crate) const fn most_points(core: usize) -> usize {
-    sample::PILOT + (crate::verification::switch_side::MOST + 2) * sample::TAIL + core + BESIDE
+    PILOT + (switch_side::MOST + 2) * TAIL + core + BESIDE
 }
 
 /// Points in the core of the largest sample within `most` evaluations for a characteristic. It is at most [`CORE`], and at least the number
@@ -65,39 +47,15 @@ pub(crate) fn core_within(problem: &Problem, c: usize, most: Option<usize>) -> O
     let Some(most) = most else { return Some(CORE) };
     // Without switches there are no strata for seldom sides.
     let switches = problem.function().switches(problem.outputs()[c]).map_or(0, |switches| switches.list.len());
-    let sides = if switches == 0 { crate::verification::switch_side::MOST } else { 0 };
-    let others = most_points(0) - sides * sample::TAIL;
+    let sides = if switches == 0 { switch_side::MOST } else { 0 };
+    let others = most_points(0) - sides * TAIL;
     let halved = std::iter::successors(Some(CORE), |core| Some(core / 2));
-    halved.take_while(|&core| core >= sample::TAIL).find(|&core| others + core <= most)
+    halved.take_while(|&core| core >= TAIL).find(|&core| others + core <= most)
 }
 
 /// Most evaluations of [`unexplained`] followed by [`variance_shares_during`] over this number of inputs.
 pub(crate) fn most_points_of_shares(inputs: usize) -> usize {
-    BESIDE + crate::verification::variance_shares::most(inputs)
-}
-
-/// A figure by the model itself, with its error. The true value lies within three of these errors whenever it lies within three standard
-/// errors.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Verified {
-    /// The value.
-    pub value: f64,
-    /// Estimated error of the value.
-    pub error: f64,
-}
-
-impl Rescale for Verified {
-    fn rescale(&mut self, by: &mut Rescaling) {
-        self.value.rescale(by);
-        self.error.rescale(by);
-    }
-}
-
-impl Losable for Verified {
-    fn is_unknown(&self) -> bool {
-        self.value.is_nan()
-    }
+    BESIDE + most_points_of_exchange(inputs)
 }
 
 /// Figures of one characteristic from a sample of the model.
@@ -133,19 +91,6 @@ pub struct SampledFigures {
     pub(crate) sample: Option<WeightedSample>,
 }
 
-impl Verified {
-    /// Error of another value for the same figure: `hypot(value - own, error)`. The true value lies within three of it whenever it lies
-    /// within three of the own error.
-    ///
-    /// ```
-    /// use sensitol::analysis::Verified;
-    /// assert_eq!(Verified { value: 1.0, error: 3.0 }.error_of(5.0), 5.0);
-    /// ```
-    pub fn error_of(&self, value: f64) -> f64 {
-        libm::hypot(value - self.value, self.error)
-    }
-}
-
 /// Samples a cheap model: every figure of every characteristic from the model itself, with its error.
 ///
 /// Pure in problem and seed; the number of threads does not matter.
@@ -173,59 +118,6 @@ pub fn verify_by_sampling(problem: &Problem, seed: u64) -> Vec<SampledFigures> {
         .collect()
 }
 
-/// Likeliest points beyond the seldom switches of a cheap model, in independent normal variables of the dimensions at `varying`. Empty if
-/// the model does not report its switches.
-pub(crate) fn seldom_points(problem: &Problem, c: usize, varying: &[usize], seed: u64) -> Vec<Vec<f64>> {
-    let model = Model::over(problem, c, varying);
-    let found = crate::verification::switch_side::sides(&model, &Normals::new(varying.len(), seed), 1.0);
-    let point = |space: strata::HalfSpace| {
-        space.direction.iter().map(|part| part * (space.from + crate::verification::switch_side::BEFORE)).collect()
-    };
-    found.half_spaces.into_iter().map(point).collect()
-}
-
-/// Switches of a characteristic, and points beyond those that are seldom met.
-pub(crate) struct RareSides {
-    pub(crate) switches: Vec<FoundSwitch>,
-    /// Points of the half-spaces that contain the seldom sides. Their `values` are NaN if the model has none.
-    pub(crate) points: Points,
-    pub(crate) values: Vec<f64>,
-    /// Weights of the points, which sum to the probability of the half-spaces.
-    pub(crate) weights: Vec<f64>,
-}
-
-/// Searches for the switches of a characteristic whose values have the spread `scale`. Returns None if the model is costly, does not report
-/// its switches, or if the run was stopped.
-///
-/// Evaluations: 256 for every half-space, six at most. The margins of switches, and some values beside them, are evaluated in addition.
-pub(crate) fn seldom_sides(problem: &Problem, c: usize, (seed, scale): (u64, f64), run: &Run<'_>) -> Option<RareSides> {
-    /// Number of points of a half-space. Its part of a moment is known to about a tenth.
-    const WITHIN: usize = 1 << 8;
-    let function = problem.function();
-    let told = function.switches(problem.outputs()[c]).filter(|told| !told.list.is_empty());
-    told.filter(|_| !function.signature().costly)?;
-    let model = Model::new(problem, c).during(run);
-    let normals = Normals::new(model.len(), seed);
-    let found = crate::verification::switch_side::sides(&model, &normals, if scale > 0.0 { scale } else { 1.0 });
-    let mut all: Columns = vec![Vec::new(); model.len()];
-    let mut weights = Vec::new();
-    for (index, space) in found.half_spaces.iter().enumerate() {
-        let mut z = normals.columns((1 << 34) + index as u64, WITHIN);
-        let own = space.enter(&mut z);
-        // A point counts in the first half-space that contains it.
-        let mut held = vec![false; WITHIN];
-        for earlier in &found.half_spaces[..index] {
-            held.iter_mut().zip(earlier.holds(&z)).for_each(|(held, by)| *held |= by);
-        }
-        for (all, column) in all.iter_mut().zip(z) {
-            all.extend(column.iter().zip(&held).filter(|(_, held)| !**held).map(|(z, _)| *z));
-        }
-        weights.extend(own.iter().zip(&held).filter(|(_, held)| !**held).map(|(weight, _)| weight / WITHIN as f64));
-    }
-    let (points, values) = model.points_and_values(&all);
-    (!model.stopped()).then(|| RareSides { switches: found.switches.unwrap_or_default(), points, values, weights })
-}
-
 /// Share of a characteristic's variance that a surface over the dimensions at `varying` leaves unexplained, from 1024 points of the model.
 /// Returns None if the surface has no value, or the model none at any point.
 pub(crate) fn unexplained(
@@ -235,7 +127,7 @@ pub(crate) fn unexplained(
     seed: u64,
     run: &Run<'_>,
 ) -> Option<f64> {
-    let model = Model::over(problem, c, varying).during(run);
+    let model = CheapModel::over(problem, c, varying).during(run);
     let z = Normals::new(varying.len(), seed).columns(1 << 35, BESIDE);
     let rises = surrogate.rises(&model.standardised(&z))?;
     let y = model.values(&z);
@@ -251,57 +143,6 @@ pub(crate) fn unexplained(
     (variance > 0.0).then_some(square / variance)
 }
 
-/// Shares of the variance by a sampled model: the first-order and the total share of every dimension on which a characteristic depends, by
-/// exchanging inputs of the model itself.
-///
-/// Returns None with correlated dimensions, whose shares add up differently, with more than 256 dimensions, and if nothing varies.
-/// Evaluations: 65 536, for more than 126 inputs 512 for each. Accuracy: 311 of 312 shares of six functions with closed forms lay within
-/// three errors, the largest error 0.026.
-///
-/// ```
-/// use sensitol::{Closure, Dimension, Problem};
-/// use sensitol::verification::variance_shares;
-/// let dimensions = [Dimension::normal("a", 0.0, 3.0)?, Dimension::normal("b", 0.0, 3.0)?];
-/// let problem = Problem::new(dimensions, Closure::scalar("y", |x| x[0] + x[0] * x[1]))?;
-/// let shares = variance_shares(&problem, 0, 1).unwrap();
-/// let [(0, [first, total]), (1, _)] = shares[..] else { panic!("two dimensions") };
-/// assert!((first.value - 0.5).abs() < 0.02 && (total.value - 1.0).abs() < 0.02); // a alone, and with b
-/// # Ok::<(), sensitol::Error>(())
-/// ```
-pub fn variance_shares(problem: &Problem, characteristic: usize, seed: u64) -> Option<Vec<(usize, [Share; 2])>> {
-    variance_shares_during(problem, characteristic, seed, &Run::to_the_end())
-}
-
-/// [`variance_shares`] under the conditions of a run. Returns None if the run was stopped meanwhile.
-pub(crate) fn variance_shares_during(
-    problem: &Problem,
-    characteristic: usize,
-    seed: u64,
-    run: &Run<'_>,
-) -> Option<Vec<(usize, [Share; 2])>> {
-    if problem.correlation().is_some() {
-        return None;
-    }
-    let found = factor_shares(problem, characteristic, seed, run)?;
-    Some(found.into_iter().map(|(factor, shares)| (factor[0], shares)).collect())
-}
-
-/// [`variance_shares`] of factors: dimensions that vary together are exchanged together. Each factor is given by those of its dimensions on
-/// which the characteristic depends.
-pub(crate) fn factor_shares(
-    problem: &Problem,
-    characteristic: usize,
-    seed: u64,
-    run: &Run<'_>,
-) -> Option<Vec<(Vec<usize>, [Share; 2])>> {
-    let model = Model::new(problem, characteristic).during(run);
-    let dimensions: Vec<usize> = model.dimensions().collect();
-    let places = factors(problem.correlation(), &dimensions);
-    let found = crate::verification::variance_shares::shares(&model, &places, seed)?;
-    let named = places.into_iter().map(|factor| factor.into_iter().map(|place| dimensions[place]).collect());
-    (!model.stopped()).then(|| named.zip(found).collect())
-}
-
 /// Verifies one characteristic by a sample with `core` points in the core, and compares it with its surface `beside`. Returns None if the
 /// run was stopped meanwhile, because an incomplete set of strata is no sample.
 pub(crate) fn verify_characteristic(
@@ -311,13 +152,13 @@ pub(crate) fn verify_characteristic(
     beside: Option<(&[usize], &Surrogate)>,
     run: &Run<'_>,
 ) -> Option<SampledFigures> {
-    let model = Model::new(problem, c).during(run);
+    let model = CheapModel::new(problem, c).during(run);
     let limits = problem.characteristics()[c].limits();
     let [low, high] = problem.kept_limits(c).ends();
     if model.len() == 0 {
         return Some(constant(&model, [low, high])).filter(|_| !model.stopped());
     }
-    let sample = Sample::draw(&model, seed, core, beside);
+    let sample = StratifiedSample::draw(&model, seed, core, beside);
     if model.stopped() {
         return None;
     }
@@ -350,7 +191,7 @@ pub(crate) fn verify_characteristic(
 }
 
 /// Figures of a characteristic that does not vary, from one point.
-fn constant(model: &Model<'_>, [low, high]: [f64; 2]) -> SampledFigures {
+fn constant(model: &CheapModel<'_>, [low, high]: [f64; 2]) -> SampledFigures {
     let value = model.values(&Vec::new())[0];
     let exact = |value: f64| Some(Verified { value, error: 0.0 });
     let share = |holds: bool| Some(Verified { value: f64::from(u8::from(holds)), error: 0.0 });

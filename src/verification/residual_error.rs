@@ -18,10 +18,10 @@
 //! better than to 1.5e-3 of sigma.
 
 use crate::estimate::Columns;
+use crate::estimate::figures::{MOMENTS, moments};
+use crate::estimate::strata;
+use crate::estimate::strata::along;
 use crate::verification::check_points::{Design, ON_AXIS, Wish, dot};
-use crate::verification::figures::{MOMENTS, moments};
-use crate::verification::strata;
-use crate::verification::strata::along;
 
 /// Residual that [`OVERLOOKED_BY`] points may overlook, in sigmas. With `n` points it falls as `1/sqrt(n)`.
 pub(crate) const OVERLOOKED: f64 = 0.004;

@@ -1,7 +1,7 @@
 //! Risks of an inspection, from the distribution that the yield comes from, and from the sample of the model if there is one.
 
 use crate::analysis::{CharacteristicAnalysis, YieldSource};
-use crate::verification::WeightedSample;
+use crate::estimate::{Verified, WeightedSample};
 use sensitol_numeric::capability::{EstimatedShare, InspectionRisks, Law, Risks, Tails, acceptance, guard_for};
 use sensitol_numeric::characteristic::KeptLimits;
 use sensitol_numeric::characteristic::SpecLimits;
@@ -100,12 +100,7 @@ fn by(
 }
 
 /// Shares of bad accepted and good rejected parts, over points of the model.
-fn of_sample(
-    sample: &WeightedSample,
-    limits: KeptLimits,
-    gauge: f64,
-    guard: f64,
-) -> [crate::verification::Verified; 2] {
+fn of_sample(sample: &WeightedSample, limits: KeptLimits, gauge: f64, guard: f64) -> [Verified; 2] {
     let accepted = |x: f64| acceptance(x, limits, gauge, guard);
     let bad = |x: f64| if limits.contains(x) { 0.0 } else { accepted(x) };
     let good = |x: f64| if limits.contains(x) { 1.0 - accepted(x) } else { 0.0 };

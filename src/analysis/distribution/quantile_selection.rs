@@ -14,7 +14,7 @@ use crate::analysis::distribution::moment_shift::moment_shift;
 use crate::analysis::distribution::surface_law::{GuardedLaw, of_pearson};
 use crate::analysis::result::verification::{Verification, VerificationKind};
 use crate::analysis::result::yield_source::YieldSource;
-use crate::verification::{SampleQuantile, Verified};
+use crate::estimate::{SampleQuantile, Verified};
 use sensitol_numeric::capability::{EstimatedQuantile, Law, Quantiles};
 use sensitol_numeric::distribution::standard_normal;
 use sensitol_numeric::law::{Branch, LawFigure, LawTail, REPORTED_QUANTILES};

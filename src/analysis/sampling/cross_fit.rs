@@ -17,15 +17,15 @@ use crate::analysis::SampledModel;
 use crate::analysis::sampling::known_answers::KnownAnswersFunction;
 use crate::analysis::sampling::recorded_points::ranked;
 use crate::assembly::{EvaluationError, Points};
+use crate::estimate::{
+    MOMENTS, REPLICATES, Share, carried_by, effective, jackknife, reported_quantiles, standard, student, totals,
+};
 use crate::evaluation::Evaluator;
 use crate::method::{AutoAccount, Outcome};
 use crate::plan::Point;
 use crate::problem::Problem;
 use crate::simulation::{BINS, CHOICE, Histogram};
-use crate::verification::{
-    MOMENTS, OVERLOOKED, OVERLOOKED_BY, REPLICATES, Share, TOO_SMALL, carried_by, effective, jackknife,
-    reported_quantiles, standard, student, totals,
-};
+use crate::verification::{OVERLOOKED, OVERLOOKED_BY, TOO_SMALL};
 use sensitol_numeric::capability::EstimatedQuantile;
 use sensitol_numeric::moments::Moments;
 use sensitol_numeric::sampling::{Draws, Estimate, Fine, Portion, SOBOL_DIMENSIONS, Sampler, Scale};

@@ -3,8 +3,8 @@
 use std::sync::{Mutex, PoisonError};
 
 use crate::assembly::{AssemblyFunction, Request, Responses, Run, Signature};
+use crate::estimate::Share;
 use crate::problem::Problem;
-use crate::verification::Share;
 use sensitol_numeric::sampling::rank_first;
 
 /// Greatest number of stored points: a costly model is seldom evaluated more often.

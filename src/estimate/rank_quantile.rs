@@ -13,8 +13,8 @@
 //! share becomes that of a quantile by inverting the distribution function, without a density (Woodruff, J. Am. Stat. Assoc. 47 (1952)
 //! 635). It holds for values in steps too, because the interval then reaches to the next step.
 
-use crate::verification::Verified;
-use crate::verification::figures::{jackknife, student};
+use crate::estimate::figures::{jackknife, student};
+use crate::estimate::verified::Verified;
 use sensitol_numeric::capability::EstimatedQuantile;
 use sensitol_numeric::law::{LawFigure, LawTail, REPORTED_QUANTILES};
 use sensitol_numeric::power::rescale;

@@ -12,13 +12,13 @@
 //! points that carry the variance of a power (Kish 1965), and by Student's quantile. The error of a share also includes the weight of one
 //! point, because a rare event may exist although no point shows it.
 
-use crate::estimate::Columns;
-use crate::verification::Verified;
-use crate::verification::figures::{MOMENTS, carried_by, effective, jackknife, moments, standard, student, totals};
-use crate::verification::model::Model;
-use crate::verification::strata::{HalfSpace, between, unit};
-use crate::verification::switch_side::{Sides, sides};
-use crate::verification::weighted::{WeightedPart, WeightedSample};
+use crate::estimate::cheap_model::CheapModel;
+use crate::estimate::figures::{MOMENTS, carried_by, effective, jackknife, moments, standard, student, totals};
+use crate::estimate::normal_space::Columns;
+use crate::estimate::strata::{HalfSpace, between, unit};
+use crate::estimate::switch_side::{Sides, sides};
+use crate::estimate::verified::Verified;
+use crate::estimate::weighted_sample::{WeightedPart, WeightedSample};
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::sampling::Normals;
 use sensitol_numeric::surrogate::Surrogate;
@@ -26,37 +26,37 @@ use sensitol_numeric::surrogate::Surrogate;
 /// Number of randomisations (scramblings) of a stratum.
 pub(crate) const REPLICATES: usize = 16;
 /// Points of a half-space in all randomisations together.
-pub(super) const TAIL: usize = 1 << 12;
+pub(crate) const TAIL: usize = 1 << 12;
 /// Most random numbers for the points of one stratum.
 const NUMBERS: usize = 1_000_000;
 /// Points that determine the direction of the tails.
-pub(super) const PILOT: usize = 1 << 10;
+pub(crate) const PILOT: usize = 1 << 10;
 /// Greatest absolute value, in sigmas, that counts for the direction of the tails.
 const WINSORISED: f64 = 4.0;
 /// Distance at which the tails begin, in sigmas along their direction.
-pub(super) const FAR: f64 = 2.5;
+pub(crate) const FAR: f64 = 2.5;
 
-pub(super) struct Sample {
+pub(crate) struct StratifiedSample {
     /// Points of each stratum in each randomisation that no earlier stratum contains.
     parts: Vec<WeightedPart>,
     /// Weight of one point of the core.
     one: f64,
     /// Number of evaluated points, including those that searched for strata.
-    pub(super) points: usize,
-    pub(super) sides: Sides,
+    pub(crate) points: usize,
+    pub(crate) sides: Sides,
 }
 
 /// Figures of a sample with their errors: mean, sigma, skewness, kurtosis, then a share for every requested interval.
-pub(super) struct Figures {
-    pub(super) values: Vec<f64>,
-    pub(super) errors: Vec<f64>,
+pub(crate) struct Figures {
+    pub(crate) values: Vec<f64>,
+    pub(crate) errors: Vec<f64>,
     /// Share of the assemblies that have a value, and its error.
-    pub(super) valid: (f64, f64),
+    pub(crate) valid: (f64, f64),
 }
 
-impl Sample {
+impl StratifiedSample {
     /// Draws a sample with `core` points in the core.
-    pub(super) fn draw(model: &Model<'_>, seed: u64, core: usize, beside: Option<(&[usize], &Surrogate)>) -> Self {
+    pub(crate) fn draw(model: &CheapModel<'_>, seed: u64, core: usize, beside: Option<(&[usize], &Surrogate)>) -> Self {
         let normals = Normals::new(model.len(), seed);
         let (direction, known) = {
             let pilot = normals.columns(1 << 33, PILOT);
@@ -104,7 +104,7 @@ impl Sample {
     /// Figures, with the shares of the assemblies within these intervals, ends included.
     ///
     /// Points without a value are left out of numerator and denominator alike: every figure refers to the assemblies that have a value.
-    pub(super) fn figures(&self, intervals: &[[f64; 2]]) -> Figures {
+    pub(crate) fn figures(&self, intervals: &[[f64; 2]]) -> Figures {
         let all = || self.parts.iter().flat_map(|part| part.values.iter().zip(&part.weights));
         let (values, weights): (Vec<f64>, Vec<f64>) = all().filter(|(y, _)| y.is_finite()).unzip();
         let total: f64 = all().map(|(_, weight)| weight).sum();
@@ -154,7 +154,7 @@ impl Sample {
 
     /// Difference of the shares of model and surface within each interval, ends included: `mean(1_model - 1_surface)`. Returns None if
     /// there is no surface, or if some points have no value, because the shares refer to different assemblies then.
-    pub(super) fn difference<const N: usize>(&self, intervals: &[[f64; 2]; N]) -> Option<[Verified; N]> {
+    pub(crate) fn difference<const N: usize>(&self, intervals: &[[f64; 2]; N]) -> Option<[Verified; N]> {
         let whole =
             |part: &WeightedPart| part.surface.len() == part.values.len() && part.values.iter().all(|y| y.is_finite());
         if !self.parts.iter().all(whole) {
@@ -179,24 +179,24 @@ impl Sample {
     }
 
     /// Weight of one point of the core.
-    pub(super) fn point(&self) -> f64 {
+    pub(crate) fn point(&self) -> f64 {
         self.one
     }
 
     /// Converts it to a sample for tails and shares that are computed later.
-    pub(super) fn kept(self) -> WeightedSample {
+    pub(crate) fn kept(self) -> WeightedSample {
         WeightedSample::new(self.parts, REPLICATES, self.one)
     }
 
     /// True if no point has a value.
-    pub(super) fn is_void(&self) -> bool {
+    pub(crate) fn is_void(&self) -> bool {
         !self.parts.iter().flat_map(|part| &part.values).any(|y| y.is_finite())
     }
 }
 
 /// Direction along which the tails lie: `E[z d^3]` with `d` the standardised values, winsorised. For a function that is nearly linear it is
 /// along `R b`.
-pub(super) fn steepest(z: &Columns, y: &[f64]) -> Vec<f64> {
+pub(crate) fn steepest(z: &Columns, y: &[f64]) -> Vec<f64> {
     let valid: Vec<f64> = y.iter().copied().filter(|y| y.is_finite()).collect();
     let [mean, sigma, ..] = moments(&valid, &vec![1.0; valid.len()]);
     let cubes: Vec<f64> = (y.iter())

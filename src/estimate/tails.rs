@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::verification::figures::{jackknife, student, totals};
+use crate::estimate::figures::{jackknife, student, totals};
 use sensitol_numeric::power::rescale;
 
 /// Greatest number of points of a tail.

@@ -1,22 +1,22 @@
 //! One characteristic of a cheap model as a function of independent normal variables.
 
 use crate::assembly::{Points, Run};
-use crate::estimate::{Columns, NormalSpace};
+use crate::estimate::normal_space::{Columns, NormalSpace};
 use crate::evaluation::Evaluator;
 use crate::problem::Problem;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::surrogate::Surrogate;
 
 /// A characteristic of a cheap model over independent standard normal variables.
-pub(super) struct Model<'p> {
+pub(crate) struct CheapModel<'p> {
     evaluator: Evaluator<'p>,
     output: usize,
     space: NormalSpace<'p>,
 }
 
-impl<'p> Model<'p> {
+impl<'p> CheapModel<'p> {
     /// Creates it over the varying dimensions on which the characteristic can depend.
-    pub(super) fn new(problem: &'p Problem, characteristic: usize) -> Self {
+    pub(crate) fn new(problem: &'p Problem, characteristic: usize) -> Self {
         let dependence = problem.dependence().swap_remove(characteristic);
         let varies = |&d: &usize| dependence[d] && problem.dimensions()[d].sigma() > 0.0;
         let dimensions: Vec<usize> = (0..problem.dimensions().len()).filter(varies).collect();
@@ -24,43 +24,43 @@ impl<'p> Model<'p> {
     }
 
     /// Creates it over the given dimensions of the problem.
-    pub(super) fn over(problem: &'p Problem, characteristic: usize, dimensions: &[usize]) -> Self {
+    pub(crate) fn over(problem: &'p Problem, characteristic: usize, dimensions: &[usize]) -> Self {
         let space = NormalSpace::new(problem, dimensions);
         let evaluator = Evaluator::new(problem, &Run::to_the_end());
         Self { evaluator, output: problem.outputs()[characteristic], space }
     }
 
     /// Evaluates under the conditions of a run: points that are unanswered when it stops have no value.
-    pub(super) fn during(self, run: &Run<'p>) -> Self {
+    pub(crate) fn during(self, run: &Run<'p>) -> Self {
         Self { evaluator: Evaluator::new(self.problem(), &run.quiet()), ..self }
     }
 
     /// True if the run was stopped, so that some points have no value for that reason.
-    pub(super) fn stopped(&self) -> bool {
+    pub(crate) fn stopped(&self) -> bool {
         self.evaluator.run().stopped()
     }
 
     /// Standardised inputs at some points.
-    pub(super) fn standardised(&self, z: &Columns) -> Columns {
+    pub(crate) fn standardised(&self, z: &Columns) -> Columns {
         self.space.standardised(z)
     }
 
-    pub(super) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.space.len()
     }
 
     /// Dimension of the problem of every variable.
-    pub(super) fn dimensions(&self) -> impl Iterator<Item = usize> + '_ {
+    pub(crate) fn dimensions(&self) -> impl Iterator<Item = usize> + '_ {
         self.space.dimensions()
     }
 
     /// Values at some points, NaN if there is none.
-    pub(super) fn values(&self, z: &Columns) -> Vec<f64> {
+    pub(crate) fn values(&self, z: &Columns) -> Vec<f64> {
         self.points_and_values(z).1
     }
 
     /// Points in the form of the problem, and the values there.
-    pub(super) fn points_and_values(&self, z: &Columns) -> (Points, Vec<f64>) {
+    pub(crate) fn points_and_values(&self, z: &Columns) -> (Points, Vec<f64>) {
         let points = self.space.points(z);
         let values = self.evaluator.ask_outputs(&points, &[self.output]).column(0).to_vec();
         (points, values)
@@ -68,7 +68,7 @@ impl<'p> Model<'p> {
 
     /// Values of a surface over the dimensions at `varying`. Dimensions that this characteristic does not depend on stay at their means.
     /// Returns None if a part is unknown.
-    pub(super) fn surface(&self, z: &Columns, varying: &[usize], surrogate: &Surrogate) -> Option<Vec<f64>> {
+    pub(crate) fn surface(&self, z: &Columns, varying: &[usize], surrogate: &Surrogate) -> Option<Vec<f64>> {
         let own: Vec<usize> = self.dimensions().collect();
         let columns = self.space.standardised(z);
         let nothing = vec![0.0; z.first().map_or(0, Vec::len)];
@@ -78,7 +78,7 @@ impl<'p> Model<'p> {
     }
 
     /// Margins of the switches at some points. Returns None if the function does not report them.
-    pub(super) fn margins(&self, z: &Columns) -> Option<Vec<Vec<f64>>> {
+    pub(crate) fn margins(&self, z: &Columns) -> Option<Vec<Vec<f64>>> {
         let of = |z: &Columns| self.problem().function().margins(self.output, &self.space.points(z));
         let rows = z.first().map_or(1, Vec::len);
         if rows < 256 {
@@ -98,11 +98,11 @@ impl<'p> Model<'p> {
         })?
     }
 
-    pub(super) fn problem(&self) -> &'p Problem {
+    pub(crate) fn problem(&self) -> &'p Problem {
         self.evaluator.problem()
     }
 
-    pub(super) fn output(&self) -> usize {
+    pub(crate) fn output(&self) -> usize {
         self.output
     }
 }

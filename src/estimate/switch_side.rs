@@ -10,9 +10,9 @@ use std::cell::OnceCell;
 use serde::Serialize;
 
 use crate::assembly::Switch;
-use crate::estimate::Columns;
-use crate::verification::model::Model;
-use crate::verification::strata::{HalfSpace, REACH, length};
+use crate::estimate::cheap_model::CheapModel;
+use crate::estimate::normal_space::Columns;
+use crate::estimate::strata::{HalfSpace, REACH, length};
 use crate::warning::{Change, Warning};
 use sensitol_numeric::sampling::Normals;
 
@@ -25,9 +25,9 @@ const SELDOM: f64 = 1.0 / 128.0;
 /// Most half-spaces of one switch: `abs(x) > c` has two.
 const PLACES: usize = 4;
 /// Most half-spaces of all switches.
-pub(super) const MOST: usize = 6;
+pub(crate) const MOST: usize = 6;
 /// Distance in sigmas at which a half-space begins before its design point.
-pub(super) const BEFORE: f64 = 0.5;
+pub(crate) const BEFORE: f64 = 0.5;
 /// Number of steps of Hasofer and Lind.
 const STEPS: usize = 12;
 /// Step of the difference quotients of margins, in sigmas.
@@ -101,20 +101,20 @@ impl FoundSwitch {
 
 /// Results of the search for the switches of one output.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Sides {
+pub(crate) struct Sides {
     /// Half-spaces that contain the seldom sides.
-    pub(super) half_spaces: Vec<HalfSpace>,
+    pub(crate) half_spaces: Vec<HalfSpace>,
     /// Switches that assemblies meet. None if the model does not report them.
-    pub(super) switches: Option<Vec<FoundSwitch>>,
+    pub(crate) switches: Option<Vec<FoundSwitch>>,
     /// True if the model reported all of its switches.
-    pub(super) complete: bool,
+    pub(crate) complete: bool,
 }
 
 /// Margins of all switches at some points, clamped, with 0 for NaN.
 struct Margins(Vec<Vec<f64>>);
 
 impl Margins {
-    fn read(model: &Model<'_>, z: &Columns) -> Option<Self> {
+    fn read(model: &CheapModel<'_>, z: &Columns) -> Option<Self> {
         let mut columns = model.margins(z)?;
         for margin in columns.iter_mut().flatten() {
             *margin = if margin.is_nan() { 0.0 } else { margin.clamp(-1e9, 1e9) };
@@ -137,7 +137,7 @@ impl Margins {
 /// Searches for the sides that are seldom met.
 ///
 /// `scale` is the spread of the output, to recognise a jump. Cost: 6144 points, and `12 (N + 22)` for every searched place.
-pub(super) fn sides(model: &Model<'_>, normals: &Normals, scale: f64) -> Sides {
+pub(crate) fn sides(model: &CheapModel<'_>, normals: &Normals, scale: f64) -> Sides {
     let Some(known) = model.problem().function().switches(model.output()) else { return Sides::default() };
     if known.list.is_empty() {
         return Sides { switches: Some(Vec::new()), complete: known.complete, ..Sides::default() };
@@ -222,7 +222,7 @@ impl Places<'_> {
 }
 
 struct Search<'a, 'p> {
-    model: &'a Model<'p>,
+    model: &'a CheapModel<'p>,
     places: &'a Places<'a>,
     half_spaces: Vec<HalfSpace>,
     scale: f64,

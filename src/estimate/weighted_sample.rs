@@ -1,9 +1,9 @@
 //! Sample in strata that is stored, for shares that are computed after it was drawn.
 
-use crate::verification::Verified;
-use crate::verification::figures::{jackknife, student, totals};
-use crate::verification::sample_quantile::{OrderedSample, SampleQuantile, quantiles};
-use crate::verification::tails::{SampleTails, Weighed, tail};
+use crate::estimate::figures::{jackknife, student, totals};
+use crate::estimate::rank_quantile::{OrderedSample, SampleQuantile, quantiles};
+use crate::estimate::tails::{SampleTails, Weighed, tail};
+use crate::estimate::verified::Verified;
 use sensitol_numeric::law::{LawTail, REPORTED_QUANTILES};
 use sensitol_numeric::power::{Rescale, Rescaling};
 

@@ -1,13 +1,13 @@
 //! Correlations of the characteristics of a cheap model, and their common rejects, from points of the model itself.
 
-use crate::verification::figures;
+use crate::estimate::figures;
 use serde::Serialize;
 
+use crate::estimate::cheap_model::CheapModel;
+use crate::estimate::figures::{jackknife, student, totals};
+use crate::estimate::stratified_sample::REPLICATES;
+use crate::estimate::verified::Verified;
 use crate::problem::Problem;
-use crate::verification::Verified;
-use crate::verification::figures::{jackknife, student, totals};
-use crate::verification::model::Model;
-use crate::verification::sample::REPLICATES;
 use sensitol_numeric::characteristic::KeptLimits;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::sampling::{Normals, clopper_pearson};
@@ -44,7 +44,7 @@ pub(crate) fn output_correlations(problem: &Problem, seed: u64) -> Vec<Option<Ve
     let varying: Vec<usize> =
         (0..problem.dimensions().len()).filter(|&d| problem.dimensions()[d].sigma() > 0.0).collect();
     let characteristics = 0..problem.characteristics().len();
-    let models: Vec<Model<'_>> = characteristics.map(|c| Model::over(problem, c, &varying)).collect();
+    let models: Vec<CheapModel<'_>> = characteristics.map(|c| CheapModel::over(problem, c, &varying)).collect();
     let normals = Normals::new(varying.len(), seed);
     let pairs: Vec<(usize, usize)> =
         (0..models.len()).flat_map(|a| (a + 1..models.len()).map(move |b| (a, b))).collect();
@@ -84,7 +84,7 @@ pub(crate) const fn most_points_together(characteristics: usize) -> usize {
 pub(crate) fn common_rejects(problem: &Problem, characteristics: &[usize], seed: u64) -> Option<Verified> {
     let varying: Vec<usize> =
         (0..problem.dimensions().len()).filter(|&d| problem.dimensions()[d].sigma() > 0.0).collect();
-    let models: Vec<Model<'_>> = characteristics.iter().map(|&c| Model::over(problem, c, &varying)).collect();
+    let models: Vec<CheapModel<'_>> = characteristics.iter().map(|&c| CheapModel::over(problem, c, &varying)).collect();
     let kept: Vec<KeptLimits> = characteristics.iter().map(|&c| problem.kept_limits(c)).collect();
     let normals = Normals::new(varying.len(), seed);
     // Points with all values, and broken characteristics beyond the first.

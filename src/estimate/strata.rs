@@ -1,17 +1,17 @@
 //! Strata of the space of independent normal variables: half-spaces, and the slab between two of them.
 
-use crate::estimate::Columns;
+use crate::estimate::normal_space::Columns;
 use sensitol_numeric::distribution::standard_normal;
 
 /// Greatest distance of a point in sigmas: 6e-16 of all assemblies are beyond.
-pub(super) const REACH: f64 = 8.0;
+pub(crate) const REACH: f64 = 8.0;
 
 /// Points with `direction . z > from`.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct HalfSpace {
+pub(crate) struct HalfSpace {
     /// Normal vector of length 1.
-    pub(super) direction: Vec<f64>,
-    pub(super) from: f64,
+    pub(crate) direction: Vec<f64>,
+    pub(crate) from: f64,
 }
 
 impl HalfSpace {
@@ -19,7 +19,7 @@ impl HalfSpace {
     ///
     /// With `t` along the direction, `t' = from + (REACH - from) Phi(t)` is uniform and has the weight `(REACH - from) density(t')`. Powers
     /// 3 and 4 of functions that grow along it depend on 3 to 6 sigma, where plain points are few.
-    pub(super) fn enter(&self, z: &mut Columns) -> Vec<f64> {
+    pub(crate) fn enter(&self, z: &mut Columns) -> Vec<f64> {
         let width = REACH - self.from;
         let along = along(z, &self.direction);
         let far: Vec<f64> = along.iter().map(|&t| self.from + width * standard_normal::cdf(t)).collect();
@@ -28,13 +28,13 @@ impl HalfSpace {
     }
 
     /// Returns true for each point in the half-space.
-    pub(super) fn holds(&self, z: &Columns) -> Vec<bool> {
+    pub(crate) fn holds(&self, z: &Columns) -> Vec<bool> {
         along(z, &self.direction).into_iter().map(|t| t > self.from).collect()
     }
 }
 
 /// Moves points along a direction between `-from` and `from`, by the normal distribution truncated there. Returns the weight of each.
-pub(super) fn between(z: &mut Columns, direction: &[f64], from: f64) -> f64 {
+pub(crate) fn between(z: &mut Columns, direction: &[f64], from: f64) -> f64 {
     let below = standard_normal::cdf(-from);
     let weight = 1.0 - 2.0 * below;
     let along = along(z, direction);
@@ -45,7 +45,7 @@ pub(super) fn between(z: &mut Columns, direction: &[f64], from: f64) -> f64 {
 }
 
 /// Coordinates of the points along a direction.
-pub(super) fn along(z: &Columns, direction: &[f64]) -> Vec<f64> {
+pub(crate) fn along(z: &Columns, direction: &[f64]) -> Vec<f64> {
     let mut sums = vec![0.0; z.first().map_or(0, Vec::len)];
     for (column, &part) in z.iter().zip(direction).filter(|(_, part)| **part != 0.0) {
         sums.iter_mut().zip(column).for_each(|(sum, value)| *sum += part * value);
@@ -62,7 +62,7 @@ fn shift(z: &mut Columns, direction: &[f64], from: &[f64], to: &[f64]) {
 }
 
 /// Scales a given vector to length 1. Returns the first axis if it has no length.
-pub(super) fn unit(mut vector: Vec<f64>) -> Vec<f64> {
+pub(crate) fn unit(mut vector: Vec<f64>) -> Vec<f64> {
     let length = length(&vector);
     if length > 0.0 && length.is_finite() {
         vector.iter_mut().for_each(|part| *part /= length);
@@ -72,7 +72,7 @@ pub(super) fn unit(mut vector: Vec<f64>) -> Vec<f64> {
     vector
 }
 
-pub(super) fn length(vector: &[f64]) -> f64 {
+pub(crate) fn length(vector: &[f64]) -> f64 {
     vector.iter().map(|part| part * part).sum::<f64>().sqrt()
 }
 

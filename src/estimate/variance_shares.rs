@@ -9,9 +9,12 @@
 //! from the second. `S_j` is the share that the input explains alone, `T_j` adds all its interactions. Errors come from the jackknife over
 //! 8 scramblings, widened by Student's quantile.
 
-use crate::estimate::Columns;
-use crate::verification::figures::{jackknife, student, totals};
-use crate::verification::model::Model;
+use crate::assembly::Run;
+use crate::estimate::cheap_model::CheapModel;
+use crate::estimate::figures::{jackknife, student, totals};
+use crate::estimate::normal_space::Columns;
+use crate::problem::Problem;
+use sensitol_numeric::correlation::factors;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::sampling::Normals;
 
@@ -25,16 +28,67 @@ const FEWEST: usize = 64;
 const MOST: usize = 256;
 
 /// A share of the variance with its error.
-pub type Share = crate::verification::Verified;
+pub type Share = crate::estimate::verified::Verified;
 
 /// Most evaluations over this number of inputs.
-pub(super) fn most(inputs: usize) -> usize {
+pub(crate) fn most_points(inputs: usize) -> usize {
     EVALUATIONS.max(REPLICATES * FEWEST * (inputs + 2))
+}
+
+/// Shares of the variance by a sampled model: the first-order and the total share of every dimension on which a characteristic depends, by
+/// exchanging inputs of the model itself.
+///
+/// Returns None with correlated dimensions, whose shares add up differently, with more than 256 dimensions, and if nothing varies.
+/// Evaluations: 65 536, for more than 126 inputs 512 for each. Accuracy: 311 of 312 shares of six functions with closed forms lay within
+/// three errors, the largest error 0.026.
+///
+/// ```
+/// use sensitol::{Closure, Dimension, Problem};
+/// use sensitol::verification::variance_shares;
+/// let dimensions = [Dimension::normal("a", 0.0, 3.0)?, Dimension::normal("b", 0.0, 3.0)?];
+/// let problem = Problem::new(dimensions, Closure::scalar("y", |x| x[0] + x[0] * x[1]))?;
+/// let shares = variance_shares(&problem, 0, 1).unwrap();
+/// let [(0, [first, total]), (1, _)] = shares[..] else { panic!("two dimensions") };
+/// assert!((first.value - 0.5).abs() < 0.02 && (total.value - 1.0).abs() < 0.02); // a alone, and with b
+/// # Ok::<(), sensitol::Error>(())
+/// ```
+pub fn variance_shares(problem: &Problem, characteristic: usize, seed: u64) -> Option<Vec<(usize, [Share; 2])>> {
+    variance_shares_during(problem, characteristic, seed, &Run::to_the_end())
+}
+
+/// [`variance_shares`] under the conditions of a run. Returns None if the run was stopped meanwhile.
+pub(crate) fn variance_shares_during(
+    problem: &Problem,
+    characteristic: usize,
+    seed: u64,
+    run: &Run<'_>,
+) -> Option<Vec<(usize, [Share; 2])>> {
+    if problem.correlation().is_some() {
+        return None;
+    }
+    let found = factor_shares(problem, characteristic, seed, run)?;
+    Some(found.into_iter().map(|(factor, shares)| (factor[0], shares)).collect())
+}
+
+/// [`variance_shares`] of factors: dimensions that vary together are exchanged together. Each factor is given by those of its dimensions on
+/// which the characteristic depends.
+pub(crate) fn factor_shares(
+    problem: &Problem,
+    characteristic: usize,
+    seed: u64,
+    run: &Run<'_>,
+) -> Option<Vec<(Vec<usize>, [Share; 2])>> {
+    let model = CheapModel::new(problem, characteristic).during(run);
+    let dimensions: Vec<usize> = model.dimensions().collect();
+    let places = factors(problem.correlation(), &dimensions);
+    let found = exchanged_shares(&model, &places, seed)?;
+    let named = places.into_iter().map(|factor| factor.into_iter().map(|place| dimensions[place]).collect());
+    (!model.stopped()).then(|| named.zip(found).collect())
 }
 
 /// First-order and total shares of every factor, which is a variable or several that are exchanged together. Returns None with too many
 /// variables, and if nothing varies.
-pub(super) fn shares(model: &Model<'_>, factors: &[Vec<usize>], seed: u64) -> Option<Vec<[Share; 2]>> {
+fn exchanged_shares(model: &CheapModel<'_>, factors: &[Vec<usize>], seed: u64) -> Option<Vec<[Share; 2]>> {
     let n = factors.len();
     if n == 0 || model.len() > MOST {
         return None;
@@ -53,7 +107,7 @@ pub(super) fn shares(model: &Model<'_>, factors: &[Vec<usize>], seed: u64) -> Op
 
 /// Variance, then the covariance of every factor alone, then half the mean square of the change by every factor.
 fn exchanged(
-    model: &Model<'_>,
+    model: &CheapModel<'_>,
     factors: &[Vec<usize>],
     normals: &Normals,
     (replicate, rows): (u64, usize),

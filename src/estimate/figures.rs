@@ -10,7 +10,7 @@ const THREE_SIGMAS: f64 = 0.998_65;
 /// Mean, sigma, skewness and kurtosis of weighted values. Skewness and kurtosis are NaN if nothing varies.
 ///
 /// Shapes: as many weights as values. The weights need not sum to 1.
-pub(super) fn moments(values: &[f64], weights: &[f64]) -> [f64; MOMENTS] {
+pub(crate) fn moments(values: &[f64], weights: &[f64]) -> [f64; MOMENTS] {
     let total: f64 = weights.iter().sum();
     let mean = |of: &dyn Fn(f64) -> f64| {
         values.iter().zip(weights).map(|(&value, weight)| weight * of(value)).sum::<f64>() / total
