@@ -5,6 +5,7 @@
 //! | `normal_space` | independent normal variables, and the inputs as functions of them | verification, simulation, rare |
 //! | `cheap_model` | one characteristic as a function of these variables | this folder, verification |
 //! | `figures` | moments of weighted values, jackknife, Student's factor | everywhere |
+//! | `replicate_sums` | sums by randomisation, and functions of them with their errors | this folder, simulation |
 //! | `verified` | a figure with its error | everywhere |
 //! | `strata`, `stratified_sample` | sample of a cheap model in half-spaces, tails and core | verification |
 //! | `weighted_sample` | the same sample, stored for shares, density and tails | verification, analysis |
@@ -13,13 +14,14 @@
 //! | `variance_shares` | Sobol' indices by exchanging inputs | analysis |
 //! | `output_correlation` | correlation of characteristics, and their common rejects | analysis, simulation |
 //!
-//! Nothing here asks a costly model. An estimator takes a problem, or values with their weights, and knows neither methods nor results.
+//! Nothing here asks a costly model. An estimator takes a problem, or values with their weights. None depends on methods or results.
 
 pub(crate) mod cheap_model;
 pub(crate) mod figures;
 mod normal_space;
 mod output_correlation;
 mod rank_quantile;
+mod replicate_sums;
 mod seldom_side;
 pub(crate) mod strata;
 pub(crate) mod stratified_sample;
@@ -34,6 +36,7 @@ pub(crate) use crate::estimate::normal_space::{Columns, NormalSpace};
 pub use crate::estimate::output_correlation::OutputCorrelation;
 pub(crate) use crate::estimate::output_correlation::{common_rejects, most_points_together, output_correlations};
 pub(crate) use crate::estimate::rank_quantile::{SampleQuantile, reported_quantiles};
+pub(crate) use crate::estimate::replicate_sums::ReplicateSums;
 pub(crate) use crate::estimate::seldom_side::{RareSides, seldom_points, seldom_sides};
 pub(crate) use crate::estimate::stratified_sample::REPLICATES;
 pub use crate::estimate::switch_side::{Crossing, FoundSwitch};

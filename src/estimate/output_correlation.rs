@@ -4,7 +4,7 @@ use crate::estimate::figures;
 use serde::Serialize;
 
 use crate::estimate::cheap_model::CheapModel;
-use crate::estimate::figures::{jackknife, student, totals};
+use crate::estimate::replicate_sums::ReplicateSums;
 use crate::estimate::stratified_sample::REPLICATES;
 use crate::estimate::verified::Verified;
 use crate::problem::Problem;
@@ -63,10 +63,9 @@ pub(crate) fn output_correlations(problem: &Problem, seed: u64) -> Vec<Option<Ve
         .collect();
     (0..pairs.len())
         .map(|index| {
-            let sums: Vec<Vec<f64>> = (0..SUMS).map(|of| rows.iter().map(|row| row[index][of]).collect()).collect();
-            let (value, error) = (coefficient(&totals(&sums))[0], jackknife(coefficient, &sums)[0]);
-            let known = value.is_finite() && error.is_finite();
-            known.then(|| Verified { value, error: student(REPLICATES) * error })
+            let sums: Vec<[f64; SUMS]> = rows.iter().map(|row| row[index]).collect();
+            let found = ReplicateSums::by_replicate(&sums).estimates(coefficient)[0];
+            Some(found).filter(|found| found.value.is_finite() && found.error.is_finite())
         })
         .collect()
 }
@@ -103,16 +102,15 @@ pub(crate) fn common_rejects(problem: &Problem, characteristics: &[usize], seed:
         sums
     };
     let counts: Vec<[f64; 2]> = (0..REPLICATES).into_par_iter().map(count).collect();
-    let sums: Vec<Vec<f64>> = (0..2).map(|of| counts.iter().map(|one| one[of]).collect()).collect();
-    let mean = |total: &[f64]| vec![total[1] / total[0]];
-    let [points, twice] = [totals(&sums)[0], totals(&sums)[1]];
+    let sums = ReplicateSums::by_replicate(&counts);
+    let points = sums.totals()[0];
     if points == 0.0 {
         return None;
     }
-    let scatter = student(REPLICATES) * jackknife(mean, &sums)[0];
+    let Verified { value, error: scatter } = sums.estimates(|total| vec![total[1] / total[0]])[0];
     let [_, unseen] = clopper_pearson(0.0, points);
-    let error = if twice > 0.0 { scatter } else { 0.5 * unseen };
-    Some(Verified { value: twice / points, error: error.max(1.0 / points) })
+    let error = if value > 0.0 { scatter } else { 0.5 * unseen };
+    Some(Verified { value, error: error.max(1.0 / points) })
 }
 
 /// Mean and sigma of the finite values, 0 and 1 if they are undefined.

@@ -13,7 +13,7 @@
 //! share becomes that of a quantile by inverting the distribution function, without a density (Woodruff, J. Am. Stat. Assoc. 47 (1952)
 //! 635). It holds for values in steps too, because the interval then reaches to the next step.
 
-use crate::estimate::figures::{jackknife, student};
+use crate::estimate::replicate_sums::ReplicateSums;
 use crate::estimate::verified::Verified;
 use sensitol_numeric::capability::EstimatedQuantile;
 use sensitol_numeric::law::{LawFigure, LawTail, REPORTED_QUANTILES};
@@ -155,9 +155,11 @@ pub(super) fn quantiles(
     tails: &[(LawTail, f64)],
     one: f64,
 ) -> Vec<Option<SampleQuantile>> {
-    let wide = student(model.whole.len());
     let ratio = |total: &[f64]| vec![total[0] / total[1]];
     let difference = |total: &[f64]| vec![(total[0] - total[2]) / total[1]];
+    let error_of = |of: &dyn Fn(&[f64]) -> Vec<f64>, sums: Vec<Vec<f64>>| {
+        ReplicateSums::by_sum(sums).estimates(of)[0].with_point(one).error
+    };
     let quantile = |&(tail, p): &(LawTail, f64)| -> Option<SampleQuantile> {
         let share = match tail {
             LawTail::Lower => p,
@@ -165,16 +167,15 @@ pub(super) fn quantiles(
         };
         let place = model.place(share);
         // Scatter of the share up to the quantile over the randomisations, with the share that no point may have shown.
-        let sums = [model.up_to(place), model.whole.clone()];
-        let of_share = libm::hypot(wide * jackknife(ratio, &sums)[0], one);
+        let [up_to, whole] = [model.up_to(place), model.whole.clone()];
+        let of_share = error_of(&ratio, vec![up_to.clone(), whole.clone()]);
         let [down, up] = model.reach(share, of_share)?;
         let plain = Verified { value: model.values[place], error: down.max(up) };
         let paired = surface.and_then(|surface| {
             let own = surface.place(share);
-            let [sums, whole] = [sums[0].clone(), model.whole.clone()];
-            let apart = jackknife(difference, &[sums, whole, surface.up_to(own)])[0];
+            let apart = error_of(&difference, vec![up_to, whole, surface.up_to(own)]);
             let [own_down, own_up] = surface.reach(share, of_share)?;
-            let [less, more] = model.reach(share, libm::hypot(wide * apart, one))?;
+            let [less, more] = model.reach(share, apart)?;
             let ratio = (down + up) / (own_down + own_up);
             Some(PairedQuantile { surface: surface.values[own], error: less.max(more), ratio })
         });

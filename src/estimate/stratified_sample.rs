@@ -9,15 +9,13 @@
 //!
 //! Every point counts in the first stratum that contains it, so that the sum is unbiased for any strata. The points are Sobol' points in 16
 //! scramblings (Owen 1997), from which the jackknife computes the errors. These are multiplied by `1 + 5/sqrt(n)`, with `n` the number of
-//! points that carry the variance of a power (Kish 1965), and by Student's quantile. The error of a share also includes the weight of one
-//! point, because a rare event may exist although no point shows it.
+//! points that carry the variance of a power (Kish 1965), and by Student's quantile.
 
 use crate::estimate::cheap_model::CheapModel;
-use crate::estimate::figures::{MOMENTS, carried_by, effective, jackknife, moments, standard, student, totals};
+use crate::estimate::figures::moments;
 use crate::estimate::normal_space::Columns;
 use crate::estimate::strata::{HalfSpace, between, unit};
 use crate::estimate::switch_side::{Sides, sides};
-use crate::estimate::verified::Verified;
 use crate::estimate::weighted_sample::{WeightedPart, WeightedSample};
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::sampling::Normals;
@@ -36,22 +34,13 @@ const WINSORISED: f64 = 4.0;
 /// Distance at which the tails begin, in sigmas along their direction.
 pub(crate) const FAR: f64 = 2.5;
 
+/// Sample of one characteristic, with the switches that were found on the way.
 pub(crate) struct StratifiedSample {
-    /// Points of each stratum in each randomisation that no earlier stratum contains.
-    parts: Vec<WeightedPart>,
-    /// Weight of one point of the core.
-    one: f64,
+    /// Points of each stratum in each randomisation that no earlier stratum contains. Its `point` is a point of the core.
+    pub(crate) sample: WeightedSample,
     /// Number of evaluated points, including those that searched for strata.
     pub(crate) points: usize,
     pub(crate) sides: Sides,
-}
-
-/// Figures of a sample with their errors: mean, sigma, skewness, kurtosis, then a share for every requested interval.
-pub(crate) struct Figures {
-    pub(crate) values: Vec<f64>,
-    pub(crate) errors: Vec<f64>,
-    /// Share of the assemblies that have a value, and its error.
-    pub(crate) valid: (f64, f64),
 }
 
 impl StratifiedSample {
@@ -98,99 +87,7 @@ impl StratifiedSample {
         let core = rows(strata - 1);
         let one = between(&mut vec![vec![0.0]], &[1.0], FAR) / (core * REPLICATES) as f64;
         let drawn: usize = parts.iter().map(|part| part.values.len()).sum();
-        Self { parts, one, points: drawn + PILOT, sides }
-    }
-
-    /// Figures, with the shares of the assemblies within these intervals, ends included.
-    ///
-    /// Points without a value are left out of numerator and denominator alike: every figure refers to the assemblies that have a value.
-    pub(crate) fn figures(&self, intervals: &[[f64; 2]]) -> Figures {
-        let all = || self.parts.iter().flat_map(|part| part.values.iter().zip(&part.weights));
-        let (values, weights): (Vec<f64>, Vec<f64>) = all().filter(|(y, _)| y.is_finite()).unzip();
-        let total: f64 = all().map(|(_, weight)| weight).sum();
-        let [origin, spread, ..] = moments(&values, &weights);
-        let scale = if spread > 0.0 { spread } else { 1.0 };
-        // Sums of the valid points, of powers 1 to 4, of every interval, and of all points.
-        let count = 1 + MOMENTS + intervals.len();
-        let mut sums = vec![vec![0.0; REPLICATES]; count + 1];
-        for part in &self.parts {
-            let mut row = vec![0.0; count + 1];
-            for (&y, &weight) in part.values.iter().zip(&part.weights) {
-                row[count] += weight;
-                if !y.is_finite() {
-                    continue;
-                }
-                let v = (y - origin) / scale;
-                let mut term = weight;
-                for sum in &mut row[..=MOMENTS] {
-                    *sum += term;
-                    term *= v;
-                }
-                for (sum, [low, high]) in row[1 + MOMENTS..].iter_mut().zip(intervals) {
-                    *sum += if *low <= y && y <= *high { weight } else { 0.0 };
-                }
-            }
-            sums.iter_mut().zip(row).for_each(|(sums, more)| sums[part.replicate] += more);
-        }
-        let of = |total: &[f64]| {
-            let raw: Vec<f64> = total[1..count].iter().map(|sum| sum / total[0]).collect();
-            standard(&raw, origin, scale)
-        };
-        let mut errors = jackknife(of, &sums);
-        // Few points may carry a high power: the jackknife underestimates its error.
-        for (power, error) in errors.iter_mut().enumerate().take(MOMENTS) {
-            let terms = values.iter().zip(&weights);
-            let carried = terms.map(|(y, weight)| weight * ((y - origin) / scale).abs().powi(power as i32 + 1));
-            *error *= carried_by(effective(carried));
-        }
-        let student = student(REPLICATES);
-        errors.iter_mut().for_each(|error| *error *= student);
-        errors[MOMENTS..].iter_mut().for_each(|error| *error = libm::hypot(*error, self.one));
-        let share = |total: &[f64]| vec![total[0] / total[count]];
-        let failed = total > 0.0 && values.len() < all().count();
-        let off = if failed { libm::hypot(student * jackknife(share, &sums)[0], self.one) } else { self.one };
-        Figures { values: of(&totals(&sums)), errors, valid: (weights.iter().sum::<f64>() / total, off) }
-    }
-
-    /// Difference of the shares of model and surface within each interval, ends included: `mean(1_model - 1_surface)`. Returns None if
-    /// there is no surface, or if some points have no value, because the shares refer to different assemblies then.
-    pub(crate) fn difference<const N: usize>(&self, intervals: &[[f64; 2]; N]) -> Option<[Verified; N]> {
-        let whole =
-            |part: &WeightedPart| part.surface.len() == part.values.len() && part.values.iter().all(|y| y.is_finite());
-        if !self.parts.iter().all(whole) {
-            return None;
-        }
-        let mut sums = vec![vec![0.0; REPLICATES]; N + 1];
-        for part in &self.parts {
-            let points = part.values.iter().zip(&part.surface).zip(&part.weights);
-            for ((model, surface), weight) in points {
-                let within = |[low, high]: &[f64; 2], y: &f64| f64::from(u8::from(low <= y && y <= high));
-                for (sum, interval) in sums.iter_mut().zip(intervals) {
-                    sum[part.replicate] += weight * (within(interval, model) - within(interval, surface));
-                }
-                sums[N][part.replicate] += weight;
-            }
-        }
-        let shares = |total: &[f64]| total[..N].iter().map(|sum| sum / total[N]).collect::<Vec<f64>>();
-        let (values, errors) = (shares(&totals(&sums)), jackknife(shares, &sums));
-        let student = student(REPLICATES);
-        // The weight of one point, as for a share: a difference may exist although no point shows it.
-        Some(std::array::from_fn(|i| Verified { value: values[i], error: libm::hypot(student * errors[i], self.one) }))
-    }
-
-    /// Weight of one point of the core.
-    pub(crate) fn point(&self) -> f64 {
-        self.one
-    }
-
-    /// Converts it to a sample for tails and shares that are computed later.
-    pub(crate) fn kept(self) -> WeightedSample {
-        WeightedSample::new(self.parts, REPLICATES, self.one)
-    }
-
-    /// True if no point has a value.
-    pub(crate) fn is_void(&self) -> bool {
-        !self.parts.iter().flat_map(|part| &part.values).any(|y| y.is_finite())
+        Self { sample: WeightedSample::new(parts, REPLICATES, one), points: drawn + PILOT, sides }
     }
 }
 

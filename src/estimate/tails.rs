@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-use crate::estimate::figures::{jackknife, student, totals};
+use crate::estimate::replicate_sums::ReplicateSums;
+use crate::estimate::verified::Verified;
 use sensitol_numeric::power::rescale;
 
 /// Greatest number of points of a tail.
@@ -84,10 +85,12 @@ pub(super) fn tail(values: &[Weighed], above: bool, (replicates, one): (usize, f
         let (all, parts) = total.split_last().map_or((0.0, total), |(all, parts)| (*all, parts));
         parts.iter().map(|part| part / all).collect::<Vec<f64>>()
     };
-    let (values, errors, wide) = (shares(&totals(&sums)), jackknife(shares, &sums), student(replicates));
-    let known = |error: f64| error.is_finite().then(|| libm::hypot(wide * error, one));
-    let point = |((at, share), error): ((f64, f64), f64)| TailPoint { at, share, error: known(error) };
-    let mut found: Vec<TailPoint> = at.into_iter().zip(values).zip(errors).map(point).collect();
+    let point = |(at, share): (f64, Verified)| {
+        let known = share.error.is_finite();
+        TailPoint { at, share: share.value, error: known.then(|| share.with_point(one).error) }
+    };
+    let estimates = ReplicateSums::by_sum(sums).estimates(shares);
+    let mut found: Vec<TailPoint> = at.into_iter().zip(estimates).map(point).collect();
     found.reverse();
     found
 }

@@ -11,8 +11,8 @@
 
 use crate::assembly::Run;
 use crate::estimate::cheap_model::CheapModel;
-use crate::estimate::figures::{jackknife, student, totals};
 use crate::estimate::normal_space::Columns;
+use crate::estimate::replicate_sums::ReplicateSums;
 use crate::problem::Problem;
 use sensitol_numeric::correlation::factors;
 use sensitol_numeric::parallel::prelude::*;
@@ -98,11 +98,10 @@ fn exchanged_shares(model: &CheapModel<'_>, factors: &[Vec<usize>], seed: u64) -
     let normals = Normals::new(2 * model.len(), seed);
     let sums: Vec<Vec<f64>> =
         (0..REPLICATES).into_par_iter().map(|r| exchanged(model, factors, &normals, (r as u64, rows))).collect();
-    let rows: Vec<Vec<f64>> = (0..1 + 2 * n).map(|sum| sums.iter().map(|of| of[sum]).collect()).collect();
-    let of = |total: &[f64]| total[1..].iter().map(|sum| sum / total[0]).collect::<Vec<f64>>();
-    let (values, errors, wide) = (of(&totals(&rows)), jackknife(of, &rows), student(REPLICATES));
-    let share = |index: usize| Share { value: values[index], error: wide * errors[index] };
-    values.iter().all(|value| value.is_finite()).then(|| (0..n).map(|j| [share(j), share(n + j)]).collect())
+    let of = |total: &[f64]| total[1..].iter().map(|sum| sum / total[0]).collect();
+    let found = ReplicateSums::by_replicate(&sums).estimates(of);
+    let known = found.iter().all(|share| share.value.is_finite());
+    known.then(|| (0..n).map(|j| [found[j], found[n + j]]).collect())
 }
 
 /// Variance, then the covariance of every factor alone, then half the mean square of the change by every factor.

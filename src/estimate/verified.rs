@@ -39,4 +39,9 @@ impl Verified {
     pub fn error_of(&self, value: f64) -> f64 {
         libm::hypot(value - self.value, self.error)
     }
+
+    /// Adds the weight of one point to the error of a share, because a rare event may exist although no point shows it.
+    pub(crate) fn with_point(self, weight: f64) -> Self {
+        Self { error: libm::hypot(self.error, weight), ..self }
+    }
 }

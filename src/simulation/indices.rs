@@ -12,7 +12,7 @@
 
 use serde::Serialize;
 
-use crate::estimate::{Columns, NormalSpace, jackknife, totals};
+use crate::estimate::{Columns, NormalSpace, ReplicateSums};
 use crate::evaluation::{Evaluator, Ledger};
 use crate::problem::Problem;
 use crate::simulation::{Pace, REPLICATES, SimulationError};
@@ -191,9 +191,6 @@ fn estimated(
     factors: &[Vec<usize>],
     sums: &[&[f64]],
 ) -> Option<Vec<SampledFactor>> {
-    let rows: Vec<Vec<f64>> =
-        (0..WHOLE + OF_FACTOR * factors.len()).map(|sum| sums.iter().map(|of| of[sum]).collect()).collect();
-    let all = totals(&rows);
     let figures = |sums: &[f64]| -> Vec<f64> {
         let variance = sums[2] / sums[0] - (sums[1] / sums[0]).powi(2);
         let of = |own: &[f64]| {
@@ -204,7 +201,7 @@ fn estimated(
         };
         sums[WHOLE..].chunks_exact(OF_FACTOR).flat_map(of).collect()
     };
-    let (values, errors) = (figures(&all), jackknife(figures, &rows));
+    let (values, errors) = ReplicateSums::by_replicate(sums).jackknifed(figures);
     let freedom = (REPLICATES - 1) as f64;
     let times = student_quantile(0.5 * (1.0 + CONFIDENCE), freedom);
     let estimate = |index: usize| {

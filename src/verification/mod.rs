@@ -158,21 +158,16 @@ pub(crate) fn verify_characteristic(
     if model.len() == 0 {
         return Some(constant(&model, [low, high])).filter(|_| !model.stopped());
     }
-    let sample = StratifiedSample::draw(&model, seed, core, beside);
+    let StratifiedSample { sample, points, sides } = StratifiedSample::draw(&model, seed, core, beside);
     if model.stopped() {
         return None;
     }
-    let sides = sample.sides.clone();
     let beyond = [[f64::NEG_INFINITY, low.next_down()], [high.next_up(), f64::INFINITY]];
     let figures = sample.figures(&[[low, high], beyond[0], beyond[1]]);
     let void = sample.is_void();
-    let known = |index: usize| {
-        let (value, error) = (figures.values[index], figures.errors[index]);
-        (!void && value.is_finite()).then_some(Verified { value, error })
-    };
+    let known = |index: usize| Some(figures.estimates[index]).filter(|figure| !void && figure.value.is_finite());
     let varies = known(1).is_some_and(|sigma| sigma.value > 0.0);
-    let difference = sample.difference(&[[low, high], beyond[0], beyond[1]]).filter(|_| limits.exist());
-    let (points, point) = (sample.points, sample.point());
+    let difference = sample.difference([[low, high], beyond[0], beyond[1]]).filter(|_| limits.exist());
     Some(SampledFigures {
         points,
         mean: known(0),
@@ -181,12 +176,12 @@ pub(crate) fn verify_characteristic(
         kurtosis: known(3).filter(|_| varies),
         yield_: known(4).filter(|_| limits.exist()),
         beyond: [known(5).filter(|_| limits.lower().is_some()), known(6).filter(|_| limits.upper().is_some())],
-        point,
+        point: sample.point(),
         difference,
-        valid: Verified { value: figures.valid.0, error: figures.valid.1 },
+        valid: figures.valid,
         switches: sides.switches,
         switches_complete: sides.complete,
-        sample: Some(sample.kept()),
+        sample: Some(sample),
     })
 }
 
