@@ -12,12 +12,14 @@
 //! | `rank_quantile`, `tails` | quantiles and tails of a weighted sample | verification, analysis |
 //! | `switch_side`, `seldom_side` | sides of switches that are seldom met, and points on them | verification, simulation, rare |
 //! | `variance_shares` | Sobol' indices by exchanging inputs | analysis |
+//! | `inspection` | risks of an inspection, from points of which the value is known | analysis, simulation |
 //! | `output_correlation` | correlation of characteristics, and their common rejects | analysis, simulation |
 //!
 //! Nothing here asks a costly model. An estimator takes a problem, or values with their weights. None depends on methods or results.
 
 pub(crate) mod cheap_model;
 pub(crate) mod figures;
+mod inspection;
 mod normal_space;
 mod output_correlation;
 mod rank_quantile;
@@ -32,6 +34,7 @@ mod verified;
 mod weighted_sample;
 
 pub(crate) use crate::estimate::figures::{MOMENTS, carried_by, effective, jackknife, standard, student, totals};
+pub(crate) use crate::estimate::inspection::{inspected_point, inspection_risks};
 pub(crate) use crate::estimate::normal_space::{Columns, NormalSpace};
 pub use crate::estimate::output_correlation::OutputCorrelation;
 pub(crate) use crate::estimate::output_correlation::{common_rejects, most_points_together, output_correlations};

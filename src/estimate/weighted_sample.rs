@@ -130,8 +130,8 @@ impl WeightedSample {
     }
 
     /// Means of functions with values from 0 to 1, over the points that have a value.
-    pub(crate) fn shares<const N: usize>(&self, of: [&dyn Fn(f64) -> f64; N]) -> [Verified; N] {
-        self.means(self.valid().into_iter().map(|(y, weight, replicate)| (of.map(|of| of(y)), weight, replicate)))
+    pub(crate) fn shares<const N: usize>(&self, of: impl Fn(f64) -> [f64; N]) -> [Verified; N] {
+        self.means(self.valid().into_iter().map(|(y, weight, replicate)| (of(y), weight, replicate)))
     }
 
     /// Difference of the shares of model and surface within each interval, ends included: `mean(1_model - 1_surface)`. Returns None if

@@ -1,8 +1,9 @@
 //! Risks of an inspection, from the points of a sample.
 
+use crate::estimate::{inspected_point, inspection_risks};
 use crate::simulation::count::{Count, Replicate};
 use crate::simulation::replicate_error::of_replicates;
-use sensitol_numeric::capability::{EstimatedShare, InspectionRisks, acceptance, guard_reaching};
+use sensitol_numeric::capability::{EstimatedShare, InspectionRisks, guard_reaching};
 use sensitol_numeric::characteristic::{Characteristic, KeptLimits};
 use sensitol_numeric::inspection::Guard;
 use sensitol_numeric::sampling::Fine;
@@ -65,19 +66,8 @@ pub(super) fn inspected(
         };
         [0, 1, 2].map(share)
     });
-    let tightened = |limit: Option<f64>, sign: f64| Some(limit? + sign * guard?);
-    Some(InspectionRisks {
-        gauge,
-        guard,
-        acceptance: [tightened(limits.lower(), 1.0), tightened(limits.upper(), -1.0)],
-        false_accept: shares.map(|of| of[0]),
-        false_reject: shares.map(|of| of[1]),
-        accepted: shares.map(|of| of[2]),
-        bad_among_accepted: shares.filter(|of| of[2].value > 0.0).map(|[bad, _, accepted]| EstimatedShare {
-            value: bad.value / accepted.value,
-            error: bad.error.map(|error| error / accepted.value),
-        }),
-    })
+    let shares = shares.map_or([None; 3], |shares| shares.map(Some));
+    Some(inspection_risks((inspection, limits), guard, shares))
 }
 
 /// Bins of a sample, divided at the limits. The counts outside, which are exact, divide the points of such a bin.
@@ -124,9 +114,8 @@ fn means(pieces: &[Piece], limits: KeptLimits, gauge: f64, guard: f64) -> Option
     let total: f64 = pieces.iter().map(|piece| piece.points).sum();
     let (mut shares, mut squares) = ([0.0; 3], [0.0; 3]);
     for piece in pieces {
-        let accepted = acceptance(piece.at, limits, gauge, guard);
-        let (bad, good) = if piece.good { (0.0, 1.0 - accepted) } else { (accepted, 0.0) };
-        for (index, part) in [bad, good, accepted].into_iter().enumerate() {
+        let parts = inspected_point(piece.at, piece.good, limits, gauge, guard);
+        for (index, part) in parts.into_iter().enumerate() {
             shares[index] += piece.points * part / total;
             squares[index] += piece.points * part * part / total;
         }

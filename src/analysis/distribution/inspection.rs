@@ -1,8 +1,8 @@
 //! Risks of an inspection, from the distribution that the yield comes from, and from the sample of the model if there is one.
 
 use crate::analysis::{CharacteristicAnalysis, YieldSource};
-use crate::estimate::{Verified, WeightedSample};
-use sensitol_numeric::capability::{EstimatedShare, InspectionRisks, Law, Risks, Tails, acceptance, guard_for};
+use crate::estimate::{inspected_point, inspection_risks};
+use sensitol_numeric::capability::{EstimatedShare, InspectionRisks, Law, Risks, Tails, guard_for};
 use sensitol_numeric::characteristic::KeptLimits;
 use sensitol_numeric::characteristic::SpecLimits;
 use sensitol_numeric::inspection::{Guard, Inspection};
@@ -34,7 +34,11 @@ pub(in crate::analysis) fn inspected(
             let on = |at: f64| at.max(least.unwrap_or(at)).min(most.unwrap_or(at));
             let at = if kept.contains(*at) { on(*at) } else { *at };
             let (below, above) = (|x: f64| f64::from(u8::from(at < x)), |x: f64| f64::from(u8::from(at > x)));
-            let exact = |guard: f64| of_point(at, kept, inspection.gauge(), guard);
+            let exact = |guard: f64| {
+                let good = kept.contains(at);
+                let [false_accept, false_reject, _] = inspected_point(at, good, kept, inspection.gauge(), guard);
+                Risks { false_accept, false_reject, error: 0.0 }
+            };
             let guard = guard(inspection, limits, &Tails { below: &below, above: &above });
             Some(told(one, inspection, guard, guard.map(|guard| (exact(guard), [Some(0.0); 2]))))
         }
@@ -88,7 +92,7 @@ fn by(
             let error = proven.or(one.error_estimate.as_ref().and_then(|of| of.yield_));
             return (risks, [error.map(|error| error + risks.error); 2]);
         };
-        let found = of_sample(sample, kept, gauge, guard);
+        let found = sample.shares(|x| inspected_point(x, kept.contains(x), kept, gauge, guard));
         // Points of the model take precedence over a count of the surface.
         if one.surface_law.is_none_or(|law| law.refuted.is_some()) {
             (risks.false_accept, risks.false_reject) = (found[0].value, found[1].value);
@@ -99,32 +103,12 @@ fn by(
     told(one, inspection, guard, guard.map(of))
 }
 
-/// Shares of bad accepted and good rejected parts, over points of the model.
-fn of_sample(sample: &WeightedSample, limits: KeptLimits, gauge: f64, guard: f64) -> [Verified; 2] {
-    let accepted = |x: f64| acceptance(x, limits, gauge, guard);
-    let bad = |x: f64| if limits.contains(x) { 0.0 } else { accepted(x) };
-    let good = |x: f64| if limits.contains(x) { 1.0 - accepted(x) } else { 0.0 };
-    sample.shares([&bad, &good])
-}
-
-fn of_point(x: f64, limits: KeptLimits, gauge: f64, guard: f64) -> Risks {
-    let accepted = acceptance(x, limits, gauge, guard);
-    let good = limits.contains(x);
-    Risks {
-        false_accept: if good { 0.0 } else { accepted },
-        false_reject: if good { 1.0 - accepted } else { 0.0 },
-        error: 0.0,
-    }
-}
-
 fn told(
     one: &CharacteristicAnalysis,
     inspection: Inspection,
     guard: Option<f64>,
     found: Option<(Risks, [Option<f64>; 2])>,
 ) -> InspectionRisks {
-    let limits = one.characteristic.limits();
-    let tightened = |limit: Option<f64>, sign: f64| Some(limit? + sign * guard?);
     let share = |value: f64, error: Option<f64>| Some(EstimatedShare { value: value.clamp(0.0, 1.0), error });
     let yield_ = one.capability.and_then(|of| of.yield_());
     let yield_error = match one.constant {
@@ -136,17 +120,8 @@ fn told(
         let error = error.map(|((yield_, accept), reject)| libm::hypot(libm::hypot(yield_, accept), reject));
         EstimatedShare { value: (yield_ - risks.false_reject + risks.false_accept).clamp(0.0, 1.0), error }
     });
-    let among =
-        found.zip(accepted).filter(|(_, accepted)| accepted.value > 0.0).and_then(|((risks, errors), accepted)| {
-            share(risks.false_accept / accepted.value, errors[0].map(|error| error / accepted.value))
-        });
-    InspectionRisks {
-        gauge: inspection.gauge(),
-        guard,
-        acceptance: [tightened(limits.lower(), 1.0), tightened(limits.upper(), -1.0)],
-        false_accept: found.and_then(|(risks, errors)| share(risks.false_accept, errors[0])),
-        false_reject: found.and_then(|(risks, errors)| share(risks.false_reject, errors[1])),
-        accepted,
-        bad_among_accepted: among,
-    }
+    let false_accept = found.and_then(|(risks, errors)| share(risks.false_accept, errors[0]));
+    let false_reject = found.and_then(|(risks, errors)| share(risks.false_reject, errors[1]));
+    let limits = one.characteristic.limits();
+    inspection_risks((inspection, limits), guard, [false_accept, false_reject, accepted])
 }
