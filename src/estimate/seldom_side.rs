@@ -3,7 +3,7 @@
 use crate::assembly::{Points, Run};
 use crate::estimate::cheap_model::CheapModel;
 use crate::estimate::normal_space::Columns;
-use crate::estimate::strata::HalfSpace;
+use crate::estimate::strata::{HalfSpace, outside_of};
 use crate::estimate::switch_side::{BEFORE, FoundSwitch, sides};
 use crate::problem::Problem;
 use sensitol_numeric::sampling::Normals;
@@ -45,15 +45,12 @@ pub(crate) fn seldom_sides(problem: &Problem, c: usize, (seed, scale): (u64, f64
     for (index, space) in found.half_spaces.iter().enumerate() {
         let mut z = normals.columns((1 << 34) + index as u64, WITHIN);
         let own = space.enter(&mut z);
-        // A point counts in the first half-space that contains it.
-        let mut held = vec![false; WITHIN];
-        for earlier in &found.half_spaces[..index] {
-            held.iter_mut().zip(earlier.holds(&z)).for_each(|(held, by)| *held |= by);
-        }
-        for (all, column) in all.iter_mut().zip(z) {
-            all.extend(column.iter().zip(&held).filter(|(_, held)| !**held).map(|(z, _)| *z));
-        }
-        weights.extend(own.iter().zip(&held).filter(|(_, held)| !**held).map(|(weight, _)| weight / WITHIN as f64));
+        let first = outside_of(&found.half_spaces[..index], &z);
+        let counted = |column: &[f64]| -> Vec<f64> {
+            column.iter().zip(&first).filter(|(_, first)| **first).map(|(value, _)| *value).collect()
+        };
+        all.iter_mut().zip(&z).for_each(|(all, column)| all.extend(counted(column)));
+        weights.extend(counted(&own).into_iter().map(|weight| weight / WITHIN as f64));
     }
     let (points, values) = model.points_and_values(&all);
     (!model.stopped()).then(|| RareSides { switches: found.switches.unwrap_or_default(), points, values, weights })

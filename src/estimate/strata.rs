@@ -33,6 +33,15 @@ impl HalfSpace {
     }
 }
 
+/// Returns true for each point that none of these half-spaces contains. A point counts in the first stratum that contains it.
+pub(crate) fn outside_of<'s>(spaces: impl IntoIterator<Item = &'s HalfSpace>, z: &Columns) -> Vec<bool> {
+    let mut outside = vec![true; z.first().map_or(0, Vec::len)];
+    for space in spaces {
+        outside.iter_mut().zip(space.holds(z)).for_each(|(outside, held)| *outside &= !held);
+    }
+    outside
+}
+
 /// Moves points along a direction between `-from` and `from`, by the normal distribution truncated there. Returns the weight of each.
 pub(crate) fn between(z: &mut Columns, direction: &[f64], from: f64) -> f64 {
     let below = standard_normal::cdf(-from);

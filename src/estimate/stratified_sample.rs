@@ -14,7 +14,7 @@
 use crate::estimate::cheap_model::CheapModel;
 use crate::estimate::figures::moments;
 use crate::estimate::normal_space::Columns;
-use crate::estimate::strata::{HalfSpace, between, unit};
+use crate::estimate::strata::{HalfSpace, between, outside_of, unit};
 use crate::estimate::switch_side::{Sides, sides};
 use crate::estimate::weighted_sample::{WeightedPart, WeightedSample};
 use sensitol_numeric::parallel::prelude::*;
@@ -71,10 +71,7 @@ impl StratifiedSample {
                 Some(space) => space.enter(&mut z),
                 None => vec![between(&mut z, &direction, FAR); rows],
             };
-            let mut own = vec![true; rows];
-            for earlier in &spaces[..stratum] {
-                own.iter_mut().zip(earlier.holds(&z)).for_each(|(own, held)| *own &= !held);
-            }
+            let own = outside_of(spaces[..stratum].iter().copied(), &z);
             let kept = |column: &[f64]| -> Vec<f64> {
                 column.iter().zip(&own).filter(|(_, own)| **own).map(|(value, _)| *value).collect()
             };

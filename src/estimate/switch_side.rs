@@ -12,7 +12,7 @@ use serde::Serialize;
 use crate::assembly::Switch;
 use crate::estimate::cheap_model::CheapModel;
 use crate::estimate::normal_space::Columns;
-use crate::estimate::strata::{HalfSpace, REACH, length};
+use crate::estimate::strata::{HalfSpace, REACH, length, outside_of};
 use crate::warning::{Change, Warning};
 use sensitol_numeric::sampling::Normals;
 
@@ -313,10 +313,7 @@ impl Search<'_, '_> {
             outside.iter_mut().zip(space.holds(self.places.plain())).for_each(|(outside, held)| *outside &= !held);
             let mut z = self.places.normals.columns(stream(8 + index), WITHIN);
             let weights = space.enter(&mut z);
-            let mut counts = vec![true; WITHIN];
-            for earlier in &self.half_spaces[own.start..index] {
-                counts.iter_mut().zip(earlier.holds(&z)).for_each(|(counts, held)| *counts &= !held);
-            }
+            let counts = outside_of(&self.half_spaces[own.start..index], &z);
             let margins = self.margin(switch, &z);
             let inside = weights.iter().zip(&margins).zip(&counts);
             let held = inside.filter(|((_, margin), counts)| **counts && *margin * sign > 0.0);

@@ -18,6 +18,7 @@ use rand_distr::StandardNormal;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use crate::estimate::Columns;
+use crate::estimate::strata::along;
 use crate::rare::design_point::{BEFORE, FARTHEST, Place, PlaceKind};
 use crate::rare::target::Target;
 use sensitol_numeric::distribution::standard_normal;
@@ -305,13 +306,4 @@ impl<'a> Mixture<'a> {
         }
         now
     }
-}
-
-/// Projection of every point on a direction.
-fn along(points: &Columns, direction: &[f64]) -> Vec<f64> {
-    let mut along = vec![0.0; points.first().map_or(0, Vec::len)];
-    for (column, part) in points.iter().zip(direction) {
-        along.iter_mut().zip(column).for_each(|(along, z)| *along += part * z);
-    }
-    along
 }
