@@ -132,6 +132,7 @@ fn exchanged(
     sums
 }
 
-fn exchange(factor: &[usize], first: &mut Columns, second: &mut Columns) {
+/// Exchanges the variables of a factor between two sets of points.
+pub(crate) fn exchange(factor: &[usize], first: &mut Columns, second: &mut Columns) {
     factor.iter().for_each(|&variable| std::mem::swap(&mut first[variable], &mut second[variable]));
 }

@@ -12,6 +12,7 @@
 
 use serde::Serialize;
 
+use crate::estimate::variance_shares::exchange;
 use crate::estimate::{Columns, NormalSpace, ReplicateSums};
 use crate::evaluation::{Evaluator, Ledger};
 use crate::problem::Problem;
@@ -178,10 +179,6 @@ impl Exchange<'_> {
         }
         Replicate { sums, ledger: part.into_ledger() }
     }
-}
-
-fn exchange(factor: &[usize], first: &mut Columns, second: &mut Columns) {
-    factor.iter().for_each(|&variable| std::mem::swap(&mut first[variable], &mut second[variable]));
 }
 
 /// Indices of all factors from the sums of all scramblings. Returns None if nothing varies.
