@@ -12,7 +12,7 @@
 use crate::analysis::CharacteristicAnalysis;
 use crate::analysis::result::verification::VerificationKind;
 use crate::analysis::sampling::sample_budget::SampleBudget;
-use crate::estimate::{OutputCorrelation, Verified, most_points_together, output_correlations};
+use crate::estimate::{OutputCorrelation, Verified, most_points_together, output_correlations, pairs};
 use crate::method::{Options, Outcome};
 use crate::problem::Problem;
 use sensitol_numeric::surrogate::Surrogate;
@@ -33,12 +33,11 @@ pub(super) fn correlations(
     }
     let sampled =
         |one: &CharacteristicAnalysis| one.verification.as_ref().is_some_and(|of| of.kind == VerificationKind::Sample);
-    let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b)));
     let by_model = match characteristics.iter().any(sampled) && left.take(most_points_together(count)) {
         true => output_correlations(problem, options.seed.unwrap_or(Options::SEED)),
         false => Vec::new(),
     };
-    let known = |index: usize, (a, b): (usize, usize)| -> Option<(f64, Option<f64>)> {
+    let known = |index: usize, [a, b]: [usize; 2]| -> Option<(f64, Option<f64>)> {
         let ones = [&characteristics[a], &characteristics[b]];
         if let Some(by_model) = by_model.get(index).filter(|_| ones.iter().any(|one| sampled(one))) {
             return by_model.map(|Verified { value, error }| (value, Some(error)));
@@ -51,11 +50,11 @@ pub(super) fn correlations(
         });
         Some((value, error))
     };
-    pairs
+    pairs(count)
         .enumerate()
-        .map(|(index, (a, b))| {
-            let (value, error) = known(index, (a, b)).unzip();
-            let between = [a, b].map(|c| characteristics[c].characteristic.name().to_owned());
+        .map(|(index, pair)| {
+            let (value, error) = known(index, pair).unzip();
+            let between = pair.map(|c| characteristics[c].characteristic.name().to_owned());
             OutputCorrelation { between, value, error: error.flatten() }
         })
         .collect()

@@ -37,7 +37,9 @@ pub(crate) use crate::estimate::figures::{MOMENTS, carried_by, effective, jackkn
 pub(crate) use crate::estimate::inspection::{inspected_point, inspection_risks};
 pub(crate) use crate::estimate::normal_space::{Columns, NormalSpace};
 pub use crate::estimate::output_correlation::OutputCorrelation;
-pub(crate) use crate::estimate::output_correlation::{common_rejects, most_points_together, output_correlations};
+pub(crate) use crate::estimate::output_correlation::{
+    common_rejects, most_points_together, output_correlations, pairs,
+};
 pub(crate) use crate::estimate::rank_quantile::{SampleQuantile, reported_quantiles};
 pub(crate) use crate::estimate::replicate_sums::ReplicateSums;
 pub(crate) use crate::estimate::seldom_side::{RareSides, seldom_points, seldom_sides};

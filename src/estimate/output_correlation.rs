@@ -1,12 +1,14 @@
 //! Correlations of the characteristics of a cheap model, and their common rejects, from points of the model itself.
 
-use crate::estimate::figures;
 use serde::Serialize;
 
-use crate::estimate::cheap_model::CheapModel;
+use crate::assembly::Run;
+use crate::estimate::figures::moments;
+use crate::estimate::normal_space::NormalSpace;
 use crate::estimate::replicate_sums::ReplicateSums;
 use crate::estimate::stratified_sample::REPLICATES;
 use crate::estimate::verified::Verified;
+use crate::evaluation::Evaluator;
 use crate::problem::Problem;
 use sensitol_numeric::characteristic::KeptLimits;
 use sensitol_numeric::parallel::prelude::*;
@@ -35,30 +37,55 @@ impl OutputCorrelation {
     pub(crate) const MOST: usize = 40;
 }
 
-/// Coefficient of correlation of every pair of characteristics, over the points at which both have a value, in the order `(0, 1), (0, 2),
-/// ..., (1, 2), ...`. Returns None if one of them does not vary.
+/// Every pair of so many characteristics, in the order `(0, 1), (0, 2), ..., (1, 2), ...`.
+pub(crate) fn pairs(count: usize) -> impl Iterator<Item = [usize; 2]> {
+    (0..count).flat_map(move |a| (a + 1..count).map(move |b| [a, b]))
+}
+
+/// Several characteristics of a cheap model at the same points of all dimensions that vary.
+struct JointPoints<'p> {
+    evaluator: Evaluator<'p>,
+    outputs: Vec<usize>,
+    space: NormalSpace<'p>,
+    normals: Normals,
+}
+
+impl<'p> JointPoints<'p> {
+    fn new(problem: &'p Problem, characteristics: impl Iterator<Item = usize>, seed: u64) -> Self {
+        let varies = |&d: &usize| problem.dimensions()[d].sigma() > 0.0;
+        let varying: Vec<usize> = (0..problem.dimensions().len()).filter(varies).collect();
+        Self {
+            evaluator: Evaluator::new(problem, &Run::to_the_end()),
+            outputs: characteristics.map(|c| problem.outputs()[c]).collect(),
+            space: NormalSpace::new(problem, &varying),
+            normals: Normals::new(varying.len(), seed),
+        }
+    }
+
+    /// Values of every characteristic at the points of one randomisation, NaN if there is none.
+    fn values(&self, replicate: usize) -> Vec<Vec<f64>> {
+        let z = self.normals.columns((1 << 34) + replicate as u64, ROWS);
+        let out = self.evaluator.ask_outputs(&self.space.points(&z), &self.outputs);
+        (0..self.outputs.len()).map(|output| out.column(output).to_vec()).collect()
+    }
+}
+
+/// Coefficient of correlation of every pair of characteristics, over the points at which both have a value, in the order of [`pairs`].
+/// Returns None if one of them does not vary.
 ///
 /// 16 randomisations of 1024 Sobol' points of all dimensions that vary, errors by the jackknife and Student's quantile. Pure in
 /// problem and seed. Accuracy: errors of some 1e-3 where the characteristics are smooth.
 pub(crate) fn output_correlations(problem: &Problem, seed: u64) -> Vec<Option<Verified>> {
-    let varying: Vec<usize> =
-        (0..problem.dimensions().len()).filter(|&d| problem.dimensions()[d].sigma() > 0.0).collect();
-    let characteristics = 0..problem.characteristics().len();
-    let models: Vec<CheapModel<'_>> = characteristics.map(|c| CheapModel::over(problem, c, &varying)).collect();
-    let normals = Normals::new(varying.len(), seed);
-    let pairs: Vec<(usize, usize)> =
-        (0..models.len()).flat_map(|a| (a + 1..models.len()).map(move |b| (a, b))).collect();
-    let values = |replicate: usize| -> Vec<Vec<f64>> {
-        let z = normals.columns((1 << 34) + replicate as u64, ROWS);
-        models.iter().map(|model| model.values(&z)).collect()
-    };
+    let count = problem.characteristics().len();
+    let points = JointPoints::new(problem, 0..count, seed);
+    let pairs: Vec<[usize; 2]> = pairs(count).collect();
     // In units of the first randomisation, so that no mean is large compared to the scatter.
-    let units: Vec<[f64; 2]> = values(0).iter().map(|column| unit(column)).collect();
+    let units: Vec<[f64; 2]> = points.values(0).iter().map(|column| unit(column)).collect();
     let rows: Vec<Vec<[f64; SUMS]>> = (0..REPLICATES)
         .into_par_iter()
         .map(|replicate| {
-            let columns = values(replicate);
-            pairs.iter().map(|&(a, b)| sums([&columns[a], &columns[b]], [units[a], units[b]])).collect()
+            let columns = points.values(replicate);
+            pairs.iter().map(|&[a, b]| sums([&columns[a], &columns[b]], [units[a], units[b]])).collect()
         })
         .collect();
     (0..pairs.len())
@@ -81,15 +108,11 @@ pub(crate) const fn most_points_together(characteristics: usize) -> usize {
 /// It uses the points of [`output_correlations`], with errors of the same kind. If no point is counted twice, the error is that of zero
 /// hits among all points.
 pub(crate) fn common_rejects(problem: &Problem, characteristics: &[usize], seed: u64) -> Option<Verified> {
-    let varying: Vec<usize> =
-        (0..problem.dimensions().len()).filter(|&d| problem.dimensions()[d].sigma() > 0.0).collect();
-    let models: Vec<CheapModel<'_>> = characteristics.iter().map(|&c| CheapModel::over(problem, c, &varying)).collect();
+    let points = JointPoints::new(problem, characteristics.iter().copied(), seed);
     let kept: Vec<KeptLimits> = characteristics.iter().map(|&c| problem.kept_limits(c)).collect();
-    let normals = Normals::new(varying.len(), seed);
     // Points with all values, and broken characteristics beyond the first.
     let count = |replicate: usize| -> [f64; 2] {
-        let z = normals.columns((1 << 34) + replicate as u64, ROWS);
-        let columns: Vec<Vec<f64>> = models.iter().map(|model| model.values(&z)).collect();
+        let columns = points.values(replicate);
         let mut sums = [0.0; 2];
         for row in 0..columns.first().map_or(0, Vec::len) {
             let values = || columns.iter().map(|column| column[row]);
@@ -116,7 +139,7 @@ pub(crate) fn common_rejects(problem: &Problem, characteristics: &[usize], seed:
 /// Mean and sigma of the finite values, 0 and 1 if they are undefined.
 fn unit(column: &[f64]) -> [f64; 2] {
     let valid: Vec<f64> = column.iter().copied().filter(|y| y.is_finite()).collect();
-    let [mean, sigma, ..] = figures::moments(&valid, &vec![1.0; valid.len()]);
+    let [mean, sigma, ..] = moments(&valid, &vec![1.0; valid.len()]);
     [if mean.is_finite() { mean } else { 0.0 }, if sigma > 0.0 { sigma } else { 1.0 }]
 }
 

@@ -1,7 +1,7 @@
 //! Results of a sample for several characteristics at once: joint yield and correlations.
 
 use crate::assembly::{Responses, all_finite};
-use crate::estimate::{OutputCorrelation, REPLICATES, student};
+use crate::estimate::{OutputCorrelation, REPLICATES, pairs, student};
 use crate::problem::Problem;
 use crate::simulation::SimulatedCharacteristic;
 use crate::simulation::characteristic::{REJECTED, YieldEstimate};
@@ -85,12 +85,11 @@ impl Together {
     fn coefficients(&self) -> Vec<f64> {
         let n = self.means.len();
         let at = |a: usize, b: usize| self.products[a * n - a * (a + 1) / 2 + b][0];
-        let pairs = (0..n).flat_map(|a| (a + 1..n).map(move |b| (a, b)));
-        let of = |(a, b): (usize, usize)| {
+        let of = |[a, b]: [usize; 2]| {
             let scale = at(a, a).sqrt() * at(b, b).sqrt();
             if scale > 0.0 { (at(a, b) / scale).clamp(-1.0, 1.0) } else { f64::NAN }
         };
-        if self.count[0] < 2.0 { vec![f64::NAN; n * n.saturating_sub(1) / 2] } else { pairs.map(of).collect() }
+        if self.count[0] < 2.0 { vec![f64::NAN; n * n.saturating_sub(1) / 2] } else { pairs(n).map(of).collect() }
     }
 }
 
@@ -223,20 +222,19 @@ pub(super) fn correlations(problem: &Problem, parts: &Together) -> Vec<OutputCor
     let known = parts.count.iter().filter(|count| **count > 0.0).count();
     let without: Vec<Vec<f64>> =
         if known == REPLICATES { (0..known).map(|part| all(Some(part))).collect() } else { Vec::new() };
-    let pairs = (0..names.len()).flat_map(|a| (a + 1..names.len()).map(move |b| (a, b)));
-    let of = |(index, (a, b)): (usize, (usize, usize))| {
+    let of = |(index, pair): (usize, [usize; 2])| {
         let n = without.len() as f64;
         let mean = without.iter().map(|of| of[index]).sum::<f64>() / n;
         let squares: f64 = without.iter().map(|of| (of[index] - mean).powi(2)).sum();
         let error = student(REPLICATES) * (squares * (n - 1.0) / n).sqrt();
         let value = values.get(index).copied().filter(|value| value.is_finite());
         OutputCorrelation {
-            between: [a, b].map(|c| names[c].to_owned()),
+            between: pair.map(|c| names[c].to_owned()),
             value,
             error: value.and(Some(error).filter(|error| error.is_finite())),
         }
     };
-    pairs.enumerate().map(of).collect()
+    pairs(names.len()).enumerate().map(of).collect()
 }
 
 /// Share that keeps all limits, of `answered` points. Returns None if fewer than two characteristics have limits.
