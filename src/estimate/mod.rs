@@ -10,6 +10,7 @@
 //! | `strata`, `stratified_sample` | sample of a cheap model in half-spaces, tails and core | verification |
 //! | `weighted_sample` | the same sample, stored for shares, density and tails | verification, analysis |
 //! | `rank_quantile`, `tails` | quantiles and tails of a weighted sample | verification, analysis |
+//! | `ordered_points` | shares, quantiles and density of points of equal weight, by counts | analysis |
 //! | `switch_side`, `seldom_side` | sides of switches that are seldom met, and points on them | verification, simulation, rare |
 //! | `variance_shares` | Sobol' indices by exchanging inputs | analysis |
 //! | `inspection` | risks of an inspection, from points of which the value is known | analysis, simulation |
@@ -21,6 +22,7 @@ pub(crate) mod cheap_model;
 pub(crate) mod figures;
 mod inspection;
 mod normal_space;
+mod ordered_points;
 mod output_correlation;
 mod rank_quantile;
 mod replicate_sums;
@@ -36,6 +38,7 @@ mod weighted_sample;
 pub(crate) use crate::estimate::figures::{MOMENTS, carried_by, effective, jackknife, standard, student, totals};
 pub(crate) use crate::estimate::inspection::{inspected_point, inspection_risks};
 pub(crate) use crate::estimate::normal_space::{Columns, NormalSpace};
+pub(crate) use crate::estimate::ordered_points::OrderedPoints;
 pub use crate::estimate::output_correlation::OutputCorrelation;
 pub(crate) use crate::estimate::output_correlation::{
     common_rejects, most_points_together, output_correlations, pairs,

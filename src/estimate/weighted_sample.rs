@@ -3,6 +3,7 @@
 //! The error of a share includes the weight of one point, because a rare event may exist although no point shows it.
 
 use crate::estimate::figures::{MOMENTS, carried_by, effective, moments, standard, student};
+use crate::estimate::ordered_points::OUTSIDE;
 use crate::estimate::rank_quantile::{OrderedSample, SampleQuantile, quantiles};
 use crate::estimate::replicate_sums::ReplicateSums;
 use crate::estimate::tails::{SampleTails, Weighed, tail};
@@ -94,8 +95,6 @@ impl WeightedSample {
     pub(crate) fn density(&self) -> Option<Vec<[f64; 3]>> {
         /// Number of intervals. The scatter of a sample of 40 000 points is 5 % of the peak with them.
         const PLACES: usize = 96;
-        /// Share of the assemblies that is left out on either side.
-        const OUTSIDE: f64 = 1e-3;
         let sample = OrderedSample::of(&self.valid(), self.replicates)?;
         let [from, to] = [OUTSIDE, 1.0 - OUTSIDE].map(|share| sample.quantile(share));
         let step = (to - from) / PLACES as f64;

@@ -1,22 +1,22 @@
 //! Risks of an inspection, from the distribution that the yield comes from, and from the sample of the model if there is one.
 
 use crate::analysis::{CharacteristicAnalysis, YieldSource};
-use crate::estimate::{inspected_point, inspection_risks};
+use crate::estimate::{OrderedPoints, inspected_point, inspection_risks};
 use sensitol_numeric::capability::{EstimatedShare, InspectionRisks, Law, Risks, Tails, guard_for};
 use sensitol_numeric::characteristic::KeptLimits;
 use sensitol_numeric::characteristic::SpecLimits;
 use sensitol_numeric::inspection::{Guard, Inspection};
-use sensitol_numeric::law::SurfaceLaw;
+use sensitol_numeric::law::{LawTail, SurfaceLaw};
 
 /// Risks of the inspection of a characteristic whose yield is settled. Returns None if there is no inspection, and if nothing is known of
 /// its distribution.
 ///
-/// `points` of the surface, in ascending order, replace a distribution that is refuted.
+/// `points` of the surface replace a distribution that is refuted.
 pub(in crate::analysis) fn inspected(
     one: &CharacteristicAnalysis,
     kept: KeptLimits,
     surface: Option<&SurfaceLaw>,
-    points: Option<&[f64]>,
+    points: Option<&OrderedPoints>,
 ) -> Option<InspectionRisks> {
     let inspection = one.characteristic.inspection()?;
     let limits = one.characteristic.limits();
@@ -45,9 +45,7 @@ pub(in crate::analysis) fn inspected(
         (None, Some(_))
             if let Some(points) = points.filter(|_| one.surface_law.is_some_and(|law| law.refuted.is_some())) =>
         {
-            let share = |count: usize| count as f64 / points.len() as f64;
-            let below = |x: f64| share(points.partition_point(|&y| y < x));
-            let above = |x: f64| share(points.len() - points.partition_point(|&y| y <= x));
+            let (below, above) = (|x: f64| points.beyond(LawTail::Lower, x), |x: f64| points.beyond(LawTail::Upper, x));
             Some(by(one, inspection, (limits, kept), &Tails { below: &below, above: &above }, None))
         }
         (None, Some(fit)) => {

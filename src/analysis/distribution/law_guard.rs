@@ -11,6 +11,7 @@
 use serde::{Serialize, Serializer};
 
 use crate::analysis::result::verification::{Verification, VerificationKind};
+use crate::estimate::OrderedPoints;
 use sensitol_numeric::characteristic::{KeptLimits, SpecLimits};
 use sensitol_numeric::law::{LawFigure, LawTail};
 use sensitol_numeric::power::rescale;
@@ -66,18 +67,17 @@ pub(in crate::analysis) enum FaultyQuantiles {
     Fall(f64, f64),
 }
 
-/// Points of a surface in ascending order, for the tests of its distribution.
+/// Points of a surface, for the tests of its distribution.
 pub(in crate::analysis) struct LawGuard<'a> {
-    points: &'a [f64],
+    points: &'a OrderedPoints,
     /// Greatest change of a value by rounding, on a limit or at a quantile.
     rounding: f64,
 }
 
 impl<'a> LawGuard<'a> {
-    /// Creates the guard from sorted points. Rounding moves values by `rounding`, or in proportion to the largest point if that is more.
-    pub(in crate::analysis) fn new(points: &'a [f64], rounding: f64) -> Self {
-        let largest = points.first().into_iter().chain(points.last()).fold(0.0, |largest: f64, y| largest.max(y.abs()));
-        Self { points, rounding: rounding.max(KeptLimits::rounding_of(largest)) }
+    /// Creates the guard. Rounding moves values by `rounding`, or in proportion to the largest point if that is more.
+    pub(in crate::analysis) fn new(points: &'a OrderedPoints, rounding: f64) -> Self {
+        Self { points, rounding: rounding.max(KeptLimits::rounding_of(points.largest())) }
     }
 
     /// Tests the quantiles, in ascending order of their probabilities.
@@ -94,8 +94,8 @@ impl<'a> LawGuard<'a> {
             let [outer, inner] = [figure.value - reach, figure.value + reach];
             // With a step at the quantile the probability lies between the shares beyond it and at it.
             let [least, most] = match tail {
-                LawTail::Lower => [self.share(outer, tail), self.share(inner, tail)],
-                LawTail::Upper => [self.share(inner, tail), self.share(outer, tail)],
+                LawTail::Lower => [self.points.beyond(tail, outer), self.points.beyond(tail, inner)],
+                LawTail::Upper => [self.points.beyond(tail, inner), self.points.beyond(tail, outer)],
             };
             let room = ERRORS * self.error(p) + FEW / self.points.len() as f64;
             let agrees = figure.error.is_nan() || least - room <= p && p <= most + room;
@@ -111,7 +111,7 @@ impl<'a> LawGuard<'a> {
         quantiles: &[((LawTail, f64), LawFigure)],
     ) -> Option<LawRefutation> {
         // A value that differs from the limit by rounding only keeps it.
-        let counted = self.share(limit + tail.sign() * self.rounding, tail);
+        let counted = self.points.beyond(tail, limit + tail.sign() * self.rounding);
         let room = ERRORS * self.error(counted.max(share.value)) + FEW / self.points.len() as f64 + share.error;
         let law = if tail == LawTail::Lower { share.value } else { 1.0 - share.value };
         // The share below the limit lies between those of the quantiles on either side.
@@ -129,15 +129,6 @@ impl<'a> LawGuard<'a> {
         Some(self.refutation(test, limit, law))
     }
 
-    /// Share of the points strictly beyond a limit.
-    fn share(&self, limit: f64, tail: LawTail) -> f64 {
-        let count = match tail {
-            LawTail::Lower => self.points.partition_point(|&y| y < limit),
-            LawTail::Upper => self.points.len() - self.points.partition_point(|&y| y <= limit),
-        };
-        count as f64 / self.points.len() as f64
-    }
-
     /// Standard error of the count of a share.
     fn error(&self, share: f64) -> f64 {
         (share * (1.0 - share) / self.points.len() as f64).max(0.0).sqrt()
@@ -145,7 +136,7 @@ impl<'a> LawGuard<'a> {
 
     /// Refutation for a share `law` below a limit.
     pub(in crate::analysis) fn refutation(&self, test: LawTest, limit: f64, law: f64) -> LawRefutation {
-        let counted = self.share(limit, LawTail::Lower);
+        let counted = self.points.beyond(LawTail::Lower, limit);
         LawRefutation { test, limit, law, counted, error: self.error(counted) }
     }
 }
@@ -212,8 +203,8 @@ mod tests {
     }
 
     /// Returns ten thousand evenly spaced points between 0 and 1.
-    fn even() -> Vec<f64> {
-        (0..10_000).map(|i| (f64::from(i) + 0.5) / 1e4).collect()
+    fn even() -> OrderedPoints {
+        OrderedPoints::new((0..10_000).map(|i| (f64::from(i) + 0.5) / 1e4).collect())
     }
 
     const AT: [(LawTail, f64); 3] = [(LawTail::Lower, 0.05), (LawTail::Lower, 0.5), (LawTail::Upper, 0.05)];

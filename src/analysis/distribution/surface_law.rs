@@ -5,9 +5,9 @@ use std::sync::Arc;
 use serde::{Serialize, Serializer};
 
 use crate::analysis::distribution::counted_surface as counted;
-use crate::analysis::distribution::counted_surface::Counted;
 use crate::analysis::distribution::law_guard::{FaultyQuantiles, LawGuard, LawRefutation, LawTest, by_sample};
 use crate::analysis::result::verification::{Verification, VerificationKind};
+use crate::estimate::OrderedPoints;
 use crate::method::Outcome;
 use crate::problem::Problem;
 use sensitol_numeric::capability::{Law, Quantiles};
@@ -78,8 +78,8 @@ pub(in crate::analysis) struct GuardedLaw {
     pub(in crate::analysis) shares: SurfaceShares,
     /// Distribution that gives shares beyond limits. None if points replace it.
     pub(in crate::analysis) law: Option<SurfaceLaw>,
-    /// Points of the surface that replace the distribution, ascending.
-    pub(in crate::analysis) points: Option<Vec<f64>>,
+    /// Points of the surface that replace the distribution.
+    pub(in crate::analysis) points: Option<OrderedPoints>,
 }
 
 /// Request of the distribution of a characteristic: its index, the seed of points, and its verification.
@@ -139,11 +139,16 @@ impl GuardedLaw {
     fn counted(request: LawRequest<'_>, refuted: Option<LawRefutation>) -> Option<Self> {
         let LawRequest { problem, outcome, c, seed, .. } = request;
         let points = counted::points(problem, outcome, (c, seed), (counted::POINTS, None))?;
-        let limits = (problem.characteristics()[c].limits(), problem.kept_limits(c));
-        let Counted { beyond: [below, above], quantiles, points: count } =
-            counted::counted(&points, limits, REPORTED_QUANTILES);
-        let (branch, counted, quantiles) = (Branch::Sampled, Some(count), Some(quantiles));
-        let shares = SurfaceShares { branch, counted, refuted, steps: false, below, above, quantiles };
+        let (limits, [low, high]) = (problem.characteristics()[c].limits(), problem.kept_limits(c).ends());
+        let shares = SurfaceShares {
+            branch: Branch::Sampled,
+            counted: Some(points.len()),
+            refuted,
+            steps: false,
+            below: limits.lower().map(|_| points.estimate_beyond(LawTail::Lower, low)),
+            above: limits.upper().map(|_| points.estimate_beyond(LawTail::Upper, high)),
+            quantiles: Some(REPORTED_QUANTILES.map(|(tail, p)| points.quantile(tail, p))),
+        };
         Some(Self { shares, law: None, points: Some(points) })
     }
 
@@ -151,7 +156,7 @@ impl GuardedLaw {
     /// that replace it. Returns None if one of them is unknown.
     pub(in crate::analysis) fn quantiles(&self, fit: Option<&Law>, of: &[(LawTail, f64)]) -> Option<Vec<LawFigure>> {
         if let Some(points) = &self.points {
-            return Some(of.iter().map(|&(tail, p)| counted::quantile(points, tail, p)).collect());
+            return Some(of.iter().map(|&(tail, p)| points.quantile(tail, p)).collect());
         }
         let law = self.law.as_ref()?;
         let found = law.quantiles(&sought(law, fit, of)).into_iter();
@@ -162,7 +167,7 @@ impl GuardedLaw {
     pub(in crate::analysis) fn density(&self) -> Option<Vec<[f64; 3]>> {
         match (&self.law, &self.points) {
             (Some(law), _) => density(law, self.shares.quantiles.as_ref()),
-            (None, Some(points)) if self.shares.refuted.is_some() => counted::density(points, FEW_PLACES),
+            (None, Some(points)) if self.shares.refuted.is_some() => points.density(FEW_PLACES),
             (None, _) => None,
         }
     }

@@ -172,7 +172,7 @@ pub(in crate::analysis) fn settle(
             one.error_estimate =
                 Some(ErrorEstimate { yield_: found.error.filter(|error| error.is_finite()), ..estimate });
         }
-        one.inspection = inspected(one, problem.kept_limits(c), laws[c].as_ref(), points.as_deref());
+        one.inspection = inspected(one, problem.kept_limits(c), laws[c].as_ref(), points.as_ref());
     }
     laws
 }
