@@ -63,7 +63,7 @@ pub(super) fn correlations(
 /// Least error of a coefficient: a value near 1 is a difference of variances near 4 and 0, each with a dozen roundings.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// Correlation of the surfaces of two characteristics, with its standard error: 0 if it is exact, positive if moments are sampled. Returns
+/// Correlation of the surfaces of two characteristics, with its standard error: 0 if it is exact, positive if moments are sampled.
 /// Returns None if a surface is unknown or does not vary.
 fn of_surfaces(outcome: &Outcome, [a, b]: [usize; 2]) -> Option<(f64, f64)> {
     let inputs = outcome.plan.inputs();

@@ -12,7 +12,7 @@
 //! | `rank_quantile`, `tails` | quantiles and tails of a weighted sample | verification, analysis |
 //! | `ordered_points` | shares, quantiles and density of points of equal weight, by counts | analysis |
 //! | `switch_side`, `seldom_side` | sides of switches that are seldom met, and points on them | verification, simulation, rare |
-//! | `variance_shares` | Sobol' indices by exchanging inputs | analysis |
+//! | `variance_shares` | Sobol' indices by exchanging inputs | verification, analysis, simulation |
 //! | `inspection` | risks of an inspection, from points of which the value is known | analysis, simulation |
 //! | `output_correlation` | correlation of characteristics, and their common rejects | analysis, simulation |
 //!

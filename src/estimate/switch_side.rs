@@ -303,7 +303,7 @@ impl Search<'_, '_> {
         (low, high)
     }
 
-    /// Probability of a side, by the plain points outside its half-spaces, and by points within each that no earlier one contains. Returns
+    /// Probability of a side, by the plain points outside its half-spaces, and by points within each that no earlier one contains.
     /// Returns None if no point lies on the side.
     fn probability(&self, switch: usize, sign: f64, own: std::ops::Range<usize>, margins: &[f64]) -> Option<f64> {
         let mut outside: Vec<bool> = margins.iter().map(|margin| margin * sign > 0.0).collect();

@@ -1,4 +1,4 @@
-//! SampleTails of a sample in strata, for comparison with a fitted distribution.
+//! Tails of a sample in strata, for comparison with a fitted distribution.
 
 use serde::Serialize;
 
