@@ -46,8 +46,8 @@ pub struct Options {
     /// moments come from differences at nodes that suit each distribution.
     pub derivatives: Option<DerivativeSource>,
     /// Greatest number of check points of the model that verify the result; 0 for no verification. A cheap model is sampled instead, unless
-    /// this is 0. A costly model is evaluated at no more than 18 check points. If None, [`Options::VERIFY`] for a function that declares
-    /// itself cheap or costly ([`Signature`](crate::assembly::Signature)), and 0 for one that declares neither, such as a closure.
+    /// this is 0. If None, [`check_points`](crate::verification::check_points) for a function that declares itself costly
+    /// ([`Signature`](crate::assembly::Signature)), and 0 for one that declares neither costly nor cheap, such as a closure.
     pub verify: Option<usize>,
     /// Share of assemblies that must keep the limits of all characteristics at once.
     pub target_joint_yield: Option<f64>,
@@ -172,12 +172,9 @@ impl FromStr for Pairs {
 }
 
 impl Options {
-    /// Check points of a costly model if [`verify`](Self::verify) is None. A cheap model is sampled instead.
-    pub const VERIFY: usize = 12;
-
-    /// Returns the number of check points for a function with this signature; 0 for no verification.
-    pub fn verification(&self, of: &crate::assembly::Signature) -> usize {
-        self.verify.unwrap_or(if of.cheap || of.costly { Self::VERIFY } else { 0 })
+    /// Returns true if the results for a function with this signature are verified by points of the model.
+    pub fn verifies(&self, of: &crate::assembly::Signature) -> bool {
+        self.verify.map_or(of.cheap || of.costly, |points| points > 0)
     }
 
     /// Seed if none is given, so that the same study gives the same numbers.

@@ -22,7 +22,7 @@ pub(super) const ON_LINE: [f64; 4] = [1.5, -1.5, 3.0, -3.0];
 /// Sigmas on either side at which an input is moved by itself.
 pub(super) const ON_AXIS: f64 = 3.0;
 /// Distance by which inputs without effect are moved together, in sigmas.
-const IDLE: f64 = 4.0;
+pub(super) const IDLE: f64 = 4.0;
 /// Most evaluations of a check.
 pub const MOST: usize = 18;
 /// Share of the variance above which an input gets points of its own.
@@ -60,8 +60,8 @@ pub(super) struct Design {
     pub(super) lines: Vec<Vec<f64>>,
     /// Inputs with two points of their own, after the lines.
     pub(super) axes: Vec<usize>,
-    /// True if two points move all idle inputs together, after the axes.
-    pub(super) idle: bool,
+    /// Inputs without an effect on any characteristic. Two points after the axes move them together, if there is one.
+    pub(super) idle_inputs: Vec<usize>,
     /// Number of random pairs, at the end: all points first, then their mirror images.
     pub(super) pairs: usize,
 }
@@ -85,8 +85,11 @@ impl Design {
             let concerned = || wishes.iter().filter(move |wish| wish.depends[j]);
             concerned().next().is_some() && concerned().all(|wish| wish.shares[j] < WEAK)
         };
-        let idle = (0..n).any(idle_of) && left >= 2;
-        left -= if idle { 2 } else { 0 };
+        let mut idle_inputs: Vec<usize> = (0..n).filter(|&j| idle_of(j)).collect();
+        if left < 2 {
+            idle_inputs.clear();
+        }
+        left -= if idle_inputs.is_empty() { 0 } else { 2 };
         let strength = |j: usize| {
             let strong = |wish: &&Wish| wish.has_axis(j);
             wishes.iter().filter(strong).map(|wish| wish.shares[j]).fold(0.0, f64::max)
@@ -102,7 +105,7 @@ impl Design {
         for &j in &axes {
             points.extend([ON_AXIS, -ON_AXIS].map(|t| (0..n).map(|k| if k == j { t } else { 0.0 }).collect()));
         }
-        if idle {
+        if !idle_inputs.is_empty() {
             let signs = (0..n).map(|j| if rng.random() { IDLE } else { -IDLE } * f64::from(u8::from(idle_of(j))));
             let moved: Vec<f64> = signs.collect();
             points.push(moved.clone());
@@ -113,7 +116,7 @@ impl Design {
         let random = random_pairs(pairs, lines.first().unwrap_or(&wishes[0].line), &mut rng);
         points.extend(random.iter().cloned());
         points.extend(random.into_iter().map(|point| point.into_iter().map(|z| -z).collect()));
-        Some(Self { points, lines, axes, idle, pairs })
+        Some(Self { points, lines, axes, idle_inputs, pairs })
     }
 
     /// Points as columns, one for every variable.
@@ -136,7 +139,12 @@ impl Design {
 impl Wish {
     /// True if this input gets points of its own.
     pub(super) fn has_axis(&self, j: usize) -> bool {
-        self.shares[j] > STRONG && self.line[j] * self.line[j] < FOLLOWED
+        self.shares[j] > STRONG && !self.is_followed(j)
+    }
+
+    /// True if the points of the line suffice for this input.
+    pub(super) fn is_followed(&self, j: usize) -> bool {
+        self.line[j] * self.line[j] >= FOLLOWED
     }
 }
 

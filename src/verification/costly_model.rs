@@ -1,26 +1,42 @@
 //! Verification of a costly model: its surfaces at a dozen check points.
 
-use crate::assembly::{Points, Responses};
-use crate::estimate::figures::moments;
-use crate::estimate::strata::{HalfSpace, between};
-use crate::estimate::stratified_sample::{FAR, steepest};
+use crate::assembly::{EvaluationError, Responses};
+use crate::estimate::strata::length;
 use crate::estimate::{Columns, NormalSpace};
 use crate::evaluation::Evaluator;
-use crate::verification::check_points::{Design, Wish};
-use crate::verification::residual_error::{Judged, Surface, judge, regression};
-use sensitol_numeric::sampling::{Normals, clopper_pearson};
+use crate::problem::Problem;
+use crate::verification::Verified;
+use crate::verification::check_points::{Design, MOST, Wish, dot};
+use crate::verification::check_ray::{CheckRay, Profile, rays, to_locate};
+use crate::verification::checked_surface::CheckedSurface;
+use crate::verification::decision_points;
+use crate::verification::far_effect::FarEffect;
+use crate::verification::far_residual::FarResidual;
+use crate::verification::likeliest_point::likeliest;
+use crate::verification::residual_error::{Judged, judge, regression};
+use crate::verification::unseen_share::unseen;
+use sensitol_numeric::sampling::Normals;
 use sensitol_numeric::surrogate::Surrogate;
 
-pub use crate::verification::check_points::MOST as MOST_CHECKS;
+/// Check points near the means, if none are asked for by number.
+const NEAR: usize = 12;
 
-/// Points of a surface in its core. Either tail has a quarter as many.
-const KNOTS: usize = 1 << 13;
-/// Fewest points of a surface in its core.
-const FEWEST: usize = 1 << 9;
-/// Most multiplications for all points of a surface: a tenth of a second.
-const WORK: usize = 200_000_000;
-/// Confidence of intervals, and of the bound for the share of the assemblies that differs from all points.
-pub(crate) const CONFIDENCE: f64 = 0.95;
+/// Number of check points for a number of varying dimensions, `asked` if they are asked for by number.
+///
+/// Without a number these are 12 near the means, and a third as many as those and the `2 N + 1` points of a second-order method where
+/// decisions fall, at least 6 and at most 18. [`verify_by_checks`] evaluates up to 8 more if the surface is refuted.
+///
+/// ```
+/// use sensitol::verification::check_points;
+/// assert_eq!(check_points(None, 3), 12 + 6);
+/// assert_eq!(check_points(None, 10), 12 + 11);
+/// assert_eq!(check_points(Some(12), 10), 12);
+/// assert_eq!(check_points(Some(100), 10), 18 + 11);
+/// ```
+pub fn check_points(asked: Option<usize>, varying: usize) -> usize {
+    let decisions = decision_points::count(varying);
+    asked.map_or(NEAR + decisions, |asked| asked.min(MOST + decisions))
+}
 
 /// A characteristic whose surface is verified.
 #[derive(Debug, Clone, Copy)]
@@ -35,18 +51,22 @@ pub struct Target<'s> {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct CheckedFigures {
-    /// Errors of mean, sigma, skewness and kurtosis. None if the model has no value at some point, or no surface is known.
+    /// Errors of mean, sigma, skewness and kurtosis. None if the model has a value at hardly any point, or no surface is known.
     pub errors: Option<[f64; 4]>,
     /// Share within the limits by the surface, and its error. Also None if there are no limits.
-    pub yield_: Option<crate::verification::Verified>,
+    pub yield_: Option<Verified>,
     /// Shares beyond the lower and beyond the upper limit.
-    pub beyond: [Option<crate::verification::Verified>; 2],
+    pub beyond: [Option<Verified>; 2],
     /// Share of the variance that the surface leaves unexplained.
     pub left: Option<f64>,
     /// Error of the share of the variance of every varying dimension.
     pub shares: Option<Vec<f64>>,
     /// Points at which the model has no value.
     pub failed: usize,
+    /// Greatest share of the assemblies without a value, by the places of the points without one. 0 if all points have a value.
+    pub lost: f64,
+    /// Largest residual far from the means that changes the figures. None if there is none.
+    pub far: Option<FarResidual>,
     /// Mean, sigma, skewness and kurtosis of the surface over the integration points.
     pub surface: Option<[f64; 4]>,
 }
@@ -57,115 +77,207 @@ pub struct CheckedFigures {
 pub struct Checked {
     /// Figures of every characteristic.
     pub characteristics: Vec<CheckedFigures>,
-    /// Check points, a row each.
-    pub points: Points,
-    /// Answers, a column for every characteristic.
-    pub answers: Responses,
-    /// Number of random points among them, in mirrored pairs.
-    pub random: usize,
+    /// Number of check points.
+    pub count: usize,
+    /// True for every characteristic of which a check point has no answer.
+    pub unanswered: Vec<bool>,
 }
 
 impl Checked {
-    /// Number of check points.
-    pub fn count(&self) -> usize {
-        self.points.rows()
-    }
-
     /// Greatest share of the assemblies that may behave differently if all points agree, at 95 % confidence: `1 - 0.05^(1/n)`.
     pub fn unseen(&self) -> f64 {
-        unseen(self.count(), 0)[1]
+        unseen(self.count, 0)[1]
     }
 }
 
-/// 95 % interval of a share that `seen` of `points` have: Clopper and Pearson (1934), one-sided if there are none.
+/// Judges the surfaces of all characteristics by the model's values at check points: near the means, and where decisions fall.
 ///
-/// ```
-/// use sensitol::verification::unseen;
-/// // 1 - 0.05^(1/14) = 19.3 %.
-/// assert!((unseen(14, 0)[1] - 0.1926).abs() < 1e-4 && unseen(14, 0)[0] == 0.0);
-/// // The exact interval of 1 of 10 is 0.25 % to 44.5 %.
-/// let [low, high] = unseen(10, 1);
-/// assert!((low - 0.00253).abs() < 1e-5 && (high - 0.44502).abs() < 1e-5);
-/// ```
-pub fn unseen(points: usize, seen: usize) -> [f64; 2] {
-    let (n, k) = (points as f64, seen as f64);
-    match seen {
-        _ if points == 0 => [0.0, 1.0],
-        0 => [0.0, 1.0 - libm::pow(1.0 - CONFIDENCE, 1.0 / n)],
-        all if all >= points => [libm::pow(1.0 - CONFIDENCE, 1.0 / n), 1.0],
-        _ => clopper_pearson(k, n),
-    }
-}
-
-/// Judges the surfaces of all characteristics by the model's values at 12 to 18 points.
+/// Shapes: a target for every characteristic; surrogate and shares over the dimensions at `varying`. Evaluations: `most` within the
+/// evaluator's budget, and up to [`MOST_LOCATING`](crate::verification::MOST_LOCATING) more if the budget has them and the surface is refuted. Returns None, without an
+/// evaluation, if fewer than 6 are allowed or no characteristic has a surface.
 ///
-/// Shapes: a target for every characteristic; surrogate and shares over the dimensions at `varying`. Evaluations: 18 at most, and no more
-/// than remain of the evaluator's budget. Returns None, without an evaluation, if fewer than 6 are allowed or no characteristic has a surface.
-///
-/// Accuracy: for 3584 figures of 448 surfaces the true value lay within three estimates in 98.3 %. In the median the estimate is 4 times
-/// the error, because 15 points are few.
-pub fn verify_by_checks(evaluator: &Evaluator<'_>, varying: &[usize], targets: &[Target<'_>]) -> Option<Checked> {
+/// Accuracy: three estimates reach the true error of at least 97 % of the figures (`tests/accuracy`).
+pub fn verify_by_checks(
+    evaluator: &Evaluator<'_>,
+    varying: &[usize],
+    targets: &[Target<'_>],
+    most: usize,
+) -> Option<Checked> {
     if varying.is_empty() {
         return None;
     }
     let (problem, seed) = (evaluator.problem(), evaluator.seed());
     let space = NormalSpace::new(problem, varying);
     let normals = Normals::new(varying.len(), seed);
-    let dependence = problem.dependence();
     // The surface at many points gives the direction of its line and the figures that residuals change.
-    let surfaces: Vec<Option<Surface>> =
-        targets.iter().map(|target| surface(&space, &normals, target.surrogate?)).collect();
-    let wishes: Vec<Option<Wish>> = (surfaces.iter().zip(targets).zip(&dependence))
-        .map(|((surface, target), depends)| {
-            let surface = surface.as_ref().filter(|surface| surface.figures[1] > 0.0)?;
-            let depends: Vec<bool> = varying.iter().map(|&d| depends[d]).collect();
-            Some(Wish { line: regression(surface), shares: target.shares.to_vec(), depends })
-        })
-        .collect();
+    let surfaces: Vec<Option<CheckedSurface<'_>>> =
+        targets.iter().map(|target| CheckedSurface::new(&space, &normals, target.surrogate?)).collect();
+    let wishes = wishes(problem, varying, targets, &surfaces);
     let known: Vec<Wish> = wishes.iter().flatten().cloned().collect();
-    let design = Design::new(&known, seed, evaluator.remaining().unwrap_or(usize::MAX))?;
-    let columns = design.columns();
-    let points = space.points(&columns);
-    let answers = evaluator.ask(&points);
-    let standardised = space.standardised(&columns);
-    let characteristics = (0..targets.len())
-        .map(|c| {
-            let model = answers.column(c);
-            let failed = model.iter().filter(|y| y.is_nan()).count();
-            let nothing = CheckedFigures { failed, ..CheckedFigures::nothing() };
-            let known = surfaces[c].as_ref().zip(wishes[c].as_ref()).zip(targets[c].surrogate);
-            let Some(((surface, wish), surrogate)) = known else { return nothing };
-            let at: Option<Vec<f64>> = values(surrogate, &standardised);
-            // Ends of the kept limits, so that rounding does not reject a value on a limit.
-            let [low, high] = problem.kept_limits(c).ends();
-            let within = [[low, high], [low, f64::INFINITY], [f64::NEG_INFINITY, high]];
-            let judged = at.and_then(|at| judge(&design, wish, surface, model, &at, &within));
-            let of_shares = |judged: &Judged| {
-                let error = |share: &f64| judged.share_of_variance(*share, design.pairs);
-                targets[c].shares.iter().map(error).collect::<Vec<f64>>()
-            };
-            let shares = judged.as_ref().map(of_shares);
-            CheckedFigures { surface: Some(surface.figures), shares, ..nothing.judged(surface, judged, within) }
-        })
-        .collect();
-    Some(Checked { characteristics, points, answers, random: 2 * design.pairs })
+    let most = check_points(Some(evaluator.remaining().map_or(most, |left| left.min(most))), varying.len());
+    let decisions = decision_points::count(varying.len()).min(most.saturating_sub(NEAR));
+    let design = Design::new(&known, seed, most - decisions)?;
+    let likeliest = likeliest_points(problem, &surfaces, &wishes);
+    let decisions = decision_points::choose(&design, &known, &likeliest, decisions, seed);
+    let mut rays = rays(&design, &decisions);
+    let mut answers = Answers::new(&space, &surfaces);
+    answers.ask(evaluator, design.points.iter().chain(&decisions).cloned().collect());
+    // A large residual is located, so that its share of the assemblies is known.
+    let located = to_locate(&rays, &answers.residuals, design.random()..design.points.len());
+    for index in located {
+        let enough = evaluator.remaining().is_none_or(|left| left >= CheckRay::LOCATING);
+        if enough && !evaluator.run().stopped() {
+            let points = rays[index].locate(answers.count);
+            answers.ask(evaluator, points);
+        }
+    }
+    let figures = |c: usize| {
+        let d = &answers.residuals[c];
+        let nothing = CheckedFigures { failed: d.iter().filter(|d| d.is_nan()).count(), ..CheckedFigures::nothing() };
+        let (Some(surface), Some(wish)) = (&surfaces[c], &wishes[c]) else { return nothing };
+        // Ends of the kept limits, so that rounding does not reject a value on a limit.
+        let [low, high] = problem.kept_limits(c).ends();
+        let within = [[low, high], [low, f64::INFINITY], [f64::NEG_INFINITY, high]];
+        let mut found: Vec<(&CheckRay, FarEffect, Profile)> = Vec::new();
+        for ray in &rays {
+            let profile = ray.profile(d);
+            let effect = FarEffect::new(surface, &normals, ray, &profile, &within);
+            found.extend(effect.map(|effect| (ray, effect, profile)));
+        }
+        let far: Vec<FarEffect> = found.iter().map(|(_, effect, _)| effect.clone()).collect();
+        let judged = judge(&design, wish, surface, d, &answers.surfaces[c], &far, &within);
+        let of_shares = |judged: &Judged| {
+            let error = |share: &f64| judged.share_of_variance(*share, design.pairs);
+            targets[c].shares.iter().map(error).collect::<Vec<f64>>()
+        };
+        let shares = judged.as_ref().map(of_shares);
+        let far = FarResidual::largest(&found, &within.map(|interval| surface.share(interval)), varying);
+        let lost = lost(&design, d, &found);
+        CheckedFigures { surface: Some(surface.figures), shares, far, lost, ..nothing.judged(surface, judged, within) }
+    };
+    let characteristics = (0..targets.len()).map(figures).collect();
+    Some(Checked { characteristics, count: answers.count, unanswered: answers.unanswered })
+}
+
+/// Requests of all characteristics for check points. None for a characteristic without a surface that varies.
+fn wishes(
+    problem: &Problem,
+    varying: &[usize],
+    targets: &[Target<'_>],
+    surfaces: &[Option<CheckedSurface<'_>>],
+) -> Vec<Option<Wish>> {
+    let dependence = problem.dependence();
+    let mut wishes = Vec::new();
+    for ((surface, target), depends) in surfaces.iter().zip(targets).zip(&dependence) {
+        let varies = surface.as_ref().filter(|surface| surface.figures[1] > 0.0);
+        wishes.push(varies.map(|surface| Wish {
+            line: regression(surface),
+            shares: target.shares.to_vec(),
+            depends: varying.iter().map(|&d| depends[d]).collect(),
+        }));
+    }
+    wishes
+}
+
+/// Likeliest points of all surfaces beyond all limits, the nearest first.
+fn likeliest_points(
+    problem: &Problem,
+    surfaces: &[Option<CheckedSurface<'_>>],
+    wishes: &[Option<Wish>],
+) -> Vec<Vec<f64>> {
+    let mut points = Vec::new();
+    for (c, (surface, wish)) in surfaces.iter().zip(wishes).enumerate() {
+        let (Some(surface), Some(wish)) = (surface, wish) else { continue };
+        let [low, high] = problem.kept_limits(c).ends();
+        points.extend(likeliest(surface, &wish.line, low, false));
+        points.extend(likeliest(surface, &wish.line, high, true));
+    }
+    points.sort_by(|a, b| length(a).total_cmp(&length(b)));
+    points
+}
+
+/// Greatest share of the assemblies without a value: that of the half-spaces in which points without one lie. A random point without a value
+/// outside of all of them is counted, with the upper end of its 95 % interval.
+fn lost(design: &Design, d: &[f64], found: &[(&CheckRay, FarEffect, Profile)]) -> f64 {
+    let in_half_spaces: f64 = found.iter().map(|(_, effect, _)| effect.lost).sum();
+    let explained = |row: usize| {
+        let holds = |(ray, _, profile): &(&CheckRay, FarEffect, Profile)| {
+            matches!(profile, Profile::WithoutValue(_)) && dot(&ray.direction, &design.points[row]) > profile.from()
+        };
+        found.iter().any(holds)
+    };
+    let random = design.random()..design.points.len();
+    let alone = random.clone().filter(|&row| d[row].is_nan() && !explained(row)).count();
+    let counted = if alone > 0 { unseen(random.len(), alone)[1] } else { 0.0 };
+    (in_half_spaces + counted).min(1.0)
+}
+
+/// Answers to check points, and the surfaces there.
+struct Answers<'s> {
+    space: &'s NormalSpace<'s>,
+    of: &'s [Option<CheckedSurface<'s>>],
+    /// Number of points.
+    count: usize,
+    /// Residuals in sigmas of every characteristic, NaN without a value.
+    residuals: Vec<Vec<f64>>,
+    /// Values of the surface of every characteristic.
+    surfaces: Vec<Vec<f64>>,
+    /// True for every characteristic of which a point has no answer.
+    unanswered: Vec<bool>,
+}
+
+impl<'s> Answers<'s> {
+    fn new(space: &'s NormalSpace<'s>, of: &'s [Option<CheckedSurface<'s>>]) -> Self {
+        let (residuals, surfaces) = (vec![Vec::new(); of.len()], vec![Vec::new(); of.len()]);
+        Self { space, of, count: 0, residuals, surfaces, unanswered: vec![false; of.len()] }
+    }
+
+    /// Evaluates the model at further points.
+    fn ask(&mut self, evaluator: &Evaluator<'_>, points: Vec<Vec<f64>>) {
+        let columns: Columns = (0..self.space.len()).map(|j| points.iter().map(|point| point[j]).collect()).collect();
+        let answers = evaluator.ask(&self.space.points(&columns));
+        self.count += points.len();
+        for c in 0..self.of.len() {
+            self.unanswered[c] |= has_no_answer(&answers, c);
+            let at = self.of[c].as_ref().and_then(|surface| surface.at(&columns));
+            let at = at.unwrap_or_else(|| vec![f64::NAN; points.len()]);
+            let sigma = self.of[c].as_ref().map_or(1.0, |surface| surface.figures[1]);
+            self.residuals[c].extend(answers.column(c).iter().zip(&at).map(|(y, q)| (y - q) / sigma));
+            self.surfaces[c].extend(at);
+        }
+    }
+}
+
+/// True if a characteristic has a point that was not answered. Points without an answer give no information.
+fn has_no_answer(answers: &Responses, c: usize) -> bool {
+    let given = |row: usize| !matches!(answers.error(row, c), Some(EvaluationError::NotGiven));
+    (0..answers.rows()).any(|row| !given(row) || answers.is_open(row, c))
 }
 
 impl CheckedFigures {
     fn nothing() -> Self {
-        Self { errors: None, yield_: None, beyond: [None; 2], left: None, shares: None, failed: 0, surface: None }
+        Self {
+            errors: None,
+            yield_: None,
+            beyond: [None; 2],
+            left: None,
+            shares: None,
+            failed: 0,
+            lost: 0.0,
+            far: None,
+            surface: None,
+        }
     }
 
-    fn judged(self, surface: &Surface, judged: Option<Judged>, within: [[f64; 2]; 3]) -> Self {
+    fn judged(self, surface: &CheckedSurface<'_>, judged: Option<Judged>, within: [[f64; 2]; 3]) -> Self {
         let Some(judged) = judged else { return self };
         let share = |index: usize| {
             let error = judged.shares[index];
             let finite = within[index].iter().any(|end| end.is_finite());
-            finite.then(|| crate::verification::Verified { value: surface.share(within[index]), error })
+            finite.then(|| Verified { value: surface.share(within[index]), error })
         };
-        let rejected = |within: Option<crate::verification::Verified>| {
-            within.map(|share| crate::verification::Verified { value: 1.0 - share.value, error: share.error })
-        };
+        let rejected =
+            |within: Option<Verified>| within.map(|share| Verified { value: 1.0 - share.value, error: share.error });
         Self {
             errors: Some(judged.errors),
             yield_: share(0),
@@ -174,30 +286,4 @@ impl CheckedFigures {
             ..self
         }
     }
-}
-
-/// Points of a surrogate over its distribution. Returns None if a part of it is unknown.
-fn surface(space: &NormalSpace<'_>, normals: &Normals, surrogate: &Surrogate) -> Option<Surface> {
-    let work = space.len() + surrogate.interactions.each_pair().count();
-    let knots = (WORK / work).clamp(FEWEST, KNOTS);
-    let q = |z: &Columns| values(surrogate, &space.standardised(z));
-    // The core between the two tails, along the direction of the tails.
-    let mut z = normals.columns(1, knots);
-    let line = steepest(&z, &q(&z)?);
-    let mut weights = vec![between(&mut z, &line, FAR) / knots as f64; knots];
-    // The tails carry the higher moments, so that they get points of their own.
-    for (stream, sign) in [(2, 1.0), (3, -1.0)] {
-        let mut tail = normals.columns(stream, knots / 4);
-        let space = HalfSpace { direction: line.iter().map(|part| sign * part).collect(), from: FAR };
-        let own = space.enter(&mut tail);
-        weights.extend(own.into_iter().map(|weight| weight / (knots / 4) as f64));
-        z.iter_mut().zip(tail).for_each(|(all, more)| all.extend(more));
-    }
-    let values = q(&z)?;
-    let figures = moments(&values, &weights);
-    Some(Surface { z, weights, values, figures })
-}
-
-fn values(surrogate: &Surrogate, standardised: &Columns) -> Option<Vec<f64>> {
-    Some(surrogate.rises(standardised)?.into_iter().map(|rise| surrogate.centre + rise).collect())
 }

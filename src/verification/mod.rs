@@ -5,20 +5,30 @@
 //!
 //! - A cheap model is [sampled](verify_by_sampling) at some 45 000 points in strata. A figure's error is `hypot(m - s, se)` with the
 //!   sample's `s` and its standard error `se`.
-//! - A costly model is evaluated at 12 to 18 points that the method has not used.
+//! - A costly model is evaluated at points that the method has not used: 12 near the means, and 6 to 18 where decisions fall.
 //! - A formula needs neither if its own tree proves that the method's surface equals the function.
 
 mod check_points;
+mod check_ray;
+mod checked_surface;
 mod costly_model;
+mod decision_points;
+mod far_effect;
+mod far_residual;
+mod likeliest_point;
 mod residual_error;
+mod unseen_share;
 
 pub use crate::estimate::{
     Crossing, FoundSwitch, OutputCorrelation, SampleTails, Share, TailPoint, Verified, variance_shares,
 };
 pub(crate) use crate::estimate::{SampleQuantile, WeightedSample, variance_shares_during};
-pub(crate) use crate::verification::costly_model::CONFIDENCE;
-pub use crate::verification::costly_model::{Checked, CheckedFigures, MOST_CHECKS, Target, unseen, verify_by_checks};
+pub use crate::verification::check_ray::MOST_LOCATING;
+pub use crate::verification::costly_model::{Checked, CheckedFigures, Target, check_points, verify_by_checks};
+pub use crate::verification::far_residual::FarResidual;
 pub(crate) use crate::verification::residual_error::{OVERLOOKED, OVERLOOKED_BY, TOO_SMALL};
+pub(crate) use crate::verification::unseen_share::CONFIDENCE;
+pub use crate::verification::unseen_share::unseen;
 
 use crate::assembly::Run;
 use crate::estimate::cheap_model::CheapModel;

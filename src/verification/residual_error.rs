@@ -10,8 +10,13 @@
 //! h       = 1, z, 3 z^2 - 3 - 3 g z, 4 z^3 - 4 g - 4 k z           influence on mean, sigma, skewness, kurtosis (Serfling 1980)
 //! seen_r  = hypot(mean, standard error) of h_r(z_i) e_i
 //! bound_r = sd(h_r) rho/sqrt K + (0, 1/2, 2, 6) rho^2              |E h e| <= sd(h) rho by Cauchy and Schwarz: 1/sqrt K of it would not show
-//! error_r = sqrt(moved^2 + seen^2 + bound^2)
+//! far_r   = root of the sum of squares of the changes by the residuals along rays far from the means
+//! error_r = sqrt(max(moved, far)^2 + seen^2 + bound^2)
+//! share   = sqrt(moved^2 + limits by rho^2 + far^2 + (rejects unseen/2)^2 + (Phi(-4.5)/2)^2)
 //! ```
+//!
+//! Two errors of a share reach what no point has shown: the share `unseen = 1 - 0.05^(1/n)` of all rejects, and all assemblies beyond 4.5
+//! sigmas, the farthest check point.
 //!
 //! `|t|` and `|z_j|` are clipped at 4.5. The errors of mean and sigma are multiplied by sigma. `3 hypot(m, s) >= m + 2.8 s`, Student's
 //! quantile for a dozen points. The floor `0.004 sqrt(14/n)` allows for effects that a dozen points overlook: they give mean and sigma no
@@ -22,6 +27,11 @@ use crate::estimate::figures::{MOMENTS, moments};
 use crate::estimate::strata;
 use crate::estimate::strata::along;
 use crate::verification::check_points::{Design, ON_AXIS, Wish, dot};
+use crate::verification::checked_surface::CheckedSurface;
+use crate::verification::far_effect::FarEffect;
+use crate::verification::likeliest_point::FARTHEST;
+use crate::verification::unseen_share::unseen;
+use sensitol_numeric::distribution::standard_normal;
 
 /// Residual that [`OVERLOOKED_BY`] points may overlook, in sigmas. With `n` points it falls as `1/sqrt(n)`.
 pub(crate) const OVERLOOKED: f64 = 0.004;
@@ -36,29 +46,10 @@ const CLIPPED: f64 = 4.5;
 const NODES: f64 = 3.0;
 /// Divisor of the mean square of the idle inputs' differences, four sigmas out, for their effect on all assemblies.
 const IDLE: f64 = 50.0;
+/// Fewest random points with a value: fewer have no standard error worth the name.
+const FEWEST: usize = 3;
 /// Contribution to the figures of the square of a residual that follows the output.
 const SQUARES: [f64; MOMENTS] = [0.0, 0.5, 2.0, 6.0];
-
-/// A surface at weighted points of the whole distribution.
-pub(super) struct Surface {
-    pub(super) z: Columns,
-    pub(super) weights: Vec<f64>,
-    pub(super) values: Vec<f64>,
-    /// Mean, sigma, skewness, kurtosis over these points.
-    pub(super) figures: [f64; MOMENTS],
-}
-
-impl Surface {
-    /// Share within an interval, ends included.
-    pub(super) fn share(&self, interval: [f64; 2]) -> f64 {
-        share_of(&self.values, &self.weights, interval)
-    }
-}
-
-fn share_of(values: &[f64], weights: &[f64], [low, high]: [f64; 2]) -> f64 {
-    let within = values.iter().zip(weights).filter(|(y, _)| low <= **y && **y <= high);
-    within.map(|(_, weight)| weight).sum::<f64>() / weights.iter().sum::<f64>()
-}
 
 /// Results of one characteristic from the check points.
 #[derive(Debug, Clone, PartialEq)]
@@ -108,24 +99,28 @@ fn quartic([near_up, near_down, far_up, far_down]: [f64; 4]) -> [f64; 4] {
     [odd[0] - 2.25 * third, even[0] - 2.25 * fourth, third, fourth]
 }
 
-/// Judges a surface by the model's values at the points of a design.
+/// Judges a surface by its residuals in sigmas at the points of a design, and by the effects of those far from the means.
 ///
-/// Shapes: `model` and `surface_at` have a value for every point of the design. Returns None if the model has no value at one of the
-/// points, or the surface does not vary.
+/// Shapes: `d` has a residual for every point of the design, NaN at points without a value; `surface_at` has the values of the surface at
+/// the random ones. Returns None if fewer than [`FEWEST`] random points have a value.
 pub(super) fn judge(
     design: &Design,
     wish: &Wish,
-    surface: &Surface,
-    model: &[f64],
+    surface: &CheckedSurface<'_>,
+    d: &[f64],
     surface_at: &[f64],
+    far: &[FarEffect],
     intervals: &[[f64; 2]],
 ) -> Option<Judged> {
-    let [mean, sigma, skewness, kurtosis] = surface.figures;
-    let d: Vec<f64> = model.iter().zip(surface_at).map(|(y, q)| (y - q) / sigma).collect();
-    if sigma.is_nan() || sigma <= 0.0 || d.iter().any(|d| !d.is_finite()) {
+    let sigma = surface.figures[1];
+    let random = design.random();
+    let answered: Vec<usize> = (random..design.points.len()).filter(|&row| d[row].is_finite()).collect();
+    if answered.len() < FEWEST {
         return None;
     }
-    let bend = bend(design, wish, &d);
+    // A point without a value has no residual. The effects far from the means contain the assemblies about it.
+    let known: Vec<f64> = d[..random].iter().map(|&d| if d.is_finite() { d } else { 0.0 }).collect();
+    let bend = bend(design, wish, &known);
     // Effect of the bend on the figures, exact for any size.
     let over_all = bend.at(&surface.z);
     let moved_values: Vec<f64> = surface.values.iter().zip(&over_all).map(|(q, p)| q + sigma * p).collect();
@@ -133,44 +128,90 @@ pub(super) fn judge(
     let units = [sigma, sigma, 1.0, 1.0];
     let moved: [f64; MOMENTS] = std::array::from_fn(|r| (moved_figures[r] - surface.figures[r]) / units[r]);
 
-    // Residuals at the random points, less the bend if that makes them smaller.
-    let random = design.random();
-    let points: Columns = design.columns().iter().map(|column| column[random..].to_vec()).collect();
-    let differences = &d[random..];
-    let left: Vec<f64> = differences.iter().zip(bend.at(&points)).map(|(d, p)| d - p).collect();
-    let square = |of: &[f64]| of.iter().map(|e| e * e).sum::<f64>();
-    let rest: &[f64] = if square(&left) <= square(differences) { &left } else { differences };
-    let k = rest.len() as f64;
-    let influence = |z: f64| {
-        [1.0, z, 3.0 * z * z - 3.0 - 3.0 * skewness * z, 4.0 * z.powi(3) - 4.0 * skewness - 4.0 * kurtosis * z]
+    let rest = RandomResiduals::new(design, d, surface_at, &bend, &answered);
+    let idle = match design.idle_inputs.is_empty() {
+        true => 0.0,
+        false => sum_of_squares(&known[random - 2..]) / 2.0 / IDLE,
     };
-    let rows: Vec<[f64; MOMENTS]> =
-        rest.iter().zip(&surface_at[random..]).map(|(e, q)| influence((q - mean) / sigma).map(|h| h * e)).collect();
-    let largest = rest.iter().map(|e| e * e).fold(0.0, f64::max);
-    let idle = match design.idle {
-        true => square(&d[random - 2..random]) / 2.0 / IDLE,
-        false => 0.0,
+    let rho = rest.mean_square() + OVERLOOKED * OVERLOOKED * OVERLOOKED_BY / design.points.len() as f64 + idle;
+    let [seen, spread] = [rest.seen(surface), spread(surface)];
+    let errors = std::array::from_fn(|r| {
+        let bound = (spread[r] * rho / rest.e.len() as f64).sqrt() + SQUARES[r] * rho;
+        let far = sum_of_squares(&far.iter().map(|effect| effect.moments[r]).collect::<Vec<f64>>());
+        units[r] * (far.max(moved[r] * moved[r]) + seen[r] * seen[r] + bound * bound).sqrt()
+    });
+    let total: f64 = surface.weights.iter().sum();
+    let mean_square = |of: &[f64]| of.iter().zip(&surface.weights).map(|(p, w)| w / total * p * p).sum::<f64>();
+    let far_square: f64 = far.iter().map(|effect| effect.square).sum();
+    let [_, unseen] = unseen(d.len(), 0);
+    let share = |(index, &interval): (usize, &[f64; 2])| {
+        let changes = far.iter().map(|effect| effect.shares[index]).collect::<Vec<f64>>();
+        let beside = 0.5 * unseen * (1.0 - surface.share(interval));
+        let beyond = 0.5 * standard_normal::sf(FARTHEST);
+        let own = share_error(surface, &moved_values, interval, rho.sqrt());
+        (own * own + sum_of_squares(&changes) + beside * beside + beyond * beyond).sqrt().min(1.0)
     };
-    let rho = TOO_SMALL * TOO_SMALL * (square(rest) + largest) / k
-        + OVERLOOKED * OVERLOOKED * OVERLOOKED_BY / d.len() as f64
-        + idle;
-    // Mean squares of the influences over the whole distribution, for the bound.
+    let shares = intervals.iter().enumerate().map(share).collect();
+    Some(Judged { errors, shares, left: rho + mean_square(&over_all).max(far_square), rho })
+}
+
+/// Residuals at the random points that have a value, less the bend if that makes them smaller.
+struct RandomResiduals {
+    e: Vec<f64>,
+    /// Values of the surface at the same points.
+    surface_at: Vec<f64>,
+}
+
+impl RandomResiduals {
+    fn new(design: &Design, d: &[f64], surface_at: &[f64], bend: &Bend<'_>, answered: &[usize]) -> Self {
+        let of_answered = |column: &[f64]| answered.iter().map(|&row| column[row]).collect::<Vec<f64>>();
+        let points: Columns = design.columns().iter().map(|column| of_answered(column)).collect();
+        let differences = of_answered(d);
+        let left: Vec<f64> = differences.iter().zip(bend.at(&points)).map(|(d, p)| d - p).collect();
+        let e = if sum_of_squares(&left) <= sum_of_squares(&differences) { left } else { differences };
+        Self { e, surface_at: of_answered(surface_at) }
+    }
+
+    /// Mean square, with the largest residual counted twice.
+    fn mean_square(&self) -> f64 {
+        let largest = self.e.iter().map(|e| e * e).fold(0.0, f64::max);
+        TOO_SMALL * TOO_SMALL * (sum_of_squares(&self.e) + largest) / self.e.len() as f64
+    }
+
+    /// Changes of the figures that the residuals show: their mean influence, with its standard error.
+    fn seen(&self, surface: &CheckedSurface<'_>) -> [f64; MOMENTS] {
+        let [mean, sigma, ..] = surface.figures;
+        let k = self.e.len() as f64;
+        let row = |(e, q): (&f64, &f64)| influence(surface, (q - mean) / sigma).map(|h| h * e);
+        let rows: Vec<[f64; MOMENTS]> = self.e.iter().zip(&self.surface_at).map(row).collect();
+        std::array::from_fn(|r| {
+            let average = rows.iter().map(|row| row[r]).sum::<f64>() / k;
+            let variance = rows.iter().map(|row| (row[r] - average).powi(2)).sum::<f64>() / (k - 1.0);
+            libm::hypot(average, (variance / k).sqrt())
+        })
+    }
+}
+
+/// Influence of a residual at a standardised value of the surface on mean, sigma, skewness and kurtosis (Serfling 1980).
+fn influence(surface: &CheckedSurface<'_>, z: f64) -> [f64; MOMENTS] {
+    let [.., skewness, kurtosis] = surface.figures;
+    [1.0, z, 3.0 * z * z - 3.0 - 3.0 * skewness * z, 4.0 * z.powi(3) - 4.0 * skewness - 4.0 * kurtosis * z]
+}
+
+/// Mean squares of the influences over the whole distribution.
+fn spread(surface: &CheckedSurface<'_>) -> [f64; MOMENTS] {
+    let [mean, sigma, ..] = surface.figures;
     let total: f64 = surface.weights.iter().sum();
     let mut spread = [0.0; MOMENTS];
     for (q, weight) in surface.values.iter().zip(&surface.weights) {
-        let h = influence((q - mean) / sigma);
+        let h = influence(surface, (q - mean) / sigma);
         spread.iter_mut().zip(h).for_each(|(sum, h)| *sum += weight / total * h * h);
     }
-    let errors = std::array::from_fn(|r| {
-        let average = rows.iter().map(|row| row[r]).sum::<f64>() / k;
-        let variance = rows.iter().map(|row| (row[r] - average).powi(2)).sum::<f64>() / (k - 1.0);
-        let seen = libm::hypot(average, (variance / k).sqrt());
-        let bound = (spread[r] * rho / k).sqrt() + SQUARES[r] * rho;
-        units[r] * (moved[r] * moved[r] + seen * seen + bound * bound).sqrt()
-    });
-    let mean_square = |of: &[f64]| of.iter().zip(&surface.weights).map(|(p, w)| w / total * p * p).sum::<f64>();
-    let shares = intervals.iter().map(|&interval| share_error(surface, &moved_values, interval, rho.sqrt())).collect();
-    Some(Judged { errors, shares, left: rho + mean_square(&over_all), rho })
+    spread
+}
+
+fn sum_of_squares(of: &[f64]) -> f64 {
+    of.iter().map(|e| e * e).sum()
 }
 
 /// Fits the bend to the differences at the points on lines and axes.
@@ -191,8 +232,8 @@ fn bend<'d>(design: &'d Design, wish: &Wish, d: &[f64]) -> Bend<'d> {
 }
 
 /// Error of the share within an interval: by the bend, and by limits that move by the residual, which grows outward.
-fn share_error(surface: &Surface, moved: &[f64], interval: [f64; 2], rho: f64) -> f64 {
-    let share = |values: &[f64], interval: [f64; 2]| share_of(values, &surface.weights, interval);
+fn share_error(surface: &CheckedSurface<'_>, moved: &[f64], interval: [f64; 2], rho: f64) -> f64 {
+    let share = |values: &[f64], interval: [f64; 2]| surface.share_of(values, interval);
     let [mean, sigma, ..] = surface.figures;
     let here = surface.share(interval);
     let mut square = (share(moved, interval) - here).powi(2);
@@ -205,7 +246,7 @@ fn share_error(surface: &Surface, moved: &[f64], interval: [f64; 2], rho: f64) -
         });
         square += off[0].max(off[1]).powi(2);
     }
-    square.sqrt().min(1.0)
+    square.sqrt()
 }
 
 impl Judged {
@@ -216,7 +257,7 @@ impl Judged {
 }
 
 /// Normalised covariances of a surface with its variables: the direction along which it varies most.
-pub(super) fn regression(surface: &Surface) -> Vec<f64> {
+pub(super) fn regression(surface: &CheckedSurface<'_>) -> Vec<f64> {
     let [mean, sigma, ..] = surface.figures;
     let weighted: Vec<f64> =
         surface.values.iter().zip(&surface.weights).map(|(q, weight)| weight * (q - mean) / sigma).collect();

@@ -1,7 +1,7 @@
 //! Warnings about derivatives, and about the points that they are computed from.
 
 use crate::method_kind::Method;
-use crate::warning::text::{Text, likewise, names, say};
+use crate::warning::text::{Text, likewise, names, part, say};
 use crate::warning::{Advice, Figure, Loss};
 
 pub(super) fn lost_derivative(characteristic: &str, dimensions: &[String], loss: &Loss, others: &[String]) -> Text {
@@ -51,9 +51,13 @@ pub(super) fn domain_edge(characteristic: &str, dimension: &str, failed: &f64, u
     .advise(Advice::Sample { points: None })
 }
 
-pub(super) fn domain_edge_within(characteristic: &str, failed: &usize, points: &usize) -> Text {
+pub(super) fn domain_edge_within(characteristic: &str, failed: &usize, points: &usize, share: &Option<f64>) -> Text {
+    let share = share
+        .filter(|share| *share > 0.0)
+        .map_or(String::new(), |share| format!(" By their places, up to {} of the assemblies have none.", part(share)));
     say(format!(
-        "`{characteristic}` has no value at {failed} of {points} points of the distribution. Such assemblies are in no moment and no yield."
+        "`{characteristic}` has no value at {failed} of {points} points of the distribution. Such assemblies are in no moment and no \
+         yield.{share}"
     ))
     .advise(Advice::Sample { points: None })
 }

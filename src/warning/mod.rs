@@ -362,6 +362,8 @@ warnings! {
         failed: usize,
         /// All check points.
         points: usize,
+        /// Greatest share of the assemblies without a value. None if it is unknown.
+        share: Option<f64>,
     };
     /// A matched node lies outside the support of a distribution and was moved inside.
     SupportEdge = "support-edge" by derivatives::support_edge {
@@ -484,6 +486,24 @@ warnings! {
         share: f64,
         /// Points of the model that the moments are computed from instead. None if the budget did not allow any.
         sampled: Option<u64>,
+    };
+    /// Requirements are met by the surface only, which a strict check does not accept.
+    ConditionalVerdict = "conditional-verdict" by surface::conditional_verdict {
+        /// The characteristics.
+        characteristics: Vec<String>,
+    };
+    /// The model differs from the surface at check points far from the means.
+    FarResidual = "far-residual" by surface::far_residual {
+        /// The characteristic.
+        characteristic: String,
+        /// Dimensions that deviate there, true for those that deviate upward.
+        directions: Vec<(String, bool)>,
+        /// Model minus surface at the farthest check point, in sigmas.
+        residual: f64,
+        /// Distance from the means in sigmas from which on the model may differ.
+        from: f64,
+        /// Share of the assemblies that may lie beyond that distance.
+        share: f64,
     };
     /// The formula itself shows a change of its form within the assemblies.
     Switch = "switch" by surface::switch {

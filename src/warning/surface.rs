@@ -1,7 +1,7 @@
 //! Warnings about the second-order surface.
 
 use crate::method_kind::Method;
-use crate::warning::text::{Text, likewise, places, say};
+use crate::warning::text::{Text, likewise, names, part, places, say, significant};
 use crate::warning::{Advice, Change, Figure};
 
 pub(super) fn rss_invalid(characteristic: &str, mean_shift: &f64, variance: &f64) -> Text {
@@ -110,6 +110,43 @@ pub(super) fn untrusted_surrogate(characteristic: &str, share: &f64, sampled: &O
     }
 }
 
+pub(super) fn conditional_verdict(characteristics: &[String]) -> Text {
+    say(format!(
+        "The verdict on {} comes from the surface: it holds if the model follows the surface between the check points. A strict check accepts \
+         proof and points of the model only.",
+        names(characteristics)
+    ))
+    .advise(Advice::SampleRareEvents)
+}
+
+pub(super) fn far_residual(
+    characteristic: &str,
+    directions: &[(String, bool)],
+    residual: &f64,
+    from: &f64,
+    share: &f64,
+) -> Text {
+    let side = |(name, up): &(String, bool)| format!("`{name}` is {}", if *up { "large" } else { "small" });
+    let place = if directions.is_empty() {
+        "many dimensions deviate at once".to_owned()
+    } else {
+        directions.iter().map(side).collect::<Vec<String>>().join(" and ")
+    };
+    let sense = if *residual > 0.0 { "above" } else { "below" };
+    let held = match *from < 0.1 {
+        true => "The difference begins near the means".to_owned(),
+        false => format!(
+            "The surface holds up to {from:.1} sigma in this direction, and up to {} of the assemblies lie beyond",
+            part(*share)
+        ),
+    };
+    say(format!(
+        "The model of `{characteristic}` is {:.2} sigma {sense} its surface where {place}. {held}. The errors of all figures include it.",
+        residual.abs()
+    ))
+    .advise(Advice::SampleRareEvents)
+}
+
 pub(super) fn under_resolved(
     characteristic: &str,
     figure: &Figure,
@@ -213,26 +250,4 @@ fn short(number: f64) -> f64 {
 /// Parts per million without decimals.
 fn ppm(share: f64) -> String {
     format!("{:.0}", 1e6 * share)
-}
-
-/// Share as percent, or as parts per million if it is below 0.1 %.
-fn part(share: f64) -> String {
-    if share < 1e-3 {
-        format!("{} ppm", significant(1e6 * share, 2))
-    } else {
-        format!("{} %", significant(100.0 * share, 2))
-    }
-}
-
-/// Number with this many significant digits.
-fn significant(value: f64, digits: i32) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return value.to_string();
-    }
-    let exponent = libm::log10(value.abs()).floor() as i32;
-    match digits - 1 - exponent {
-        places @ 0..=9 => format!("{value:.*}", places as usize),
-        places if places < 0 && exponent < 9 => format!("{value:.0}"),
-        _ => format!("{value:.*e}", (digits - 1) as usize),
-    }
 }

@@ -68,6 +68,28 @@ pub(super) fn places([from, to]: [f64; 2]) -> String {
     format!("between {from:+.2} and {to:+.2} sigma")
 }
 
+/// Number with this many significant digits.
+pub(super) fn significant(value: f64, digits: i32) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    let exponent = libm::log10(value.abs()).floor() as i32;
+    match digits - 1 - exponent {
+        places @ 0..=9 => format!("{value:.*}", places as usize),
+        places if places < 0 && exponent < 9 => format!("{value:.0}"),
+        _ => format!("{value:.*e}", (digits - 1) as usize),
+    }
+}
+
+/// Share as percent, or as parts per million if it is below 0.1 %.
+pub(super) fn part(share: f64) -> String {
+    if share < 1e-3 {
+        format!("{} ppm", significant(1e6 * share, 2))
+    } else {
+        format!("{} %", significant(100.0 * share, 2))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::names;

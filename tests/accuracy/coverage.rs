@@ -60,7 +60,7 @@ fn cases_of(truth: &Truth, method: Method, found: &CharacteristicAnalysis) -> Ve
     figures(found).into_iter().enumerate().filter_map(case).collect()
 }
 
-/// Returns the cases of every method on every second function, in turns, as a costly model. The errors are those of 12 to 18 check points.
+/// Returns the cases of every method on every second function, in turns, as a costly model. The errors are those of its check points.
 pub(super) fn checked() -> &'static [Case] {
     static CASES: OnceLock<Vec<Case>> = OnceLock::new();
     CASES.get_or_init(|| {
@@ -73,7 +73,7 @@ pub(super) fn checked() -> &'static [Case] {
         let of = |(truth, method): &(&Truth, Method)| {
             let first = truth.study.problem.characteristics()[0].clone();
             let (problem, _) = costly(&truth.study.problem.clone().asking([first]).unwrap());
-            let found = analyze(&problem, &verified(*method, 18)).ok();
+            let found = analyze(&problem, &Options::from(*method)).ok();
             found.map_or_else(Vec::new, |found| cases_of(truth, *method, &found.characteristics[0]))
         };
         each.par_iter().flat_map_iter(of).collect()

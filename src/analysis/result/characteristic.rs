@@ -232,9 +232,10 @@ impl CharacteristicAnalysis {
             }
             None => around,
         };
-        // Only samples give the share of assemblies without a value.
+        // Samples give the share of assemblies without a value, and check points a bound of it.
         let counted =
             self.verification.as_ref().filter(|of| of.kind == VerificationKind::Sample).and_then(|of| of.valid);
+        let located = self.verification.as_ref().and_then(|of| of.lost_share).filter(|lost| *lost > 0.0);
         let lost = match &self.model_sampled {
             _ if let Some(valid) = counted => Some(match valid.value < 1.0 {
                 true => (1.0 - valid.value + verdict::ERRORS * valid.error).min(1.0),
@@ -242,7 +243,8 @@ impl CharacteristicAnalysis {
             }),
             _ if self.without_value == 0 => Some(0.0),
             Some(sampled) => Some(sampled.failed as f64 / (sampled.failed + sampled.samples) as f64),
-            None => None,
+            // Check points bound the share by the places at which the model has no value.
+            None => located,
         };
         Some(verdict::share(verdict::losing(around, lost)))
     }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde::{Serialize, Serializer};
 
-use crate::verification::{FoundSwitch, SampleQuantile, SampleTails, Share, Verified, WeightedSample};
+use crate::verification::{FarResidual, FoundSwitch, SampleQuantile, SampleTails, Share, Verified, WeightedSample};
 use sensitol_numeric::json_form::{Four, Sides, through};
 use sensitol_numeric::power::{Losable, Rescale, Rescaling};
 
@@ -43,6 +43,11 @@ pub struct Verification {
     /// Check points without a value. A sample has `valid` instead.
     #[serde(skip)]
     pub(crate) failed: usize,
+    /// Largest residual of the surface far from the means. None if no check point met one that changes a figure.
+    pub far_residual: Option<FarResidual>,
+    /// Greatest share of the assemblies without a value, by the places of the check points without one. 0 if all have a value, None without
+    /// check points.
+    pub lost_share: Option<f64>,
     /// Share of the assemblies that have a value. None if there is no sample.
     #[serde(rename = "valid_share")]
     pub valid: Option<Verified>,

@@ -163,7 +163,7 @@ fn climb(
     let told = analysis.verification.as_ref().is_some_and(|verification| verification.failed > 0);
     if check.failed + beyond > 0 && !told && outcome.evaluated.known.value(&Point::Centre, c).is_some() {
         let (failed, points) = (check.failed + beyond, check.failed + check.points + beyond);
-        warnings.push(Warning::DomainEdgeWithin { characteristic: characteristic(), failed, points });
+        warnings.push(Warning::DomainEdgeWithin { characteristic: characteristic(), failed, points, share: None });
     }
     let sampled = analysis.model_sampled.as_ref();
     if let Some((sampled, error)) = sampled.and_then(|sampled| Some((sampled, sampled.error.as_ref()?))) {

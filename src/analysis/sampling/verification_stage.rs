@@ -11,14 +11,14 @@ use crate::analysis::result::verification::{TRUSTED, UNTRUSTED, VarianceShare, V
 use crate::analysis::result::yield_error::of_yield;
 use crate::analysis::sampling::accuracy_target::{MORE, PART};
 use crate::analysis::sampling::sample_budget::SampleBudget;
-use crate::assembly::{EvaluationError, Run};
+use crate::assembly::Run;
 use crate::evaluation::{Evaluator, Ledger};
 use crate::method::{ErrorEstimate, ErrorSource, Method, Options, Outcome, interpolated};
 use crate::problem::Problem;
 use crate::summary::RunSummary;
 use crate::verification::{
-    BESIDE, Checked, CheckedFigures, SampleQuantile, SampledFigures, Target, Verified, core_within, most_points,
-    most_points_of_shares, unexplained, variance_shares_during, verify_by_checks, verify_characteristic,
+    BESIDE, Checked, CheckedFigures, SampleQuantile, SampledFigures, Target, Verified, check_points, core_within,
+    most_points, most_points_of_shares, unexplained, variance_shares_during, verify_by_checks, verify_characteristic,
 };
 use crate::warning::Warning;
 use sensitol_numeric::capability::{Capability, Law};
@@ -44,7 +44,7 @@ const ORDINARY: f64 = 0.01;
 /// Largest error of a difference, in roundings of the value at the means.
 const ROUNDINGS: f64 = 8.0;
 
-/// Verifies every characteristic, unless that is switched off (see [`Options::verify`]). Points of a costly model enter the ledger, those
+/// Verifies every characteristic, unless that is switched off (see [`Options::verifies`]). Points of a costly model enter the ledger, those
 /// of a cheap one use up `left`.
 pub(in crate::analysis) fn verify(
     evaluator: &Evaluator<'_>,
@@ -54,9 +54,11 @@ pub(in crate::analysis) fn verify(
     characteristics: &mut [CharacteristicAnalysis],
 ) {
     let (problem, run, seed) = (evaluator.problem(), evaluator.run(), evaluator.seed());
-    let most = options.verification(problem.function().signature());
     let costly = problem.function().signature().costly;
-    if most == 0 || outcome.evaluated.stopped().is_some() || costly && run.stopped() {
+    if !options.verifies(problem.function().signature())
+        || outcome.evaluated.stopped().is_some()
+        || costly && run.stopped()
+    {
         return;
     }
     let open: Vec<usize> =
@@ -68,7 +70,7 @@ pub(in crate::analysis) fn verify(
     let each = left.each(open.len());
     let cores: Option<Vec<usize>> = open.iter().map(|&c| core_within(problem, c, each)).collect();
     let Some(cores) = cores.filter(|_| !costly) else {
-        check(evaluator, outcome, most, &open, characteristics);
+        check(evaluator, outcome, options.verify, &open, characteristics);
         return;
     };
     // A long formula takes a while for each of some 45 000 points. Characteristics that are not reached in time have no verification, and
@@ -108,6 +110,8 @@ fn proven(outcome: &Outcome, c: usize, one: &mut CharacteristicAnalysis) -> bool
         kind: VerificationKind::Exact { degree: proof.degree },
         points: 0,
         failed: 0,
+        far_residual: None,
+        lost_share: None,
         valid: None,
         left: Some(0.0),
         figures: [None; 4],
@@ -186,6 +190,8 @@ fn sample(
         kind: VerificationKind::Sample,
         points: found.points,
         failed: 0,
+        far_residual: None,
+        lost_share: None,
         valid: Some(found.valid),
         left: open,
         figures: [found.mean, found.sigma, found.skewness, found.kurtosis],
@@ -266,11 +272,11 @@ fn replace(one: &mut CharacteristicAnalysis, found: &SampledFigures) -> bool {
     true
 }
 
-/// Verifies the `open` characteristics of a costly model at up to `most` check points.
+/// Verifies the `open` characteristics of a costly model at check points, `asked` if they were asked for by number.
 fn check(
     evaluator: &Evaluator<'_>,
     outcome: &Outcome,
-    most: usize,
+    asked: Option<usize>,
     open: &[usize],
     characteristics: &mut [CharacteristicAnalysis],
 ) {
@@ -285,17 +291,17 @@ fn check(
     let targets: Vec<Target<'_>> = (shares.iter().enumerate())
         .map(|(c, shares)| Target { surrogate: surface(c).filter(|_| open.contains(&c)), shares })
         .collect();
-    let part = evaluator.part();
-    let part = part.with_budget(Some(evaluator.remaining().map_or(most, |left| left.min(most))));
-    let Some(checked) = verify_by_checks(&part, varying, &targets) else { return };
-    let Checked { answers, .. } = &checked;
-    let not_given = |c: usize| {
-        let given = |row: usize| !matches!(answers.error(row, c), Some(EvaluationError::NotGiven));
-        (0..answers.rows()).any(|row| !given(row) || answers.is_open(row, c))
+    let most = check_points(asked, varying.len());
+    // A number that was asked for is kept. Otherwise a refuted surface takes up to `MOST_LOCATING` points more.
+    let budget = match (asked, evaluator.remaining()) {
+        (Some(_), left) => Some(left.map_or(most, |left| left.min(most))),
+        (None, left) => left,
     };
+    let part = evaluator.part().with_budget(budget);
+    let Some(checked) = verify_by_checks(&part, varying, &targets, most) else { return };
     for &c in open {
         // Points without an answer give no information.
-        if !not_given(c) {
+        if !checked.unanswered[c] {
             let exact = surface(c).and_then(|of| Some(of.contributions(outcome.plan.inputs())?.moments));
             judge(&mut characteristics[c], &checked, &checked.characteristics[c], exact);
         }
@@ -321,13 +327,15 @@ fn judge(one: &mut CharacteristicAnalysis, checked: &Checked, found: &CheckedFig
         skewness: error(2, skewness.0, skewness.1),
         kurtosis: error(3, kurtosis.0, kurtosis.1),
         yield_: found.yield_.zip(law).map(|(share, law)| share.error_of(law)),
-        sources: vec![ErrorSource::Checked { points: checked.count() }],
+        sources: vec![ErrorSource::Checked { points: checked.count }],
     });
     one.without_value += found.failed;
     one.verification = Some(Verification {
         kind: VerificationKind::Checks,
-        points: checked.count(),
+        points: checked.count,
         failed: found.failed,
+        far_residual: found.far.clone(),
+        lost_share: Some(found.lost),
         valid: None,
         left: found.left,
         figures: [None; 4],
@@ -352,7 +360,20 @@ pub(in crate::analysis) fn warnings(one: &CharacteristicAnalysis, wanted: Option
     let mut warnings = Vec::new();
     if verification.failed > 0 {
         let (failed, points) = (verification.failed, verification.points);
-        warnings.push(Warning::DomainEdgeWithin { characteristic: characteristic(), failed, points });
+        let share = verification.lost_share;
+        warnings.push(Warning::DomainEdgeWithin { characteristic: characteristic(), failed, points, share });
+    }
+    if let Some(far) = &verification.far_residual
+        && let Some(residual) = far.residual
+    {
+        let directions = far.directions.iter().map(|&(d, up)| (one.sensitivities[d].dimension.clone(), up));
+        warnings.push(Warning::FarResidual {
+            characteristic: characteristic(),
+            directions: directions.collect(),
+            residual,
+            from: far.from,
+            share: far.share,
+        });
     }
     let switches = verification.switches.iter().flatten();
     warnings.extend(switches.filter_map(|found| found.warning(&characteristic(), None)));
@@ -363,6 +384,7 @@ pub(in crate::analysis) fn warnings(one: &CharacteristicAnalysis, wanted: Option
         && error.is_some_and(|error| error > UNKNOWN * sigma)
         && !verification.replaced
         && let Some(share) = verification.left.map(|left| left.min(1.0))
+        && share > TRUSTED
     {
         warnings.push(Warning::UntrustedSurrogate { characteristic: characteristic(), share, sampled: None });
     }

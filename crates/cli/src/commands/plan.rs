@@ -13,7 +13,7 @@ use crate::{points, study};
 use sensitol::method::{DerivativeSource, ReducedInputs};
 use sensitol::plan::{KnownAnswers, Plan, Point, Purpose, Stage};
 use sensitol::problem::Problem;
-use sensitol::verification::MOST_CHECKS;
+use sensitol::verification::check_points;
 use sensitol::warning::Warning;
 use sensitol_report::document::number::plural;
 use sensitol_report::document::terminal::text;
@@ -114,9 +114,10 @@ pub(crate) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
         rounds: stages,
         largest_batch: of_first.max(evaluations.saturating_sub(of_first)),
         stages: vec![of_stage(first)],
-        checks: match study.options.verification(study.problem.function().signature()) {
-            0 => Some(0),
-            most => study.problem.function().signature().costly.then_some(most.min(MOST_CHECKS)),
+        checks: match study.options.verifies(study.problem.function().signature()) {
+            false => Some(0),
+            true => (study.problem.function().signature().costly)
+                .then(|| check_points(study.options.verify, plan.varying().len())),
         },
         extremes: study.options.extremes,
         dimensions: plan.varying().iter().map(|&d| axis(problem, &*plan, d)).collect(),

@@ -203,7 +203,7 @@ fn defaults_are_what_is_left_out() {
         assert_eq!(format!("{:?}", with.problem.dimensions()), format!("{:?}", without.problem.dimensions()), "{key}");
     }
     let of_analysis = defaults("AnalysisEntry");
-    assert_eq!(of_analysis.len(), 9, "{of_analysis:?}");
+    assert_eq!(of_analysis.len(), 8, "{of_analysis:?}");
     for (key, value) in of_analysis {
         let base = match key.as_str() {
             "nodes" => serde_json::json!({ "method": "dimension-reduction" }),

@@ -44,6 +44,13 @@ fn every() -> Vec<Warning> {
         wanted: 0.01,
         budget,
     };
+    let far = |directions, residual| Warning::FarResidual {
+        characteristic: characteristic(),
+        directions,
+        residual,
+        from: 2.0,
+        share: 0.0228,
+    };
     let (output, expected, found) = (|| text("gap"), Some(0.2), Some(0.3));
     let (times, points, suspects) = (2, 7, || vec![text("a = 1.5"), text("b = 2.5")]);
     vec![
@@ -182,7 +189,8 @@ fn every() -> Vec<Warning> {
         },
         Warning::RecordedFailures { characteristic: characteristic(), failed: 1, point: text("b = 12.3") },
         Warning::RecordedFailures { characteristic: characteristic(), failed: 4, point: text("b = 12.3") },
-        Warning::DomainEdgeWithin { characteristic: characteristic(), failed: 2, points: 12 },
+        Warning::DomainEdgeWithin { characteristic: characteristic(), failed: 2, points: 12, share: None },
+        Warning::DomainEdgeWithin { characteristic: characteristic(), failed: 2, points: 12, share: Some(0.067) },
         Warning::SupportEdge { dimension: dimension(), from: -2.287, to: -1.169, others: names(3) },
         Warning::LongTail {
             characteristic: characteristic(),
@@ -228,6 +236,9 @@ fn every() -> Vec<Warning> {
             others: names(0),
         },
         Warning::InteractionsLeftOut { characteristic: characteristic(), share: 0.012 },
+        Warning::ConditionalVerdict { characteristics: names(2) },
+        far(vec![(dimension(), true), (text("pin"), false)], 3.2),
+        far(Vec::new(), -0.7),
         Warning::UntrustedSurrogate { characteristic: characteristic(), share: 0.115, sampled: Some(16_384) },
         Warning::UntrustedSurrogate { characteristic: characteristic(), share: 0.115, sampled: None },
         resolved(Figure::Sigma, Some(0.02), true),
