@@ -17,9 +17,11 @@ use crate::analysis::distribution::yield_selection;
 pub use crate::analysis::evaluation_summary::Account;
 pub use crate::analysis::result::characteristic::{CharacteristicAnalysis, Sensitivity};
 pub use crate::analysis::result::coverage_intervals::CoverageIntervals;
+pub use crate::analysis::result::figure_basis::{FigureBases, FigureBasis};
 pub use crate::analysis::result::interaction::{Interaction, InteractionList, Missing};
 use crate::analysis::result::interaction_listing;
 pub use crate::analysis::result::interaction_remainder::Remainder;
+pub use crate::analysis::result::points_to_decide::points_to_decide;
 pub use crate::analysis::result::quantile_estimates::QuantileEstimates;
 pub use crate::analysis::result::sampled_model::SampledModel;
 pub use crate::analysis::result::serialisation::CharacteristicShape;
@@ -213,7 +215,7 @@ fn check(problem: &Problem, outcome: &Outcome, options: &Options, run: &Run<'_>)
     let evaluator = Evaluator::new(problem, run).with_budget(budget).with_seed(seed).with_ledger(method);
     let (mut characteristics, shares): (Vec<_>, Vec<_>) = of_all(problem, outcome).into_iter().unzip();
     let signature = problem.function().signature();
-    let verified = options.verification(signature) > 0;
+    let verified = options.verifies(signature);
     // A cheap model that is verified is sampled anyway, at points that need no surface: no fallback is needed.
     if signature.costly || !verified {
         model_sample::fall_back(&evaluator, outcome, &mut characteristics);
@@ -240,7 +242,7 @@ pub(crate) fn analyze_keeping(
     let seed = options.seed.unwrap_or(Options::SEED);
     let Checked { mut characteristics, shares, extremes, found, mut left, ledger } =
         check(problem, &outcome, options, run);
-    let bounded = options.verification(problem.function().signature()) > 0 && !run.stopped();
+    let bounded = options.verifies(problem.function().signature()) && !run.stopped();
     let bounds = || if bounded { bounds(problem, &outcome, &characteristics, run) } else { Vec::new() };
     let laws = || yield_selection::laws(problem, &outcome, options, &characteristics);
     // Both need matrices of all inputs. From four megabytes on they are computed one after the other, so that only one is in memory.

@@ -3,6 +3,7 @@
 mod accuracy;
 mod comparison;
 mod coverage;
+mod external_models;
 mod published;
 mod published_figures;
 mod quantiles;

@@ -168,8 +168,7 @@ pub(super) struct AnalyzeArgs {
     #[arg(long, value_name = "FILE.csv", requires = "points", help_heading = OUTPUT, hide_short_help = true)]
     pub(super) write_missing: Option<PathBuf>,
 
-    /// Verify every figure by the model itself: a sample of a cheap model, or at most N check points of an external one, 12 unless said
-    /// otherwise; 0 for none
+    /// Verify every figure by the model itself: a sample of a cheap model, or at most N check points of an external one; 0 for none
     #[arg(long, value_name = "N", value_parser = count, num_args = 0..=1, default_missing_value = "18")]
     pub(super) verify: Option<usize>,
 
@@ -208,6 +207,10 @@ pub(super) struct AnalyzeArgs {
     /// Exit with 1 when a requirement is missed or inconclusive
     #[arg(long)]
     pub(super) check: bool,
+
+    /// Exit with 3 when a requirement is met by the surface only, and not by proof or by points of the model
+    #[arg(long, requires = "check", hide_short_help = true)]
+    pub(super) strict: bool,
 
     /// Seed of random numbers, for the methods that draw some; kept in the report
     #[arg(long, value_name = "N", value_parser = whole, allow_negative_numbers = true, hide_short_help = true)]

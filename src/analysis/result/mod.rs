@@ -2,11 +2,13 @@
 
 pub(in crate::analysis) mod characteristic;
 pub(in crate::analysis) mod coverage_intervals;
+pub(in crate::analysis) mod figure_basis;
 pub(in crate::analysis) mod interaction;
 pub(in crate::analysis) mod interaction_listing;
 pub(in crate::analysis) mod interaction_remainder;
 pub(in crate::analysis) mod json;
 pub(in crate::analysis) mod linear;
+pub(in crate::analysis) mod points_to_decide;
 pub(in crate::analysis) mod quantile_estimates;
 pub(in crate::analysis) mod sampled_model;
 pub(in crate::analysis) mod serialisation;

@@ -2,7 +2,7 @@
 
 use serde::{Serialize, Serializer};
 
-use crate::analysis::{Analysis, CharacteristicAnalysis};
+use crate::analysis::{Analysis, CharacteristicAnalysis, FigureBases};
 use crate::extremes::{Coordinate, Extremes};
 use crate::verification::Verified;
 use crate::warning::warnings_last;
@@ -26,6 +26,10 @@ pub struct CharacteristicShape<'r> {
     /// Verdicts on all requirements, the target yield included.
     #[cfg_attr(feature = "schema", schemars(with = "Vec<sensitol_numeric::verdict::JudgedShape>"))]
     requirements: Vec<Judged>,
+    /// Bases of the figures: `proof`, `points` of the model, or the `surface`.
+    basis: FigureBases,
+    /// Plain points of the model that would decide the target yield; null unless its verdict rests on the surface.
+    points_to_decide: Option<u64>,
     /// Interval of the yield; null if unknown.
     yield_interval: Option<[f64; 2]>,
     /// Sigma divided by the magnitude of the mean; null if unknown, and if the mean may be 0.
@@ -40,6 +44,8 @@ impl Serialize for CharacteristicAnalysis {
             met: self.met(),
             verdict: self.verdict(),
             requirements: self.requirements(),
+            basis: self.bases(),
+            points_to_decide: self.points_to_decide(),
             yield_interval: self.yield_interval(),
             coefficient_of_variation: self.coefficient_of_variation(),
         };

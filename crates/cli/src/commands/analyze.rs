@@ -13,7 +13,7 @@ use crate::points;
 use crate::progress::Bar;
 use crate::running::{Clock, checked, confirmed, externals, kept, on_threads};
 use crate::study;
-use sensitol::analysis::{Analysis, CharacteristicAnalysis, analyze_with};
+use sensitol::analysis::{Analysis, CharacteristicAnalysis, FigureBasis, analyze_with};
 use sensitol::assembly::{Progress, Run, Table};
 use sensitol::method::ReducedInputs;
 use sensitol::warning::{Counted, Warning};
@@ -152,7 +152,25 @@ pub(crate) fn analyzed(
     let judged = analysis.characteristics.iter().flat_map(CharacteristicAnalysis::requirements);
     let judged = judged.chain(analysis.joint_requirement);
     let exit = if asked.check { checked(unfinished, judged) } else { Exit::Done };
+    if asked.strict && exit == Exit::Done {
+        let conditional = conditional(analysis);
+        if !conditional.is_empty() {
+            look.warn(&Warning::ConditionalVerdict { characteristics: conditional });
+            return Ok(Exit::NoResult);
+        }
+    }
     Ok(confirmed(exit, &analysis.run))
+}
+
+/// Names of the characteristics with a requirement that rests on the surface only, those of a joint yield included.
+fn conditional(analysis: &Analysis) -> Vec<String> {
+    let by_surface = |basis: Option<FigureBasis>| basis == Some(FigureBasis::Surface);
+    let joint = analysis.joint_requirement.is_some();
+    let conditional = |one: &&CharacteristicAnalysis| {
+        one.requirements().into_iter().any(|judged| by_surface(one.basis_of(judged.requirement)))
+            || joint && by_surface(one.bases().yield_)
+    };
+    analysis.characteristics.iter().filter(conditional).map(|one| one.characteristic.name().to_owned()).collect()
 }
 
 /// Warns of points without an answer, and of answers to points that the plan does not contain.

@@ -9,3 +9,4 @@ mod journal;
 mod long_runs;
 #[cfg(unix)]
 mod storm;
+mod strict_check;

@@ -6,7 +6,7 @@ use crate::analysis::range_bars as bars;
 use crate::analysis::stack::Stack;
 use crate::analysis::statistics::CharacteristicStatistics;
 use crate::analysis::statistics::{derivative, matters, part, size, total};
-use crate::analysis::yield_source::source;
+use crate::analysis::yield_source::{decision, source};
 use crate::document::number::{
     UNKNOWN, beside, carried, index, index_with, known, limits, percent, plain, plural, short, significant, within,
     yielded,
@@ -106,6 +106,7 @@ impl Report {
         one.errors(&mut section);
         one.extremes(&mut section);
         one.distribution(&mut section);
+        decision(one, &self.analysis.run).into_iter().for_each(|line| section.wrapped(2, line));
         one.sampling.iter().for_each(|of| sampled(&mut section, of, one.sigma().unwrap_or(0.0), one.limited()));
         let concerned = self.warnings.iter().filter(|warning| warning.characteristic.as_deref() == Some(one.name()));
         let codes: Vec<&str> = concerned.map(|warning| warning.code).collect();

@@ -2,11 +2,15 @@
 
 use crate::document::number::{significant, unrejected};
 use crate::figures::Figures;
-use sensitol::analysis::{CharacteristicAnalysis, YieldSource};
+use sensitol::analysis::{CharacteristicAnalysis, FigureBasis, YieldSource};
+use sensitol::summary::RunSummary;
 use sensitol_numeric::capability::Capability;
 
 /// Least relative difference of the reject rate of the Pearson fit that is worth mentioning.
 const DIFFERENT: f64 = 0.01;
+
+/// Seconds an evaluation from which on a model is slow.
+const SLOW: f64 = 0.1;
 
 /// Greatest error of the yield that counts as rounding.
 const ROUNDING: f64 = 1e-12;
@@ -27,5 +31,42 @@ pub(crate) fn source(one: &CharacteristicAnalysis) -> Option<String> {
     let fit = one.pearson.as_ref().map(|fit: &Capability| rejected(fit.ppm_below(), fit.ppm_above()));
     let fit = fit.filter(|fit| source != YieldSource::Pearson && (fit - own).abs() > DIFFERENT * fit.max(own));
     let fit = fit.map_or(String::new(), |fit| format!("; Pearson fit {}", unrejected(fit)));
-    Some(format!("by {}{error}{fit}", source.words()))
+    Some(format!("by {}{error}{fit}{}", source.words(), condition(one)))
+}
+
+/// Price of a verdict by points of the model, in place of one by the surface. The time is stated for a slow model.
+pub(crate) fn decision(one: &CharacteristicAnalysis, run: &RunSummary) -> Option<String> {
+    let points = one.points_to_decide()?;
+    let each = run.in_model.as_secs_f64() / run.evaluations.max(1) as f64;
+    let time =
+        if each < SLOW { String::new() } else { format!(", {} at the measured pace", time(each * points as f64)) };
+    Some(format!("{points} plain points of the model would decide the target{time}"))
+}
+
+/// Time in a unit that people use.
+fn time(seconds: f64) -> String {
+    match seconds {
+        s if s < 120.0 => format!("{s:.0} s"),
+        s if s < 7200.0 => format!("{:.0} min", s / 60.0),
+        s if s < 172_800.0 => format!("{:.0} h", s / 3600.0),
+        s => format!("{:.0} days", s / 86_400.0),
+    }
+}
+
+/// Condition under which a yield by the surface holds. Empty for any other basis.
+fn condition(one: &CharacteristicAnalysis) -> String {
+    let checks = one.verification.as_ref().filter(|of| of.unseen.is_some());
+    match (one.bases().yield_, checks) {
+        (Some(FigureBasis::Surface), Some(checks)) if checks.lost_share.is_some_and(|lost| lost > 0.0) => {
+            format!("; the model has no value at some of the {} check points", checks.points)
+        }
+        (Some(FigureBasis::Surface), Some(checks)) if checks.far_residual.is_some() => {
+            format!("; the model leaves the surface at some of the {} check points", checks.points)
+        }
+        (Some(FigureBasis::Surface), Some(checks)) => {
+            format!(", if the surface holds between the check points ({} of the model agree)", checks.points)
+        }
+        (Some(FigureBasis::Surface), None) => ", if the surface holds: no check point was evaluated".to_owned(),
+        _ => String::new(),
+    }
 }
