@@ -465,6 +465,8 @@ class Capability(Record):
 class CharacteristicResult(Fitted):
     """A characteristic with its verdicts and intervals, in JSON."""
 
+    basis: FigureBases
+    """Bases of the figures: `proof`, `points` of the model, or the `surface`."""
     coefficient_of_variation: Optional[Verified]
     """Sigma divided by the magnitude of the mean; null if unknown, and if the mean may be 0."""
     constant: bool
@@ -531,6 +533,8 @@ class CharacteristicResult(Fitted):
     """Part that it belongs to."""
     pearson_fit: Optional[Capability]
     """Capability by the Pearson fit."""
+    points_to_decide: Optional[int]
+    """Plain points of the model that would decide the target yield; null unless its verdict rests on the surface."""
     possible_interactions: int
     """Number of possible interactions."""
     ppm_above: Optional[float]
@@ -895,6 +899,28 @@ class FactorIndices(Record):
     """Part of the variance that the factor explains alone."""
     total: Optional[EstimatedShare]
     """Part of the variance with all interactions of the factor."""
+
+
+class FarResidual(Record):
+    """A difference between model and surface that check points met far from the means."""
+
+    from_: float
+    """Distance in sigmas from which on the model may differ."""
+    residual: Optional[float]
+    """Model minus surface in sigmas at the farthest check point. None if the model has no value there."""
+    share: float
+    """Share of the assemblies that may lie beyond that distance."""
+
+
+class FigureBases(Record):
+    """The bases of the figures of a characteristic. None for a figure that is unknown."""
+
+    moments: Optional[Literal['proof', 'points', 'surface']]
+    """Basis of mean, sigma, skewness and kurtosis."""
+    quantiles: Optional[Literal['proof', 'points', 'surface']]
+    """Basis of the quantiles."""
+    yield_: Optional[Literal['proof', 'points', 'surface']]
+    """Basis of the yield and of the reject rates."""
 
 
 class Figures(Record):
@@ -1892,12 +1918,18 @@ class Verification(Record):
     """Difference of the shares of model and surface within the limits, below and above them. None if there is no
     sample of both.
     """
+    far_residual: Optional[FarResidual]
+    """Largest residual of the surface far from the means. None if no check point met one that changes a figure."""
     figures: VerifiedFigures
     """Figures of the model itself; null without a sample of it."""
     kind: str
     """`sample`, `checks` or `exact`."""
     left: Optional[float]
     """Share of the variance that the surface leaves unexplained."""
+    lost_share: Optional[float]
+    """Greatest share of the assemblies without a value, by the places of the check points without one. 0 if all have
+    a value, None without check points.
+    """
     points: int
     """Evaluated points of the model."""
     replaced: bool
@@ -1985,7 +2017,7 @@ _INNER: Dict[str, Dict[str, type]] = {
     "AllocationResultRequirements": {"sampled": AllocationResultRequirementsSampled},
     "AnalysisResult": {"account": Account, "characteristic_correlation": OutputCorrelation, "characteristics": CharacteristicResult, "correlation": Pair, "dimensions": DimensionResult, "evaluator": EvaluatorSummary, "joint_requirement": Judged, "joint_yield": Verified, "warnings": ReportedWarning},
     "Beyond": {"design_point": DesignPoint},
-    "CharacteristicResult": {"coefficient_of_variation": Verified, "coverage": CoverageIntervals, "distribution": Law, "error_estimate": ErrorEstimate, "inspection": InspectionRisks, "interactions": Interaction, "interactions_remainder": Remainder, "least_squares": Residual, "model_sampling": SampledModel, "normal_fit": Capability, "pearson_fit": Capability, "quantiles": QuantileEstimates, "requirements": Judged, "sampling_interval": SamplingInterval, "sensitivities": Sensitivity, "sobol": SobolIndices, "surface_law": SurfaceLaw, "surrogate_sampling": Sampled, "verification": Verification, "worst_case": WorstCase},
+    "CharacteristicResult": {"basis": FigureBases, "coefficient_of_variation": Verified, "coverage": CoverageIntervals, "distribution": Law, "error_estimate": ErrorEstimate, "inspection": InspectionRisks, "interactions": Interaction, "interactions_remainder": Remainder, "least_squares": Residual, "model_sampling": SampledModel, "normal_fit": Capability, "pearson_fit": Capability, "quantiles": QuantileEstimates, "requirements": Judged, "sampling_interval": SamplingInterval, "sensitivities": Sensitivity, "sobol": SobolIndices, "surface_law": SurfaceLaw, "surrogate_sampling": Sampled, "verification": Verification, "worst_case": WorstCase},
     "ComparedCharacteristic": {"methods": ComparedMethod, "reference": SimulatedCharacteristic},
     "ComparedMethod": {"error_vs_reference": ErrorVsReference, "run": RunSummary},
     "ComparisonResult": {"characteristics": ComparedCharacteristic, "evaluator": EvaluatorSummary, "not_run": NotRun},
@@ -2014,7 +2046,7 @@ _INNER: Dict[str, Dict[str, type]] = {
     "SweptCharacteristic": {"points": SweptPoint},
     "SweptPoint": {"error_estimate": ErrorEstimate, "requirements": Judged},
     "VarianceShare": {"first": Verified, "total": Verified},
-    "Verification": {"difference": Verified, "figures": VerifiedFigures, "shares": VarianceShare, "switches": FoundSwitch, "tails": SampleTails, "valid_share": Verified},
+    "Verification": {"difference": Verified, "far_residual": FarResidual, "figures": VerifiedFigures, "shares": VarianceShare, "switches": FoundSwitch, "tails": SampleTails, "valid_share": Verified},
     "VerifiedFigures": {"above": Verified, "below": Verified, "kurtosis": Verified, "mean": Verified, "sigma": Verified, "skewness": Verified, "yield_": Verified},
     "WorstCase": {"at": ExtremesAt},
 }
