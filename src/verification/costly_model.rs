@@ -93,8 +93,8 @@ impl Checked {
 /// Judges the surfaces of all characteristics by the model's values at check points: near the means, and where decisions fall.
 ///
 /// Shapes: a target for every characteristic; surrogate and shares over the dimensions at `varying`. Evaluations: `most` within the
-/// evaluator's budget, and up to [`MOST_LOCATING`](crate::verification::MOST_LOCATING) more if the budget has them and the surface is refuted. Returns None, without an
-/// evaluation, if fewer than 6 are allowed or no characteristic has a surface.
+/// evaluator's budget, and up to [`MOST_LOCATING`](crate::verification::MOST_LOCATING) more if the budget has them and the surface is
+/// refuted. Returns None, without an evaluation, if fewer than 6 are allowed or no characteristic has a surface.
 ///
 /// Accuracy: three estimates reach the true error of at least 97 % of the figures (`tests/accuracy`).
 pub fn verify_by_checks(
@@ -239,10 +239,12 @@ impl<'s> Answers<'s> {
         self.count += points.len();
         for c in 0..self.of.len() {
             self.unanswered[c] |= has_no_answer(&answers, c);
-            let at = self.of[c].as_ref().and_then(|surface| surface.at(&columns));
-            let at = at.unwrap_or_else(|| vec![f64::NAN; points.len()]);
-            let sigma = self.of[c].as_ref().map_or(1.0, |surface| surface.figures[1]);
-            self.residuals[c].extend(answers.column(c).iter().zip(&at).map(|(y, q)| (y - q) / sigma));
+            let model = answers.column(c);
+            // Without a surface there is no residual: only points without a value are told apart.
+            let at = self.of[c].as_ref().and_then(|surface| surface.at(&columns)).unwrap_or_else(|| model.to_vec());
+            let sigma =
+                self.of[c].as_ref().map(|surface| surface.figures[1]).filter(|sigma| *sigma > 0.0).unwrap_or(1.0);
+            self.residuals[c].extend(model.iter().zip(&at).map(|(y, q)| (y - q) / sigma));
             self.surfaces[c].extend(at);
         }
     }

@@ -69,3 +69,26 @@ fn the_yield_of_a_surface_ends_at_its_farthest_point() {
     let [low, _] = [0, 1].map(|end| high["yield_interval"][end].as_f64().unwrap());
     assert!(low <= 1.0 - 3.3e-6 && high["verdict"] != "met", "{high}");
 }
+
+/// A characteristic without a limit and one that does not vary have no failed points, and the check points of the other one are the same.
+#[test]
+fn a_constant_characteristic_has_no_failed_point() {
+    let child = "import json, sys\nhello = json.loads(sys.stdin.readline())\n\
+                 print(json.dumps({'ready': True, 'name': 'two', 'version': '1'}), flush=True)\n\
+                 for line in sys.stdin:\n    q = json.loads(line)\n    \
+                 print(json.dumps({'id': q['id'], 'y': [q['x'][0] * q['x'][1], 7.0]}), flush=True)\n";
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("two.py"), child).unwrap();
+    let study = "[model]\ncommand = [\"python3\", \"two.py\"]\n[dimensions]\na = { nominal = 2.0, tolerance = 0.1 }\n\
+                 b = { nominal = 3.0, tolerance = 0.1 }\n[characteristics]\narea = {}\nfixed = {}\n";
+    let path = folder.path().join("study.toml");
+    std::fs::write(&path, study).unwrap();
+    let program = assert_cmd::cargo::cargo_bin!("sensitol");
+    let output = Command::new(program).arg("analyze").arg(path).arg("--json").output().unwrap();
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let codes: Vec<&str> =
+        report["warnings"].as_array().unwrap().iter().filter_map(|warning| warning["code"].as_str()).collect();
+    assert!(!codes.contains(&"domain-edge-within"), "{codes:?}");
+    assert_eq!(report["characteristics"][1]["without_value"], 0);
+    assert_eq!(report["characteristics"][1]["sigma"], 0.0);
+}
