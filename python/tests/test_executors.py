@@ -109,7 +109,8 @@ def test_kept_answers_go_with_an_executor(tmp_path):
     study, cache = shaft_and_bore(models.clearance), tmp_path / "answers.sqlite"
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         one = study.analyze("full", executor=pool, cache=cache)
-    assert study.analyze("full", cache=cache).cached == one.evaluations
+    # A check point at the end of a bounded dimension may be that of another one, and is evaluated once.
+    assert study.analyze("full", cache=cache).cached == one.evaluations + one.cached
 
 
 def test_loky_sends_functions_by_value():
