@@ -39,6 +39,8 @@ const LINES: usize = 3;
 const SAME: f64 = 0.95;
 /// Number of pairs of random points, normally and if there are many other points.
 const PAIRS: [usize; 2] = [4, 3];
+/// Fewest evaluations of a check: the random pairs.
+pub(super) const FEWEST: usize = 2 * PAIRS[1];
 /// Number of other points from which on there are fewer pairs.
 const MANY: usize = 8;
 

@@ -20,8 +20,12 @@ const SUDDEN: f64 = 10.0;
 /// Part of the last residual below which an earlier one is no part of it.
 const NOTHING: f64 = 0.02;
 
+/// Component of a direction above which the ray is the axis of that input.
+const ALONG_ONE: f64 = 0.99;
 /// Greatest power with which a residual grows beyond the last point.
 const STEEPEST: f64 = 6.0;
+/// Factor of the distance of the last point beyond which a residual stays as it is.
+const FARTHER: f64 = 1.5;
 /// Residual in sigmas above which all are alike, those of points without a value included.
 const MOST_SIGMAS: f64 = 10.0;
 
@@ -98,6 +102,16 @@ impl CheckRay {
         Self { direction: unit(point.to_vec()), stations: vec![(length(point), row)] }
     }
 
+    /// True if the ray is the axis of one input.
+    pub(super) fn is_of_one_input(&self) -> bool {
+        self.direction.iter().any(|part| part.abs() > ALONG_ONE)
+    }
+
+    /// Farthest point on it.
+    pub(super) fn end(&self) -> Vec<f64> {
+        self.direction.iter().map(|part| part * self.last().0).collect()
+    }
+
     fn last(&self) -> (f64, usize) {
         *self.stations.last().expect("a ray has a point")
     }
@@ -145,9 +159,9 @@ impl Profile {
         let segment = at.windows(2).find(|pair| t <= pair[1][0]).unwrap_or(&at[at.len() - 2..]);
         let ([a, low], [b, high]) = (segment[0], segment[1]);
         let ratio = high / low;
-        if t > last && ratio > 1.0 && a > 0.0 {
+        if t > last && a > 0.0 && ratio > 1.0 && ratio < 1.0 / NOTHING {
             let power = (libm::log(ratio) / libm::log(b / a)).min(STEEPEST);
-            return high * libm::pow(t / b, power);
+            return high * libm::pow((t / b).min(FARTHER), power);
         }
         low + (high - low) * (t - a) / (b - a)
     }

@@ -52,6 +52,12 @@ impl<'s> CheckedSurface<'s> {
         values(self.surrogate, &self.space.standardised(z))
     }
 
+    /// Standardised inputs at a point.
+    pub(super) fn inputs_at(&self, z: &[f64]) -> Vec<f64> {
+        let columns: Columns = z.iter().map(|&z| vec![z]).collect();
+        self.space.standardised(&columns).into_iter().map(|column| column[0]).collect()
+    }
+
     /// Number of variables.
     pub(super) fn variables(&self) -> usize {
         self.space.len()

@@ -6,7 +6,7 @@ use crate::estimate::{Columns, NormalSpace};
 use crate::evaluation::Evaluator;
 use crate::problem::Problem;
 use crate::verification::Verified;
-use crate::verification::check_points::{Design, MOST, Wish, dot};
+use crate::verification::check_points::{Design, FEWEST, MOST, Wish, dot};
 use crate::verification::check_ray::{CheckRay, Profile, rays, to_locate};
 use crate::verification::checked_surface::CheckedSurface;
 use crate::verification::decision_points;
@@ -31,11 +31,16 @@ const NEAR: usize = 12;
 /// assert_eq!(check_points(None, 3), 12 + 6);
 /// assert_eq!(check_points(None, 10), 12 + 11);
 /// assert_eq!(check_points(Some(12), 10), 12);
+/// assert_eq!(check_points(Some(5), 10), 0); // too few for an error
 /// assert_eq!(check_points(Some(100), 10), 18 + 11);
 /// ```
 pub fn check_points(asked: Option<usize>, varying: usize) -> usize {
     let decisions = decision_points::count(varying);
-    asked.map_or(NEAR + decisions, |asked| asked.min(MOST + decisions))
+    match asked {
+        None => NEAR + decisions,
+        Some(asked) if asked < FEWEST => 0,
+        Some(asked) => asked.min(MOST + decisions),
+    }
 }
 
 /// A characteristic whose surface is verified.
@@ -127,8 +132,12 @@ pub fn verify_by_checks(
     for index in located {
         let enough = evaluator.remaining().is_none_or(|left| left >= CheckRay::LOCATING);
         if enough && !evaluator.run().stopped() {
-            let points = rays[index].locate(answers.count);
-            answers.ask(evaluator, points);
+            let mut located = rays[index].clone();
+            let points = located.locate(answers.count);
+            // Points that were not answered before the end of the run change nothing.
+            if answers.ask_whole(evaluator, points) {
+                rays[index] = located;
+            }
         }
     }
     let figures = |c: usize| {
@@ -151,7 +160,7 @@ pub fn verify_by_checks(
             targets[c].shares.iter().map(error).collect::<Vec<f64>>()
         };
         let shares = judged.as_ref().map(of_shares);
-        let far = FarResidual::largest(&found, &within.map(|interval| surface.share(interval)), varying);
+        let far = FarResidual::largest(surface, &found, &within.map(|interval| surface.share(interval)), varying);
         let lost = lost(&design, d, &found);
         CheckedFigures { surface: Some(surface.figures), shares, far, lost, ..nothing.judged(surface, judged, within) }
     };
@@ -196,20 +205,19 @@ fn likeliest_points(
     points
 }
 
-/// Greatest share of the assemblies without a value: that of the half-spaces in which points without one lie. A random point without a value
-/// outside of all of them is counted, with the upper end of its 95 % interval.
+/// Greatest share of the assemblies without a value.
+///
+/// A point without one along a single input stands for its half-space. Any other such point outside of these half-spaces belongs to a region
+/// of an unknown shape. The random points bound its share then, with the upper end of their 95 % interval.
 fn lost(design: &Design, d: &[f64], found: &[(&CheckRay, FarEffect, Profile)]) -> f64 {
-    let in_half_spaces: f64 = found.iter().map(|(_, effect, _)| effect.lost).sum();
-    let explained = |row: usize| {
-        let holds = |(ray, _, profile): &(&CheckRay, FarEffect, Profile)| {
-            matches!(profile, Profile::WithoutValue(_)) && dot(&ray.direction, &design.points[row]) > profile.from()
-        };
-        found.iter().any(holds)
-    };
+    let failing = found.iter().filter(|(.., profile)| matches!(profile, Profile::WithoutValue(_)));
+    let (alone, several): (Vec<_>, Vec<_>) = failing.partition(|(ray, ..)| ray.is_of_one_input());
+    let explained = |point: &[f64]| alone.iter().any(|(ray, _, profile)| dot(&ray.direction, point) > profile.from());
     let random = design.random()..design.points.len();
-    let alone = random.clone().filter(|&row| d[row].is_nan() && !explained(row)).count();
-    let counted = if alone > 0 { unseen(random.len(), alone)[1] } else { 0.0 };
-    (in_half_spaces + counted).min(1.0)
+    let open = random.clone().filter(|&row| d[row].is_nan() && !explained(&design.points[row])).count();
+    let unknown = several.iter().any(|(ray, ..)| !explained(&ray.end()));
+    let counted = if open > 0 || unknown { unseen(random.len(), open)[1] } else { 0.0 };
+    (alone.iter().map(|(_, effect, _)| effect.lost).sum::<f64>() + counted).min(1.0)
 }
 
 /// Answers to check points, and the surfaces there.
@@ -230,6 +238,19 @@ impl<'s> Answers<'s> {
     fn new(space: &'s NormalSpace<'s>, of: &'s [Option<CheckedSurface<'s>>]) -> Self {
         let (residuals, surfaces) = (vec![Vec::new(); of.len()], vec![Vec::new(); of.len()]);
         Self { space, of, count: 0, residuals, surfaces, unanswered: vec![false; of.len()] }
+    }
+
+    /// Evaluates the model at further points. Returns false, and keeps none of them, if some were not answered.
+    fn ask_whole(&mut self, evaluator: &Evaluator<'_>, points: Vec<Vec<f64>>) -> bool {
+        let (count, unanswered) = (self.count, self.unanswered.clone());
+        self.ask(evaluator, points);
+        if self.unanswered == unanswered {
+            return true;
+        }
+        self.unanswered = unanswered;
+        self.count = count;
+        self.residuals.iter_mut().chain(&mut self.surfaces).for_each(|column| column.truncate(count));
+        false
     }
 
     /// Evaluates the model at further points.

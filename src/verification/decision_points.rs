@@ -5,12 +5,13 @@
 //! | 0 to 2 each | likeliest point of the surface beyond every limit | a surface that is wrong at its own limit |
 //! | 0 to 6 | all combinations of signs of up to 3 idle inputs, 4 sigmas | a contact that needs two or three of them |
 //! | the rest | 3 sigmas on either side of every input without points of its own | a contact of an unimportant input |
-//! | the rest | combinations of signs of all inputs, at the ends of the bands of up to 4 inputs | effects of several large deviations |
+//! | the rest | combinations of signs of all inputs, of 16 at random if there are more, 6 sigmas off at most | effects of several large deviations |
 //!
-//! Their number is a third of the `2 N + 13` points that every method and the check points near the means take, at least 6 and at most 18.
+//! The kinds follow in this order as far as their number allows. It is a third of the `2 N + 13` points that every method and the check points near the means take, at least 6 and at most 18.
 
 use rand::RngExt;
 use rand::SeedableRng;
+use rand::seq::SliceRandom;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use crate::estimate::strata::{length, unit};
@@ -24,7 +25,7 @@ const MOST: usize = 18;
 const PART: usize = 3;
 /// Most idle inputs of which all combinations of signs are checked.
 const COMBINED: usize = 3;
-/// Length of a point at which all inputs deviate, in sigmas: the ends of the bands of four inputs.
+/// Greatest length of a point at which many inputs deviate, in sigmas: the ends of the bands of four inputs.
 const ALL: f64 = 6.0;
 /// Least deviation of each input at such a point, in sigmas.
 const EACH: f64 = 1.5;
@@ -66,12 +67,22 @@ pub(super) fn choose(
     }
     // Combinations of signs fill the rest. With few inputs, each appears once.
     let mut tries = 4 * budget;
-    let each = (ALL / (n as f64).sqrt()).clamp(EACH, ON_AXIS);
     while chosen.left() > 0 && tries > 0 {
-        chosen.add((0..n).map(|_| if rng.random() { each } else { -each }).collect());
+        chosen.add(combination(n, &mut rng));
         tries -= 1;
     }
     chosen.points
+}
+
+/// Point at which all inputs deviate, or as many at random as [`ALL`] sigmas allow.
+fn combination(n: usize, rng: &mut Xoshiro256PlusPlus) -> Vec<f64> {
+    let moved = n.min((ALL / EACH).powi(2) as usize);
+    let each = (ALL / (moved as f64).sqrt()).min(ON_AXIS);
+    let mut inputs: Vec<usize> = (0..n).collect();
+    inputs.shuffle(rng);
+    let mut point = vec![0.0; n];
+    inputs[..moved].iter().for_each(|&j| point[j] = if rng.random() { each } else { -each });
+    point
 }
 
 /// Points chosen so far.

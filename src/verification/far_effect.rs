@@ -9,10 +9,11 @@
 //! ```
 //!
 //! Without a value the assemblies of the half-space are left out: `M_k = (E[v^k] - E[v^k; t > t_0])/(1 - P(t > t_0))`. An effect of several
-//! inputs fills only a part of the half-space, so that the change is rather too large than too small. It is an error, and no correction.
+//! inputs fills only a part of the half-space, so that the change is rather too large than too small, unless there are further such places
+//! that no point has met. It is an error, and no correction.
 
 use crate::estimate::figures::{MOMENTS, standard};
-use crate::estimate::strata::{HalfSpace, along};
+use crate::estimate::strata::{HalfSpace, REACH, along};
 use crate::verification::check_ray::{CheckRay, Profile};
 use crate::verification::checked_surface::CheckedSurface;
 use crate::verification::likeliest_point::FARTHEST;
@@ -53,7 +54,7 @@ impl FarEffect {
         {
             return None;
         }
-        let from = profile.from();
+        let from = profile.from().min(REACH - 1.0);
         let mut z = normals.columns(STREAM, surface.knots() / PART);
         let weights = HalfSpace { direction: ray.direction.clone(), from }.enter(&mut z);
         let rows = weights.len() as f64;

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::estimate::strata::REACH;
 use crate::verification::check_ray::{CheckRay, Profile};
+use crate::verification::checked_surface::CheckedSurface;
 use crate::verification::far_effect::FarEffect;
 use sensitol_numeric::distribution::standard_normal;
 
@@ -15,7 +16,7 @@ const OF_REJECTS: f64 = 0.1;
 const SELDOM: f64 = 1e-6;
 /// Part of the last residual up to which the surface is said to hold.
 const SMALL: f64 = 0.1;
-/// Least component of a direction that is named.
+/// Least part of the deviation of a named input in that of all.
 const NAMED: f64 = 0.3;
 
 /// A difference between model and surface that check points met far from the means.
@@ -38,13 +39,21 @@ impl FarResidual {
     /// Returns the residual with the greatest effect that is felt.
     ///
     /// Shapes: `kept` has the share of the surface within every interval of the effects, `varying` a dimension for every variable.
-    pub(super) fn largest(found: &[(&CheckRay, FarEffect, Profile)], kept: &[f64], varying: &[usize]) -> Option<Self> {
+    pub(super) fn largest(
+        surface: &CheckedSurface<'_>,
+        found: &[(&CheckRay, FarEffect, Profile)],
+        kept: &[f64],
+        varying: &[usize],
+    ) -> Option<Self> {
         let felt = found.iter().map(|(ray, effect, profile)| (size(effect, kept), ray, profile));
         let (size, ray, profile) = felt.max_by(|a, b| a.0.total_cmp(&b.0))?;
         if size < FELT {
             return None;
         }
-        let named = ray.direction.iter().zip(varying).filter(|(part, _)| part.abs() > NAMED);
+        // Correlated inputs deviate together, whatever variable carries them.
+        let inputs = surface.inputs_at(&ray.end());
+        let length = inputs.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let named = inputs.iter().zip(varying).filter(|(x, _)| x.abs() > NAMED * length);
         let residual = match profile {
             Profile::Residual(at) => at.last().map(|[_, d]| *d),
             Profile::WithoutValue(_) => None,
@@ -54,7 +63,7 @@ impl FarResidual {
             Profile::WithoutValue([last, _]) => *last,
         };
         let share = standard_normal::sf(from.min(REACH));
-        Some(Self { directions: named.map(|(part, &d)| (d, *part > 0.0)).collect(), from, residual, share })
+        Some(Self { directions: named.map(|(x, &d)| (d, *x > 0.0)).collect(), from, residual, share })
     }
 }
 

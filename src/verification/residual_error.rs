@@ -102,7 +102,8 @@ fn quartic([near_up, near_down, far_up, far_down]: [f64; 4]) -> [f64; 4] {
 /// Judges a surface by its residuals in sigmas at the points of a design, and by the effects of those far from the means.
 ///
 /// Shapes: `d` has a residual for every point of the design, NaN at points without a value; `surface_at` has the values of the surface at
-/// the random ones. Returns None if fewer than [`FEWEST`] random points have a value.
+/// the random ones. Returns None if fewer than [`FEWEST`] random points have a value, and if
+/// an error is not finite.
 pub(super) fn judge(
     design: &Design,
     wish: &Wish,
@@ -138,8 +139,13 @@ pub(super) fn judge(
     let errors = std::array::from_fn(|r| {
         let bound = (spread[r] * rho / rest.e.len() as f64).sqrt() + SQUARES[r] * rho;
         let far = sum_of_squares(&far.iter().map(|effect| effect.moments[r]).collect::<Vec<f64>>());
+        // A moment that overflows is unknown.
+        let far = if far.is_nan() { f64::INFINITY } else { far };
         units[r] * (far.max(moved[r] * moved[r]) + seen[r] * seen[r] + bound * bound).sqrt()
     });
+    if errors.iter().any(|error: &f64| !error.is_finite()) {
+        return None;
+    }
     let total: f64 = surface.weights.iter().sum();
     let mean_square = |of: &[f64]| of.iter().zip(&surface.weights).map(|(p, w)| w / total * p * p).sum::<f64>();
     let far_square: f64 = far.iter().map(|effect| effect.square).sum();

@@ -136,13 +136,13 @@ pub(super) fn far_residual(
     let held = match *from < 0.1 {
         true => "The difference begins near the means".to_owned(),
         false => format!(
-            "The surface holds up to {from:.1} sigma in this direction, and up to {} of the assemblies lie beyond",
+            "The surface is taken to hold up to {from:.1} sigma in this direction; up to {} of the assemblies lie beyond",
             part(*share)
         ),
     };
     say(format!(
-        "The model of `{characteristic}` is {:.2} sigma {sense} its surface where {place}. {held}. The errors of all figures include it.",
-        residual.abs()
+        "The model of `{characteristic}` is {} sigma {sense} its surface where {place}. {held}. The errors of all figures include it.",
+        significant(residual.abs(), 3)
     ))
     .advise(Advice::SampleRareEvents)
 }

@@ -206,3 +206,46 @@ pub(super) fn table() -> String {
     }
     text
 }
+
+/// A region without a value that lies all around the means in many dimensions holds half of the assemblies, and no point along a single
+/// dimension. The bound of its share comes from the random points.
+#[test]
+fn a_region_without_a_value_around_the_means_is_not_bounded_by_its_corners() {
+    let dimensions: Vec<Dimension> = (0..64).map(|j| Dimension::normal(format!("x{j}"), 0.0, 3.0).unwrap()).collect();
+    // The sum of 64 squares exceeds 64 with the probability 0.476 (chi-squared distribution).
+    let function =
+        Closure::scalar("y", |x| if x.iter().map(|x| x * x).sum::<f64>() < 64.0 { x.iter().sum() } else { f64::NAN });
+    let limits = SpecLimits::new(None, Some(40.0)).unwrap();
+    let wanted = Characteristic::new("y").with_limits(limits).with_target_yield(0.995).unwrap();
+    let problem = Problem::new(dimensions, function).unwrap().asking([wanted]).unwrap();
+    let found = analyze(&costly(&problem).0, &Options::from(Method::SecondOrder)).unwrap();
+    let one = &found.characteristics[0];
+    assert!(one.without_value > 0 && one.verdict() != Some(Verdict::Met), "{:?}", one.yield_interval());
+    assert!(one.verification.as_ref().unwrap().lost_share.unwrap() > 0.476);
+}
+
+/// A model and its mirror image have the same errors.
+#[test]
+fn errors_do_not_depend_on_the_sign_of_the_model() {
+    for case in CASES.iter().filter(|case| case.name != "step") {
+        let of_sign = |sign: f64| {
+            let function = case.function;
+            let dimensions = case.sigmas.iter().enumerate();
+            let dimensions = dimensions.map(|(j, sigma)| Dimension::normal(format!("x{j}"), 0.0, 3.0 * sigma).unwrap());
+            let limits = [sign * case.upper].map(Some);
+            let limits = if sign > 0.0 { SpecLimits::new(None, limits[0]) } else { SpecLimits::new(limits[0], None) };
+            let wanted = Characteristic::new("y").with_limits(limits.unwrap());
+            let problem =
+                Problem::new(dimensions.collect::<Vec<_>>(), Closure::scalar("y", move |x| sign * function(x)));
+            let problem = costly(&problem.unwrap().asking([wanted]).unwrap()).0;
+            let found = analyze(&problem, &Options::from(Method::Full)).unwrap();
+            let estimate = found.characteristics[0].error_estimate.clone().unwrap();
+            [estimate.mean, estimate.sigma, estimate.skewness, estimate.kurtosis, estimate.yield_].map(Option::unwrap)
+        };
+        let (up, down) = (of_sign(1.0), of_sign(-1.0));
+        for (up, down) in up.into_iter().zip(down) {
+            // The points of the surface are others: its direction has the other sign.
+            assert!((up - down).abs() <= 0.02 * up.abs().max(1e-6), "{}: {up} and {down}", case.name);
+        }
+    }
+}

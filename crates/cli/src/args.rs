@@ -169,7 +169,7 @@ pub(super) struct AnalyzeArgs {
     pub(super) write_missing: Option<PathBuf>,
 
     /// Verify every figure by the model itself: a sample of a cheap model, or at most N check points of an external one; 0 for none
-    #[arg(long, value_name = "N", value_parser = count, num_args = 0..=1, default_missing_value = "18")]
+    #[arg(long, value_name = "N", value_parser = count, num_args = 0..=1, default_missing_value = "64")]
     pub(super) verify: Option<usize>,
 
     /// Search the true extremes in the box of the tolerance bands too, at some 2N evaluations or more for either side

@@ -50,12 +50,13 @@ pub struct FigureBases {
 impl CharacteristicAnalysis {
     /// Bases of the figures of this characteristic.
     pub fn bases(&self) -> FigureBases {
-        let quantiles = self.quantiles.map(|of| self.basis_of_source(of.source));
-        FigureBases {
-            moments: self.basis_of_moments(),
-            yield_: self.yield_source.map(|of| self.basis_of_source(of)),
-            quantiles,
-        }
+        let moments = self.basis_of_moments();
+        let quantiles = self.quantiles.map(|of| match self.basis_of_source(of.source) {
+            // A surface with a single value proves nothing about the model.
+            FigureBasis::Proof if moments == Some(FigureBasis::Surface) => FigureBasis::Surface,
+            basis => basis,
+        });
+        FigureBases { moments, yield_: self.yield_source.map(|of| self.basis_of_source(of)), quantiles }
     }
 
     /// Basis of the verdict on a requirement. Returns None if the requirement is not judged.
@@ -63,16 +64,18 @@ impl CharacteristicAnalysis {
         match requirement {
             Requirement::Yield(_) => self.bases().yield_,
             Requirement::WorstCase if self.proof().is_some() => Some(FigureBasis::Proof),
+            Requirement::WorstCase => Some(FigureBasis::Surface),
             _ => self.basis_of_moments(),
         }
     }
 
-    /// Number of plain points of the model that would decide the target yield, if its verdict rests on the surface. Returns None for any other
-    /// basis, without a target, and if no practicable number decides it.
+    /// Number of plain points of the model that would decide the target yield if the yield of the surface is right. Returns None for a
+    /// refuted surface, for any other basis, without a target, and if no practicable number decides it.
     pub fn points_to_decide(&self) -> Option<u64> {
         let (target, rejected) = (self.characteristic.target_yield()?, self.capability?.rejected()?);
         let by_surface = self.bases().yield_ == Some(FigureBasis::Surface);
-        if by_surface { points_to_decide(rejected, 1.0 - target) } else { None }
+        let refuted = self.verification.as_ref().is_some_and(|of| of.far_residual.is_some());
+        if by_surface && !refuted { points_to_decide(rejected, 1.0 - target) } else { None }
     }
 
     fn basis_of_moments(&self) -> Option<FigureBasis> {

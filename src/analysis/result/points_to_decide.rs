@@ -6,7 +6,7 @@ use sensitol_numeric::sampling::clopper_pearson;
 const MOST: u64 = 1_000_000_000;
 
 /// Smallest number of plain points whose 95 % interval (Clopper and Pearson 1934) lies on one side of the greatest share of rejects
-/// `allowed`, if the share of rejects is `rejected`. Returns None if no practicable number decides it.
+/// `allowed`, at the expected number of rejects for the share `rejected`. Returns None if no practicable number decides it.
 ///
 /// ```
 /// use sensitol::analysis::points_to_decide;

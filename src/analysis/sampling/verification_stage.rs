@@ -292,9 +292,9 @@ fn check(
         .map(|(c, shares)| Target { surrogate: surface(c).filter(|_| open.contains(&c)), shares })
         .collect();
     let most = check_points(asked, varying.len());
-    // A number that was asked for is kept. Otherwise a refuted surface takes up to `MOST_LOCATING` points more.
+    // A number that was asked for is kept. Within it, and without one, a refuted surface takes up to `MOST_LOCATING` points more.
     let budget = match (asked, evaluator.remaining()) {
-        (Some(_), left) => Some(left.map_or(most, |left| left.min(most))),
+        (Some(asked), left) => Some(left.map_or(asked, |left| left.min(asked))),
         (None, left) => left,
     };
     let part = evaluator.part().with_budget(budget);

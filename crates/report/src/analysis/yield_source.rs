@@ -40,7 +40,7 @@ pub(crate) fn decision(one: &CharacteristicAnalysis, run: &RunSummary) -> Option
     let each = run.in_model.as_secs_f64() / run.evaluations.max(1) as f64;
     let time =
         if each < SLOW { String::new() } else { format!(", {} at the measured pace", time(each * points as f64)) };
-    Some(format!("{points} plain points of the model would decide the target{time}"))
+    Some(format!("{points} plain points of the model would decide the target if this yield is right{time}"))
 }
 
 /// Time in a unit that people use.
