@@ -534,7 +534,9 @@ class CharacteristicResult(Fitted):
     pearson_fit: Optional[Capability]
     """Capability by the Pearson fit."""
     points_to_decide: Optional[int]
-    """Plain points of the model that would decide the target yield; null unless its verdict rests on the surface."""
+    """Plain points of the model that would decide the target yield if it is right; null unless its verdict comes
+    from a surface that no check point refutes.
+    """
     possible_interactions: int
     """Number of possible interactions."""
     ppm_above: Optional[float]

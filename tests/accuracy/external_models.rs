@@ -224,7 +224,8 @@ fn a_region_without_a_value_around_the_means_is_not_bounded_by_its_corners() {
     assert!(one.verification.as_ref().unwrap().lost_share.unwrap() > 0.476);
 }
 
-/// A model and its mirror image have the same errors.
+/// A model and its mirror image have errors of the same size. They are not the same, because the random points follow the direction of the
+/// surface and are others.
 #[test]
 fn errors_do_not_depend_on_the_sign_of_the_model() {
     for case in CASES.iter().filter(|case| case.name != "step") {
@@ -244,8 +245,9 @@ fn errors_do_not_depend_on_the_sign_of_the_model() {
         };
         let (up, down) = (of_sign(1.0), of_sign(-1.0));
         for (up, down) in up.into_iter().zip(down) {
-            // The points of the surface are others: its direction has the other sign.
-            assert!((up - down).abs() <= 0.02 * up.abs().max(1e-6), "{}: {up} and {down}", case.name);
+            // A standard error of six to eight points varies by a factor of two to three (chi-squared distribution).
+            let [up, down] = [up, down].map(|error: f64| error.max(1e-6));
+            assert!(up < 3.0 * down && down < 3.0 * up, "{}: {up} and {down}", case.name);
         }
     }
 }
