@@ -188,6 +188,29 @@ mod tests {
         assert_eq!(Profile::residual(&profile, 9.0, 4.5), Profile::residual(&profile, 4.5, 4.5));
     }
 
+    /// A model and its mirror image have opposite residuals at every distance, whatever the shape of the profile.
+    #[test]
+    fn residuals_do_not_depend_on_the_sign_of_the_model() {
+        let profiles: [&[[f64; 2]]; 4] = [
+            &[[1.5, 0.0], [3.0, 3.2]],
+            &[[2.0, 0.0], [2.5, 1.2], [3.0, 3.2]],
+            &[[0.0, 0.0], [1.5, 0.4], [3.0, 0.1]],
+            &[[1.0, 1e-17], [1.5, -1e-17], [3.0, 2.0]],
+        ];
+        for profile in profiles {
+            let mirrored: Vec<[f64; 2]> = profile.iter().map(|[t, d]| [*t, -d]).collect();
+            for t in [1.6, 2.9, 3.5, 4.5, 7.0] {
+                assert_eq!(
+                    Profile::residual(profile, t, 4.5),
+                    -Profile::residual(&mirrored, t, 4.5),
+                    "{profile:?} at {t}"
+                );
+            }
+        }
+        // From nothing at all the line goes on: twice as far beyond the start, twice the residual.
+        assert!((Profile::residual(profiles[0], 4.5, 4.5) - 6.4).abs() < 1e-12);
+    }
+
     #[test]
     fn a_point_without_a_value_lies_between_its_neighbours() {
         let mut ray = CheckRay::through(&[3.0], 0);
