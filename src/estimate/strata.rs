@@ -82,7 +82,11 @@ pub(crate) fn unit(mut vector: Vec<f64>) -> Vec<f64> {
 }
 
 pub(crate) fn length(vector: &[f64]) -> f64 {
-    vector.iter().map(|part| part * part).sum::<f64>().sqrt()
+    dot(vector, vector).sqrt()
+}
+
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use faer::{Mat, Side};
 
 use crate::estimate::Columns;
+use crate::estimate::strata::{dot, length};
 use crate::rare::target::Target;
 
 /// Greatest distance in sigmas. Probabilities farther out are below the smallest double.
@@ -283,17 +284,9 @@ fn spreads(target: &Target<'_>, point: &[f64], distance: f64) -> Vec<(Vec<f64>, 
     spreads
 }
 
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
 /// Unit vector of a direction. Returns None if it has no length.
 pub(super) fn unit(mut direction: Vec<f64>) -> Option<Vec<f64>> {
     let size = length(&direction);
     direction.iter_mut().for_each(|part| *part /= size);
     (size > 0.0 && size.is_finite()).then_some(direction)
-}
-
-pub(super) fn length(a: &[f64]) -> f64 {
-    dot(a, a).sqrt()
 }

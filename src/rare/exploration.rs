@@ -10,7 +10,8 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use crate::estimate::Columns;
 use crate::estimate::seldom_points;
-use crate::rare::design_point::{BEFORE, FARTHEST, length, unit};
+use crate::estimate::strata::length;
+use crate::rare::design_point::{BEFORE, FARTHEST, unit};
 use crate::rare::model::{Answers, Model};
 use crate::rare::plain_points::PlainPoints;
 use crate::rare::target::Target;

@@ -1,7 +1,8 @@
 //! Search of the model's limit, from a reject to the likeliest point of the limit near it.
 
 use crate::estimate::Columns;
-use crate::rare::design_point::{FARTHEST, dot, length};
+use crate::estimate::strata::{dot, length};
+use crate::rare::design_point::FARTHEST;
 use crate::rare::model::Model;
 use crate::rare::target::Target;
 

@@ -1,8 +1,9 @@
 //! Points drawn and weighted in stages.
 
 use crate::estimate::Columns;
+use crate::estimate::strata::dot;
 use crate::problem::Problem;
-use crate::rare::design_point::{FAINT, Place, PlaceKind, dot, unit};
+use crate::rare::design_point::{FAINT, Place, PlaceKind, unit};
 use crate::rare::estimate::{ProbabilityEstimate, Weighed, best_parts};
 use crate::rare::exploration::Explored;
 use crate::rare::mixture::Mixture;

@@ -1,4 +1,4 @@
-//! Choice of a dozen check points of a costly model.
+//! Choice of the check points of a costly model near the means.
 //!
 //! | points | place | errors that a surface through its own nodes does not show |
 //! |--:|---|---|
@@ -15,6 +15,7 @@ use rand_distr::StandardNormal;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use crate::estimate::Columns;
+use crate::estimate::strata::dot;
 use sensitol_numeric::distribution::standard_normal;
 
 /// Places along a line, in sigmas.
@@ -162,8 +163,4 @@ fn random_pairs(pairs: usize, direction: &[f64], rng: &mut Xoshiro256PlusPlus) -
         z
     };
     cells.into_iter().map(&mut point).collect()
-}
-
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -1,12 +1,12 @@
 //! Verification of a costly model: its surfaces at a dozen check points.
 
 use crate::assembly::{EvaluationError, Responses};
-use crate::estimate::strata::length;
+use crate::estimate::strata::{dot, length};
 use crate::estimate::{Columns, NormalSpace};
 use crate::evaluation::Evaluator;
 use crate::problem::Problem;
 use crate::verification::Verified;
-use crate::verification::check_points::{Design, FEWEST, MOST, Wish, dot};
+use crate::verification::check_points::{Design, FEWEST, MOST, Wish};
 use crate::verification::check_ray::{CheckRay, Profile, rays, to_locate};
 use crate::verification::checked_surface::CheckedSurface;
 use crate::verification::decision_points;

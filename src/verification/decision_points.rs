@@ -14,8 +14,8 @@ use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use crate::estimate::strata::{length, unit};
-use crate::verification::check_points::{Design, IDLE, ON_AXIS, Wish, dot};
+use crate::estimate::strata::{dot, length, unit};
+use crate::verification::check_points::{Design, IDLE, ON_AXIS, Wish};
 
 /// Fewest decision points.
 const FEWEST: usize = 6;

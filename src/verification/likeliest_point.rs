@@ -3,8 +3,7 @@
 //! Steps of Hasofer and Lind (1974; Rackwitz and Fiessler 1978) on the surface, from the line that carries it.
 
 use crate::estimate::Columns;
-use crate::estimate::strata::length;
-use crate::verification::check_points::dot;
+use crate::estimate::strata::{dot, length};
 use crate::verification::checked_surface::CheckedSurface;
 
 /// Greatest distance of a check point in sigmas: the surface is compared with the model up to here.

@@ -25,8 +25,8 @@
 use crate::estimate::Columns;
 use crate::estimate::figures::{MOMENTS, moments};
 use crate::estimate::strata;
-use crate::estimate::strata::along;
-use crate::verification::check_points::{Design, ON_AXIS, Wish, dot};
+use crate::estimate::strata::{along, dot};
+use crate::verification::check_points::{Design, ON_AXIS, Wish};
 use crate::verification::checked_surface::CheckedSurface;
 use crate::verification::far_effect::FarEffect;
 use crate::verification::likeliest_point::FARTHEST;
