@@ -19,7 +19,6 @@ const LARGE: f64 = 0.3;
 const SUDDEN: f64 = 10.0;
 /// Part of the last residual below which an earlier one is no part of it.
 const NOTHING: f64 = 0.02;
-
 /// Component of a direction above which the ray is the axis of that input.
 const ALONG_ONE: f64 = 0.99;
 /// Greatest power with which a residual grows beyond the last point.
@@ -73,18 +72,15 @@ pub(super) fn rays(design: &Design, decisions: &[Vec<f64>]) -> Vec<CheckRay> {
 ///
 /// Shapes: `residuals` has a column for every characteristic, with a row for every point; `random` are the rows of random points.
 pub(super) fn to_locate(rays: &[CheckRay], residuals: &[Vec<f64>], random: Range<usize>) -> Vec<usize> {
+    // Residuals up to which a characteristic has nothing to locate.
+    let least: Vec<f64> = residuals.iter().map(|d| LARGE.max(SUDDEN * root_mean_square(&d[random.clone()]))).collect();
     let weight = |ray: &CheckRay| {
-        let size_of = |d: &Vec<f64>| {
-            let last = d[ray.last().1];
-            if !last.is_finite() {
-                return MOST_SIGMAS;
-            }
-            let near: Vec<f64> = d[random.clone()].iter().copied().filter(|d| d.is_finite()).collect();
-            let mean_square = near.iter().map(|d| d * d).sum::<f64>() / near.len().max(1) as f64;
-            let counts = last.abs() > LARGE && last.abs() > SUDDEN * mean_square.sqrt();
-            if counts { last.abs().min(MOST_SIGMAS) } else { 0.0 }
+        let size_of = |(d, least): (&Vec<f64>, &f64)| match d[ray.last().1].abs() {
+            last if !last.is_finite() => MOST_SIGMAS,
+            last if last > *least => last.min(MOST_SIGMAS),
+            _ => 0.0,
         };
-        let size = residuals.iter().map(size_of).fold(0.0, f64::max);
+        let size = residuals.iter().zip(&least).map(size_of).fold(0.0, f64::max);
         if ray.stations.len() == 1 { size * standard_normal::sf(HELD * ray.last().0) } else { 0.0 }
     };
     let mut found: Vec<(usize, f64)> =
@@ -92,6 +88,12 @@ pub(super) fn to_locate(rays: &[CheckRay], residuals: &[Vec<f64>], random: Range
     found.sort_by(|a, b| b.1.total_cmp(&a.1));
     found.truncate(LOCATED);
     found.into_iter().map(|(index, _)| index).collect()
+}
+
+/// Root mean square of the residuals at points with a value. 0 without such points.
+fn root_mean_square(d: &[f64]) -> f64 {
+    let known: Vec<f64> = d.iter().copied().filter(|d| d.is_finite()).collect();
+    length(&known) / (known.len().max(1) as f64).sqrt()
 }
 
 impl CheckRay {
@@ -143,6 +145,11 @@ impl CheckRay {
 }
 
 impl Profile {
+    /// True if the model has no value at a point of the ray.
+    pub(super) fn is_without_value(&self) -> bool {
+        matches!(self, Self::WithoutValue(_))
+    }
+
     /// Distance from which on the model may differ from the surface.
     pub(super) fn from(&self) -> f64 {
         match self {

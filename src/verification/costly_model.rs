@@ -1,4 +1,4 @@
-//! Verification of a costly model: its surfaces at a dozen check points.
+//! Verification of a costly model: its surfaces at check points near the means, and where decisions fall.
 
 use crate::assembly::{EvaluationError, Responses};
 use crate::estimate::strata::{dot, length};
@@ -7,7 +7,7 @@ use crate::evaluation::Evaluator;
 use crate::problem::Problem;
 use crate::verification::Verified;
 use crate::verification::check_points::{Design, FEWEST, MOST, Wish};
-use crate::verification::check_ray::{CheckRay, Profile, rays, to_locate};
+use crate::verification::check_ray::{CheckRay, rays, to_locate};
 use crate::verification::checked_surface::CheckedSurface;
 use crate::verification::decision_points;
 use crate::verification::far_effect::FarEffect;
@@ -147,21 +147,16 @@ pub fn verify_by_checks(
         // Ends of the kept limits, so that rounding does not reject a value on a limit.
         let [low, high] = problem.kept_limits(c).ends();
         let within = [[low, high], [low, f64::INFINITY], [f64::NEG_INFINITY, high]];
-        let mut found: Vec<(&CheckRay, FarEffect, Profile)> = Vec::new();
-        for ray in &rays {
-            let profile = ray.profile(d);
-            let effect = FarEffect::new(surface, &normals, ray, &profile, &within);
-            found.extend(effect.map(|effect| (ray, effect, profile)));
-        }
-        let far: Vec<FarEffect> = found.iter().map(|(_, effect, _)| effect.clone()).collect();
+        let effect = |ray| FarEffect::new(surface, &normals, ray, ray.profile(d), &within);
+        let far: Vec<FarEffect<'_>> = rays.iter().filter_map(effect).collect();
         let judged = judge(&design, wish, surface, d, &answers.surfaces[c], &far, &within);
         let of_shares = |judged: &Judged| {
             let error = |share: &f64| judged.share_of_variance(*share, design.pairs);
             targets[c].shares.iter().map(error).collect::<Vec<f64>>()
         };
         let shares = judged.as_ref().map(of_shares);
-        let far = FarResidual::largest(surface, &found, &within.map(|interval| surface.share(interval)), varying);
-        let lost = lost(&design, d, &found);
+        let lost = lost(&design, d, &far);
+        let far = FarResidual::largest(surface, &far, &within.map(|interval| surface.share(interval)), varying);
         CheckedFigures { surface: Some(surface.figures), shares, far, lost, ..nothing.judged(surface, judged, within) }
     };
     let characteristics = (0..targets.len()).map(figures).collect();
@@ -209,15 +204,16 @@ fn likeliest_points(
 ///
 /// A point without one along a single input stands for its half-space. Any other such point outside of these half-spaces belongs to a region
 /// of an unknown shape. The random points bound its share then, with the upper end of their 95 % interval.
-fn lost(design: &Design, d: &[f64], found: &[(&CheckRay, FarEffect, Profile)]) -> f64 {
-    let failing = found.iter().filter(|(.., profile)| matches!(profile, Profile::WithoutValue(_)));
-    let (alone, several): (Vec<_>, Vec<_>) = failing.partition(|(ray, ..)| ray.is_of_one_input());
-    let explained = |point: &[f64]| alone.iter().any(|(ray, _, profile)| dot(&ray.direction, point) > profile.from());
+fn lost(design: &Design, d: &[f64], far: &[FarEffect<'_>]) -> f64 {
+    let failing = far.iter().filter(|effect| effect.profile.is_without_value());
+    let (alone, several): (Vec<_>, Vec<_>) = failing.partition(|effect| effect.ray.is_of_one_input());
+    let holds = |effect: &&FarEffect<'_>, point: &[f64]| dot(&effect.ray.direction, point) > effect.profile.from();
+    let explained = |point: &[f64]| alone.iter().any(|effect| holds(effect, point));
     let random = design.random()..design.points.len();
     let open = random.clone().filter(|&row| d[row].is_nan() && !explained(&design.points[row])).count();
-    let unknown = several.iter().any(|(ray, ..)| !explained(&ray.end()));
+    let unknown = several.iter().any(|effect| !explained(&effect.ray.end()));
     let counted = if open > 0 || unknown { unseen(random.len(), open)[1] } else { 0.0 };
-    (alone.iter().map(|(_, effect, _)| effect.lost).sum::<f64>() + counted).min(1.0)
+    (alone.iter().map(|effect| effect.lost).sum::<f64>() + counted).min(1.0)
 }
 
 /// Answers to check points, and the surfaces there.

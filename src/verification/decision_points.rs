@@ -7,7 +7,8 @@
 //! | the rest | 3 sigmas on either side of every input without points of its own | a contact of an unimportant input |
 //! | the rest | combinations of signs of all inputs, of 16 at random if there are more, 6 sigmas off at most | effects of several large deviations |
 //!
-//! The kinds follow in this order as far as their number allows. It is a third of the `2 N + 13` points that every method and the check points near the means take, at least 6 and at most 18.
+//! The kinds follow in this order as far as the number of points allows: a third of the `2 N + 13` points that a second-order method and the
+//! check points near the means take, at least 6 and at most 18.
 
 use rand::RngExt;
 use rand::SeedableRng;

@@ -28,8 +28,9 @@ const NOTHING: f64 = 1e-3;
 const STREAM: u64 = 1 << 36;
 
 /// Changes of the figures of a surface by the residual along one ray.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct FarEffect {
+pub(super) struct FarEffect<'r> {
+    pub(super) ray: &'r CheckRay,
+    pub(super) profile: Profile,
     /// Changes of mean and sigma in sigmas, of skewness and of kurtosis.
     pub(super) moments: [f64; MOMENTS],
     /// Changes of the share within every interval.
@@ -40,16 +41,16 @@ pub(super) struct FarEffect {
     pub(super) lost: f64,
 }
 
-impl FarEffect {
+impl<'r> FarEffect<'r> {
     /// Computes the effect of a residual on the figures and on the shares within intervals. Returns None if there is none.
     pub(super) fn new(
         surface: &CheckedSurface<'_>,
         normals: &Normals,
-        ray: &CheckRay,
-        profile: &Profile,
+        ray: &'r CheckRay,
+        profile: Profile,
         intervals: &[[f64; 2]],
     ) -> Option<Self> {
-        if let Profile::Residual(at) = profile
+        if let Profile::Residual(at) = &profile
             && at.iter().all(|[_, d]| d.abs() < NOTHING)
         {
             return None;
@@ -66,7 +67,7 @@ impl FarEffect {
         for ((q, t), weight) in q.into_iter().zip(t).zip(weights) {
             let (weight, v) = (weight / rows, (q - mean) / sigma);
             let kept = |value: f64, [low, high]: [f64; 2]| f64::from(u8::from(low <= value && value <= high));
-            match profile {
+            match &profile {
                 Profile::Residual(at) => {
                     let e = Profile::residual(at, t, FARTHEST);
                     square += weight * e * e;
@@ -85,14 +86,17 @@ impl FarEffect {
                 }
             }
         }
-        let lost = if let Profile::WithoutValue(_) = profile { standard_normal::sf(from) } else { 0.0 };
-        let left = 1.0 - lost;
-        for (sum, &interval) in shares.iter_mut().zip(intervals) {
-            // Shares are those of the assemblies that have a value.
-            *sum = (surface.share(interval) + *sum) / left - surface.share(interval);
+        let mut lost = 0.0;
+        if profile.is_without_value() {
+            // Figures are those of the assemblies that have a value.
+            lost = standard_normal::sf(from);
+            for (sum, &interval) in shares.iter_mut().zip(intervals) {
+                let kept = surface.share(interval);
+                *sum = (kept + *sum) / (1.0 - lost) - kept;
+            }
         }
-        let moved = standard(&raw.map(|sum| sum / left), 0.0, 1.0);
+        let moved = standard(&raw.map(|sum| sum / (1.0 - lost)), 0.0, 1.0);
         let base = [0.0, 1.0, skewness, kurtosis];
-        Some(Self { moments: std::array::from_fn(|r| moved[r] - base[r]), shares, square, lost })
+        Some(Self { ray, profile, moments: std::array::from_fn(|r| moved[r] - base[r]), shares, square, lost })
     }
 }

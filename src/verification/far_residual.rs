@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use crate::estimate::strata::REACH;
-use crate::verification::check_ray::{CheckRay, Profile};
+use crate::estimate::strata::length;
+use crate::verification::check_ray::Profile;
 use crate::verification::checked_surface::CheckedSurface;
 use crate::verification::far_effect::FarEffect;
 use sensitol_numeric::distribution::standard_normal;
@@ -41,28 +41,24 @@ impl FarResidual {
     /// Shapes: `kept` has the share of the surface within every interval of the effects, `varying` a dimension for every variable.
     pub(super) fn largest(
         surface: &CheckedSurface<'_>,
-        found: &[(&CheckRay, FarEffect, Profile)],
+        far: &[FarEffect<'_>],
         kept: &[f64],
         varying: &[usize],
     ) -> Option<Self> {
-        let felt = found.iter().map(|(ray, effect, profile)| (size(effect, kept), ray, profile));
-        let (size, ray, profile) = felt.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let felt = far.iter().map(|effect| (size(effect, kept), effect));
+        let (size, FarEffect { ray, profile, .. }) = felt.max_by(|a, b| a.0.total_cmp(&b.0))?;
         if size < FELT {
             return None;
         }
         // Correlated inputs deviate together, whatever variable carries them.
         let inputs = surface.inputs_at(&ray.end());
-        let length = inputs.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let named = inputs.iter().zip(varying).filter(|(x, _)| x.abs() > NAMED * length);
-        let residual = match profile {
-            Profile::Residual(at) => at.last().map(|[_, d]| *d),
-            Profile::WithoutValue(_) => None,
+        let least = NAMED * length(&inputs);
+        let named = inputs.iter().zip(varying).filter(|(x, _)| x.abs() > least);
+        let (from, residual) = match profile {
+            Profile::Residual(at) => (begin(at), at.last().map(|[_, d]| *d)),
+            Profile::WithoutValue([last, _]) => (*last, None),
         };
-        let from = match profile {
-            Profile::Residual(at) => begin(at),
-            Profile::WithoutValue([last, _]) => *last,
-        };
-        let share = standard_normal::sf(from.min(REACH));
+        let share = standard_normal::sf(from);
         Some(Self { directions: named.map(|(x, &d)| (d, *x > 0.0)).collect(), from, residual, share })
     }
 }
@@ -75,7 +71,7 @@ fn begin(at: &[[f64; 2]]) -> f64 {
 }
 
 /// Greatest change of mean and sigma in sigmas, and of the reject rates.
-fn size(effect: &FarEffect, kept: &[f64]) -> f64 {
+fn size(effect: &FarEffect<'_>, kept: &[f64]) -> f64 {
     let [mean, sigma, ..] = effect.moments.map(f64::abs);
     let of_rejects = |(change, kept): (&f64, &f64)| {
         let change = change.abs();

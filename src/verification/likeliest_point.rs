@@ -6,7 +6,7 @@ use crate::estimate::Columns;
 use crate::estimate::strata::{dot, length};
 use crate::verification::checked_surface::CheckedSurface;
 
-/// Greatest distance of a check point in sigmas: the surface is compared with the model up to here.
+/// Greatest distance of a check point towards a limit, in sigmas.
 pub(super) const FARTHEST: f64 = 4.5;
 /// Most steps. A surface of second degree takes three to five.
 const STEPS: usize = 8;
@@ -35,7 +35,7 @@ pub(super) fn likeliest(surface: &CheckedSurface<'_>, line: &[f64], limit: f64, 
     }
     for _ in 0..STEPS {
         let Some(next) = tangent(surface, &point, margin) else { break };
-        let moved = point.iter().zip(&next).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+        let moved = length(&point.iter().zip(&next).map(|(a, b)| a - b).collect::<Vec<f64>>());
         point = next;
         if moved < NEAR {
             break;

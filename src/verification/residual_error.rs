@@ -1,4 +1,4 @@
-//! Error estimates of the figures of a surface, from its residuals at a dozen check points.
+//! Error estimates of the figures of a surface, from its residuals at check points.
 //!
 //! With `d = (y - q)/sigma`, the model minus the surface `q` in sigmas, at points of independent normal variables `z`:
 //!
@@ -16,7 +16,7 @@
 //! ```
 //!
 //! Two errors of a share reach what no point has shown: the share `unseen = 1 - 0.05^(1/n)` of all rejects, and all assemblies beyond 4.5
-//! sigmas, the farthest check point.
+//! sigmas, the farthest check point towards a limit.
 //!
 //! `|t|` and `|z_j|` are clipped at 4.5. The errors of mean and sigma are multiplied by sigma. `3 hypot(m, s) >= m + 2.8 s`, Student's
 //! quantile for a dozen points. The floor `0.004 sqrt(14/n)` allows for effects that a dozen points overlook: they give mean and sigma no
@@ -60,8 +60,6 @@ pub(super) struct Judged {
     pub(super) shares: Vec<f64>,
     /// Share of the variance that the surface leaves unexplained.
     pub(super) left: f64,
-    /// Share of the variance of the residual at the random points, without the bend that the other points show.
-    pub(super) rho: f64,
 }
 
 /// Estimated shape of the residual (`p` above).
@@ -102,15 +100,14 @@ fn quartic([near_up, near_down, far_up, far_down]: [f64; 4]) -> [f64; 4] {
 /// Judges a surface by its residuals in sigmas at the points of a design, and by the effects of those far from the means.
 ///
 /// Shapes: `d` has a residual for every point of the design, NaN at points without a value; `surface_at` has the values of the surface at
-/// the random ones. Returns None if fewer than [`FEWEST`] random points have a value, and if
-/// an error is not finite.
+/// the random ones. Returns None if fewer than [`FEWEST`] random points have a value, and if an error is not finite.
 pub(super) fn judge(
     design: &Design,
     wish: &Wish,
     surface: &CheckedSurface<'_>,
     d: &[f64],
     surface_at: &[f64],
-    far: &[FarEffect],
+    far: &[FarEffect<'_>],
     intervals: &[[f64; 2]],
 ) -> Option<Judged> {
     let sigma = surface.figures[1];
@@ -158,7 +155,7 @@ pub(super) fn judge(
         (own * own + sum_of_squares(&changes) + beside * beside + beyond * beyond).sqrt().min(1.0)
     };
     let shares = intervals.iter().enumerate().map(share).collect();
-    Some(Judged { errors, shares, left: rho + mean_square(&over_all).max(far_square), rho })
+    Some(Judged { errors, shares, left: rho + mean_square(&over_all).max(far_square) })
 }
 
 /// Residuals at the random points that have a value, less the bend if that makes them smaller.
