@@ -63,7 +63,8 @@ impl Exit {
         (
             Self::NoResult,
             "the model gave a characteristic that was asked for no result; `--check`: the run was stopped before its planned \
-             points were evaluated; an external model's answers depend on the points before them, and nothing confirmed them",
+             points were evaluated; `--check --strict`: a requirement is met by the surface only; an external model's answers depend \
+             on the points before them, and nothing confirmed them",
         ),
         (Self::NotAllocated, "`allocate`: no tolerances keep what is required, or they were not found in time"),
         (
