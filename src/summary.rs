@@ -98,8 +98,8 @@ pub struct EvaluatorSummary {
     pub retried: u64,
     /// Seconds from the last answer of each failed process until its replacement was ready.
     pub lost_s: f64,
-    /// Answers that depend on the points before them, and that no fresh process confirmed. They have no value, or entered results before
-    /// that was known.
+    /// Answers that no fresh process confirmed: they depend on the points before them, or the run ended before their check. They have no
+    /// value, or entered results before that was known.
     pub unconfirmed: u64,
 }
 
@@ -149,7 +149,7 @@ impl RunSummary {
         }
     }
 
-    /// True if results may rest on answers that depend on the points before them, and that no fresh process confirmed.
+    /// True if results may rest on answers that a fresh process should have confirmed and did not.
     pub fn unconfirmed(&self) -> bool {
         self.evaluator.is_some_and(|evaluator| evaluator.unconfirmed > 0)
     }

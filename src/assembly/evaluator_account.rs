@@ -1,6 +1,7 @@
 //! Account of a model's processes.
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 use crate::assembly::process_error::{ProcessError, ProcessFault};
 use crate::summary::EvaluatorSummary;
@@ -17,6 +18,8 @@ pub struct EvaluatorAccount {
     pub places: BTreeMap<String, (u64, f64)>,
     /// Difference between the model and the one whose answers the journal holds; None if there is none.
     pub outdated: Option<OutdatedJournal>,
+    /// Damaged answers in the journal; None if there were none. They are evaluated again.
+    pub damaged: Option<DamagedJournal>,
     /// Reason in one line why answers could not be stored; None if all were stored. Nothing was evaluated after that.
     pub not_kept: Option<String>,
 }
@@ -33,6 +36,23 @@ pub struct OutdatedJournal {
     pub found: Option<f64>,
     /// Number of answers that were discarded.
     pub answers: usize,
+}
+
+/// Journal with answers whose checksums do not agree.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct DamagedJournal {
+    /// Path of the file.
+    pub file: PathBuf,
+    /// Number of damaged answers.
+    pub answers: usize,
+}
+
+impl DamagedJournal {
+    /// Creates the finding that so many answers of this file are damaged.
+    pub fn new(file: PathBuf, answers: usize) -> Self {
+        Self { file, answers }
+    }
 }
 
 impl OutdatedJournal {
@@ -53,6 +73,7 @@ impl EvaluatorAccount {
         Self {
             last: other.last.or(self.last),
             outdated: self.outdated.or(other.outdated),
+            damaged: self.damaged.or(other.damaged),
             not_kept: self.not_kept.or(other.not_kept),
             ..self
         }

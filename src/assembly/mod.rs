@@ -36,7 +36,7 @@ pub use closure::Closure;
 pub use composite::{Composite, CompositeError, Parts, Source};
 pub use derivatives::{Derivatives, Directions};
 pub use error::{EvaluationError, NoColumn};
-pub use evaluator_account::{EvaluatorAccount, OutdatedJournal};
+pub use evaluator_account::{DamagedJournal, EvaluatorAccount, OutdatedJournal};
 #[doc(hidden)]
 pub use polynomial::Polynomial;
 pub use process_error::{Exit, ProcessError, ProcessFault, Quoted, StderrTail};

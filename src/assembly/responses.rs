@@ -37,6 +37,8 @@ pub struct Responses {
     non_repeatable: Vec<NonRepeatable>,
     /// Points of earlier batches whose answers are not trusted any more.
     revoked: Vec<Vec<f64>>,
+    /// Number of rows whose answers a stop left without their check.
+    unchecked: usize,
     /// Derivatives by every input, if a model sends them.
     gradients: BTreeMap<(usize, usize), Vec<f64>>,
 }
@@ -54,6 +56,7 @@ impl Responses {
             retried: 0,
             non_repeatable: Vec::new(),
             revoked: Vec::new(),
+            unchecked: 0,
             gradients: BTreeMap::new(),
         }
     }
@@ -69,7 +72,7 @@ impl Responses {
     /// True if nothing is answered or noted yet. The check is fast if the first rows are answered.
     pub(crate) fn is_untouched(&self) -> bool {
         self.errors.is_empty()
-            && (self.extra, self.reused, self.retried) == (0, 0, 0)
+            && (self.extra, self.reused, self.retried, self.unchecked) == (0, 0, 0, 0)
             && self.non_repeatable.is_empty()
             && self.revoked.is_empty()
             && self.gradients.is_empty()
@@ -205,6 +208,16 @@ impl Responses {
         &self.revoked
     }
 
+    /// Counts rows whose answers a stop left without their check. Nothing can be concluded from them.
+    pub fn leave_unchecked(&mut self, rows: usize) {
+        self.unchecked += rows;
+    }
+
+    /// Returns the number of rows whose answers a stop left without their check.
+    pub fn count_unchecked(&self) -> usize {
+        self.unchecked
+    }
+
     /// Returns the number of rows whose answers were known already.
     pub fn count_reused(&self) -> usize {
         self.reused
@@ -272,6 +285,7 @@ impl Responses {
         self.extra += block.extra;
         self.reused += block.reused;
         self.retried += block.retried;
+        self.unchecked += block.unchecked;
         self.non_repeatable.extend(block.non_repeatable.iter().cloned());
         self.revoked.extend(block.revoked);
         let gradients = block.gradients.into_iter();

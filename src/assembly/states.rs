@@ -164,6 +164,7 @@ impl AssemblyFunction for States {
             spent += answers.answered().count() as i64 + answers.extra() + answers.count_reused() as i64;
             out.reused(answers.count_reused());
             out.retried(answers.count_retried());
+            out.leave_unchecked(answers.count_unchecked());
             out.note_non_repeatable(answers.non_repeatable().iter().map(|doubt| NonRepeatable {
                 suspects: doubt.suspects.iter().map(|point| state.asked_for(point)).collect(),
                 ..doubt.clone()

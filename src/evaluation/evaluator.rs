@@ -19,7 +19,7 @@ pub struct Ledger {
 }
 
 impl Ledger {
-    /// Reason for an early end. None if every point that was asked has an answer.
+    /// Reason for an early end. None if every point that was asked has an answer, and every answer its check.
     pub fn stopped(&self) -> Option<StopReason> {
         self.run.stopped
     }
@@ -61,7 +61,8 @@ impl Ledger {
                 failed: out.failed_rows() as u64,
                 stages: 1,
                 in_model,
-                stopped: open.then(|| run.why_open()),
+                // Answers whose check was cut off decide nothing, like points that were not evaluated.
+                stopped: (open || out.count_unchecked() > 0).then(|| run.why_open()),
                 ..RunSummary::default()
             },
             non_repeatable: out.non_repeatable().to_vec(),

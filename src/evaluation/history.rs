@@ -1,7 +1,7 @@
 //! Warnings about external models that are not repeatable, or whose processes failed.
 
 use crate::assembly::NonRepeatable;
-use crate::assembly::OutdatedJournal;
+use crate::assembly::{DamagedJournal, OutdatedJournal};
 use crate::problem::Problem;
 use crate::warning::Warning;
 
@@ -55,6 +55,9 @@ fn processes(problem: &Problem) -> Vec<Warning> {
     }
     if let Some(OutdatedJournal { output, expected, found, answers, .. }) = account.outdated {
         warnings.push(Warning::OutdatedJournal { output, expected, found, answers });
+    }
+    if let Some(DamagedJournal { file, answers, .. }) = account.damaged {
+        warnings.push(Warning::DamagedJournal { file: file.display().to_string(), answers });
     }
     if account.counts.unconfirmed > 0 {
         warnings.push(Warning::Unconfirmed { answers: account.counts.unconfirmed });

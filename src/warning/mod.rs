@@ -279,10 +279,17 @@ warnings! {
         /// The last lines that the process wrote to stderr.
         stderr: Vec<String>,
     };
-    /// Answers of an external model depend on the points before them, and no fresh process confirmed them.
+    /// Answers of an external model were not confirmed by a fresh process: they depend on the points before them, or a stop came first.
     Unconfirmed = "unconfirmed" by model::unconfirmed {
         /// The number of unconfirmed answers.
         answers: u64,
+    };
+    /// Checksums of answers in the journal do not agree.
+    DamagedJournal = "damaged-journal" by model::damaged_journal {
+        /// The path of the journal.
+        file: String,
+        /// The number of damaged answers.
+        answers: usize,
     };
     /// The journal holds the answers of another model than the one that runs now.
     OutdatedJournal = "outdated-journal" by model::outdated_journal {

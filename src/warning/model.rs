@@ -131,13 +131,10 @@ pub(super) fn restarts(
 }
 
 pub(super) fn unconfirmed(answers: &u64) -> Text {
-    let (answers, them) = if *answers == 1 {
-        ("1 answer depends".to_owned(), "it")
-    } else {
-        (format!("{answers} answers depend"), "them")
-    };
+    let (answers, them) = if *answers == 1 { ("1 answer", "it") } else { (&*format!("{answers} answers"), "them") };
     say(format!(
-        "{answers} on the points evaluated before, and no fresh process confirmed {them}. Results that use {them} are wrong or missing."
+        "No fresh process confirmed {answers}: the model gives other values after other points, or the run ended before that check. Results \
+         that use {them} may be wrong."
     ))
     .advise(Advice::ResetModel)
 }
@@ -151,6 +148,14 @@ pub(super) fn outdated_journal(output: &str, expected: &Option<f64>, found: &Opt
         value(expected)
     ))
     .advise(Advice::NameModelFiles)
+}
+
+pub(super) fn damaged_journal(file: &str, answers: &usize) -> Text {
+    let (answers, them) =
+        if *answers == 1 { ("1 answer", "it was") } else { (&*format!("{answers} answers"), "they were") };
+    say(format!(
+        "The journal {file} has {answers} with a wrong checksum: the file was damaged on its disk. Where this run needs them, {them} evaluated again."
+    ))
 }
 
 pub(super) fn no_reaction(characteristic: &str) -> Text {

@@ -1,4 +1,4 @@
-/* A child in C: `flips MODE SEED`. Models with a memory, and some without; z are the dimensions in tenths off the nominal ones.
+/* A child in C: `flips MODE SEED [MILLISECONDS]`, with that time for each answer. Models with a memory, and some without; z are the dimensions in tenths off the nominal ones.
 
    The right answer is y(z) = sum a_i z_i + sum b_i z_i^2 + c z_1 z_2, and 9 - y(z) is that of the mirrored assembly.
    toggle   every move of more than 1.4 leads to the other assembly, where it stays until the next such move
@@ -98,6 +98,7 @@ int main(int count, char **argument) {
             off += x[i] != nominal[i];
             last[i] = x[i];
         }
+        if (count > 3) rest(atoi(argument[3]));
         y = right(z);
         if ((!strcmp(mode, "toggle") && way > 1.4) || (!strcmp(mode, "pairs") && way > 1.4 && off > 1)) flipped = !flipped;
         if (!strcmp(mode, "random")) {

@@ -68,6 +68,8 @@ impl AssemblyFunction for KnownAnswersFunction {
         }
         out.spent(own.extra());
         out.retried(own.count_retried());
+        out.leave_unchecked(own.count_unchecked());
         out.note_non_repeatable(own.non_repeatable().iter().cloned());
+        own.revoked().iter().for_each(|point| out.revoke(point.clone()));
     }
 }

@@ -233,6 +233,7 @@ impl Composite {
         answers.spent(found.extra() + found.count_reused() as i64 - unsent);
         answers.reused(found.count_reused());
         answers.retried(found.count_retried());
+        answers.leave_unchecked(found.count_unchecked());
         answers.note_non_repeatable(found.non_repeatable().iter().map(|doubt| NonRepeatable {
             suspects: doubt.suspects.iter().map(|point| model.sent_for(point)).collect(),
             ..doubt.clone()

@@ -33,6 +33,7 @@ impl Composite {
         out.spent(spent + answers.extra() + answers.count_reused() as i64);
         out.reused(answers.count_reused());
         out.retried(answers.count_retried());
+        out.leave_unchecked(answers.count_unchecked());
         out.note_non_repeatable(answers.non_repeatable().iter().cloned());
         answers.revoked().iter().for_each(|point| out.revoke(point.clone()));
         self.pass_gradients(request.points, origins, needed, answers, out);

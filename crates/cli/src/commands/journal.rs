@@ -28,6 +28,12 @@ pub(crate) struct ModelReport {
     points: usize,
     values: usize,
     errors: usize,
+    /// Points whose run ended before their check. The next run checks them before it uses them.
+    unconfirmed: usize,
+    /// Answers whose checksum does not agree. They count as unknown.
+    damaged: usize,
+    /// True if answers were found to depend on the points before them, so that each is replayed.
+    flips: bool,
     dimensions: Vec<String>,
     identity: serde_json::Value,
 }
@@ -194,8 +200,8 @@ fn table(model: &KnownModel, answers: &[StoredAnswer]) -> Result<String, Failure
 impl ModelReport {
     fn of(model: KnownModel) -> Self {
         let identity = serde_json::from_str(&model.identity).unwrap_or(serde_json::Value::Null);
-        let KnownModel { id, since, points, values, errors, dimensions, .. } = model;
-        Self { id, since, points, values, errors, dimensions, identity }
+        let KnownModel { id, since, points, values, errors, unconfirmed, damaged, flips, dimensions, .. } = model;
+        Self { id, since, points, values, errors, unconfirmed, damaged, flips, dimensions, identity }
     }
 
     /// Appends the model to the document.
@@ -211,6 +217,19 @@ impl ModelReport {
         document.line(format!("model {id}: {}", word("command")));
         document.note(format!("adapter {}, version {}", word("adapter"), word("version")));
         document.note(format!("{points} points, {values} values, {errors} without a value; since {since} UTC"));
+        if self.unconfirmed > 0 {
+            document.note(format!(
+                "{} points lack their check: the next run checks them before it uses them",
+                self.unconfirmed
+            ));
+        }
+        if self.flips {
+            document.note("answers depend on the points evaluated before: every one is replayed by a fresh process");
+        }
+        if self.damaged > 0 {
+            document
+                .note(format!("{} answers are damaged: they are evaluated again when a run needs them", self.damaged));
+        }
         document.note(format!("dimensions: {}", self.dimensions.join(", ")));
     }
 }

@@ -8,5 +8,7 @@ mod history;
 mod journal;
 mod long_runs;
 #[cfg(unix)]
+mod stops;
+#[cfg(unix)]
 mod storm;
 mod strict_check;

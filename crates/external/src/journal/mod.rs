@@ -9,10 +9,13 @@
 //! deleted. An answer that a sentinel puts in doubt is deleted at once, and kept again only after another, trusted process has given it. A
 //! point for which the program itself reports no value is kept too. A crash or a missed deadline is not kept: the next run tries again.
 
+mod checksum;
 mod claims;
+mod error;
+mod recollection;
 pub mod store;
 
-pub use store::{JournalError, JournalFault};
+pub use error::{JournalError, JournalFault};
 pub use store::{KnownModel, Store, StoredAnswer};
 
 use std::collections::HashSet;
@@ -24,9 +27,9 @@ use std::time::{Duration, Instant};
 use sha2::{Digest, Sha256};
 
 use self::claims::{BEAT, Watch};
-use self::store::{Answer, Recalled};
+use self::recollection::Recollection;
 use crate::Settings;
-use crate::process::{Kept, Process, Recheck};
+use crate::process::{Process, Recheck};
 use sensitol::assembly::{
     AssemblyFunction, EvaluationError, ModelInfo, Points, Progress, RecordedFailure, Request, Responses, Run, Signature,
 };
@@ -55,6 +58,8 @@ struct Open {
     gradients: bool,
     /// True if the nominal point has been evaluated in this run.
     rechecked: bool,
+    /// True if the journal states that answers of the model depend on the points before them.
+    flips: bool,
     /// Difference between the model and its answers in the journal; None if there is none.
     outdated: Option<OutdatedJournal>,
     /// Reason why nothing can be kept any more; None while the journal works.
@@ -110,7 +115,11 @@ impl Journaled {
         // A model without answers needs no recheck: only answers of runs at the same time can be reused.
         let rechecked = !store.has_answers(model).map_err(|error| not_kept(&error))?;
         let gradients = self.process.adapter(outputs).map_err(Box::new)?.gradients;
-        Ok(Open { store, model, gradients, rechecked, outdated: None, failure: None })
+        let flips = store.flips(model).map_err(|error| not_kept(&error))?;
+        if flips {
+            self.process.expect_flips();
+        }
+        Ok(Open { store, model, gradients, rechecked, flips, outdated: None, failure: None })
     }
 }
 
@@ -137,6 +146,7 @@ impl AssemblyFunction for Journaled {
         let mut account = self.process.account();
         if let Some(open) = open.as_ref() {
             account.outdated.clone_from(&open.outdated);
+            account.damaged = open.store.damaged();
             account.not_kept = open.failure.as_ref().map(ToString::to_string);
         }
         Some(account)
@@ -173,68 +183,25 @@ impl AssemblyFunction for Journaled {
     }
 }
 
-/// Answers of the journal to some points.
-struct Recollection {
-    /// Rows with known answers.
-    known: Vec<(usize, Vec<Answer>)>,
-    /// Indices in `known` of the rows without a confirmation.
-    unconfirmed: Vec<usize>,
-    /// Stages of these rows.
-    stages: Vec<i64>,
+/// Rows that a batch evaluates or checks.
+struct Work {
+    /// Rows without an answer.
     missing: Vec<usize>,
+    /// Rows whose answers are known from a run that ended before their check.
+    unchecked: Vec<usize>,
+    /// Stages of these answers.
+    stages: Vec<i64>,
 }
 
-impl Recollection {
-    fn of(open: &Open, names: &[&str], rows: &[Vec<f64>], wanted: &[usize]) -> Result<Self, JournalError> {
-        let mut found = Self { known: Vec::new(), unconfirmed: Vec::new(), stages: Vec::new(), missing: Vec::new() };
-        for &row in wanted {
-            let recalled = names.iter().map(|name| open.store.recall(open.model, &rows[row], name));
-            let Some(recalled) = recalled.collect::<Result<Option<Vec<Recalled>>, JournalError>>()? else {
-                found.missing.push(row);
-                continue;
-            };
-            // An answer without derivatives is evaluated again if the model sends them now.
-            let lacks = |(name, one): (&&str, &Recalled)| {
-                Ok(one.answer.is_ok() && open.store.gradient(open.model, &rows[row], name)?.is_none())
-            };
-            let lacks = names.iter().zip(&recalled).filter(|_| open.gradients).map(lacks);
-            if lacks.collect::<Result<Vec<bool>, JournalError>>()?.contains(&true) {
-                found.missing.push(row);
-                continue;
-            }
-            let stages = recalled.iter().filter_map(|one| one.unconfirmed);
-            let before = found.stages.len();
-            found.stages.extend(stages);
-            if found.stages.len() > before {
-                found.unconfirmed.push(found.known.len());
-            }
-            found.known.push((row, recalled.into_iter().map(|one| one.answer).collect()));
-        }
-        found.stages.sort_unstable();
-        found.stages.dedup();
-        Ok(found)
-    }
-
-    /// Rows that are unknown, or known but not confirmed.
-    fn unsettled(&self) -> Vec<usize> {
-        let mut rows: Vec<usize> = self.unconfirmed.iter().map(|&place| self.known[place].0).collect();
-        rows.extend(&self.missing);
-        rows.sort_unstable();
-        rows
-    }
-
-    fn rows(&self) -> Vec<usize> {
-        let mut rows: Vec<usize> = self.known.iter().map(|(row, _)| *row).collect();
-        rows.extend(&self.missing);
-        rows.sort_unstable();
-        rows
-    }
-
-    /// Points and values of the known rows.
-    fn values(&self, rows: &[Vec<f64>]) -> (Vec<Vec<f64>>, Vec<Vec<Option<f64>>>) {
-        let values = |answers: &[Answer]| answers.iter().map(|answer| answer.as_ref().ok().copied()).collect();
-        self.known.iter().map(|(row, answers)| (rows[*row].clone(), values(answers))).unzip()
-    }
+/// Use of known answers after their check.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Reuse {
+    /// All may be used.
+    All,
+    /// Some were deleted, so that the others are read again.
+    ReadAgain,
+    /// A stop came before it was known whether the model is the same.
+    Nothing,
 }
 
 impl Journaled {
@@ -320,12 +287,34 @@ impl Journaled {
         run: &Run<'_>,
         out: &mut Responses,
     ) -> Result<(), JournalError> {
-        if !found.known.is_empty() && self.rechecked(ask, names, rows, &found, run, out)? {
-            let own: Vec<usize> = found.rows();
-            found = self.with(|open| Recollection::of(open, names, rows, &own))?;
+        if !found.known.is_empty() {
+            match self.rechecked(ask, names, rows, &found, run, out)? {
+                Reuse::All => {}
+                Reuse::ReadAgain => {
+                    let own: Vec<usize> = found.rows();
+                    found = self.with(|open| Recollection::of(open, names, rows, &own))?;
+                }
+                Reuse::Nothing => found = Recollection { missing: found.rows(), ..Recollection::default() },
+            }
+        }
+        let stopped = run.stopped() || run.abandoned();
+        if stopped {
+            // Nothing checks them any more.
+            found.drop_unconfirmed();
         }
         let known: Vec<usize> = found.known.iter().map(|(row, _)| *row).collect();
-        for (row, answers) in found.known {
+        if !known.is_empty() && self.process.replays() {
+            let (points, values) = found.values(rows);
+            let checked = |place: &usize| !found.unconfirmed.contains(place);
+            let (points, values): (Vec<_>, Vec<_>) = (points.into_iter().zip(values).enumerate())
+                .filter(|(place, _)| checked(place))
+                .map(|(_, answered)| answered)
+                .unzip();
+            self.process.remember(ask.outputs, &points, &values);
+        }
+        // Without replays the answers are used as they are, and the mark stays for a run that checks them.
+        let unchecked = if self.process.replays() { found.unconfirmed_rows() } else { Vec::new() };
+        for (row, answers) in std::mem::take(&mut found.known) {
             for (output, answer) in answers.into_iter().enumerate() {
                 match answer {
                     Ok(value) => {
@@ -345,14 +334,13 @@ impl Journaled {
         out.reused(known.len());
         run.progressed(Progress { points: known.len(), failed: out.failed_among(&known), reused: known.len() });
         run.finished(&known, out);
-        if found.missing.is_empty() || run.stopped() {
+        if stopped || (found.missing.is_empty() && unchecked.is_empty()) {
             return Ok(());
         }
-        self.asked(ask, (names, rows, &found.missing), run, out)
+        self.asked(ask, (names, rows), &Work { missing: found.missing, unchecked, stages: found.stages }, run, out)
     }
 
-    /// Checks known answers against the model before their use: the nominal point once in a run, and two answers without a confirmation.
-    /// Returns true if answers were deleted.
+    /// Checks known answers against the model before their use: the nominal point, once in a run.
     fn rechecked(
         &self,
         ask: &Request<'_>,
@@ -361,23 +349,23 @@ impl Journaled {
         found: &Recollection,
         run: &Run<'_>,
         out: &mut Responses,
-    ) -> Result<bool, JournalError> {
-        if run.stopped() || (self.with(|open| Ok(open.rechecked))? && found.unconfirmed.is_empty()) {
-            return Ok(false);
+    ) -> Result<Reuse, JournalError> {
+        if self.with(|open| Ok(open.rechecked))? {
+            return Ok(Reuse::All);
         }
-        let (points, values) = found.values(rows);
+        if run.stopped() || run.abandoned() {
+            return Ok(Reuse::Nothing);
+        }
         let at = [self.process.greeting().nominal.clone()];
         let kept = self.with(|open| Recollection::of(open, names, &at, &[0]))?;
         let nominal: Option<Vec<Option<f64>>> = kept.values(&at).1.pop();
-        let known =
-            Kept { nominal: nominal.as_deref(), points: &points, values: &values, unconfirmed: &found.unconfirmed };
-        let forgotten = match self.process.recheck(ask.outputs, &known, run, out) {
-            Recheck::Stopped => return Ok(false),
+        let reuse = match self.process.recheck(ask.outputs, nominal.as_deref(), &found.values(rows).1, run, out) {
+            Recheck::Stopped => return Ok(Reuse::Nothing),
             Recheck::Same(now) => self.with(|open| {
                 if nominal.is_none() {
                     open.keep_nominal(names, &at[0], &now)?;
                 }
-                open.store.settle_stages(&found.stages, true).map(|()| false)
+                Ok(Reuse::All)
             })?,
             Recheck::Changed(now) => self.with(|open| {
                 let before = nominal.unwrap_or_default();
@@ -388,25 +376,37 @@ impl Journaled {
                     [before.get(differs).copied().flatten(), now.get(differs).copied().flatten()],
                     answers,
                 ));
-                open.keep_nominal(names, &at[0], &now).map(|()| true)
-            })?,
-            Recheck::Doubtful(now) => self.with(|open| {
-                open.store.settle_stages(&found.stages, false)?;
-                open.keep_nominal(names, &at[0], &now).map(|()| true)
+                open.keep_nominal(names, &at[0], &now).map(|()| Reuse::ReadAgain)
             })?,
         };
         self.with(|open| {
             open.rechecked = true;
             Ok(())
         })?;
-        Ok(forgotten)
+        Ok(reuse)
     }
 
-    /// Evaluates rows. Every answer is kept before it is returned.
+    /// Keeps the finding that answers of the model depend on the points before them.
+    fn note_flips(&self) -> Result<(), JournalError> {
+        if !self.process.flips() {
+            return Ok(());
+        }
+        self.with(|open| {
+            if !open.flips {
+                open.flips = true;
+                open.store.note_flips(open.model)?;
+            }
+            Ok(())
+        })
+    }
+
+    /// Evaluates rows, and checks them together with answers of a run that ended before their check. Every answer is kept before it is
+    /// returned.
     fn asked(
         &self,
         ask: &Request<'_>,
-        (names, rows, missing): (&[&str], &[Vec<f64>], &[usize]),
+        (names, rows): (&[&str], &[Vec<f64>]),
+        work: &Work,
         run: &Run<'_>,
         out: &mut Responses,
     ) -> Result<(), JournalError> {
@@ -414,8 +414,14 @@ impl Journaled {
             open.store.open_stage(open.model)?;
             Ok(open.model)
         })?;
-        let points = Points::from_rows(&missing.iter().map(|&row| &rows[row]).collect::<Vec<_>>());
-        let mut answers = Responses::open(missing.len(), out.outputs());
+        // In the order of the request, like a run that was not ended.
+        let mut asked: Vec<usize> = work.missing.iter().chain(&work.unchecked).copied().collect();
+        asked.sort_unstable();
+        let points = Points::from_rows(&asked.iter().map(|&row| &rows[row]).collect::<Vec<_>>());
+        let mut answers = Responses::open(asked.len(), out.outputs());
+        for (place, &row) in asked.iter().enumerate() {
+            (0..out.outputs()).for_each(|output| answers.pass_on(place, output, out, row, output));
+        }
         let (told, failure) = (Mutex::new(out), Mutex::new(None::<JournalError>));
         let note = |result: Result<(), JournalError>| {
             if let Err(error) = result {
@@ -436,10 +442,10 @@ impl Journaled {
             let mut out = told.lock().unwrap_or_else(PoisonError::into_inner);
             for &row in finished {
                 for output in 0..answers.outputs() {
-                    out.pass_on(missing[row], output, answers, row, output);
+                    out.pass_on(asked[row], output, answers, row, output);
                 }
             }
-            let rows: Vec<usize> = finished.iter().map(|&row| missing[row]).collect();
+            let rows: Vec<usize> = finished.iter().map(|&row| asked[row]).collect();
             run.finished(&rows, &out);
         };
         let withdraw = |rows: &[usize]| {
@@ -454,6 +460,7 @@ impl Journaled {
                 *beat = Instant::now();
                 note(self.with(|open| open.store.beat()));
             }
+            note(self.note_flips());
             let failed = || failure.lock().unwrap_or_else(PoisonError::into_inner).is_some();
             run.stop_reason().or_else(|| failed().then_some(StopReason::Requested))
         };
@@ -462,17 +469,39 @@ impl Journaled {
         let out = told.into_inner().unwrap_or_else(PoisonError::into_inner);
         out.spent(answers.extra());
         out.retried(answers.count_retried());
+        out.leave_unchecked(answers.count_unchecked());
         out.note_non_repeatable(answers.non_repeatable().iter().cloned());
         answers.revoked().iter().for_each(|point| out.revoke(point.clone()));
         if let Some(error) = failure.into_inner().unwrap_or_else(PoisonError::into_inner) {
             return Err(error);
         }
-        let confirmed = !run.stopped() && !run.abandoned();
+        self.note_flips()?;
+        self.end_stage(names, rows, work, &answers, !run.stopped() && !run.abandoned())
+    }
+
+    /// Ends the stage of a batch. Its answers are marked as confirmed if the batch was done and checked.
+    fn end_stage(
+        &self,
+        names: &[&str],
+        rows: &[Vec<f64>],
+        work: &Work,
+        answers: &Responses,
+        done: bool,
+    ) -> Result<(), JournalError> {
+        let checked = done && answers.count_unchecked() == 0;
+        let confirmed = self.process.take_confirmed();
         self.with(|open| {
             if !answers.revoked().is_empty() {
-                open.store.withdraw(model, answers.revoked())?;
+                open.store.withdraw(open.model, answers.revoked())?;
             }
-            open.store.close_stage(confirmed)
+            if open.flips {
+                open.store.confirm(open.model, &confirmed, names, &[])?;
+            }
+            if checked {
+                let points: Vec<Vec<f64>> = work.unchecked.iter().map(|&row| rows[row].clone()).collect();
+                open.store.confirm(open.model, &points, names, &work.stages)?;
+            }
+            open.store.close_stage(checked)
         })
     }
 }

@@ -1,14 +1,19 @@
 //! File of the journal: SQLite in WAL mode. Several runs may share it, and any SQLite tool can read it.
 
+use std::cell::RefCell;
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use rusqlite::{Connection, ErrorCode, OptionalExtension, Transaction, TransactionBehavior, params};
 
+use super::checksum;
 use super::claims::{self, Claimant};
+use super::error::{JournalError, JournalFault};
+use sensitol::assembly::DamagedJournal;
 
 /// Version of the content, in `PRAGMA user_version`.
-const VERSION: i32 = 1;
+pub(super) const VERSION: i32 = 1;
 /// Mark of the writer, in `PRAGMA application_id`: "snsl".
 const APPLICATION: i32 = 0x736e_736c;
 /// Longest wait for another run that is writing.
@@ -34,7 +39,7 @@ const TABLES: &str = "
         PRIMARY KEY (model, point, output)
     ) WITHOUT ROWID;
 ";
-/// Later additions, which earlier versions ignore: stages without a confirmation by replay, claims, and derivatives.
+/// Later additions, which earlier versions ignore: stages without a confirmation by replay, claims, derivatives, and models that flip.
 const LATER: &str = "
     CREATE TABLE IF NOT EXISTS stage (
         id INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -55,53 +60,14 @@ const LATER: &str = "
         slopes BLOB NOT NULL,
         PRIMARY KEY (model, point, output)
     ) WITHOUT ROWID;
+    CREATE TABLE IF NOT EXISTS flip (
+        model INTEGER PRIMARY KEY REFERENCES model (id) ON DELETE CASCADE,
+        since TEXT NOT NULL DEFAULT (datetime('now'))
+    );
     CREATE TRIGGER IF NOT EXISTS forget_gradient AFTER DELETE ON answer BEGIN
         DELETE FROM gradient WHERE model = OLD.model AND point = OLD.point AND output = OLD.output;
     END;
 ";
-
-/// A fault of a journal.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("journal {}: {fault}", path.display())]
-#[non_exhaustive]
-pub struct JournalError {
-    /// Path of the file.
-    pub path: PathBuf,
-    /// The fault.
-    pub fault: JournalFault,
-}
-
-/// The faults of a journal.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum JournalFault {
-    /// The file does not exist.
-    #[error("there is no such file")]
-    Missing,
-    /// The file is not a journal.
-    #[error("this is no journal of sensitol; name another file, or none")]
-    NotAJournal,
-    /// The file was written by a later version.
-    #[error("version {found} of the journal was written by a later sensitol; this one reads version {VERSION}")]
-    Later {
-        /// Version of the file.
-        found: i32,
-    },
-    /// A file that the model depends on cannot be read.
-    #[error("the model's file {} cannot be read: {reason}", file.display())]
-    ModelFile {
-        /// Path of that file.
-        file: PathBuf,
-        /// Message of the operating system.
-        reason: String,
-    },
-    /// Reading or writing failed. Stored answers stay as they are.
-    #[error("{reason}; what it holds already is not touched")]
-    Failed {
-        /// Message of SQLite.
-        reason: String,
-    },
-}
 
 /// Answer to a point: a value, or the reason why there is none.
 pub type Answer = Result<f64, String>;
@@ -115,6 +81,8 @@ pub struct Store {
     /// Claim of this run; None if it has none.
     claim: Option<i64>,
     durable: bool,
+    /// Point and output of every answer whose checksum does not agree.
+    damaged: RefCell<HashSet<(Vec<u8>, String)>>,
 }
 
 /// An answer from the journal, with its stage if that has no confirmation.
@@ -142,6 +110,12 @@ pub struct KnownModel {
     pub values: usize,
     /// Number of points and outputs without a value, with a reason.
     pub errors: usize,
+    /// Number of points whose run ended before their check. The next run checks them before it uses them.
+    pub unconfirmed: usize,
+    /// Number of values and reasons whose checksum does not agree. They count as unknown.
+    pub damaged: usize,
+    /// True if answers were found to depend on the points before them, so that each is replayed.
+    pub flips: bool,
 }
 
 /// An answer with its point and output.
@@ -162,7 +136,14 @@ impl Store {
     /// Fails if the file is not a journal, is of a later version, or cannot be read and written.
     pub fn open(path: &Path) -> Result<Self, JournalError> {
         let connection = Connection::open(path).map_err(|error| at(path, &error))?;
-        let store = Self { path: path.to_owned(), connection, stage: None, claim: None, durable: false };
+        let store = Self {
+            path: path.to_owned(),
+            connection,
+            stage: None,
+            claim: None,
+            durable: false,
+            damaged: RefCell::default(),
+        };
         let begun = Instant::now();
         loop {
             match store.prepare() {
@@ -224,20 +205,18 @@ impl Store {
     /// Adds the tables and columns that an earlier version did not make.
     fn complete(&self) -> rusqlite::Result<()> {
         let is_complete = |connection: &Connection| -> rusqlite::Result<bool> {
-            let column = "SELECT count(*) FROM pragma_table_info('answer') WHERE name = 'stage'";
-            let tables =
-                "SELECT count(*) FROM sqlite_schema WHERE name IN ('stage', 'claim', 'gradient', 'forget_gradient')";
-            let count = |sql: &str| connection.query_row(sql, [], |row| row.get::<_, i64>(0));
-            Ok(count(column)? == 1 && count(tables)? == 4)
+            let tables = "SELECT count(*) FROM sqlite_schema WHERE name IN ('stage', 'claim', 'gradient', 'flip', 'forget_gradient')";
+            let tables: i64 = connection.query_row(tables, [], |row| row.get(0))?;
+            Ok(tables == 5 && missing_columns(connection)?.is_empty())
         };
         if is_complete(&self.connection)? {
             return Ok(());
         }
         let making = Transaction::new_unchecked(&self.connection, TransactionBehavior::Immediate)?;
         making.execute_batch(LATER)?;
-        // Another run may have added the column meanwhile, or an earlier version.
-        if !is_complete(&making)? {
-            making.execute_batch("ALTER TABLE answer ADD COLUMN stage INTEGER")?;
+        // Another run may have added the columns meanwhile, or an earlier version.
+        for (table, column) in missing_columns(&making)? {
+            making.execute_batch(&format!("ALTER TABLE {table} ADD COLUMN {column} INTEGER"))?;
         }
         making.commit()
     }
@@ -263,25 +242,22 @@ impl Store {
     /// # Errors
     /// Fails if reading fails.
     pub fn answer(&self, model: i64, point: &[f64], output: &str) -> Result<Option<Answer>, JournalError> {
-        let find = "SELECT value, error FROM answer WHERE model = ?1 AND point = ?2 AND output = ?3";
-        let found = self.connection.prepare_cached(find).and_then(|mut statement| {
-            let answer = |row: &rusqlite::Row<'_>| -> rusqlite::Result<Answer> { answer(row.get(0)?, row.get(1)?) };
-            statement.query_row(params![model, bytes(point), output], answer).optional()
-        });
-        self.failed(found)
+        Ok(self.recall(model, point, output)?.map(|recalled| recalled.answer))
     }
 
     /// Like [`answer`](Self::answer), with the stage of an answer without a confirmation.
     pub(super) fn recall(&self, model: i64, point: &[f64], output: &str) -> Result<Option<Recalled>, JournalError> {
-        let find = "SELECT value, error, (SELECT id FROM stage WHERE id = answer.stage) FROM answer
+        let find = "SELECT (SELECT id FROM stage WHERE id = answer.stage), value, error, checksum FROM answer
             WHERE model = ?1 AND point = ?2 AND output = ?3";
+        let point = bytes(point);
         let found = self.connection.prepare_cached(find).and_then(|mut statement| {
-            let recalled = |row: &rusqlite::Row<'_>| -> rusqlite::Result<Recalled> {
-                Ok(Recalled { answer: answer(row.get(0)?, row.get(1)?)?, unconfirmed: row.get(2)? })
+            let recalled = |row: &rusqlite::Row<'_>| -> rusqlite::Result<Option<Recalled>> {
+                let unconfirmed = row.get(0)?;
+                Ok(self.checked(&point, output, row, 1)?.map(|answer| Recalled { answer, unconfirmed }))
             };
-            statement.query_row(params![model, bytes(point), output], recalled).optional()
+            statement.query_row(params![model, point, output], recalled).optional()
         });
-        self.failed(found)
+        Ok(self.failed(found)?.flatten())
     }
 
     /// True if the journal has an answer of the model.
@@ -303,17 +279,26 @@ impl Store {
         output: &str,
         slopes: &[f64],
     ) -> Result<(), JournalError> {
-        let add = "INSERT OR REPLACE INTO gradient (model, point, output, slopes) VALUES (?1, ?2, ?3, ?4)";
+        let add =
+            "INSERT OR REPLACE INTO gradient (model, point, output, slopes, checksum) VALUES (?1, ?2, ?3, ?4, ?5)";
         let slopes: Vec<u8> = slopes.iter().flat_map(|slope| slope.to_le_bytes()).collect();
-        self.failed(self.connection.execute(add, params![model, bytes(point), output, slopes]).map(drop))
+        let point = bytes(point);
+        let checksum = checksum::of_slopes(&point, output, &slopes);
+        self.failed(self.connection.execute(add, params![model, point, output, slopes, checksum]).map(drop))
     }
 
-    /// Derivatives of one output at one point. Returns None if none were kept.
+    /// Derivatives of one output at one point. Returns None if none were kept, or if they are damaged.
     pub(super) fn gradient(&self, model: i64, point: &[f64], output: &str) -> Result<Option<Vec<f64>>, JournalError> {
-        let find = "SELECT slopes FROM gradient WHERE model = ?1 AND point = ?2 AND output = ?3";
-        let found = self.connection.query_row(find, params![model, bytes(point), output], |row| row.get(0)).optional();
-        let slope = |eight: &[u8]| f64::from_le_bytes(eight.try_into().expect("eight bytes"));
-        Ok(self.failed::<Option<Vec<u8>>>(found)?.map(|bytes| bytes.chunks_exact(8).map(slope).collect()))
+        let find = "SELECT slopes, checksum FROM gradient WHERE model = ?1 AND point = ?2 AND output = ?3";
+        let point = bytes(point);
+        let kept = |row: &rusqlite::Row<'_>| Ok((row.get(0)?, row.get(1)?));
+        let found = self.connection.query_row(find, params![model, point, output], kept).optional();
+        let Some((slopes, kept)) = self.failed::<Option<(Vec<u8>, Option<i64>)>>(found)? else { return Ok(None) };
+        if kept.is_some_and(|kept| kept != checksum::of_slopes(&point, output, &slopes)) {
+            self.damaged.borrow_mut().insert((point, output.to_owned()));
+            return Ok(None);
+        }
+        Ok(Some(slopes.chunks_exact(8).map(number).collect()))
     }
 
     /// Opens a stage: answers from now on belong to it and have no confirmation yet.
@@ -331,23 +316,88 @@ impl Store {
         }
     }
 
-    /// Marks stages as confirmed, or deletes their answers.
-    pub(super) fn settle_stages(&mut self, stages: &[i64], confirmed: bool) -> Result<(), JournalError> {
-        let settled = (|| {
+    /// Removes the mark of answers that a fresh process confirmed: those to these points, for these outputs. Stages without a marked answer
+    /// end.
+    pub(super) fn confirm(
+        &mut self,
+        model: i64,
+        points: &[Vec<f64>],
+        outputs: &[&str],
+        stages: &[i64],
+    ) -> Result<(), JournalError> {
+        if points.is_empty() {
+            return Ok(());
+        }
+        let confirmed = (|| {
             let transaction = self.connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
-            for stage in stages {
-                if !confirmed {
-                    transaction.execute("DELETE FROM answer WHERE stage = ?1", [stage])?;
+            {
+                let unmark = "UPDATE answer SET stage = NULL WHERE model = ?1 AND point = ?2 AND output = ?3";
+                let mut statement = transaction.prepare_cached(unmark)?;
+                for point in points {
+                    for output in outputs {
+                        statement.execute(params![model, bytes(point), output])?;
+                    }
                 }
-                transaction.execute("DELETE FROM stage WHERE id = ?1", [stage])?;
+            }
+            let end = "DELETE FROM stage WHERE id = ?1 AND NOT EXISTS (SELECT 1 FROM answer WHERE stage = ?1)";
+            for stage in stages {
+                transaction.execute(end, [stage])?;
             }
             transaction.commit()
         })();
-        self.failed(settled)
+        self.failed(confirmed)
+    }
+
+    /// True if answers of the model were found to depend on the points before them.
+    pub(super) fn flips(&self, model: i64) -> Result<bool, JournalError> {
+        let find = "SELECT EXISTS (SELECT 1 FROM flip WHERE model = ?1)";
+        self.failed(self.connection.query_row(find, [model], |row| row.get(0)))
+    }
+
+    /// Keeps the finding that answers of the model depend on the points before them. All its answers are marked: each needs its own
+    /// confirmation from now on.
+    pub(super) fn note_flips(&mut self, model: i64) -> Result<(), JournalError> {
+        let noted = (|| {
+            let transaction = self.connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
+            // Another run may have noted it already, and has confirmed answers since then.
+            if transaction.execute("INSERT OR IGNORE INTO flip (model) VALUES (?1)", [model])? > 0 {
+                transaction.execute("INSERT INTO stage (model) VALUES (?1)", [model])?;
+                let stage = transaction.last_insert_rowid();
+                transaction.execute("UPDATE answer SET stage = ?2 WHERE model = ?1", params![model, stage])?;
+            }
+            transaction.commit()
+        })();
+        self.failed(noted)
+    }
+
+    /// Path of the file and number of its answers that were found to be damaged; None if there was none.
+    pub fn damaged(&self) -> Option<DamagedJournal> {
+        let answers = self.damaged.borrow().len();
+        (answers > 0).then(|| DamagedJournal::new(self.path.clone(), answers))
+    }
+
+    /// Answer of a row, if its checksum agrees. A damaged answer counts as unknown and is noted.
+    fn checked(
+        &self,
+        point: &[u8],
+        output: &str,
+        row: &rusqlite::Row<'_>,
+        first: usize,
+    ) -> rusqlite::Result<Option<Answer>> {
+        let (value, error): (Option<f64>, Option<String>) = (row.get(first)?, row.get(first + 1)?);
+        let kept: Option<i64> = row.get(first + 2)?;
+        let answer = value.ok_or_else(|| error.unwrap_or_default());
+        // Answers of earlier versions have no checksum.
+        if kept.is_none_or(|kept| kept == checksum::of_answer(point, output, &answer)) {
+            return Ok(Some(answer));
+        }
+        self.damaged.borrow_mut().insert((point.to_vec(), output.to_owned()));
+        Ok(None)
     }
 
     /// Deletes all answers of a model. Returns their number.
     pub(super) fn forget_answers(&mut self, model: i64) -> Result<usize, JournalError> {
+        self.failed(self.connection.execute("DELETE FROM flip WHERE model = ?1", [model]))?;
         self.failed(self.connection.execute("DELETE FROM answer WHERE model = ?1", [model]))
     }
 
@@ -418,14 +468,17 @@ impl Store {
         let kept = (|| {
             let transaction = self.connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
             {
-                let add = "INSERT OR REPLACE INTO answer (model, point, output, value, error, stage) VALUES (?1, ?2, ?3, ?4, ?5, ?6)";
+                let add = "INSERT OR REPLACE INTO answer (model, point, output, value, error, stage, checksum)
+                    VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)";
                 let mut statement = transaction.prepare_cached(add)?;
                 for StoredAnswer { point, output, answer } in answers {
                     let (value, error) = match answer {
                         Ok(value) => (Some(*value), None),
                         Err(error) => (None, Some(error)),
                     };
-                    statement.execute(params![model, bytes(point), output, value, error, stage])?;
+                    let point = bytes(point);
+                    let checksum = checksum::of_answer(&point, output, answer);
+                    statement.execute(params![model, point, output, value, error, stage, checksum])?;
                 }
             }
             transaction.commit()
@@ -459,7 +512,9 @@ impl Store {
         let all = "SELECT id, identity, dimensions, since,
                 (SELECT count(DISTINCT point) FROM answer WHERE model = id),
                 (SELECT count(value) FROM answer WHERE model = id),
-                (SELECT count(error) FROM answer WHERE model = id)
+                (SELECT count(error) FROM answer WHERE model = id),
+                (SELECT count(DISTINCT point) FROM answer JOIN stage ON stage.id = answer.stage WHERE answer.model = model.id),
+                EXISTS (SELECT 1 FROM flip WHERE flip.model = model.id)
             FROM model ORDER BY id";
         let models = self.connection.prepare(all).and_then(|mut statement| {
             let model = |row: &rusqlite::Row<'_>| {
@@ -471,19 +526,26 @@ impl Store {
                     points: row.get::<_, i64>(4)? as usize,
                     values: row.get::<_, i64>(5)? as usize,
                     errors: row.get::<_, i64>(6)? as usize,
+                    unconfirmed: row.get::<_, i64>(7)? as usize,
+                    damaged: 0,
+                    flips: row.get(8)?,
                 })
             };
-            statement.query_map([], model)?.collect()
+            statement.query_map([], model)?.collect::<rusqlite::Result<Vec<KnownModel>>>()
         });
-        self.failed(models)
+        let mut models = self.failed(models)?;
+        for model in &mut models {
+            model.damaged = model.values + model.errors - self.answers(model.id)?.len();
+        }
+        Ok(models)
     }
 
-    /// All answers of a model, point by point.
+    /// All answers of a model, point by point, without damaged ones.
     ///
     /// # Errors
     /// Fails if reading fails.
     pub fn answers(&self, model: i64) -> Result<Vec<StoredAnswer>, JournalError> {
-        self.stored("SELECT point, output, value, error FROM answer WHERE model = ?1", model)
+        self.stored("SELECT point, output, value, error, checksum FROM answer WHERE model = ?1", model)
     }
 
     /// Answers of a model that state that there is no value, point by point.
@@ -491,19 +553,20 @@ impl Store {
     /// # Errors
     /// Fails if reading fails.
     pub fn failures(&self, model: i64) -> Result<Vec<StoredAnswer>, JournalError> {
-        self.stored("SELECT point, output, value, error FROM answer WHERE model = ?1 AND value IS NULL", model)
+        let find = "SELECT point, output, value, error, checksum FROM answer WHERE model = ?1 AND value IS NULL";
+        self.stored(find, model)
     }
 
-    /// Answers that a query of one model selects: point, output, value and error.
+    /// Answers that a query of one model selects: point, output, value, error and checksum.
     fn stored(&self, query: &str, model: i64) -> Result<Vec<StoredAnswer>, JournalError> {
         let answers = self.connection.prepare(query).and_then(|mut statement| {
             let kept = |row: &rusqlite::Row<'_>| {
-                let bytes: Vec<u8> = row.get(0)?;
-                let coordinate = |eight: &[u8]| f64::from_le_bytes(eight.try_into().expect("eight bytes"));
-                let point = bytes.chunks_exact(8).map(coordinate).collect();
-                Ok(StoredAnswer { point, output: row.get(1)?, answer: answer(row.get(2)?, row.get(3)?)? })
+                let (bytes, output): (Vec<u8>, String) = (row.get(0)?, row.get(1)?);
+                let answer = self.checked(&bytes, &output, row, 2)?;
+                let point = bytes.chunks_exact(8).map(number).collect();
+                Ok(answer.map(|answer| StoredAnswer { point, output, answer }))
             };
-            statement.query_map([model], kept)?.collect()
+            statement.query_map([model], kept)?.filter_map(Result::transpose).collect()
         });
         self.failed(answers)
     }
@@ -547,8 +610,21 @@ fn at(path: &Path, error: &rusqlite::Error) -> JournalError {
     JournalError { path: path.to_owned(), fault }
 }
 
-fn answer(value: Option<f64>, error: Option<String>) -> rusqlite::Result<Answer> {
-    Ok(value.ok_or_else(|| error.unwrap_or_default()))
+/// Columns that a journal of an earlier version lacks, with their tables.
+fn missing_columns(connection: &Connection) -> rusqlite::Result<Vec<(&'static str, &'static str)>> {
+    let mut missing = Vec::new();
+    for (table, column) in [("answer", "stage"), ("answer", "checksum"), ("gradient", "checksum")] {
+        let find = "SELECT count(*) FROM pragma_table_info(?1) WHERE name = ?2";
+        if connection.query_row(find, [table, column], |row| row.get::<_, i64>(0))? == 0 {
+            missing.push((table, column));
+        }
+    }
+    Ok(missing)
+}
+
+/// Number from its eight bytes.
+fn number(eight: &[u8]) -> f64 {
+    f64::from_le_bytes(eight.try_into().expect("eight bytes"))
 }
 
 /// Bytes of the exact doubles of a point. Adding 0 removes the sign of a negative zero.

@@ -32,15 +32,17 @@ pub(super) struct Batch<'a> {
 }
 
 impl<'a> Batch<'a> {
-    /// Batch in which every row of `points` is waiting.
+    /// Batch in which every row of `points` without an answer is waiting.
     pub(super) fn new(points: &'a Points, out: &'a mut Responses) -> Self {
+        let is_open = |row: &usize| (0..out.outputs()).any(|output| out.is_open(*row, output));
+        let waiting: VecDeque<usize> = (0..points.rows()).filter(is_open).collect();
         Self {
+            left: waiting.len(),
             points,
             out,
-            waiting: (0..points.rows()).collect(),
+            waiting,
             suspects: VecDeque::new(),
             failures: HashMap::new(),
-            left: points.rows(),
             again: HashSet::new(),
             twice: HashSet::new(),
             done: Vec::new(),

@@ -23,4 +23,4 @@ mod suspicion;
 mod worker;
 
 pub use program::Process;
-pub(crate) use program::{Kept, Recheck};
+pub(crate) use program::Recheck;

@@ -2,6 +2,8 @@
 
 mod answers;
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
@@ -57,8 +59,8 @@ pub(super) struct Pool {
     pub(super) answers: Answers,
     /// Greatest difference of every output between two evaluations of the nominal point.
     pub(super) noise: Vec<f64>,
-    /// True once an answer was found to depend on the points before it.
-    pub(super) flips: bool,
+    /// True once an answer was found to depend on the points before it, in this run or in an earlier one.
+    flips: Arc<AtomicBool>,
     /// True if the model gives another answer every time.
     pub(super) hopeless: bool,
     /// True while points go to one child, one by one in their order, without sentinels.
@@ -88,7 +90,7 @@ enum State {
 }
 
 impl Pool {
-    pub(super) fn new(mut settings: Settings, hello: Hello) -> Self {
+    pub(super) fn new(mut settings: Settings, hello: Hello, flips: Arc<AtomicBool>) -> Self {
         settings.timeout = settings.timeout.min(FOREVER);
         settings.start_timeout = settings.start_timeout.min(FOREVER);
         let slots = (0..settings.workers.max(1)).map(|_| Slot::default()).collect();
@@ -108,10 +110,20 @@ impl Pool {
             account: EvaluatorAccount::default(),
             answers: Answers::default(),
             noise: Vec::new(),
-            flips: false,
+            flips,
             hopeless: false,
             walking: false,
         }
+    }
+
+    /// True once an answer was found to depend on the points before it.
+    pub(super) fn flips(&self) -> bool {
+        self.flips.load(Ordering::Relaxed)
+    }
+
+    /// Notes that answers depend on the points before them. From now on every answer is replayed.
+    pub(super) fn set_flips(&self) {
+        self.flips.store(true, Ordering::Relaxed);
     }
 
     pub(super) fn asks(&self, characteristics: &[String]) -> bool {
@@ -129,10 +141,11 @@ impl Pool {
         Ok(self.adapter.as_ref().expect("a child is ready"))
     }
 
-    /// Evaluates all rows of `points`. After a stop, points under way are waited for and others stay open.
+    /// Evaluates all rows of `points` that have no answer yet. After a stop, points under way are waited for and others stay open.
     pub(super) fn evaluate(&mut self, points: &Points, run: &Run<'_>, out: &mut Responses) {
-        let rows = points.rows();
-        let mut batch = Some(Batch::new(points, out));
+        let batch = Batch::new(points, out);
+        let open = batch.left;
+        let mut batch = Some(batch);
         let mut stopped_at = None;
         loop {
             let stopping = run.stopped();
@@ -163,7 +176,7 @@ impl Pool {
             work.tell(run);
         }
         let work = batch.expect("a batch");
-        work.out.spent(work.sent as i64 - (rows - work.left) as i64);
+        work.out.spent(work.sent as i64 - (open - work.left) as i64);
         self.account.counts.retried += work.resent as u64;
         if self.settings.verify == Some(0) {
             // Nothing is replayed, so rows that are in doubt twice stay in doubt.
@@ -452,7 +465,9 @@ impl Pool {
         }
         worker.child.kill();
         // An even number of flips does not show at the nominal point, so every answer of the batch is replayed at its end.
-        self.flips |= is_flip(&non_repeatable);
+        if is_flip(&non_repeatable) {
+            self.set_flips();
+        }
         if let Some(batch) = batch {
             batch.out.note_non_repeatable(non_repeatable);
             batch.distrust(&rows);

@@ -1,9 +1,11 @@
 //! The external program as an assembly function.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use super::pool::Pool;
 use super::protocol::{Hello, VERSION};
+use super::replay::Confirmation;
 use crate::settings::{Greeting, Settings};
 use sensitol::assembly::EvaluatorAccount;
 use sensitol::assembly::ProcessError;
@@ -18,6 +20,8 @@ pub struct Process {
     settings: Settings,
     greeting: Greeting,
     pool: Mutex<Option<Pool>>,
+    /// True once an answer was found to depend on the points before it, in this run or in an earlier one.
+    flips: Arc<AtomicBool>,
 }
 
 impl Process {
@@ -29,7 +33,7 @@ impl Process {
         assert!(!settings.argv.is_empty(), "a program has a name");
         assert_eq!(signature.inputs.len(), greeting.nominal.len(), "every dimension has a nominal value");
         let signature = Signature { costly: true, cheap: false, ..signature };
-        Self { signature, settings, greeting, pool: Mutex::new(None) }
+        Self { signature, settings, greeting, pool: Mutex::new(None), flips: Arc::default() }
     }
 
     /// Description of the program by itself. Starts the program if it is not running.
@@ -52,6 +56,33 @@ impl Process {
         pool.as_ref().map(|pool| pool.account.clone()).unwrap_or_default()
     }
 
+    /// True once an answer was found to depend on the points before it.
+    pub(crate) fn flips(&self) -> bool {
+        self.flips.load(Ordering::Relaxed)
+    }
+
+    /// Notes that an earlier run found answers that depend on the points before them, so that every answer is replayed.
+    pub(crate) fn expect_flips(&self) {
+        self.flips.store(true, Ordering::Relaxed);
+    }
+
+    /// True if answers are replayed.
+    pub(crate) fn replays(&self) -> bool {
+        self.settings.sentinels && self.settings.verify != Some(0)
+    }
+
+    /// Adds answers of an earlier run that are used now. That run confirmed each of them, or the usual part.
+    pub(crate) fn remember(&self, outputs: &[usize], points: &[Vec<f64>], values: &[Vec<Option<f64>>]) {
+        let each_confirmed = self.flips();
+        self.with_pool(outputs, |pool| pool.remember(points, values, each_confirmed));
+    }
+
+    /// Points with answers that a fresh process confirmed since the last call.
+    pub(crate) fn take_confirmed(&self) -> Vec<Vec<f64>> {
+        let mut pool = self.pool.lock().unwrap_or_else(PoisonError::into_inner);
+        pool.as_mut().map(|pool| pool.answers.take_confirmed()).unwrap_or_default()
+    }
+
     pub(crate) fn settings(&self) -> &Settings {
         &self.settings
     }
@@ -67,7 +98,7 @@ impl Process {
         // A child gets the requested outputs once, at its start. Other outputs need other children.
         if pool.as_ref().is_none_or(|pool| !pool.asks(&names)) {
             let account = pool.take().map(|pool| pool.account.clone()).unwrap_or_default();
-            let mut fresh = Pool::new(self.settings.clone(), self.hello(names));
+            let mut fresh = Pool::new(self.settings.clone(), self.hello(names), Arc::clone(&self.flips));
             fresh.account = account;
             *pool = Some(fresh);
         }
@@ -91,48 +122,33 @@ impl Process {
     }
 }
 
-/// Result of the comparison of an earlier run's answers with the model.
+/// Result of the comparison of an earlier run's answers with the model. All but the last hold the values of the nominal point.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Recheck {
-    /// The answers agree. The values are those of the nominal point.
+    /// The nominal point has the same value.
     Same(Vec<Option<f64>>),
     /// The nominal point has another value, so the model has changed.
     Changed(Vec<Option<f64>>),
-    /// The nominal point has the same value, but another point does not. These answers depend on the points before them.
-    Doubtful(Vec<Option<f64>>),
     /// The run was stopped before the comparison ended.
     Stopped,
 }
 
-/// Answers of an earlier run.
-pub(crate) struct Kept<'a> {
-    /// Answers of the nominal point; None if they were not kept.
-    pub(crate) nominal: Option<&'a [Option<f64>]>,
-    /// Points with answers. Their range distinguishes noise from a difference.
-    pub(crate) points: &'a [Vec<f64>],
-    pub(crate) values: &'a [Vec<Option<f64>>],
-    /// Indices of the points without a confirmation by replay.
-    pub(crate) unconfirmed: &'a [usize],
-}
-
 impl Process {
-    /// Compares answers of an earlier run with the model: the nominal point once, and two answers without a confirmation.
-    pub(crate) fn recheck(&self, outputs: &[usize], kept: &Kept<'_>, run: &Run<'_>, out: &mut Responses) -> Recheck {
+    /// Compares the answer of an earlier run to the nominal point with the model. Other answers of that run, `values`, have the range that
+    /// distinguishes noise from a difference.
+    pub(crate) fn recheck(
+        &self,
+        outputs: &[usize],
+        nominal: Option<&[Option<f64>]>,
+        values: &[Vec<Option<f64>>],
+        run: &Run<'_>,
+        out: &mut Responses,
+    ) -> Recheck {
         self.with_pool(outputs, |pool| {
-            let replays = self.settings.sentinels && self.settings.verify != Some(0);
-            pool.remember(kept.points, kept.values);
-            let Some((same, found)) = pool.is_as_kept(kept.nominal, out, run) else { return Recheck::Stopped };
-            if !same {
-                return Recheck::Changed(found);
-            }
-            if !replays || kept.unconfirmed.is_empty() {
-                return Recheck::Same(found);
-            }
-            let points: Vec<Vec<f64>> = kept.unconfirmed.iter().map(|&row| kept.points[row].clone()).collect();
-            let values: Vec<Vec<Option<f64>>> = kept.unconfirmed.iter().map(|&row| kept.values[row].clone()).collect();
-            match pool.are_as_kept(&points, &values, out, run) {
-                Some(true) => Recheck::Same(found),
-                Some(false) => Recheck::Doubtful(found),
+            values.iter().for_each(|values| pool.reference.learn(values));
+            match pool.is_as_kept(nominal, out, run) {
+                Some((true, found)) => Recheck::Same(found),
+                Some((false, found)) => Recheck::Changed(found),
                 None => Recheck::Stopped,
             }
         })
@@ -155,11 +171,9 @@ impl AssemblyFunction for Process {
     fn evaluate(&self, ask: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
         self.with_pool(ask.outputs, |pool| {
             pool.evaluate(ask.points, run, out);
-            let changed = match run.stopped() || run.abandoned() {
-                true => Some(pool.doubt(ask.points, out)),
-                false => pool.confirm(ask.points, out, run),
-            };
-            if let Some(changed) = changed.filter(|changed| !changed.is_empty()) {
+            let Confirmation { changed, unchecked } = pool.confirm(ask.points, out, run);
+            out.leave_unchecked(unchecked);
+            if !changed.is_empty() {
                 run.withdraw(&changed);
                 run.finished(&changed, out);
             }

@@ -15,8 +15,6 @@ use sensitol::assembly::{ProcessError, ProcessFault, StderrTail};
 const STEPS: usize = 3;
 /// Factor on the noise of the model, up to which a difference counts as noise.
 const NOISY: f64 = 10.0;
-/// Number of answers of an earlier run that are replayed before any is used.
-const REUSED: usize = 2;
 
 /// Route from the nominal point to another one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -84,12 +82,21 @@ impl Walked {
 /// Number of replays that differ on every route, after which no more are tried: the model gives another answer every time.
 const HOPELESS: usize = 3;
 
+/// Result of the check of a batch by replays.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Confirmation {
+    /// Rows whose answers were changed or removed.
+    pub(super) changed: Vec<usize>,
+    /// Number of rows whose check a stop cut off.
+    pub(super) unchecked: usize,
+}
+
 impl Pool {
-    /// Replays some answers of a batch, and all of them if one differs. Returns the rows whose answers were changed or removed. Returns
-    /// None if a stop came before the end.
-    pub(super) fn confirm(&mut self, points: &Points, out: &mut Responses, run: &Run<'_>) -> Option<Vec<usize>> {
+    /// Replays some answers of a batch, and all of them if one differs. Answers of a batch that was stopped are not confirmed. They are
+    /// removed if the model is known to flip.
+    pub(super) fn confirm(&mut self, points: &Points, out: &mut Responses, run: &Run<'_>) -> Confirmation {
         if !self.settings.sentinels || self.settings.verify == Some(0) {
-            return Some(Vec::new());
+            return Confirmation::default();
         }
         let rows: Vec<Vec<f64>> = (0..points.rows()).map(|row| points.row(row)).collect();
         let values = |row: usize| (0..out.outputs()).map(|output| out.value(row, output)).collect();
@@ -97,45 +104,39 @@ impl Pool {
         let nominal = self.hello.nominal.clone();
         self.answers.learn(&rows, &all, &nominal);
         let mut chosen = self.answers.choose(&rows, &all, &nominal, self.settings.verify);
-        if self.flips {
-            let known = (0..rows.len()).filter(|&row| all[row].iter().any(Option::is_some));
-            if self.hopeless {
-                let known: Vec<usize> = known.collect();
-                self.give_up(&known, &rows, &all, out);
-                return Some(known);
-            }
+        let known: Vec<usize> = (0..rows.len()).filter(|&row| all[row].iter().any(Option::is_some)).collect();
+        let stopped = run.stopped() || run.abandoned();
+        if self.flips() && (self.hopeless || stopped) {
+            self.give_up(&known, &rows, &all, out);
+            return Confirmation { unchecked: if stopped { known.len() } else { 0 }, changed: known };
+        }
+        if self.flips() {
             // All rows will be replayed. A few come first, which suffice to recognise a model that never repeats itself.
-            let more: Vec<usize> = known.filter(|row| !chosen.contains(row)).collect();
+            let more: Vec<usize> = known.iter().copied().filter(|row| !chosen.contains(row)).collect();
             chosen.extend(more.into_iter().take((2 * HOPELESS).saturating_sub(chosen.len())));
         }
         if chosen.is_empty() {
-            return Some(Vec::new());
+            return Confirmation::default();
         }
-        let changed = match self.replayed(&rows, &all, &chosen, out, run) {
-            // The run was stopped after a flip was found and before everything was confirmed.
-            None if self.flips => {
-                self.give_up(&(0..rows.len()).collect::<Vec<_>>(), &rows, &all, out);
-                Some((0..rows.len()).collect())
+        let replayed = if stopped { None } else { self.replayed(&rows, &all, &chosen, out, run) };
+        let confirmation = match replayed {
+            Some(changed) => Confirmation { changed, unchecked: 0 },
+            // A stop came after a flip was found and before everything was confirmed.
+            None if self.flips() => {
+                self.give_up(&known, &rows, &all, out);
+                Confirmation { unchecked: known.len(), changed: known }
             }
-            changed => changed,
+            None => {
+                let open = |row: &&usize| rows[**row] != nominal && !self.answers.is_confirmed(&rows[**row]);
+                let unchecked = known.iter().filter(open).count();
+                self.account.counts.unconfirmed += unchecked as u64;
+                Confirmation { changed: Vec::new(), unchecked }
+            }
         };
-        if self.flips {
+        if self.flips() {
             self.look_back(&rows, out, run);
         }
-        changed
-    }
-
-    /// Removes the answers of a batch that was stopped after a flip, since nothing confirmed them. Returns their rows.
-    pub(super) fn doubt(&mut self, points: &Points, out: &mut Responses) -> Vec<usize> {
-        if !self.flips || self.settings.verify == Some(0) {
-            return Vec::new();
-        }
-        let rows: Vec<Vec<f64>> = (0..points.rows()).map(|row| points.row(row)).collect();
-        let values = |row: usize| (0..out.outputs()).map(|output| out.value(row, output)).collect();
-        let all: Vec<Values> = (0..rows.len()).map(values).collect();
-        let known: Vec<usize> = (0..rows.len()).filter(|&row| all[row].iter().any(Option::is_some)).collect();
-        self.give_up(&known, &rows, &all, out);
-        known
+        confirmation
     }
 
     /// Replays the answers of earlier batches after a flip is found. Results may have been computed from them, so one that differs or is
@@ -209,24 +210,10 @@ impl Pool {
         Some((0..answers.outputs()).map(|output| answers.value(0, output)).collect())
     }
 
-    /// Adds answers of an earlier run, with which later ones are compared.
-    pub(super) fn remember(&mut self, points: &[Vec<f64>], values: &[Values]) {
+    /// Adds answers of an earlier run, with which later ones are compared. That run confirmed each of them, or the usual part.
+    pub(super) fn remember(&mut self, points: &[Vec<f64>], values: &[Values], each_confirmed: bool) {
         values.iter().for_each(|values| self.reference.learn(values));
-        self.answers.remember(points, values, &self.hello.nominal);
-    }
-
-    /// True if a fresh process confirms two of these answers, those with the highest scores. Returns None if a stop came first.
-    pub(super) fn are_as_kept(
-        &mut self,
-        points: &[Vec<f64>],
-        values: &[Values],
-        out: &mut Responses,
-        run: &Run<'_>,
-    ) -> Option<bool> {
-        let chosen = self.answers.most_suspicious(points, values, &self.hello.nominal, REUSED);
-        let targets: Vec<Vec<f64>> = chosen.iter().map(|&row| points[row].clone()).collect();
-        let walked = self.walk(&targets, Route::Straight, out, run)?;
-        Some(!self.differing(&chosen, &walked, values).iter().any(|(_, walked)| walked.is_some()))
+        self.answers.remember(points, values, &self.hello.nominal, each_confirmed);
     }
 
     /// Replays these rows, and all others if one of them differs.
@@ -243,10 +230,10 @@ impl Pool {
         let suspicious = self.differing(chosen, &first, all);
         self.confirm_others(chosen, &suspicious, rows);
         // A point that a process does not reach in small steps is no sign of a flip.
-        if !self.flips && !suspicious.iter().any(|(_, walked)| walked.is_some()) {
+        if !self.flips() && !suspicious.iter().any(|(_, walked)| walked.is_some()) {
             return Some(Vec::new());
         }
-        self.flips = true;
+        self.set_flips();
         let mut changed = Vec::new();
         let unsettled = self.settle(rows, all, suspicious, out, run, &mut changed)?;
         let rest: Vec<usize> =

@@ -38,6 +38,8 @@ pub(super) struct Answers {
     dropped: [usize; 2],
     /// Points with answers that a fresh process confirmed, or that are known to have none.
     confirmed: HashSet<Key>,
+    /// Confirmed points that were not yet handed out by `take_confirmed`.
+    newly_confirmed: Vec<Vec<f64>>,
 }
 
 /// A point and its answers.
@@ -47,9 +49,19 @@ impl Answers {
     /// Notes an answer that a fresh process confirmed, or that is not used any more.
     pub(super) fn confirm(&mut self, point: &[f64]) {
         let key = key(point);
-        if self.known.contains_key(&key) {
-            self.confirmed.insert(key);
+        if self.known.contains_key(&key) && self.confirmed.insert(key) {
+            self.newly_confirmed.push(point.to_vec());
         }
+    }
+
+    /// True if a fresh process confirmed the answer to this point.
+    pub(super) fn is_confirmed(&self, point: &[f64]) -> bool {
+        self.confirmed.contains(&key(point))
+    }
+
+    /// Points with answers that were confirmed since the last call.
+    pub(super) fn take_confirmed(&mut self) -> Vec<Vec<f64>> {
+        std::mem::take(&mut self.newly_confirmed)
     }
 
     /// Answers of earlier batches without a confirmation, and the number of further ones that were not kept.
@@ -67,28 +79,20 @@ impl Answers {
         (found, dropped)
     }
 
-    /// Adds answers of an earlier run. They need no replay.
-    pub(super) fn remember(&mut self, points: &[Vec<f64>], values: &[Vec<Option<f64>>], nominal: &[f64]) {
-        let answered = self.answered;
-        self.learn(points, values, nominal);
-        self.answered = answered;
-        points.iter().for_each(|point| self.confirm(point));
-    }
-
-    /// The rows with the highest scores, `most` at most.
-    pub(super) fn most_suspicious(
-        &self,
+    /// Adds answers of an earlier run, which checked a part of them or each. They need no replay until a flip is found.
+    pub(super) fn remember(
+        &mut self,
         points: &[Vec<f64>],
         values: &[Vec<Option<f64>>],
         nominal: &[f64],
-        most: usize,
-    ) -> Vec<usize> {
-        let scores = self.scores(points, values);
-        let usable = |&row: &usize| values[row].iter().any(Option::is_some) && !moved(nominal, &points[row]).is_empty();
-        let mut rows: Vec<usize> = (0..points.len()).filter(usable).collect();
-        rows.sort_by(|&a, &b| scores[b].total_cmp(&scores[a]).then(a.cmp(&b)));
-        rows.truncate(most);
-        rows
+        each_confirmed: bool,
+    ) {
+        let answered = self.answered;
+        self.learn(points, values, nominal);
+        self.answered = answered;
+        if each_confirmed {
+            self.confirmed.extend(points.iter().map(|point| key(point)));
+        }
     }
 
     /// Adds new answers. The first point of all becomes the centre, unless more points are one step away from the nominal one.

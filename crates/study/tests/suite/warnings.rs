@@ -164,6 +164,7 @@ fn every() -> Vec<Warning> {
         },
         Warning::Unconfirmed { answers: 1 },
         Warning::Unconfirmed { answers: 12 },
+        Warning::DamagedJournal { file: "gap.journal.sqlite".to_owned(), answers: 2 },
         Warning::OutdatedJournal { output: output(), expected, found, answers: 30 },
         Warning::NoReaction { characteristic: characteristic() },
         Warning::Atom { characteristic: characteristic(), points: 3 },

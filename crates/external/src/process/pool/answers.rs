@@ -1,5 +1,6 @@
 //! Lines of a child that is ready: answers to points, and news of how it works.
 
+use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use super::super::batch::Batch;
@@ -106,7 +107,7 @@ impl Pool {
             // The study's own evaluation of the nominal point is the first sentinel.
             let non_repeatable =
                 self.reference.check(values, &self.hello.characteristics, &batch.coordinates(&worker.unchecked));
-            self.flips |= is_flip(&non_repeatable);
+            self.flips.fetch_or(is_flip(&non_repeatable), Ordering::Relaxed);
             batch.out.note_non_repeatable(non_repeatable);
         }
         let again = line.error.is_some() && line.retry && batch.charged(row) <= self.settings.retries;
