@@ -7,16 +7,20 @@ or SENSITOL with its path, and nothing but Python.
 import argparse
 import contextlib
 import http.server
+import ipaddress
 import json
 import math
 import os
 import pathlib
 import signal
+import socket
 import subprocess
 import sys
 import threading
 
 PROTOCOL = 1.0
+# The longest request that is read, in bytes: a million inputs fit into it.
+LONGEST = 32 << 20
 
 
 class Fault(Exception):
@@ -88,26 +92,51 @@ class Handler(http.server.BaseHTTPRequestHandler):
     protocol_version = "HTTP/1.1"
     # Small answers in two parts would wait for each other.
     disable_nagle_algorithm = True
-    study, name = None, None
+    study, name, hosts = None, None, frozenset()
 
     def log_message(self, *_):
         pass
 
+    def _is_foreign(self):
+        """Whether a page of a browser asks, which has no business here: it says its origin, or a name that its owner points at this machine."""
+        host = self.headers.get("Host", "").strip().lower()
+        host = host[1:].partition("]")[0] if host.startswith("[") else host.partition(":")[0]
+        if self.headers.get("Origin") is None and (host in self.hosts or _is_address(host)):
+            return False
+        self.close_connection = True
+        self._send(403, _fault("Forbidden", "requests of pages, and for another host than this one, are not answered"))
+        return True
+
     def do_GET(self):
+        if self._is_foreign():
+            return None
         if self.path != "/Info":
             return self._send(404, _fault("NotFound", f"there is no {self.path}"))
         return self._send(200, {"protocolVersion": PROTOCOL, "models": [self.name]})
 
     def do_POST(self):
-        body = self.rfile.read(int(self.headers.get("Content-Length", 0)))
+        if self._is_foreign():
+            return
         try:
-            self._send(200, self._answer(body))
+            self._send(200, self._answer(self._body()))
         except Fault as fault:
             self._send(fault.status, _fault(fault.kind, str(fault)))
 
+    def _body(self):
+        length = self.headers.get("Content-Length", "0").strip()
+        if not (length.isascii() and length.isdigit()) or len(length) > 12 or int(length) > LONGEST:
+            # What follows on this connection is no request.
+            self.close_connection = True
+            raise Fault("InvalidInput", f"the length of the request must be a number up to {LONGEST}")
+        return self.rfile.read(int(length))
+
     def _answer(self, body):
         try:
-            asked = json.loads(body)
+            asked = json.loads(body, parse_int=_integer)
+        except RecursionError:
+            raise Fault("ModelError", "the request is nested too deep", 500) from None
+        except OverflowError:
+            raise Fault("ModelError", "an integer of the request is beyond every double", 500) from None
         except ValueError:
             raise Fault("InvalidInput", "the request is not JSON") from None
         if not isinstance(asked, dict) or asked.get("name") != self.name:
@@ -141,6 +170,22 @@ class Handler(http.server.BaseHTTPRequestHandler):
         self.wfile.write(data)
 
 
+def _integer(text):
+    """An integer of the request. Fails with `OverflowError` where no double is near it."""
+    if math.isinf(float(text)):
+        raise OverflowError(text[:20])
+    # Python limits the digits of integers; those that a double holds are within that limit.
+    return int(text)
+
+
+def _is_address(host):
+    try:
+        ipaddress.ip_address(host)
+    except ValueError:
+        return False
+    return True
+
+
 def _fault(kind, message):
     return {"error": {"type": kind, "message": message}}
 
@@ -159,6 +204,8 @@ def main():
     parser.add_argument("--port", type=int, default=4242, help="the port; 0 takes a free one (%(default)s)")
     asked = parser.parse_args()
     Handler.study = Study(asked.study)
+    # A number is no name that could be pointed elsewhere, so that every one is taken.
+    Handler.hosts = frozenset({"localhost", asked.host.lower(), socket.gethostname().lower(), socket.getfqdn().lower()})
     Handler.name = asked.name or asked.study.resolve().parent.name
     try:
         server = Server((asked.host, asked.port), Handler)

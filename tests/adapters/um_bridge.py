@@ -1,6 +1,7 @@
 """adapters/umbridge against the umbridge package on the other side: as server of a cantilever in closed form, and as client."""
 
 import contextlib
+import http.client
 import json
 import os
 import pathlib
@@ -258,6 +259,48 @@ def both_directions_meet():
             assert found[key] == own[key], (key, found[key], own[key])
 
 
+def spoken(port, body, **headers):
+    """Status and error of a request with these headers."""
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=20)
+    connection.request("POST", "/Evaluate", body, headers)
+    answer = connection.getresponse()
+    found = json.loads(answer.read())
+    connection.close()
+    return answer.status, found.get("error", found)
+
+
+def pages_are_not_answered():
+    with offered(EXAMPLES / "stacked-blocks/study.toml", "--name", "blocks") as address:
+        port = int(address.rpartition(":")[2])
+        good = json.dumps({"name": "blocks", "input": [[10.0, 30.0, 31.9, 15.0, 55.0, 75.0, 10.0, 40.0, 10.0, 17.0]]})
+        own = spoken(port, good)[1]
+        # Sadikhani and Hashemian 2018, as above.
+        assert abs(own["output"][0][0] - 5.9974) < 5.1e-5, own
+        for host in (f"localhost:{port}", f"127.0.0.1:{port}", f"[::1]:{port}", "192.168.7.8"):
+            assert spoken(port, good, Host=host)[1] == own, host
+        for headers in ({"Host": "evil.example"}, {"Host": f"evil.example:{port}"}, {"Origin": "http://evil.example"}, {"Origin": "null"}):
+            status, error = spoken(port, good, **headers)
+            assert (status, error["type"]) == (403, "Forbidden"), (headers, status, error)
+
+
+def what_python_cannot_read_is_one_error():
+    with offered(EXAMPLES / "stacked-blocks/study.toml", "--name", "blocks") as address:
+        port = int(address.rpartition(":")[2])
+        deep, long = "[" * 200_000, "9" * 400
+        for body, words in (
+            (deep, "too deep"),
+            (f'{{"name": "blocks", "input": [[{long}]]}}', "beyond every double"),
+            (f'{{"name": "blocks", "input": [[-{"9" * 6000}]]}}', "beyond every double"),
+        ):
+            status, error = spoken(port, body)
+            assert (status, error["type"]) == (500, "ModelError") and words in error["message"], (body[:60], status, error)
+        for length in ("-1", "many", str(1 << 60)):
+            status, error = spoken(port, "", **{"Content-Length": length})
+            assert (status, error["type"]) == (400, "InvalidInput"), (length, status, error)
+        # The server is as before.
+        assert spoken(port, "no JSON")[1]["message"] == "the request is not JSON"
+
+
 def the_command_line_of_the_server_refuses():
     for arguments, words in [
         ([EXAMPLES / "nowhere.toml"], "nowhere.toml"),
@@ -300,6 +343,8 @@ if __name__ == "__main__":
         a_study_is_a_model_of_the_umbridge_package,
         a_failing_point_is_the_servers_exception,
         both_directions_meet,
+        pages_are_not_answered,
+        what_python_cannot_read_is_one_error,
         the_command_line_of_the_server_refuses,
         a_program_that_ends_unasked_is_one_error,
         the_readme_shows_it,
