@@ -2,6 +2,7 @@
 
 import argparse
 import collections
+import contextlib
 import fcntl
 import hashlib
 import json
@@ -9,6 +10,7 @@ import math
 import os
 import pathlib
 import queue
+import stat
 import subprocess
 import sys
 import tempfile
@@ -127,6 +129,19 @@ def counts(value):
     return isinstance(value, int) and not isinstance(value, bool)
 
 
+def private_folder():
+    """The folder of this user's keepers. What stands in it is read as the word of a keeper, so that nobody else may write there."""
+    folder = pathlib.Path(tempfile.gettempdir()) / f"sensitol-dask-{os.getuid()}"
+    with contextlib.suppress(FileExistsError):
+        folder.mkdir(mode=0o700)
+    found = os.lstat(folder)
+    if not stat.S_ISDIR(found.st_mode):
+        raise Fault(f"sensitol-dask: {folder} is no folder: remove it, or set TMPDIR to another place")
+    if found.st_uid != os.getuid() or found.st_mode & 0o077:
+        raise Fault(f"sensitol-dask: {folder} is open to other users: remove it, or set TMPDIR to another place")
+    return folder
+
+
 class Kept:
     """The keeper of the cluster that this engine uses: found, or started."""
 
@@ -137,7 +152,7 @@ class Kept:
         text = json.dumps(what, sort_keys=True)
         begun = birth(engine)
         token = hashlib.sha256(f"{text} {engine} {begun} {os.getcwd()}".encode()).hexdigest()[:12]
-        self.folder = pathlib.Path(tempfile.gettempdir()) / f"sensitol-dask-{os.getuid()}-{token}"
+        self.folder = private_folder() / token
         self.asked = {**what, "engine": engine, "engine_birth": begun, "linger": linger, "token": f"sensitol-{token}"}
 
     def address(self, beat):
@@ -184,6 +199,8 @@ class Kept:
             self.process = subprocess.Popen(
                 [sys.executable, str(HERE / "sensitol_dask_keeper.py"), str(self.folder)],
                 stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True,
+                # Without the mark by which the engine ends what a model process leaves behind: the cluster stays for the next one.
+                env={name: value for name, value in os.environ.items() if name != "SENSITOL_PROCESS"},
             )  # fmt: skip
 
 

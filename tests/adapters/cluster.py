@@ -404,6 +404,25 @@ def what_is_wrong_is_one_error():
         refused(model, "`twist`", "gap")
 
 
+def keepers_have_a_folder_of_their_own():
+    """A folder in which another user may write is not believed: a keeper's words in it could be anybody's."""
+    with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryDirectory() as elsewhere:
+        place = pathlib.Path(folder) / f"sensitol-dask-{os.getuid()}"
+        place.mkdir()
+        place.chmod(0o777)
+        with asked("local:1", env={"TMPDIR": folder}) as model:
+            refused(model, str(place), "open to other users", "TMPDIR")
+        place.rmdir()
+        place.symlink_to(elsewhere)
+        with asked("local:1", env={"TMPDIR": folder}) as model:
+            refused(model, str(place), "is no folder")
+        place.unlink()
+        with asked("local:1", env={"TMPDIR": folder}) as model:
+            send(model, [(10.0, 30.0, 2.0)])
+            assert final(model, 1)[0]["y"] == closed(10.0, 30.0, 2.0)
+            assert place.stat().st_mode & 0o777 == 0o700
+
+
 SLURM_OPTIONS = "jobs: 2\ncores: 1\nprocesses: 1\nmemory: 500MB\nwalltime: '00:20:00'\ninterface: lo\n"
 
 
@@ -528,6 +547,7 @@ if __name__ == "__main__":
         a_program_that_a_killed_adapter_left_is_ended,
         without_a_scheduler_it_gives_up,
         what_is_wrong_is_one_error,
+        keepers_have_a_folder_of_their_own,
         nothing_stays_behind,
         the_readme_shows_it,
     ]
