@@ -12,6 +12,16 @@ pub fn clean(text: &str) -> String {
     text.chars().map(|c| if is_hidden(c) { '\u{fffd}' } else { c }).collect()
 }
 
+/// Most characters of a text from outside in a message: about twenty lines of a terminal.
+const MESSAGE: usize = 1600;
+/// Most letters of a name with a suggestion. A longer one is no slip of the hand, and comparing it takes the square of its length.
+const SUGGESTED: usize = 64;
+
+/// Text from outside that enters a message: an answer of a program, a quoted line, a name. The middle of a long one is removed.
+pub fn clipped(text: &str) -> String {
+    shortened_to(text, MESSAGE)
+}
+
 /// Removes the middle of a text that is longer than `most` characters.
 pub fn shortened_to(text: &str, most: usize) -> String {
     let count = text.chars().count();
@@ -37,8 +47,12 @@ pub fn element(dimension: &str) -> &str {
 
 /// Known name most similar to `typed`. Returns None if no name is similar enough.
 ///
-/// Differences in case, and between `-` and `_`, do not count.
+/// Differences in case, and between `-` and `_`, do not count. A name of more than 64 letters is like no other.
 pub fn nearest<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let short = |name: &str| name.chars().nth(SUGGESTED).is_none();
+    if !short(typed) {
+        return None;
+    }
     let folded = |name: &str| name.to_lowercase().replace('_', "-");
     let typed = folded(typed);
     let likeness = |name: &str| {
@@ -51,7 +65,7 @@ pub fn nearest<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> Opt
         if begun || slip { edit.max(0.75) } else { edit }
     };
     let mut best = None;
-    for name in known {
+    for name in known.into_iter().filter(|name| short(name)) {
         let score = likeness(name);
         if score >= 0.6 && best.is_none_or(|(highest, _)| score > highest) {
             best = Some((score, name));
@@ -89,7 +103,7 @@ fn slips(from: &str, to: &str) -> usize {
 
 /// Name that is unknown in a list of things.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("there is no {what} `{name}`; {}", self.help())]
+#[error("there is no {what} `{}`; {}", clipped(name), self.help())]
 #[non_exhaustive]
 pub struct UnknownName {
     /// Kind of thing that the name should denote, such as `method`.
@@ -133,12 +147,37 @@ impl UnknownName {
 
 #[cfg(test)]
 mod tests {
-    use super::{nearest, slips};
+    use super::{MESSAGE, SUGGESTED, UnknownName, clipped, nearest, slips};
 
     #[test]
     fn a_name_is_meant_by_one_like_it() {
         assert_eq!(nearest("tolerence", ["nominal", "tolerance", "unit"]), Some("tolerance"));
         assert_eq!(nearest("zebra", ["nominal", "tolerance", "unit"]), None);
+    }
+
+    /// A name of a megabyte ends at once, and the message about it is short.
+    #[test]
+    fn a_long_name_has_no_suggestion() {
+        let known = "n".repeat(SUGGESTED);
+        assert_eq!(nearest(&known, [known.as_str()]), Some(known.as_str()));
+        let typed = known.clone() + "n";
+        assert_eq!(nearest(&typed, [known.as_str()]), None);
+        assert_eq!(nearest(&known, [typed.as_str()]), None);
+        let long = "n".repeat(1 << 20);
+        assert_eq!(nearest(&long, ["nominal", long.as_str()]), None);
+        let message = UnknownName::of("method", &long, vec!["six-n"]).to_string();
+        assert!(message.chars().count() < MESSAGE + 100, "{}", message.len());
+    }
+
+    /// Beginning and end stay, whatever the letters.
+    #[test]
+    fn a_long_text_is_clipped() {
+        assert_eq!(clipped("short"), "short");
+        let text = format!("begin {} end", "\u{fc}".repeat(1 << 20));
+        let said = clipped(&text);
+        assert_eq!(said.chars().count(), MESSAGE);
+        assert!(said.starts_with("begin ") && said.ends_with(" end"), "{said}");
+        assert_eq!(clipped(&said), said);
     }
 
     /// Counts by hand.

@@ -1,5 +1,6 @@
 //! Reads `[costs]` and `require`: the cost of tolerances and the requirements of characteristics.
 
+use std::collections::HashMap;
 use std::ops::Range;
 
 use crate::build::grades::graded;
@@ -451,11 +452,16 @@ fn stepped(offer: &Offer, step: f64) -> Result<Vec<Offer>, StudyFault> {
 
 /// Dimensions with the end of the band that stays when the tolerance changes: `fixed_side` of the cost, and otherwise that of the fit.
 pub(crate) fn holding(file: &StudyFile, mut dimensions: Vec<Dimension>) -> Result<Vec<Dimension>, Fault> {
+    // Found by name, since a table of a spreadsheet has up to a million rows.
+    let fits: HashMap<&str, FixedEnd> = (file.dimensions.0.iter())
+        .filter_map(|(name, entry)| Some((name.get_ref().as_str(), held_end(entry.get_ref().fit.as_ref()?.get_ref())?)))
+        .collect();
+    let sides: HashMap<&str, &Spanned<String>> = (file.costs.0.iter())
+        .filter_map(|(name, entry)| Some((name.get_ref().as_str(), entry.get_ref().fixed_side.as_ref()?)))
+        .collect();
     for dimension in &mut dimensions {
-        let own = file.dimensions.0.iter().find(|(name, _)| name.get_ref() == dimension.name());
-        let of_fit = own.and_then(|(_, entry)| held_end(entry.get_ref().fit.as_ref()?.get_ref()));
-        let entry = file.costs.0.iter().find(|(name, _)| name.get_ref() == dimension.name());
-        let Some(side) = entry.and_then(|(_, entry)| entry.get_ref().fixed_side.as_ref()) else {
+        let of_fit = fits.get(dimension.name()).copied();
+        let Some(side) = sides.get(dimension.name()).copied() else {
             if let Some(end) = of_fit {
                 *dimension = dimension.clone().holding(end);
             }

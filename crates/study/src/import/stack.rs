@@ -1,5 +1,6 @@
 //! Reads the rows of a stack-up table and writes a study from them.
 
+use std::collections::HashMap;
 use std::fmt::Write;
 
 use crate::import::columns::{ColumnRole, LABELLED, ROLES, role};
@@ -140,7 +141,8 @@ pub fn import(sheet: &Sheet, named: &[(ColumnRole, String)], output: &str) -> Re
     let header = header(sheet, named)?;
     let mut figures = Figures::default();
     let (mut rows, mut notes): (Vec<Row>, Vec<String>) = (Vec::new(), Vec::new());
-    let mut cells: Vec<(String, String)> = Vec::new();
+    // Rows by the names of their dimensions.
+    let mut lines: HashMap<String, u64> = HashMap::new();
     if !header.unknown.is_empty() {
         notes.push(format!("columns without a meaning here were left out: {}", header.unknown.join(", ")));
     }
@@ -150,11 +152,11 @@ pub fn import(sheet: &Sheet, named: &[(ColumnRole, String)], output: &str) -> Re
             Read::Heading(text) => notes.push(format!("row {line} has no nominal value and was left out: {text}")),
             Read::Dimension(found) => {
                 let cell = header.cell(ColumnRole::Name, *line);
-                if let Some((_, other)) = cells.iter().find(|(name, _)| *name == found.name) {
-                    let problem = ImportProblem::NameTwice { name: found.name.clone(), other: other.clone() };
+                if let Some(other) = lines.insert(found.name.clone(), *line) {
+                    let other = header.cell(ColumnRole::Name, other);
+                    let problem = ImportProblem::NameTwice { name: found.name.clone(), other };
                     return Err(ImportFault::of(cell, problem));
                 }
-                cells.push((found.name.clone(), cell));
                 rows.push(*found);
             }
         }
