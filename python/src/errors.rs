@@ -2,6 +2,7 @@
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use sensitol_numeric::names::clipped;
 use sensitol_study::AnyError;
 use sensitol_study::StudyError;
 
@@ -40,9 +41,9 @@ fn message(error: &StudyError, made_in_python: bool) -> String {
         place.push(format!("{}{at}", error.file));
     }
     if !error.key.is_empty() {
-        place.push(error.key.clone());
+        place.push(error.place_name());
     }
-    place.push(error.fault.to_string());
+    place.push(error.message());
     let help = help(error).map(|help| format!(" ({help})")).unwrap_or_default();
     place.join(": ") + &help
 }
@@ -53,8 +54,8 @@ fn one<'py>(py: Python<'py>, error: &StudyError, made_in_python: bool) -> PyResu
     attributes.set_item("file", (!made_in_python).then_some(error.file.as_str()))?;
     attributes.set_item("line", place.map(|(line, _)| line))?;
     attributes.set_item("column", place.map(|(_, column)| column))?;
-    attributes.set_item("key", error.key.as_str())?;
-    attributes.set_item("fault", error.fault.to_string())?;
+    attributes.set_item("key", error.place_name())?;
+    attributes.set_item("fault", error.message())?;
     attributes.set_item("help", help(error))?;
     Ok(attributes)
 }
@@ -69,7 +70,7 @@ pub(crate) fn of_engine(py: Python<'_>, error: &AnyError, made_in_python: bool) 
         let attributes = PyDict::new(py);
         attributes.set_item("advice", &advice)?;
         let said = advice.first().map(|advice| format!(" ({advice})")).unwrap_or_default();
-        exception(py, "AnalysisError", format!("{error}{said}"), &attributes)
+        exception(py, "AnalysisError", format!("{}{said}", clipped(&error.to_string())), &attributes)
     };
     build().unwrap_or_else(|error| error)
 }

@@ -3,7 +3,7 @@
 use crate::assembly::formula::FormulaFailure;
 use crate::assembly::implicit;
 use crate::assembly::process_error;
-use sensitol_numeric::names::nearest;
+use sensitol_numeric::names::{clipped, nearest};
 
 /// Reason why an assembly function has no value for one output at one point.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -31,13 +31,13 @@ pub enum EvaluationError {
     #[error(transparent)]
     NoColumn(#[from] NoColumn),
     /// An answer could not be stored in the journal, or a stored one could not be read.
-    #[error("{message}")]
+    #[error("{}", clipped(message))]
     NotKept {
         /// Fault of the journal.
         message: String,
     },
     /// The model refused the point with a reason of its own.
-    #[error("{message}")]
+    #[error("{}", clipped(message))]
     Refused {
         /// Reason in the model's own words.
         message: String,
@@ -46,7 +46,7 @@ pub enum EvaluationError {
 
 /// A dimension or output for which a table has no column.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("the points that were evaluated elsewhere have no column `{name}`{}", self.instead())]
+#[error("the points that were evaluated elsewhere have no column `{}`{}", clipped(name), self.instead())]
 #[non_exhaustive]
 pub struct NoColumn {
     /// Name of the dimension or output.

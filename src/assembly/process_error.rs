@@ -3,6 +3,8 @@
 use std::fmt;
 use std::time::Duration;
 
+use sensitol_numeric::names::clipped;
+
 /// Reason why a process gave no value, with the last lines that it wrote to stderr.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{fault}{stderr}")]
@@ -81,7 +83,7 @@ pub enum ProcessFault {
         after: Duration,
     },
     /// The process wrote a line that is not an answer.
-    #[error("the model wrote a line that is not an answer ({reason}): {line}{}", hint(line))]
+    #[error("the model wrote a line that is not an answer ({}): {line}{}", clipped(reason), hint(line))]
     Garbage {
         /// Reason why the line is invalid.
         reason: String,
@@ -140,7 +142,7 @@ pub enum ProcessFault {
         third: Option<f64>,
     },
     /// The process has no value for one characteristic.
-    #[error("{message}")]
+    #[error("{}", clipped(message))]
     NoValue {
         /// Reason in the model's own words, or a general one if it gave none.
         message: String,

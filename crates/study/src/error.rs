@@ -17,12 +17,12 @@ use sensitol_numeric::correlation::Refusal;
 use sensitol_numeric::dimension::DimensionFault;
 use sensitol_numeric::fits::FitError;
 use sensitol_numeric::inspection::InspectionError;
-use sensitol_numeric::names::UnknownName;
+use sensitol_numeric::names::{UnknownName, clipped};
 use sensitol_numeric::requirement::RequirementError;
 
 /// A study that cannot be used: file, place, key, fault, and the text to write instead.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{}{}{}{}", self.place(), self.fault, self.help().map(|help| format!(" ({help})")).unwrap_or_default(), self.others())]
+#[error("{}{}{}{}", self.place(), self.message(), self.help().map(|help| format!(" ({help})")).unwrap_or_default(), self.others())]
 #[non_exhaustive]
 pub struct StudyError {
     /// Name of the file as it was given.
@@ -71,9 +71,19 @@ impl StudyError {
         Some((1 + before.matches('\n').count(), 1 + before[line_start..].chars().count()))
     }
 
+    /// The fault in words. A long text of the file in it loses its middle.
+    pub fn message(&self) -> String {
+        clipped(&self.fault.to_string())
+    }
+
+    /// Name of the key at fault in a message. A long one loses its middle.
+    pub fn place_name(&self) -> String {
+        clipped(&self.key)
+    }
+
     /// Text to write instead. Returns None if no general advice exists.
     pub fn help(&self) -> Option<String> {
-        self.fault.help()
+        self.fault.help().map(|help| clipped(&help))
     }
 
     /// Text for the number of further faults.
@@ -88,7 +98,7 @@ impl StudyError {
     /// Prefix `file:line:column: key: `, without the parts that are unknown.
     fn place(&self) -> String {
         let at = self.line_column().map(|(line, column)| format!(":{line}:{column}")).unwrap_or_default();
-        let key = if self.key.is_empty() { String::new() } else { format!("{}: ", self.key) };
+        let key = if self.key.is_empty() { String::new() } else { format!("{}: ", self.place_name()) };
         format!("{}{at}: {key}", self.file)
     }
 }

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use sensitol::assembly::ModelInfo;
 use sensitol::assembly::{ProcessFault, Quoted};
+use sensitol_numeric::names::clipped;
 
 /// Version of the protocol.
 pub(super) const VERSION: u32 = 1;
@@ -95,8 +96,10 @@ fn finite(text: &[u8]) -> Option<Vec<u8>> {
 impl Line {
     /// Parses a line. Its beginning is kept if an error may have to quote it.
     pub(super) fn parse(text: &[u8]) -> Result<Self, ProcessFault> {
-        let garbage =
-            |error: serde_json::Error| ProcessFault::Garbage { reason: error.to_string(), line: Quoted::of(text) };
+        let garbage = |error: serde_json::Error| ProcessFault::Garbage {
+            reason: clipped(&error.to_string()),
+            line: Quoted::of(text),
+        };
         let mut line: Self = match serde_json::from_slice(text) {
             Ok(line) => line,
             Err(error) => {
@@ -104,10 +107,23 @@ impl Line {
                 Self { not_finite: true, ..serde_json::from_slice(&text).map_err(|_| garbage(error))? }
             }
         };
+        line.clip();
         if !line.alive && (line.id.is_none() || (line.y.is_none() && line.error.is_none())) {
             line.quoted = Some(Quoted::of(text));
         }
         Ok(line)
+    }
+
+    /// Shortens the texts of the program that enter messages and reports.
+    fn clip(&mut self) {
+        let version = match &mut self.version {
+            Some(serde_json::Value::String(version)) => Some(version),
+            _ => None,
+        };
+        let said = [&mut self.error, &mut self.note, &mut self.name].into_iter().flatten();
+        for text in said.chain(version).chain(self.errors.values_mut()) {
+            *text = clipped(text);
+        }
     }
 
     /// Description of the program by itself, from `ready`.

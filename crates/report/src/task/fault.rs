@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 
+use sensitol_numeric::names::clipped;
 use sensitol_study::AnyError;
 use sensitol_study::StudyError;
 
@@ -17,8 +18,8 @@ fn one(error: &StudyError) -> Value {
     let whole = AnyError::from(alone);
     let advice: Vec<String> = whole.advice().iter().map(ToString::to_string).collect();
     json!({
-        "key": error.key,
-        "fault": error.fault.to_string(),
+        "key": error.place_name(),
+        "fault": error.message(),
         "help": whole.help().or_else(|| (!advice.is_empty()).then(|| advice.join(" "))),
         "start": error.span.as_ref().map(|span| span.start),
         "end": error.span.as_ref().map(|span| span.end),
@@ -33,5 +34,5 @@ pub(super) fn of_engine(error: &AnyError) -> Value {
         return of_study(error);
     }
     let advice: Vec<String> = error.advice().iter().map(ToString::to_string).collect();
-    json!({ "error": error.to_string(), "advice": advice })
+    json!({ "error": clipped(&error.to_string()), "advice": advice })
 }
