@@ -464,6 +464,10 @@ pub(super) struct WorkbenchArgs {
     #[arg(short, long, value_name = "FILE.html", default_value = "workbench.html", help_heading = OUTPUT)]
     pub(super) output: PathBuf,
 
+    /// Write over a file that sensitol did not write
+    #[arg(long, help_heading = OUTPUT)]
+    pub(super) force: bool,
+
     /// The page without a study, as web/build writes it
     #[arg(long, value_name = "FILE.html")]
     pub(super) page: Option<PathBuf>,
@@ -542,6 +546,10 @@ pub(super) struct SchemaArgs {
     /// Write to a file instead of stdout
     #[arg(short, long, value_name = "FILE", help_heading = OUTPUT)]
     pub(super) output: Option<PathBuf>,
+
+    /// Write over a file that sensitol did not write
+    #[arg(long, help_heading = OUTPUT)]
+    pub(super) force: bool,
 }
 
 #[derive(Debug, Args)]

@@ -28,8 +28,8 @@ impl CsvFolder {
         })
     }
 
-    /// Writes the files, in the order of their names.
+    /// Writes all files, or none if one of them cannot be written.
     pub(super) fn write(self, files: &[CsvFile]) -> Result<(), Failure> {
-        self.0.into_iter().zip(files).try_for_each(|(file, table)| file.write(&table.text))
+        Destination::write_all(self.0.into_iter().zip(files.iter().map(|table| table.text.as_str())))
     }
 }

@@ -15,7 +15,7 @@ use sensitol::simulation::SimulationError;
 use sensitol::sweep::SweepError;
 use sensitol::warning::Advice;
 use sensitol_external::journal::JournalError;
-use sensitol_numeric::names::UnknownName;
+use sensitol_numeric::names::{UnknownName, clipped};
 use sensitol_numeric::pearson::PearsonError;
 use sensitol_study::{RewriteError, StudyError};
 
@@ -141,6 +141,8 @@ pub(super) enum Failure {
     NotInPage { path: PathBuf, reason: String },
     #[error("{path} is there already and stays as it is: name another file, or remove it", path = path.display())]
     Exists { path: PathBuf },
+    #[error("`{path}` is there, and no report of sensitol that may be written over: name another file, or pass --force", path = path.display())]
+    Foreign { path: PathBuf },
     #[error("`{path}` is {what}, which would be lost: name another file", path = path.display())]
     WouldBeLost { path: PathBuf, what: &'static str },
     #[error("--write {path}: the study names {names}, and its paths start from its own folder: write into that folder, and move study and files together", path = path.display())]
@@ -220,13 +222,14 @@ fn help(error: &StudyError) -> Option<String> {
 /// Formats an error of a study: title, the lines concerned with the fault underlined, and the text to write instead.
 fn render(error: &StudyError) -> String {
     let Some(span) = error.span.clone().filter(|_| !error.text.is_empty()) else {
-        let place = if error.key.is_empty() { error.file.clone() } else { format!("{}: {}", error.file, error.key) };
-        return title(&format!("{place}: {}", error.fault), help(error));
+        let place =
+            if error.key.is_empty() { error.file.clone() } else { format!("{}: {}", error.file, error.place_name()) };
+        return title(&format!("{place}: {}", error.message()), help(error));
     };
-    let heading = error.fault.to_string();
-    let label = error.key.as_str();
+    let heading = error.message();
+    let label = error.place_name();
     let snippet =
-        Snippet::source(&*error.text).path(&error.file).annotation(AnnotationKind::Primary.span(span).label(label));
+        Snippet::source(&*error.text).path(&error.file).annotation(AnnotationKind::Primary.span(span).label(&label));
     let mut group = Group::with_title(Level::ERROR.primary_title(heading)).element(snippet);
     if let Some(help) = help(error) {
         group = group.element(Level::HELP.message(help));
@@ -235,7 +238,7 @@ fn render(error: &StudyError) -> String {
 }
 
 fn title(heading: &str, help: Option<String>) -> String {
-    let mut group = Group::with_title(Level::ERROR.primary_title(heading));
+    let mut group = Group::with_title(Level::ERROR.primary_title(clipped(heading)));
     if let Some(help) = help {
         group = group.element(Level::HELP.message(help));
     }

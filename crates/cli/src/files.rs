@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::csv::CsvFolder;
 use crate::failure::Failure;
 use crate::output::Destination;
+use crate::own_file::{Content, is_free};
 use crate::shared_args::OutputArgs;
 use sensitol_study::{FileRole, JournalPlace, Study};
 
@@ -13,6 +14,8 @@ use sensitol_study::{FileRole, JournalPlace, Study};
 pub(super) struct Files {
     read: Vec<(PathBuf, &'static str)>,
     written: Vec<PathBuf>,
+    /// True if files of other programs are written over.
+    force: bool,
 }
 
 impl Files {
@@ -21,6 +24,11 @@ impl Files {
         let mut files = Self::default();
         files.study(path, study, journal);
         files
+    }
+
+    /// Writes over files of other programs if `--force` is given.
+    pub(super) fn forced(self, force: bool) -> Self {
+        Self { force, ..self }
     }
 
     /// Protects a study and the files that it reads.
@@ -44,27 +52,41 @@ impl Files {
 
     /// Opens the file of `--output`, or returns stdout.
     pub(super) fn output(&mut self, asked: &OutputArgs) -> Result<Destination, Failure> {
-        asked.output.as_deref().map_or(Ok(Destination::Stdout), |path| self.open(path))
+        self.output_of(asked, &Content::Report)
+    }
+
+    /// Opens the file of `--output` for this content, or returns stdout.
+    pub(super) fn output_of(&mut self, asked: &OutputArgs, content: &Content<'_>) -> Result<Destination, Failure> {
+        asked.output.as_deref().map_or(Ok(Destination::Stdout), |path| self.open(path, content))
+    }
+
+    /// Opens the file of another option for a report, if it is given.
+    pub(super) fn file(&mut self, path: Option<&Path>) -> Result<Option<Destination>, Failure> {
+        self.file_of(path, &Content::Report)
     }
 
     /// Opens the file of another option, if it is given.
-    pub(super) fn file(&mut self, path: Option<&Path>) -> Result<Option<Destination>, Failure> {
-        path.map(|path| self.open(path)).transpose()
+    pub(super) fn file_of(
+        &mut self,
+        path: Option<&Path>,
+        content: &Content<'_>,
+    ) -> Result<Option<Destination>, Failure> {
+        path.map(|path| self.open(path, content)).transpose()
     }
 
     /// Opens the folder of `--csv`, if it is given, for files of these names.
     pub(super) fn folder(&mut self, folder: Option<&Path>, names: &[String]) -> Result<Option<CsvFolder>, Failure> {
         let Some(folder) = folder else { return Ok(None) };
-        names.iter().try_for_each(|name| self.claim(&folder.join(name)))?;
+        names.iter().try_for_each(|name| self.claim(&folder.join(name), &Content::Report))?;
         CsvFolder::open(folder, names).map(Some)
     }
 
-    fn open(&mut self, path: &Path) -> Result<Destination, Failure> {
-        self.claim(path)?;
+    fn open(&mut self, path: &Path, content: &Content<'_>) -> Result<Destination, Failure> {
+        self.claim(path, content)?;
         Destination::file(path)
     }
 
-    fn claim(&mut self, path: &Path) -> Result<(), Failure> {
+    fn claim(&mut self, path: &Path, content: &Content<'_>) -> Result<(), Failure> {
         // A terminal or /dev/null can take several reports.
         if std::fs::metadata(path).is_ok_and(|there| !there.is_file()) {
             return Ok(());
@@ -75,6 +97,10 @@ impl Files {
         }
         if self.written.contains(&target) {
             return Err(Failure::AskedTwice { path: path.to_owned() });
+        }
+        // A file that cannot be read is nobody's to write over.
+        if !self.force && path.exists() && !is_free(path, content).unwrap_or(false) {
+            return Err(Failure::Foreign { path: path.to_owned() });
         }
         self.written.push(target);
         Ok(())

@@ -10,6 +10,7 @@ mod failure;
 mod files;
 mod interrupt;
 mod output;
+mod own_file;
 mod pairs;
 mod points;
 mod progress;

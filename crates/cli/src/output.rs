@@ -12,7 +12,7 @@ use crate::advice;
 use crate::failure::Failure;
 use crate::shared_args::OutputArgs;
 use sensitol::warning::Warning;
-use sensitol_numeric::names::{clean, is_hidden};
+use sensitol_numeric::names::{clean, clipped, is_hidden};
 use sensitol_report::WarningReport;
 use sensitol_report::document::{Detail, Style};
 
@@ -94,7 +94,7 @@ impl<'s> Look<'s> {
             return;
         }
         let of = self.study.map(|study| format!("{study}: ")).unwrap_or_default();
-        let mut text = format!("\u{1b}[1;33mwarning\u{1b}[0m[{code}]: {}{}\n", clean(&of), clean(message));
+        let mut text = format!("\u{1b}[1;33mwarning\u{1b}[0m[{code}]: {}{}\n", clean(&of), clean(&clipped(message)));
         if let Some(help) = help {
             text += &format!("  \u{1b}[1mhelp\u{1b}[0m: {}\n", clean(&help));
         }
@@ -119,7 +119,7 @@ pub(super) fn usage(message: &str) {
 
 /// Prints a line that a model wrote to stderr.
 pub(super) fn model_line(line: &str) {
-    to_stderr(&format!("model: {}\n", clean(line)));
+    to_stderr(&format!("model: {}\n", clean(&clipped(line))));
 }
 
 /// Writes to stderr. Errors are ignored: a full or closed stderr must not change results or the exit code.
@@ -192,13 +192,6 @@ pub(super) enum Destination {
 }
 
 impl Destination {
-    pub(super) fn open(asked: &OutputArgs) -> Result<Self, Failure> {
-        match &asked.output {
-            None => Ok(Self::Stdout),
-            Some(path) => Self::file(path),
-        }
-    }
-
     pub(super) fn file(path: &Path) -> Result<Self, Failure> {
         let unwritable = |error: std::io::Error| Failure::Unwritable { path: path.to_owned(), error: bare(error) };
         if path.is_dir() {
@@ -226,6 +219,25 @@ impl Destination {
         Ok(Self::File { path: path.to_owned() })
     }
 
+    /// Writes several files, or none of them: each is whole under a temporary name before the first gets its own.
+    pub(super) fn write_all<'t>(all: impl IntoIterator<Item = (Self, &'t str)>) -> Result<(), Failure> {
+        let unwritable = |path: PathBuf, error| Failure::Unwritable { path, error: bare(error) };
+        let mut staged = Vec::new();
+        for (destination, text) in all {
+            match destination {
+                Self::File { path } => match stage(&path, text.as_bytes()) {
+                    Ok(file) => staged.push((path, file)),
+                    Err(error) => return Err(unwritable(path, error)),
+                },
+                // What went into a device or a pipe cannot be taken back.
+                direct => direct.write(text)?,
+            }
+        }
+        staged
+            .into_iter()
+            .try_for_each(|(path, file)| file.persist(&path).map_err(|error| unwritable(path, error.error)))
+    }
+
     /// Writes bytes unchanged.
     pub(super) fn write_bytes(self, bytes: &[u8]) -> Result<(), Failure> {
         match self {
@@ -244,10 +256,7 @@ impl Destination {
                 }
             }
             Self::File { path } => {
-                let written = temporary(&path).and_then(|file| {
-                    std::fs::write(&file, bytes)?;
-                    file.persist(&path).map_err(|error| error.error)
-                });
+                let written = stage(&path, bytes).and_then(|file| file.persist(&path).map_err(|error| error.error));
                 written.map_err(|error| Failure::Unwritable { path, error: bare(error) })
             }
         }
@@ -259,6 +268,13 @@ impl Destination {
         let text = if terminal { Cow::from(shown(text)) } else { Cow::from(text) };
         self.write_bytes(text.as_bytes())
     }
+}
+
+/// Writes bytes to a temporary file beside this path. It goes if it is not renamed.
+fn stage(path: &Path, bytes: &[u8]) -> std::io::Result<TempPath> {
+    let file = temporary(path)?;
+    std::fs::write(&file, bytes)?;
+    Ok(file)
 }
 
 /// Creates a temporary file beside this path, with the mode of the file that it will replace. A new file gets the user's default mode.

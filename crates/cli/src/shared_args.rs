@@ -100,4 +100,8 @@ pub(super) struct OutputArgs {
     /// Write to a file instead of stdout
     #[arg(short, long, value_name = "FILE", help_heading = OUTPUT)]
     pub(super) output: Option<PathBuf>,
+
+    /// Write over files that sensitol did not write
+    #[arg(long, help_heading = OUTPUT)]
+    pub(super) force: bool,
 }

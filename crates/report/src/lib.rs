@@ -49,7 +49,7 @@ pub use sweep::SweepReport;
 pub use sweep::SweptReport;
 pub use to_document::ToDocument;
 #[cfg(feature = "xlsx")]
-pub use xlsx::analyze_xlsx;
+pub use xlsx::{AUTHOR, analyze_xlsx};
 
 use serde::Serialize;
 

@@ -6,6 +6,7 @@ use crate::args::{AllocateArgs, CostArg, MaximiseArg, MinimiseArg};
 use crate::failure::{Exit, Failure};
 use crate::files::Files;
 use crate::output::{Look, json};
+use crate::own_file::Content;
 use crate::progress::Bar;
 use crate::running::{Clock, confirmed, externals, kept, on_threads};
 use crate::{interrupt, study};
@@ -22,13 +23,13 @@ use sensitol_study::{NamedFile, Rewritten, Study};
 
 pub(crate) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
     let study = study::read_for_all(&asked.study, &|| externals(asked.work.journal.as_deref(), look, None))?;
-    let mut files = Files::of(&asked.study.study, &study, asked.work.journal.as_deref());
+    let mut files = Files::of(&asked.study.study, &study, asked.work.journal.as_deref()).forced(asked.output.force);
     let destination = files.output(&asked.output)?;
     let folder = files.folder(asked.csv.as_deref(), &TABLES.map(|name| format!("{name}.csv")))?;
     let chart = files.file(asked.svg.as_deref())?;
     let page = files.file(asked.html.as_deref())?;
     asked.write.as_deref().map_or(Ok(()), |path| stays_beside(path, &asked.study.study, &study))?;
-    let written = files.file(asked.write.as_deref())?;
+    let written = files.file_of(asked.write.as_deref(), &Content::Study)?;
     let clock = Clock::start(asked.work.time);
     let mut options = AllocationOptions::default();
     options.analysis = study.options.clone();

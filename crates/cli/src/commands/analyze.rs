@@ -9,6 +9,7 @@ use crate::failure::{Exit, Failure};
 use crate::files::Files;
 use crate::interrupt;
 use crate::output::{Destination, Look, json};
+use crate::own_file::Content;
 use crate::points;
 use crate::progress::Bar;
 use crate::running::{Clock, checked, confirmed, externals, kept, on_threads};
@@ -31,12 +32,13 @@ use sensitol_study::Study;
 pub(crate) fn run(path: &Path, asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
     let given = asked.points.as_deref().map(points::read).transpose()?.map(Arc::new);
     let study = read(path, asked.how.configuration.as_deref(), asked, given.clone(), look)?;
-    let mut files = Files::of(path, &study, asked.work.journal.as_deref());
+    let mut files = Files::of(path, &study, asked.work.journal.as_deref()).forced(asked.output.force);
     asked.points.iter().for_each(|points| files.reads(points, "read by --points"));
     let destination = files.output(&asked.output)?;
     let mut beside = Beside::open(&mut files, &study, asked.csv.as_deref(), asked.html.as_deref())?;
     beside.workbook = files.file(asked.xlsx.as_deref())?;
-    beside.missing = files.file(asked.write_missing.as_deref())?;
+    let header = points::of_model(&study.problem, &[]);
+    beside.missing = files.file_of(asked.write_missing.as_deref(), &Content::Points { header: &header })?;
     let show = |report: &Report| destination.write(&printed(report, asked, look));
     analyzed(&study, asked, beside, given.as_deref(), look, show)
 }

@@ -18,7 +18,7 @@ use sensitol_report::{CompareReport, csv_tables};
 
 pub(crate) fn run(asked: &CompareArgs, look: Look) -> Result<Exit, Failure> {
     let study = study::read_sampled(&asked.of, look)?;
-    let mut files = Files::of(&asked.of.study, &study, asked.of.work.journal.as_deref());
+    let mut files = Files::of(&asked.of.study, &study, asked.of.work.journal.as_deref()).forced(asked.output.force);
     let destination = files.output(&asked.output)?;
     let names = ["comparison.csv".to_owned()];
     let table = files.folder(asked.csv.as_deref(), &names)?;

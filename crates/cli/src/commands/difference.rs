@@ -18,7 +18,7 @@ const TABLES: [&str; 3] = ["changes", "results", "contributions"];
 pub(crate) fn run([old, new]: [&Path; 2], asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
     let configuration = asked.how.configuration.as_deref();
     let names = [old, new].map(|path| path.display().to_string());
-    let mut files = Files::default();
+    let mut files = Files::default().forced(asked.output.force);
     let mut studies = Vec::new();
     for (path, name) in [old, new].into_iter().zip(&names) {
         let study = read(path, configuration, asked, None, look.of(name))?;

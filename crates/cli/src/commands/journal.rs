@@ -12,6 +12,7 @@ use crate::failure::{Exit, Failure};
 use crate::files::Files;
 use crate::output;
 use crate::output::{Destination, Look, json};
+use crate::own_file::Content;
 use crate::shared_args::OutputArgs;
 use sensitol_external::journal::{KnownModel, Store, StoredAnswer};
 use sensitol_report::document::csv::guarded;
@@ -91,7 +92,7 @@ pub(crate) fn run(asked: &JournalArgs, look: Look) -> Result<Exit, Failure> {
             let mut document = Document::default();
             reports.iter().for_each(|report| report.put(&mut document));
             let shown = || text(&document, look.style(output));
-            print(file, output, &if output.json { json(&reports) } else { shown() })
+            print(file, output, &Content::Report, &if output.json { json(&reports) } else { shown() })
         }
         JournalCommand::Export { file, model, output } => {
             let store = Store::open_existing(file)?;
@@ -100,7 +101,9 @@ pub(crate) fn run(asked: &JournalArgs, look: Look) -> Result<Exit, Failure> {
             // Sorted by value, not by bytes.
             let order = |kept: &StoredAnswer| kept.point.clone();
             answers.sort_by(|a, b| order(a).partial_cmp(&order(b)).unwrap_or(std::cmp::Ordering::Equal));
-            print(file, output, &table(&model, &answers)?)
+            let table = table(&model, &answers)?;
+            let header = table.lines().next().unwrap_or_default();
+            print(file, output, &Content::Points { header }, &table)
         }
         JournalCommand::Forget { file, model, all, yes } => {
             let mut store = Store::open_existing(file)?;
@@ -119,10 +122,10 @@ pub(crate) fn run(asked: &JournalArgs, look: Look) -> Result<Exit, Failure> {
     }
 }
 
-fn print(journal: &Path, output: &OutputArgs, text: &str) -> Result<Exit, Failure> {
-    let mut files = Files::default();
+fn print(journal: &Path, output: &OutputArgs, content: &Content<'_>, text: &str) -> Result<Exit, Failure> {
+    let mut files = Files::default().forced(output.force);
     files.reads(journal, "the journal itself");
-    files.output(output)?.write(text)?;
+    files.output_of(output, content)?.write(text)?;
     Ok(Exit::Done)
 }
 

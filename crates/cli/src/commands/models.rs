@@ -5,7 +5,8 @@ use serde::Serialize;
 
 use crate::args::ModelsArgs;
 use crate::failure::{Exit, Failure};
-use crate::output::{Destination, Look, json};
+use crate::files::Files;
+use crate::output::{Look, json};
 use sensitol_models::{ALL, Model};
 use sensitol_report::document::number::plain;
 use sensitol_report::document::terminal::text;
@@ -46,7 +47,7 @@ pub(crate) fn run(asked: &ModelsArgs, look: Look) -> Result<Exit, Failure> {
             if asked.output.json { json(&ModelReport::of(model)) } else { text(&document(model), style) }
         }
     };
-    Destination::open(&asked.output)?.write(&printed)?;
+    Files::default().forced(asked.output.force).output(&asked.output)?.write(&printed)?;
     Ok(Exit::Done)
 }
 

@@ -5,7 +5,8 @@ use serde::Serialize;
 
 use crate::args::PearsonArgs;
 use crate::failure::{Exit, Failure};
-use crate::output::{Destination, Look, json};
+use crate::files::Files;
+use crate::output::{Look, json};
 use sensitol_numeric::pearson::Pearson;
 use sensitol_report::law_text;
 
@@ -32,7 +33,7 @@ pub(crate) struct Answers {
 
 pub(crate) fn run(asked: &PearsonArgs, look: Look) -> Result<Exit, Failure> {
     let law = Pearson::new(asked.mean, asked.sigma, asked.skewness, asked.kurtosis)?;
-    let destination = Destination::open(&asked.output)?;
+    let destination = Files::default().forced(asked.output.force).output(&asked.output)?;
     let all = |values: &[f64], of: fn(&Pearson, f64) -> f64| values.iter().map(|&value| of(&law, value)).collect();
     let answers = Answers {
         kind: law.kind().name(),

@@ -9,6 +9,7 @@ use crate::args::PlanArgs;
 use crate::failure::{Exit, Failure};
 use crate::files::Files;
 use crate::output::{Look, json};
+use crate::own_file::Content;
 use crate::{points, study};
 use sensitol::method::{DerivativeSource, ReducedInputs};
 use sensitol::plan::{KnownAnswers, Plan, Point, Purpose, Stage};
@@ -88,9 +89,10 @@ pub(crate) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
     // Points that are only written need no model that answers.
     let externals = Externals::default().with_unanswered(asked.write_points.is_some());
     let study = study::read(&asked.study, externals)?;
-    let mut files = Files::of(&asked.study.study, &study, None);
+    let mut files = Files::of(&asked.study.study, &study, None).forced(asked.output.force);
     let destination = files.output(&asked.output)?;
-    let written = files.file(asked.write_points.as_deref())?;
+    let header = points::of_model(&study.problem, &[]);
+    let written = files.file_of(asked.write_points.as_deref(), &Content::Points { header: &header })?;
     let procedure = study.options.method.procedure();
     let narrow = ReducedInputs::of(&study.problem, &study.options);
     let problem = narrow.as_ref().map_or(&study.problem, |narrow| &narrow.problem);

@@ -71,7 +71,7 @@ pub(crate) fn run(asked: &ProbeArgs, look: Look) -> Result<Exit, Failure> {
     // Answers from a journal would prove nothing, and sentinels would hide the differences that the probe looks for.
     let externals = Externals { listener: listener(look), ..Externals::default() }.with_sentinels(false);
     let study = study::read(&asked.study, externals)?;
-    let mut files = Files::of(&asked.study.study, &study, None);
+    let mut files = Files::of(&asked.study.study, &study, None).forced(asked.output.force);
     let destination = files.output(&asked.output)?;
     interrupt::listen();
     let costly = study.problem.function().signature().costly;

@@ -19,7 +19,7 @@ use sensitol_study::Study;
 const SAMPLES: [u64; 2] = [10_000, 1000];
 
 pub(crate) fn run(asked: &SimulateArgs, study: &Study, look: Look) -> Result<Exit, Failure> {
-    let mut files = Files::of(&asked.of.study, study, asked.of.work.journal.as_deref());
+    let mut files = Files::of(&asked.of.study, study, asked.of.work.journal.as_deref()).forced(asked.output.force);
     let destination = files.output(&asked.output)?;
     let names = ["rare.csv".to_owned()];
     let folder = files.folder(asked.csv.as_deref(), &names)?;

@@ -7,14 +7,16 @@ use serde_json::{Map, Value, json as value};
 use crate::args::{OutputArgs, SchemaArgs};
 use crate::commands::{journal, models, pearson, plan, probe, several};
 use crate::failure::{Exit, Failure};
-use crate::output::{Destination, json};
+use crate::files::Files;
+use crate::output::json;
 use sensitol_report::{
     AllocationReport, CompareReport, DifferenceReport, RareReport, Report, SCHEMA, SimulationReport, SweepReport,
 };
 use sensitol_study::schema;
 
 pub(crate) fn run(asked: &SchemaArgs) -> Result<Exit, Failure> {
-    let destination = Destination::open(&OutputArgs { json: true, output: asked.output.clone() })?;
+    let output = OutputArgs { json: true, output: asked.output.clone(), force: asked.force };
+    let destination = Files::default().forced(asked.force).output(&output)?;
     destination.write(&json(&if asked.report { reports() } else { schema() }))?;
     Ok(Exit::Done)
 }

@@ -98,7 +98,7 @@ pub(crate) fn analyze(paths: &[PathBuf], asked: &AnalyzeArgs, look: Look) -> Res
             tell(name, failure);
         }
     }
-    let mut files = Files::default();
+    let mut files = Files::default().forced(asked.output.force);
     for (one, study) in all.iter().zip(&studies) {
         study.iter().for_each(|study| files.study(one.path, study, asked.work.journal.as_deref()));
     }

@@ -35,7 +35,7 @@ pub(crate) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
     if asked.rare {
         return rare::run(asked, &study, look);
     }
-    let mut files = Files::of(&asked.of.study, &study, asked.of.work.journal.as_deref());
+    let mut files = Files::of(&asked.of.study, &study, asked.of.work.journal.as_deref()).forced(asked.output.force);
     let destination = files.output(&asked.output)?;
     let tables = if asked.sobol { &TABLES[..] } else { &TABLES[..2] };
     let names: Vec<String> = tables.iter().map(|name| format!("{name}.csv")).collect();

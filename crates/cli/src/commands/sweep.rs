@@ -20,7 +20,7 @@ pub(crate) fn run(asked: &SweepArgs, look: Look) -> Result<Exit, Failure> {
     let externals = externals(asked.work.journal.as_deref(), look, None);
     let mut study = study::read_sweeping(&asked.study, externals, &asked.over.name)?;
     study.options.seed = asked.seed.or(study.options.seed);
-    let mut files = Files::of(&asked.study.study, &study, asked.work.journal.as_deref());
+    let mut files = Files::of(&asked.study.study, &study, asked.work.journal.as_deref()).forced(asked.output.force);
     let destination = files.output(&asked.output)?;
     let names = ["sweep.csv".to_owned()];
     let table = files.folder(asked.csv.as_deref(), &names)?;

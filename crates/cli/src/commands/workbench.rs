@@ -32,8 +32,8 @@ struct Given {
 }
 
 pub(crate) fn run(asked: &WorkbenchArgs, look: Look) -> Result<Exit, Failure> {
-    let output = OutputArgs { json: false, output: Some(asked.output.clone()) };
-    let mut files = Files::default();
+    let output = OutputArgs { json: false, output: Some(asked.output.clone()), force: asked.force };
+    let mut files = Files::default().forced(asked.force);
     let given = asked.study.as_deref().map(|path| -> Result<Given, Failure> {
         let study = Study::read(path)?;
         files.study(path, &study, None);

@@ -131,7 +131,7 @@ fn every_form_of_a_tolerance_is_written_anew() {
         for (text, extension) in [(toml, "toml"), (as_json, "json")] {
             let (study, written) = (at(&folder, &format!("a.{extension}")), at(&folder, &format!("b.{extension}")));
             std::fs::write(&study, &text).unwrap();
-            let report = json(&["allocate", &study, "--json", "--write", &written]);
+            let report = json(&["allocate", &study, "--json", "--write", &written, "--force"]);
             // There is no proof for a shape that changes with its tolerance, or for a mean that moves with it.
             let status = report["status"].as_str().unwrap();
             assert!(["optimal", "local-optimum"].contains(&status), "{name}: {report}");
@@ -168,7 +168,8 @@ fn nominal_values_are_written_too() {
          F = { lower = 12590.0, upper = 12610.0 }\n",
     )
     .unwrap();
-    let output = run(&["allocate", &engine, "--recentre", "R", "--write", &written, "--method", "second-order"]);
+    let output =
+        run(&["allocate", &engine, "--recentre", "R", "--write", &written, "--force", "--method", "second-order"]);
     assert!(output.starts_with("exit 0"), "{output}");
     let new = std::fs::read_to_string(&written).unwrap();
     assert!(new.contains("R = { nominal = 0.04257"), "{new}");

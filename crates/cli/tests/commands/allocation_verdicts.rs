@@ -168,7 +168,8 @@ fn the_written_study_passes_its_check() {
         let text = random(&mut Xoshiro256PlusPlus::seed_from_u64(4900 + case));
         let (study, written) = (at("study.toml"), at("written.toml"));
         std::fs::write(&study, &text).unwrap();
-        let output = sensitol(&["allocate", &study, "--write", &written, "--confirm", "0", "-q"]).output().unwrap();
+        let output =
+            sensitol(&["allocate", &study, "--write", &written, "--force", "--confirm", "0", "-q"]).output().unwrap();
         if output.status.success() {
             let check = sensitol(&["analyze", &written, "--check", "-q"]).output().unwrap();
             assert_eq!(check.status.code(), Some(0), "{text}{}", String::from_utf8_lossy(&check.stdout));

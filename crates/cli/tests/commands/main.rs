@@ -16,6 +16,7 @@ mod init;
 mod labels;
 mod memory;
 mod outputs;
+mod own_files;
 mod probabilities;
 mod probe;
 mod rare;

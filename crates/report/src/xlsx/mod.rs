@@ -3,12 +3,15 @@
 mod book;
 mod stack;
 
-use rust_xlsxwriter::{Workbook, XlsxError};
+use rust_xlsxwriter::{DocProperties, Workbook, XlsxError};
 
 use crate::Report;
 use crate::document::{Cell, Columns, DataTable, Document, Element, Value};
 use crate::output_correlation::together_table;
 use book::{Names, tables};
+
+/// Author of a workbook in its properties, and the one who saved it last. A spreadsheet program writes its user's name instead.
+pub const AUTHOR: &str = "sensitol";
 
 /// Error of a report that does not fit into a workbook.
 #[derive(Debug, thiserror::Error)]
@@ -20,6 +23,7 @@ pub struct WorkbookError(#[from] XlsxError);
 /// instead.
 pub fn analyze_xlsx(report: &Report) -> Result<Vec<u8>, WorkbookError> {
     let mut book = Workbook::new();
+    book.set_properties(&DocProperties::new().set_author(AUTHOR));
     let mut names = Names::default();
     let stacks = report.stacks();
     for (stack, one) in stacks.iter().zip(&report.analysis.characteristics) {
