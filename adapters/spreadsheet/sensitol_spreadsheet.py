@@ -66,7 +66,9 @@ class Office:
         pipe = os.path.basename(self.folder)
         command = [sys.executable, os.path.abspath(__file__), "--keep", self.folder, program, pipe]
         # In a session of its own: what ends this process group must not end it before it has tidied up.
-        self.keeper = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=2, start_new_session=True)
+        # The mark by which the engine finds what a model process leaves behind is not for it either.
+        unmarked = {name: value for name, value in os.environ.items() if name != "SENSITOL_PROCESS"}
+        self.keeper = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=2, start_new_session=True, env=unmarked)
         local = uno.getComponentContext()
         resolver = local.ServiceManager.createInstanceWithContext("com.sun.star.bridge.UnoUrlResolver", local)
         deadline = time.monotonic() + START_S

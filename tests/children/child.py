@@ -51,6 +51,11 @@ if mode == "other-version":
 if mode == "grandchild":
     subprocess.Popen(["sleep", extra[0]])
     subprocess.Popen(["sh", "-c", f"sleep {extra[0]} & wait"])
+if mode == "escaped":
+    # In a session of its own, in a group of its own, and with a parent that is gone.
+    subprocess.Popen(["sleep", extra[0]], start_new_session=True)
+    subprocess.Popen(["sh", "-c", f"sleep {extra[0]} & wait"], process_group=0)
+    subprocess.Popen(["sh", "-c", f"sleep {extra[0]} &"], start_new_session=True).wait()
 
 window = int(extra[-1]) if mode in ("out-of-order", "crash-in-window", "hang-in-window", "echo") else 1
 say({"ready": True, "name": "test child", "version": 3, "window": window, "unknown key": None})

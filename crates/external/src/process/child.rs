@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 
 use process_wrap::std::{ChildWrapper, CommandWrap};
 
+use super::descendants::{Mark, VARIABLE};
 use super::protocol::Line;
 use crate::settings::Listener;
 use sensitol::assembly::{Exit, ProcessFault, Quoted, StderrTail};
@@ -45,6 +46,8 @@ pub(super) struct Child {
     #[cfg(unix)]
     guard: Option<Guard>,
     process: Box<dyn ChildWrapper>,
+    /// Mark of its descendants, which ends those that left the group.
+    mark: Mark,
     /// Channel to the thread that writes to stdin; None once stdin is closed.
     requests: Option<Sender<Vec<u8>>>,
     /// Time at which stdin was closed; None while it is open.
@@ -68,8 +71,9 @@ impl Child {
         listener: Option<Listener>,
     ) -> Result<Self, ProcessFault> {
         let program = &argv[0];
+        let mark = Mark::new();
         let mut command = CommandWrap::with_new(path(program, folder), |command| {
-            command.args(&argv[1..]).current_dir(folder);
+            command.args(&argv[1..]).current_dir(folder).env(VARIABLE, mark.value());
             command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         });
         // The whole group ends with its leader, so that no grandchild is left behind.
@@ -111,12 +115,13 @@ impl Child {
             }
         };
         #[cfg(unix)]
-        let guard = Guard::of(process.id());
+        let guard = Guard::of(process.id(), &mark);
         Ok(Self {
             number,
             #[cfg(unix)]
             guard,
             process,
+            mark,
             requests: Some(requests),
             closed: None,
             stderr,
@@ -157,6 +162,7 @@ impl Child {
         drop(self.guard.take());
         let _ = self.process.start_kill();
         let status = status.or_else(|| self.process.wait().ok());
+        self.mark.kill();
         // The pipes are closed now, unless a process left the group. Their last lines are worth a short wait.
         let begun = Instant::now();
         while !self.readers.iter().all(JoinHandle::is_finished) && begun.elapsed() < Duration::from_millis(200) {
@@ -177,17 +183,20 @@ impl Child {
 }
 
 /// A shell that waits for the end of a pipe whose other end only this process holds. The pipe closes even when this process is killed. The
-/// shell then ends the child's process group, even a busy one. A child that waits for requests would notice the end of its own pipe.
+/// shell then ends the child's process group, even a busy one, and the descendants that left it. A child that waits for requests would notice the end of its own pipe.
 #[cfg(unix)]
 struct Guard(std::process::Child);
 
 #[cfg(unix)]
 impl Guard {
-    fn of(group: u32) -> Option<Self> {
+    fn of(group: u32, mark: &Mark) -> Option<Self> {
+        let script = "read -r line; kill -s KILL -- \"-$1\"; \
+            for file in /proc/[0-9]*/environ; do \
+            if grep -qs -e \"$2:\" \"$file\"; then one=${file#/proc/}; kill -s KILL \"${one%/environ}\"; fi; done";
         let mut command = std::process::Command::new("/bin/sh");
         // A group of its own, since Ctrl-C on a terminal must reach this process first.
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
-        command.args(["-c", "read -r line; kill -s KILL -- \"-$1\"", "sensitol-guard", &group.to_string()]);
+        command.args(["-c", script, "sensitol-guard", &group.to_string(), mark.text()]);
         command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().ok().map(Self)
     }
 }

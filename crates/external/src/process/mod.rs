@@ -14,6 +14,7 @@
 mod batch;
 mod border;
 mod child;
+mod descendants;
 mod pool;
 mod program;
 mod protocol;

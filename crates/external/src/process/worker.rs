@@ -8,6 +8,9 @@ use super::child::Child;
 use super::protocol::Line;
 use super::sentinel::{SENTINEL, interval};
 
+/// Timeouts for which signs of life keep a point that has not started: 17 hours at the default timeout, more than a job waits in most queues.
+const WAITS: u32 = 1000;
+
 /// Abilities that a program declares in `ready`, besides its window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Abilities {
@@ -24,6 +27,8 @@ pub(super) struct Abilities {
 pub(super) struct Sent {
     pub(super) id: u64,
     pub(super) row: usize,
+    /// Time at which it was sent.
+    pub(super) sent: Instant,
     /// Start of the evaluation as the program reported it. None while the point waits in the program's queue, and if the program does not
     /// report starts.
     pub(super) started: Option<Instant>,
@@ -79,17 +84,18 @@ impl Worker {
     }
 
     /// Earliest deadline of the points under way. A point that has started has its own clock. The others share one, which every answer and
-    /// every sign of life restarts.
+    /// every sign of life restarts, up to a thousand timeouts after the oldest of them was sent.
     pub(super) fn deadline(&self, timeout: Duration) -> Option<Instant> {
-        let shared = self.under_way.iter().any(|sent| sent.started.is_none()).then_some(self.since);
-        self.under_way.iter().filter_map(|sent| sent.started).chain(shared).min().map(|since| since + timeout)
+        let own = self.under_way.iter().filter_map(|sent| sent.started).map(|started| started + timeout);
+        own.chain(waiting_deadline(&self.under_way, self.since, timeout)).min()
     }
 
     /// Index in `under_way` of the point that has missed its deadline: the first that started, or else the oldest.
     pub(super) fn overdue(&self, timeout: Duration, now: Instant) -> Option<usize> {
         let late = |since: Instant| since + timeout <= now;
         let started = self.under_way.iter().position(|sent| sent.started.is_some_and(late));
-        let waiting = || self.under_way.iter().position(|sent| sent.started.is_none()).filter(|_| late(self.since));
+        let late_wait = || waiting_deadline(&self.under_way, self.since, timeout).is_some_and(|until| until <= now);
+        let waiting = || self.under_way.iter().position(|sent| sent.started.is_none()).filter(|_| late_wait());
         started.or_else(waiting)
     }
 
@@ -99,7 +105,7 @@ impl Worker {
         if self.under_way.is_empty() {
             self.since = Instant::now();
         }
-        self.under_way.push_back(Sent { id, row, started: None });
+        self.under_way.push_back(Sent { id, row, sent: Instant::now(), started: None });
     }
 
     /// Greatest number of points under way. None goes beyond the next sentinel, so that the number of sentinels does not depend on the
@@ -139,5 +145,31 @@ impl Worker {
         {
             self.places.insert(place.clone());
         }
+    }
+}
+
+/// Deadline of the points that have not started: a timeout after the last answer or sign of life, and at the latest [`WAITS`] timeouts
+/// after the oldest was sent. Returns None if all have started.
+fn waiting_deadline(under_way: &VecDeque<Sent>, since: Instant, timeout: Duration) -> Option<Instant> {
+    let oldest = under_way.iter().filter(|sent| sent.started.is_none()).map(|sent| sent.sent).min()?;
+    let last = oldest.checked_add(timeout.saturating_mul(WAITS));
+    Some(last.map_or(since + timeout, |last| last.min(since + timeout)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A program that says for ever that it is alive keeps a point for a thousand timeouts, and no longer.
+    #[test]
+    fn signs_of_life_have_an_end() {
+        let (sent, timeout) = (Instant::now(), Duration::from_secs(2));
+        let one = |started| VecDeque::from([Sent { id: 1, row: 0, sent, started }]);
+        let until = |since| waiting_deadline(&one(None), sent + Duration::from_secs(since), timeout).unwrap() - sent;
+        assert_eq!([0, 1, 1990].map(|since| until(since).as_secs()), [2, 3, 1992]);
+        assert_eq!([1999, 5000, 1 << 20].map(|since| until(since).as_secs()), [2000; 3]);
+        assert_eq!(waiting_deadline(&one(Some(sent)), sent, timeout), None);
+        // The longest timeout of the settings does not overflow.
+        assert!(waiting_deadline(&one(None), sent, Duration::from_secs(1 << 30)).is_some());
     }
 }

@@ -435,6 +435,34 @@ fn no_orphan_is_left() {
     }
 }
 
+/// Processes that left the child's group end with the model too. A process that this program started itself stays.
+#[test]
+#[cfg(target_os = "linux")]
+fn no_process_escapes() {
+    let forever = format!("400.{}", std::process::id());
+    let mut own = std::process::Command::new("sleep").arg(format!("{forever}5")).spawn().unwrap();
+    let family = {
+        let model = model(settings("escaped", &[&forever]));
+        right_but(&POINTS, &at(&model, &POINTS), &[]);
+        let begun = Instant::now();
+        let mut family = Vec::new();
+        while family.len() < 4 {
+            assert!(begun.elapsed() < PATIENCE, "the child has children: {family:?}");
+            std::thread::sleep(Duration::from_millis(10));
+            family = living(&format!("sleep {forever} "));
+        }
+        family
+    };
+    let begun = Instant::now();
+    while let Some(left) = family.iter().find(|seen| !seen.gone()) {
+        assert!(begun.elapsed() < PATIENCE, "{left:?} of {family:?}");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    assert!(own.try_wait().unwrap().is_none(), "a process of this program was ended");
+    own.kill().unwrap();
+    own.wait().unwrap();
+}
+
 /// Memory of a process in megabytes.
 #[cfg(target_os = "linux")]
 fn resident(pid: &str) -> f64 {
