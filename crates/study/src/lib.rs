@@ -128,6 +128,9 @@ pub struct Study {
     pub sha256: String,
     /// Files that the study names, in the order of the dimensions. Those of the model are last.
     pub files: Vec<NamedFile>,
+    /// Program that evaluations start, with its arguments. None if nothing is started: the model is built in, a formula or a function, or
+    /// the answers come from elsewhere.
+    pub program: Option<Vec<String>>,
     /// Title block of printed pages, from the section `[about]`: name and text of every cell.
     pub about: Vec<(&'static str, String)>,
     /// Names of the configurations.
@@ -300,6 +303,7 @@ impl Study {
             requirements: built.requirements,
             warnings: built.warnings,
             files: built.files,
+            program: built.program,
             format,
             name: source.name,
             place: source.place,

@@ -41,6 +41,14 @@ impl ModelOf {
         }
     }
 
+    /// Program with its arguments. Returns None for a model that starts none.
+    pub(crate) fn program(&self) -> Option<&[String]> {
+        match self {
+            Self::Program(program) => Some(&program.settings.argv),
+            Self::BuiltIn(_) | Self::Host(_) => None,
+        }
+    }
+
     /// True if the model must answer every name that the study does not define. Only built-in models have fixed outputs.
     pub(crate) fn is_external(&self) -> bool {
         self.built_in().is_none()

@@ -51,6 +51,8 @@ pub(crate) struct Built {
     pub(crate) data: Vec<Arc<[u8]>>,
     /// These files with names and paths, and those of the model.
     pub(crate) files: Vec<NamedFile>,
+    /// Program that answers, with its arguments.
+    pub(crate) program: Option<Vec<String>>,
 }
 
 pub(crate) fn build(
@@ -125,7 +127,9 @@ pub(crate) fn build(
     // Files of the model follow those of the dimensions.
     let mut files = data.files();
     files.extend(file.model.iter().flat_map(|entry| files::of_model(entry.get_ref(), source.place.path())));
-    Ok(Built { problem, options, costs, losses, setups, requirements, warnings, data: data.bytes(), files })
+    let started = evaluated.as_ref().filter(|_| !source.externals.elsewhere()).and_then(ModelOf::program);
+    let program = started.map(<[String]>::to_vec);
+    Ok(Built { problem, options, costs, losses, setups, requirements, warnings, data: data.bytes(), files, program })
 }
 
 /// Warning that a hole may be smaller than its pin, with the share of pairs for which it is. The share is None if it cannot be computed.
