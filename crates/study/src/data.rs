@@ -48,6 +48,9 @@ pub enum DataProblem {
         /// The names that were given.
         known: Vec<String>,
     },
+    /// The file is outside the folder that files of the study are read from.
+    #[error("the file is outside the folder of studies")]
+    Outside,
     /// The file is not text in UTF-8.
     #[error("the file is not UTF-8 text")]
     NotUtf8,
@@ -166,6 +169,7 @@ impl DataProblem {
             Self::Unreadable { .. } => Some("the path starts from the study file's folder".into()),
             Self::NotGiven { nearest: Some(name), .. } => Some(format!("did you mean `{name}`?")),
             Self::NotGiven { known, .. } => Some(format!("the files given are {}", known.join(", "))),
+            Self::Outside => Some("copy it into the folder, and name it by its path from the study".into()),
             Self::NotUtf8 => Some("save it as CSV in UTF-8".into()),
             Self::NoHeader { .. } => Some("write a line with names, such as d_mm, above the values".into()),
             Self::Empty => Some("the first line names the columns, such as d_mm".into()),
@@ -326,6 +330,7 @@ impl<'s> Data<'s> {
                     let nearest = nearest(file, known.iter().map(String::as_str)).map(str::to_owned);
                     DataProblem::NotGiven { nearest, known }
                 }
+                UnreadableFile::Outside { .. } => DataProblem::Outside,
             });
             DataFault { file: file.to_owned(), line: None, column: None, problem }
         })?;

@@ -443,6 +443,12 @@ pub enum StudyFault {
         /// Path at which the file was expected.
         path: std::path::PathBuf,
     },
+    /// A file that the model depends on is outside the folder that files of the study are read from.
+    #[error("{} is outside the folder of studies", path.display())]
+    OutsideFile {
+        /// Path of the file.
+        path: std::path::PathBuf,
+    },
     /// A table of answers evaluated elsewhere has no column for a dimension.
     #[error(transparent)]
     MissingColumn(#[from] NoColumn),

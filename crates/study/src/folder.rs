@@ -41,6 +41,7 @@ pub struct StudyText {
     pub(super) externals: Externals,
     pub(super) parameter: Option<String>,
     pub(super) folder: PathBuf,
+    pub(super) root: Option<PathBuf>,
 }
 
 impl StudyText {
@@ -54,6 +55,7 @@ impl StudyText {
             externals: Externals::default(),
             parameter: None,
             folder: PathBuf::from("."),
+            root: None,
         }
     }
 
@@ -80,6 +82,25 @@ impl StudyText {
         Self { folder: folder.into(), ..self }
     }
 
+    /// Refuses files that the study names outside this folder, also by links. Words of a command are not such files.
+    ///
+    /// ```
+    /// use sensitol_study::{Study, StudyText};
+    /// let text = r#"
+    ///     [dimensions]
+    ///     pin = { nominal = 8.0, measured = "../Cargo.toml" }
+    ///     bore = { nominal = 8.1, tolerance = 0.03 }
+    ///     [characteristics]
+    ///     clearance = { formula = "bore - pin" }
+    /// "#;
+    /// let error = Study::from_text(StudyText::toml("fit.toml", text).in_folder("src").within("src")).unwrap_err();
+    /// assert!(error.to_string().contains("the file is outside the folder of studies"));
+    /// ```
+    #[must_use]
+    pub fn within(self, root: impl Into<PathBuf>) -> Self {
+        Self { root: Some(root.into()), ..self }
+    }
+
     /// Sets the treatment of external programs.
     #[must_use]
     pub fn with_externals(self, externals: Externals) -> Self {
@@ -99,16 +120,31 @@ pub(super) struct Place {
     folder: PathBuf,
     /// Files by the names in the study; None if they are read from the folder.
     memory: Option<Arc<BTreeMap<String, Arc<[u8]>>>>,
+    /// Folder that every file is in; None if files may be anywhere.
+    root: Option<PathBuf>,
 }
 
 impl Place {
     pub(super) fn folder(folder: &Path) -> Self {
-        Self { folder: folder.to_owned(), memory: None }
+        Self { folder: folder.to_owned(), memory: None, root: None }
     }
 
     /// Files in memory, or of this folder if there are none in memory.
     pub(super) fn memory(files: BTreeMap<String, Arc<[u8]>>, folder: PathBuf) -> Self {
-        Self { folder, memory: (!files.is_empty()).then(|| Arc::new(files)) }
+        Self { folder, memory: (!files.is_empty()).then(|| Arc::new(files)), root: None }
+    }
+
+    /// Refuses files outside the root, if there is one.
+    pub(super) fn within(self, root: Option<PathBuf>) -> Self {
+        Self { root, ..self }
+    }
+
+    /// Returns the path of a file of the disk. Links are resolved before the path is compared with the root.
+    pub(super) fn path_of(&self, file: &str) -> Result<PathBuf, UnreadableFile> {
+        let path = self.folder.join(file);
+        let Some(root) = &self.root else { return Ok(path) };
+        let real = |path: &Path| path.canonicalize().map_err(UnreadableFile::Failed);
+        if real(&path)?.starts_with(real(root)?) { Ok(path) } else { Err(UnreadableFile::Outside { path }) }
     }
 
     /// Folder from which relative paths start.
@@ -122,7 +158,7 @@ impl Place {
                 let other = || UnreadableFile::NotGiven { known: files.keys().cloned().collect() };
                 files.get(file).cloned().ok_or_else(other)
             }
-            None => std::fs::read(self.folder.join(file)).map(Arc::from).map_err(UnreadableFile::Failed),
+            None => std::fs::read(self.path_of(file)?).map(Arc::from).map_err(UnreadableFile::Failed),
         }
     }
 }
@@ -136,4 +172,9 @@ pub(super) enum UnreadableFile {
     },
     /// The operating system reports an error.
     Failed(std::io::Error),
+    /// The file is outside the folder that files are read from.
+    Outside {
+        /// Path of the file.
+        path: PathBuf,
+    },
 }

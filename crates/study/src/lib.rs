@@ -258,8 +258,9 @@ impl Study {
     /// # Errors
     /// Fails like [`read`](Self::read).
     pub fn from_text(study: StudyText) -> Result<Self, StudyError> {
-        let StudyText { format, name, text, files, externals, parameter, folder } = study;
-        Self::parse(&text, format, &name, Place::memory(files, folder), externals, parameter.as_deref())
+        let StudyText { format, name, text, files, externals, parameter, folder, root } = study;
+        let place = Place::memory(files, folder).within(root);
+        Self::parse(&text, format, &name, place, externals, parameter.as_deref())
     }
 
     fn parse(

@@ -8,6 +8,7 @@ use crate::entries::file::ModelEntry;
 use crate::entries::spanned::Spanned;
 use crate::error::{Fault, StudyFault, fault};
 use crate::external_settings::Host;
+use crate::folder::UnreadableFile;
 use crate::source::Source;
 use sensitol::assembly::{AssemblyFunction, GivenAnswers, Input, Output, Signature};
 #[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
@@ -144,8 +145,13 @@ fn program(command: &Spanned<Vec<String>>, entry: &ModelEntry, source: &Source) 
         }
     };
     let file = |file: &Spanned<String>| {
-        let path = source.place.path().join(file.get_ref());
-        if path.is_file() { Ok(path) } else { Err(fault(file.span(), "model.files", StudyFault::MissingFile { path })) }
+        let missing = || StudyFault::MissingFile { path: source.place.path().join(file.get_ref()) };
+        let found = match source.place.path_of(file.get_ref()) {
+            Ok(path) if path.is_file() => Ok(path),
+            Err(UnreadableFile::Outside { path }) => Err(StudyFault::OutsideFile { path }),
+            Ok(_) | Err(_) => Err(missing()),
+        };
+        found.map_err(|found| fault(file.span(), "model.files", found))
     };
     let files = entry.files.iter().flatten().map(file).collect::<Result<_, _>>()?;
     let defaults = Settings::new(command.get_ref().iter());
