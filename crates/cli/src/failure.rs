@@ -137,6 +137,8 @@ pub(super) enum Failure {
     NotAFolder { path: PathBuf, reason: String },
     #[error("nothing can listen at {address}: {reason}")]
     NotServed { address: std::net::SocketAddr, reason: String },
+    #[error("nothing listens at {address} any longer: {reason}")]
+    NoLongerServed { address: std::net::SocketAddr, reason: String },
     #[error("{path} cannot be put into a page: {reason}", path = path.display())]
     NotInPage { path: PathBuf, reason: String },
     #[error("{path} is there already and stays as it is: name another file, or remove it", path = path.display())]

@@ -10,6 +10,9 @@ use serde_json::{Value, json};
 
 use super::command::sensitol;
 
+#[cfg(unix)]
+mod limits;
+
 /// Parts of a page that the command checks.
 const PAGE: &str = concat!(
     "<!DOCTYPE html>\n<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'x'\">\n",
@@ -20,6 +23,9 @@ const PAGE: &str = concat!(
 );
 const STUDY: &str = "[dimensions]\na = { nominal = 10, tolerance = 0.3 }\nb = { nominal = 4, tolerance = 0.1 }\n\
                      [characteristics]\ny = { formula = \"a*b\", lower = 39, upper = 41 }\n";
+
+/// Time after which a silent server counts as hanging: many times every limit that tests meet.
+const SILENCE: Duration = Duration::from_secs(120);
 
 struct Server {
     child: Child,
@@ -50,6 +56,11 @@ impl Answer {
 impl Server {
     /// Starts a server over a folder with these files.
     fn with(files: &[(&str, &str)]) -> Self {
+        Self::started(files, Command::new(env!("CARGO_BIN_EXE_sensitol")))
+    }
+
+    /// Starts the program of this command over a folder with these files.
+    fn started(files: &[(&str, &str)], mut program: Command) -> Self {
         let folder = tempfile::tempdir().unwrap();
         std::fs::create_dir(folder.path().join("studies")).unwrap();
         std::fs::write(folder.path().join("page.html"), PAGE).unwrap();
@@ -58,7 +69,7 @@ impl Server {
             std::fs::create_dir_all(path.parent().unwrap()).unwrap();
             std::fs::write(path, text).unwrap();
         }
-        let mut child = Command::new(env!("CARGO_BIN_EXE_sensitol"))
+        let mut child = program
             .args(["serve", "studies", "--page", "page.html"])
             .current_dir(folder.path())
             .stdout(Stdio::piped())
@@ -76,9 +87,26 @@ impl Server {
         self.folder.path().join("studies")
     }
 
+    /// Sends these lines and bytes as they are, and returns the stream for the response. A server that is silent fails the test.
+    fn send(&self, lines: &[&str], text: &[u8]) -> TcpStream {
+        let mut stream = TcpStream::connect(self.at).unwrap();
+        stream.set_read_timeout(Some(SILENCE)).unwrap();
+        stream.write_all(lines.iter().map(|line| format!("{line}\r\n")).collect::<String>().as_bytes()).unwrap();
+        stream.write_all(text).unwrap();
+        stream
+    }
+
+    /// Returns the status of the response to a request with these fields and this text.
+    fn status(&self, line: &str, fields: &[&str], text: &[u8]) -> u16 {
+        let host = format!("Host: {}", self.at);
+        let mut stream = self.send(&[&[line, &host], fields, &[""]].concat(), text);
+        status(&mut stream)
+    }
+
     /// Sends a request with the host first, and returns the stream for the response.
     fn ask(&self, method: &str, path: &str, headers: &[&str], body: &str) -> TcpStream {
         let mut stream = TcpStream::connect(self.at).unwrap();
+        stream.set_read_timeout(Some(SILENCE)).unwrap();
         let host = format!("Host: {}", self.at);
         let host = if headers.iter().any(|header| header.starts_with("Host:")) { None } else { Some(host.as_str()) };
         let headers: Vec<&str> = host.into_iter().chain(headers.iter().copied()).collect();
@@ -126,6 +154,14 @@ impl Server {
             .map(|line| serde_json::from_str(line).unwrap())
             .collect()
     }
+}
+
+/// Status of a response.
+fn status(stream: &mut TcpStream) -> u16 {
+    let mut text = Vec::new();
+    stream.read_to_end(&mut text).unwrap();
+    let text = String::from_utf8(text).unwrap();
+    text.split(' ').nth(1).unwrap_or_else(|| panic!("no response: {text:?}")).parse().unwrap()
 }
 
 fn task(text: &str, name: &str) -> Value {

@@ -2,9 +2,8 @@
 
 use std::net::SocketAddr;
 
-use tiny_http::Request;
-
 use crate::commands::serve::answer::Answer;
+use crate::commands::serve::request::Request;
 
 /// Length of a token in bytes: 2^128 values are too many to try.
 const TOKEN: usize = 16;
@@ -44,20 +43,16 @@ impl Guard {
 
     /// Returns the query if the request is allowed. A page of another site has no token, and its origin or host is not this server's.
     pub(in crate::commands::serve) fn admits(&self, request: &Request) -> Result<Query, Answer> {
-        let header = |name: &'static str| {
-            let found = request.headers().iter().find(|header| header.field.equiv(name));
-            found.map(|header| header.value.as_str())
-        };
-        if !header("Host").is_some_and(|host| self.is_own(host)) {
+        if !request.field("Host").is_some_and(|host| self.is_own(host)) {
             return Err(Answer::refused(403, "the address is not that of this server"));
         }
-        let foreign = header("Origin")
+        let foreign = (request.field("Origin"))
             .is_some_and(|origin| !origin.strip_prefix("http://").is_some_and(|host| self.is_own(host)));
-        let site = header("Sec-Fetch-Site").unwrap_or("none");
+        let site = request.field("Sec-Fetch-Site").unwrap_or("none");
         if foreign || !["none", "same-origin"].contains(&site) {
             return Err(Answer::refused(403, "a page of another site has no business here"));
         }
-        let (path, query) = request.url().split_once('?').unwrap_or((request.url(), ""));
+        let (path, query) = request.target.split_once('?').unwrap_or((&request.target, ""));
         let (token, what) = path.trim_start_matches('/').split_once('/').unwrap_or(("", ""));
         if !same(token.as_bytes(), self.token.as_bytes()) {
             return Err(Answer::refused(403, "the address needs the token that `sensitol serve` has printed"));

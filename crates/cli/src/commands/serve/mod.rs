@@ -4,17 +4,16 @@
 //! models. Only requests with the token are answered, and no file outside the folder is read or written.
 
 mod answer;
+mod connection;
 mod folder;
 mod guard;
+mod request;
 mod runs;
 
-use std::io::Read;
-use std::net::{IpAddr, SocketAddr};
+use std::net::{IpAddr, SocketAddr, TcpListener};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
-
-use tiny_http::{Method, Request, Server};
 
 use crate::args::ServeArgs;
 use crate::commands::workbench::page;
@@ -22,13 +21,13 @@ use crate::failure::{Exit, Failure};
 use crate::interrupt;
 use crate::output::Destination;
 use answer::Answer;
+use connection::Visit;
 use folder::Folder;
 use guard::Guard;
+use request::Request;
 
 /// Interval at which the server checks for an interruption.
 const TICK: Duration = Duration::from_millis(200);
-/// Longest text of a request, in bytes.
-const LONGEST: u64 = 16 << 20;
 /// Placeholder in the page for the data of the server.
 const ALONE: &str = "<script type=\"application/json\" id=\"server-data\">null</script>";
 /// Beginning of the policy of a page without network.
@@ -38,8 +37,24 @@ struct Served {
     page: String,
     folder: Folder,
     guard: Guard,
-    /// Number of running requests.
+    /// Number of requests that have arrived as a whole and are not answered yet.
     active: AtomicUsize,
+}
+
+/// Request that is being answered, until it is dropped.
+struct Active<'s>(&'s AtomicUsize);
+
+impl<'s> Active<'s> {
+    fn new(count: &'s AtomicUsize) -> Self {
+        count.fetch_add(1, Ordering::SeqCst);
+        Self(count)
+    }
+}
+
+impl Drop for Active<'_> {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::SeqCst);
+    }
 }
 
 pub(crate) fn run(asked: &ServeArgs) -> Result<Exit, Failure> {
@@ -47,8 +62,8 @@ pub(crate) fn run(asked: &ServeArgs) -> Result<Exit, Failure> {
     let page = with_server(&page(asked.page.as_deref())?, &folder.name())?;
     let address = SocketAddr::new(asked.address.unwrap_or(IpAddr::from([127, 0, 0, 1])), asked.port);
     let cannot = |reason: String| Failure::NotServed { address, reason };
-    let server = Server::http(address).map_err(|error| cannot(error.to_string()))?;
-    let at = server.server_addr().to_ip().ok_or_else(|| cannot("it has no address".to_owned()))?;
+    let listener = TcpListener::bind(address).map_err(|error| cannot(error.to_string()))?;
+    let at = listener.local_addr().map_err(|error| cannot(error.to_string()))?;
     let guard = Guard::new(at).map_err(cannot)?;
     interrupt::listen();
     let warning = if at.ip().is_loopback() {
@@ -60,15 +75,17 @@ pub(crate) fn run(asked: &ServeArgs) -> Result<Exit, Failure> {
     Destination::Stdout
         .write(&format!("The workbench over {shown}: {}\n{warning}Ctrl-C ends it.\n", guard.address()))?;
     let served = Arc::new(Served { page, folder, guard, active: AtomicUsize::new(0) });
-    while !interrupt::stopped() {
-        // A failed connection does not affect the next one.
-        let Ok(Some(request)) = server.recv_timeout(TICK) else { continue };
+    let accepting = {
         let served = Arc::clone(&served);
-        served.active.fetch_add(1, Ordering::SeqCst);
-        std::thread::spawn(move || {
-            served.answer(request);
-            served.active.fetch_sub(1, Ordering::SeqCst);
-        });
+        std::thread::spawn(move || connection::accept(&listener, move |visit| served.answer(visit)))
+    };
+    while !interrupt::stopped() {
+        if accepting.is_finished() {
+            let reason =
+                accepting.join().map_or_else(|_| "its thread has failed".to_owned(), |error| error.to_string());
+            return Err(Failure::NoLongerServed { address: at, reason });
+        }
+        std::thread::sleep(TICK);
     }
     // Running requests see the interruption as well, and end with their results so far.
     while served.active.load(Ordering::SeqCst) > 0 && !interrupt::abandoned() {
@@ -89,40 +106,44 @@ fn with_server(page: &str, folder: &str) -> Result<String, Failure> {
 }
 
 impl Served {
-    fn answer(&self, mut request: Request) {
-        let method = request.method().clone();
+    /// Answers the request of a connection.
+    fn answer(&self, visit: Visit) {
+        match Request::read(visit.connection()) {
+            Ok(Some(request)) => self.answer_to(request, &visit),
+            Ok(None) => return,
+            Err(refusal) => refusal.send(visit.connection()),
+        }
+        visit.close();
+    }
+
+    fn answer_to(&self, mut request: Request, visit: &Visit) {
+        let connection = visit.connection();
         let query = match self.guard.admits(&request) {
             Ok(query) => query,
-            Err(refusal) => return refusal.send(request),
+            Err(refusal) => return refusal.send(connection),
         };
-        let posts = matches!(method, Method::Post | Method::Put);
-        let text = match posts.then(|| body(&mut request)).transpose() {
+        visit.admit();
+        let posts = matches!(request.method.as_str(), "POST" | "PUT");
+        let text = match posts.then(|| request.text(connection)).transpose() {
             Ok(text) => text.unwrap_or_default(),
-            Err(refusal) => return refusal.send(request),
+            Err(refusal) => return refusal.send(connection),
         };
-        let answer = match (&method, query.what.as_str()) {
-            (Method::Get, "") => Answer::page(&self.page),
-            (Method::Get, "models") => Answer::json(sensitol_report::task::models()),
-            (Method::Get, "studies") => self.folder.list(),
-            (Method::Get, "study") => self.folder.read(&query),
-            (Method::Get, "changed") => self.folder.changed(&query),
-            (Method::Put, "study") => self.folder.save(&query, &text),
-            (Method::Post, "keys") => runs::keys(&self.folder, &query, &text),
-            (Method::Post, "run") => return runs::run(&self.folder, &query, &text, request),
+        // A request that has not arrived as a whole does not keep the program from ending.
+        let _active = Active::new(&self.active);
+        if interrupt::stopped() {
+            return Answer::refused(503, "the server ends").send(connection);
+        }
+        let answer = match (request.method.as_str(), query.what.as_str()) {
+            ("GET", "") => Answer::page(&self.page),
+            ("GET", "models") => Answer::json(sensitol_report::task::models()),
+            ("GET", "studies") => self.folder.list(),
+            ("GET", "study") => self.folder.read(&query),
+            ("GET", "changed") => self.folder.changed(&query),
+            ("PUT", "study") => self.folder.save(&query, &text),
+            ("POST", "keys") => runs::keys(&self.folder, &query, &text),
+            ("POST", "run") => return runs::run(&self.folder, &query, &text, connection),
             _ => Answer::not_found(),
         };
-        answer.send(request);
-    }
-}
-
-/// Reads the text of a request.
-fn body(request: &mut Request) -> Result<String, Answer> {
-    let mut bytes = Vec::new();
-    let read = request.as_reader().take(LONGEST + 1).read_to_end(&mut bytes);
-    match (read, String::from_utf8(bytes)) {
-        (Ok(length), _) if length as u64 > LONGEST => Err(Answer::refused(413, "the text is longer than 16 MiB")),
-        (Ok(_), Ok(text)) => Ok(text),
-        (Ok(_), Err(_)) => Err(Answer::refused(400, "the text is not UTF-8")),
-        (Err(error), _) => Err(Answer::refused(400, &format!("the text could not be read: {error}"))),
+        answer.send(connection);
     }
 }

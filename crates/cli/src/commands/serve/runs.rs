@@ -7,9 +7,9 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 use serde_json::json;
-use tiny_http::Request;
 
 use crate::commands::serve::answer::{Answer, Lines};
+use crate::commands::serve::connection::Connection;
 use crate::commands::serve::folder::Folder;
 use crate::commands::serve::guard::Query;
 use crate::interrupt;
@@ -33,14 +33,13 @@ pub(in crate::commands::serve) fn keys(folder: &Folder, query: &Query, told: &st
 }
 
 /// Runs a task and reports progress to the page. The run ends if the page is gone.
-pub(in crate::commands::serve) fn run(folder: &Folder, query: &Query, told: &str, request: Request) {
+pub(in crate::commands::serve) fn run(folder: &Folder, query: &Query, told: &str, connection: &Connection) {
     let (task, path) = match asked(folder, query, told) {
         Ok(asked) => asked,
-        Err(refusal) => return refusal.send(request),
+        Err(refusal) => return refusal.send(connection),
     };
-    let Some(lines) = Lines::begin(request) else { return };
     let (gone, done) = (AtomicBool::new(false), AtomicBool::new(false));
-    let lines = Mutex::new(lines);
+    let lines = Mutex::new(Lines::begin(connection));
     let tell = |text: &str| {
         let heard = lines.lock().unwrap_or_else(PoisonError::into_inner).line(text);
         if !heard {
