@@ -12,6 +12,7 @@ use super::command::sensitol;
 
 #[cfg(unix)]
 mod limits;
+mod saves;
 
 /// Parts of a page that the command checks.
 const PAGE: &str = concat!(

@@ -1,7 +1,9 @@
 //! The studies of a folder: listed, read, saved, watched. Files outside it are never touched.
 
+use std::io::ErrorKind;
 use std::io::Write;
 use std::path::{Component, Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use serde_json::json;
@@ -27,6 +29,8 @@ pub(in crate::commands::serve) struct Folder {
     root: PathBuf,
     /// Path as the user gave it.
     asked: PathBuf,
+    /// Held while a save compares a file with the page's version and replaces it.
+    saving: Mutex<()>,
 }
 
 impl Folder {
@@ -36,7 +40,7 @@ impl Folder {
         if !root.is_dir() {
             return Err(wrong("it is a file: name the folder that it is in".to_owned()));
         }
-        Ok(Self { root, asked: asked.to_owned() })
+        Ok(Self { root, asked: asked.to_owned(), saving: Mutex::default() })
     }
 
     /// Returns the path as the user gave it.
@@ -66,11 +70,14 @@ impl Folder {
         let parent = whole.parent().unwrap_or(&self.root).canonicalize();
         let parent = parent.map_err(|_| Answer::refused(404, "there is no such folder"))?;
         let real = whole.canonicalize().unwrap_or_else(|_| parent.join(whole.file_name().unwrap_or_default()));
-        if parent.starts_with(&self.root) && real.starts_with(&self.root) {
-            Ok(real)
-        } else {
-            Err(Answer::refused(403, "only studies of the folder are opened and saved"))
+        if !parent.starts_with(&self.root) || !real.starts_with(&self.root) {
+            return Err(Answer::refused(403, "only studies of the folder are opened and saved"));
         }
+        // A pipe would be read without end.
+        if real.metadata().is_ok_and(|about| !about.is_file()) {
+            return Err(Answer::refused(403, "a study is a file"));
+        }
+        Ok(real)
     }
 
     /// Lists files that are studies by extension and content, sorted by name.
@@ -125,30 +132,44 @@ impl Folder {
         }
     }
 
-    /// Writes a study, unless the file has changed since the page read it.
+    /// Writes a study as a whole, unless the file has changed since the page read it.
     pub(in crate::commands::serve) fn save(&self, query: &Query, text: &str) -> Answer {
         let path = match self.place(query) {
             Ok(path) if path.extension().is_some_and(|ending| ending == "toml") => path,
             Ok(_) => return Answer::refused(403, "the workbench saves .toml files: name one"),
             Err(refusal) => return refusal,
         };
-        let there = std::fs::read(&path).ok().map(|bytes| hash(&bytes));
+        let unwritten = |error: std::io::Error| Answer::refused(500, &format!("it cannot be written: {error}"));
+        // The file is renamed into place, so that it is never incomplete.
+        let folder = path.parent().unwrap_or(&self.root);
+        let new = tempfile::NamedTempFile::new_in(folder).and_then(|mut file| {
+            file.write_all(text.as_bytes())?;
+            file.as_file().sync_all()?;
+            Ok(file)
+        });
+        let new = match new {
+            Ok(new) => new,
+            Err(error) => return unwritten(error),
+        };
         let overwrite = query.get("overwrite") == Some("yes");
+        // Two saves of the same version one after the other: the second one finds a file that it does not know.
+        let _saving = self.saving.lock().unwrap_or_else(PoisonError::into_inner);
+        let there = match std::fs::read(&path) {
+            Ok(bytes) => Some(hash(&bytes)),
+            Err(error) if error.kind() == ErrorKind::NotFound => None,
+            Err(error) => return unwritten(error),
+        };
         if !overwrite && there.as_deref() != query.get("hash").filter(|hash| !hash.is_empty()) {
             return Answer::refused(409, "the file is not the one that was opened: another program has changed it");
         }
-        // The file is renamed into place, so that it is never incomplete.
-        let folder = path.parent().unwrap_or(&self.root);
-        let written = tempfile::NamedTempFile::new_in(folder).and_then(|mut file| {
-            file.write_all(text.as_bytes())?;
-            if let Ok(now) = std::fs::metadata(&path) {
-                file.as_file().set_permissions(now.permissions())?;
-            }
-            file.persist(&path).map_err(|error| error.error)
-        });
-        match written {
+        if let Ok(now) = std::fs::metadata(&path)
+            && let Err(error) = new.as_file().set_permissions(now.permissions())
+        {
+            return unwritten(error);
+        }
+        match new.persist(&path) {
             Ok(_) => Answer::json(json!({ "hash": hash(text.as_bytes()) }).to_string()),
-            Err(error) => Answer::refused(500, &format!("it cannot be written: {error}")),
+            Err(error) => unwritten(error.error),
         }
     }
 
