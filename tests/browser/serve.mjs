@@ -112,7 +112,10 @@ test("an external model runs when it is asked for, and can be stopped", async ()
   assert.equal(existsSync(join(folder, "in", "program.journal.sqlite")), false);
   await click(page, "#analyze");
   await until(page, "/\\d+ of \\d+ points/.test(document.getElementById('old').textContent)");
+  assert.match(await text(page, "#old"), /python3 slow\.py runs/);
+  assert.match(await text(page, "#analyze"), /The program runs: stop it/);
   await settled(page);
+  assert.equal(await text(page, "#analyze"), "Analyze");
   assert.match(await text(page, "#yield"), /%/);
   assert.equal(existsSync(join(folder, "in", "program.journal.sqlite")), true);
   await type(page, cell(0, "tolerance"), "0.35");
@@ -121,6 +124,44 @@ test("an external model runs when it is asked for, and can be stopped", async ()
   await click(page, "#analyze");
   await settled(page);
   assert.match(await page.evaluate("document.body.innerText"), /stopped/);
+  quiet(page);
+  await page.close();
+});
+
+test("a program that is typed, in whatever form, starts when it is asked for", async () => {
+  writeFileSync(join(folder, "in", "typed.toml"), STUDY);
+  writeFileSync(join(folder, "in", "started.py"), `open("started", "w").write("x")\n${PROGRAM}`);
+  const page = await opened("#f=in%2Ftyped.toml");
+  assert.equal(await page.evaluate("document.getElementById('analyze').hidden"), true);
+  await click(page, "[data-view=toml]");
+  const rest = EXTERNAL.replace(/\[model\]\n.*\n/, "");
+  for (const form of ["model.command = [\"python3\", \"started.py\"] # typed\n", "\"model\" = { 'command' = [\"python3\", \"started.py\"] }\n"]) {
+    await type(page, "#toml", form + rest);
+    assert.match(await text(page, "#old"), /program, python3 started\.py: Analyze runs it/);
+    assert.equal(await page.evaluate("document.getElementById('analyze').hidden"), false);
+    assert.equal(await text(page, "#toml-error"), "");
+    assert.equal(existsSync(join(folder, "in", "started")), false);
+  }
+  // The table names the program, and no built-in model.
+  await click(page, "[data-view=table]");
+  await until(page, "document.querySelector('[data-kind][aria-pressed=true]').textContent === 'External program'");
+  assert.equal(await text(page, "#program-command"), "python3 started.py");
+  await settled(page);
+  assert.equal(existsSync(join(folder, "in", "started")), false);
+  // A tool of the page that runs it can be stopped too.
+  await click(page, "#tab-sweep");
+  await page.evaluate("for (const [id, value] of [['from', '9'], ['to', '11']]) document.getElementById(id).value = value");
+  await click(page, "#go");
+  await until(page, "/runs: .* points/.test(document.getElementById('answer').textContent)");
+  assert.equal(await page.evaluate("document.getElementById('stop').hidden"), false);
+  await click(page, "#stop");
+  await until(page, "document.getElementById('answer').textContent.startsWith('Stopped')");
+  assert.equal(await page.evaluate("document.getElementById('stop').hidden"), true);
+  // A study without a program runs at once again.
+  await click(page, "[data-view=toml]");
+  await type(page, "#toml", STUDY);
+  assert.equal(await page.evaluate("document.getElementById('analyze').hidden"), true);
+  assert.match(await text(page, "#yield"), /%/);
   quiet(page);
   await page.close();
 });

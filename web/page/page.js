@@ -182,7 +182,13 @@ const page = (() => {
     state.rest.unknowns = { ...state.rest.unknowns, [one]: typeof found === "object" ? { ...found, start } : start };
     soon();
   });
+  const command = () => state.rest.model?.command;
+  const kindOf = () => (command() ? "program" : state.rest.model ? "model" : state.rest.loops ? "loop" : "formula");
   const kinds = () => {
+    if (kind === "program" && !command()) kind = kindOf();
+    document.querySelector("[data-kind=program]").hidden = !command();
+    $("program-box").hidden = kind !== "program";
+    $("program-command").textContent = command()?.join(" ") ?? "";
     [...$("kind").children].forEach((button) => button.setAttribute("aria-pressed", button.dataset.kind === kind));
     $("model-box").hidden = kind !== "model";
     $("loop-box").hidden = kind !== "loop";
@@ -209,7 +215,7 @@ const page = (() => {
       const found = await live.ask("study", task(typed));
       if (found.faults) return toast("The table can show the study when its text is right");
       [state, original, typed] = [study.of(found.study), typed, null];
-      if (state.rest.model) kind = "model"; else if (state.rest.loops) kind = "loop";
+      if (state.rest.model || state.rest.loops) kind = kindOf();
       all();
     }
     view = chosen;
@@ -220,37 +226,47 @@ const page = (() => {
   // ---------- live
   let running = false, again = false, timer;
   const soon = () => { document.documentElement.dataset.ready = "0"; clearTimeout(timer); timer = setTimeout(run, 0); };
-  // A program is not run at every key: who edits says when.
-  const program = () => (typed === null ? state.rest.model?.command !== undefined : /^\s*command\s*=/m.test(typed));
+  // A program is not run at every key: who edits says when. The engine says whether the study has one.
+  let program = null, wanted = false, starts = false;
+  const progress = (answered, expected) => `${program.join(" ")} runs: ${expected > 0 ? `${answered} of ${expected} points` : `${answered} points`}`;
   const far = (answered, expected) => {
-    if (served === null || !program()) return;
+    if (program === null) return;
     $("old").hidden = false;
-    $("old").textContent = expected > 0 ? `${answered} of ${expected} points` : `${answered} points`;
+    $("old").textContent = progress(answered, expected);
+  };
+  const button = () => {
+    $("analyze").hidden = program === null;
+    $("analyze").textContent = starts ? "The program runs: stop it" : "Analyze";
   };
   async function run(asks = false) {
     document.documentElement.dataset.ready = "0";
+    wanted ||= asks === true;
     if (running) { again = true; return; }
     running = true;
     const late = setTimeout(() => { $("busy").hidden = false; }, 100);
     do {
-      again = false;
+      [again, starts, wanted] = [false, wanted, false];
       const asked = typed !== null ? { text: typed, cells: null } : source();
       const begun = performance.now();
       let found;
-      const waits = served !== null && program() && asks !== true;
-      $("analyze").hidden = served === null || !program();
-      try { found = waits ? await live.ask("study", task(asked.text)) : await live.ask("run", task(asked.text, { asked: { command: "analyze" }, forms: ["json", "html"] }), far); } catch (error) { found = { error: error.message, advice: [] }; }
+      button();
+      if (starts) far(0, 0);
+      try { found = await live.ask("run", task(asked.text, { asked: { command: "analyze" }, forms: ["json", "html"] }), far, starts); } catch (error) { found = { error: error.message, advice: [] }; }
+      // Of a run that was stopped, or of a study with faults, the engine says nothing of a program.
+      if (found.program !== undefined) program = found.program; else if (found.faults) program = null;
+      const waits = program !== null && !starts && !found.faults;
+      starts = false;
+      button();
       // What was typed meanwhile is asked at once; a step of undo may have replaced the study.
       made = asked;
-      faults = found.faults ?? (found.error ? [{ key: "", fault: found.error, help: found.advice.join(" ") || null, start: null, end: null, line: null }] : []);
+      faults = found.faults ?? (found.error && !waits ? [{ key: "", fault: found.error, help: found.advice.join(" ") || null, start: null, end: null, line: null }] : []);
       if (found.json !== undefined) result = read(found, performance.now() - begun);
       if (found.json !== undefined && typed === null) { first(); remember(); }
       told();
-      if (waits && faults.length === 0) {
+      if (waits) {
         $("old").hidden = false;
-        $("old").textContent = result === null ? "The model is a program: Analyze runs it" : "Last result. The model is a program: Analyze runs it again";
+        $("old").textContent = `${result === null ? "" : "Last result. "}The model is a program, ${program.join(" ")}: Analyze runs it${result === null ? "" : " again"}`;
       }
-      asks = false;
     } while (again);
     clearTimeout(late);
     $("busy").hidden = true;
@@ -417,9 +433,9 @@ const page = (() => {
   // ---------- panels
   document.querySelector(".tabs").onclick = (event) => { const chosen = event.target.closest("button"); if (chosen) { tab = chosen.dataset.tab; panel(); } };
   const PANELS = {
-    allocate: () => `<div class="row"><label>Costs<select id="cost"><option value="">those of the study, or relative ones</option><option value="tolerance-unit">tolerance unit by tolerance</option><option value="constant-precision">one grade everywhere</option><option value="equal-shares">equal shares</option></select></label><button type="button" class="b p" id="go">Allocate</button><span class="soft">The cheapest tolerances that keep every target yield</span></div><div id="answer" role="status"></div>`,
+    allocate: () => `<div class="row"><label>Costs<select id="cost"><option value="">those of the study, or relative ones</option><option value="tolerance-unit">tolerance unit by tolerance</option><option value="constant-precision">one grade everywhere</option><option value="equal-shares">equal shares</option></select></label><button type="button" class="b p" id="go">Allocate</button><button type="button" class="b" id="stop" hidden>Stop</button><span class="soft">The cheapest tolerances that keep every target yield</span></div><div id="answer" role="status"></div>`,
     simulate: () => `<div class="row"><label>Points<select id="points"><option value="100000">100 000</option><option value="1000000" selected>1 000 000</option><option value="4000000">4 000 000</option></select></label><button type="button" class="b p" id="go">Simulate</button><button type="button" class="b" id="stop" hidden>Stop</button><span class="soft">The formula itself at random points</span></div><div id="answer" role="status"></div>`,
-    sweep: () => `<div class="row"><label>Over<select id="over">${state.dims.filter((dim) => dim.name).map((dim) => `<option>${esc(dim.name)}</option>`).join("")}</select></label><label>From<input id="from"></label><label>To<input id="to"></label><button type="button" class="b p" id="go">Sweep</button></div><div id="answer" role="status"></div>`,
+    sweep: () => `<div class="row"><label>Over<select id="over">${state.dims.filter((dim) => dim.name).map((dim) => `<option>${esc(dim.name)}</option>`).join("")}</select></label><label>From<input id="from"></label><label>To<input id="to"></label><button type="button" class="b p" id="go">Sweep</button><button type="button" class="b" id="stop" hidden>Stop</button></div><div id="answer" role="status"></div>`,
   };
   const panel = () => {
     document.querySelectorAll(".tabs button").forEach((button) => button.setAttribute("aria-selected", button.dataset.tab === tab));
@@ -441,11 +457,15 @@ const page = (() => {
   const failed = (found) => `<p class="missed"><b>${esc(found.faults ? found.faults.map((fault) => `${fault.key}: ${fault.fault}${fault.help ? ` (${fault.help})` : ""}`).join("; ") : found.error)}</b> ${esc((found.advice ?? []).join(" "))}</p>`;
   // Asks the second worker, and shows what comes of it; `counted` shows how far it is.
   const answered = async (asked, forms, show, counted) => {
-    const answer = $("answer"), go = $("go");
+    const answer = $("answer"), go = $("go"), stop = $("stop");
     go.disabled = true;
     answer.innerHTML = "<p class=\"soft\">Computing …</p>";
+    // What takes long can be stopped.
+    stop.hidden = program === null && asked.command !== "simulate";
+    stop.onclick = () => tools.stop();
+    const shown = (...counts) => { const text = answer.querySelector("p"); if (text && program !== null) text.textContent = progress(...counts); else counted?.(...counts); };
     try {
-      const found = await tools.ask("run", task(source().text, { asked, forms }), counted);
+      const found = await tools.ask("run", task(source().text, { asked, forms }), shown, true);
       if (answer.isConnected) answer.innerHTML = found.json === undefined ? failed(found) : show(found, JSON.parse(found.json));
       return found;
     } catch (error) {
@@ -453,6 +473,7 @@ const page = (() => {
       return undefined;
     } finally {
       go.disabled = false;
+      stop.hidden = true;
     }
   };
   const two = (value) => Number(value.toPrecision(3));
@@ -475,15 +496,12 @@ const page = (() => {
     }
   };
   const simulate = async () => {
-    const total = +$("points").value, stop = $("stop");
-    stop.hidden = false;
-    stop.onclick = () => tools.stop();
+    const total = +$("points").value;
     await answered({ command: "simulate", samples: total }, ["json", "html"], (found, report) => {
       const table = parsed(found.html).querySelector("section table");
       table.className = "t";
       return `<p class="soft">${report.samples.toLocaleString("en").replaceAll(",", "\u202f")} points in ${report.wall_s.toFixed(1)} s</p>${table.outerHTML}`;
     }, (answered) => { const text = $("answer")?.querySelector("p"); if (text) text.textContent = `${answered.toLocaleString("en").replaceAll(",", "\u202f")} points …`; });
-    stop.hidden = true;
   };
   const sweep = async () => {
     const [from, to] = ["from", "to"].map((id) => Number(study.number($(id).value) ?? NaN));
@@ -532,7 +550,7 @@ const page = (() => {
     const text = typed ?? source().text;
     if (asked === "study") save(`${stem()}.toml`, text, "application/toml");
     else {
-      const found = await live.ask("run", task(text, { asked: { command: "analyze" }, forms: [asked === "report" ? "html" : "tables"] }));
+      const found = await live.ask("run", task(text, { asked: { command: "analyze" }, forms: [asked === "report" ? "html" : "tables"] }), undefined, true);
       if (found.html) save(`${stem()}.html`, found.html, "text/html");
       else if (found.tables) Object.entries(found.tables).forEach(([file, csv]) => save(file, csv, "text/csv"));
       else toast("The study has faults: mend them first");
@@ -578,7 +596,7 @@ const page = (() => {
       $("toml").value = one.text;
     } else {
       [state, original, view] = [study.of(found.study), one.text, "table"];
-      kind = state.rest.model ? "model" : state.rest.loops ? "loop" : "formula";
+      [kind, program] = [kindOf(), found.program ?? null];
     }
     all();
   };
@@ -610,7 +628,7 @@ const page = (() => {
     if (given) return open(given);
     return open(kept ? JSON.parse(kept) : examples[0]);
   };
-  $("analyze").onclick = () => { if (running) live.stop(); else run(true); };
+  $("analyze").onclick = () => { if (starts) live.stop(); else run(true); };
   // What is beside the page is read before it begins.
   setTimeout(() => begin().catch((error) => { $("out").innerHTML = `<p class="missed"><b>The engine did not start.</b> ${esc(error.message)}. The page needs a browser of 2023 or later.</p>`; }));
   return { open, toast, esc, name: () => name, rename: (to) => { name = to; }, text: () => typed ?? source().text };

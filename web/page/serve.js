@@ -13,13 +13,14 @@ const served = (() => {
   // The engine as the page knows it, where the program runs: ask and stop.
   class Engine {
     #running = new Set();
-    async ask(call, task, counted) {
+    // A program starts only where the user asked for it.
+    async ask(call, task, counted, programs = false) {
       if (task === undefined) return get("models");
       const abort = new AbortController();
       this.#running.add(abort);
       try {
         const options = { method: "POST", body: JSON.stringify({ ...task, files: {} }), signal: abort.signal };
-        const answer = await fetch(at(call === "study" ? "keys" : "run", { path: task.name }), options);
+        const answer = await fetch(at(call === "study" ? "keys" : "run", { path: task.name, ...(programs && { programs: "yes" }) }), options);
         if (call === "study" || !answer.ok) return await heard(answer);
         return await this.#found(answer.body, counted);
       } catch (error) {

@@ -12,6 +12,7 @@ use super::command::sensitol;
 
 #[cfg(unix)]
 mod limits;
+mod programs;
 mod saves;
 
 /// Parts of a page that the command checks.
@@ -323,7 +324,7 @@ fn external_models_run_in_their_folder_and_end_with_the_page() {
         task["analysis"] = json!({ "method": method });
         task
     };
-    let found = server.run("in%2Fgap.toml", &task("second-order"));
+    let found = server.run("in%2Fgap.toml&programs=yes", &task("second-order"));
     let last = found.last().unwrap();
     let report: Value =
         serde_json::from_str(last["found"]["json"].as_str().unwrap_or_else(|| panic!("{last}"))).unwrap();
@@ -335,7 +336,7 @@ fn external_models_run_in_their_folder_and_end_with_the_page() {
 
     // Closing the page ends the run, which would have some 150 more points.
     let before = points();
-    let stream = server.ask("POST", &server.at("run?path=in%2Fgap.toml"), &[], &task("full").to_string());
+    let stream = server.ask("POST", &server.at("run?path=in%2Fgap.toml&programs=yes"), &[], &task("full").to_string());
     let begun = Instant::now();
     while points() < before + 3 && begun.elapsed() < Duration::from_secs(60) {
         std::thread::sleep(Duration::from_millis(20));

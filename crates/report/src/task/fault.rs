@@ -28,6 +28,15 @@ fn one(error: &StudyError) -> Value {
     })
 }
 
+/// Refusal of a run that would start a program without being asked to.
+pub(super) fn not_asked(program: &[String]) -> Value {
+    let program = program.join(" ");
+    json!({
+        "error": format!("the model is a program, `{program}`, and it starts only when it is asked for"),
+        "advice": ["ask for the run with programs=yes"],
+    })
+}
+
 /// Fault of a study, or any other error.
 pub(super) fn of_engine(error: &AnyError) -> Value {
     if let AnyError::Study(error) = error {

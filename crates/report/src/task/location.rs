@@ -9,6 +9,8 @@ use sensitol_study::Externals;
 pub struct TaskPlace<'a> {
     /// Folder of relative paths; the current folder by default.
     pub folder: PathBuf,
+    /// True if a run may start the program of a study.
+    pub starts_programs: bool,
     /// Treatment of external models. The task names the configuration.
     pub externals: Externals,
     /// Run that counts points and can be stopped.
@@ -17,6 +19,11 @@ pub struct TaskPlace<'a> {
 
 impl Default for TaskPlace<'_> {
     fn default() -> Self {
-        Self { folder: PathBuf::from("."), externals: Externals::default(), run: Run::to_the_end() }
+        Self {
+            folder: PathBuf::from("."),
+            starts_programs: true,
+            externals: Externals::default(),
+            run: Run::to_the_end(),
+        }
     }
 }

@@ -7,7 +7,7 @@ use serde_json::value::RawValue;
 use serde_json::{Map, Value, json};
 
 use crate::task::answer::TaskReport;
-use crate::task::fault::{of_engine, of_study};
+use crate::task::fault::{not_asked, of_engine, of_study};
 use crate::task::location::TaskPlace;
 use crate::task::question::{Asked, Counted, done};
 use sensitol_models::{ALL, Model};
@@ -76,28 +76,43 @@ impl Task {
         Study::from_text(swept.map_or(text.clone(), |parameter| text.sweeping(parameter)))
     }
 
-    /// Returns the study's keys, or its faults.
+    /// Returns the study's keys and its program, or its faults.
     pub fn study(&self, place: &TaskPlace<'_>) -> String {
         match self.parsed(place) {
             Ok(study) => {
                 // Spliced in as text, which keeps the order of its keys.
-                let study = RawValue::from_string(study.as_json()).expect("a study is JSON");
-                format!("{{\"study\":{study}}}")
+                let keys = RawValue::from_string(study.as_json()).expect("a study is JSON");
+                let program = json!(study.program);
+                format!("{{\"study\":{keys},\"program\":{program}}}")
             }
             Err(error) => of_study(&error).to_string(),
         }
     }
 
-    /// Runs the command and returns the answer, or an error, as JSON.
+    /// Runs the command and returns the answer, or an error, as JSON. A program that may not start is named, and nothing is evaluated.
     pub fn run(&self, place: &TaskPlace<'_>, counted: Counted<'_>) -> String {
-        match self.found(place, counted) {
-            Ok(found) => self.shown(&found).to_string(),
-            Err(error) => of_engine(&error).to_string(),
-        }
+        let study = match self.parsed(place) {
+            Ok(study) => study,
+            Err(error) => return of_study(&error).to_string(),
+        };
+        let program = json!(study.program);
+        let mut told = match &study.program {
+            Some(program) if !place.starts_programs => not_asked(program),
+            _ => match self.found(study, place, counted) {
+                Ok(found) => self.shown(&found),
+                Err(error) => of_engine(&error),
+            },
+        };
+        told["program"] = program;
+        told.to_string()
     }
 
-    fn found(&self, place: &TaskPlace<'_>, counted: Counted<'_>) -> Result<TaskReport, Box<AnyError>> {
-        let mut study = self.parsed(place).map_err(AnyError::from)?;
+    fn found(
+        &self,
+        mut study: Study,
+        place: &TaskPlace<'_>,
+        counted: Counted<'_>,
+    ) -> Result<TaskReport, Box<AnyError>> {
         if let Some(keys) = &self.analysis {
             study = study.with_analysis(keys.get()).map_err(AnyError::from)?;
         }

@@ -32,7 +32,8 @@ pub(in crate::commands::serve) fn keys(folder: &Folder, query: &Query, told: &st
     }
 }
 
-/// Runs a task and reports progress to the page. The run ends if the page is gone.
+/// Runs a task and reports progress to the page. The run ends if the page is gone. A program starts only if the request says that the
+/// user asked for it.
 pub(in crate::commands::serve) fn run(folder: &Folder, query: &Query, told: &str, connection: &Connection) {
     let (task, path) = match asked(folder, query, told) {
         Ok(asked) => asked,
@@ -61,10 +62,16 @@ pub(in crate::commands::serve) fn run(folder: &Folder, query: &Query, told: &str
         let points = *expected.lock().unwrap_or_else(PoisonError::into_inner);
         tell(&json!({ "answered": progress.points, "expected": points.max(progress.points as u64) }).to_string());
     };
-    let journal = path.with_extension("journal.sqlite");
+    let starts_programs = query.get("programs") == Some("yes");
+    // Without a program there are no answers to keep.
+    let journal = match starts_programs {
+        true => JournalPlace::At(path.with_extension("journal.sqlite")),
+        false => JournalPlace::Nowhere,
+    };
     let place = TaskPlace {
         folder: parent(&path),
-        externals: Externals::default().with_journal(JournalPlace::At(journal)),
+        starts_programs,
+        externals: Externals::default().with_journal(journal),
         run: Run::to_the_end().stopping_when(&stop).abandoning_when(&abandon).showing(&show),
     };
     let found = std::thread::scope(|scope| {
