@@ -112,7 +112,8 @@ pub(super) enum Command {
     /// The workbench over a folder of studies, in a browser on this machine
     ///
     /// The page opens and saves studies of the folder, shows a file again when it changes, and runs external models. It is reached by the
-    /// address that is printed, from this machine alone, and touches nothing outside the folder.
+    /// address that is printed, from this machine alone. It reads and writes nothing outside the folder. A program that a study names starts
+    /// when the user asks for a result, and has the rights of the user.
     #[command(after_help = "Examples:\n  sensitol serve\n  sensitol serve examples/external-python --port 8080")]
     Serve(ServeArgs),
     /// The JSON Schema of study files, or of reports

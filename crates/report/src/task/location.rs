@@ -9,6 +9,8 @@ use sensitol_study::Externals;
 pub struct TaskPlace<'a> {
     /// Folder of relative paths; the current folder by default.
     pub folder: PathBuf,
+    /// Folder that measured files are in, and files of a model; None if they may be anywhere.
+    pub root: Option<PathBuf>,
     /// True if a run may start the program of a study.
     pub starts_programs: bool,
     /// Treatment of external models. The task names the configuration.
@@ -21,6 +23,7 @@ impl Default for TaskPlace<'_> {
     fn default() -> Self {
         Self {
             folder: PathBuf::from("."),
+            root: None,
             starts_programs: true,
             externals: Externals::default(),
             run: Run::to_the_end(),

@@ -67,6 +67,7 @@ impl Task {
             Format::Json => StudyText::json(&self.name, &self.text),
         };
         let externals = place.externals.clone();
+        let text = place.root.iter().fold(text, |text, root| text.within(root));
         let text = text.in_folder(&place.folder).with_externals(match &self.configuration {
             Some(name) => externals.with_configuration(name),
             None => externals,

@@ -13,7 +13,7 @@ use crate::commands::serve::answer::Answer;
 use crate::commands::serve::guard::Query;
 use crate::failure::Failure;
 use crate::interrupt;
-use sensitol_study::{Externals, Study, StudyText};
+use sensitol_study::{Study, StudyText};
 
 /// Greatest depth of searched subfolders.
 const DEEPEST: usize = 4;
@@ -41,6 +41,11 @@ impl Folder {
             return Err(wrong("it is a file: name the folder that it is in".to_owned()));
         }
         Ok(Self { root, asked: asked.to_owned(), saving: Mutex::default() })
+    }
+
+    /// Returns the path with links resolved.
+    pub(in crate::commands::serve) fn root(&self) -> PathBuf {
+        self.root.clone()
     }
 
     /// Returns the path as the user gave it.
@@ -123,7 +128,7 @@ impl Folder {
         }
         // A JSON study is shown as TOML, and saved as a new file.
         let folder = path.parent().unwrap_or(&self.root);
-        match Study::from_text(StudyText::json(name, &text).in_folder(folder).with_externals(Externals::default())) {
+        match Study::from_text(StudyText::json(name, &text).in_folder(folder).within(&self.root)) {
             Ok(study) => {
                 let name = format!("{}.toml", name.trim_end_matches(".json"));
                 Answer::json(json!({ "name": name, "text": study.expanded, "hash": null }).to_string())

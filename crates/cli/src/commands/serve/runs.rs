@@ -25,7 +25,7 @@ const BEAT: Duration = Duration::from_millis(500);
 pub(in crate::commands::serve) fn keys(folder: &Folder, query: &Query, told: &str) -> Answer {
     match asked(folder, query, told) {
         Ok((task, path)) => {
-            let place = TaskPlace { folder: parent(&path), ..TaskPlace::default() };
+            let place = TaskPlace { folder: parent(&path), root: Some(folder.root()), ..TaskPlace::default() };
             Answer::json(task.study(&place))
         }
         Err(refusal) => refusal,
@@ -70,6 +70,7 @@ pub(in crate::commands::serve) fn run(folder: &Folder, query: &Query, told: &str
     };
     let place = TaskPlace {
         folder: parent(&path),
+        root: Some(folder.root()),
         starts_programs,
         externals: Externals::default().with_journal(journal),
         run: Run::to_the_end().stopping_when(&stop).abandoning_when(&abandon).showing(&show),

@@ -1,4 +1,4 @@
-//! Programs start when the user asks for them.
+//! Programs start when the user asks for them, and studies read no file outside the folder.
 
 use serde_json::{Value, json};
 
@@ -89,4 +89,60 @@ fn a_formula_is_no_program() {
     let lines = server.run("gap.toml", &task(text, "gap.toml"));
     let found = &lines.last().unwrap()["found"];
     assert!(found["json"].is_string() && found["program"].is_null(), "{found}");
+}
+
+/// Measured values and files of a model are read within the folder alone.
+#[test]
+fn no_file_outside_the_folder_is_read() {
+    let values = "pin\n7.99\n8.01\n8.02\n7.98\n8.00\n8.01\n7.99\n8.00\n";
+    let server = Server::with(&[("in/gap.toml", ""), ("pins.csv", values), ("in/own.csv", values)]);
+    let outside = server.folder.path().join("outside.csv");
+    std::fs::write(&outside, values.replace("7.99", "secret")).unwrap();
+    let measured = |file: &str| {
+        format!(
+            "[dimensions]\npin = {{ nominal = 8.0, measured = '{file}' }}\nbore = {{ nominal = 8.1, tolerance = 0.03 }}\n\
+             [characteristics]\ny = {{ formula = \"bore - pin\" }}\n"
+        )
+    };
+    // The answers of a reading and of a run.
+    let both = |text: &str| {
+        let task = task(text, "in/gap.toml");
+        let keys = server.answer("POST", &server.at("keys?path=in%2Fgap.toml"), &[], &task.to_string()).json();
+        [keys, server.run("in%2Fgap.toml&programs=yes", &task).last().unwrap()["found"].clone()]
+    };
+    let absolute = outside.display().to_string();
+    let mut wrong = vec!["../../outside.csv", &absolute];
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink(&outside, server.studies().join("link.csv")).unwrap();
+        std::os::unix::fs::symlink(server.folder.path(), server.studies().join("up")).unwrap();
+        wrong.extend(["../link.csv", "../up/outside.csv", "/dev/zero"]);
+    }
+    for file in wrong {
+        let refused = |text: &str, key: &str| {
+            for answer in both(text) {
+                let fault = &answer["faults"][0];
+                assert_eq!(fault["key"], key, "{file}: {answer}");
+                assert!(fault["fault"].as_str().unwrap().contains("outside the folder"), "{file}: {answer}");
+                assert!(!answer.to_string().contains("secret"), "{file}: {answer}");
+            }
+        };
+        refused(&measured(file), "dimensions.pin.measured");
+        refused(&format!("[model]\ncommand = [\"python3\"]\nfiles = ['{file}']\n{REST}"), "model.files");
+    }
+    let inside = server.studies().join("pins.csv").display().to_string();
+    for file in ["own.csv", "../pins.csv", &inside] {
+        for answer in both(&measured(file)) {
+            assert!(answer["faults"].is_null(), "{file}: {answer}");
+        }
+    }
+    // A study in JSON is shown as TOML, for which its files are read.
+    let json = json!({
+        "dimensions": { "pin": { "nominal": 8, "measured": "../outside.csv" } },
+        "characteristics": { "y": { "formula": "2*pin" } },
+    });
+    std::fs::write(server.studies().join("old.json"), json.to_string()).unwrap();
+    let shown = server.get("study?path=old.json");
+    assert_eq!(shown.status, 400, "{}", shown.body);
+    assert!(shown.body.contains("outside the folder"), "{}", shown.body);
 }
