@@ -878,8 +878,8 @@ class EvaluatorSummary(Record):
     timeouts: int
     """Deadlines that were missed."""
     unconfirmed: int
-    """Answers that depend on the points before them, and that no fresh process confirmed. They have no value, or
-    entered results before that was known.
+    """Answers that no fresh process confirmed: they depend on the points before them, or the run ended before their
+    check. They have no value, or entered results before that was known.
     """
 
 

@@ -109,7 +109,9 @@ fn is_own_workbook(file: File) -> bool {
 fn is_own_text(head: &str) -> bool {
     let lower = head.get(..15).unwrap_or_default().to_lowercase();
     if lower == "<!doctype html>" {
-        return head.contains("<meta name=\"generator\" content=\"sensitol\">");
+        // Reports have the name alone, and the workbench a version.
+        let mark = "<meta name=\"generator\" content=\"sensitol";
+        return head.split_once(mark).is_some_and(|(_, rest)| rest.starts_with(['"', ' ']));
     }
     if head.starts_with("<svg ") {
         return first_line(head.as_bytes()).ends_with(b"font-family=\"sans-serif\" font-size=\"12\" role=\"img\">");

@@ -2,7 +2,7 @@
 
 use sha2::{Digest, Sha256};
 
-use super::store::Answer;
+use super::content::Answer;
 
 /// Checksum of an answer with its point and output: eight bytes of a SHA-256, so that no flipped bit goes unnoticed.
 pub(super) fn of_answer(point: &[u8], output: &str, answer: &Answer) -> i64 {

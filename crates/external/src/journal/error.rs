@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::store::VERSION;
+use super::content::VERSION;
 
 /// A fault of a journal.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

@@ -11,6 +11,7 @@
 
 mod checksum;
 mod claims;
+mod content;
 mod error;
 mod recollection;
 pub mod store;

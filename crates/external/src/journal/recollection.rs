@@ -1,8 +1,9 @@
-//! What a journal holds of the rows of a request, and what it lacks.
+//! Answers of a journal to the rows of a request, and the rows that it lacks.
 
 use super::Open;
+use super::content::Answer;
 use super::error::JournalError;
-use super::store::{Answer, Recalled};
+use super::store::Recalled;
 
 /// Answers of the journal to some points.
 #[derive(Default)]

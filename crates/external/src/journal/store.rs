@@ -9,11 +9,11 @@ use rusqlite::{Connection, ErrorCode, OptionalExtension, Transaction, Transactio
 
 use super::checksum;
 use super::claims::{self, Claimant};
+pub use super::content::Answer;
+use super::content::VERSION;
 use super::error::{JournalError, JournalFault};
 use sensitol::assembly::DamagedJournal;
 
-/// Version of the content, in `PRAGMA user_version`.
-pub(super) const VERSION: i32 = 1;
 /// Mark of the writer, in `PRAGMA application_id`: "snsl".
 const APPLICATION: i32 = 0x736e_736c;
 /// Longest wait for another run that is writing.
@@ -68,9 +68,6 @@ const LATER: &str = "
         DELETE FROM gradient WHERE model = OLD.model AND point = OLD.point AND output = OLD.output;
     END;
 ";
-
-/// Answer to a point: a value, or the reason why there is none.
-pub type Answer = Result<f64, String>;
 
 /// An open journal.
 pub struct Store {
