@@ -63,8 +63,8 @@ impl Exit {
         (
             Self::NoResult,
             "the model gave a characteristic that was asked for no result; `--check`: the run was stopped before its planned \
-             points were evaluated; `--check --strict`: a requirement is met by the surface only; an external model's answers depend \
-             on the points before them, and nothing confirmed them",
+             points were evaluated; `--check --strict`: a requirement is met by the surface only; no fresh process confirmed \
+             answers of an external model: they depend on the points before them, or the run ended before their check",
         ),
         (Self::NotAllocated, "`allocate`: no tolerances keep what is required, or they were not found in time"),
         (

@@ -61,6 +61,11 @@ impl Settings {
         }
     }
 
+    /// True if answers are replayed in a fresh process.
+    pub(crate) fn replays(&self) -> bool {
+        self.sentinels && self.verify != Some(0)
+    }
+
     /// Sets the working folder.
     #[must_use]
     pub fn with_folder(mut self, folder: impl Into<PathBuf>) -> Self {

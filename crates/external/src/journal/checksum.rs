@@ -4,7 +4,7 @@ use sha2::{Digest, Sha256};
 
 use super::content::Answer;
 
-/// Checksum of an answer with its point and output: eight bytes of a SHA-256, so that no flipped bit goes unnoticed.
+/// Checksum of an answer with its point and output: eight bytes of a SHA-256, which a flipped bit changes.
 pub(super) fn of_answer(point: &[u8], output: &str, answer: &Answer) -> i64 {
     let (kind, content) = match answer {
         // SQLite keeps no sign of a zero.

@@ -8,6 +8,7 @@
 //! Every run evaluates the nominal point again. If its value differs from the journal, the model has changed, and all its answers are
 //! deleted. An answer that a sentinel puts in doubt is deleted at once, and kept again only after another, trusted process has given it. A
 //! point for which the program itself reports no value is kept too. A crash or a missed deadline is not kept: the next run tries again.
+//! Every row has a checksum, and a damaged answer counts as unknown.
 
 mod checksum;
 mod claims;
@@ -304,17 +305,13 @@ impl Journaled {
             found.drop_unconfirmed();
         }
         let known: Vec<usize> = found.known.iter().map(|(row, _)| *row).collect();
-        if !known.is_empty() && self.process.replays() {
-            let (points, values) = found.values(rows);
-            let checked = |place: &usize| !found.unconfirmed.contains(place);
-            let (points, values): (Vec<_>, Vec<_>) = (points.into_iter().zip(values).enumerate())
-                .filter(|(place, _)| checked(place))
-                .map(|(_, answered)| answered)
-                .unzip();
+        // Without replays the answers are used as they are, and the mark stays for a run that checks them.
+        let replays = self.process.settings().replays();
+        let unchecked = if replays { found.unconfirmed_rows() } else { Vec::new() };
+        if !known.is_empty() && replays {
+            let (points, values) = found.confirmed_values(rows);
             self.process.remember(ask.outputs, &points, &values);
         }
-        // Without replays the answers are used as they are, and the mark stays for a run that checks them.
-        let unchecked = if self.process.replays() { found.unconfirmed_rows() } else { Vec::new() };
         for (row, answers) in std::mem::take(&mut found.known) {
             for (output, answer) in answers.into_iter().enumerate() {
                 match answer {

@@ -10,7 +10,7 @@ use super::store::Recalled;
 pub(super) struct Recollection {
     /// Rows with known answers.
     pub(super) known: Vec<(usize, Vec<Answer>)>,
-    /// Indices in `known` of the rows without a confirmation.
+    /// Indices in `known` of the rows without a confirmation, in ascending order.
     pub(super) unconfirmed: Vec<usize>,
     /// Stages of these rows.
     pub(super) stages: Vec<i64>,
@@ -51,9 +51,10 @@ impl Recollection {
     /// Drops the rows whose run ended before their check. They count as missing.
     pub(super) fn drop_unconfirmed(&mut self) {
         self.missing.extend(self.unconfirmed_rows());
-        for place in std::mem::take(&mut self.unconfirmed).into_iter().rev() {
-            self.known.remove(place);
-        }
+        let unconfirmed = std::mem::take(&mut self.unconfirmed);
+        let known = std::mem::take(&mut self.known).into_iter().enumerate();
+        let confirmed = known.filter(|(place, _)| unconfirmed.binary_search(place).is_err());
+        self.known = confirmed.map(|(_, answered)| answered).collect();
     }
 
     /// Rows with answers whose run ended before their check.
@@ -74,6 +75,14 @@ impl Recollection {
         rows.extend(&self.missing);
         rows.sort_unstable();
         rows
+    }
+
+    /// Points and values of the known rows that an earlier run has checked.
+    pub(super) fn confirmed_values(&self, rows: &[Vec<f64>]) -> (Vec<Vec<f64>>, Vec<Vec<Option<f64>>>) {
+        let (points, values) = self.values(rows);
+        let answered = points.into_iter().zip(values).enumerate();
+        let confirmed = answered.filter(|(place, _)| self.unconfirmed.binary_search(place).is_err());
+        confirmed.map(|(_, answered)| answered).unzip()
     }
 
     /// Points and values of the known rows.

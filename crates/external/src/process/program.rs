@@ -66,11 +66,6 @@ impl Process {
         self.flips.store(true, Ordering::Relaxed);
     }
 
-    /// True if answers are replayed.
-    pub(crate) fn replays(&self) -> bool {
-        self.settings.sentinels && self.settings.verify != Some(0)
-    }
-
     /// Adds answers of an earlier run that are used now. That run confirmed each of them, or the usual part.
     pub(crate) fn remember(&self, outputs: &[usize], points: &[Vec<f64>], values: &[Vec<Option<f64>>]) {
         let each_confirmed = self.flips();

@@ -95,7 +95,7 @@ impl Pool {
     /// Replays some answers of a batch, and all of them if one differs. Answers of a batch that was stopped are not confirmed. They are
     /// removed if the model is known to flip.
     pub(super) fn confirm(&mut self, points: &Points, out: &mut Responses, run: &Run<'_>) -> Confirmation {
-        if !self.settings.sentinels || self.settings.verify == Some(0) {
+        if !self.settings.replays() {
             return Confirmation::default();
         }
         let rows: Vec<Vec<f64>> = (0..points.rows()).map(|row| points.row(row)).collect();

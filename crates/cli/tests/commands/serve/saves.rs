@@ -26,7 +26,7 @@ fn a_save_that_is_cut_short_saves_nothing() {
     assert!(saved() == text);
 }
 
-/// Of saves of the same version one is accepted, and the others hear that the file has changed.
+/// Simultaneous saves of one version: one is accepted, and the others hear that the file has changed.
 #[test]
 fn simultaneous_saves_do_not_overwrite_each_other() {
     /// Rounds: each one alone loses a save more often than not, without a lock.
