@@ -5,6 +5,7 @@
    pairs    the same, but only where more than one dimension is off
    drift    something is added with every point
    random   3 % of the answers are of the mirrored assembly
+   stray    3 % of the answers are wrong, no two of them by the same amount
    edge     9 more just above the nominal value of the first dimension; no memory
    jump     2 more where z_1 is above 0.5; no memory
    smooth   strongly curved; no memory
@@ -108,6 +109,12 @@ int main(int count, char **argument) {
             flipped = uniform() < 0.03;
         }
         if (flipped) y = 9 - y;
+        if (!strcmp(mode, "stray")) {
+            /* By the child and the point, so that no two wrong answers agree. */
+            state = 88172645463325252ULL + 1000003ULL * (unsigned long long)getpid() + 7919ULL * (unsigned long long)id;
+            for (int i = 0; i < 20; i++) uniform();
+            if (uniform() < 0.03) y += 1 + 8 * uniform();
+        }
         if (!strcmp(mode, "drift")) y += 0.01 * answered;
         if (!strcmp(mode, "jump")) y += z[0] > 0.5 ? 2 : 0;
         if (!strcmp(mode, "edge")) y += z[0] > 0.02 ? 9 : 0;

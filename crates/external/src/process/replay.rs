@@ -64,8 +64,8 @@ enum Walked {
     Stopped,
     /// The process did not reach the end: it crashed, was too slow, or could not be started. The answer remains open.
     Lost,
-    /// The nominal point had a wrong value at the start of the walk, so the end does not count.
-    Astray,
+    /// The nominal point had another value than expected at the start of the walk, so the end does not count.
+    Astray(Values),
     /// Values at the end of the walk.
     There(Values),
 }
@@ -78,6 +78,9 @@ impl Walked {
         }
     }
 }
+
+/// Number of fresh children in a row with another value of the nominal point than expected, after which the walk has no end.
+const ASTRAY: usize = 3;
 
 /// Number of replays that differ on every route, after which no more are tried: the model gives another answer every time.
 const HOPELESS: usize = 3;
@@ -347,6 +350,9 @@ impl Pool {
     fn walk(&mut self, targets: &[Vec<f64>], route: Route, out: &mut Responses, run: &Run<'_>) -> Option<Vec<Walked>> {
         let mut found: Vec<Walked> = Vec::new();
         let mut truth: Option<Values> = None;
+        // Values of the nominal point that fresh children gave in a row, and that are not the expected ones.
+        let mut others: Vec<Values> = Vec::new();
+        let mut corrected = false;
         while found.len() < targets.len() {
             // The way back to the nominal point is a long step. A child that flips on it is replaced.
             self.renew();
@@ -354,8 +360,27 @@ impl Pool {
             while found.len() < targets.len() {
                 match self.walk_to(&targets[found.len()], route, &mut truth, out, run) {
                     Walked::Stopped => return None,
-                    Walked::Astray if found.len() > begun => break,
+                    Walked::Astray(_) if found.len() > begun => break,
+                    Walked::Astray(nominal) => {
+                        // Two fresh children that give different values of one point are a flip.
+                        self.set_flips();
+                        if !corrected && others.iter().any(|other| self.settles(other, &nominal)) {
+                            // The expected value was the wrong one, so the walks that began with it do not count.
+                            self.reference.trust(&nominal);
+                            truth = Some(nominal);
+                            found.clear();
+                            others.clear();
+                            corrected = true;
+                        } else if others.len() + 1 < ASTRAY {
+                            others.push(nominal);
+                        } else {
+                            others.clear();
+                            found.push(Walked::Astray(nominal));
+                        }
+                        break;
+                    }
                     walked => {
+                        others.clear();
                         let lost = walked == Walked::Lost;
                         found.push(walked);
                         if lost {
@@ -390,7 +415,7 @@ impl Pool {
         match truth {
             Some(truth) => {
                 if !self.settles(truth, &answers[0]) {
-                    return Walked::Astray;
+                    return Walked::Astray(answers[0].clone());
                 }
             }
             None => {
