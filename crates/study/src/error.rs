@@ -19,6 +19,7 @@ use sensitol_numeric::fits::FitError;
 use sensitol_numeric::inspection::InspectionError;
 use sensitol_numeric::names::{UnknownName, clipped};
 use sensitol_numeric::requirement::RequirementError;
+use sensitol_spatial::SpatialError;
 
 /// A study that cannot be used: file, place, key, fault, and the text to write instead.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -239,6 +240,9 @@ pub enum StudyFault {
     /// The closure conditions do not determine the unknowns.
     #[error(transparent)]
     Conditions(#[from] ConditionsError),
+    /// The assembly in space determines no state.
+    #[error(transparent)]
+    Spatial(#[from] SpatialError),
     /// A formula is not valid.
     #[error("{0}")]
     Formula(FormulaFault),

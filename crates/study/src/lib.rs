@@ -90,12 +90,14 @@ use sha2::{Digest, Sha256};
 
 use crate::folder::Place;
 use error::Faults;
+use sensitol::assembly::{Points, Request, Responses, Run};
 use sensitol::allocation::{AllocationTask, Priced, QualityLoss, SetUp};
 use sensitol::method::Options;
 use sensitol::problem::Problem;
 use sensitol::warning::Warning;
 use sensitol_numeric::characteristic::Characteristic;
 use sensitol_numeric::requirement::Requirement;
+pub use sensitol_spatial::{Mobility, PartPose};
 use source::Source;
 use tree::Tree;
 
@@ -138,6 +140,10 @@ pub struct Study {
     /// The study in plain keys, as TOML. Short forms such as relative dimensions are written out, each with its origin as comment. The
     /// configuration that was asked for is set. Its analysis gives the same numbers.
     pub expanded: String,
+    /// Unknowns, equations and free motions of an assembly in space; None if the study has none.
+    pub mobility: Option<Mobility>,
+    /// Poses of the parts of an assembly in space at the nominal dimensions. With `units = "convert"` lengths are in metres.
+    pub poses: Vec<PartPose>,
     /// Text that the study was read from.
     text: Arc<str>,
     format: Format,
@@ -281,7 +287,9 @@ impl Study {
         };
         let tree = tree.map_err(|fault| failed(fault.into()))?;
         let mut data = data::Data::of(&source.place);
-        let expanded = expand::expand(tree, source.externals.configuration.as_deref(), &mut data).map_err(failed)?;
+        let nominal = |tree: &Tree| nominal_values(tree, &source);
+        let configuration = source.externals.configuration.as_deref();
+        let expanded = expand::expand(tree, configuration, &mut data, &nominal).map_err(failed)?;
         let mut file: crate::entries::file::StudyFile = crate::deserializer::read(&expanded.tree).map_err(failed)?;
         if let Some(parameter) = parameter {
             sweep::as_dimension(&mut file, parameter).map_err(|fault| failed(fault.into()))?;
@@ -297,6 +305,8 @@ impl Study {
             seed: file.analysis.seed.map(spanned::Spanned::into_inner),
             lines: crate::dimension_text::of(&expanded.tree),
             expanded: expanded.toml(text),
+            mobility: expanded.spatial.as_ref().map(|facts| facts.mobility.clone()),
+            poses: expanded.spatial.map_or_else(Vec::new, |facts| facts.poses),
             configurations: expanded.configurations,
             costs: built.costs,
             losses: built.losses,
@@ -313,4 +323,17 @@ impl Study {
             sha256: hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect(),
         })
     }
+}
+
+/// Values of the characteristics of a study in plain keys at its nominal dimensions.
+fn nominal_values(tree: &Tree, source: &Source) -> Result<Vec<f64>, Faults> {
+    let file: crate::entries::file::StudyFile = crate::deserializer::read(tree)?;
+    let data = data::Data::of(&source.place);
+    let built = crate::build::problem::build(&file, source, data, &expand::Elements::default())?;
+    let nominal: Vec<f64> = built.problem.dimensions().iter().map(|dimension| dimension.nominal()).collect();
+    let outputs: Vec<usize> = (0..built.problem.characteristics().len()).collect();
+    let mut answers = Responses::open(1, outputs.len());
+    let points = Points::from_rows(&[nominal]);
+    built.problem.function().evaluate(&Request::values(&points, &outputs), &Run::to_the_end(), &mut answers);
+    Ok(outputs.iter().map(|&output| answers.value(0, output).unwrap_or(f64::NAN)).collect())
 }

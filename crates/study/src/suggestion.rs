@@ -151,6 +151,7 @@ impl StudyFault {
     /// The help on formulas, conditions and units.
     fn formula_help(&self) -> Option<String> {
         match self {
+            Self::Spatial(error) => Some(error.help()),
             Self::Conditions(ConditionsError::Unbalanced { .. }) => Some(
                 "as many equations as unknowns are needed; a loop counts for two, one along x and one along y".into(),
             ),

@@ -32,6 +32,8 @@ pub(super) struct Scales {
     pub(super) unknowns: Vec<f64>,
 }
 
+/// Terms of an equation that count as 0, as part of the effect of one unit of the unknowns. Rounding leaves 1e-16 where an angle is 0.
+const ROUNDING: f64 = 1e-14;
 /// Step of a difference that replaces a missing derivative, relative to the unknown's scale.
 const STEP: f64 = 1e-7;
 
@@ -177,9 +179,10 @@ impl System {
         }
         let slope = |i: usize, j: usize| finite(derivatives[(i, self.uses.len() + j)]);
         for (i, size) in equations.iter_mut().enumerate() {
-            if *size == 0.0 {
-                // All terms are 0 here: the effect of one unit of the unknowns is the scale.
-                *size = (0..self.len()).map(|j| slope(i, j)).fold(0.0, f64::max);
+            // All terms are 0 here, but for rounding: the effect of one unit of the unknowns is the scale.
+            let unit = (0..self.len()).map(|j| slope(i, j)).fold(0.0, f64::max);
+            if *size <= ROUNDING * unit {
+                *size = unit;
             }
             if *size == 0.0 {
                 *size = 1.0;

@@ -3,6 +3,7 @@
 //! The expansion changes the tree of the file before it is read into types. The study that is read is therefore exactly the one that
 //! `expanded` writes, and no analysis needs to handle a short form.
 
+mod assembly;
 mod configurations;
 mod from;
 mod geometry;
@@ -15,6 +16,7 @@ use std::ops::Range;
 use crate::data::Data;
 use crate::error::{Fault, Faults, StudyFault, fault};
 use crate::tree::{Key, Tree, Value};
+pub(super) use assembly::{NominalValues, SpatialFacts};
 use sensitol::assembly::formula::is_plain;
 
 /// A study with plain keys only.
@@ -26,6 +28,8 @@ pub(super) struct Expanded {
     pub(super) origins: Vec<Origin>,
     /// Facts about the geometric elements that the plain lines do not hold.
     pub(super) elements: Elements,
+    /// Mobility and poses of an assembly in space; None if the study has none.
+    pub(super) spatial: Option<SpatialFacts>,
 }
 
 /// Facts about geometric elements that their plain lines do not hold.
@@ -53,10 +57,16 @@ pub(super) struct Origin {
     span: Range<usize>,
 }
 
-/// Expands a study. Sets the nominal values and constants of `configuration` if one is given.
-pub(super) fn expand(tree: Tree, configuration: Option<&str>, data: &mut Data<'_>) -> Result<Expanded, Faults> {
+/// Expands a study. Sets the nominal values and constants of `configuration` if one is given. `nominal` evaluates a study at its nominal
+/// dimensions.
+pub(super) fn expand(
+    tree: Tree,
+    configuration: Option<&str>,
+    data: &mut Data<'_>,
+    nominal: NominalValues<'_>,
+) -> Result<Expanded, Faults> {
     let mut expanded =
-        Expanded { tree, configurations: Vec::new(), origins: Vec::new(), elements: Elements::default() };
+        Expanded { tree, configurations: Vec::new(), origins: Vec::new(), elements: Elements::default(), spatial: None };
     configurations::expand(&mut expanded, configuration, data)?;
     processes::expand(&mut expanded, data)?;
     geometry::fasteners(&mut expanded)?;
@@ -65,6 +75,7 @@ pub(super) fn expand(tree: Tree, configuration: Option<&str>, data: &mut Data<'_
     geometry::expand(&mut expanded)?;
     // A second time, for the blocks that geometric elements have added.
     crate::expand::joint_entry::expand(&mut expanded);
+    assembly::expand(&mut expanded, nominal)?;
     Ok(expanded)
 }
 

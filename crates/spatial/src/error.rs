@@ -1,0 +1,159 @@
+//! Faults of an assembly in space.
+
+/// Part of a study to which a fault belongs.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Subject {
+    /// The part of this index.
+    Part(usize),
+    /// The joint of this index.
+    Joint(usize),
+    /// The measure of this index.
+    Measure(usize),
+}
+
+/// Reason why an assembly determines no state.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SpatialError {
+    /// Every part stands still.
+    #[error("no part moves: an assembly needs a part without `ground`")]
+    NothingMoves,
+    /// A part without a joint.
+    #[error("part `{part}` has no joint")]
+    NoJoint {
+        /// Name of the part.
+        part: String,
+        /// Index of the part.
+        index: usize,
+    },
+    /// Features that the kind of joint does not connect.
+    #[error("joint `{joint}` connects {found}, and needs {expected}")]
+    Features {
+        /// Name of the joint.
+        joint: String,
+        /// Index of the joint.
+        index: usize,
+        /// The two features with their kinds.
+        found: String,
+        /// Kinds that fit.
+        expected: String,
+    },
+    /// A joint between two features of one part, or of parts that stand still.
+    #[error("joint `{joint}` connects two features of {what}")]
+    SamePart {
+        /// Name of the joint.
+        joint: String,
+        /// Index of the joint.
+        index: usize,
+        /// What the features belong to.
+        what: String,
+    },
+    /// A number of freedoms that the joint cannot take.
+    #[error("joint `{joint}` cannot take {found}: of these features it takes {known}")]
+    Takes {
+        /// Name of the joint.
+        joint: String,
+        /// Index of the joint.
+        index: usize,
+        /// The number that was given.
+        found: usize,
+        /// Numbers that fit, in words.
+        known: String,
+    },
+    /// Joints that repeat what others hold.
+    #[error(
+        "joint `{joint}` takes {takes}, and only {left} of these {are} free after {before}: {equations} equations for {unknowns} unknowns, rank {rank}",
+        are = if *left == 1 { "is" } else { "are" }
+    )]
+    OverConstrained {
+        /// Name of the joint.
+        joint: String,
+        /// Index of the joint.
+        index: usize,
+        /// Number of freedoms that the joint takes.
+        takes: usize,
+        /// Number of them that the joints before it leave.
+        left: usize,
+        /// Names of the joints before it, in words.
+        before: String,
+        /// Number of equations of all joints.
+        equations: usize,
+        /// Number of unknowns.
+        unknowns: usize,
+        /// Number of independent equations.
+        rank: usize,
+        /// Text to write instead.
+        instead: String,
+    },
+    /// A motion that no joint stops and a measure depends on.
+    #[error("{motion}, and `{measure}` depends on it")]
+    Free {
+        /// The motion in words.
+        motion: String,
+        /// Name of the measure.
+        measure: String,
+        /// Index of the measure.
+        index: usize,
+    },
+    /// Joints that cannot be closed at the nominal sizes.
+    #[error("the joints do not close at the nominal sizes: `{joint}` is off by {off:.6} ({equation})")]
+    Open {
+        /// Name of the joint that is off most.
+        joint: String,
+        /// Index of the joint.
+        index: usize,
+        /// Residual of its worst equation.
+        off: f64,
+        /// Name of its worst equation.
+        equation: &'static str,
+        /// Advice on features that look the same way; None if there are none.
+        same_way: Option<String>,
+    },
+    /// Planes in contact whose normals point the same way.
+    #[error("joint `{joint}`: {features} look the same way")]
+    SameWay {
+        /// Name of the joint.
+        joint: String,
+        /// Index of the joint.
+        index: usize,
+        /// Names of the two planes.
+        features: String,
+    },
+}
+
+impl SpatialError {
+    /// Part of the study to which the fault belongs. Returns None for the assembly as a whole.
+    pub fn subject(&self) -> Option<Subject> {
+        match self {
+            Self::NothingMoves => None,
+            Self::NoJoint { index, .. } => Some(Subject::Part(*index)),
+            Self::Features { index, .. }
+            | Self::SamePart { index, .. }
+            | Self::Takes { index, .. }
+            | Self::OverConstrained { index, .. }
+            | Self::Open { index, .. }
+            | Self::SameWay { index, .. } => Some(Subject::Joint(*index)),
+            Self::Free { index, .. } => Some(Subject::Measure(*index)),
+        }
+    }
+
+    /// Text to write instead.
+    pub fn help(&self) -> String {
+        match self {
+            Self::NothingMoves => "remove `ground = true` from the parts that the joints locate".into(),
+            Self::NoJoint { part, .. } => {
+                format!("add a joint that locates `{part}`, or remove the part")
+            }
+            Self::Features { expected, .. } => format!("name {expected}, or use another kind of joint"),
+            Self::SamePart { .. } => "name a feature of a part that moves, and one of another part".into(),
+            Self::Takes { known, .. } => format!("write takes = {known}"),
+            Self::OverConstrained { instead, .. } => instead.clone(),
+            Self::Free { .. } => "add a joint that stops it, or measure something that does not depend on it".into(),
+            Self::Open { same_way: Some(advice), .. } => advice.clone(),
+            Self::Open { .. } => {
+                "check the places of its features, or give the parts a better start with `at` and `turned`".into()
+            }
+            Self::SameWay { .. } => "turn one of the normals around: each points out of its material".into(),
+        }
+    }
+}
