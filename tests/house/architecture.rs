@@ -8,10 +8,11 @@ use super::sources::{SourceFile, modules, sources};
 const PACKAGES: &[(&str, &[&str])] = &[
     ("cli", &["report", "study", "external", "models", "engine", "numeric"]),
     ("report", &["study", "models", "engine", "numeric"]),
-    ("study", &["external", "models", "engine", "numeric"]),
+    ("study", &["external", "models", "spatial", "engine", "numeric"]),
     ("external", &["engine", "numeric"]),
     ("models", &["engine", "numeric"]),
     ("engine", &["numeric"]),
+    ("spatial", &["numeric"]),
     ("numeric", &[]),
 ];
 

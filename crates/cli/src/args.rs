@@ -454,6 +454,10 @@ pub(super) struct InitArgs {
     /// A study of a program; writes the program too, a few lines of Python to put your CAD system into
     #[arg(long)]
     pub(super) process: bool,
+
+    /// A study of two parts in space with their joints
+    #[arg(long, conflicts_with_all = ["model", "process"])]
+    pub(super) assembly: bool,
 }
 
 #[derive(Debug, Args)]

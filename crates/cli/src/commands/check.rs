@@ -6,7 +6,7 @@ use crate::args::CheckArgs;
 use crate::commands::several;
 use crate::failure::{Exit, Failure};
 use crate::output::{Destination, Look};
-use sensitol_study::Study;
+use sensitol_study::{Mobility, Study};
 
 pub(crate) fn run(asked: &CheckArgs, look: Look) -> Result<Exit, Failure> {
     match &asked.studies[..] {
@@ -30,8 +30,9 @@ fn one(path: &Path, look: Look) -> Result<Exit, Failure> {
     let characteristics: Vec<&str> =
         study.problem.characteristics().iter().map(|characteristic| characteristic.name()).collect();
     let summary = format!(
-        "{}: valid\n  {} dimensions, {} of which vary and matter\n  characteristics: {}\n  {} would evaluate {} points\n",
+        "{}: valid\n{}  {} dimensions, {} of which vary and matter\n  characteristics: {}\n  {} would evaluate {} points\n",
         path.display(),
+        study.mobility.as_ref().map_or_else(String::new, assembly),
         study.problem.dimensions().len(),
         plan.varying().len(),
         characteristics.join(", "),
@@ -43,4 +44,20 @@ fn one(path: &Path, look: Look) -> Result<Exit, Failure> {
     );
     Destination::Stdout.write(&summary)?;
     Ok(Exit::Done)
+}
+
+/// Unknowns and equations of an assembly in space, with the motions that no joint stops.
+fn assembly(mobility: &Mobility) -> String {
+    let Mobility { parts, joints, unknowns, equations, free, .. } = mobility;
+    let plural = |count: usize| if count == 1 { "" } else { "s" };
+    let mut text = format!(
+        "  {parts} part{}, {joints} joint{}: {unknowns} unknowns, {equations} equation{}\n",
+        plural(*parts),
+        plural(*joints),
+        plural(*equations)
+    );
+    for motion in free {
+        text += &format!("  {motion}: no effect on the characteristics\n");
+    }
+    text
 }

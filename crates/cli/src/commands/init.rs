@@ -39,6 +39,42 @@ housing = { model = "reciprocal", a = 1.0, b = 0.20, min = 0.02, max = 0.40 }   
 bearing = { model = "reciprocal", a = 2.0, b = 0.24, min = 0.01, max = 0.20 }
 "#;
 
+const ASSEMBLY: &str = r#"# A cover on a housing: two parts in space. Everything after a # is a comment.
+# `sensitol check` tells which motions the joints leave, `sensitol analyze` what the tolerances do to the gap.
+
+[dimensions]
+height = { nominal = 40.0, tolerance = 0.05, unit = "mm" }
+pin    = { nominal = 8.0, tolerance = 0.01, unit = "mm" }
+pitch  = { nominal = 60.0, tolerance = 0.04, unit = "mm" }
+reach  = { nominal = 90.0, tolerance = 0.10, unit = "mm" }
+lip    = { nominal = 5.0, tolerance = 0.03, unit = "mm" }
+wall   = { nominal = 89.6, tolerance = 0.08, unit = "mm" }
+square = { nominal = 0.0, tolerance = 0.1, unit = "deg" }      # the seat is not quite square to the wall
+
+# A part is a rigid body: features in its own frame. Numbers, dimensions by name, or formulas in quotes.
+[parts.housing]                                                # the first part stands still
+seat = { plane = [0, 0, "height"], normal = { turned = "square", about = "y", from = "z" } }
+hole = { axis = [15, 10, "height"], along = "z" }
+slot = { frame = ["15 + pitch", 10, "height"], z = "z", x = "x" }
+wall = { plane = ["wall", 0, 20], normal = "x" }
+
+[parts.cover]
+at    = [0, 0, 40]                                             # where the search starts
+face  = { plane = [0, 0, 0], normal = "-z" }
+pin1  = { axis = [15, 10, 0], along = "z", diameter = "pin" }
+pin2  = { axis = ["15 + pitch", 10, 0], along = "z", diameter = "pin" }
+flange = { plane = ["reach", 0, "-lip"], normal = "-x" }
+
+# Joints in the order of assembly. `takes` says how many of the six freedoms each one removes.
+[joints]
+face   = { on = "housing.seat", against = "cover.face", takes = 3 }
+first  = { hole = "housing.hole", pin = "cover.pin1", takes = 2 }
+second = { slot = "housing.slot", pin = "cover.pin2", takes = 1 }
+
+[characteristics]
+gap = { of = "cover.flange", from = "housing.wall", unit = "mm", lower = 0.15, upper = 0.65, target_yield = 0.9973 }
+"#;
+
 /// Returns a study whose model is a program.
 fn process(script: &str) -> String {
     format!(
@@ -96,6 +132,7 @@ pub(crate) fn run(asked: &InitArgs) -> Result<Exit, Failure> {
             files.push((path.clone(), process(&beside)));
             files.push((script, SCRIPT.to_owned()));
         }
+        None if asked.assembly => files.push((path.clone(), ASSEMBLY.to_owned())),
         None => files.push((path.clone(), FORMULA.to_owned())),
     }
     if let Some((there, _)) = files.iter().find(|(path, _)| path.exists()) {
@@ -106,9 +143,13 @@ pub(crate) fn run(asked: &InitArgs) -> Result<Exit, Failure> {
     for (destination, text) in opened {
         destination.write(&text)?;
     }
-    let next = if asked.process { "probe" } else { "analyze" };
-    let more = if asked.process || asked.model.is_some() {
-        String::new()
+    let next = match () {
+        () if asked.process => "probe",
+        () if asked.assembly => "check",
+        () => "analyze",
+    };
+    let more = if asked.process || asked.assembly || asked.model.is_some() {
+        if asked.assembly { format!("\n      sensitol analyze {name}") } else { String::new() }
     } else {
         format!("\n      sensitol allocate {name}")
     };

@@ -14,6 +14,8 @@ use crate::entries::guard::GuardEntry;
 pub(crate) use crate::entries::named_entries::Entries;
 pub(crate) use crate::entries::named_values::{ConstantEntry, UnknownEntry};
 #[cfg(feature = "schema")]
+use crate::entries::assembly_schema as assembly;
+#[cfg(feature = "schema")]
 use crate::entries::schema_parts as registry;
 use crate::entries::spanned::Spanned;
 use serde::de::{IgnoredAny, MapAccess, Visitor, value};
@@ -59,6 +61,14 @@ pub(crate) struct StudyFile {
     /// Vectors that close: two equations each.
     #[serde(default)]
     pub(crate) loops: Entries<Vec<LinkEntry>>,
+    /// Rigid parts in space, each with features by name. The first part stands still, or the one with ground = true.
+    #[serde(default, rename = "parts")]
+    #[cfg_attr(feature = "schema", schemars(schema_with = "assembly::parts"))]
+    pub(crate) _parts: Option<IgnoredAny>,
+    /// Joints of two features, in the order of assembly, by the keys of the joint table.
+    #[serde(default, rename = "joints")]
+    #[cfg_attr(feature = "schema", schemars(schema_with = "assembly::joints"))]
+    pub(crate) _joints: Option<IgnoredAny>,
     /// The key characteristics: what is asked.
     #[serde(default)]
     pub(crate) characteristics: Entries<CharacteristicEntry>,
@@ -320,6 +330,30 @@ pub(crate) struct CharacteristicEntry {
     #[serde(default, rename = "fastener")]
     #[cfg_attr(feature = "schema", schemars(schema_with = "registry::fastener"))]
     pub(crate) _fastener: Option<IgnoredAny>,
+    /// The measured feature of a part, such as "shaft.tip", with the feature that it is measured `from`.
+    #[serde(default, rename = "of")]
+    #[cfg_attr(feature = "schema", schemars(schema_with = "assembly::feature"))]
+    pub(crate) _of: Option<IgnoredAny>,
+    /// The feature from which it is measured: along the normal of a plane, across an axis, from a point.
+    #[serde(default, rename = "from")]
+    #[cfg_attr(feature = "schema", schemars(schema_with = "assembly::feature"))]
+    pub(crate) _from: Option<IgnoredAny>,
+    /// A coordinate in the frame of `from`, in place of the distance.
+    #[serde(default, rename = "along")]
+    #[cfg_attr(feature = "schema", schemars(schema_with = "assembly::coordinate"))]
+    pub(crate) _along: Option<IgnoredAny>,
+    /// The angle of two features: of their directions, or of an axis above a plane. The unit is deg or rad.
+    #[serde(default, rename = "angle")]
+    #[cfg_attr(feature = "schema", schemars(schema_with = "assembly::pair"))]
+    pub(crate) _angle: Option<IgnoredAny>,
+    /// The distance of two features less their radii.
+    #[serde(default, rename = "gap")]
+    #[cfg_attr(feature = "schema", schemars(schema_with = "assembly::pair"))]
+    pub(crate) _gap: Option<IgnoredAny>,
+    /// The greatest deviation of points of a face from their nominal distances from a plane: { of = "cover.face", at = [[0, 0], [50, 0]] }.
+    #[serde(default, rename = "profile")]
+    #[cfg_attr(feature = "schema", schemars(schema_with = "assembly::profile"))]
+    pub(crate) _profile: Option<IgnoredAny>,
     /// The unit of the result and its limits: a label, checked or converted as `units` says.
     pub(crate) unit: Option<String>,
     /// Lower limit; without a limit there is no yield.

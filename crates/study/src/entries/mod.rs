@@ -2,6 +2,8 @@
 
 pub(crate) mod about;
 pub(crate) mod analysis_entry;
+#[cfg(feature = "schema")]
+pub(crate) mod assembly_schema;
 pub(crate) mod correlation_entry;
 pub(crate) mod cost_entry;
 pub(crate) mod distribution_entry;
