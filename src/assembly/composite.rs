@@ -11,7 +11,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 use super::evaluator_account::EvaluatorAccount;
 use super::formula::{Formula, FormulaError, FormulaSet, Meaning};
 use super::formula::{Role, UnitFinding};
-use super::implicit::{Anchor, Assembler, AssemblyFailure, Conditions, ConditionsError};
+use super::implicit::{Anchor, Assembler, Conditions, ConditionsError};
 use super::{
     AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, Input, ModelInfo, Output, Points, Polynomial,
     RecordedFailure, Request, Responses, Run, Signature, Switches,
@@ -327,38 +327,6 @@ impl Composite {
             Some(given)
         });
         (anchor.map(|anchor| anchor.map_err(EvaluationError::from)).or(missing), spent)
-    }
-}
-
-/// Solved unknowns in a block of points.
-struct RowSolution {
-    columns: Vec<Vec<f64>>,
-    /// Failure of every row without a solution.
-    errors: Vec<Option<Box<AssemblyFailure>>>,
-}
-
-impl RowSolution {
-    /// Solves the conditions at every row whose variables are all known.
-    fn of(
-        (assembler, set): (&Assembler, &FormulaSet),
-        anchor: &Anchor,
-        rows: usize,
-        given: usize,
-        variable: impl Fn(usize, usize) -> f64,
-    ) -> Self {
-        let mut found = Self { columns: vec![vec![f64::NAN; rows]; assembler.len()], errors: vec![None; rows] };
-        let mut values = vec![f64::NAN; given];
-        for row in 0..rows {
-            assembler.uses().iter().for_each(|&index| values[index] = variable(index, row));
-            if assembler.uses().iter().any(|&index| values[index].is_nan()) {
-                continue;
-            }
-            match assembler.solve(set, anchor, &values) {
-                Ok(u) => found.columns.iter_mut().zip(u).for_each(|(column, u)| column[row] = u),
-                Err(failure) => found.errors[row] = Some(Box::new(failure)),
-            }
-        }
-        found
     }
 }
 

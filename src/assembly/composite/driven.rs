@@ -6,8 +6,9 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex, OnceLock};
 
 use crate::assembly::blocks::BLOCK;
-use crate::assembly::composite::{Composite, CompositeError, Inner, Origin, RowSolution, Source};
+use crate::assembly::composite::{Composite, CompositeError, Inner, Origin, Source};
 use crate::assembly::formula::Jet;
+use crate::assembly::implicit::RowSolution;
 use crate::assembly::request::bits;
 use crate::assembly::{
     AssemblyFunction, EvaluationError, Input, NonRepeatable, Points, Request, Responses, Run, Signature,

@@ -3,8 +3,8 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::{Composite, Needs, Origin, RowSolution};
-use crate::assembly::implicit::Anchor;
+use super::{Composite, Needs, Origin};
+use crate::assembly::implicit::{Anchor, RowSolution};
 use crate::assembly::responses::all_finite;
 use crate::assembly::{EvaluationError, Points, Request, Responses, Run, in_blocks};
 

@@ -1,6 +1,7 @@
 //! Switches and degree of the outputs of a composite.
 
-use crate::assembly::composite::{Composite, Origin, RowSolution, Source};
+use crate::assembly::composite::{Composite, Origin, Source};
+use crate::assembly::implicit::RowSolution;
 use crate::assembly::{Points, Polynomial, Run, Switch, SwitchKind, Switches};
 use sensitol_numeric::parallel::prelude::*;
 

@@ -176,6 +176,11 @@ impl Unary {
 }
 
 impl Binary {
+    /// True for a comparison.
+    pub(super) fn compares(self) -> bool {
+        matches!(self, Self::Less | Self::LessEqual | Self::Greater | Self::GreaterEqual | Self::Equal | Self::NotEqual)
+    }
+
     /// Applies the function to two numbers. An argument that is NaN always gives NaN. IEEE 754 drops it in some cases (`NaN ^ 0`,
     /// comparisons, `min`), and a domain error would then pass for a result.
     #[inline]

@@ -15,6 +15,7 @@
 
 mod batch;
 mod cancel;
+mod derivative;
 mod error;
 mod expansion;
 mod functions;
@@ -32,6 +33,7 @@ mod program;
 mod scalar;
 pub mod set;
 mod slopes;
+pub(crate) mod stages;
 mod switches;
 mod units;
 

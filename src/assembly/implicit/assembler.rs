@@ -1,14 +1,16 @@
 //! Solution of the closure conditions at every point: on the branch of the nominal state, which every search starts from.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use faer::Mat;
 
 use crate::assembly::formula::FormulaSet;
+use crate::assembly::implicit::anchor::{Anchor, OFF, SLACK, STEPS};
+use crate::assembly::implicit::batch::BatchSolver;
 use crate::assembly::implicit::conditions::Conditions;
 use crate::assembly::implicit::error::AssemblyFailure;
 use crate::assembly::implicit::newton::{Root, Search, Stuck};
-use crate::assembly::implicit::system::{Scales, System};
+use crate::assembly::implicit::system::System;
 
 /// Solver of the conditions at any point, once the nominal state is known.
 pub(in crate::assembly) struct Assembler {
@@ -16,32 +18,14 @@ pub(in crate::assembly) struct Assembler {
     /// Dimensions to which the start values belong.
     nominal: Vec<f64>,
     anchor: Mutex<Option<Result<Arc<Anchor>, Box<AssemblyFailure>>>>,
+    /// Solver of many points, made when it is first asked for. None if the conditions have none.
+    batch: OnceLock<Option<BatchSolver>>,
 }
 
-/// Nominal state, from which every other state is found.
-pub(in crate::assembly) struct Anchor {
-    pub(super) given: Vec<f64>,
-    pub(super) u: Vec<f64>,
-    pub(super) scales: Scales,
-    sign: f64,
-    /// Derivatives of the unknowns by the variables that the conditions use, 0 if one does not exist. They serve predictions only.
-    slopes: Mat<f64>,
-    /// Condition number of the scaled Jacobian.
-    condition: f64,
-    /// Index of the unknown that is determined least.
-    weakest: usize,
-}
-
-/// Greatest distance of a root from its prediction, as part of the distance moved, at which it is accepted without following it.
-const OFF: f64 = 0.25;
-/// Greatest number of steps after which a root is accepted without following it.
-const STEPS: usize = 12;
 /// Greatest distance of a followed root from its prediction, as part of a step.
 const FOLLOWED: f64 = 0.5;
 /// Distance of a followed root from its prediction, as part of a step, below which the next step is twice as long.
 const EASY: f64 = 0.1;
-/// Distance of a root from its prediction that rounding may cause, in scales of the unknowns.
-const SLACK: f64 = 1e-9;
 /// Shortest step, as a part of the way.
 const SHORTEST: f64 = 1.0 / 65536.0;
 /// Greatest number of steps of a followed way.
@@ -57,7 +41,7 @@ impl Assembler {
     /// unknowns.
     pub(in crate::assembly) fn new(conditions: &Conditions, set: &FormulaSet, first: usize, given: usize) -> Self {
         let system = System::new(conditions, set, first, given);
-        Self { system, nominal: conditions.nominal.clone(), anchor: Mutex::new(None) }
+        Self { system, nominal: conditions.nominal.clone(), anchor: Mutex::new(None), batch: OnceLock::new() }
     }
 
     pub(in crate::assembly) fn len(&self) -> usize {
@@ -90,6 +74,11 @@ impl Assembler {
     pub(in crate::assembly) fn known_anchor(&self) -> Option<Arc<Anchor>> {
         let anchor = self.anchor.lock().unwrap_or_else(PoisonError::into_inner);
         anchor.as_ref()?.as_ref().ok().map(Arc::clone)
+    }
+
+    /// Returns the solver of many points, or None if the conditions have none.
+    pub(super) fn batch(&self, set: &FormulaSet, anchor: &Anchor) -> Option<&BatchSolver> {
+        self.batch.get_or_init(|| BatchSolver::new(&self.system, set, anchor)).as_ref()
     }
 
     /// Finds the nominal state from the start values.
@@ -135,17 +124,13 @@ impl Assembler {
         })
     }
 
-    /// Returns the unknowns at a point. `set` explains a formula that has no value there.
-    pub(in crate::assembly) fn solve(
+    /// Returns the unknowns at a point by the safeguarded search. `set` explains a formula that has no value there.
+    pub(super) fn solve_safeguarded(
         &self,
         set: &FormulaSet,
         anchor: &Anchor,
         given: &[f64],
     ) -> Result<Vec<f64>, AssemblyFailure> {
-        let moves = |&index: &usize| given[index] != anchor.given[index];
-        if !self.system.uses.iter().any(moves) {
-            return Ok(anchor.u.clone());
-        }
         let search = Search { system: &self.system, scales: &anchor.scales, given };
         // The direct search from the prediction is enough if it ends near the prediction, on the same branch, in few steps.
         let predicted = search.moved(&anchor.u, &self.prediction(anchor, given), 1.0);

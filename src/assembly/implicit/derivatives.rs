@@ -1,7 +1,8 @@
 //! Exact first and second derivatives of the unknowns, by the implicit function theorem.
 
 use crate::assembly::formula::{FormulaSet, Jet};
-use crate::assembly::implicit::assembler::{Anchor, Assembler};
+use crate::assembly::implicit::anchor::Anchor;
+use crate::assembly::implicit::assembler::Assembler;
 use crate::assembly::implicit::linear::Linear;
 use crate::assembly::implicit::newton::Search;
 

@@ -11,21 +11,34 @@
 //! The search may fail, end on another sign of the determinant, or end far from its prediction. Then the solution is followed from the
 //! nominal dimensions to the point in adaptive steps. A path that cannot be followed is an error.
 //!
+//! Most points need no safeguards. They are solved side by side by full steps, in blocks of equations that depend on each other. A point
+//! whose steps do not become shorter at once takes the safeguarded search.
+//!
 //! # Derivatives
 //! The first derivatives solve `F_u u' = -F_x x'`, and the second ones the same system with second derivatives on the right. Both are
 //! exact, by jets of the conditions. First order is the direct linearisation method (DLM): Chase, Gao, Magleby, "General 2-D tolerance
 //! analysis of mechanical assemblies with small kinematic adjustments", Journal of Design and Manufacturing 5 (1995).
 
+mod anchor;
 mod assembler;
+mod batch;
 mod conditions;
 mod derivatives;
+mod elimination;
 mod error;
 mod linear;
 mod newton;
+mod order;
+mod rows;
 mod system;
+
+#[cfg(test)]
+mod tests;
 
 pub use conditions::{Condition, Conditions, ConditionsError, Link, Unknown};
 pub use error::AssemblyFailure;
 
-pub(super) use assembler::{Anchor, Assembler};
+pub(super) use anchor::Anchor;
+pub(super) use assembler::Assembler;
 pub(super) use derivatives::Tangent;
+pub(super) use rows::RowSolution;

@@ -27,13 +27,13 @@ pub(super) struct Stuck {
 /// Greatest number of steps of one search.
 const MOST: usize = 60;
 /// Longest step, in scales of the unknowns.
-const REACH: f64 = 0.5;
+pub(super) const REACH: f64 = 0.5;
 /// Length of a step, in scales, below which all further steps are full Newton steps.
-const NEAR: f64 = 1e-6;
+pub(super) const NEAR: f64 = 1e-6;
 /// Length of steps that rounding of the unknowns alone causes, in scales.
-const ROUNDING: f64 = 1e-16;
+pub(super) const ROUNDING: f64 = 1e-16;
 /// Greatest length of the last step of a successful search, in scales.
-const FOUND: f64 = 1e-10;
+pub(super) const FOUND: f64 = 1e-10;
 /// Least decrease of the equations, as a part of the predicted decrease.
 const DECREASE: f64 = 1e-4;
 /// Greatest number of halvings of a step until the decrease is reached.

@@ -9,18 +9,18 @@ use crate::assembly::implicit::conditions::{Condition, Conditions, Unknown};
 pub(super) struct System {
     pub(super) unknowns: Vec<Unknown>,
     pub(super) equations: Vec<String>,
-    conditions: Vec<Kind>,
+    pub(super) conditions: Vec<Kind>,
     routine: Routine,
     /// Indices in the set of the formulas of the routine.
-    formulas: Vec<usize>,
+    pub(super) formulas: Vec<usize>,
     /// Number of given variables. The indices of the unknowns follow.
-    given: usize,
+    pub(super) given: usize,
     /// Given variables that the conditions depend on, ascending.
     pub(super) uses: Vec<usize>,
 }
 
 /// Number of values of the routine in a condition: one for an equation, twice the number of links for a loop.
-enum Kind {
+pub(super) enum Kind {
     Equation,
     Loop { links: usize },
 }
