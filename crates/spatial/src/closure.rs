@@ -228,7 +228,7 @@ impl<'a> Closure<'a> {
     }
 
     /// Moves every part by its share of a step.
-    fn advance(&mut self, step: &[f64], part: f64) {
+    pub(crate) fn advance(&mut self, step: &[f64], part: f64) {
         for (index, &moving) in self.moving.iter().enumerate() {
             let place = &mut self.places[moving];
             let turn = [0, 1, 2].map(|i| part * step[6 * index + i]);

@@ -22,6 +22,8 @@ mod measure;
 mod mobility;
 mod number;
 mod placement;
+#[cfg(test)]
+mod tests;
 mod vector;
 
 pub use assembly::{

@@ -44,7 +44,6 @@ const ASSEMBLY: &str = r#"# A cover on a housing: two parts in space. Everything
 
 [dimensions]
 height = { nominal = 40.0, tolerance = 0.05, unit = "mm" }
-pin    = { nominal = 8.0, tolerance = 0.01, unit = "mm" }
 pitch  = { nominal = 60.0, tolerance = 0.04, unit = "mm" }
 reach  = { nominal = 90.0, tolerance = 0.10, unit = "mm" }
 lip    = { nominal = 5.0, tolerance = 0.03, unit = "mm" }
@@ -61,8 +60,8 @@ wall = { plane = ["wall", 0, 20], normal = "x" }
 [parts.cover]
 at    = [0, 0, 40]                                             # where the search starts
 face  = { plane = [0, 0, 0], normal = "-z" }
-pin1  = { axis = [15, 10, 0], along = "z", diameter = "pin" }
-pin2  = { axis = ["15 + pitch", 10, 0], along = "z", diameter = "pin" }
+pin1  = { axis = [15, 10, 0], along = "z" }
+pin2  = { axis = ["15 + pitch", 10, 0], along = "z" }
 flange = { plane = ["reach", 0, "-lip"], normal = "-x" }
 
 # Joints in the order of assembly. `takes` says how many of the six freedoms each one removes.

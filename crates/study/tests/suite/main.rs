@@ -3,6 +3,7 @@
 mod measured;
 mod scaling;
 mod schema;
+mod spatial;
 mod studies;
 mod texts;
 mod tolerances;
