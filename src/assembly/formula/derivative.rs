@@ -261,10 +261,10 @@ mod tests {
             let set = set(text);
             for step in 0..20 {
                 let at = [0.37, 0.83, 0.59].map(|rate: f64| 0.4 + (rate * f64::from(step + 1)).fract() * 2.9);
-                for variable in 0..3 {
+                for (variable, name) in NAMES.iter().enumerate() {
                     let (symbolic, exact) = (slope(&set, variable, at), jet(&set, variable, at).expect(text));
                     let close = (symbolic - exact).abs() <= 1e-13 * exact.abs().max(1.0);
-                    assert!(close, "{text} by {}: {symbolic}, {exact} at {at:?}", NAMES[variable]);
+                    assert!(close, "{text} by {name}: {symbolic}, {exact} at {at:?}");
                 }
             }
         }
