@@ -437,6 +437,10 @@ class Beyond(Record):
     """Probability of an assembly beyond the limit; null if no point lies there."""
     standard_error: Optional[float]
     """Standard error of the probability."""
+    unmet: Optional[Unmet]
+    """Bound of the probability of rejects that no point met. None if plain points make the estimate, whose interval
+    has it already, and if no explored point has a value.
+    """
 
 
 class Capability(Record):
@@ -1900,6 +1904,17 @@ class TailPoint(Record):
     """Share of the assemblies at or beyond the value."""
 
 
+class Unmet(Record):
+    """Bound of the probability of a region that no point met."""
+
+    directions: int
+    """Most directions that the region needs at once: 1 for a half-space, 2 or 3 for a corner."""
+    most: float
+    """Greatest probability of such a region, with 97.5 %. It is in the upper end of the interval."""
+    points: int
+    """Points that would have met it: of the inputs' own distribution and of wider ones, without explained rejects."""
+
+
 class VarianceShare(Record):
     """Part of the variance that a dimension explains, by the model itself."""
 
@@ -2018,7 +2033,7 @@ _INNER: Dict[str, Dict[str, type]] = {
     "AllocationResultJointYield": {"after": JointYield, "before": JointYield},
     "AllocationResultRequirements": {"sampled": AllocationResultRequirementsSampled},
     "AnalysisResult": {"account": Account, "characteristic_correlation": OutputCorrelation, "characteristics": CharacteristicResult, "correlation": Pair, "dimensions": DimensionResult, "evaluator": EvaluatorSummary, "joint_requirement": Judged, "joint_yield": Verified, "warnings": ReportedWarning},
-    "Beyond": {"design_point": DesignPoint},
+    "Beyond": {"design_point": DesignPoint, "unmet": Unmet},
     "CharacteristicResult": {"basis": FigureBases, "coefficient_of_variation": Verified, "coverage": CoverageIntervals, "distribution": Law, "error_estimate": ErrorEstimate, "inspection": InspectionRisks, "interactions": Interaction, "interactions_remainder": Remainder, "least_squares": Residual, "model_sampling": SampledModel, "normal_fit": Capability, "pearson_fit": Capability, "quantiles": QuantileEstimates, "requirements": Judged, "sampling_interval": SamplingInterval, "sensitivities": Sensitivity, "sobol": SobolIndices, "surface_law": SurfaceLaw, "surrogate_sampling": Sampled, "verification": Verification, "worst_case": WorstCase},
     "ComparedCharacteristic": {"methods": ComparedMethod, "reference": SimulatedCharacteristic},
     "ComparedMethod": {"error_vs_reference": ErrorVsReference, "run": RunSummary},

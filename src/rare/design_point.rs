@@ -5,6 +5,7 @@ use faer::{Mat, Side};
 use crate::estimate::Columns;
 use crate::estimate::strata::{dot, length};
 use crate::rare::target::Target;
+use sensitol_numeric::distribution::standard_normal;
 
 /// Greatest distance in sigmas. Probabilities farther out are below the smallest double.
 pub(super) const FARTHEST: f64 = 37.0;
@@ -31,6 +32,8 @@ pub(super) enum PlaceKind {
     Way,
     /// Crossing of the model itself: points are drawn from the half-space that begins a little before it.
     HalfSpace,
+    /// Corner of the model's rejects: points are drawn about it, and beyond it in each of its coordinates.
+    Corner,
 }
 
 /// Direction in which a limit is crossed.
@@ -68,7 +71,7 @@ pub(super) fn places(index: usize, target: &Target<'_>) -> Vec<Place> {
     }
     found.sort_by(|a, b| a.distance.total_cmp(&b.distance));
     if let Some(first) = found.first().map(|place| place.distance) {
-        let probability = sensitol_numeric::distribution::standard_normal::sf;
+        let probability = standard_normal::sf;
         found.retain(|place| probability(place.distance) >= FAINT * probability(first));
         found.truncate(PLACES);
     }
@@ -91,6 +94,31 @@ impl Place {
         let distance = length(point);
         let direction = unit(point.to_vec())?;
         Some(Self { target, direction, distance, kind: PlaceKind::HalfSpace, offset: 0.0, spreads: Vec::new() })
+    }
+
+    /// Corner of the rejects at a point: all coordinates that are not 0 must be at least as far out.
+    pub(super) fn corner(target: usize, point: &[f64]) -> Option<Self> {
+        Some(Self { kind: PlaceKind::Corner, ..Self::half_space(target, point)? })
+    }
+
+    /// Distances of a corner in its coordinates: the index, the sign, and the distance in sigmas.
+    pub(super) fn sides(&self) -> impl Iterator<Item = (usize, f64, f64)> + '_ {
+        let coordinates = self.direction.iter().enumerate().filter(|(_, part)| **part != 0.0);
+        coordinates.map(|(j, part)| (j, part.signum(), part.abs() * self.distance))
+    }
+
+    /// Probability beyond the place: of the half-space at its distance, or of its corner. 0 without a crossing.
+    pub(super) fn probability(&self) -> f64 {
+        match self.kind {
+            PlaceKind::Way => 0.0,
+            PlaceKind::Surrogate | PlaceKind::HalfSpace => standard_normal::sf(self.distance),
+            PlaceKind::Corner => self.sides().map(|(_, _, distance)| standard_normal::sf(distance)).product(),
+        }
+    }
+
+    /// True if the place comes from rejects of the model, not from the surrogate.
+    pub(super) fn is_shown(&self) -> bool {
+        matches!(self.kind, PlaceKind::HalfSpace | PlaceKind::Corner)
     }
 
     /// True if a limit is crossed at the place.

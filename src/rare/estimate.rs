@@ -2,6 +2,7 @@
 
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
+use crate::rare::unmet::{Group, Unmet};
 use sensitol_numeric::sampling::Estimate;
 
 /// Number of effective points beyond the limit from which the interval is that of a sum, not of counts.
@@ -38,8 +39,10 @@ pub(super) struct Weighed {
     others: Vec<f64>,
     /// Sum of the weights of the points without a value.
     unknown: f64,
-    /// Bound of the probability from exploration, used if no point lies beyond.
-    most: Option<f64>,
+    /// Bound of the probability that no explored point met.
+    unmet: Option<Unmet>,
+    /// Points of the components without a place, which may meet any region.
+    watching: Vec<Group>,
 }
 
 impl Default for Weighed {
@@ -53,7 +56,8 @@ impl Default for Weighed {
             hits: 0,
             others: Vec::new(),
             unknown: 0.0,
-            most: None,
+            unmet: None,
+            watching: Vec::new(),
         }
     }
 }
@@ -133,14 +137,30 @@ impl Weighed {
         self.stages.push(stage);
     }
 
-    /// Sets the bound of the probability that is used if no point lies beyond.
-    pub(super) fn bound(&mut self, most: Option<f64>) {
-        self.most = most;
+    /// Sets the bound of the probability that no explored point met.
+    pub(super) fn bound(&mut self, unmet: Option<Unmet>) {
+        self.unmet = unmet;
+    }
+
+    /// Counts points of a component without a place.
+    pub(super) fn watch(&mut self, more: Group) {
+        match self.watching.iter_mut().find(|group| group.scale == more.scale) {
+            Some(group) => group.points += more.points,
+            None => self.watching.push(more),
+        }
+    }
+
+    /// Bound of the probability of a region that is not in the sum.
+    ///
+    /// Explored rejects that nothing explains raise it. The points of the sum have met such a region too, or they bound
+    /// it on their own.
+    pub(super) fn unmet(&self) -> Option<Unmet> {
+        self.unmet.map(|unmet| unmet.least(&self.watching))
     }
 
     /// Drops all points, and keeps the bound.
     pub(super) fn forget(&mut self) {
-        *self = Self { most: self.most, ..Self::default() };
+        *self = Self { unmet: self.unmet, ..Self::default() };
     }
 
     /// Part of the sum that is borne by points with these logarithms of weights.
@@ -210,7 +230,7 @@ impl Weighed {
         if self.hits == 0 {
             let heaviest = libm::exp(self.others.iter().copied().fold(f64::NEG_INFINITY, f64::max));
             let most = (UNSEEN * heaviest.max(self.unknown) / n).min(1.0);
-            let interval = [0.0, self.most.map_or(most, |bound| bound.min(most))];
+            let interval = [0.0, self.unmet().map_or(most, |unmet| unmet.most.min(most))];
             let bounds = [0.0, (self.unknown / n).min(1.0)];
             return Some(ProbabilityEstimate {
                 points: self.seen(),
@@ -248,7 +268,8 @@ impl Weighed {
             effective,
             greatest_part: Some(1.0 / self.sum),
         };
-        Some(if probability(value) < FAINTEST { found.out_of_reach() } else { found })
+        let found = if probability(value) < FAINTEST { found.out_of_reach() } else { found };
+        Some(found.with_unmet(self.unmet()))
     }
 
     /// Number of points with a value.
@@ -263,6 +284,13 @@ impl ProbabilityEstimate {
         let bound = |high: f64| high.max(FAINTEST);
         let (interval, bounds) = ([0.0, bound(self.interval[1])], [0.0, bound(self.bounds[1])]);
         Self { probability: None, interval, bounds, greatest_part: None, ..self }
+    }
+
+    /// Estimate whose interval has the bound of what no point met, joined by the method of Zou and Donner (2008).
+    fn with_unmet(self, unmet: Option<Unmet>) -> Self {
+        let value = self.probability.map_or(0.0, |found| found.value);
+        let apart = libm::hypot(self.interval[1] - value, unmet.map_or(0.0, |unmet| unmet.most));
+        Self { interval: [self.interval[0], (value + apart).min(1.0)], ..self }
     }
 
     /// Estimate for the complement of the sought values. If none of those was seen, its probability is 1.

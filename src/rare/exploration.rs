@@ -11,31 +11,33 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use crate::estimate::Columns;
 use crate::estimate::seldom_points;
 use crate::estimate::strata::length;
-use crate::rare::design_point::{BEFORE, FARTHEST, unit};
+use crate::rare::design_point::{BEFORE, FARTHEST, Place, unit};
 use crate::rare::model::{Answers, Model};
 use crate::rare::plain_points::PlainPoints;
 use crate::rare::target::Target;
+use crate::rare::unmet::{Group, Unmet};
 use sensitol_numeric::distribution::standard_normal;
 
-/// Widths of the groups in sigmas.
-const SCALES: [f64; 4] = [1.0, 1.5, 2.0, 3.0];
-/// Widths for more than `MANY_VARIABLES` variables: all points of a wider group would lie far out, where nothing is
-/// likely.
-const MODEST_SCALES: [f64; 3] = [1.0, 1.2, 1.5];
+/// Groups: the width in sigmas, and the part of all points. Wide ones meet a corner of three dimensions, narrow ones a
+/// state that ends again farther out.
+const GROUPS: [(f64, f64); 5] = [(1.0, 0.03), (1.5, 0.03), (2.0, 0.04), (3.0, 0.06), (4.0, 0.04)];
+/// Groups for more than `MANY_VARIABLES` variables. Half of their points are modest, because all points of a wide group
+/// lie far out there.
+const MODEST_GROUPS: [(f64, f64); 4] = [(1.0, 0.04), (1.2, 0.03), (1.5, 0.03), (3.0, 0.06)];
 /// Number of variables above which the modest widths are used.
 const MANY_VARIABLES: usize = 30;
 /// Width of a further group for limits that nothing has reached, relative to the widest group.
 const WIDER: f64 = 2.0;
-/// Number of points of that group, relative to the others.
-const LARGER: usize = 4;
-/// Most points of a group.
-const MOST: usize = 400;
-/// Part of all points for one group, least and greatest. It is less for few points, which the other stages need.
-const PART: [f64; 2] = [1.0 / 50.0, 1.0 / 25.0];
-/// Number of points from which the greatest part is used.
-const ENOUGH: f64 = 2000.0;
-/// Probability that a bound is wrong by chance: 2.5 %, the upper half of a 95 % interval.
-const CHANCE: f64 = 0.025;
+/// Part of all points for that group.
+const LARGER: f64 = 0.1;
+/// Part of all points for those beside switches, at most.
+const BESIDE: f64 = 0.08;
+/// Factor of all parts for few points, which leave a wide bound.
+const SPARSE: f64 = 1.5;
+/// Number of points up to which the parts have that factor. More points explore no less than these.
+const FEW: u64 = 1000;
+/// Number of points beyond which exploration takes no more of them.
+const ENOUGH: u64 = 10_000;
 
 /// Values of the model at the explored points.
 pub(super) struct Explored {
@@ -46,7 +48,8 @@ pub(super) struct Explored {
 }
 
 impl Explored {
-    /// Evaluates the groups: at most a quarter of `samples`, or two fifths if the surrogate has not `reached` a target.
+    /// Evaluates the groups: a fifth of `samples`, or three tenths of few. More points follow if the surrogate has not
+    /// `reached` a target, and beside switches.
     pub(super) fn new(
         targets: &[Target<'_>],
         reached: &[bool],
@@ -56,39 +59,40 @@ impl Explored {
     ) -> Self {
         let n = model.space.len();
         let mut explored = Self { normals: vec![Vec::new(); n], answers: Vec::new(), scales: Vec::new() };
-        let each = (samples as f64 * (samples as f64 / ENOUGH * PART[1]).clamp(PART[0], PART[1])) as usize;
-        let each = each.min(MOST);
+        let size = (SPARSE * samples.min(FEW) as f64).max(samples.min(ENOUGH) as f64);
+        let points = |part: f64| (part * size) as usize;
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);
         let mut group = |rows: usize, scale: f64| -> Columns {
             (0..n).map(|_| (0..rows).map(|_| scale * rng.sample::<f64, _>(StandardNormal)).collect()).collect()
         };
-        let scales: &[f64] = if n > MANY_VARIABLES { &MODEST_SCALES } else { &SCALES };
+        let groups: &[(f64, f64)] = if n > MANY_VARIABLES { &MODEST_GROUPS } else { &GROUPS };
         let mut first: Columns = vec![Vec::new(); n];
-        for &scale in scales {
-            first.iter_mut().zip(group(each, scale)).for_each(|(all, more)| all.extend(more));
+        let mut scales = Vec::new();
+        for &(scale, part) in groups {
+            first.iter_mut().zip(group(points(part), scale)).for_each(|(all, more)| all.extend(more));
+            scales.extend(std::iter::repeat_n(Some(scale), points(part)));
         }
-        let of = scales.iter().flat_map(|&scale| std::iter::repeat_n(Some(scale), each)).collect();
-        explored.ask(first, of, model);
+        explored.ask(first, scales, model);
         let seen =
             |target: &Target<'_>| explored.values(target.characteristic).flatten().any(|value| target.sought(value));
         if targets.iter().zip(reached).any(|(target, &reached)| !reached && !seen(target)) {
-            let (rows, scale) = (LARGER * each, WIDER * scales[scales.len() - 1]);
+            let (rows, scale) = (points(LARGER), WIDER * groups[groups.len() - 1].0);
             let wider = group(rows, scale);
             explored.ask(wider, vec![Some(scale); rows], model);
         }
-        explored.beside_switches(targets, each, seed, model);
+        explored.beside_switches(targets, points(BESIDE), seed, model);
         explored
     }
 
     /// Evaluates points in the half-spaces beyond switches that are seldom met.
-    fn beside_switches(&mut self, targets: &[Target<'_>], each: usize, seed: u64, model: &mut Model<'_>) {
+    fn beside_switches(&mut self, targets: &[Target<'_>], most: usize, seed: u64, model: &mut Model<'_>) {
         let n = self.normals.len();
         let varying: Vec<usize> = model.space.dimensions().collect();
         let mut characteristics: Vec<usize> = targets.iter().map(|target| target.characteristic).collect();
         characteristics.dedup();
         let points: Vec<Vec<f64>> =
             characteristics.iter().flat_map(|&c| seldom_points(model.problem(), c, &varying, seed)).collect();
-        let rows = (2 * each / points.len().max(1)).min(each / 2).max(2);
+        let rows = (most / points.len().max(1)).min(most / 4).max(2);
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(!seed);
         let mut beside: Columns = vec![Vec::new(); n];
         for point in points {
@@ -145,67 +149,33 @@ impl Explored {
         points.into_iter().map(|(_, point)| point).collect()
     }
 
-    /// Largest possible probability of a target that no point has reached, if the target is a half-space.
+    /// Points in normal space.
+    pub(super) fn normals(&self) -> &Columns {
+        &self.normals
+    }
+
+    /// Bound of the probability of a region that no point met. `dense` is true for each point near which the mixture
+    /// draws enough points.
     ///
-    /// A half-space at the distance `b` holds a point of `N(0, s^2)` with the probability `Phi(-b/s)`, for any
-    /// direction. The probability that none of `n_s` points of each scale lies in it is `prod_s (1 - Phi(-b/s))^(n_s)`,
-    /// which rises with `b`. At the `b` where it is 2.5 %, `b` is the least possible distance and `Phi(-b)` the
-    /// greatest possible probability beyond. For a single scale, `b = s Phi^-1(0.025^(1/n))`.
-    ///
-    /// Returns None if a point reached the target, or no point has a value.
-    pub(super) fn bound(&self, target: &Target<'_>) -> Option<f64> {
-        let mut groups: Vec<(f64, f64)> = Vec::new();
-        for (value, scale) in self.values(target.characteristic).zip(&self.scales) {
+    /// A reject there, at a place, or where the surrogate has one shows no other region, and is left out.
+    pub(super) fn unmet(&self, target: &Target<'_>, places: &[&Place], dense: &[bool]) -> Option<Unmet> {
+        let margins = target.margins(&self.normals);
+        let mut groups: Vec<Group> = Vec::new();
+        let mut strayed = 0;
+        for (row, (value, scale)) in self.values(target.characteristic).zip(&self.scales).enumerate() {
             let (Some(value), &Some(scale)) = (value, scale) else { continue };
             if target.sought(value) {
-                return None;
+                let point: Vec<f64> = self.normals.iter().map(|column| column[row]).collect();
+                if margins[row] > 0.0 || dense[row] || places.iter().any(|place| place.holds(&point)) {
+                    continue;
+                }
+                strayed += 1;
             }
-            match groups.last_mut().filter(|group| group.0 == scale) {
-                Some(group) => group.1 += 1.0,
-                None => groups.push((scale, 1.0)),
+            match groups.iter_mut().find(|group| group.scale == scale) {
+                Some(group) => group.points += 1,
+                None => groups.push(Group { scale, points: 1 }),
             }
         }
-        half_space(&groups)
-    }
-}
-
-/// Bound of [`Explored::bound`] from pairs of scale and number of points.
-fn half_space(groups: &[(f64, f64)]) -> Option<f64> {
-    let none = |b: f64| {
-        groups.iter().map(|&(scale, points)| points * libm::log1p(-standard_normal::sf(b / scale))).sum::<f64>()
-    };
-    let (mut low, mut high) = (0.0, FARTHEST);
-    if groups.is_empty() || none(low) > libm::log(CHANCE) {
-        return None;
-    }
-    // Sixty halvings use up the digits of a double.
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if none(middle) < libm::log(CHANCE) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    Some(standard_normal::sf(low))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// 400 points three times as wide without a reject: `1 - Phi(-b/3) = 0.025^(1/400)`, and `Phi(-7.07)` is 8e-13
-    /// (tables of the normal distribution give `Phi(-2.357) = 0.0092`).
-    #[test]
-    fn no_reject_bounds_the_distance() {
-        let bound = half_space(&[(3.0, 400.0)]).unwrap();
-        let distance = -standard_normal::quantile(bound);
-        assert!((distance - 7.07).abs() < 0.01, "{distance}");
-        // More points, or wider ones, lower the bound.
-        assert!(half_space(&[(3.0, 800.0)]).unwrap() < bound && half_space(&[(6.0, 400.0)]).unwrap() < bound);
-        assert!(half_space(&[(1.5, 400.0), (3.0, 400.0)]).unwrap() < bound);
-        // Three points cannot exclude a half-space through the middle: all miss it with a probability of 1/8.
-        assert_eq!(half_space(&[(1.0, 3.0)]), None);
-        assert_eq!(half_space(&[]), None);
+        Unmet::new(&groups, strayed, self.normals.len())
     }
 }

@@ -11,17 +11,21 @@ const CUTS: usize = 8;
 /// Rounds of cuts: three give the border to 1/512 of the way.
 const ROUNDS: usize = 3;
 /// Most steps of Hasofer and Lind.
-const STEPS: usize = 5;
+pub(super) const STEPS: usize = 5;
 /// Step of the differences for the slope of the model, in sigmas.
 const STEP: f64 = 0.02;
 /// Factors of the tangent point's distance at which the line through it is searched.
 const LINE: [f64; 7] = [0.9, 0.94, 0.97, 1.0, 1.03, 1.06, 1.1];
+/// Most coordinates of a corner.
+const SIDES: usize = 6;
+/// Halvings of a coordinate: four give it to a sixteenth, a quarter sigma at 4 sigma.
+const HALVINGS: usize = 4;
 /// Least relative gain in distance of a step that is followed by another.
 const GAIN: f64 = 3e-3;
 
-/// Greatest number of evaluations of [`bisected`] and [`nearest`] together, for a number of variables.
+/// Greatest number of evaluations of [`bisected`], [`stepped`] and [`corner`] together, for a number of variables.
 pub(super) fn cost(variables: usize) -> usize {
-    3 * ROUNDS * (CUTS - 1) + STEPS * (variables + 1 + LINE.len() + CUTS - 1) + variables + 1
+    STEPS * (variables + 1 + LINE.len() + CUTS - 1) + corner_cost(variables)
 }
 
 /// Border of the sought values on the way from the means to a reject, by bisection in eight parts.
@@ -29,15 +33,32 @@ pub(super) fn bisected(target: &Target<'_>, reject: &[f64], model: &mut Model<'_
     between(target, reject, [0.0, 1.0], ROUNDS, model)
 }
 
-/// Likeliest point of the limit near a point of it.
-///
-/// It comes from [`stepped`]. If that leads no nearer, as beside a jump, the variables without a part in the reject go
-/// back to their means.
-pub(super) fn nearest(target: &Target<'_>, border: Vec<f64>, model: &mut Model<'_>) -> Vec<f64> {
-    match stepped(target, &border, STEPS, model) {
-        Some(point) => point,
-        None => without_idle(target, border, model),
+/// Greatest number of evaluations of [`bisected`] and [`corner`] together, for a number of variables.
+pub(super) fn corner_cost(variables: usize) -> usize {
+    2 * ROUNDS * (CUTS - 1) + variables + 1 + SIDES * HALVINGS
+}
+
+/// Corner of the rejects near a point of the limit: each coordinate in turn goes as near to its mean as the point stays
+/// a reject. Returns None if more than `SIDES` coordinates have a part in the reject.
+pub(super) fn corner(target: &Target<'_>, border: Vec<f64>, model: &mut Model<'_>) -> Option<Vec<f64>> {
+    let point = without_idle(target, border, model);
+    let sides: Vec<usize> = (0..point.len()).filter(|&j| point[j] != 0.0).collect();
+    if sides.len() > SIDES {
+        return None;
     }
+    // A point a little beyond the border, because on the border the smallest step ends the reject.
+    let mut point = scaled(&point, 1.0 + 1e-3);
+    for j in sides {
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            let mut moved = point.clone();
+            moved[j] *= middle;
+            if sought(target, std::slice::from_ref(&moved), model)[0] { high = middle } else { low = middle }
+        }
+        point[j] *= high;
+    }
+    Some(point)
 }
 
 /// Evaluations of one step, for a number of variables.
@@ -87,7 +108,8 @@ fn tangent(target: &Target<'_>, at: &[f64], model: &mut Model<'_>) -> Option<Vec
     (distance > 0.0 && distance < FARTHEST).then_some(point)
 }
 
-/// Reject point with all unneeded variables at their means.
+/// Reject point with all unneeded variables at their means. A variable is unneeded if a point without it is a reject no
+/// farther out: the others may take its place.
 fn without_idle(target: &Target<'_>, point: Vec<f64>, model: &mut Model<'_>) -> Vec<f64> {
     let n = point.len();
     let without = |j: usize| {
@@ -96,7 +118,11 @@ fn without_idle(target: &Target<'_>, point: Vec<f64>, model: &mut Model<'_>) -> 
         moved
     };
     // A point a little beyond the border, because on the border the smallest step ends the reject.
-    let beyond = |point: Vec<f64>| scaled(&point, 1.0 + 1e-3);
+    let far = (1.0 + 1e-3) * length(&point);
+    let beyond = |point: Vec<f64>| {
+        let size = length(&point);
+        if size > 0.0 { scaled(&point, far / size) } else { point }
+    };
     let idle = sought(target, &(0..n).map(|j| beyond(without(j))).collect::<Vec<_>>(), model);
     let kept: Vec<f64> = point.iter().zip(&idle).map(|(z, idle)| if *idle { 0.0 } else { *z }).collect();
     let all = beyond(kept);

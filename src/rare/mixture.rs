@@ -52,8 +52,9 @@ const MANY: u64 = 2000;
 const WIDTH: f64 = 1.5;
 /// Greatest number of variables for the wide density: for 12, one point in 130 times the density.
 const FEW_VARIABLES: usize = 12;
-/// Part of a target's points for half-spaces from the model itself, if the surrogate has places too.
-const SHOWN: f64 = 0.3;
+/// Part of a target's points for places from the model itself, if the surrogate has places too: if the surrogate's are
+/// likelier, and if the model's are.
+const SHOWN: [f64; 2] = [0.3, 0.7];
 /// Rows that are drawn and weighted together.
 const ROWS: usize = 512;
 
@@ -66,6 +67,10 @@ enum Component {
     Wide,
     /// Density beyond the shifted limit at a place.
     Beyond { place: usize, shift: f64 },
+    /// Inputs' density moved to a corner.
+    Moved { place: usize },
+    /// Inputs' density beyond a corner in each of its coordinates.
+    Corner { place: usize },
 }
 
 pub(super) struct Mixture<'a> {
@@ -91,6 +96,18 @@ fn edge(crossing: f64, shift: f64) -> f64 {
     (crossing - shift).min(FARTHEST)
 }
 
+impl Place {
+    /// Logarithm of the height of the density beyond a corner.
+    fn corner_height(&self, points: &Columns, row: usize) -> f64 {
+        let height = |(j, sign, distance): (usize, f64, f64)| {
+            let edge = edge(distance, BEFORE);
+            let beyond = sign * points[j][row] > edge;
+            if beyond { -libm::log(standard_normal::sf(edge)) } else { f64::NEG_INFINITY }
+        };
+        self.sides().map(height).sum()
+    }
+}
+
 impl<'a> Mixture<'a> {
     /// Mixture for these targets, which get equal parts, and for about so many points.
     pub(super) fn new(targets: &'a [Target<'a>], places: Vec<Place>, points: u64) -> Self {
@@ -113,18 +130,16 @@ impl<'a> Mixture<'a> {
     /// Distributes a part among the places of a target.
     fn share(&mut self, target: usize, part: f64) {
         let of = |shown: bool| -> Vec<usize> {
-            let mine = |place: &Place| place.target == target && (place.kind == PlaceKind::HalfSpace) == shown;
+            let mine = |place: &Place| place.target == target && place.is_shown() == shown;
             (0..self.places.len()).filter(|&p| mine(&self.places[p])).collect()
         };
         let (known, shown) = (of(false), of(true));
+        let probability = |p: usize| self.places[p].probability();
+        let greatest = |of: &[usize]| of.iter().map(|&p| probability(p)).fold(0.0, f64::max);
         let shown_part = match (known.is_empty(), shown.is_empty()) {
             (_, true) => 0.0,
             (true, false) => 1.0,
-            (false, false) => SHOWN,
-        };
-        let probability = |p: usize| match self.places[p].crossed() {
-            true => standard_normal::sf(self.places[p].distance),
-            false => 0.0,
+            (false, false) => SHOWN[usize::from(greatest(&shown) > greatest(&known))],
         };
         // In proportion to their probabilities, but not less than a tenth of an equal part, because the nearest place
         // need not hold most of the rejects.
@@ -151,6 +166,10 @@ impl<'a> Mixture<'a> {
                 self.components.push(Component::Beyond { place, shift: BEFORE });
                 return self.parts.push(part);
             }
+            PlaceKind::Corner => {
+                self.components.extend([Component::Moved { place }, Component::Corner { place }]);
+                return self.parts.extend([0.5 * part; 2]);
+            }
         };
         for (level, of) in layers {
             if level <= LIKELY && level > 0.0 {
@@ -163,15 +182,29 @@ impl<'a> Mixture<'a> {
 
     /// Number of the components without a place. They are the first ones.
     pub(super) fn without_place(&self) -> usize {
-        self.components.iter().take_while(|component| !matches!(component, Component::Beyond { .. })).count()
+        let without = |component: &&Component| matches!(component, Component::Plain | Component::Wide);
+        self.components.iter().take_while(without).count()
     }
 
-    /// Logarithm of the weight of each point with the first parts.
-    pub(super) fn weights(&self, points: &Columns) -> Vec<f64> {
+    /// Standard deviations of the components without a place, in order.
+    pub(super) fn widths(&self) -> impl Iterator<Item = f64> + use<> {
+        [1.0, WIDTH].into_iter().take(self.without_place())
+    }
+
+    /// Logarithm of the weight that the components of places give each point, with their first parts. It is infinite
+    /// where none of them draws.
+    ///
+    /// The others are left out: far out, the wide density is great at every point, and says nothing about the rejects
+    /// nearer to the means.
+    pub(super) fn place_weights(&self, points: &Columns) -> Vec<f64> {
+        let first = self.without_place();
         let weight = |heights: Vec<f64>| {
-            let highest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            let sum: f64 =
-                self.parts.iter().zip(&heights).map(|(part, height)| part * libm::exp(height - highest)).sum();
+            let highest = heights[first..].iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            if highest == f64::NEG_INFINITY {
+                return f64::INFINITY;
+            }
+            let parts = self.parts[first..].iter().zip(&heights[first..]);
+            let sum: f64 = parts.map(|(part, height)| part * libm::exp(height - highest)).sum();
             -highest - libm::log(sum)
         };
         self.heights(points).into_iter().map(weight).collect()
@@ -209,6 +242,23 @@ impl<'a> Mixture<'a> {
                 columns.iter_mut().flatten().for_each(|z| *z *= WIDTH);
                 return columns;
             }
+            Component::Moved { place } => {
+                let Place { direction, distance, .. } = &self.places[place];
+                for (column, part) in columns.iter_mut().zip(direction) {
+                    column.iter_mut().for_each(|z| *z += part * distance);
+                }
+                return columns;
+            }
+            Component::Corner { place } => {
+                for (j, sign, distance) in self.places[place].sides() {
+                    let beyond = standard_normal::sf(edge(distance, BEFORE));
+                    for z in &mut columns[j] {
+                        let tail = rng.sample::<f64, _>(rand_distr::Open01) * beyond;
+                        *z = sign * standard_normal::upper_quantile(tail);
+                    }
+                }
+                return columns;
+            }
             Component::Beyond { place, shift } => (place, shift),
         };
         let place = &self.places[place];
@@ -239,6 +289,11 @@ impl<'a> Mixture<'a> {
                 let (place, shift) = match *component {
                     Component::Plain => return 0.0,
                     Component::Wide => return self.wide(&part, row),
+                    Component::Moved { place } => {
+                        let distance = self.places[place].distance;
+                        return distance * (crossings[place].along[row] - 0.5 * distance);
+                    }
+                    Component::Corner { place } => return self.places[place].corner_height(&part, row),
                     Component::Beyond { place, shift } => (place, shift),
                 };
                 let Crossing { along, crossing, spread } = &crossings[place];
@@ -270,7 +325,7 @@ impl<'a> Mixture<'a> {
         }
         let crossing = match place.kind {
             PlaceKind::Surrogate => self.secant(place, points, &along_it),
-            PlaceKind::Way | PlaceKind::HalfSpace => vec![place.distance; rows],
+            PlaceKind::Way | PlaceKind::HalfSpace | PlaceKind::Corner => vec![place.distance; rows],
         };
         Crossing { along: along_it, crossing, spread }
     }

@@ -13,13 +13,17 @@
 //! makes the weights unequal and the interval wide. After every stage the parts follow the rejects found so far.
 //!
 //! The surrogate may be wrong in places that it gives no sign of. Before points are drawn, the model is evaluated at
-//! points that vary as the inputs do and up to three times as widely, and beside the model's switches. Rejects among
+//! points that vary as the inputs do and up to four times as widely, and beside the model's switches. Rejects among
 //! them that the surrogate's components do not cover get components of their own: half-spaces at the likeliest point of
-//! the limit near them. So do rejects that the plain and wide points of a stage find away from all places.
+//! the limit near them, or corners of jumps and contacts. So do rejects that the plain and wide points of a stage find
+//! away from all places.
+//!
+//! What no explored point met may still exist. The greatest probability of such a region is in the upper end of the
+//! interval ([`Unmet`]).
 //!
 //! Places are of no use if rejects lie all around the means in many variables. If the interval of the weighted points
-//! is wider than that of as many plain ones, the remaining points are plain, and they alone make the estimate
-//! (`plain`). The result is never much worse than that of plain sampling.
+//! is wider than that of as many plain ones, or their weights are degenerate, the remaining points are plain, and they
+//! alone make the estimate (`plain`). The result is never much worse than that of plain sampling.
 
 mod design_point;
 mod estimate;
@@ -32,6 +36,7 @@ mod model;
 mod plain_points;
 mod search;
 mod target;
+mod unmet;
 mod warnings;
 mod yield_estimate;
 
@@ -60,6 +65,7 @@ use crate::rare::exploration::Explored;
 use model::Model;
 use search::Search;
 use target::Target;
+pub use unmet::Unmet;
 
 /// Options of a search for rare events.
 #[derive(Debug, Clone, PartialEq)]
@@ -191,7 +197,7 @@ pub struct RareCharacteristic {
 pub struct Beyond {
     /// Limit as it was given.
     pub limit: f64,
-    /// Probability beyond the limit. None if no point lies there. The interval is then a bound, for a half-space that
+    /// Probability beyond the limit. None if no point lies there. The interval is then a bound, for a corner that
     /// none of the explored points met.
     #[serde(flatten, serialize_with = "through::<crate::rare::json::ProbabilityShape, _, _>")]
     #[cfg_attr(feature = "schema", schemars(with = "crate::rare::json::ProbabilityShape"))]
@@ -212,6 +218,9 @@ pub struct Beyond {
     pub plain_samples: Option<f64>,
     /// Most likely assembly at the limit, from the surrogate and from rejects of the model. None if none is known.
     pub design_point: Option<DesignPoint>,
+    /// Bound of the probability of rejects that no point met. None if plain points make the estimate, whose interval
+    /// has it already, and if no explored point has a value.
+    pub unmet: Option<Unmet>,
     /// Number of plain points that make the estimate, if importance sampling was worse. It is reported as a warning.
     #[serde(skip)]
     pub plain_points: Option<u64>,
@@ -274,7 +283,8 @@ const LEARNING: u64 = 2;
 /// Estimates the probability beyond every limit.
 ///
 /// Cost: the evaluations of the surrogate's method, and the points asked for. Accuracy: standard errors and 95 %
-/// intervals. With a good surrogate some hundred points give a probability near 3e-6 to 5 %.
+/// intervals. With a good surrogate some hundred points give a probability near 3e-6 to 5 %. The upper end of the
+/// interval has what they cannot exclude ([`Unmet`]): some thousand points exclude a corner of three dimensions.
 ///
 /// # Errors
 /// When no characteristic has a limit, a dimension cannot be sampled, or there is no surrogate.
@@ -286,7 +296,7 @@ const LEARNING: u64 = 2;
 /// let limits = SpecLimits::new(None, Some(5.75))?; // 4.5 sigma
 /// let gap = Problem::new(dimensions, Closure::scalar("gap", |x| x[0] - x[1]))?
 ///     .asking([Characteristic::new("gap").with_limits(limits)])?;
-/// let found = rare(&gap, &RareOptions::default().with_samples(400))?;
+/// let found = rare(&gap, &RareOptions::default().with_samples(4000))?;
 /// let [low, high] = found.characteristics[0].above.as_ref().unwrap().interval;
 /// assert!(low < 3.3977e-6 && 3.3977e-6 < high && high < 1.3 * low);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -349,7 +359,7 @@ fn sought(
     // Points all over the inputs find rejects that the surrogate does not predict.
     if !targets.is_empty() {
         let explored = Explored::new(&targets, &search.reached(), options.samples, !options.seed, &mut model);
-        search.learn(&explored, (options.samples / 10) as usize, &mut model);
+        search.learn(&explored, (options.samples / 6) as usize, &mut model);
     }
     let nothing_to_draw = surrogates.outcome.evaluated.stopped().is_some() || targets.is_empty();
     let mut sampled = SampledStages { problem, options, run, begun, model, search, reached: None };

@@ -3,17 +3,17 @@
 use crate::estimate::Columns;
 use crate::estimate::strata::dot;
 use crate::problem::Problem;
-use crate::rare::design_point::{FAINT, Place, PlaceKind, unit};
+use crate::rare::design_point::{FAINT, Place, unit};
 use crate::rare::estimate::{ProbabilityEstimate, Weighed, best_parts};
 use crate::rare::exploration::Explored;
 use crate::rare::mixture::Mixture;
 use crate::rare::model::{Answers, Model};
 use crate::rare::plain_points::{PlainPoints, SurrogateShare};
 use crate::rare::target::Target;
+use crate::rare::unmet::Group;
 use crate::rare::yield_estimate::within;
 use crate::rare::{Beyond, DesignPoint, RareCharacteristic, correct, limit_point as border};
 use sensitol_numeric::characteristic::Characteristic;
-use sensitol_numeric::distribution::standard_normal;
 use sensitol_numeric::sampling::Estimate;
 
 /// Most rejects that are kept to choose the parts of the components.
@@ -37,6 +37,9 @@ const ALIKE: f64 = 0.97;
 const STRAYED: f64 = 0.05;
 /// Least part of a component without a place, relative to its first.
 const WATCHING: f64 = 0.5;
+/// Number of effective points below which weights are degenerate in many variables: the few heavy points decide, and
+/// the interval does not show it.
+const DEGENERATE: f64 = 8.0;
 /// Number of variables above which places are judged after the first stage, because points drawn there seldom matter.
 const MANY_VARIABLES: usize = 30;
 
@@ -110,13 +113,20 @@ impl<'a> Search<'a> {
         let mut found = Vec::new();
         let each = budget / self.targets.len().max(1);
         for (index, target) in self.targets.iter().enumerate() {
-            self.weighed[index].bound(explored.bound(target));
             self.plain[index] = explored.plain(target);
             let guards = self.guards(index, each, model);
             self.take(guards);
             found.extend(self.half_spaces(index, &explored.rejects(target), each, model));
         }
         self.take(found);
+        let weights = self.mixture.place_weights(explored.normals());
+        for (index, target) in self.targets.iter().enumerate() {
+            let mine = |place: &&Place| place.target == index && place.crossed();
+            let places: Vec<&Place> = self.mixture.places().iter().filter(mine).collect();
+            let probability: f64 = places.iter().map(|place| place.probability()).sum();
+            let dense: Vec<bool> = weights.iter().map(|&weight| weight <= libm::log(DENSE * probability)).collect();
+            self.weighed[index].bound(explored.unmet(target, &places, &dense));
+        }
     }
 
     /// Half-spaces in case the surrogate is wrong about the limit.
@@ -142,11 +152,11 @@ impl<'a> Search<'a> {
         let held = |found: &[Place], point: &[f64]| {
             mine().any(|place| place.holds(point)) || found.iter().any(|place| place.holds(point))
         };
-        let room = HALF_SPACES.saturating_sub(mine().filter(|place| place.kind == PlaceKind::HalfSpace).count());
-        let mut probability: f64 = mine().map(|place| standard_normal::sf(place.distance)).sum();
+        let room = HALF_SPACES.saturating_sub(mine().filter(|place| place.is_shown()).count());
+        let mut probability: f64 = mine().map(Place::probability).sum();
         let columns = (0..model.space.len()).map(|j| rejects.iter().map(|point| point[j]).collect()).collect();
-        let weights = self.mixture.weights(&columns);
-        let cost = border::cost(model.space.len()) as u64;
+        let weights = self.mixture.place_weights(&columns);
+        let [cost, corner_cost] = [border::cost, border::corner_cost].map(|cost| cost(model.space.len()) as u64);
         let mut found: Vec<Place> = Vec::new();
         for (reject, weight) in rejects.iter().zip(weights) {
             let known =
@@ -155,23 +165,35 @@ impl<'a> Search<'a> {
             if dense || held(&found, reject) {
                 continue;
             }
-            if found.len() >= room || model.answered + cost > allowed {
+            if found.len() >= room || model.answered + corner_cost > allowed {
                 break;
             }
             let point = border::bisected(target, reject, model);
-            // A place that is a thousand times less likely adds nothing.
-            let faint = Place::half_space(index, &point)
-                .is_none_or(|place| standard_normal::sf(place.distance) < FAINT * probability);
-            if faint || held(&found, &point) {
+            if held(&found, &point) {
                 continue;
             }
-            let point = border::nearest(target, point, model);
-            if let Some(place) = Place::half_space(index, &point) {
-                probability += standard_normal::sf(place.distance);
-                found.push(place);
-            }
+            let steps = if model.answered + cost <= allowed { border::STEPS } else { 0 };
+            let place = self.shown(index, point, steps, model);
+            // A place that is a thousand times less likely adds nothing. The border on the way to a wide point says
+            // little about that, because in many variables it lies far beyond the likeliest point.
+            let place = place.filter(|place| place.probability() >= FAINT * probability);
+            probability += place.as_ref().map_or(0.0, Place::probability);
+            found.extend(place);
         }
         found
+    }
+
+    /// Place of the rejects near a point of the limit. A smooth limit has slopes that lead to its likeliest point. A
+    /// jump or a kink has a corner.
+    fn shown(&self, index: usize, point: Vec<f64>, steps: usize, model: &mut Model<'_>) -> Option<Place> {
+        let target = &self.targets[index];
+        if let Some(nearest) = border::stepped(target, &point, steps, model) {
+            return Place::half_space(index, &nearest);
+        }
+        match border::corner(target, point.clone(), model) {
+            Some(corner) => Place::corner(index, &corner),
+            None => Place::half_space(index, &point),
+        }
     }
 
     fn take(&mut self, more: Vec<Place>) {
@@ -206,7 +228,8 @@ impl<'a> Search<'a> {
         for (falls_back, weighed) in self.falls_back.iter_mut().zip(&self.weighed) {
             let Some(found) = weighed.found() else { continue };
             let value = found.probability.map_or(0.0, |probability| probability.value);
-            *falls_back |= found.interval[1] - found.interval[0] > PlainPoints::width(evaluated as f64, value);
+            *falls_back |= found.interval[1] - found.interval[0] > PlainPoints::width(evaluated as f64, value)
+                || found.effective < DEGENERATE;
         }
     }
 
@@ -372,6 +395,10 @@ impl<'a> Search<'a> {
             let beyond = |row: usize| answers.value(row, target.characteristic).map(|value| target.sought(value));
             let points = rows.iter().zip(&weights).map(|(&row, &weight)| (drawn.from[row], weight, beyond(row)));
             weighed.add(self.mixture.len(), &points.collect::<Vec<_>>());
+            for (component, scale) in self.mixture.widths().enumerate() {
+                let valued = rows.iter().filter(|&&row| drawn.from[row] == component && beyond(row).is_some());
+                weighed.watch(Group { scale, points: valued.count() as u64 });
+            }
             let hits = rows.iter().zip(&weights).filter(|&(&row, _)| beyond(row) == Some(true));
             let room = GUIDES.saturating_sub(guides.len());
             guides.extend(
@@ -408,8 +435,14 @@ impl<'a> Search<'a> {
         let ends = |one: &Characteristic| [one.limits().lower(), one.limits().upper()].iter().flatten().count();
         let limits: usize = problem.characteristics().iter().map(ends).sum();
         let joint = self.joint.as_ref().filter(|_| limits == self.targets.len())?;
-        let found = if self.falls_back.contains(&true) { self.plain_joint.found(None)? } else { joint.found()? };
-        let [low, high] = [found.interval[0], found.interval[1].max(found.bounds[1])];
+        let falls_back = self.falls_back.contains(&true);
+        let found = if falls_back { self.plain_joint.found(None)? } else { joint.found()? };
+        // Every characteristic may have a region that no point met.
+        let unmet = self.weighed.iter().filter_map(|weighed| weighed.unmet()).map(|unmet| unmet.most);
+        let unmet = if falls_back { 0.0 } else { unmet.fold(0.0, libm::hypot) };
+        let value = found.probability.map_or(0.0, |found| found.value);
+        let high = (value + libm::hypot(found.interval[1] - value, unmet)).min(1.0);
+        let [low, high] = [found.interval[0], high.max(found.bounds[1])];
         Some((found.probability.map(|found| 1.0 - found.value), [1.0 - high, 1.0 - low]))
     }
 
@@ -441,6 +474,7 @@ impl<'a> Search<'a> {
                 greatest_part: found.greatest_part,
                 plain_samples: found.probability.and_then(plain),
                 design_point,
+                unmet: self.weighed[index].unmet().filter(|_| !self.falls_back[index]),
                 plain_points: self.falls_back[index].then(|| self.plain[index].count()),
             })
         };

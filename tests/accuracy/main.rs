@@ -8,4 +8,6 @@ mod published;
 mod published_figures;
 mod quantiles;
 mod rare_coverage;
+mod rare_judges;
+mod rare_unmet;
 mod trust;

@@ -127,7 +127,7 @@ fn samples_are_all_in_their_reports() {
     complete!(above, found.characteristics[0].above.as_ref().unwrap() => Beyond {
         limit: "/limit", probability: "/probability", interval: "/interval", bounds: "/bounds", hits: "/hits",
         effective_samples: "/effective_samples", greatest_part: "/greatest_part", plain_samples: "/plain_samples",
-        design_point: "/design_point", plain_points: "",
+        design_point: "/design_point", unmet: "/unmet", plain_points: "",
     });
 }
 

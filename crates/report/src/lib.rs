@@ -19,6 +19,7 @@ mod labels;
 mod output_correlation;
 mod overview;
 mod rare;
+mod reject_rate;
 mod requirement;
 mod sampling;
 mod simulation;

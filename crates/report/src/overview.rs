@@ -4,6 +4,7 @@ use crate::document::number::{estimated, index, known, yielded};
 use crate::document::rejects::Rejects;
 use crate::document::{Cell, Columns, DataTable, Line, Value};
 use crate::figures::Named;
+use crate::reject_rate::yield_text;
 use crate::requirement::loud;
 use sensitol::rare::RareCharacteristic;
 use sensitol::simulation::SimulatedCharacteristic;
@@ -51,7 +52,7 @@ impl<'r> OverviewLine<'r> {
             mean: String::new(),
             sigma: String::new(),
             cpk: None,
-            yield_: one.yield_.map_or_else(String::new, |share| format!("{}{interval}", yielded(share))),
+            yield_: one.yield_.map_or_else(String::new, |_| format!("{}{interval}", yield_text(one))),
             verdict: verdict(&one.requirements()),
         }
     }

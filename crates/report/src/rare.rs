@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::document::number::{known, plain, short, significant, yielded};
+use crate::document::number::{UNKNOWN, known, plain, short, significant, yielded};
 use crate::document::{Blocks, Cell, Columns, DataTable, Document, Element, Line, Section, Value};
 use crate::figures::Named;
 use crate::head;
@@ -10,11 +10,12 @@ use crate::head::seed;
 use crate::output_correlation::all_limits;
 use crate::overview as glance;
 use crate::overview::OverviewLine;
+use crate::reject_rate::{rejects, yield_text};
 use crate::requirement::{judged, lines};
 use crate::sampling::samples;
 use crate::{About, DimensionReport, Head, WarningReport, correlation};
 use sensitol::problem::Problem;
-use sensitol::rare::{Beyond, DesignPoint, RareCharacteristic, RareEvents};
+use sensitol::rare::{Beyond, DesignPoint, RareCharacteristic, RareEvents, Unmet};
 use sensitol_numeric::correlation::Pair;
 use sensitol_numeric::sampling::Estimate;
 
@@ -111,12 +112,22 @@ impl RareSection for RareCharacteristic {
         if let Some([low, high]) = self.yield_interval {
             let interval = format!("95 % interval {} to {}", yielded(low), yielded(high));
             let target = judged(self.target(), self.verdict());
-            section.note(Line::from(format!("yield {}, {interval}", known(self.yield_, yielded))).and(target));
+            section.note(Line::from(format!("yield {}, {interval}", yield_text(self))).and(target));
         }
         if let Some(measured) = &self.sampling {
             section.note(format!("the interval includes what {} leave open", samples(measured)));
         }
         lines(self.requirements()).for_each(|line| section.note(line));
+        for (side, of) in &sides {
+            if let Some(Unmet { most, points, directions, .. }) = of.unmet {
+                let dimensions =
+                    if directions == 1 { "a dimension".to_owned() } else { format!("up to {directions} dimensions") };
+                section.note(format!(
+                    "{side}: up to {} ppm may lie where no point was, where {dimensions} must be off at once ({points} points)",
+                    significant(1e6 * most, 2)
+                ));
+            }
+        }
         for (side, of) in sides {
             if let Some(point) = &of.design_point {
                 section.note(format!("most likely {side}, in sigmas off the means: {}", farthest(point, dimensions)));
@@ -127,23 +138,24 @@ impl RareSection for RareCharacteristic {
 
     fn table(&self, sides: &[Side<'_>]) -> DataTable {
         let limit = |(side, of): &Side<'_>| Cell::both(Value::Empty, format!("{side} {}", plain(of.limit)));
-        let millionths =
-            |value: Option<f64>, digits: usize| Cell::number(value, |value| significant(1e6 * value, digits));
         Columns::default()
             .data("characteristic", |_| Cell::text(self.name()))
             .data("unit", |_| Cell::optional(self.unit()))
             .data("side", |row: &Side<'_>| Cell::text(row.0))
             .shown("", limit)
             .data("limit", |row| Cell::data(row.1.limit))
-            .column("probability", "ppm", move |row| {
-                millionths(row.1.probability.map(|found: Estimate| found.value), 4)
+            .column("probability", "ppm", |row| {
+                let value = row.1.probability.map(|found: Estimate| found.value);
+                Cell::both(Value::Number(value), value.map_or(UNKNOWN.to_owned(), |_| rejects(row.1, 4)))
             })
-            .column("standard_error", "standard error", move |row| {
-                millionths(row.1.probability.and_then(|found| found.standard_error), 2)
+            .column("standard_error", "standard error", |row| {
+                let error = row.1.probability.and_then(|found| found.standard_error);
+                Cell::number(error, |error| significant(1e6 * error, 2))
             })
             .column("interval_low", "95 % interval", |row| Cell::number(row.1.interval[0], ppm))
             .named("interval_high", "to", |row| Cell::number(row.1.interval[1], ppm))
             .column("hits", "points there", |row| Cell::count(row.1.hits))
+            .data("unmet", |row| Cell::data(row.1.unmet.map(|unmet| unmet.most)))
             .data("effective_samples", |row| Cell::data(row.1.effective_samples))
             .column("plain_samples", "plain sampling", |row| {
                 Cell::number(row.1.plain_samples, |samples| significant(samples, 2))

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use crate::document::number::{beside, estimated, percent, plain, significant, uncertainty, yielded};
 use crate::document::svg::escaped;
 use crate::figures::{Figures, Named};
+use crate::reject_rate::rejects;
 use sensitol::analysis::CharacteristicAnalysis;
 use sensitol::rare::RareCharacteristic;
 use sensitol::simulation::SimulatedCharacteristic;
@@ -128,12 +129,11 @@ pub(super) fn simulated(one: &SimulatedCharacteristic) -> Vec<Row> {
 pub(super) fn sought(one: &RareCharacteristic) -> Vec<Row> {
     let side = |(figure, of): (&'static str, Option<&sensitol::rare::Beyond>)| {
         let of = of?;
-        let ppm = |value: f64| significant(1e6 * value, 3);
         let error = of.probability.and_then(|found| Some((found.value, found.standard_error?)));
         Some(Row {
             characteristic: one.name().to_owned(),
             figure,
-            value: of.probability.map_or_else(|| format!("< {}", ppm(of.interval[1])), |found| ppm(found.value)),
+            value: rejects(of, 3),
             error: error.map_or("unknown".to_owned(), |(value, error)| {
                 format!("± {}, {} % of it", significant(1e6 * error, 2), percent(error / value))
             }),

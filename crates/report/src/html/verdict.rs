@@ -11,6 +11,7 @@ use crate::document::number::{index, plain, plural, significant, yielded};
 use crate::document::rejects::Rejects;
 use crate::document::svg::escaped;
 use crate::figures::{Figures, Named};
+use crate::reject_rate::{rejects, yield_text};
 use crate::sweep::{SweptPointReport, SweptReport};
 use sensitol::analysis::CharacteristicAnalysis;
 use sensitol::rare::{Beyond, RareCharacteristic};
@@ -18,7 +19,7 @@ use sensitol::simulation::{SimulatedCharacteristic, YieldEstimate};
 use sensitol_numeric::capability::Capability;
 use sensitol_numeric::json_form::finite;
 use sensitol_numeric::requirement::Requirement;
-use sensitol_numeric::sampling::{Estimate, one_error};
+use sensitol_numeric::sampling::one_error;
 use sensitol_numeric::verdict::{Judged, Verdict};
 
 /// Most claims of one kind in the sentence.
@@ -159,14 +160,16 @@ impl<'r> JudgedCharacteristic<'r> {
     pub(super) fn rare(place: usize, one: &'r RareCharacteristic) -> Self {
         let value = |of: &Option<Beyond>| Some(of.as_ref()?.probability?.value);
         let sides = [("below", &one.below), ("above", &one.above)];
-        let known = sides.iter().all(|(_, of)| of.as_ref().is_none_or(|of| of.probability.is_some()));
+        let is_known =
+            |of: &Beyond| of.probability.is_some_and(|found| of.unmet.is_none_or(|unmet| unmet.most < found.value));
+        let known = sides.iter().all(|(_, of)| of.as_ref().is_none_or(is_known));
         let all: f64 = sides.iter().filter_map(|(_, of)| value(of)).sum();
         Self {
             verdict: one.verdict(),
             asked: asked(one.requirements()),
             yield_: one.yield_,
             interval: one.yield_interval,
-            yield_text: one.yield_.map(yielded),
+            yield_text: one.yield_.map(|_| yield_text(one)),
             all_ppm: (known && one.limited()).then(|| significant(1e6 * all, 3)),
             ppm: [&one.below, &one.above].map(|of| value(of).map(|share| 1e6 * share)),
             sides: sides.into_iter().filter_map(|(side, of)| Some(beyond(side, of.as_ref()?))).collect(),
@@ -228,10 +231,7 @@ impl<'r> JudgedCharacteristic<'r> {
 
 /// Formats the rejects on one side, or their bound.
 fn beyond(side: &str, of: &Beyond) -> String {
-    match of.probability {
-        Some(Estimate { value, .. }) => format!("{} ppm {side}", significant(1e6 * value, 3)),
-        None => format!("< {} ppm {side}", significant(1e6 * of.interval[1], 2)),
-    }
+    format!("{} ppm {side}", rejects(of, 3))
 }
 
 /// Returns all requirements except the target yield.
