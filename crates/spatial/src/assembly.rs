@@ -85,7 +85,7 @@ pub struct Feature {
 
 /// A part: a rigid body with features.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Part {
+pub struct RigidPart {
     /// Name of the part.
     pub name: String,
     /// True if the part stands still.
@@ -138,7 +138,7 @@ pub enum JointKind {
 
 /// A joint of two features.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Joint {
+pub struct PartJoint {
     /// Name of the joint.
     pub name: String,
     /// Kind of the joint.
@@ -157,7 +157,7 @@ pub struct Joint {
 
 /// A coordinate of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Coordinate {
+pub enum FrameAxis {
     /// The first direction.
     X,
     /// The second direction.
@@ -172,7 +172,7 @@ pub enum MeasureKind {
     /// Distance of a feature: along the normal of a plane, across an axis, from a point.
     Distance,
     /// A coordinate of a feature in the frame of the other.
-    Along(Coordinate),
+    Along(FrameAxis),
     /// Angle in radians of two directions, or of an axis above a plane.
     Angle,
     /// Distance less the radii of both features.
@@ -198,11 +198,13 @@ pub struct Measure {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Assembly {
     /// Parts of the assembly.
-    pub parts: Vec<Part>,
+    pub parts: Vec<RigidPart>,
     /// Joints, in the order of assembly.
-    pub joints: Vec<Joint>,
+    pub joints: Vec<PartJoint>,
     /// Measures.
     pub measures: Vec<Measure>,
+    /// Unit that a constant length needs in a formula; None if it needs none.
+    pub length_unit: Option<String>,
 }
 
 impl Assembly {

@@ -6,7 +6,7 @@ use crate::assembly::{Assembly, FeatureId, FeatureKind, JointKind, Quantity};
 use crate::closure::{Closure, constant_rotation};
 use crate::error::SpatialError;
 use crate::expression::Expression;
-use crate::joint::{JointNumbers, equations};
+use crate::joint::{Holds, JointNumbers, equations};
 use crate::measure::measured;
 use crate::mobility::{FreeMotion, Mobility};
 use crate::number::Number;
@@ -33,6 +33,8 @@ pub struct NamedFormula {
     pub name: String,
     /// Text of the formula.
     pub formula: String,
+    /// True if its value is a length.
+    pub is_length: bool,
 }
 
 /// Pose of a part at the nominal dimensions.
@@ -67,6 +69,14 @@ pub struct ClosedAssembly {
 const FAR: f64 = 1.6;
 
 impl Assembly {
+    /// A constant length in a formula.
+    fn length(&self, value: f64) -> Expression {
+        match &self.length_unit {
+            Some(unit) if value != 0.0 => Expression::length(value, unit),
+            _ => Expression::constant(value),
+        }
+    }
+
     /// Closes the joints at the nominal dimensions, and writes the assembly as equations. Needs no evaluation of a study.
     ///
     /// The poses are unknowns: a half-angle vector of the rotation from the start (Rodrigues, 1840), which is rational, and the place of the
@@ -77,7 +87,7 @@ impl Assembly {
     /// joint stops.
     ///
     /// ```
-    /// use sensitol_spatial::{Assembly, Direction, Feature, FeatureId, FeatureKind, Joint, JointKind, Measure, MeasureKind, Part, Quantity};
+    /// use sensitol_spatial::{Assembly, Direction, Feature, FeatureId, FeatureKind, PartJoint, JointKind, Measure, MeasureKind, RigidPart, Quantity};
     /// let plane = |name: &str, height: f64, up: f64| Feature {
     ///     name: name.into(),
     ///     kind: FeatureKind::Plane,
@@ -88,17 +98,18 @@ impl Assembly {
     ///     shift: None,
     ///     tilt: None,
     /// };
-    /// let part = |name: &str, ground, features| Part { name: name.into(), ground, at: [0.0; 3], turned: [0.0; 3], features };
+    /// let part = |name: &str, ground, features| RigidPart { name: name.into(), ground, at: [0.0; 3], turned: [0.0; 3], features };
     /// let id = |part, feature| FeatureId { part, feature };
     /// let assembly = Assembly {
     ///     parts: vec![
     ///         part("table", true, vec![plane("top", 0.0, 1.0)]),
     ///         part("block", false, vec![plane("bottom", 0.0, -1.0), plane("lid", 25.0, 1.0)]),
     ///     ],
-    ///     joints: vec![Joint {
+    ///     joints: vec![PartJoint {
     ///         name: "seat".into(), kind: JointKind::Contact, between: [id(0, 0), id(1, 0)],
     ///         takes: None, value: None, offset: None, side_by_side: false,
     ///     }],
+    ///     length_unit: None,
     ///     measures: vec![Measure { name: "height".into(), kind: MeasureKind::Distance, between: [id(1, 1), id(0, 0)] }],
     /// };
     /// let closed = assembly.close()?;
@@ -228,7 +239,8 @@ impl<'a> Writer<'a> {
     fn pose(&mut self, part: usize) -> Pose<Expression> {
         let place = self.closure.places[part];
         if self.assembly.parts[part].ground {
-            return Pose::still(&place);
+            let translation = Vector(place.translation.map(|at| self.assembly.length(at)));
+            return Pose { translation, ..Pose::still(&place) };
         }
         let name = &self.assembly.parts[part].name;
         // The start that the study gives has simple numbers. It serves unless the part has turned far from it.
@@ -258,19 +270,19 @@ impl<'a> Writer<'a> {
             row.map(|entry| {
                 let place = format!("{name}.r{}{}", number / 3 + 1, number % 3 + 1);
                 number += 1;
-                self.named(place, part, entry)
+                self.named(place, (part, false), entry)
             })
         });
         Pose { rotation: Some(rows), start, translation }
     }
 
     /// Gives a long formula a name, so that it is evaluated once.
-    fn named(&mut self, name: String, part: usize, formula: &Expression) -> Expression {
+    fn named(&mut self, name: String, (part, is_length): (usize, bool), formula: &Expression) -> Expression {
         if formula.is_short() {
             return formula.clone();
         }
         let short = Expression::name(&name, formula.value());
-        self.formulas.push((NamedFormula { name, formula: formula.text() }, part));
+        self.formulas.push((NamedFormula { name, formula: formula.text(), is_length }, part));
         short
     }
 
@@ -288,7 +300,7 @@ impl<'a> Writer<'a> {
             vector.map(|part| {
                 let name = format!("{name}.{what}{}", letters[place]);
                 place += 1;
-                self.named(name, id.part, part)
+                self.named(name, (id.part, what == "p"), part)
             })
         };
         let origin = vector("p", &placed.origin);
@@ -311,14 +323,17 @@ impl<'a> Writer<'a> {
             let all = equations(joint, kinds, [&a, &b], &numbers);
             for &place in &self.closure.used[index] {
                 let name = format!("{}: {}", joint.name, all[place].name);
-                lines.push((NamedFormula { name, formula: all[place].residual.text() }, Some(index)));
+                let is_length = all[place].holds == Holds::Distance;
+                let formula = all[place].residual.text();
+                lines.push((NamedFormula { name, formula, is_length }, Some(index)));
             }
         }
         debug_assert!(lines.len() + motions.len() == self.unknowns.len());
         let equations = lines.len();
         for motion in motions {
             let name = format!("free: {}", motion.text);
-            lines.push((NamedFormula { name, formula: self.held(&motion.vector).text() }, None));
+            let formula = self.held(&motion.vector).text();
+            lines.push((NamedFormula { name, formula, is_length: false }, None));
         }
         let mut measures = Vec::new();
         for measure in &self.assembly.measures {
@@ -329,7 +344,8 @@ impl<'a> Writer<'a> {
         let texts: Vec<&str> =
             lines.iter().map(|(line, _)| line.formula.as_str()).chain(measures.iter().map(String::as_str)).collect();
         let formulas = needed(self.formulas, &texts);
-        let poses = (self.closure.places.iter().zip(&self.assembly.parts)).map(|(place, part)| part_pose(place, &part.name));
+        let poses =
+            (self.closure.places.iter().zip(&self.assembly.parts)).map(|(place, part)| part_pose(place, &part.name));
         ClosedAssembly {
             mobility: Mobility {
                 parts: self.assembly.parts.len(),
@@ -350,10 +366,18 @@ impl<'a> Writer<'a> {
     fn held(&self, vector: &[f64]) -> Expression {
         let mut sum = Expression::constant(0.0);
         for (index, unknown) in self.unknowns.iter().enumerate().filter(|&(index, _)| vector[index].abs() > 1e-12) {
-            let moved = Expression::name(&unknown.name, unknown.start).minus(&Expression::constant(unknown.start));
+            let start = if unknown.is_length {
+                self.assembly.length(unknown.start)
+            } else {
+                Expression::constant(unknown.start)
+            };
+            let moved = Expression::name(&unknown.name, unknown.start).minus(&start);
             // A displacement counts in units of the size, a half-angle vector twice.
-            let factor = if unknown.is_length { 1.0 / self.closure.size } else { 2.0 };
-            sum = sum.plus(&Expression::constant(vector[index] * factor).times(&moved));
+            let moved = match unknown.is_length {
+                true => moved.over(&self.assembly.length(self.closure.size)),
+                false => Expression::constant(2.0).times(&moved),
+            };
+            sum = sum.plus(&Expression::constant(vector[index]).times(&moved));
         }
         sum
     }

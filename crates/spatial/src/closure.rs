@@ -51,7 +51,7 @@ pub(crate) struct Linear {
 
 impl<'a> Closure<'a> {
     pub(crate) fn new(assembly: &'a Assembly) -> Self {
-        let start = |part: &crate::assembly::Part| Place {
+        let start = |part: &crate::assembly::RigidPart| Place {
             rotation: constant_rotation(part.turned),
             translation: part.at,
         };
@@ -91,8 +91,7 @@ impl<'a> Closure<'a> {
         let [a, b] = joint.between.map(|id| self.placed(poses, id));
         let value = |quantity: &Option<Quantity>| quantity.as_ref().map_or(0.0, |quantity| quantity.value);
         let offset = joint.offset.as_ref().map_or([0.0; 2], |offset| offset.each_ref().map(|part| part.value));
-        let numbers =
-            JointNumbers { value: Dual::constant(value(&joint.value)), offset: offset.map(Dual::constant) };
+        let numbers = JointNumbers { value: Dual::constant(value(&joint.value)), offset: offset.map(Dual::constant) };
         equations(joint, kinds, [&a, &b], &numbers)
     }
 
@@ -263,7 +262,9 @@ pub(crate) fn norm(vector: &[f64]) -> f64 {
 }
 
 fn largest(residuals: &[f64]) -> f64 {
-    residuals.iter().fold(0.0, |largest, residual| if residual.is_nan() { f64::INFINITY } else { largest.max(residual.abs()) })
+    residuals
+        .iter()
+        .fold(0.0, |largest, residual| if residual.is_nan() { f64::INFINITY } else { largest.max(residual.abs()) })
 }
 
 /// Part of a row outside the span of orthonormal rows.

@@ -45,7 +45,7 @@ pub enum SpatialError {
         joint: String,
         /// Index of the joint.
         index: usize,
-        /// What the features belong to.
+        /// Owner of the features.
         what: String,
     },
     /// A number of freedoms that the joint cannot take.

@@ -16,7 +16,7 @@ enum Form {
     Text(String, Binding),
 }
 
-/// How tightly the outermost operation of a formula binds.
+/// Binding strength of the outermost operation of a formula.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Binding {
     Sum,
@@ -34,6 +34,13 @@ impl Expression {
         Self { value, form }
     }
 
+    /// A constant length with its unit.
+    pub(crate) fn length(value: f64, unit: &str) -> Self {
+        let text = format!("{}[{unit}]", number(value.abs()));
+        let text = if value < 0.0 { format!("-{text}") } else { text };
+        Self { value, form: Form::Text(text, Binding::Product) }
+    }
+
     /// A name in backquotes, with its value.
     pub(crate) fn name(name: &str, value: f64) -> Self {
         Self { value, form: Form::Text(format!("`{name}`"), Binding::Whole) }
@@ -46,7 +53,10 @@ impl Expression {
             Form::Text(text, _) => {
                 let name = text.strip_prefix('-').unwrap_or(text);
                 let quoted = name.strip_prefix('`').and_then(|rest| rest.strip_suffix('`'));
-                quoted.unwrap_or(name).chars().all(|c| c.is_alphanumeric() || c == '_' || (quoted.is_some() && c == '.'))
+                quoted
+                    .unwrap_or(name)
+                    .chars()
+                    .all(|c| c.is_alphanumeric() || c == '_' || (quoted.is_some() && c == '.'))
             }
         }
     }

@@ -1,10 +1,11 @@
 //! Equations of the joints, by kind.
 
-use crate::assembly::{FeatureKind, Joint, JointKind};
+use crate::assembly::{FeatureKind, JointKind, PartJoint};
 use crate::number::Number;
 use crate::placement::PlacedFeature;
+use crate::vector::Vector;
 
-/// What an equation holds.
+/// Quantity that an equation holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Holds {
     /// A direction; the residual has no unit.
@@ -82,98 +83,96 @@ pub(crate) struct JointNumbers<S> {
 
 /// All equations that a joint of these features has: directions first.
 pub(crate) fn equations<S: Number>(
-    joint: &Joint,
+    joint: &PartJoint,
     kinds: [FeatureKind; 2],
     [a, b]: [&PlacedFeature<S>; 2],
     numbers: &JointNumbers<S>,
 ) -> Vec<Equation<S>> {
     let across = b.origin.minus(&a.origin);
     let [x, y, z] = &a.axes;
-    let direction = |name, residual| Equation { name, holds: Holds::Direction, residual };
-    let distance = |name, residual| Equation { name, holds: Holds::Distance, residual };
     let tilts = || vec![direction("tilt about y", x.dot(&b.axes[2])), direction("tilt about x", y.dot(&b.axes[2]))];
+    let turn = || direction("turn about z", x.dot(&b.axes[1]));
     let offsets = || vec![distance("offset along x", across.dot(x)), distance("offset along y", across.dot(y))];
+    let along = || distance("offset along z", across.dot(z));
     match joint.kind {
         JointKind::Contact => {
-            let off = across.dot(z).minus(&b.radius).minus(&numbers.value);
             let mut all = match kinds[1] {
                 Plane => tilts(),
                 Axis => vec![direction("tilt", z.dot(&b.axes[2]))],
                 Point | Frame => Vec::new(),
             };
-            all.push(distance("distance", off));
+            all.push(distance("distance", across.dot(z).minus(&b.radius).minus(&numbers.value)));
             all
         }
         JointKind::Pin => {
-            // Where the axis of the pin passes the middle of the hole.
-            let forward = across.dot(z).over(&b.axes[2].dot(z));
-            let passes = across.minus(&b.axes[2].scaled(&forward));
+            let passes = passing([a, b]);
             let mut all = tilts();
             all.push(distance("offset along x", passes.dot(x).minus(&numbers.offset[0])));
             all.push(distance("offset along y", passes.dot(y).minus(&numbers.offset[1])));
             all
         }
-        JointKind::Slot => {
-            let forward = across.dot(z).over(&b.axes[2].dot(z));
-            let passes = across.minus(&b.axes[2].scaled(&forward));
-            vec![
-                direction("tilt across the slot", y.dot(&b.axes[2])),
-                distance("offset across the slot", passes.dot(y).minus(&numbers.value)),
-            ]
-        }
-        JointKind::Ball => {
-            let mut all = offsets();
-            all.push(distance("offset along z", across.dot(z)));
-            all
-        }
+        JointKind::Slot => vec![
+            direction("tilt across the slot", y.dot(&b.axes[2])),
+            distance("offset across the slot", passing([a, b]).dot(y).minus(&numbers.value)),
+        ],
+        JointKind::Ball => [offsets(), vec![along()]].concat(),
         JointKind::BallInHole => vec![
             distance("offset along x", across.dot(x).minus(&numbers.offset[0])),
             distance("offset along y", across.dot(y).minus(&numbers.offset[1])),
         ],
         JointKind::Round => {
-            let apart = across.dot(x).length_with(&across.dot(y));
-            let wanted = match joint.side_by_side {
-                true => a.radius.plus(&b.radius),
-                false => a.radius.minus(&b.radius).absolute(),
-            };
             let mut all = tilts();
-            all.push(distance("distance of the axes", apart.minus(&wanted).minus(&numbers.value)));
+            all.push(distance("distance of the axes", off_round(joint, [a, b], numbers)));
             all
         }
-        JointKind::Crossed => {
-            let normal = z.cross(&b.axes[2]);
-            let apart = across.dot(&normal).over(&normal.length());
-            let side = S::constant(if apart.value() < 0.0 { -1.0 } else { 1.0 });
-            let wanted = a.radius.plus(&b.radius).plus(&numbers.value);
-            vec![distance("distance of the axes", side.times(&apart).minus(&wanted))]
-        }
-        JointKind::Revolute => {
-            let mut all = tilts();
-            all.extend(offsets());
-            all.push(distance("offset along z", across.dot(z)));
-            all
-        }
-        JointKind::Slide => {
-            let mut all = tilts();
-            all.push(direction("turn about z", x.dot(&b.axes[1])));
-            all.extend(offsets());
-            all
-        }
-        JointKind::Rigid => {
-            let mut all = tilts();
-            all.push(direction("turn about z", x.dot(&b.axes[1])));
-            all.extend(offsets());
-            all.push(distance("offset along z", across.dot(z)));
-            all
-        }
+        JointKind::Crossed => vec![distance("distance of the axes", off_crossed([a, b], numbers))],
+        JointKind::Revolute => [tilts(), offsets(), vec![along()]].concat(),
+        JointKind::Slide => [tilts(), vec![turn()], offsets()].concat(),
+        JointKind::Rigid => [tilts(), vec![turn()], offsets(), vec![along()]].concat(),
         JointKind::Rod => vec![distance("length", across.length().minus(&numbers.value))],
-        JointKind::Angle => {
-            let (cosine, sine) = (b.axes[0].dot(x), b.axes[0].dot(y));
-            let (turn_cosine, turn_sine) = (numbers.value.cosine(), numbers.value.sine());
-            // The difference of the angles, which has no jump near 0.
-            let ahead = sine.times(&turn_cosine).minus(&cosine.times(&turn_sine));
-            let beside = cosine.times(&turn_cosine).plus(&sine.times(&turn_sine));
-            vec![direction("angle", ahead.angle_over(&beside))]
-        }
+        JointKind::Angle => vec![direction("angle", ahead([a, b], &numbers.value))],
     }
+}
+
+fn direction<S>(name: &'static str, residual: S) -> Equation<S> {
+    Equation { name, holds: Holds::Direction, residual }
+}
+
+fn distance<S>(name: &'static str, residual: S) -> Equation<S> {
+    Equation { name, holds: Holds::Distance, residual }
+}
+
+/// Place from the middle of a hole or slot at which the axis of the pin passes it.
+fn passing<S: Number>([a, b]: [&PlacedFeature<S>; 2]) -> Vector<S> {
+    let across = b.origin.minus(&a.origin);
+    let forward = across.dot(&a.axes[2]).over(&b.axes[2].dot(&a.axes[2]));
+    across.minus(&b.axes[2].scaled(&forward))
+}
+
+/// Distance of the axes of two round surfaces, less the one at which they touch.
+fn off_round<S: Number>(joint: &PartJoint, [a, b]: [&PlacedFeature<S>; 2], numbers: &JointNumbers<S>) -> S {
+    let across = b.origin.minus(&a.origin);
+    let apart = across.dot(&a.axes[0]).length_with(&across.dot(&a.axes[1]));
+    let wanted = match joint.side_by_side {
+        true => a.radius.plus(&b.radius),
+        false => a.radius.minus(&b.radius).absolute(),
+    };
+    apart.minus(&wanted).minus(&numbers.value)
+}
+
+/// Distance of two skew axes, less the one at which their surfaces touch.
+fn off_crossed<S: Number>([a, b]: [&PlacedFeature<S>; 2], numbers: &JointNumbers<S>) -> S {
+    let normal = a.axes[2].cross(&b.axes[2]);
+    let apart = b.origin.minus(&a.origin).dot(&normal).over(&normal.length());
+    // The side on which the other axis lies at the present poses.
+    let side = S::constant(if apart.value() < 0.0 { -1.0 } else { 1.0 });
+    side.times(&apart).minus(&a.radius.plus(&b.radius).plus(&numbers.value))
+}
+
+/// Angle by which x of the second frame is ahead of a driven angle from x of the first one. It has no jump near 0.
+fn ahead<S: Number>([a, b]: [&PlacedFeature<S>; 2], angle: &S) -> S {
+    let (cosine, sine) = (b.axes[0].dot(&a.axes[0]), b.axes[0].dot(&a.axes[1]));
+    let ahead = sine.times(&angle.cosine()).minus(&cosine.times(&angle.sine()));
+    let beside = cosine.times(&angle.cosine()).plus(&sine.times(&angle.sine()));
+    ahead.angle_over(&beside)
 }

@@ -27,8 +27,8 @@ mod tests;
 mod vector;
 
 pub use assembly::{
-    Assembly, Coordinate, Direction, Feature, FeatureId, FeatureKind, Joint, JointKind, Measure, MeasureKind, Part,
-    Quantity,
+    Assembly, Direction, Feature, FeatureId, FeatureKind, FrameAxis, JointKind, Measure, MeasureKind, PartJoint,
+    Quantity, RigidPart,
 };
 pub use closed_assembly::{ClosedAssembly, NamedFormula, PartPose, PoseUnknown};
 pub use error::{SpatialError, Subject};

@@ -1,6 +1,6 @@
 //! Measures between two features.
 
-use crate::assembly::{Coordinate, FeatureKind, MeasureKind, Quantity};
+use crate::assembly::{FeatureKind, FrameAxis, MeasureKind, Quantity};
 use crate::number::Number;
 use crate::placement::PlacedFeature;
 
@@ -33,9 +33,9 @@ pub(crate) fn measured<S: Number>(
         }
         MeasureKind::Along(coordinate) => {
             let axis = match coordinate {
-                Coordinate::X => 0,
-                Coordinate::Y => 1,
-                Coordinate::Z => 2,
+                FrameAxis::X => 0,
+                FrameAxis::Y => 1,
+                FrameAxis::Z => 2,
             };
             Measured::smooth(of.origin.minus(&from.origin).dot(&from.axes[axis]))
         }
@@ -99,4 +99,3 @@ fn profile<S: Number>(
     }
     Measured { value, smooth }
 }
-

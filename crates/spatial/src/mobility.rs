@@ -48,7 +48,8 @@ impl Closure<'_> {
         }
         let Some((index, left)) = first else { return Ok(()) };
         let joint = &self.assembly.joints[index];
-        let names: Vec<String> = self.assembly.joints[..index].iter().map(|joint| format!("`{}`", joint.name)).collect();
+        let names: Vec<String> =
+            self.assembly.joints[..index].iter().map(|joint| format!("`{}`", joint.name)).collect();
         Err(SpatialError::OverConstrained {
             joint: joint.name.clone(),
             index,
@@ -232,7 +233,7 @@ fn instead(assembly: &Assembly, index: usize, left: usize) -> String {
     let kinds = joint.between.map(|id| assembly.feature(id).kind);
     let known = joint.kind.freedoms(kinds).unwrap_or(&[]);
     let moving = joint.between.map(|id| id.part);
-    let same_pair = |other: &&crate::assembly::Joint| {
+    let same_pair = |other: &&crate::assembly::PartJoint| {
         other.kind == JointKind::Pin && other.between.iter().all(|id| moving.contains(&id.part))
     };
     if joint.kind == JointKind::Pin && assembly.joints[..index].iter().any(|other| same_pair(&other)) {

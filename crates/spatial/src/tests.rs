@@ -1,6 +1,8 @@
 //! Derivatives of every row of the joint table against differences, and choices of the closure.
 
-use crate::assembly::{Assembly, Direction, Feature, FeatureId, FeatureKind, Joint, JointKind, Part, Quantity};
+use crate::assembly::{
+    Assembly, Direction, Feature, FeatureId, FeatureKind, JointKind, PartJoint, Quantity, RigidPart,
+};
 use crate::closure::{Closure, constant_rotation};
 use crate::joint::JOINTS;
 use crate::placement::{product, rotation_vector};
@@ -21,7 +23,7 @@ fn feature(kind: FeatureKind, seed: f64) -> Feature {
 }
 
 fn pair(kind: JointKind, kinds: [FeatureKind; 2]) -> Assembly {
-    let part = |name: &str, ground, kind, seed: f64| Part {
+    let part = |name: &str, ground, kind, seed: f64| RigidPart {
         name: name.into(),
         ground,
         at: if ground { [0.0; 3] } else { [5.0, -9.0, 14.0] },
@@ -30,7 +32,7 @@ fn pair(kind: JointKind, kinds: [FeatureKind; 2]) -> Assembly {
     };
     Assembly {
         parts: vec![part("a", true, kinds[0], 1.0), part("b", false, kinds[1], 2.0)],
-        joints: vec![Joint {
+        joints: vec![PartJoint {
             name: "joint".into(),
             kind,
             between: [FeatureId { part: 0, feature: 0 }, FeatureId { part: 1, feature: 0 }],
@@ -40,12 +42,14 @@ fn pair(kind: JointKind, kinds: [FeatureKind; 2]) -> Assembly {
             side_by_side: false,
         }],
         measures: Vec::new(),
+        length_unit: None,
     }
 }
 
 /// Every row of the joint table, both ways round where the features differ.
 #[test]
 fn derivatives_are_those_of_differences() {
+    // Truncation and rounding are then of one order.
     const STEP: f64 = 1e-6;
     for row in &JOINTS {
         for (first, second, takes) in row.fits {

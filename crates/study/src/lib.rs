@@ -90,8 +90,8 @@ use sha2::{Digest, Sha256};
 
 use crate::folder::Place;
 use error::Faults;
-use sensitol::assembly::{Points, Request, Responses, Run};
 use sensitol::allocation::{AllocationTask, Priced, QualityLoss, SetUp};
+use sensitol::assembly::{Points, Request, Responses, Run};
 use sensitol::method::Options;
 use sensitol::problem::Problem;
 use sensitol::warning::Warning;

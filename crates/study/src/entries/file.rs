@@ -7,14 +7,14 @@ use std::ops::Range;
 
 use crate::entries::about::AboutEntry;
 pub(crate) use crate::entries::analysis_entry::{AnalysisEntry, FactorEntry, PairsEntry};
+#[cfg(feature = "schema")]
+use crate::entries::assembly_schema as assembly;
 use crate::entries::correlation_entry::{Correlations, Joints};
 use crate::entries::cost_entry::{CostEntry, LossEntry, RequireEntry};
 pub(crate) use crate::entries::distribution_entry::{DistributionEntry, PartEntry, distribution};
 use crate::entries::guard::GuardEntry;
 pub(crate) use crate::entries::named_entries::Entries;
 pub(crate) use crate::entries::named_values::{ConstantEntry, UnknownEntry};
-#[cfg(feature = "schema")]
-use crate::entries::assembly_schema as assembly;
 #[cfg(feature = "schema")]
 use crate::entries::schema_parts as registry;
 use crate::entries::spanned::Spanned;

@@ -65,8 +65,13 @@ pub(super) fn expand(
     data: &mut Data<'_>,
     nominal: NominalValues<'_>,
 ) -> Result<Expanded, Faults> {
-    let mut expanded =
-        Expanded { tree, configurations: Vec::new(), origins: Vec::new(), elements: Elements::default(), spatial: None };
+    let mut expanded = Expanded {
+        tree,
+        configurations: Vec::new(),
+        origins: Vec::new(),
+        elements: Elements::default(),
+        spatial: None,
+    };
     configurations::expand(&mut expanded, configuration, data)?;
     processes::expand(&mut expanded, data)?;
     geometry::fasteners(&mut expanded)?;

@@ -6,7 +6,7 @@ use crate::error::{Fault, StudyFault, fault};
 use crate::expand::{Tree, Value, wrong_type};
 use crate::tree::Key;
 use sensitol_numeric::names::nearest;
-use sensitol_spatial::{Assembly, FeatureId, Joint, JointKind, Quantity};
+use sensitol_spatial::{Assembly, FeatureId, JointKind, PartJoint, Quantity};
 
 /// Keys that name the two features of a joint, one of each.
 const PAIRS: [(&str, &str, JointKind); 6] = [
@@ -38,7 +38,7 @@ struct Connection {
 }
 
 /// Reads a joint.
-pub(super) fn joint(key: &Key, tree: &Tree, assembly: &Assembly, values: &mut Values<'_>) -> Result<Joint, Fault> {
+pub(super) fn joint(key: &Key, tree: &Tree, assembly: &Assembly, values: &mut Values<'_>) -> Result<PartJoint, Fault> {
     let path = format!("joints.{}", key.name);
     if !matches!(tree.value, Value::Table(_)) {
         return Err(wrong_type(tree, path, "a joint such as { on = \"base.top\", against = \"block.bottom\" }"));
@@ -78,7 +78,7 @@ pub(super) fn joint(key: &Key, tree: &Tree, assembly: &Assembly, values: &mut Va
         Some(given) => Some(values.list(given, &format!("{path}.offset"), Measures::Length)?),
         None => None,
     };
-    Ok(Joint {
+    Ok(PartJoint {
         name: key.name.clone(),
         kind: connection.kind,
         between: connection.between,
@@ -93,7 +93,8 @@ pub(super) fn joint(key: &Key, tree: &Tree, assembly: &Assembly, values: &mut Va
 fn connection(key: &Key, tree: &Tree, path: &str, assembly: &Assembly) -> Result<Connection, Fault> {
     for (a, b, kind) in PAIRS {
         if let (Some(first), Some(second)) = (tree.get(a), tree.get(b)) {
-            let between = [feature(first, &format!("{path}.{a}"), assembly)?, feature(second, &format!("{path}.{b}"), assembly)?];
+            let between =
+                [feature(first, &format!("{path}.{a}"), assembly)?, feature(second, &format!("{path}.{b}"), assembly)?];
             return Ok(Connection { kind, between, keys: vec![a, b], side_by_side: false });
         }
     }
@@ -103,16 +104,24 @@ fn connection(key: &Key, tree: &Tree, path: &str, assembly: &Assembly) -> Result
         let [first, second] = &items[..] else {
             return Err(wrong_type(given, format!("{path}.{list}"), "a list of two features"));
         };
-        let between = [feature(first, &format!("{path}.{list}"), assembly)?, feature(second, &format!("{path}.{list}"), assembly)?];
+        let between = [
+            feature(first, &format!("{path}.{list}"), assembly)?,
+            feature(second, &format!("{path}.{list}"), assembly)?,
+        ];
         return Ok(Connection { kind, between, keys: vec![list], side_by_side: list == "outside" });
     }
-    let known: Vec<&str> = PAIRS.iter().flat_map(|(a, b, _)| [*a, *b]).chain(LISTS.iter().map(|(list, _)| *list)).collect();
+    let known: Vec<&str> =
+        PAIRS.iter().flat_map(|(a, b, _)| [*a, *b]).chain(LISTS.iter().map(|(list, _)| *list)).collect();
     // One key of a pair needs the other.
     for (a, b, _) in PAIRS {
         for (have, lacks) in [(a, b), (b, a)] {
             if tree.get(have).is_some() {
                 let instead = format!("`{have}` needs the other feature: {lacks} = \"part.feature\"");
-                return Err(fault(key.span.clone(), path.to_owned(), StudyFault::MissingKey { key: lacks.into(), instead }));
+                return Err(fault(
+                    key.span.clone(),
+                    path.to_owned(),
+                    StudyFault::MissingKey { key: lacks.into(), instead },
+                ));
             }
         }
     }

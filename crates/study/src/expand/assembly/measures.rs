@@ -6,7 +6,7 @@ use crate::error::{Fault, StudyFault, fault};
 use crate::expand::{Tree, Value, wrong_type};
 use crate::tree::Key;
 use sensitol_numeric::names::nearest;
-use sensitol_spatial::{Assembly, Coordinate, Measure, MeasureKind};
+use sensitol_spatial::{Assembly, FrameAxis, Measure, MeasureKind};
 
 /// Keys of measures.
 pub(super) const KEYS: [&str; 6] = ["of", "from", "along", "angle", "gap", "profile"];
@@ -38,12 +38,19 @@ pub(super) fn unit(tree: &Tree) -> &str {
 }
 
 /// Reads a measure.
-pub(super) fn measure(entry: &MeasureEntry<'_>, assembly: &Assembly, values: &mut Values<'_>) -> Result<Measure, Fault> {
+pub(super) fn measure(
+    entry: &MeasureEntry<'_>,
+    assembly: &Assembly,
+    values: &mut Values<'_>,
+) -> Result<Measure, Fault> {
     let MeasureEntry { key, tree } = entry;
     let path = format!("characteristics.{}", key.name);
     let at = |name: &str| format!("{path}.{name}");
     if tree.get("formula").is_some() {
-        let (b, why) = (KEYS.into_iter().find(|key| tree.get(key).is_some()).unwrap_or("of"), "are two ways to give a value: keep one".to_owned());
+        let (b, why) = (
+            KEYS.into_iter().find(|key| tree.get(key).is_some()).unwrap_or("of"),
+            "are two ways to give a value: keep one".to_owned(),
+        );
         return Err(fault(key.span.clone(), path, StudyFault::Conflict { a: "formula", b, why }));
     }
     let pair = |name: &'static str| -> Result<_, Fault> {
@@ -55,7 +62,8 @@ pub(super) fn measure(entry: &MeasureEntry<'_>, assembly: &Assembly, values: &mu
             _ => Err(wrong_type(tree.get(name).unwrap_or(tree), at(name), "a list of two features")),
         }
     };
-    let given: Vec<&'static str> = ["of", "angle", "gap", "profile"].into_iter().filter(|key| tree.get(key).is_some()).collect();
+    let given: Vec<&'static str> =
+        ["of", "angle", "gap", "profile"].into_iter().filter(|key| tree.get(key).is_some()).collect();
     let (kind, between) = match given[..] {
         ["angle"] => (MeasureKind::Angle, pair("angle")?),
         ["gap"] => (MeasureKind::Gap, pair("gap")?),
@@ -118,9 +126,9 @@ fn distance(tree: &Tree, key: &str) -> Result<MeasureKind, Fault> {
     let known = ["x", "y", "z"];
     match &along.value {
         Value::Text(text) => match text.as_str() {
-            "x" => Ok(MeasureKind::Along(Coordinate::X)),
-            "y" => Ok(MeasureKind::Along(Coordinate::Y)),
-            "z" => Ok(MeasureKind::Along(Coordinate::Z)),
+            "x" => Ok(MeasureKind::Along(FrameAxis::X)),
+            "y" => Ok(MeasureKind::Along(FrameAxis::Y)),
+            "z" => Ok(MeasureKind::Along(FrameAxis::Z)),
             _ => {
                 let (nearest, known) = (nearest(text, known).map(str::to_owned), known.map(str::to_owned).to_vec());
                 let unknown = StudyFault::UnknownWord { what: "coordinate", found: text.clone(), nearest, known };

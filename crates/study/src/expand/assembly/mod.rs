@@ -68,7 +68,11 @@ fn table<'t>(study: &'t Tree, section: &'static str) -> Result<&'t [(Key, Tree)]
                 "parts" => "a measure or a joint is of features: write them in [parts.NAME]".to_owned(),
                 _ => "write how the parts are located in [joints]".to_owned(),
             };
-            Err(Fault { span: None, key: section.into(), fault: Box::new(StudyFault::MissingKey { key: format!("[{section}]"), instead }) })
+            Err(Fault {
+                span: None,
+                key: section.into(),
+                fault: Box::new(StudyFault::MissingKey { key: format!("[{section}]"), instead }),
+            })
         }
     }
 }
@@ -90,7 +94,12 @@ fn read(
     let mut faults = Faults::default();
     let entry = |section: &str, key: &Key| Entry { key: format!("{section}.{}", key.name), span: key.span.clone() };
     let mut read = Read {
-        assembly: Assembly { parts: Vec::new(), joints: Vec::new(), measures: Vec::new() },
+        assembly: Assembly {
+            parts: Vec::new(),
+            joints: Vec::new(),
+            measures: Vec::new(),
+            length_unit: values.literal_unit(),
+        },
         parts: parts.iter().map(|(key, _)| entry("parts", key)).collect(),
         joints: joints.iter().map(|(key, _)| entry("joints", key)).collect(),
         measures: measures.iter().map(|one| entry("characteristics", one.key)).collect(),
@@ -207,7 +216,7 @@ fn write(expanded: &mut Expanded, read: &Read, closed: ClosedAssembly, values: &
         origin("unknowns", &unknown.name, entry);
         let start = Tree { span: entry.span.clone(), value: Value::Number(unknown.start) };
         let mut keys = vec![(key(&entry.span, "start"), start)];
-        if let Some(unit) = values.unknown_unit().filter(|_| unknown.is_length) {
+        if let Some(unit) = values.made_unit(unknown.is_length) {
             keys.push((key(&entry.span, "unit"), text(&entry.span, unit)));
         }
         unknowns.push((key(&entry.span, &unknown.name), Tree { span: entry.span.clone(), value: Value::Table(keys) }));
@@ -217,7 +226,15 @@ fn write(expanded: &mut Expanded, read: &Read, closed: ClosedAssembly, values: &
         let entry = &read.parts[part];
         origin("formulas", &formula.name, entry);
         expanded.elements.made.push(formula.name.clone());
-        formulas.push((key(&entry.span, &formula.name), text(&entry.span, formula.formula)));
+        let line = match values.literal_unit().and_then(|_| values.made_unit(formula.is_length)) {
+            None => text(&entry.span, formula.formula),
+            Some(unit) => {
+                let keys = [("formula", formula.formula), ("unit", unit)];
+                let keys = keys.map(|(name, value)| (key(&entry.span, name), text(&entry.span, value)));
+                Tree { span: entry.span.clone(), value: Value::Table(keys.to_vec()) }
+            }
+        };
+        formulas.push((key(&entry.span, &formula.name), line));
     }
     let mut equations = Vec::new();
     for (equation, joint) in closed.equations {

@@ -1,11 +1,11 @@
 //! Reads `[parts.NAME]`: the pose of a part at the start, and its features.
 
-use super::values::{Measures, Values};
 use super::unknown_key;
+use super::values::{Measures, Values};
 use crate::error::{Fault, Faults, StudyFault, fault};
 use crate::expand::{Tree, Value, wrong_type};
 use crate::tree::Key;
-use sensitol_spatial::{Direction, Feature, FeatureKind, Part, Quantity};
+use sensitol_spatial::{Direction, Feature, FeatureKind, Quantity, RigidPart};
 
 /// Keys of a part that are no features.
 const OWN: [&str; 3] = ["ground", "at", "turned"];
@@ -18,10 +18,12 @@ const KINDS: [(&str, &str, FeatureKind); 4] = [
 ];
 
 /// Reads a part.
-pub(super) fn part(key: &Key, tree: &Tree, values: &mut Values<'_>) -> Result<Part, Faults> {
+pub(super) fn part(key: &Key, tree: &Tree, values: &mut Values<'_>) -> Result<RigidPart, Faults> {
     let path = format!("parts.{}", key.name);
     let Value::Table(entries) = &tree.value else {
-        return Err(wrong_type(tree, path, "a table of features such as top = { plane = [0, 0, 10], normal = \"z\" }").into());
+        return Err(
+            wrong_type(tree, path, "a table of features such as top = { plane = [0, 0, 10], normal = \"z\" }").into()
+        );
     };
     let mut faults = Faults::default();
     if key.name.contains('.') || key.name.contains('`') {
@@ -29,7 +31,7 @@ pub(super) fn part(key: &Key, tree: &Tree, values: &mut Values<'_>) -> Result<Pa
         faults.0.push(Fault { span: Some(key.span.clone()), ..why });
     }
     let mut part =
-        Part { name: key.name.clone(), ground: false, at: [0.0; 3], turned: [0.0; 3], features: Vec::new() };
+        RigidPart { name: key.name.clone(), ground: false, at: [0.0; 3], turned: [0.0; 3], features: Vec::new() };
     for (name, value) in entries {
         let path = format!("{path}.{}", name.name);
         let read = match name.name.as_str() {
@@ -82,7 +84,8 @@ fn feature(key: &Key, tree: &Tree, path: &str, values: &mut Values<'_>) -> Resul
             return Err(fault(key.span.clone(), path.to_owned(), StudyFault::Conflict { a, b, why }));
         }
         [] => {
-            let instead = "a feature is a plane, an axis, a point or a frame: { plane = [0, 0, 10], normal = \"z\" }".to_owned();
+            let instead =
+                "a feature is a plane, an axis, a point or a frame: { plane = [0, 0, 10], normal = \"z\" }".to_owned();
             let missing = StudyFault::MissingKey { key: "plane".into(), instead };
             return Err(fault(key.span.clone(), path.to_owned(), missing));
         }
@@ -142,7 +145,9 @@ fn direction(tree: &Tree, key: &str, values: &mut Values<'_>) -> Result<Directio
     let expected = "a direction such as \"x\", \"-z\", [1, 1, 0] or { turned = \"th\", about = \"y\", from = \"z\" }";
     let refused = || wrong_type(tree, key.to_owned(), expected);
     match &tree.value {
-        Value::Text(text) => word(text).map(|parts| Direction::Along(parts.map(Quantity::constant))).ok_or_else(refused),
+        Value::Text(text) => {
+            word(text).map(|parts| Direction::Along(parts.map(Quantity::constant))).ok_or_else(refused)
+        }
         Value::Array(_) => {
             let parts: [Quantity; 3] = values.list(tree, key, Measures::Plain)?;
             if parts.iter().all(|part| part.formula.is_none() && part.value == 0.0) {

@@ -13,7 +13,7 @@ pub(crate) type NominalValues<'a> = &'a dyn Fn(&Tree) -> Result<Vec<f64>, Faults
 /// Sections of a study that formulas of dimensions need.
 const NEEDED: [&str; 4] = ["units", "dimensions", "constants", "formulas"];
 
-/// What a number measures.
+/// Quantity that a number measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Measures {
     Length,
@@ -29,8 +29,8 @@ pub(super) struct Values<'t> {
     converts: bool,
     /// Unit of lengths; None if the study names none.
     unit: Option<String>,
-    /// Formulas with their keys and places.
-    formulas: Vec<(String, Tree)>,
+    /// Formulas with their keys, places, and what they measure.
+    formulas: Vec<(String, Tree, Measures)>,
 }
 
 /// Values of all formulas.
@@ -61,9 +61,18 @@ impl<'t> Values<'t> {
         };
         if let Some(value) = given {
             if !value.is_finite() {
-                return Err(fault(tree.span.clone(), key.to_owned(), StudyFault::NotFinite { text: value.to_string() }));
+                return Err(fault(
+                    tree.span.clone(),
+                    key.to_owned(),
+                    StudyFault::NotFinite { text: value.to_string() },
+                ));
             }
-            return Ok(Quantity::constant(value * self.factor(measures)));
+            let unit = self.unit.clone().filter(|_| self.converts && measures == Measures::Length && value != 0.0);
+            let Some(unit) = unit else { return Ok(Quantity::constant(value * self.factor(measures))) };
+            // With converted units a length in a formula needs its unit.
+            let text = format!("{:?}[{unit}]", value.abs());
+            let text = if value < 0.0 { format!("(-{text})") } else { text };
+            return Ok(self.asked(text, tree, key, measures));
         }
         let Value::Text(text) = &tree.value else {
             return Err(wrong_type(tree, key.to_owned(), "a number, the name of a dimension, or a formula in quotes"));
@@ -80,10 +89,29 @@ impl<'t> Values<'t> {
                 Err(error) => return Err(fault(tree.span.clone(), key.to_owned(), StudyFault::Formula(error.fault))),
             },
         };
+        Ok(self.asked(formula, tree, key, measures))
+    }
+
+    /// A formula whose value is asked for.
+    fn asked(&mut self, formula: String, tree: &Tree, key: &str, measures: Measures) -> Quantity {
         let number = self.formulas.len() as f64;
         let value = Tree { span: tree.span.clone(), value: Value::Text(formula.clone()) };
-        self.formulas.push((key.to_owned(), value));
-        Ok(Quantity::formula(formula, number))
+        self.formulas.push((key.to_owned(), value, measures));
+        Quantity::formula(formula, number)
+    }
+
+    /// Unit of a pose or formula in the study; None if it has none.
+    pub(super) fn made_unit(&self, is_length: bool) -> Option<String> {
+        match (is_length, self.converts) {
+            (true, _) => self.unknown_unit(),
+            (false, true) => Some("1".to_owned()),
+            (false, false) => None,
+        }
+    }
+
+    /// Unit that a constant length needs in a formula.
+    pub(super) fn literal_unit(&self) -> Option<String> {
+        self.unknown_unit().filter(|_| self.converts)
     }
 
     /// Reads a list of numbers or formulas.
@@ -105,7 +133,8 @@ impl<'t> Values<'t> {
 
     /// Unit of a dimension, constant or formula of this name, empty if it has none. Returns None if there is no such name.
     fn unit_of(&self, name: &str) -> Option<&'t str> {
-        let entry = ["dimensions", "constants", "formulas"].iter().find_map(|section| self.study.get(section)?.get(name))?;
+        let entry =
+            ["dimensions", "constants", "formulas"].iter().find_map(|section| self.study.get(section)?.get(name))?;
         match entry.get("unit").map(|unit| &unit.value) {
             Some(Value::Text(unit)) => Some(unit),
             _ => Some(""),
@@ -128,8 +157,17 @@ impl<'t> Values<'t> {
         self.factor(Measures::Length)
     }
 
+    /// Unit in which formulas give a number; None unless units are converted.
+    fn formula_unit(&self, measures: Measures) -> Option<&'static str> {
+        match measures {
+            Measures::Length => self.unit.as_ref().filter(|_| self.converts).map(|_| "m"),
+            Measures::Angle => self.converts.then_some("rad"),
+            Measures::Plain => None,
+        }
+    }
+
     /// Unit of the unknown places; None if none is known.
-    pub(super) fn unknown_unit(&self) -> Option<String> {
+    fn unknown_unit(&self) -> Option<String> {
         let unit = self.unit.clone()?;
         Some(if self.converts { "m".to_owned() } else { unit })
     }
@@ -147,14 +185,17 @@ impl<'t> Values<'t> {
         if self.formulas.is_empty() {
             return Ok(Nominal(Vec::new()));
         }
-        let mut sections: Vec<(Key, Tree)> = (self.study.entries().iter())
-            .filter(|(key, _)| NEEDED.contains(&key.name.as_str()))
-            .cloned()
-            .collect();
+        let mut sections: Vec<(Key, Tree)> =
+            (self.study.entries().iter()).filter(|(key, _)| NEEDED.contains(&key.name.as_str())).cloned().collect();
         let key = |tree: &Tree, name: &str| Key { span: tree.span.clone(), name: name.to_owned() };
         let mut asked = Vec::new();
-        for (index, (_, formula)) in self.formulas.iter().enumerate() {
-            let line = Value::Table(vec![(key(formula, "formula"), formula.clone())]);
+        for (index, (_, formula, measures)) in self.formulas.iter().enumerate() {
+            let mut line = vec![(key(formula, "formula"), formula.clone())];
+            if let Some(unit) = self.formula_unit(*measures) {
+                let unit = Tree { span: formula.span.clone(), value: Value::Text(unit.to_owned()) };
+                line.push((key(formula, "unit"), unit));
+            }
+            let line = Value::Table(line);
             asked.push((key(formula, &format!("{PREFIX}{index}")), Tree { span: formula.span.clone(), value: line }));
         }
         let asked = Tree { span: self.study.span.clone(), value: Value::Table(asked) };
@@ -162,7 +203,7 @@ impl<'t> Values<'t> {
         let study = Tree { span: self.study.span.clone(), value: Value::Table(sections) };
         let found = nominal(&study).map_err(|faults| self.renamed(faults))?;
         let mut faults = Faults::default();
-        for (value, (key, formula)) in found.iter().zip(&self.formulas) {
+        for (value, (key, formula, _)) in found.iter().zip(&self.formulas) {
             if !value.is_finite() {
                 let text = format!("{value}");
                 faults.0.push(fault(formula.span.clone(), key.clone(), StudyFault::NotFinite { text }));
@@ -177,7 +218,7 @@ impl<'t> Values<'t> {
         for found in &mut faults.0 {
             let index = found.key.strip_prefix("characteristics.").and_then(|rest| rest.strip_prefix(PREFIX));
             let index = index.and_then(|rest| rest.split('.').next()?.parse::<usize>().ok());
-            if let Some((key, _)) = index.and_then(|index| self.formulas.get(index)) {
+            if let Some((key, ..)) = index.and_then(|index| self.formulas.get(index)) {
                 found.key.clone_from(key);
             }
         }
