@@ -82,6 +82,7 @@
 //! - `sensitol-report` writes reports (text, JSON, CSV, Markdown, SVG, HTML and workbooks).
 //! - `sensitol-external` runs external programs, and keeps a journal of their answers.
 //! - `sensitol-models` holds the published models.
+//! - `sensitol-spatial` writes rigid parts in space as closure equations.
 //! - `sensitol-cli` is the command `sensitol`.
 
 pub mod allocation;

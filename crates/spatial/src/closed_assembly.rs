@@ -120,6 +120,9 @@ impl Assembly {
         self.check()?;
         let mut closure = Closure::new(self);
         let closed = closure.close();
+        if let Some(index) = closure.without_direction() {
+            return Err(SpatialError::NoDirection { joint: self.joints[index].name.clone(), index });
+        }
         closure.check_redundancy()?;
         if !closed {
             return Err(self.open(&closure));

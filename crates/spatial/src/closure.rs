@@ -127,6 +127,13 @@ impl<'a> Closure<'a> {
         Linear { joints, names, residuals, jacobian }
     }
 
+    /// The first joint with a distance of 0, which has no derivatives. Returns None if there is none.
+    pub(crate) fn without_direction(&self) -> Option<usize> {
+        let linear = self.linear();
+        let is_finite = |i: usize| (0..linear.jacobian.ncols()).all(|j| linear.jacobian[(i, j)].is_finite());
+        (0..linear.joints.len()).find(|&i| !is_finite(i)).map(|i| linear.joints[i])
+    }
+
     /// Derivatives of the smooth numbers of a measure.
     pub(crate) fn measure_gradients(&self, measure: usize) -> Vec<Vec<f64>> {
         let poses = self.poses();

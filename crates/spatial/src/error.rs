@@ -60,6 +60,14 @@ pub enum SpatialError {
         /// Numbers that fit, in words.
         known: String,
     },
+    /// A distance that is 0 where the search stands, so that it has no direction.
+    #[error("joint `{joint}` holds a distance that is 0 at the nominal sizes, and has no direction there")]
+    NoDirection {
+        /// Name of the joint.
+        joint: String,
+        /// Index of the joint.
+        index: usize,
+    },
     /// Joints that repeat what others hold.
     #[error(
         "joint `{joint}` takes {takes}, and only {left} of these {are} free after {before}: {equations} equations for {unknowns} unknowns, rank {rank}",
@@ -130,6 +138,7 @@ impl SpatialError {
             Self::Features { index, .. }
             | Self::SamePart { index, .. }
             | Self::Takes { index, .. }
+            | Self::NoDirection { index, .. }
             | Self::OverConstrained { index, .. }
             | Self::Open { index, .. }
             | Self::SameWay { index, .. } => Some(Subject::Joint(*index)),
@@ -146,6 +155,9 @@ impl SpatialError {
             }
             Self::Features { expected, .. } => format!("name {expected}, or use another kind of joint"),
             Self::SamePart { .. } => "name a feature of a part that moves, and one of another part".into(),
+            Self::NoDirection { .. } => {
+                "place the parts apart with `at`, or hold two offsets: hole = \"part.bore\", pin = \"part.pin\"".into()
+            }
             Self::Takes { known, .. } => format!("write takes = {known}"),
             Self::OverConstrained { instead, .. } => instead.clone(),
             Self::Free { .. } => "add a joint that stops it, or measure something that does not depend on it".into(),

@@ -36,6 +36,11 @@ fn every_first_study_runs() {
     done(&within(folder.path(), &["init", "gap", "--process"]));
     done(&within(folder.path(), &["probe", "gap.toml"]));
     assert!(done(&within(folder.path(), &["analyze", "gap.toml"])).contains("gap [mm]"));
+    let said = done(&within(folder.path(), &["init", "cover", "--assembly"]));
+    assert!(said.ends_with("next: sensitol check cover.toml\n      sensitol analyze cover.toml\n"), "{said}");
+    let said = done(&within(folder.path(), &["check", "cover.toml"]));
+    assert!(said.contains("2 parts, 3 joints: 6 unknowns, 6 equations"), "{said}");
+    assert!(done(&within(folder.path(), &["analyze", "cover.toml"])).contains("target 99.730 %: met"));
     for model in ALL {
         let name = format!("{}.toml", model.name);
         done(&within(folder.path(), &["init", &name, "--model", model.name]));

@@ -5,12 +5,12 @@ use serde_json::{Value, json};
 
 /// Schema of a number, the name of a dimension, or a formula.
 fn quantity(what: &str) -> Value {
-    json!({ "description": what, "type": ["number", "string"] })
+    json!({ "description": what, "anyOf": [{ "type": "number" }, { "type": "string" }] })
 }
 
 /// Schema of three numbers.
 fn place(what: &str) -> Value {
-    json!({ "description": what, "type": "array", "items": { "type": ["number", "string"] }, "minItems": 3, "maxItems": 3 })
+    json!({ "description": what, "type": "array", "items": { "anyOf": [{ "type": "number" }, { "type": "string" }] }, "minItems": 3, "maxItems": 3 })
 }
 
 /// Schema of a direction.
@@ -26,7 +26,7 @@ fn direction(what: &str) -> Value {
         "required": ["turned", "about", "from"],
         "additionalProperties": false,
     });
-    let vector = json!({ "type": "array", "items": { "type": ["number", "string"] }, "minItems": 3, "maxItems": 3 });
+    let vector = json!({ "type": "array", "items": { "anyOf": [{ "type": "number" }, { "type": "string" }] }, "minItems": 3, "maxItems": 3 });
     json!({ "description": what, "anyOf": [word, vector, turned] })
 }
 
@@ -67,7 +67,11 @@ pub(crate) fn parts(_: &mut SchemaGenerator) -> Schema {
 /// Schema of `[joints]`.
 pub(crate) fn joints(_: &mut SchemaGenerator) -> Schema {
     let feature = |what: &str| json!({ "description": what, "type": "string" });
-    let two = |what: &str| json!({ "description": what, "type": ["array", "string"], "items": { "type": "string" } });
+    let two = |what: &str| json!({ "description": what, "type": "array", "items": { "type": "string" }, "minItems": 2, "maxItems": 2 });
+    let one_or_two = |what: &str| {
+        let list = json!({ "type": "array", "items": { "type": "string" }, "minItems": 2, "maxItems": 2 });
+        json!({ "description": what, "anyOf": [{ "type": "string" }, list] })
+    };
     json_schema!({
         "type": "object",
         "additionalProperties": {
@@ -81,7 +85,7 @@ pub(crate) fn joints(_: &mut SchemaGenerator) -> Schema {
                 "ball": feature("The centre of a ball, in a socket or a hole."),
                 "socket": feature("The point that holds a ball."),
                 "inside": feature("The axis of a round surface, in or around the other one."),
-                "outside": two("The axis of the other round surface; a list of two for surfaces side by side."),
+                "outside": one_or_two("The axis of the other round surface; a list of two for surfaces side by side."),
                 "crossed": two("Two skew axes whose surfaces touch."),
                 "revolute": two("Two frames or axes that turn about z."),
                 "slide": two("Two frames that slide along z."),
@@ -91,7 +95,7 @@ pub(crate) fn joints(_: &mut SchemaGenerator) -> Schema {
                 "angle": two("Two frames: x of the second one is turned about z of the first one by `value`."),
                 "takes": { "description": "How many freedoms it takes.", "type": "integer", "minimum": 1, "maximum": 6 },
                 "gap": quantity("A distance between the two."),
-                "offset": { "description": "Offsets across the axis of a hole, along x and y of the hole.", "type": "array", "items": { "type": ["number", "string"] }, "minItems": 2, "maxItems": 2 },
+                "offset": { "description": "Offsets across the axis of a hole, along x and y of the hole.", "type": "array", "items": { "anyOf": [{ "type": "number" }, { "type": "string" }] }, "minItems": 2, "maxItems": 2 },
                 "length": quantity("The length of a rod."),
                 "value": quantity("The angle: a number in degrees, a dimension in its unit, or a formula in radians."),
             },
@@ -121,7 +125,7 @@ pub(crate) fn profile(_: &mut SchemaGenerator) -> Schema {
         "type": "object",
         "properties": {
             "of": { "description": "The face.", "type": "string" },
-            "at": { "description": "Points of the face by their coordinates in its frame.", "type": "array", "items": { "type": "array", "items": { "type": ["number", "string"] }, "minItems": 2, "maxItems": 2 } },
+            "at": { "description": "Points of the face by their coordinates in its frame.", "type": "array", "items": { "type": "array", "items": { "anyOf": [{ "type": "number" }, { "type": "string" }] }, "minItems": 2, "maxItems": 2 } },
         },
         "required": ["of", "at"],
         "additionalProperties": false,

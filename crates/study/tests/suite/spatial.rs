@@ -288,6 +288,13 @@ fn every_wrong_assembly_names_its_remedy() {
             "",
         ),
         (seat, "h = { angle = [\"plate.lid\"] }", "characteristics.h.angle", "list of two features", ""),
+        (
+            "round = { inside = \"table.peg\", outside = \"plate.hole\" }",
+            HEIGHT,
+            "joints.round",
+            "has no direction there",
+            "two offsets",
+        ),
         ("", HEIGHT, "parts.plate", "part `plate` has no joint", "add a joint"),
         (
             "seat = { on = \"table.top\", against = \"plate.bottom\", gap = \"nothing\" }",
