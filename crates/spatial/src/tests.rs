@@ -69,8 +69,8 @@ fn derivatives_are_those_of_differences() {
                     residuals.push(closure.linear().residuals);
                 }
                 closure.places.clone_from(&places);
-                for i in 0..takes[0] {
-                    let difference = (residuals[0][i] - residuals[1][i]) / (2.0 * STEP);
+                for (i, (up, down)) in residuals[0].iter().zip(&residuals[1]).enumerate() {
+                    let difference = (up - down) / (2.0 * STEP);
                     // The difference has an error of the third derivative, some 1e-11, and of rounding, some 1e-10.
                     let off = (linear.jacobian[(i, column)] - difference).abs();
                     assert!(off < 5e-9, "{:?} row {i} column {column}: {difference}", row.kind);

@@ -188,7 +188,7 @@ fn feature(tree: &Tree, key: &str, assembly: &Assembly) -> Result<FeatureId, Fau
 }
 
 /// Key of a table that is not among the valid ones.
-fn unknown_key<'t>(tree: &'t Tree, path: &str, valid: &[&str]) -> Result<(), Fault> {
+fn unknown_key(tree: &Tree, path: &str, valid: &[&str]) -> Result<(), Fault> {
     let Some((key, _)) = tree.entries().iter().find(|(key, _)| !valid.contains(&key.name.as_str())) else {
         return Ok(());
     };
