@@ -369,6 +369,36 @@ fn a_turned_assembly_measures_the_same() {
     }
 }
 
+/// A formula of the study may use a measure, and a coordinate may use a formula.
+#[test]
+fn formulas_use_measures_by_name() {
+    let study = parse(
+        r#"
+[dimensions]
+t = { nominal = 12, tolerance = 0.1 }
+[formulas]
+part = "t/3"
+twice = "2*part"
+half = "height/2"
+[parts.table]
+top = { plane = [0, 0, 0], normal = "z" }
+[parts.plate]
+foot = { plane = [0, 0, "-twice"], normal = "-z" }
+lid = { plane = [0, 0, "part"], normal = "z" }
+[joints]
+seat = { on = "table.top", against = "plate.foot" }
+[characteristics]
+height = { of = "plate.lid", from = "table.top" }
+more = { formula = "half + 1" }
+"#,
+    )
+    .unwrap();
+    // The lid is a third of t above the origin of the plate, and its foot two thirds below.
+    let found = values(&study, Some(("t", 0.3)));
+    close(found[0], 12.3, 1e-12, 1.0);
+    close(found[1], 7.15, 1e-12, 1.0);
+}
+
 /// Converted units give the same figures as those of the drawing.
 #[test]
 fn converted_units_change_nothing() {

@@ -10,8 +10,8 @@ use sensitol_spatial::Quantity;
 /// Values of the characteristics of a study at its nominal dimensions, in the units of formulas.
 pub(crate) type NominalValues<'a> = &'a dyn Fn(&Tree) -> Result<Vec<f64>, Faults>;
 
-/// Sections of a study that formulas of dimensions need.
-const NEEDED: [&str; 4] = ["units", "dimensions", "constants", "formulas"];
+/// Sections of a study that formulas of dimensions need. Of `[formulas]` they need a part only.
+const NEEDED: [&str; 3] = ["units", "dimensions", "constants"];
 
 /// Quantity that a number measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -188,6 +188,8 @@ impl<'t> Values<'t> {
         let mut sections: Vec<(Key, Tree)> =
             (self.study.entries().iter()).filter(|(key, _)| NEEDED.contains(&key.name.as_str())).cloned().collect();
         let key = |tree: &Tree, name: &str| Key { span: tree.span.clone(), name: name.to_owned() };
+        let formulas = Tree { span: self.study.span.clone(), value: Value::Table(self.needed_formulas()) };
+        sections.push((key(self.study, "formulas"), formulas));
         let mut asked = Vec::new();
         for (index, (_, formula, measures)) in self.formulas.iter().enumerate() {
             let mut line = vec![(key(formula, "formula"), formula.clone())];
@@ -211,6 +213,25 @@ impl<'t> Values<'t> {
         }
         faults.none()?;
         Ok(Nominal(found))
+    }
+
+    /// Formulas of the study that the numbers use, directly or through others. Further ones may use measures, which have no value yet.
+    fn needed_formulas(&self) -> Vec<(Key, Tree)> {
+        let all = self.study.get("formulas").map_or(&[][..], Tree::entries);
+        let mut open: Vec<&Tree> = self.formulas.iter().map(|(_, formula, _)| formula).collect();
+        let mut needed: Vec<&str> = Vec::new();
+        while let Some(entry) = open.pop() {
+            let Value::Text(text) = &entry.get("formula").unwrap_or(entry).value else { continue };
+            // A formula that cannot be read is reported where it is read.
+            let Ok(formula) = Formula::parse(text) else { continue };
+            for (key, entry) in all.iter().filter(|(key, _)| formula.names().any(|(name, _)| name == key.name)) {
+                if !needed.contains(&key.name.as_str()) {
+                    needed.push(&key.name);
+                    open.push(entry);
+                }
+            }
+        }
+        all.iter().filter(|(key, _)| needed.contains(&key.name.as_str())).cloned().collect()
     }
 
     /// Faults with the keys of the study.
