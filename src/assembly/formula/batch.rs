@@ -1,6 +1,6 @@
 //! Programs on columns of numbers.
 
-use crate::assembly::formula::functions::{Binary, Unary, select};
+use crate::assembly::formula::functions::{Binary, Unary, for_each_binary, select};
 use crate::assembly::formula::program::{Branch, Operand, Program, Step};
 use sensitol_numeric::elementary::{self, Elementary, Work, on_this_processor};
 
@@ -201,30 +201,7 @@ fn binary(function: Binary, a: Values<'_>, b: Values<'_>, out: &mut [f64]) -> Op
     if let (Values::Same(x), Values::Same(y)) = (a, b) {
         return Some(function.apply(x, y));
     }
-    macro_rules! each {
-        ($($name:ident),*) => {
-            match function {
-                $(Binary::$name => on_this_processor(Zip { a, b, out, function: |x, y| Binary::$name.apply(x, y) }),)*
-            }
-        };
-    }
-    each!(
-        Add,
-        Subtract,
-        Multiply,
-        Divide,
-        Power,
-        Less,
-        LessEqual,
-        Greater,
-        GreaterEqual,
-        Equal,
-        NotEqual,
-        Min,
-        Max,
-        Atan2,
-        Hypot
-    );
+    for_each_binary!(function, FUNCTION => on_this_processor(Zip { a, b, out, function: |x, y| FUNCTION.apply(x, y) }));
     None
 }
 

@@ -43,6 +43,26 @@ pub(crate) enum Unary {
     Sign,
 }
 
+/// Does the work once for every function of two arguments, which is the constant of the given name there. So the compiler can optimise
+/// each one.
+macro_rules! for_each_binary {
+    ($function:expr, $name:ident => $work:expr) => {
+        for_each_binary! {
+            $function, $name => $work;
+            Add, Subtract, Multiply, Divide, Power, Less, LessEqual, Greater, GreaterEqual, Equal, NotEqual, Min, Max, Atan2, Hypot
+        }
+    };
+    ($function:expr, $name:ident => $work:expr; $($variant:ident),*) => {
+        match $function {
+            $(Binary::$variant => {
+                const $name: Binary = Binary::$variant;
+                $work
+            })*
+        }
+    };
+}
+pub(super) use for_each_binary;
+
 /// Function or operator of two arguments.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Binary {

@@ -4,7 +4,7 @@
 //! computed once for each point. Every operation takes whole columns, one number for each point, so that the arithmetic of a point does
 //! not depend on its neighbours.
 
-use crate::assembly::formula::functions::{Binary, Unary, select};
+use crate::assembly::formula::functions::{Binary, Unary, for_each_binary, select};
 use crate::assembly::formula::graph::{Graph, GraphNode, NodeId};
 use crate::assembly::formula::set::FormulaSet;
 use sensitol_numeric::elementary::{self, Elementary, Work, on_this_processor};
@@ -374,30 +374,7 @@ fn unary<const W: usize>(function: Unary, a: &[f64; W], out: &mut [f64; W]) {
 /// Applies a function of two operands like `unary`.
 #[inline(always)]
 fn binary<const W: usize>(function: Binary, a: &[f64; W], b: &[f64; W], out: &mut [f64; W]) {
-    macro_rules! each {
-        ($($name:ident),*) => {
-            match function {
-                $(Binary::$name => {
-                    out.iter_mut().zip(a).zip(b).for_each(|((out, &x), &y)| *out = Binary::$name.apply(x, y));
-                })*
-            }
-        };
-    }
-    each!(
-        Add,
-        Subtract,
-        Multiply,
-        Divide,
-        Power,
-        Less,
-        LessEqual,
-        Greater,
-        GreaterEqual,
-        Equal,
-        NotEqual,
-        Min,
-        Max,
-        Atan2,
-        Hypot
-    );
+    for_each_binary!(function, FUNCTION => {
+        out.iter_mut().zip(a).zip(b).for_each(|((out, &x), &y)| *out = FUNCTION.apply(x, y))
+    });
 }
