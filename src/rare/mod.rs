@@ -18,7 +18,7 @@
 //! the limit near them, or corners of jumps and contacts. So do rejects that the plain and wide points of a stage find
 //! away from all places.
 //!
-//! What no explored point met may still exist. The greatest probability of such a region is in the upper end of the
+//! A region may exist that no explored point met. The greatest probability of such a region is in the upper end of the
 //! interval ([`Unmet`]).
 //!
 //! Places are of no use if rejects lie all around the means in many variables. If the interval of the weighted points

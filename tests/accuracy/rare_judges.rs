@@ -259,7 +259,7 @@ fn intervals_hold_whatever_the_limit_looks_like() {
     assert!(poor.is_empty(), "{poor:?}");
 }
 
-/// With 10,000 points, the default, the rejects are found: the median of the estimates is right to a twentieth.
+/// Median of the estimates at 10,000 points, the default: it is right to a twentieth.
 #[test]
 fn many_points_find_all_regions() {
     for case in judges() {

@@ -7,8 +7,6 @@ use crate::expand::{Tree, Value, wrong_type};
 use crate::tree::Key;
 use sensitol_spatial::{Direction, Feature, FeatureKind, Quantity, RigidPart};
 
-/// Keys of a part that are no features.
-const OWN: [&str; 3] = ["ground", "at", "turned"];
 /// The kinds of features: the key of the place, and the key of the direction.
 const KINDS: [(&str, &str, FeatureKind); 4] = [
     ("plane", "normal", FeatureKind::Plane),
@@ -48,7 +46,6 @@ pub(super) fn part(key: &Key, tree: &Tree, values: &mut Values<'_>) -> Result<Ri
         };
         faults.0.extend(read.err());
     }
-    debug_assert!(OWN.iter().all(|own| part.features.iter().all(|feature| feature.name != *own)));
     faults.none()?;
     Ok(part)
 }
