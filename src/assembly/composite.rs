@@ -426,6 +426,10 @@ impl AssemblyFunction for Composite {
         self.model.as_ref()?.function.account()
     }
 
+    fn own_checks(&self, answers: usize) -> usize {
+        self.model.as_ref().map_or(0, |model| model.function.own_checks(answers))
+    }
+
     /// Returns failures of a model that receives dimensions. The values of driving formulas belong to no single point: such failures are
     /// left out.
     fn recorded_failures(&self, outputs: &[usize]) -> Vec<RecordedFailure> {

@@ -177,6 +177,13 @@ pub trait AssemblyFunction: Send + Sync {
         None
     }
 
+    /// Returns the greatest number of evaluations that the function adds to so many answers to check them itself: replays in fresh
+    /// processes. Returns 0 for a function that checks nothing. This is not an evaluation.
+    fn own_checks(&self, answers: usize) -> usize {
+        let _ = answers;
+        0
+    }
+
     /// Returns points of earlier runs at which the model answered that one of `outputs` has no value. Crashes and missed deadlines are
     /// left out, since another attempt may succeed. Returns none for a function without a journal. This is not an evaluation.
     fn recorded_failures(&self, outputs: &[usize]) -> Vec<RecordedFailure> {

@@ -190,6 +190,10 @@ impl AssemblyFunction for States {
         self.states.iter().filter_map(|state| state.function.account()).reduce(EvaluatorAccount::and)
     }
 
+    fn own_checks(&self, answers: usize) -> usize {
+        self.states.iter().map(|state| state.function.own_checks(answers)).sum()
+    }
+
     fn recorded_failures(&self, outputs: &[usize]) -> Vec<RecordedFailure> {
         let mut all = Vec::new();
         for (state, asked, own) in self.by_state(outputs) {

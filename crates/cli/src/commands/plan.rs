@@ -45,6 +45,8 @@ pub(crate) struct PlanReport {
     /// The check points that verify it in the end, placed by the answers, at most; null where the model is sampled instead, and 0
     /// where nothing is verified.
     checks: Option<usize>,
+    /// Evaluations that replay answers of an external program in fresh processes, at most; 0 for other models.
+    replays: usize,
     /// Whether a search of the extremes follows, whose points are not known beforehand.
     extremes: bool,
     dimensions: Vec<AxisReport>,
@@ -121,9 +123,12 @@ pub(crate) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
             true => (study.problem.function().signature().costly)
                 .then(|| check_points(study.options.verify, plan.varying().len())),
         },
+        replays: 0,
         extremes: study.options.extremes,
         dimensions: plan.varying().iter().map(|&d| axis(problem, &*plan, d)).collect(),
     };
+    let answers = report.range.map_or(evaluations, |[_, most]| most) + report.checks.unwrap_or(0);
+    report.replays = study.problem.function().own_checks(answers);
     if stages > 1 {
         let left = evaluations - of_first;
         let purpose = if report.range.is_some() { Purpose::Check } else { Purpose::Pair };
@@ -208,6 +213,9 @@ impl PlanReport {
         }
         if let Some(checks) = self.checks.filter(|&checks| checks > 0) {
             document.line(format!("then up to {checks} check points, placed by the answers, that verify the results"));
+        }
+        if self.replays > 0 {
+            document.line(format!("and up to {} evaluations that replay answers in fresh processes", self.replays));
         }
         if self.extremes {
             document.line(

@@ -18,18 +18,23 @@ const SEEDS: usize = 40;
 const DIMENSIONS: usize = 4;
 
 fn process(mode: &str, seed: usize) -> Process {
-    with(mode, seed, true)
+    with(mode, seed, true, 1)
+}
+
+fn processes(mode: &str, seed: usize, workers: usize) -> Process {
+    with(mode, seed, true, workers)
 }
 
 /// Returns a model without sentinels, which would hide the differences that a probe looks for.
 fn probed(mode: &str, seed: usize) -> Process {
-    with(mode, seed, false)
+    with(mode, seed, false, 1)
 }
 
-fn with(mode: &str, seed: usize, sentinels: bool) -> Process {
+fn with(mode: &str, seed: usize, sentinels: bool, workers: usize) -> Process {
     let names: Vec<String> = (0..DIMENSIONS).map(|d| format!("x{d}")).collect();
     let greeting = Greeting::new(vec![1.0; DIMENSIONS]);
     let settings = Settings::new([child_in_c(), mode.into(), seed.to_string()]).with_sentinels(sentinels);
+    let settings = settings.with_workers(workers);
     Process::new(Signature::of_names(names, ["y"]), greeting, settings)
 }
 
@@ -41,9 +46,13 @@ struct Said {
 
 impl Said {
     fn of(mode: &str, seed: usize, method: Method) -> Self {
+        Self::of_process(process(mode, seed), method)
+    }
+
+    fn of_process(process: Process, method: Method) -> Self {
         // A tenth is one sigma, as in the child.
         let dimension = |d: usize| Dimension::normal(format!("x{d}"), 1.0, 0.3).unwrap();
-        let problem = Problem::new((0..DIMENSIONS).map(dimension), process(mode, seed)).unwrap();
+        let problem = Problem::new((0..DIMENSIONS).map(dimension), process).unwrap();
         let Ok(analysis) = analyze(&problem, &method.into()) else { return Self { sigma: None, codes: Vec::new() } };
         let sigma = analysis.characteristics[0].moments.map(|moments| moments.sigma());
         Self { sigma, codes: analysis.warnings.iter().map(|warning| warning.code()).collect() }
@@ -68,6 +77,33 @@ fn flips_are_found_and_mended() {
             assert!(said.right(&plain), "{mode} {seed}: {:?} for {:?}, {:?}", said.sigma, plain.sigma, said.codes);
             assert!(said.warns(), "{mode} {seed}: {:?}", said.codes);
         }
+    }
+}
+
+/// Walks side by side in four children find and correct the same answers.
+#[test]
+fn flips_are_found_by_several_children() {
+    for mode in ["toggle", "pairs"] {
+        for seed in 0..SEEDS / 4 {
+            let plain = Said::of("plain", seed, Method::Full);
+            let said = Said::of_process(processes(mode, seed, 4), Method::Full);
+            assert!(said.right(&plain), "{mode} {seed}: {:?} for {:?}, {:?}", said.sigma, plain.sigma, said.codes);
+        }
+    }
+}
+
+/// Walks take place in as many fresh children as there are, up to the number of walks.
+#[test]
+fn walks_are_side_by_side() {
+    for (workers, walks, expected) in [(1, 4, 2), (3, 4, 4), (8, 4, 5), (8, 2, 3)] {
+        let process = processes("plain", 1, workers);
+        // One window of four points needs one child, once the window is known.
+        process.prepare(&[0]).unwrap();
+        let rows: Vec<[f64; DIMENSIONS]> = (1..=walks).map(|i| [1.0 + 1e-3 * i as f64, 1.0, 1.0, 1.0]).collect();
+        let mut out = Responses::open(walks, 1);
+        process.evaluate(&Request::values(&Points::from_rows(&rows), &[0]), &Run::to_the_end(), &mut out);
+        let starts = process.account().map(|account| account.counts.starts);
+        assert_eq!((starts, out.extra()), (Some(expected), 1 + 4 * walks as i64), "{workers} workers, {walks} walks");
     }
 }
 
@@ -115,7 +151,7 @@ fn functions_raise_no_alarm() {
     }
 }
 
-/// Seven answers are replayed, each in three steps from the nominal point. Many answers need more replays. A given number is used, 0 for
+/// Seven answers are replayed, each in three steps from the nominal point. Many answers need more replays, up to 59. A given number is used, 0 for
 /// none.
 #[test]
 fn what_a_replay_costs() {
@@ -133,11 +169,13 @@ fn what_a_replay_costs() {
     };
     // Without replays there are only sentinels: one at the end, and one for every 64 points of a window of four, in any order of the
     // answers.
-    let [of_20, of_400] = [20, 400].map(|points| extra(points, Some(0)));
-    assert_eq!([of_20, of_400], [1, 7]);
+    let [of_20, of_400, of_2000] = [20, 400, 2000].map(|points| extra(points, Some(0)));
+    assert_eq!([of_20, of_400, of_2000], [1, 7, 32]);
     assert_eq!(extra(20, None) - of_20, 7 * 4);
     assert_eq!(extra(20, Some(3)) - of_20, 3 * 4);
     assert_eq!(extra(400, None) - of_400, (20 + 2) * 4);
+    // At most 59 replays.
+    assert_eq!(extra(2000, None) - of_2000, 59 * 4);
 }
 
 /// `probe` fails for models whose answers an analysis would have to correct, and for no others.

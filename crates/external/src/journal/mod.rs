@@ -154,6 +154,10 @@ impl AssemblyFunction for Journaled {
         Some(account)
     }
 
+    fn own_checks(&self, answers: usize) -> usize {
+        self.process.own_checks(answers)
+    }
+
     fn recorded_failures(&self, outputs: &[usize]) -> Vec<RecordedFailure> {
         // Answers that no run has checked since the file was opened may belong to another model.
         let open = self.opened_store();

@@ -29,6 +29,10 @@ pub(super) struct Batch<'a> {
     /// Number of these sends that repeated a row.
     pub(super) resent: usize,
     ever: Vec<bool>,
+    /// Rows of every walk that are still to be sent, in their order. Empty in a batch without walks.
+    lanes: Vec<VecDeque<usize>>,
+    /// Walk of every row. Empty in a batch without walks.
+    lane_of: Vec<usize>,
 }
 
 impl<'a> Batch<'a> {
@@ -50,6 +54,49 @@ impl<'a> Batch<'a> {
             sent: 0,
             resent: 0,
             ever: vec![false; points.rows()],
+            lanes: Vec::new(),
+            lane_of: Vec::new(),
+        }
+    }
+
+    /// Batch of walks with these numbers of points, one after the other in `points`.
+    pub(super) fn in_lanes(points: &'a Points, out: &'a mut Responses, lengths: &[usize]) -> Self {
+        let mut batch = Self::new(points, out);
+        let mut rows = std::mem::take(&mut batch.waiting);
+        for (lane, &length) in lengths.iter().enumerate() {
+            batch.lanes.push(rows.drain(..length).collect());
+            batch.lane_of.extend(std::iter::repeat_n(lane, length));
+        }
+        batch
+    }
+
+    pub(super) fn lane_is_empty(&self, lane: usize) -> bool {
+        self.lanes.get(lane).is_none_or(VecDeque::is_empty)
+    }
+
+    /// Walk of a row.
+    pub(super) fn lane_of(&self, row: usize) -> usize {
+        self.lane_of[row]
+    }
+
+    /// Next row of a walk.
+    pub(super) fn take_from_lane(&mut self, lane: usize) -> Option<usize> {
+        self.lanes.get_mut(lane)?.pop_front()
+    }
+
+    /// Sends a row again before all others, a row of a walk in its own lane.
+    pub(super) fn put_back(&mut self, row: usize) {
+        match self.lane_of.get(row) {
+            Some(&lane) => self.lanes[lane].push_front(row),
+            None => self.waiting.push_front(row),
+        }
+    }
+
+    /// Tries a row again with nothing else under way in its child, a row of a walk in its own lane.
+    pub(super) fn try_again(&mut self, row: usize) {
+        match self.lane_of.get(row) {
+            Some(&lane) => self.lanes[lane].push_front(row),
+            None => self.suspects.push_back(vec![row]),
         }
     }
 
@@ -90,7 +137,7 @@ impl<'a> Batch<'a> {
     /// Tries a row again, or fails it after more than `retries` failures.
     pub(super) fn charge(&mut self, row: usize, error: &ProcessError, retries: u32) {
         if self.charged(row) <= retries {
-            self.suspects.push_back(vec![row]);
+            self.try_again(row);
         } else {
             self.fail(row, error);
         }
@@ -126,7 +173,13 @@ impl<'a> Batch<'a> {
     /// Stores the answer of the model: values, and the reason for each that is missing.
     pub(super) fn settle(&mut self, row: usize, line: Line, names: &[String]) {
         let no_value = |message: String| {
-            Box::new(ProcessError { fault: ProcessFault::NoValue { message }, stderr: StderrTail::default() }).into()
+            // A failure that another attempt could have mended is no answer of the model.
+            let fault = if line.retry && line.error.is_some() {
+                ProcessFault::Unable { message }
+            } else {
+                ProcessFault::NoValue { message }
+            };
+            Box::new(ProcessError { fault, stderr: StderrTail::default() }).into()
         };
         for (output, name) in names.iter().enumerate() {
             let value = line.y.as_ref().and_then(|values| values[output]);
@@ -161,6 +214,7 @@ impl<'a> Batch<'a> {
         }
         // A row that was to be evaluated again keeps its first answer.
         self.waiting.clear();
+        self.lanes.iter_mut().for_each(VecDeque::clear);
         self.suspects.clear();
         self.left = 0;
     }

@@ -21,6 +21,7 @@ mod protocol;
 mod replay;
 mod sentinel;
 mod suspicion;
+mod walk;
 mod worker;
 
 pub use program::Process;

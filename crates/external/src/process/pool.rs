@@ -13,6 +13,7 @@ use super::child::{Child, Event, What};
 use super::protocol::{Hello, Line, VERSION, request};
 use super::sentinel::{Reference, SENTINEL, interval, is_flip};
 use super::suspicion::Answers;
+use super::walk::Lane;
 use super::worker::Worker;
 use crate::settings::Settings;
 use sensitol::assembly::EvaluatorAccount;
@@ -38,12 +39,12 @@ const TAKEN_BACK: Duration = Duration::from_secs(1);
 pub(super) struct Pool {
     pub(super) settings: Settings,
     pub(super) hello: Hello,
-    slots: Vec<Slot>,
+    pub(super) slots: Vec<Slot>,
     events: (Sender<Event>, Receiver<Event>),
     /// Number of the next child.
     next_child: u64,
     /// Number of the next point.
-    next_point: u64,
+    pub(super) next_point: u64,
     /// Failed starts in a row.
     failed_starts: u32,
     /// Children in a row that were ready and ended before they were sent a point.
@@ -63,14 +64,14 @@ pub(super) struct Pool {
     flips: Arc<AtomicBool>,
     /// True if the model gives another answer every time.
     pub(super) hopeless: bool,
-    /// True while points go to one child, one by one in their order, without sentinels.
-    pub(super) walking: bool,
+    /// Lanes in which points go one by one in their order, without sentinels. Empty unless answers are replayed.
+    pub(super) walking: Vec<Lane>,
 }
 
 /// Slot of one child.
 #[derive(Default)]
-struct Slot {
-    state: State,
+pub(super) struct Slot {
+    pub(super) state: State,
     /// Failures since the last answer.
     failures: u32,
     /// Time since which the slot has had no child that answers; None unless a child failed.
@@ -78,7 +79,7 @@ struct Slot {
 }
 
 #[derive(Default)]
-enum State {
+pub(super) enum State {
     /// No child, and none is wanted yet.
     #[default]
     Empty,
@@ -112,7 +113,7 @@ impl Pool {
             noise: Vec::new(),
             flips,
             hopeless: false,
-            walking: false,
+            walking: Vec::new(),
         }
     }
 
@@ -143,7 +144,11 @@ impl Pool {
 
     /// Evaluates all rows of `points` that have no answer yet. After a stop, points under way are waited for and others stay open.
     pub(super) fn evaluate(&mut self, points: &Points, run: &Run<'_>, out: &mut Responses) {
-        let batch = Batch::new(points, out);
+        self.work_off(Batch::new(points, out), run);
+    }
+
+    /// Evaluates the open rows of a batch.
+    pub(super) fn work_off(&mut self, batch: Batch<'_>, run: &Run<'_>) {
         let open = batch.left;
         let mut batch = Some(batch);
         let mut stopped_at = None;
@@ -196,9 +201,35 @@ impl Pool {
         }
     }
 
-    /// Ends the first child, so that the next point goes to a fresh one.
-    pub(super) fn renew(&mut self) {
-        self.slots[0].state = State::Empty;
+    /// Ends children, so that their next points go to fresh ones.
+    pub(super) fn end_children(&mut self, slots: Vec<usize>) {
+        // All are told first, so that they end at the same time.
+        slots.iter().for_each(|&slot| self.slots[slot].close());
+        slots.into_iter().for_each(|slot| self.slots[slot].state = State::Empty);
+    }
+
+    /// Places at which each child has reported evaluations; none for most.
+    pub(super) fn places(&self) -> Vec<(usize, Vec<String>)> {
+        let of = |slot: &Slot| match &slot.state {
+            State::Ready(worker) => worker.places.iter().take(worker.window).cloned().collect(),
+            _ => Vec::new(),
+        };
+        self.slots.iter().map(of).enumerate().collect()
+    }
+
+    /// True if the child is ready. Starts one if there is none.
+    pub(super) fn ensure_child(&mut self, index: usize) -> Result<bool, ProcessError> {
+        let start = match &self.slots[index].state {
+            State::Ready(_) => return Ok(true),
+            State::Starting(..) => false,
+            State::Empty => true,
+            State::Pausing(until) => *until <= Instant::now(),
+        };
+        // Later failures arrive as events.
+        if start && let Err(error) = self.start(index) {
+            self.lost_start(index, error)?;
+        }
+        Ok(false)
     }
 
     fn workers(&mut self) -> impl Iterator<Item = &mut Worker> {
@@ -214,26 +245,21 @@ impl Pool {
 
     /// Starts children if there is work for them, and sends every ready one as many points as it may have.
     fn dispatch(&mut self, batch: &mut Batch<'_>) -> Result<(), ProcessError> {
-        let now = Instant::now();
+        if !self.walking.is_empty() {
+            return self.dispatch_walks(batch);
+        }
         let mut wanted = batch.unsent();
-        let usable = if self.walking { 1 } else { self.slots.len() };
-        for index in 0..usable {
-            let start = match &self.slots[index].state {
-                State::Empty => wanted > 0,
-                State::Pausing(until) => wanted > 0 && *until <= now,
-                State::Starting(..) => false,
-                State::Ready(_) => {
-                    self.give(index, batch);
-                    wanted = batch.unsent();
-                    continue;
-                }
-            };
+        for index in 0..self.slots.len() {
+            if matches!(self.slots[index].state, State::Ready(_)) {
+                self.give(index, batch);
+                wanted = batch.unsent();
+                continue;
+            }
+            if wanted > 0 {
+                self.ensure_child(index)?;
+            }
             // One child for each window of points is enough.
             wanted = wanted.saturating_sub(self.adapter.as_ref().map_or(1, |adapter| adapter.window));
-            // Later failures arrive as events.
-            if start && let Err(error) = self.start(index) {
-                self.lost_start(index, error)?;
-            }
         }
         Ok(())
     }
@@ -245,7 +271,7 @@ impl Pool {
         // A sentinel follows every point that is evaluated again: it may have led the model to a wrong solution, and would do so once more.
         let again = worker.unchecked.last().is_some_and(|row| batch.again.contains(row));
         let due = worker.troubled || again || worker.unchecked.len() >= interval(worker.window) || idle;
-        if self.settings.sentinels && !self.walking && due && !worker.unchecked.is_empty() {
+        if self.settings.sentinels && due && !worker.unchecked.is_empty() {
             if worker.under_way.is_empty() {
                 // One sentinel for each known place, if the program evaluates in several.
                 let places: Vec<Option<String>> = worker.places.iter().cloned().map(Some).collect();
@@ -279,8 +305,8 @@ impl Pool {
             group.into_iter().for_each(|row| send(row, worker, batch));
         }
         // Other rows fill the window. A row that must be evaluated alone waits until nothing is under way.
-        let window = if self.walking { 1 } else { worker.room() };
-        while worker.under_way.len() < window && !worker.exclusive {
+        let room = worker.room();
+        while worker.under_way.len() < room && !worker.exclusive {
             let Some(&row) = batch.waiting.front() else { break };
             if batch.goes_alone(row) {
                 if !worker.under_way.is_empty() {
@@ -521,9 +547,12 @@ impl Pool {
                 if let Some(&row) = rows.first() {
                     batch.charge(row, &error, self.settings.retries);
                 }
-                rows.iter().skip(1).rev().for_each(|&row| batch.waiting.push_front(row));
+                rows.iter().skip(1).rev().for_each(|&row| batch.put_back(row));
             } else if worker.abilities.isolated && crashes < ISOLATED {
-                rows.iter().rev().for_each(|&row| batch.waiting.push_front(row));
+                rows.iter().rev().for_each(|&row| batch.put_back(row));
+            } else if !self.walking.is_empty() {
+                // A walk goes on in its own lane, so its points cannot be tried alone.
+                rows.iter().for_each(|&row| batch.charge(row, &error, self.settings.retries));
             } else {
                 // A crash with several points under way does not show which of them caused it.
                 batch.divide(&rows);
@@ -534,6 +563,15 @@ impl Pool {
 }
 
 impl Slot {
+    /// Tells the child that no more points follow.
+    fn close(&mut self) {
+        match &mut self.state {
+            State::Starting(child, _) => child.close(),
+            State::Ready(worker) => worker.child.close(),
+            State::Empty | State::Pausing(_) => {}
+        }
+    }
+
     /// True if the slot has no answers that a sentinel must still confirm, and no points under way.
     fn is_checked(&self) -> bool {
         match &self.state {
@@ -546,12 +584,6 @@ impl Slot {
 impl Drop for Pool {
     /// Closes all children first, so that they end at the same time.
     fn drop(&mut self) {
-        for slot in &mut self.slots {
-            match &mut slot.state {
-                State::Starting(child, _) => child.close(),
-                State::Ready(worker) => worker.child.close(),
-                State::Empty | State::Pausing(_) => {}
-            }
-        }
+        self.slots.iter_mut().for_each(Slot::close);
     }
 }

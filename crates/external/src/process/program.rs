@@ -6,6 +6,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::pool::Pool;
 use super::protocol::{Hello, VERSION};
 use super::replay::Confirmation;
+use super::suspicion::most_replays;
+use super::walk::STEPS;
 use crate::settings::{Greeting, Settings};
 use sensitol::assembly::EvaluatorAccount;
 use sensitol::assembly::ProcessError;
@@ -161,6 +163,14 @@ impl AssemblyFunction for Process {
 
     fn account(&self) -> Option<EvaluatorAccount> {
         Some(Process::account(self))
+    }
+
+    fn own_checks(&self, answers: usize) -> usize {
+        if !self.settings.replays() {
+            return 0;
+        }
+        // Each walk begins at the nominal point.
+        most_replays(answers, self.settings.verify).min(answers) * (STEPS + 1)
     }
 
     fn evaluate(&self, ask: &Request<'_>, run: &Run<'_>, out: &mut Responses) {

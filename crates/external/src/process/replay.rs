@@ -7,80 +7,15 @@
 
 use super::pool::Pool;
 use super::sentinel::{FLIP, agree};
-use super::suspicion::moved;
-use sensitol::assembly::{EvaluationError, NonRepeatable, Points, Responses, Run};
+use super::walk::{Route, Walked};
+use sensitol::assembly::{NonRepeatable, Points, Responses, Run};
 use sensitol::assembly::{ProcessError, ProcessFault, StderrTail};
 
-/// Number of equal steps of a walk.
-const STEPS: usize = 3;
 /// Factor on the noise of the model, up to which a difference counts as noise.
 const NOISY: f64 = 10.0;
 
-/// Route from the nominal point to another one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Route {
-    /// All dimensions at once.
-    Straight,
-    /// One dimension after the other.
-    AxisByAxis,
-}
-
-impl Route {
-    /// Points on the route, the last one included.
-    fn points(self, from: &[f64], to: &[f64]) -> Vec<Vec<f64>> {
-        let part = |start: &[f64], end: &[f64], step: usize, steps: usize| -> Vec<f64> {
-            let between =
-                |(&a, &b): (&f64, &f64)| if step == steps { b } else { a + (b - a) * step as f64 / steps as f64 };
-            start.iter().zip(end).map(between).collect()
-        };
-        match self {
-            _ if from == to => vec![to.to_vec()],
-            Self::Straight => (1..=STEPS).map(|step| part(from, to, step, STEPS)).collect(),
-            Self::AxisByAxis => {
-                let moved = moved(from, to);
-                // A single dimension has no second route, so the steps become smaller.
-                let steps = if moved.len() == 1 { 2 * STEPS - 1 } else { STEPS.div_ceil(moved.len().max(1)).max(2) };
-                let mut at = from.to_vec();
-                let mut way = Vec::new();
-                for d in moved.into_iter().rev() {
-                    let mut next = at.clone();
-                    next[d] = to[d];
-                    way.extend((1..=steps).map(|step| part(&at, &next, step, steps)));
-                    at = next;
-                }
-                way
-            }
-        }
-    }
-}
-
 /// Values of one point; None for outputs without one.
-type Values = Vec<Option<f64>>;
-
-/// Result of one walk.
-#[derive(Debug, Clone, PartialEq)]
-enum Walked {
-    /// The run was stopped before the end of the walk.
-    Stopped,
-    /// The process did not reach the end: it crashed, was too slow, or could not be started. The answer remains open.
-    Lost,
-    /// The nominal point had another value than expected at the start of the walk, so the end does not count.
-    Astray(Values),
-    /// Values at the end of the walk.
-    There(Values),
-}
-
-impl Walked {
-    fn values(&self) -> Option<&Values> {
-        match self {
-            Self::There(values) => Some(values),
-            _ => None,
-        }
-    }
-}
-
-/// Number of fresh children in a row with another value of the nominal point than expected, after which the walk has no end.
-const ASTRAY: usize = 3;
+pub(super) type Values = Vec<Option<f64>>;
 
 /// Number of replays that differ on every route, after which no more are tried: the model gives another answer every time.
 const HOPELESS: usize = 3;
@@ -343,128 +278,5 @@ impl Pool {
     fn alike_at(&self, output: usize, a: Option<f64>, b: Option<f64>) -> bool {
         let noise = self.noise.get(output).copied().unwrap_or(0.0);
         agree(a, b, self.reference.spread(output), NOISY * noise)
-    }
-
-    /// Answers at these points, each reached from the nominal one by a child that has made no long step before. Returns None if a stop came
-    /// before the end.
-    fn walk(&mut self, targets: &[Vec<f64>], route: Route, out: &mut Responses, run: &Run<'_>) -> Option<Vec<Walked>> {
-        let mut found: Vec<Walked> = Vec::new();
-        let mut truth: Option<Values> = None;
-        // Values of the nominal point that fresh children gave in a row, and that are not the expected ones.
-        let mut others: Vec<Values> = Vec::new();
-        let mut corrected = false;
-        while found.len() < targets.len() {
-            // The way back to the nominal point is a long step. A child that flips on it is replaced.
-            self.renew();
-            let begun = found.len();
-            while found.len() < targets.len() {
-                match self.walk_to(&targets[found.len()], route, &mut truth, out, run) {
-                    Walked::Stopped => return None,
-                    Walked::Astray(_) if found.len() > begun => break,
-                    Walked::Astray(nominal) => {
-                        // Two fresh children that give different values of one point are a flip.
-                        self.set_flips();
-                        if !corrected && others.iter().any(|other| self.settles(other, &nominal)) {
-                            // The expected value was the wrong one, so the walks that began with it do not count.
-                            self.reference.trust(&nominal);
-                            truth = Some(nominal);
-                            found.clear();
-                            others.clear();
-                            corrected = true;
-                        } else if others.len() + 1 < ASTRAY {
-                            others.push(nominal);
-                        } else {
-                            others.clear();
-                            found.push(Walked::Astray(nominal));
-                        }
-                        break;
-                    }
-                    walked => {
-                        others.clear();
-                        let lost = walked == Walked::Lost;
-                        found.push(walked);
-                        if lost {
-                            break;
-                        }
-                    }
-                }
-            }
-            if truth.is_none() {
-                // No child can be started any more.
-                found.resize(targets.len(), Walked::Lost);
-            }
-        }
-        Some(found)
-    }
-
-    /// Walks to one point in the running child.
-    fn walk_to(
-        &mut self,
-        target: &[f64],
-        route: Route,
-        truth: &mut Option<Values>,
-        out: &mut Responses,
-        run: &Run<'_>,
-    ) -> Walked {
-        let mut way = vec![self.hello.nominal.clone()];
-        way.extend(route.points(&way[0], target));
-        let answers = match self.one_by_one(&way, out, run) {
-            Ok(answers) => answers,
-            Err(walked) => return walked,
-        };
-        match truth {
-            Some(truth) => {
-                if !self.settles(truth, &answers[0]) {
-                    return Walked::Astray(answers[0].clone());
-                }
-            }
-            None => {
-                // A fresh child has made no long step, so its value of the nominal point becomes the reference.
-                self.reference.trust(&answers[0]);
-                *truth = Some(answers[0].clone());
-            }
-        }
-        answers.last().map_or(Walked::Lost, |values| Walked::There(values.clone()))
-    }
-
-    /// True if the nominal point has the expected values. Small differences are added to the noise.
-    fn settles(&mut self, expected: &Values, found: &Values) -> bool {
-        self.noise.resize(expected.len(), 0.0);
-        let mut same = true;
-        for (output, (a, b)) in expected.iter().zip(found).enumerate() {
-            match (a, b) {
-                (Some(a), Some(b)) if (a - b).abs() <= FLIP * self.reference.spread(output) => {
-                    self.noise[output] = self.noise[output].max((a - b).abs());
-                }
-                (None, None) => {}
-                (Some(a), Some(b)) if a == b => {}
-                _ => same = false,
-            }
-        }
-        same
-    }
-
-    /// Answers to points in this order, one at a time, by one child.
-    fn one_by_one(&mut self, way: &[Vec<f64>], out: &mut Responses, run: &Run<'_>) -> Result<Vec<Values>, Walked> {
-        let mut answers = Responses::open(way.len(), out.outputs());
-        let (stopped, abandoned) = (|| run.stop_reason(), || run.abandoned());
-        let quiet = Run::to_the_end().stopping_when(&stopped).abandoning_when(&abandoned);
-        self.walking = true;
-        self.evaluate(&Points::from_rows(way), &quiet, &mut answers);
-        self.walking = false;
-        let sent = answers.answered().count();
-        out.spent(sent as i64 + answers.extra());
-        if sent < way.len() {
-            return Err(Walked::Stopped);
-        }
-        let lost = |error: &EvaluationError| match error {
-            EvaluationError::Process(error) => !matches!(error.fault, ProcessFault::NoValue { .. }),
-            _ => true,
-        };
-        if answers.errors().any(|(.., error)| lost(error)) {
-            return Err(Walked::Lost);
-        }
-        let values = |row: usize| (0..answers.outputs()).map(|output| answers.value(row, output)).collect();
-        Ok((0..way.len()).map(values).collect())
     }
 }

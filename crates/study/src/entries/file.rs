@@ -412,7 +412,7 @@ pub(crate) struct ModelEntry {
     #[cfg_attr(feature = "schema", schemars(extend("default" = registry::program().retries)))]
     pub(crate) retries: Option<Spanned<u64>>,
     /// Number of answers that are replayed in a fresh process, to see whether they depend on the points before; 0 for none. By default 5 %, at
-    /// least 5, and 2 more.
+    /// least 5, and 2 more, up to 59.
     pub(crate) verify: Option<Spanned<u64>>,
     /// Files that the model depends on, relative to the study's folder: with other contents nothing kept in the journal is used.
     pub(crate) files: Option<Vec<Spanned<String>>>,

@@ -103,7 +103,8 @@ impl Pool {
         let nominal = |(column, x): (usize, &f64)| batch.points.column(column)[row] == *x;
         let is_nominal = self.hello.nominal.iter().enumerate().all(nominal);
         let troubled = values.contains(&None);
-        if is_nominal && !self.walking {
+        let walking = !self.walking.is_empty();
+        if is_nominal && !walking {
             // The study's own evaluation of the nominal point is the first sentinel.
             let non_repeatable =
                 self.reference.check(values, &self.hello.characteristics, &batch.coordinates(&worker.unchecked));
@@ -111,12 +112,12 @@ impl Pool {
             batch.out.note_non_repeatable(non_repeatable);
         }
         let again = line.error.is_some() && line.retry && batch.charged(row) <= self.settings.retries;
-        if self.settings.sentinels && !self.walking && !is_nominal && !again {
+        if self.settings.sentinels && !walking && !is_nominal && !again {
             worker.unchecked.push(row);
             worker.troubled |= troubled;
         }
         if again {
-            batch.suspects.push_back(vec![row]);
+            batch.try_again(row);
         } else {
             batch.settle(row, line, &self.hello.characteristics);
         }
