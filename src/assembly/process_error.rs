@@ -141,6 +141,12 @@ pub enum ProcessFault {
         /// Answer after steps along one dimension after the other.
         third: Option<f64>,
     },
+    /// The process asked for another attempt at the point every time, so that it says nothing about the model. It is not kept in a journal.
+    #[error("{}", clipped(message))]
+    Unable {
+        /// Reason of the last attempt in the model's own words.
+        message: String,
+    },
     /// The process has no value for one characteristic.
     #[error("{}", clipped(message))]
     NoValue {

@@ -67,6 +67,17 @@ fn a_crash_is_no_recorded_failure() {
     assert_eq!(later.recorded_failures(&[0, 1]), []);
 }
 
+/// A program that asks for another attempt, such as one that waits for a licence, says nothing about the point.
+#[test]
+fn a_failure_that_may_pass_is_not_recorded() {
+    let folder = tempfile::tempdir().unwrap();
+    let first = ask(&journaled(folder.path(), "error-always"), &[1.0, 13.0]);
+    assert!(first.error(1, 0).is_some_and(|error| error.to_string().contains("licence busy")));
+    let later = journaled(folder.path(), "error-always");
+    assert_eq!(ask(&later, &[1.0, 13.0]).extra(), 0, "the point is evaluated again");
+    assert_eq!(later.recorded_failures(&[0, 1]), []);
+}
+
 /// A band includes its ends. Inputs that the model does not receive may have any value.
 #[test]
 fn the_bands_decide_which_failures_count() {

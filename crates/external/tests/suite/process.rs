@@ -224,7 +224,7 @@ fn what_fails_once_succeeds_the_second_time() {
         assert_eq!((out.value(2, 0), out.extra()), (None, 0), "{mode}");
     }
     let out = at(&model(settings("error-always", &[]).with_retries(3)), &POINTS);
-    assert_eq!((fault(&out, 2, 0), out.extra()), (ProcessFault::NoValue { message: "licence busy".into() }, 3));
+    assert_eq!((fault(&out, 2, 0), out.extra()), (ProcessFault::Unable { message: "licence busy".into() }, 3));
 }
 
 /// A failure that the program itself reports is an error of that characteristic or point only, and is not retried.
