@@ -106,8 +106,7 @@ impl Design {
 
     /// Pairs of positions that some characteristic can depend on.
     pub(crate) fn pairs(&self) -> Vec<(usize, usize)> {
-        let n = self.varying.len();
-        (0..n).flat_map(|j| (j + 1..n).map(move |k| (j, k))).filter(|&(j, k)| self.matters(j, k)).collect()
+        self.coupled_pairs()
     }
 
     /// Copies the notes of an axis of a difference plan: nodes moved into the support, and a tail.

@@ -208,10 +208,9 @@ impl DifferencePlan {
     /// Pairs examined, with the univariate parts by characteristic and dimension from any source.
     pub(crate) fn pairs_by(&self, part: Option<&dyn Fn(usize, usize) -> Option<Univariate>>) -> Vec<(usize, usize)> {
         let n = self.varying.len();
-        let all = (0..n).flat_map(|j| (j + 1..n).map(move |k| (j, k)));
         let mut pairs: Vec<(usize, usize)> = match &self.layout.pairs {
             PairChoice::None => return Vec::new(),
-            PairChoice::All => all.filter(|&(j, k)| self.matters(j, k)).collect(),
+            PairChoice::All => return self.coupled_pairs(),
             PairChoice::Strongest => {
                 let Some(part) = part else { return Vec::new() };
                 let shares: Vec<Vec<f64>> = (0..self.depends.len()).map(|c| self.shares(part, c)).collect();

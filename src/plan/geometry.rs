@@ -77,7 +77,32 @@ impl Geometry {
         if self.depends.iter().any(|row| self.varying.iter().all(|&d| row[d])) {
             return n * n.saturating_sub(1) / 2;
         }
-        (0..n).map(|j| (j + 1..n).filter(|&k| self.matters(j, k)).count()).sum()
+        self.coupled_pairs().len()
+    }
+
+    /// Pairs of varying dimensions that some characteristic can depend on, in ascending order. Cost: the square of the number of
+    /// dimensions of every characteristic.
+    pub(super) fn coupled_pairs(&self) -> Vec<(usize, usize)> {
+        let n = self.varying.len();
+        let own = |row: &Vec<bool>| -> Vec<usize> { (0..n).filter(|&j| row[self.varying[j]]).collect() };
+        let positions: Vec<Vec<usize>> = self.depends.iter().map(own).collect();
+        let mut asking: Vec<Vec<usize>> = vec![Vec::new(); n];
+        for (c, positions) in positions.iter().enumerate() {
+            positions.iter().for_each(|&j| asking[j].push(c));
+        }
+        let mut pairs = Vec::new();
+        // The last first position for which a second one was counted.
+        let mut counted_for = vec![usize::MAX; n];
+        for (j, asking) in asking.iter().enumerate() {
+            let begun = pairs.len();
+            for &k in asking.iter().flat_map(|&c| &positions[c]).filter(|&&k| k > j) {
+                if std::mem::replace(&mut counted_for[k], j) != j {
+                    pairs.push((j, k));
+                }
+            }
+            pairs[begun..].sort_unstable();
+        }
+        pairs
     }
 
     /// Point at which one dimension is at a node, and every other one at its mean.
