@@ -379,7 +379,7 @@ impl SimulatedCharacteristic {
     }
 
     /// Warning of points without a value, if there are any.
-    pub(super) fn failures(&self) -> Option<Warning> {
+    pub(crate) fn failures(&self) -> Option<Warning> {
         Some(Warning::FailedSamples {
             characteristic: self.characteristic.name().to_owned(),
             failed: self.failed,

@@ -478,6 +478,29 @@ fn points_within_the_bands_refute_a_worst_case() {
     assert!(found.warnings.iter().any(|warning| warning.code() == "confirmation-misses"), "{:?}", found.warnings);
 }
 
+/// 0.6 % of the assemblies have no value, which the nodes of the surface do not show. The required yield is kept if these are no rejects and
+/// missed if they are, so the result is inconclusive.
+#[test]
+fn points_without_a_value_leave_the_result_open() {
+    let function = Closure::scalar("y", |x| if x[1] > 0.025 { f64::NAN } else { x[0] });
+    let dimensions = ["a", "b"].map(|name| Dimension::normal(name, 0.0, 0.03).unwrap());
+    let limits = SpecLimits::new(Some(-0.1), Some(0.1)).unwrap();
+    let problem = Problem::new(dimensions, function).unwrap().asking([Characteristic::new("y").with_limits(limits)]);
+    let offer = Offer::between(Curve::reciprocal(0.0, 0.1).unwrap(), 0.01, 0.03).unwrap();
+    let priced = vec![Priced::new(vec![0], vec![offer]).unwrap()];
+    let task = AllocationTask::new(priced, vec![Some(Requirement::Yield(0.995))]);
+    let options = AllocationOptions::default()
+        .with_analysis(Options::from(Method::SecondOrder).with_verify(0))
+        .with_confirm(20_000);
+    let found = allocate(&problem.unwrap(), &task, &options).unwrap();
+    // P(b > 2.5 sigma) = 0.0062. Five standard errors of 20 000 points are 0.0028.
+    let simulation = found.confirmation.unwrap();
+    let failed = simulation.characteristics[0].failed as f64 / 20_000.0;
+    assert!((failed - 0.0062).abs() < 0.0028, "{failed}");
+    assert_eq!(found.status, Status::Inconclusive, "{:?}", found.requirements[0].sampled);
+    assert!(found.warnings.iter().any(|warning| warning.code() == "failed-samples"), "{:?}", found.warnings);
+}
+
 /// A jump between the nodes of the surface and the tail: 3.6 % of the assemblies lie beyond 1.8 sigma, and are rejected for it.
 #[test]
 fn a_sample_refutes_a_joint_yield() {

@@ -23,7 +23,7 @@ use crate::allocation::surface::joint_yield::joint;
 use crate::allocation::task::{AllocateError, Goal};
 use crate::analysis::{Analysis, CharacteristicAnalysis, Findings, TRUSTED};
 use crate::problem::Problem;
-use crate::simulation::{SimulationOptions, simulate_with};
+use crate::simulation::{SimulatedCharacteristic, SimulationOptions, simulate_with};
 use crate::summary::StopReason;
 use crate::warning::Warning;
 use sensitol_numeric::verdict::worst;
@@ -260,6 +260,15 @@ impl Driver<'_> {
         }
         let joint = simulation.joint_requirement.map(Judged::widely);
         allocation.joint_requirement.iter_mut().for_each(|one| one.sampled = joint);
+        // Points without a value leave a requirement open unless it is met even if all of them are rejects.
+        let open = |judged: Option<Judged>| judged.is_some_and(|judged| judged.verdict == Verdict::Inconclusive);
+        let failed = |c: usize| simulation.characteristics[c].failed > 0;
+        let mut requirements = allocation.requirements.iter();
+        let undecided = requirements.any(|one| failed(one.characteristic) && open(one.sampled))
+            || open(joint) && simulation.characteristics.iter().any(|one| one.failed > 0);
+        if undecided && is_found(allocation.status) {
+            allocation.status = Status::Inconclusive;
+        }
         allocation.confirmation = Some(simulation);
         Ok(())
     }
@@ -420,8 +429,7 @@ pub(in crate::allocation) fn doubts(problem: &Problem, priced: &[Priced], alloca
     };
     let name = |group: &Priced| problem.dimensions()[group.members[0]].name().to_owned();
     let bent: Vec<String> = priced.iter().filter(is_bent).map(name).collect();
-    let found = matches!(allocation.status, Status::Optimal | Status::LocalOptimum | Status::AlmostOptimal);
-    let not_confirmed = (!allocation.confirmed && found).then_some(Warning::NotConfirmed);
+    let not_confirmed = (!allocation.confirmed && is_found(allocation.status)).then_some(Warning::NotConfirmed);
     let refuted = |kept: &Kept| {
         let Judged { interval: Some(interval), verdict: Verdict::Missed, .. } = kept.sampled? else { return None };
         let characteristic = problem.characteristics()[kept.characteristic].name().to_owned();
@@ -436,7 +444,14 @@ pub(in crate::allocation) fn doubts(problem: &Problem, priced: &[Priced], alloca
         Some(Warning::JointConfirmationMisses { required: one.requirement.amount(), interval })
     });
     let refuted = allocation.requirements.iter().filter_map(refuted).chain(together);
-    not_confirmed.into_iter().chain(bent).chain(refuted).collect()
+    let sampled = allocation.confirmation.iter().flat_map(|simulation| &simulation.characteristics);
+    let failed = sampled.filter_map(SimulatedCharacteristic::failures);
+    not_confirmed.into_iter().chain(bent).chain(refuted).chain(failed).collect()
+}
+
+/// True if the status says that tolerances were found.
+fn is_found(status: Status) -> bool {
+    matches!(status, Status::Optimal | Status::LocalOptimum | Status::AlmostOptimal)
 }
 
 fn moved(before: &Problem, after: &Problem) -> Vec<Moved> {
