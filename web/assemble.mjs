@@ -14,7 +14,7 @@ const minified = (text, loader) => {
   const { status, stdout } = spawnSync("esbuild", ["--minify", `--loader=${loader}`, "--log-level=error"], { input: text, encoding: "utf8" });
   return status === 0 ? stdout.trimEnd() : text;
 };
-const part = (name) => readFileSync(join(here, "page", name), "utf8");
+const part = (name) => readFileSync(join(root, "crates/cli/page", name), "utf8");
 // Bytes of a small page: what people wait for over a slow network, and mail servers take.
 const MOST = 2_500_000;
 const version = /^version = "(.*)"$/m.exec(readFileSync(join(root, "Cargo.toml"), "utf8"))[1];

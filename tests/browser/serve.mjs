@@ -1,15 +1,15 @@
 // `sensitol serve` in a real browser: a folder of studies, edited, saved, watched, with an external model.
-// `SENSITOL=program WORKBENCH=page node --test serve.mjs`
+// The page is that of the program, without WebAssembly. `SENSITOL=program node --test serve.mjs`
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
-import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { Browser } from "./chromium.mjs";
 
-const { SENSITOL: sensitol, WORKBENCH: workbench } = process.env;
-const folder = mkdtempSync(join(tmpdir(), "sensitol-serve-"));
+const { SENSITOL: sensitol } = process.env;
+const folder = mkdtempSync(join(tmpdir(), "sensitol-serve-")), home = mkdtempSync(join(tmpdir(), "sensitol-program-"));
 const STUDY = "# The gap.\ntitle = \"Gap\"\n[dimensions]\na = { nominal = 10, tolerance = 0.3 }\nb = { nominal = 4, tolerance = 0.1 }\n[characteristics]\ny = { formula = \"a - b\", lower = 5.5, upper = 6.5, target_yield = 0.9 }\n";
 const PROGRAM = `
 import json, sys, time
@@ -29,14 +29,16 @@ before(async () => {
   writeFileSync(join(folder, "gap.toml"), STUDY);
   writeFileSync(join(folder, "in", "program.toml"), EXTERNAL);
   writeFileSync(join(folder, "in", "slow.py"), PROGRAM);
-  server = spawn(sensitol, ["serve", folder, "--page", workbench], { stdio: ["ignore", "pipe", "inherit"] });
+  // Elsewhere no built page is found beside the program.
+  copyFileSync(sensitol, join(home, "sensitol"));
+  server = spawn(join(home, "sensitol"), ["serve", folder], { stdio: ["ignore", "pipe", "inherit"] });
   address = await new Promise((resolve) => server.stdout.on("data", (text) => resolve(/http:\S+/.exec(String(text))[0])));
   browser = await Browser.start();
 });
 after(async () => {
   server.kill();
   await browser.stop();
-  rmSync(folder, { recursive: true, force: true });
+  [folder, home].forEach((one) => rmSync(one, { recursive: true, force: true }));
 });
 
 const until = async (page, expression) => {

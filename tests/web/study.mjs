@@ -7,7 +7,7 @@ import { fileURLToPath } from "node:url";
 import { load } from "./engine.mjs";
 
 const root = join(dirname(fileURLToPath(import.meta.url)), "..", "..");
-const study = new Function(`${readFileSync(join(root, "web/page/study.js"), "utf8")}; return study;`)();
+const study = new Function(`${readFileSync(join(root, "crates/cli/page/study.js"), "utf8")}; return study;`)();
 const engine = load(process.env.WEB_ENGINE);
 const keys = (text, files = {}) => JSON.parse(engine.study(JSON.stringify({ text, format: "toml", name: "study.toml", files })));
 

@@ -125,7 +125,7 @@ pub(super) enum Failure {
     UnknownName(#[from] UnknownName),
     #[error("{path} cannot be written: {error}", path = path.display())]
     Unwritable { path: PathBuf, error: std::io::Error },
-    #[error("the page of the workbench is not part of this build: run web/build, or name its page by --page; it is not at {sought}", sought = sought.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", "))]
+    #[error("a page that works without this program holds the engine, and none was built: run web/build, name a page by --page, or open the studies by `sensitol serve`; there is no page at {sought}", sought = sought.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", "))]
     NoPage { sought: Vec<PathBuf> },
     #[error("{path} is not a page for `sensitol workbench`: {reason}", path = path.display())]
     WrongPage { path: PathBuf, reason: String },

@@ -71,12 +71,13 @@ impl Server {
             std::fs::create_dir_all(path.parent().unwrap()).unwrap();
             std::fs::write(path, text).unwrap();
         }
-        let mut child = program
-            .args(["serve", "studies", "--page", "page.html"])
-            .current_dir(folder.path())
-            .stdout(Stdio::piped())
-            .spawn()
-            .unwrap();
+        program.args(["serve", "studies", "--page", "page.html"]);
+        Self::listening(program, folder)
+    }
+
+    /// Starts the program of this command, whose arguments are complete, in a folder.
+    fn listening(mut program: Command, folder: tempfile::TempDir) -> Self {
+        let mut child = program.current_dir(folder.path()).stdout(Stdio::piped()).spawn().unwrap();
         let mut said = String::new();
         BufReader::new(child.stdout.as_mut().unwrap()).read_line(&mut said).unwrap();
         assert!(said.starts_with("The workbench over studies: http://127.0.0.1:"), "{said}");
@@ -404,4 +405,34 @@ fn what_cannot_be_served_is_said() {
         &["serve", "--page", "page.html", "--port", &port],
         &format!("nothing can listen at 127.0.0.1:{port}"),
     );
+}
+
+/// A program without a built page beside it serves its own: the same texts without an engine, which opens the studies of the folder.
+#[test]
+fn a_program_alone_serves_its_own_page() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("studies")).unwrap();
+    std::fs::write(folder.path().join("studies/s.toml"), STUDY).unwrap();
+    let copy = folder.path().join("alone");
+    std::fs::copy(env!("CARGO_BIN_EXE_sensitol"), &copy).unwrap();
+    let mut program = Command::new(&copy);
+    program.env_remove("SENSITOL_WORKBENCH").args(["serve", "studies"]);
+    let server = Server::listening(program, folder);
+    let page = server.get("");
+    assert_eq!(page.status, 200);
+    assert!(page.body.contains("connect-src 'self'") && page.body.contains("\"folder\":\"studies\""));
+    // Without the engine it is a tenth of the page with it.
+    assert!(page.body.len() < 200_000, "{}", page.body.len());
+    let task = json!({ "text": STUDY, "format": "toml", "name": "s.toml", "files": {}, "asked": { "command": "analyze" }, "forms": ["json"] });
+    let told = server.run("s.toml", &task);
+    assert!(told.last().unwrap()["found"].is_object(), "{told:?}");
+    // A page that works alone needs the engine in it.
+    let refused = Command::new(server.folder.path().join("alone"))
+        .env_remove("SENSITOL_WORKBENCH")
+        .current_dir(server.folder.path())
+        .arg("workbench")
+        .output()
+        .unwrap();
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("sensitol serve"), "{refused:?}");
 }

@@ -1,6 +1,6 @@
 //! `sensitol serve`: the workbench over a folder of studies, with the engine of this program.
 //!
-//! The page is that of `sensitol workbench`. It opens and saves studies of the folder, follows changes of files, and can run external
+//! The page is that of `sensitol workbench`, or one without WebAssembly if none was built. It opens and saves studies of the folder, follows changes of files, and can run external
 //! models. Only requests with the token are answered, and no file outside the folder is read or written. A program that a study names is
 //! not confined, and starts only when the user asks for a result.
 
@@ -8,6 +8,7 @@ mod answer;
 mod connection;
 mod folder;
 mod guard;
+mod page;
 mod request;
 mod runs;
 
@@ -17,7 +18,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 use crate::args::ServeArgs;
-use crate::commands::workbench::page;
+use crate::commands::workbench;
 use crate::failure::{Exit, Failure};
 use crate::interrupt;
 use crate::output::Destination;
@@ -60,7 +61,12 @@ impl Drop for Active<'_> {
 
 pub(crate) fn run(asked: &ServeArgs) -> Result<Exit, Failure> {
     let folder = Folder::open(&asked.folder)?;
-    let page = with_server(&page(asked.page.as_deref())?, &folder.name())?;
+    let page = match workbench::page(asked.page.as_deref()) {
+        // A program without a built page serves one that holds no engine.
+        Err(Failure::NoPage { .. }) => page::page(),
+        found => found?,
+    };
+    let page = with_server(&page, &folder.name())?;
     let address = SocketAddr::new(asked.address.unwrap_or(IpAddr::from([127, 0, 0, 1])), asked.port);
     let cannot = |reason: String| Failure::NotServed { address, reason };
     let listener = TcpListener::bind(address).map_err(|error| cannot(error.to_string()))?;

@@ -574,6 +574,7 @@ const page = (() => {
   $("keep").checked = stored((storage) => storage.getItem(`${KEPT}-off`) === null) ?? false;
   $("keep").onchange = () => stored((storage) => { if ($("keep").checked) { storage.removeItem(`${KEPT}-off`); remember(); } else { storage.removeItem(KEPT); storage.setItem(`${KEPT}-off`, "1"); } });
   $("examples-list").innerHTML = examples.map((one, i) => `<button type="button" data-i="${i}">${esc(one.title)}<small>${esc(one.teaches)}</small></button>`).join("");
+  $("examples-menu").hidden = examples.length === 0;
   $("examples-list").onclick = async (event) => {
     const chosen = event.target.closest("button");
     if (chosen === null) return;
