@@ -1,0 +1,4 @@
+//! Tests of the reader of STEP files.
+
+mod counts;
+mod files;
