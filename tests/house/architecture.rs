@@ -8,11 +8,12 @@ use super::sources::{SourceFile, modules, sources};
 const PACKAGES: &[(&str, &[&str])] = &[
     ("cli", &["report", "study", "external", "models", "engine", "numeric"]),
     ("report", &["study", "models", "engine", "numeric"]),
-    ("study", &["external", "models", "spatial", "engine", "numeric"]),
+    ("study", &["external", "models", "spatial", "step", "engine", "numeric"]),
     ("external", &["engine", "numeric"]),
     ("models", &["engine", "numeric"]),
     ("engine", &["numeric"]),
     ("spatial", &["numeric"]),
+    ("step", &[]),
     ("numeric", &[]),
 ];
 

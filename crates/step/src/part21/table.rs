@@ -96,7 +96,7 @@ impl<'a> EntityTable<'a> {
         cursor.skip_statement()?;
         let mut types = Types::default();
         let mut records = Vec::new();
-        sections(&mut cursor, &mut types, &mut records)?;
+        sections(&mut cursor, &mut types, &mut records).map_err(|error| cut_off(bytes, error))?;
         if !records.is_sorted_by_key(|record: &Record| record.id) {
             records.sort_by_key(|record| record.id);
         }
@@ -178,6 +178,17 @@ impl<'a> EntityTable<'a> {
     /// Line of a place.
     pub(super) fn line(&self, at: u32) -> usize {
         line(self.bytes, at as usize)
+    }
+}
+
+/// Fault of a file that was cut off in the middle of a word, in place of the fault of the rest of the word.
+fn cut_off(bytes: &[u8], error: Part21Error) -> Part21Error {
+    let has_end = bytes.windows(END.len()).rev().any(|window| window == END.as_bytes());
+    match error.fault {
+        Part21Fault::Syntax { .. } if !has_end && error.line == Some(line(bytes, bytes.len())) => {
+            Part21Error { fault: Part21Fault::CutOff, ..error }
+        }
+        _ => error,
     }
 }
 

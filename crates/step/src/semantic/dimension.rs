@@ -39,6 +39,10 @@ pub enum DimensionLimits {
     Deviations([StepMeasure; 2]),
     /// Lower and upper limit.
     Values([StepMeasure; 2]),
+    /// A greatest value alone.
+    Maximum(StepMeasure),
+    /// A least value alone.
+    Minimum(StepMeasure),
     /// A tolerance class of ISO 286 such as H7.
     Fit(String),
     /// A theoretically exact value, which has no tolerance.
@@ -204,10 +208,22 @@ fn value(
             found.value = found.value.or(Some(measured));
         }
     }
-    if let [Some(lower), Some(upper)] = limits {
-        found.limits = DimensionLimits::Values([lower, upper]);
-        let middle = 0.5 * (lower.value + upper.value);
-        found.value = found.value.or(Some(StepMeasure { value: middle, unit: lower.unit }));
+    match limits {
+        [Some(lower), Some(upper)] => {
+            found.limits = DimensionLimits::Values([lower, upper]);
+            let middle = 0.5 * (lower.value + upper.value);
+            found.value = found.value.or(Some(StepMeasure { value: middle, unit: lower.unit }));
+        }
+        // A single limit such as R 0.1 max stands as the nominal value.
+        [Some(only), None] => {
+            found.limits = DimensionLimits::Minimum(only);
+            found.value = found.value.or(Some(only));
+        }
+        [None, Some(only)] => {
+            found.limits = DimensionLimits::Maximum(only);
+            found.value = found.value.or(Some(only));
+        }
+        [None, None] => {}
     }
     Ok(())
 }

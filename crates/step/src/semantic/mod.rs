@@ -16,5 +16,6 @@ pub use face::{FaceSurface, StepFace};
 pub use measure::{StepMeasure, StepUnit};
 pub use model::{StepModel, StepPart};
 pub use placement::Placement;
+pub(crate) use placement::{cross, dot, minus, plus, unit};
 pub use product::PlacedPart;
 pub use tolerance::{GeometricTolerance, MaterialCondition, ToleranceKind, ZoneShape};
