@@ -1,5 +1,7 @@
 //! Datums, their features and targets, and references to them.
 
+use std::collections::{HashMap, HashSet};
+
 use super::aspect::{Aspects, TARGETS};
 use super::measure::{StepMeasure, measure};
 use super::placement::{Placement, placement};
@@ -45,6 +47,40 @@ pub struct DatumReference {
     pub modifiers: Vec<String>,
 }
 
+/// Representations of place and sizes, by datum target.
+#[derive(Debug, Default)]
+pub(super) struct TargetRepresentations(HashMap<u64, Vec<u64>>);
+
+impl TargetRepresentations {
+    /// Reads the representations of all targets in one pass over the properties of the file.
+    pub(super) fn read(table: &EntityTable<'_>) -> Result<Self, Part21Error> {
+        let mut found = Self::default();
+        let targets: HashSet<u64> = TARGETS.iter().flat_map(|kind| table.of_kind(kind).map(|one| one.id())).collect();
+        if targets.is_empty() {
+            return Ok(found);
+        }
+        let mut definitions = HashMap::new();
+        for definition in table.of_kind("PROPERTY_DEFINITION") {
+            let of = definition.inherited("PROPERTY_DEFINITION")?.get(2).and_then(StepValue::reference);
+            if let Some(target) = of.filter(|of| targets.contains(of)) {
+                definitions.insert(definition.id(), target);
+            }
+        }
+        for kind in ["PROPERTY_DEFINITION_REPRESENTATION", "SHAPE_DEFINITION_REPRESENTATION"] {
+            for link in table.of_kind(kind) {
+                let arguments = link.inherited("PROPERTY_DEFINITION_REPRESENTATION")?;
+                let ends = [0, 1].map(|index| arguments.get(index).and_then(StepValue::reference));
+                if let [Some(definition), Some(representation)] = ends
+                    && let Some(target) = definitions.get(&definition)
+                {
+                    found.0.entry(*target).or_default().push(representation);
+                }
+            }
+        }
+        Ok(found)
+    }
+}
+
 /// Letter of a datum.
 fn letter(datum: Entity<'_>) -> Result<Option<String>, Part21Error> {
     let arguments = datum.arguments("DATUM")?.unwrap_or_default();
@@ -52,7 +88,12 @@ fn letter(datum: Entity<'_>) -> Result<Option<String>, Part21Error> {
 }
 
 /// Reads a datum.
-pub(super) fn datum(table: &EntityTable<'_>, aspects: &Aspects<'_>, datum: Entity<'_>) -> Result<StepDatum, Part21Error> {
+pub(super) fn datum(
+    table: &EntityTable<'_>,
+    aspects: &Aspects<'_>,
+    representations: &TargetRepresentations,
+    datum: Entity<'_>,
+) -> Result<StepDatum, Part21Error> {
     let mut faces = aspects.datum_items(datum.id())?.faces;
     let mut targets = Vec::new();
     for &other in aspects.above(datum.id()).iter().chain(aspects.below(datum.id())) {
@@ -60,7 +101,7 @@ pub(super) fn datum(table: &EntityTable<'_>, aspects: &Aspects<'_>, datum: Entit
         if other.first_of(&TARGETS).is_none() {
             continue;
         }
-        targets.push(target(table, other)?);
+        targets.push(target(table, representations, other)?);
         // The feature of a target stands above it.
         for &feature in aspects.above(other.id()) {
             for face in aspects.items(feature)?.faces {
@@ -74,7 +115,11 @@ pub(super) fn datum(table: &EntityTable<'_>, aspects: &Aspects<'_>, datum: Entit
 }
 
 /// Reads a datum target with the representation of its place and sizes.
-fn target(table: &EntityTable<'_>, entity: Entity<'_>) -> Result<DatumTarget, Part21Error> {
+fn target(
+    table: &EntityTable<'_>,
+    representations: &TargetRepresentations,
+    entity: Entity<'_>,
+) -> Result<DatumTarget, Part21Error> {
     let aspect = entity.inherited("SHAPE_ASPECT")?;
     let own = match entity.first_of(&TARGETS) {
         Some(kind) => entity.arguments(kind)?.unwrap_or_default(),
@@ -87,21 +132,8 @@ fn target(table: &EntityTable<'_>, entity: Entity<'_>) -> Result<DatumTarget, Pa
         placement: None,
         sizes: Vec::new(),
     };
-    for definition in table.of_kind("PROPERTY_DEFINITION") {
-        let arguments = definition.inherited("PROPERTY_DEFINITION")?;
-        if arguments.get(2).and_then(StepValue::reference) != Some(entity.id()) {
-            continue;
-        }
-        for link in ["PROPERTY_DEFINITION_REPRESENTATION", "SHAPE_DEFINITION_REPRESENTATION"] {
-            for link in table.of_kind(link) {
-                let arguments = link.inherited("PROPERTY_DEFINITION_REPRESENTATION")?;
-                let ends = [0, 1].map(|index| arguments.get(index).and_then(StepValue::reference));
-                let [Some(of), Some(representation)] = ends else { continue };
-                if of == definition.id() {
-                    sizes(table, table.referred(link.id(), representation)?, &mut found)?;
-                }
-            }
-        }
+    for &representation in representations.0.get(&entity.id()).map_or(&[][..], Vec::as_slice) {
+        sizes(table, table.referred(entity.id(), representation)?, &mut found)?;
     }
     Ok(found)
 }

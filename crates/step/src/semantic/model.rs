@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
 use super::aspect::Aspects;
-use super::datum::{StepDatum, datum};
+use super::datum::{StepDatum, TargetRepresentations, datum};
 use super::dimension::{DimensionValues, StepDimension, dimension, dimension_entities};
 use super::face::{Faces, StepFace};
 use super::measure::StepUnit;
@@ -83,8 +83,9 @@ impl StepModel {
             let definition = owner.definition(found.aspects.first().copied().unwrap_or(0))?;
             self::entry(&mut parts, &products, definition)?.dimensions.push(found);
         }
+        let representations = TargetRepresentations::read(table)?;
         for entity in table.of_kind("DATUM") {
-            let found = datum(table, &aspects, entity)?;
+            let found = datum(table, &aspects, &representations, entity)?;
             let definition = owner.definition(entity.id())?;
             self::entry(&mut parts, &products, definition)?.datums.push(found);
         }
