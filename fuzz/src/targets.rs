@@ -12,6 +12,7 @@ use sensitol::assembly::formula::set::{FormulaSet, Meaning};
 use sensitol::pearson::Pearson;
 use sensitol::{Options, analyze};
 use sensitol_study::Study;
+use sensitol_study::import::{StepImportFault, StepRequest, step_study};
 
 /// Surface of the program, with the function that checks it.
 pub struct Target {
@@ -22,7 +23,7 @@ pub struct Target {
 }
 
 /// Every target.
-pub const TARGETS: [Target; 10] = [
+pub const TARGETS: [Target; 11] = [
     Target { name: "study_toml", run: study_toml },
     Target { name: "study_json", run: study_json },
     Target { name: "formula", run: formula },
@@ -33,6 +34,7 @@ pub const TARGETS: [Target; 10] = [
     Target { name: "fits", run: fits },
     Target { name: "command_line", run: command_line },
     Target { name: "import", run: import },
+    Target { name: "step", run: step },
 ];
 
 fn text(bytes: &[u8]) -> Option<&str> {
@@ -208,6 +210,16 @@ fn import(bytes: &[u8]) {
     let _: ExitCode = sensitol_cli::run(words.into_iter().map(Into::into));
     if Path::new(&at("study.toml")).exists() {
         assert!(Study::read(Path::new(&at("study.toml"))).is_ok(), "the imported study cannot be read");
+    }
+}
+
+/// Checks that a STEP file is refused in one line, or becomes a study whose features can be read.
+fn step(bytes: &[u8]) {
+    let request = StepRequest { file: "part.stp".to_owned(), joints: true, ..StepRequest::default() };
+    match step_study(bytes, &request) {
+        Ok(study) => assert!(study.text.contains("[parts."), "a study without a part"),
+        Err(StepImportFault::Written(error)) => panic!("the imported study cannot be read: {error}"),
+        Err(error) => assert!(!error.to_string().contains('\n'), "{error}"),
     }
 }
 

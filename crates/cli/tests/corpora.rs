@@ -45,4 +45,4 @@ macro_rules! replayed {
     };
 }
 
-replayed!(study_toml, study_json, formula, measured_csv, protocol, journal, pearson, fits, command_line, import);
+replayed!(study_toml, study_json, formula, measured_csv, protocol, journal, pearson, fits, command_line, import, step);

@@ -141,12 +141,8 @@ fn step(asked: &ImportArgs, bytes: &[u8]) -> Result<Exit, Failure> {
         "Next: add the other parts with `sensitol import PART.stp --into THIS.toml`, then write [joints] and [characteristics].",
         "Until a joint holds every part, `sensitol check` tells which part has none.",
     ];
-    let request = StepRequest {
-        file,
-        part: asked.part.clone(),
-        joints: asked.joints,
-        next: next.map(str::to_owned).to_vec(),
-    };
+    let request =
+        StepRequest { file, part: asked.part.clone(), joints: asked.joints, next: next.map(str::to_owned).to_vec() };
     let refused = |fault: StepImportFault| {
         let help = fault.is_of_name().then(|| "choose another name: --part NAME".to_owned());
         match fault {

@@ -12,6 +12,7 @@ mod exit_codes;
 mod hosted;
 mod hostile;
 mod import;
+mod import_step;
 mod init;
 mod labels;
 mod memory;

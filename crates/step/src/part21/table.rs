@@ -193,11 +193,7 @@ fn cut_off(bytes: &[u8], error: Part21Error) -> Part21Error {
 }
 
 /// Reads all sections until the end of the file.
-fn sections<'a>(
-    cursor: &mut Cursor<'a>,
-    types: &mut Types<'a>,
-    records: &mut Vec<Record>,
-) -> Result<(), Part21Error> {
+fn sections<'a>(cursor: &mut Cursor<'a>, types: &mut Types<'a>, records: &mut Vec<Record>) -> Result<(), Part21Error> {
     loop {
         cursor.skip_space()?;
         if cursor.continues(END) {

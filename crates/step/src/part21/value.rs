@@ -101,7 +101,12 @@ pub(super) fn arguments<'a>(cursor: &mut Cursor<'a>, id: u64) -> Result<Vec<Step
     list(cursor, id, 0, &mut left)
 }
 
-fn list<'a>(cursor: &mut Cursor<'a>, id: u64, depth: usize, left: &mut usize) -> Result<Vec<StepValue<'a>>, Part21Error> {
+fn list<'a>(
+    cursor: &mut Cursor<'a>,
+    id: u64,
+    depth: usize,
+    left: &mut usize,
+) -> Result<Vec<StepValue<'a>>, Part21Error> {
     if depth > DEEPEST {
         return Err(cursor.error(Part21Fault::Deep(id, DEEPEST)));
     }

@@ -106,7 +106,8 @@ impl DimensionValues {
         }
         for qualification in table.of_kind("MEASURE_QUALIFICATION") {
             let arguments = qualification.inherited("MEASURE_QUALIFICATION")?;
-            let (Some(measure), Some(qualifiers)) = (arguments.get(2).and_then(StepValue::reference), arguments.get(3)) else {
+            let (Some(measure), Some(qualifiers)) = (arguments.get(2).and_then(StepValue::reference), arguments.get(3))
+            else {
                 continue;
             };
             found.qualified.entry(measure).or_default().extend(qualifiers.references());

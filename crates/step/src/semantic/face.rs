@@ -143,7 +143,8 @@ impl<'t> Faces<'t> {
         };
         let surface = find(|value| value.reference().is_some()).and_then(|value| value.reference());
         let Some(surface) = surface else { return Ok(None) };
-        let bounds = find(|value| matches!(value, StepValue::List(_))).map(|value| value.references()).unwrap_or_default();
+        let bounds =
+            find(|value| matches!(value, StepValue::List(_))).map(|value| value.references()).unwrap_or_default();
         let same = find(|value| matches!(value, StepValue::Word(_))).is_none_or(|word| word.word() != Some("F"));
         let surface = self.surface(self.table.referred(id, surface)?, same)?;
         let mut outline = Outline::default();

@@ -134,11 +134,7 @@ fn entry<'p>(
 }
 
 /// Reads the faces of a part.
-fn read_faces(
-    part: &mut StepPart,
-    faces: &mut Faces<'_>,
-    all: Option<&Products<'_>>,
-) -> Result<(), Part21Error> {
+fn read_faces(part: &mut StepPart, faces: &mut Faces<'_>, all: Option<&Products<'_>>) -> Result<(), Part21Error> {
     let mut named: Vec<u64> = Vec::new();
     part.tolerances.iter().for_each(|tolerance| named.extend(&tolerance.faces));
     part.dimensions.iter().for_each(|dimension| named.extend(dimension.ends.iter().flatten()));

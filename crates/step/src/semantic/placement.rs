@@ -103,7 +103,8 @@ pub(super) fn triple(table: &EntityTable<'_>, from: u64, to: u64) -> Result<Opti
         return Ok(None);
     }
     let arguments = entity.all()?.swap_remove(0).1;
-    let numbers: Vec<f64> = arguments.last().map_or(&[][..], StepValue::items).iter().filter_map(StepValue::number).collect();
+    let numbers: Vec<f64> =
+        arguments.last().map_or(&[][..], StepValue::items).iter().filter_map(StepValue::number).collect();
     Ok(numbers.try_into().ok())
 }
 
@@ -156,7 +157,8 @@ mod tests {
 
     #[test]
     fn inverses_undo() {
-        let turned = Placement { rotation: [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]], place: [1.0, 2.0, 3.0] };
+        let turned =
+            Placement { rotation: [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]], place: [1.0, 2.0, 3.0] };
         assert_eq!(turned.of(&turned.inverse()), Placement::IDENTITY);
         assert_eq!(turned.point([1.0, 0.0, 0.0]), [1.0, 3.0, 3.0]);
     }

@@ -249,7 +249,10 @@ impl<'t> Products<'t> {
             }
             let entity = self.table.referred(from, id)?;
             let holds = |kind: &str| {
-                kind.ends_with("_SHELL") || kind.ends_with("_BREP") || kind.contains("BREP_") || kind.ends_with("SURFACE_MODEL")
+                kind.ends_with("_SHELL")
+                    || kind.ends_with("_BREP")
+                    || kind.contains("BREP_")
+                    || kind.ends_with("SURFACE_MODEL")
             };
             if entity.first_of(&super::aspect::FACES).is_some() {
                 found.push(id);

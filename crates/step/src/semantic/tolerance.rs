@@ -176,7 +176,8 @@ pub(super) fn tolerance_entities(table: &EntityTable<'_>) -> Vec<u64> {
 /// Shapes of zones by the tolerance that they define.
 pub(super) fn zones(table: &EntityTable<'_>) -> Result<HashMap<u64, ZoneShape>, Part21Error> {
     let mut found = HashMap::new();
-    let zones: Vec<Entity<'_>> = table.of_kind("TOLERANCE_ZONE").chain(table.of_kind("TOLERANCE_ZONE_WITH_DATUM")).collect();
+    let zones: Vec<Entity<'_>> =
+        table.of_kind("TOLERANCE_ZONE").chain(table.of_kind("TOLERANCE_ZONE_WITH_DATUM")).collect();
     for zone in zones {
         // In a simple entity the zone's own arguments follow the four of its aspect.
         let mut own = zone.inherited("TOLERANCE_ZONE")?;
@@ -189,7 +190,9 @@ pub(super) fn zones(table: &EntityTable<'_>) -> Result<HashMap<u64, ZoneShape>, 
         let lower = name.to_ascii_lowercase();
         let shape = match lower.as_str() {
             _ if lower.contains("spher") => ZoneShape::Sphere,
-            _ if lower.contains("cylind") || lower.contains("circ") && !lower.contains("between") => ZoneShape::Cylinder,
+            _ if lower.contains("cylind") || lower.contains("circ") && !lower.contains("between") => {
+                ZoneShape::Cylinder
+            }
             "" | "unknown" => continue,
             _ if lower.contains("parallel") || lower.contains("plane") => ZoneShape::Width,
             _ => ZoneShape::Other(name),
@@ -231,7 +234,9 @@ pub(super) fn tolerance(
     let systems: Vec<u64> = match entity.arguments("GEOMETRIC_TOLERANCE_WITH_DATUM_REFERENCE")? {
         Some(own) => own.iter().flat_map(StepValue::references).collect(),
         // A simple tolerance with datums has them after the four arguments of every tolerance.
-        None => arguments.iter().skip(4).filter(|value| !value.items().is_empty()).flat_map(StepValue::references).collect(),
+        None => {
+            arguments.iter().skip(4).filter(|value| !value.items().is_empty()).flat_map(StepValue::references).collect()
+        }
     };
     let target = arguments.get(3).and_then(StepValue::reference).unwrap_or(0);
     let mut found = GeometricTolerance {
@@ -287,11 +292,7 @@ fn modifiers(table: &EntityTable<'_>, entity: Entity<'_>, found: &mut GeometricT
 }
 
 /// Finds the faces that a tolerance controls: those of an aspect, or of the aspects that a dimension measures.
-fn faces(
-    aspects: &Aspects<'_>,
-    target: Entity<'_>,
-    found: &mut GeometricTolerance,
-) -> Result<(), Part21Error> {
+fn faces(aspects: &Aspects<'_>, target: Entity<'_>, found: &mut GeometricTolerance) -> Result<(), Part21Error> {
     if target.is("PRODUCT_DEFINITION_SHAPE") {
         found.whole = true;
         return Ok(());

@@ -30,14 +30,15 @@ fn same_surface(a: &StepFace, b: &StepFace, tolerance: f64) -> bool {
     match (&a.surface, &b.surface) {
         (Plane { point: p, normal: n }, Plane { point: q, normal: m }) => {
             let turned = cross(*n, *m);
-            dot(*n, *m) > 0.0
-                && dot(turned, turned).sqrt() < SAME_DIRECTION
-                && dot(minus(*q, *p), *n).abs() < tolerance
+            dot(*n, *m) > 0.0 && dot(turned, turned).sqrt() < SAME_DIRECTION && dot(minus(*q, *p), *n).abs() < tolerance
         }
         (Cylinder { point: p, axis: d, radius: r }, Cylinder { point: q, axis: e, radius: s }) => {
             (r - s).abs() < tolerance && same_line(*p, *d, *q, *e, tolerance)
         }
-        (Cone { point: p, axis: d, radius: r, half_angle: f }, Cone { point: q, axis: e, radius: s, half_angle: g }) => {
+        (
+            Cone { point: p, axis: d, radius: r, half_angle: f },
+            Cone { point: q, axis: e, radius: s, half_angle: g },
+        ) => {
             let off = minus(*q, *p);
             dot(off, off).sqrt() < tolerance
                 && (f - g).abs() < 1e-6
@@ -48,10 +49,7 @@ fn same_surface(a: &StepFace, b: &StepFace, tolerance: f64) -> bool {
             let off = minus(*q, *p);
             dot(off, off).sqrt() < tolerance && (r - s).abs() < tolerance
         }
-        (
-            Torus { centre: p, axis: d, major: r, minor: s },
-            Torus { centre: q, axis: e, major: t, minor: u },
-        ) => {
+        (Torus { centre: p, axis: d, major: r, minor: s }, Torus { centre: q, axis: e, major: t, minor: u }) => {
             let off = minus(*q, *p);
             dot(off, off).sqrt() < tolerance
                 && (r - t).abs() < tolerance
@@ -254,7 +252,8 @@ fn line(faces: &[&StepFace], point: [f64; 3], axis: [f64; 3], radius: Option<f64
 
 /// Middle plane of two planes that face away from or towards each other. Returns None for other shapes.
 pub(super) fn median(a: &FeatureShape, b: &FeatureShape, tolerance: f64) -> Option<FeatureShape> {
-    let (FeatureShape::Plane { point: p, normal: n, size }, FeatureShape::Plane { point: q, normal: m, .. }) = (a, b) else {
+    let (FeatureShape::Plane { point: p, normal: n, size }, FeatureShape::Plane { point: q, normal: m, .. }) = (a, b)
+    else {
         return None;
     };
     let turned = cross(*n, *m);

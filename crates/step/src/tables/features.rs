@@ -171,7 +171,8 @@ impl Features {
             FaceSurface::Torus { .. } => Some("torus: its axis".to_owned()),
             _ => None,
         };
-        let other = other.map(|kind| if kind.contains(':') { kind } else { format!("{kind}: the middle of its edges") });
+        let other =
+            other.map(|kind| if kind.contains(':') { kind } else { format!("{kind}: the middle of its edges") });
         let name = self.names.take(name);
         let index = self.push(name, shape);
         self.all[index].notes.extend(other);

@@ -1,11 +1,11 @@
 //! Writes the table of one part.
 
+use super::cluster::FeatureShape;
 use super::features::Features;
 use super::sizes::{StudyUnit, line, suffix};
 use super::text::{UniqueNames, comment, number, point};
 use super::zone_keys::KeyText;
 use super::{OpenItem, OpenReason, StudyTables, TableRequest};
-use super::cluster::FeatureShape;
 use crate::semantic::{
     DimensionKind, GeometricTolerance, Placement, StepDimension, StepPart, ToleranceKind, ZoneShape,
 };
@@ -123,9 +123,10 @@ impl<'m> PartWriter<'m> {
         if targets.is_empty() {
             return Err(match (&tolerance.other, tolerance.whole) {
                 (_, true) => item(OpenReason::WholePart, "of the whole part"),
-                (Some((id, kind)), false) => {
-                    item(OpenReason::NoFace, &format!("names no face but #{id}, {}", comment(&kind.to_ascii_lowercase())))
-                }
+                (Some((id, kind)), false) => item(
+                    OpenReason::NoFace,
+                    &format!("names no face but #{id}, {}", comment(&kind.to_ascii_lowercase())),
+                ),
                 (None, false) => item(OpenReason::NoFace, "names no face"),
             });
         }
@@ -198,8 +199,11 @@ impl<'m> PartWriter<'m> {
             })
             .collect();
         if !dimension.is_size {
-            let named: Vec<&str> =
-                ends.iter().filter_map(|end| end.first()).map(|&index| self.features.all[index].name.as_str()).collect();
+            let named: Vec<&str> = ends
+                .iter()
+                .filter_map(|end| end.first())
+                .map(|&index| self.features.all[index].name.as_str())
+                .collect();
             let wanted = match named[..] {
                 [a, b] => format!("{prefix}{a}_to_{b}"),
                 [a] => format!("{prefix}{a}_{word}"),
@@ -292,7 +296,12 @@ fn notes(tolerance: &GeometricTolerance) -> Vec<String> {
     }
     for reference in tolerance.datums.iter().filter(|reference| !reference.modifiers.is_empty()) {
         let words = reference.modifiers.join(", ").to_ascii_lowercase().replace('_', " ");
-        found.push(format!("#{}: datum {} with {}", tolerance.entity, comment(&reference.letters.join("-")), comment(&words)));
+        found.push(format!(
+            "#{}: datum {} with {}",
+            tolerance.entity,
+            comment(&reference.letters.join("-")),
+            comment(&words)
+        ));
     }
     found
 }

@@ -30,7 +30,12 @@ impl StudyUnit<'_> {
 }
 
 /// Pairs that state the tolerance of a dimension. Returns an error with the reason for a comment.
-fn limits(dimension: &StepDimension, nominal: f64, unit: StudyUnit<'_>, request: &TableRequest) -> Result<Option<String>, String> {
+fn limits(
+    dimension: &StepDimension,
+    nominal: f64,
+    unit: StudyUnit<'_>,
+    request: &TableRequest,
+) -> Result<Option<String>, String> {
     let band = |low: f64, high: f64| {
         let [low, high] = [low.min(high), low.max(high)];
         match (low + high).abs() < 1e-9 {

@@ -102,6 +102,9 @@ mod tests {
         assert_eq!(number(0.1 + 0.2), "0.3");
         assert_eq!(direction([0.0, -1.0, 0.0]), "\"-y\"");
         let mut names = UniqueNames::default();
-        assert_eq!([names.take("a"), names.take("a"), names.take("a_2"), names.take("a")], ["a", "a_2", "a_2_2", "a_3"]);
+        assert_eq!(
+            [names.take("a"), names.take("a"), names.take("a_2"), names.take("a")],
+            ["a", "a_2", "a_2_2", "a_3"]
+        );
     }
 }

@@ -82,7 +82,10 @@ fn single_entities_are_read_whole() {
     // 0.025 inch at maximum material, to C, A and B, in a cylindrical zone, on a composite group of two groups of two faces.
     let value = hole.value.unwrap();
     assert_eq!((value.value, value.unit), (0.025, StepUnit::Length(0.0254)));
-    assert_eq!((hole.condition, &hole.zone, hole.faces.len()), (Some(MaterialCondition::Maximum), &ZoneShape::Cylinder, 4));
+    assert_eq!(
+        (hole.condition, &hole.zone, hole.faces.len()),
+        (Some(MaterialCondition::Maximum), &ZoneShape::Cylinder, 4)
+    );
     assert_eq!(hole.datums.iter().map(letters).collect::<Vec<_>>(), ["C", "A", "B"]);
     assert_eq!(tolerance(10803).zone, ZoneShape::Sphere);
     // The lower segment of a composite frame.

@@ -40,12 +40,18 @@ fn every_damage_has_its_message() {
         (outcome("#99999999999999999999=A();"), "line 6: expected a number below 2^64"),
         (outcome("#1=A('it"), "END-ISO-10303-21: it was cut off"),
         (outcome("#1=A(/* "), "END-ISO-10303-21: it was cut off"),
-        (outcome_of(format!("{HEAD}{TAIL}").replace("DATA", "ANCHOR").as_bytes()), "a section ANCHOR is of Part 21 edition 3"),
+        (
+            outcome_of(format!("{HEAD}{TAIL}").replace("DATA", "ANCHOR").as_bytes()),
+            "a section ANCHOR is of Part 21 edition 3",
+        ),
         (outcome("#1=FLATNESS_TOLERANCE('','',#2,#3);"), "line 6: #1 refers to #2, which is not in the file"),
         (outcome("#1=FLATNESS_TOLERANCE('','',#,#3);"), "line 6: expected a number after `#`"),
         (outcome("#1=FLATNESS_TOLERANCE('','',1.5.5,#3);"), "line 6: expected a number"),
         (outcome("#1=DATUM('','',$,.F.,'A' 'B');"), "line 6: expected `,` or `)`"),
-        (outcome(&format!("#1=DATUM({}1{});", "(".repeat(9000), ")".repeat(9000))), "#1 has lists inside lists, more than 32 deep"),
+        (
+            outcome(&format!("#1=DATUM({}1{});", "(".repeat(9000), ")".repeat(9000))),
+            "#1 has lists inside lists, more than 32 deep",
+        ),
     ];
     for (found, expected) in cases {
         assert!(found.contains(expected), "{found:?} lacks {expected:?}");
@@ -62,7 +68,8 @@ fn cycles_end() {
         });
         lines.collect::<Vec<_>>().join("\n")
     };
-    let parts = "#1=PRODUCT_DEFINITION('','',$,$);\n#2=PRODUCT_DEFINITION('','',$,$);\n#3=PRODUCT_DEFINITION('','',$,$);\n";
+    let parts =
+        "#1=PRODUCT_DEFINITION('','',$,$);\n#2=PRODUCT_DEFINITION('','',$,$);\n#3=PRODUCT_DEFINITION('','',$,$);\n";
     let alone = outcome(&format!("{parts}{}", uses(&[(1, 2), (2, 1)])));
     assert!(alone.contains("line 6: assembly #1 contains itself"), "{alone}");
     let below = outcome(&format!("{parts}{}", uses(&[(3, 1), (1, 2), (2, 1)])));
@@ -90,7 +97,13 @@ fn small_files_do_not_grow() {
     let loops: String = (0..1000).map(|index| format!("#{}=FACE_BOUND('',#5000,.T.);\n", 10_000 + index)).collect();
     let bounds = (0..1000).map(|index| format!("#{}", 10_000 + index)).collect::<Vec<_>>().join(",");
     let faces: String = (0..1000)
-        .map(|index| format!("#{}=ADVANCED_FACE('',({bounds}),#5002,.T.);\n#{}=GEOMETRIC_ITEM_SPECIFIC_USAGE('','',#5003,$,#{0});\n", 20_000 + index, 30_000 + index))
+        .map(|index| {
+            format!(
+                "#{}=ADVANCED_FACE('',({bounds}),#5002,.T.);\n#{}=GEOMETRIC_ITEM_SPECIFIC_USAGE('','',#5003,$,#{0});\n",
+                20_000 + index,
+                30_000 + index
+            )
+        })
         .collect();
     let edges = vec!["#5001"; 100_000].join(",");
     let text = format!(

@@ -86,7 +86,9 @@ impl Lines {
 fn assembly(reversed: bool) -> String {
     let mut lines = Lines::default();
     let length = lines.add("(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.))");
-    let context = lines.add(&format!("(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNIT_ASSIGNED_CONTEXT((#{length}))REPRESENTATION_CONTEXT('',''))"));
+    let context = lines.add(&format!(
+        "(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNIT_ASSIGNED_CONTEXT((#{length}))REPRESENTATION_CONTEXT('',''))"
+    ));
     let plate = [
         lines.level(10.0, 1.0),
         lines.level(0.0, -1.0),

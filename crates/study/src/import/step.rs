@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use sensitol_spatial::SpatialError;
 use sensitol_step::tables::{ReaderKeys, StepFault, StudyTables, TableFault, TableRequest, tables_of};
 
-use crate::error::{StudyError, StudyFault};
 use crate::Study;
+use crate::error::{StudyError, StudyFault};
 use sensitol_numeric::unit::Unit;
 
 /// Keys of features that this reader of studies takes.
@@ -220,7 +220,9 @@ fn check(text: &str) -> Result<(), StudyError> {
     match Study::from_toml(&complete, "imported study") {
         Ok(_) => Ok(()),
         Err(error) => match &*error.fault {
-            StudyFault::Spatial(SpatialError::NothingMoves | SpatialError::NoJoint { .. }) if error.more.is_empty() => Ok(()),
+            StudyFault::Spatial(SpatialError::NothingMoves | SpatialError::NoJoint { .. }) if error.more.is_empty() => {
+                Ok(())
+            }
             _ => Err(error),
         },
     }
