@@ -86,8 +86,7 @@ impl<'t> Aspects<'t> {
                 let definition = arguments.get(2).and_then(StepValue::reference);
                 let (Some(definition), Some(items)) = (definition, arguments.get(4)) else { continue };
                 let aspect = aspect_of(table, table.referred(usage.id(), definition)?)?;
-                let into = found.items.entry(aspect).or_default();
-                into.extend(items.references().into_iter().filter(|item| !into.contains(item)).collect::<Vec<_>>());
+                found.items.entry(aspect).or_default().extend(items.references());
             }
         }
         let mut seen = HashSet::new();

@@ -95,6 +95,7 @@ pub(super) fn datum(
     datum: Entity<'_>,
 ) -> Result<StepDatum, Part21Error> {
     let mut faces = aspects.datum_items(datum.id())?.faces;
+    let mut seen: HashSet<u64> = faces.iter().copied().collect();
     let mut targets = Vec::new();
     for &other in aspects.above(datum.id()).iter().chain(aspects.below(datum.id())) {
         let other = table.referred(datum.id(), other)?;
@@ -104,11 +105,7 @@ pub(super) fn datum(
         targets.push(target(table, representations, other)?);
         // The feature of a target stands above it.
         for &feature in aspects.above(other.id()) {
-            for face in aspects.items(feature)?.faces {
-                if !faces.contains(&face) {
-                    faces.push(face);
-                }
-            }
+            faces.extend(aspects.items(feature)?.faces.into_iter().filter(|face| seen.insert(*face)));
         }
     }
     Ok(StepDatum { entity: datum.id(), letter: letter(datum)?.unwrap_or_default(), faces, targets })

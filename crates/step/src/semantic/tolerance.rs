@@ -1,6 +1,6 @@
 //! Geometric tolerances.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use super::aspect::{Aspects, inside};
 use super::datum::{DatumReference, references};
@@ -299,9 +299,10 @@ fn faces(aspects: &Aspects<'_>, target: Entity<'_>, found: &mut GeometricToleran
     }
     let is_dimension = target.kinds().any(super::dimension::is_dimension) && !target.is("SHAPE_ASPECT");
     let from = if is_dimension { inside(target)? } else { vec![target.id()] };
+    let mut seen = HashSet::new();
     for aspect in from {
         let items = aspects.items(aspect)?;
-        found.faces.extend(items.faces.iter().filter(|face| !found.faces.contains(face)).copied().collect::<Vec<_>>());
+        found.faces.extend(items.faces.iter().filter(|face| seen.insert(**face)));
         found.whole |= items.whole;
         found.other = found.other.take().or(items.other);
     }

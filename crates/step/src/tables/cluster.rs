@@ -1,6 +1,6 @@
 //! Faces that are one surface: the halves of a cylinder, the pieces of a plane.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 
 use crate::semantic::{FaceSurface, StepFace, StepPart, cross, dot, minus, plus, unit};
 
@@ -10,6 +10,8 @@ pub(super) const SAME_LENGTH: f64 = 1e-6;
 pub(super) const SAME_DIRECTION: f64 = 1e-5;
 /// Name of a round face for sorting: pieces of one surface have equal names, up to rounding.
 type RoundKey = [i64; 4];
+/// Most comparisons of two faces of a part: some seconds.
+const MOST_COMPARISONS: usize = 20_000_000;
 /// Most faces of a group that are compared with each other. Larger groups are whole parts, whose faces stay apart.
 const MOST_COMPARED: usize = 2000;
 
@@ -86,6 +88,25 @@ fn beside(a: &StepFace, b: &StepFace) -> bool {
     }
 }
 
+/// Number of comparisons that are left.
+struct Comparisons(usize);
+
+impl Comparisons {
+    /// Takes the comparisons of all pairs of some faces. Returns false if there are too many.
+    fn take(&mut self, faces: usize) -> bool {
+        if faces > MOST_COMPARED {
+            return false;
+        }
+        match self.0.checked_sub(faces * faces / 2) {
+            Some(left) => {
+                self.0 = left;
+                true
+            }
+            None => false,
+        }
+    }
+}
+
 /// Faces of a part by the surface to which they belong.
 #[derive(Debug)]
 pub(super) struct Clusters {
@@ -97,9 +118,11 @@ impl Clusters {
     /// Joins the faces of each group that are one surface. Faces that no group names together stay apart.
     pub(super) fn new(part: &StepPart, groups: &[Vec<u64>], tolerance: f64) -> Self {
         let mut found = Self { parents: part.faces.keys().map(|&face| (face, face)).collect() };
-        for group in groups {
+        let mut left = Comparisons(MOST_COMPARISONS);
+        let mut seen: HashSet<&[u64]> = HashSet::new();
+        for group in groups.iter().filter(|group| seen.insert(group.as_slice())) {
             let faces: Vec<&StepFace> = group.iter().filter_map(|face| part.faces.get(face)).collect();
-            if faces.len() > MOST_COMPARED {
+            if !left.take(faces.len()) {
                 continue;
             }
             for (index, a) in faces.iter().enumerate() {
@@ -110,19 +133,22 @@ impl Clusters {
                 }
             }
         }
-        found.join_halves(part, tolerance);
+        found.join_halves(part, tolerance, &mut left);
         found
     }
 
     /// Joins pieces of round surfaces that lie around the same part of an axis, whether anything names them together or not.
-    fn join_halves(&mut self, part: &StepPart, tolerance: f64) {
+    fn join_halves(&mut self, part: &StepPart, tolerance: f64, left: &mut Comparisons) {
         let mut rounds: BTreeMap<RoundKey, Vec<&StepFace>> = BTreeMap::new();
         for face in part.faces.values() {
             if let Some(key) = round_key(face, tolerance) {
                 rounds.entry(key).or_default().push(face);
             }
         }
-        for faces in rounds.values().filter(|faces| faces.len() <= MOST_COMPARED) {
+        for faces in rounds.values().filter(|faces| faces.len() > 1) {
+            if !left.take(faces.len()) {
+                continue;
+            }
             for (index, a) in faces.iter().enumerate() {
                 for b in &faces[index + 1..] {
                     if same_surface(a, b, tolerance) && beside(a, b) {
@@ -152,7 +178,7 @@ impl Clusters {
     /// Clusters of some faces in their order, each once.
     pub(super) fn of(&self, faces: &[u64]) -> Vec<u64> {
         let mut found = Vec::new();
-        let mut seen = std::collections::HashSet::new();
+        let mut seen = HashSet::new();
         for face in faces.iter().filter(|face| self.parents.contains_key(face)) {
             let root = self.root(*face);
             if seen.insert(root) {
@@ -227,10 +253,10 @@ pub(super) fn shape(faces: &[&StepFace]) -> Option<FeatureShape> {
         FaceSurface::Sphere { centre, radius } => FeatureShape::Point { point: *centre, radius: Some(*radius) },
         FaceSurface::Other(_) => {
             let mut point = [0.0; 3];
-            for index in 0..3 {
+            for (index, at) in point.iter_mut().enumerate() {
                 let along = [0, 1, 2].map(|axis| if axis == index { 1.0 } else { 0.0 });
                 let [low, high] = extent(faces, along)?;
-                point[index] = 0.5 * (low + high);
+                *at = 0.5 * (low + high);
             }
             FeatureShape::Point { point, radius: None }
         }

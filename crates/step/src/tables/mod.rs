@@ -127,7 +127,8 @@ pub enum TableFault {
 pub fn tables(model: &StepModel, request: &TableRequest) -> Result<StudyTables, TableFault> {
     let occurrences = occurrences(model);
     let has_tolerances = model.parts.iter().any(has_semantics);
-    if !has_tolerances && !(request.joints && occurrences.len() > 1) {
+    let may_coincide = request.joints && occurrences.len() > 1;
+    if !has_tolerances && !may_coincide {
         return Err(TableFault::OnlyDrawn { annotations: model.annotations });
     }
     let unit = unit(model, request);

@@ -98,6 +98,11 @@ pub(crate) struct StudyFile {
     #[serde(default, rename = "processes")]
     #[cfg_attr(feature = "schema", schemars(schema_with = "registry::processes::<DistributionEntry>"))]
     pub(crate) _processes: Option<IgnoredAny>,
+    /// Tolerance of dimensions that state neither a tolerance nor a spread: { standard = "ISO 2768-m" }, or the values of a title block by
+    /// ISO 22081. Theoretically exact dimensions are [constants].
+    #[serde(default, rename = "general")]
+    #[cfg_attr(feature = "schema", schemars(schema_with = "registry::general"))]
+    pub(crate) _general: Option<IgnoredAny>,
     /// A built-in model or an external program, evaluated next to the formulas.
     pub(crate) model: Option<Spanned<ModelEntry>>,
     /// Options of the analysis; flags of the command line win.

@@ -6,6 +6,7 @@
 mod assembly;
 mod configurations;
 mod from;
+mod general;
 mod geometry;
 mod joint_entry;
 mod processes;
@@ -74,6 +75,7 @@ pub(super) fn expand(
     };
     configurations::expand(&mut expanded, configuration, data)?;
     processes::expand(&mut expanded, data)?;
+    general::expand(&mut expanded)?;
     geometry::fasteners(&mut expanded)?;
     crate::expand::joint_entry::expand(&mut expanded);
     from::expand(&mut expanded)?;

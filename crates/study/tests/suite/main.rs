@@ -1,5 +1,6 @@
 //! Tests of the format of studies.
 
+mod general;
 mod measured;
 mod scaling;
 mod schema;
