@@ -1,20 +1,26 @@
 //! View of an entity, whose arguments are parsed when they are asked for.
 
 use super::error::Part21Error;
-use super::table::{EntityTable, Record};
+use super::scan::{Cursor, line};
 use super::value::{StepValue, arguments};
 
 /// An entity of a Part 21 file.
 #[derive(Debug, Clone, Copy)]
 pub struct Entity<'a> {
-    pub(super) table: &'a EntityTable<'a>,
-    pub(super) record: Record,
+    pub(super) bytes: &'a [u8],
+    /// Names of all types of the file.
+    pub(super) names: &'a [String],
+    /// Indices of the types of the entity.
+    pub(super) kinds: &'a [u32],
+    pub(super) id: u64,
+    /// Place after `=`.
+    pub(super) start: u32,
 }
 
 impl<'a> Entity<'a> {
     /// Number of the entity.
     pub fn id(&self) -> u64 {
-        self.record.id
+        self.id
     }
 
     /// Line of the entity in the file, from 1.
@@ -22,12 +28,13 @@ impl<'a> Entity<'a> {
     /// # Cost
     /// A pass over the text before it.
     pub fn line(&self) -> usize {
-        self.table.line(self.record.start)
+        line(self.bytes, self.start as usize)
     }
 
     /// Names of the types: one, or those of a complex entity in the order of the file.
-    pub fn kinds(&self) -> impl Iterator<Item = &'a str> {
-        self.table.kinds(self.record)
+    pub fn kinds(&self) -> impl Iterator<Item = &'a str> + use<'a> {
+        let names = self.names;
+        self.kinds.iter().map(move |&kind| names[kind as usize].as_str())
     }
 
     /// Names of the types, joined by `+`.
@@ -50,7 +57,7 @@ impl<'a> Entity<'a> {
     /// # Errors
     /// If the text is damaged.
     pub fn all(&self) -> Result<Vec<(&'a str, Vec<StepValue<'a>>)>, Part21Error> {
-        let mut cursor = self.table.cursor(self.record.start);
+        let mut cursor = Cursor::new(self.bytes, self.start as usize);
         let is_complex = cursor.peek() == Some(b'(');
         if is_complex {
             cursor.advance(1);
@@ -63,7 +70,7 @@ impl<'a> Entity<'a> {
             }
             let name = cursor.keyword();
             cursor.skip_space()?;
-            found.push((name, arguments(&mut cursor, self.record.id)?));
+            found.push((name, arguments(&mut cursor, self.id)?));
             if !is_complex {
                 return Ok(found);
             }

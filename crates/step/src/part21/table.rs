@@ -13,12 +13,12 @@ const END: &str = "END-ISO-10303-21";
 
 /// Place and type of an entity.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Record {
-    pub(super) id: u64,
+struct Record {
+    id: u64,
     /// Place after `=`.
-    pub(super) start: u32,
+    start: u32,
     /// Index of the combination of types.
-    pub(super) kinds: u32,
+    kinds: u32,
 }
 
 /// Entities of a Part 21 file, by their numbers and by their types.
@@ -140,7 +140,7 @@ impl<'a> EntityTable<'a> {
             Some(record) if record.id == id => record,
             _ => &self.records[self.records.binary_search_by_key(&id, |record| record.id).ok()?],
         };
-        Some(Entity { table: self, record: *record })
+        Some(self.entity(record))
     }
 
     /// Entity to which `from` refers.
@@ -157,7 +157,7 @@ impl<'a> EntityTable<'a> {
     /// Entities of a type, in the order of their numbers. Entities with several types are in the list of each.
     pub fn of_kind(&self, kind: &str) -> impl Iterator<Item = Entity<'_>> {
         let members = self.names.iter().position(|name| name == kind).map_or(&[][..], |at| &self.members[at]);
-        members.iter().map(|&index| Entity { table: self, record: self.records[index as usize] })
+        members.iter().map(|&index| self.entity(&self.records[index as usize]))
     }
 
     /// Number of entities of a type.
@@ -165,19 +165,9 @@ impl<'a> EntityTable<'a> {
         self.names.iter().position(|name| name == kind).map_or(0, |at| self.members[at].len())
     }
 
-    /// Names of the types of an entity.
-    pub(super) fn kinds(&self, record: Record) -> impl Iterator<Item = &str> {
-        self.combinations[record.kinds as usize].iter().map(|&kind| self.names[kind as usize].as_str())
-    }
-
-    /// Place in the text.
-    pub(super) fn cursor(&self, at: u32) -> Cursor<'_> {
-        Cursor::new(self.bytes, at as usize)
-    }
-
-    /// Line of a place.
-    pub(super) fn line(&self, at: u32) -> usize {
-        line(self.bytes, at as usize)
+    fn entity(&self, record: &Record) -> Entity<'_> {
+        let kinds = &self.combinations[record.kinds as usize];
+        Entity { bytes: self.bytes, names: &self.names, kinds, id: record.id, start: record.start }
     }
 }
 
