@@ -203,14 +203,16 @@ impl Composite {
         Ok(composite)
     }
 
-    /// Returns the parts of formulas and conditions whose units are incompatible, as found by `FormulaSet::units`.
+    /// Returns the parts of formulas and conditions whose units are incompatible, as found by `FormulaSet::units`. `unread` gives the text of
+    /// a unit that is unknown.
     pub fn units(
         &self,
         unit: &dyn Fn(&str) -> Option<Unit>,
+        unread: &dyn Fn(&str) -> Option<String>,
         role: &dyn Fn(usize) -> Role,
         convert: bool,
     ) -> Vec<UnitFinding> {
-        self.formulas.units(unit, role, convert)
+        self.formulas.units(unit, unread, role, convert)
     }
 
     /// Returns the dimensions inside a sine or cosine of a formula, each with its radians per unit.

@@ -1,8 +1,9 @@
 //! Units of measurement: a factor to SI, seven exponents, a count of radians, and symbols.
 //!
-//! Syntax: `N.m/rad`, `kg.m^2`, `mm2`, `m/s²`, `1/K`, `W/m^2/K`. Products are written with `.`, `*`, `·` or a space, and `/` inverts the
-//! one factor after it. Names come before prefixes: `min` is a minute, `in` an inch, `mil` a thousandth of one. The factors are exact by
-//! definition (NIST SP 811, 2008, appendix B.8, and the international agreements named there).
+//! Syntax: `N.m/rad`, `kg.m^2`, `mm2`, `m/s²`, `1/K`, `W/m^2/K`, `um/(m*K)`, `10^-6/K`. Products are written with `.`, `*`, `·`, a space or a hyphen
+//! between letters, and `/` inverts the one factor or bracket after it. Names come before prefixes: `min` is a minute, `in` an inch, `mil` a
+//! thousandth of one. A temperature scale is a point where it stands alone (`degC`), and a difference in a product (`ppm/degC`). The
+//! factors are exact by definition (NIST SP 811, 2008, appendix B.8, and the international agreements named there).
 
 use std::f64::consts::PI;
 
@@ -13,6 +14,12 @@ pub(crate) type Dimension = [f64; 7];
 const INCH: f64 = 0.0254;
 /// Pound-force in newton: 0.45359237 kg times 9.80665 m/s².
 const POUND_FORCE: f64 = 4.4482216152605;
+/// Zero of the Celsius scale in kelvin, exact by definition.
+const CELSIUS_ZERO: f64 = 273.15;
+/// Degree Fahrenheit in kelvin, exact by definition.
+const FAHRENHEIT: f64 = 5.0 / 9.0;
+/// Zero of the Fahrenheit scale in kelvin: 459.67 degrees above absolute zero.
+const FAHRENHEIT_ZERO: f64 = 459.67 * 5.0 / 9.0;
 /// Tolerance between two equal scales or exponents. A factor has rounding errors only.
 pub const SAME: f64 = 1e-9;
 
@@ -26,6 +33,8 @@ pub struct Unit {
     pub radians: f64,
     /// True for a temperature on a scale with another zero: a point, not a difference.
     pub point: bool,
+    /// Zero of the scale of a point in SI: 273.15 for degC; 0 of other units.
+    pub zero: f64,
     /// Symbols with their exponents, in the order of writing.
     symbols: Vec<(String, f64)>,
 }
@@ -74,6 +83,8 @@ const SYMBOLS: &[Symbol] = &[
     Symbol("W", 1.0, POWER, 0.0, true),
     Symbol("V", 1.0, [2.0, 1.0, -3.0, -1.0, 0.0, 0.0, 0.0], 0.0, true),
     Symbol("ohm", 1.0, [2.0, 1.0, -3.0, -2.0, 0.0, 0.0, 0.0], 0.0, true),
+    Symbol("Ohm", 1.0, [2.0, 1.0, -3.0, -2.0, 0.0, 0.0, 0.0], 0.0, true),
+    Symbol("\u{2126}", 1.0, [2.0, 1.0, -3.0, -2.0, 0.0, 0.0, 0.0], 0.0, true),
     Symbol("\u{3a9}", 1.0, [2.0, 1.0, -3.0, -2.0, 0.0, 0.0, 0.0], 0.0, true),
     Symbol("C", 1.0, [0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0], 0.0, true),
     Symbol("F", 1.0, [-2.0, -1.0, 4.0, 2.0, 0.0, 0.0, 0.0], 0.0, true),
@@ -88,12 +99,18 @@ const SYMBOLS: &[Symbol] = &[
     Symbol("in", INCH, LENGTH, 0.0, false),
     Symbol("\"", INCH, LENGTH, 0.0, false),
     Symbol("inch", INCH, LENGTH, 0.0, false),
+    Symbol("inches", INCH, LENGTH, 0.0, false),
     Symbol("thou", INCH / 1e3, LENGTH, 0.0, false),
     Symbol("mil", INCH / 1e3, LENGTH, 0.0, false),
+    Symbol("mils", INCH / 1e3, LENGTH, 0.0, false),
     Symbol("uin", INCH * 1e-6, LENGTH, 0.0, false),
+    Symbol("\u{b5}in", INCH * 1e-6, LENGTH, 0.0, false),
+    Symbol("\u{3bc}in", INCH * 1e-6, LENGTH, 0.0, false),
     Symbol("ft", 0.3048, LENGTH, 0.0, false),
     Symbol("micron", 1e-6, LENGTH, 0.0, false),
+    Symbol("microns", 1e-6, LENGTH, 0.0, false),
     Symbol("lb", 0.45359237, MASS, 0.0, false),
+    Symbol("lbm", 0.45359237, MASS, 0.0, false),
     Symbol("oz", 0.45359237 / 16.0, MASS, 0.0, false),
     Symbol("lbf", POUND_FORCE, FORCE, 0.0, false),
     Symbol("kgf", 9.80665, FORCE, 0.0, false),
@@ -124,10 +141,98 @@ const PREFIXES: [(&str, f64); 14] = [
     ("p", 1e-12),
 ];
 
+/// Characters between the factors of a product.
+const SEPARATORS: [char; 8] = ['.', '*', '\u{b7}', '\u{22c5}', '\u{2219}', '\u{d7}', ' ', '/'];
+/// Deepest nesting of brackets.
+const DEEPEST: usize = 8;
+/// Spellings of units, each with the one that is read.
+const SPELLINGS: [(&str, &str); 22] = [
+    ("\u{b0} C", "degC"),
+    ("\u{b0}C", "degC"),
+    ("\u{ba}C", "degC"),
+    ("\u{2103}", "degC"),
+    ("deg C", "degC"),
+    ("deg. C", "degC"),
+    ("\u{b0} F", "degF"),
+    ("\u{b0}F", "degF"),
+    ("\u{ba}F", "degF"),
+    ("\u{2109}", "degF"),
+    ("deg F", "degF"),
+    ("deg. F", "degF"),
+    (" per ", "/"),
+    (" / ", "/"),
+    ("\u{2215}", "/"),
+    ("\u{2044}", "/"),
+    ("\u{2212}", "-"),
+    ("\u{207b}", "^-"),
+    ("\u{b2}", "^2"),
+    ("\u{b3}", "^3"),
+    ("^(-", "^-("),
+    ("^^", "^"),
+];
+/// Superscript digits but 2 and 3, in the order of their values.
+const SUPERSCRIPTS: [(char, char); 8] = [
+    ('\u{2070}', '0'),
+    ('\u{b9}', '1'),
+    ('\u{2074}', '4'),
+    ('\u{2075}', '5'),
+    ('\u{2076}', '6'),
+    ('\u{2077}', '7'),
+    ('\u{2078}', '8'),
+    ('\u{2079}', '9'),
+];
+
+/// Text of a unit in the spelling that is read: powers as `^-2`, temperature scales as `degC` and `degF`.
+fn spelling(text: &str) -> String {
+    let mut text = text.trim().to_owned();
+    for (from, to) in SPELLINGS {
+        text = text.replace(from, to);
+    }
+    let superscript = |c: char| SUPERSCRIPTS.iter().find(|(known, _)| *known == c).map(|(_, digit)| *digit);
+    let mut read = String::new();
+    let all: Vec<char> = text.chars().collect();
+    for (place, c) in all.iter().enumerate() {
+        let before = place.checked_sub(1).map(|place| all[place]);
+        match superscript(*c) {
+            Some(digit) => {
+                // The first of several superscripts begins an exponent.
+                if before.is_none_or(|before| superscript(before).is_none() && before != '-') {
+                    read.push('^');
+                }
+                read.push(digit);
+            }
+            None if *c == '-'
+                && before.is_some_and(char::is_alphabetic)
+                && all.get(place + 1).is_some_and(|c| c.is_alphabetic()) =>
+            {
+                read.push('*');
+            }
+            None => read.push(*c),
+        }
+    }
+    // An exponent in brackets: K^(2), K^-(1).
+    while let Some(open) = ["^(", "^-("].iter().find_map(|mark| read.find(mark).map(|at| at + mark.len() - 1)) {
+        let Some(close) = read[open..].find(')').map(|at| open + at) else { break };
+        if !read[open + 1..close].bytes().all(|byte| byte.is_ascii_digit()) {
+            break;
+        }
+        read.remove(close);
+        read.remove(open);
+    }
+    read
+}
+
+/// Exponent of a power of ten: -6 of `10^-6`, `10-6`, `1e-6` and `e-6`. Returns None for another text.
+fn power_of_ten(text: &str) -> Option<i32> {
+    let digits = ["10^", "1e", "1E", "e", "E"].iter().find_map(|mark| text.strip_prefix(mark));
+    let digits = digits.or_else(|| text.strip_prefix("10").filter(|rest| rest.starts_with('-')))?;
+    digits.parse().ok().filter(|power: &i32| power.abs() <= 30)
+}
+
 impl Unit {
     /// Unit of a plain number.
     pub fn one() -> Self {
-        Self { scale: 1.0, dimension: NONE, radians: 0.0, point: false, symbols: Vec::new() }
+        Self { scale: 1.0, dimension: NONE, radians: 0.0, point: false, zero: 0.0, symbols: Vec::new() }
     }
 
     /// Unit of an angle in radians.
@@ -147,19 +252,31 @@ impl Unit {
     }
 
     /// Reads a unit. Returns None if it is unknown.
+    ///
+    /// ```
+    /// use sensitol_numeric::unit::Unit;
+    /// let expansion = Unit::parse("um/(m*K)").ok_or("unknown")?;
+    /// let same = Unit::parse("ppm/degC").ok_or("unknown")?;
+    /// assert!(expansion.same_kind(&same) && (expansion.scale / same.scale - 1.0).abs() < 1e-15);
+    /// assert!(Unit::parse("furlong").is_none());
+    /// # Ok::<(), &str>(())
+    /// ```
     pub fn parse(text: &str) -> Option<Self> {
-        let text = text.trim();
+        let text = spelling(text);
         if text.is_empty() {
             return Some(Self::one());
         }
-        if let Some(unit) = Self::of_symbol(text) {
-            return Some(unit);
-        }
+        let unit = Self::of_symbol(&text).or_else(|| Self::product(&text, 0))?;
+        (unit.scale.is_finite() && unit.scale > 0.0).then_some(unit)
+    }
+
+    /// Product of factors and brackets.
+    fn product(text: &str, depth: usize) -> Option<Self> {
         let mut unit = Self::one();
         let (mut inverse, mut rest, mut wants) = (false, text, true);
         while !rest.is_empty() {
             let character = rest.chars().next()?;
-            if ['.', '*', '\u{b7}', ' ', '/'].contains(&character) {
+            if SEPARATORS.contains(&character) {
                 // A second `/` before the next symbol is a typing error.
                 if character == '/' && inverse && wants {
                     return None;
@@ -169,23 +286,50 @@ impl Unit {
                 rest = &rest[character.len_utf8()..];
                 continue;
             }
-            let end = rest.find(['.', '*', '\u{b7}', ' ', '/']).unwrap_or(rest.len());
-            let factor = Self::of_factor(&rest[..end])?;
+            if !wants {
+                return None;
+            }
+            let (factor, end) = if ['(', '['].contains(&character) {
+                Self::bracket(rest, depth)?
+            } else {
+                let end = rest.find(|c| SEPARATORS.contains(&c)).unwrap_or(rest.len());
+                (Self::of_factor(&rest[..end])?, end)
+            };
             unit = if inverse { unit.over(&factor) } else { unit.times(&factor) };
             (inverse, wants, rest) = (false, false, &rest[end..]);
         }
-        (!wants && unit.scale.is_finite() && unit.scale > 0.0).then_some(unit)
+        (!wants).then_some(unit)
     }
 
-    /// Symbol with an exponent, such as `mm2`, `m^-1` or `s²`.
+    /// Bracket at the beginning of a text with its exponent, and the place behind it.
+    fn bracket(text: &str, depth: usize) -> Option<(Self, usize)> {
+        let mut open = 0;
+        let close = text.char_indices().find_map(|(at, c)| {
+            open += i32::from(['(', '['].contains(&c)) - i32::from([')', ']'].contains(&c));
+            (open == 0).then_some(at)
+        })?;
+        let inner = text[1..close].trim();
+        if depth == DEEPEST || inner.is_empty() {
+            return None;
+        }
+        let unit = Self::of_factor(inner).or_else(|| Self::product(inner, depth + 1))?;
+        let behind = &text[close + 1..];
+        let end = behind.find(|c| SEPARATORS.contains(&c)).unwrap_or(behind.len());
+        let exponent = match behind[..end].trim_start_matches('^') {
+            "" => 1.0,
+            exponent => f64::from(exponent.parse::<i32>().ok()?),
+        };
+        Some((unit.to_the(exponent), close + 1 + end))
+    }
+
+    /// Symbol with an exponent, such as `mm2` or `m^-1`, or a power of ten.
     fn of_factor(text: &str) -> Option<Self> {
-        let text = text
-            .replace('\u{b2}', "^2")
-            .replace('\u{b3}', "^3")
-            .replace("\u{207b}\u{b9}", "^-1")
-            .replace('\u{2212}', "-");
         if text == "1" {
             return Some(Self::one());
+        }
+        if let Some(power) = power_of_ten(text) {
+            let symbols = vec![(format!("1e{power}"), 1.0)];
+            return Some(Self { scale: format!("1e{power}").parse().ok()?, symbols, ..Self::one() });
         }
         let digits = text.len() - text.trim_end_matches(|c: char| c.is_ascii_digit()).len();
         let (mut symbol, exponent) = text.split_at(text.len() - digits);
@@ -196,20 +340,26 @@ impl Unit {
             (symbol, exponent) = (negative, -exponent);
         }
         let symbol = if digits > 0 { symbol.strip_suffix('^').unwrap_or(symbol) } else { symbol };
-        let unit = Self::of_symbol(symbol).filter(|unit| !unit.point)?;
-        Some(unit.to_the(exponent))
+        // A temperature in a product is a difference.
+        Some(Self::of_symbol(symbol)?.difference().to_the(exponent))
     }
 
     fn of_symbol(name: &str) -> Option<Self> {
-        if ["degC", "\u{b0}C"].contains(&name) {
-            let symbols = vec![("degC".to_owned(), 1.0)];
-            return Some(Self { dimension: TEMPERATURE, point: true, symbols, ..Self::one() });
+        let scale = |symbol: &str, scale: f64, zero: f64| {
+            let symbols = vec![(symbol.to_owned(), 1.0)];
+            Some(Self { dimension: TEMPERATURE, scale, zero, point: true, symbols, ..Self::one() })
+        };
+        match name {
+            "degC" => return scale("degC", 1.0, CELSIUS_ZERO),
+            "degF" => return scale("degF", FAHRENHEIT, FAHRENHEIT_ZERO),
+            _ => {}
         }
         let of = |Symbol(_, scale, dimension, radians, _): &Symbol, factor: f64| Self {
             scale: scale * factor,
             dimension: *dimension,
             radians: *radians,
             point: false,
+            zero: 0.0,
             symbols: if ["1", "-"].contains(&name) { Vec::new() } else { vec![(name.to_owned(), 1.0)] },
         };
         if let Some(symbol) = SYMBOLS.iter().find(|symbol| symbol.0 == name) {
@@ -245,6 +395,7 @@ impl Unit {
             dimension: std::array::from_fn(|base| self.dimension[base] + sign * other.dimension[base]),
             radians: self.radians + sign * other.radians,
             point: false,
+            zero: 0.0,
             symbols,
         }
     }
@@ -259,6 +410,7 @@ impl Unit {
             dimension: self.dimension.map(|own| own * exponent),
             radians: self.radians * exponent,
             point: self.point && exponent == 1.0,
+            zero: if exponent == 1.0 { self.zero } else { 0.0 },
             symbols: self.symbols.iter().map(|(name, own)| (name.clone(), own * exponent)).collect(),
         }
     }
@@ -278,7 +430,8 @@ impl Unit {
         if !self.point {
             return self.clone();
         }
-        Self { point: false, symbols: vec![("K".to_owned(), 1.0)], ..self.clone() }
+        let symbol = if self.zero == FAHRENHEIT_ZERO { "degF" } else { "K" };
+        Self { point: false, zero: 0.0, symbols: vec![(symbol.to_owned(), 1.0)], ..self.clone() }
     }
 }
 
@@ -300,6 +453,50 @@ impl std::fmt::Display for Unit {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Spellings of an expansion coefficient. A degree Fahrenheit is 5/9 K, so that 1/degF is 9/5 1/K.
+    #[test]
+    fn expansion_coefficients_are_read_as_people_write_them() {
+        let per_kelvin = [
+            "ppm/degC",
+            "ppm/K",
+            "ppm/\u{b0}C",
+            "ppm/deg C",
+            "um/m/degC",
+            "um/(m*K)",
+            "\u{b5}m/(m\u{b7}K)",
+            "\u{3bc}m/(m K)",
+            "\u{b5}m/m/\u{b0}C",
+            "um/(m.degC)",
+            "10^-6/K",
+            "10\u{207b}\u{2076}/K",
+            "1e-6/K",
+            "10-6/K",
+            "1e-6 1/degC",
+            "ppm K^-1",
+            "ppm per K",
+            "ppm\u{b7}K\u{207b}\u{b9}",
+            "um/m K^(-1)",
+            "10^-6 mm/mm/degC",
+            "(um/m)/K",
+            "uin/in/K",
+            "ppm/\u{2103}",
+        ];
+        for text in per_kelvin {
+            let unit = Unit::parse(text).unwrap_or_else(|| panic!("{text}"));
+            assert!(unit.same_kind(&Unit::parse("1/K").unwrap()) && !unit.point, "{text}");
+            assert!((unit.scale / 1e-6 - 1.0).abs() < 1e-14, "{text} {}", unit.scale);
+        }
+        for text in ["1/K", "/K", "1/degC", "1/\u{b0}C", "mm/mm/degC", "m/(m*K)", "K^-1", "K\u{207b}\u{b9}"] {
+            let unit = Unit::parse(text).unwrap_or_else(|| panic!("{text}"));
+            assert!(unit.same_kind(&Unit::parse("1/K").unwrap()) && (unit.scale - 1.0).abs() < 1e-14, "{text}");
+        }
+        for (text, factor) in [("1/degF", 1.8), ("uin/in/degF", 1.8e-6), ("ppm/\u{b0}F", 1.8e-6), ("in/(in*degF)", 1.8)]
+        {
+            let unit = Unit::parse(text).unwrap_or_else(|| panic!("{text}"));
+            assert!((unit.scale / factor - 1.0).abs() < 1e-14, "{text} {}", unit.scale);
+        }
+    }
 
     /// Reference: twelve factors of NIST SP 811, appendix B.8, in `tests/data/elements.json`. Exact factors are compared to rounding.
     #[test]
@@ -339,14 +536,25 @@ mod tests {
             ("min", "s", 60.0),
             ("mil", "in", 1e-3),
             ("dam", "m", 10.0),
+            ("N-m", "N.m", 1.0),
+            ("W/(m^2 K)", "W/m^2/K", 1.0),
+            ("1/(s)^2", "s^-2", 1.0),
+            ("degC/m", "K/m", 1.0),
+            ("kOhm", "\u{2126}", 1e3),
+            ("lbm", "kg", 0.45359237),
+            ("\u{b5}in", "in", 1e-6),
         ] {
             let [a, b] = [text, same].map(|text| Unit::parse(text).unwrap_or_else(|| panic!("{text}")));
             assert!(a.same_kind(&b), "{text}");
             assert!((a.scale / b.scale / factor - 1.0).abs() < 1e-14, "{text} {}", a.scale / b.scale);
         }
-        for text in ["bar(g)", "furlong", "m//s", "kmin", "degC/m", "m/", "mmm", "degF"] {
+        for text in
+            ["bar(g)", "furlong", "m//s", "kmin", "m/", "mmm", "(m", "m)", "()", "m/(s", "K**-1", "degX", "10^-400/K"]
+        {
             assert!(Unit::parse(text).is_none(), "{text}");
         }
+        let [celsius, fahrenheit] = ["degC", "\u{b0}F"].map(|text| Unit::parse(text).unwrap());
+        assert!(celsius.point && fahrenheit.point && celsius.zero != fahrenheit.zero);
         assert_eq!(Unit::parse("kN/mm^2").unwrap().to_string(), "kN/mm^2");
         assert_eq!(Unit::parse("1/K").unwrap().to_string(), "1/K");
     }

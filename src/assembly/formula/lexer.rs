@@ -22,6 +22,9 @@ pub(super) enum Token {
 /// Operators, longest first, so that `<=` is not read as `<`.
 const OPERATORS: [&str; 11] = ["<=", ">=", "==", "!=", "<", ">", "+", "-", "*", "/", "^"];
 
+/// Advice on the `=` before a formula.
+const SPREADSHEET: &str = "leave out the `=` that begins a formula of a spreadsheet";
+
 /// Spellings from other languages, with advice on the spelling in formulas.
 const HABITS: [(&str, &str); 12] = [
     ("**", "powers are written with `^`"),
@@ -60,6 +63,7 @@ pub(super) fn tokens(text: &str) -> Result<Vec<(Token, Range<usize>)>, FormulaEr
             .find(|(sign, _)| rest.starts_with(sign) && !rest.starts_with("==") && !rest.starts_with("!="))
             .filter(|(sign, _)| *sign != "." || matches!(tokens.last(), Some((Token::Name(..), _))));
         if let Some(&(sign, instead)) = habit {
+            let instead = if sign == "=" && tokens.is_empty() { SPREADSHEET } else { instead };
             let found = FormulaFault::UnexpectedCharacter { found: sign.to_owned(), instead: Some(instead) };
             return fault(sign.len(), found);
         }

@@ -30,6 +30,7 @@ mod name;
 pub(crate) mod parser;
 mod periodic;
 mod program;
+mod quantity;
 mod scalar;
 pub mod set;
 mod slopes;

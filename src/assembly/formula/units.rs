@@ -8,13 +8,12 @@ use std::ops::Range;
 
 use crate::assembly::formula::functions::{Binary, Unary};
 use crate::assembly::formula::parser::{Formula, Node};
+use crate::assembly::formula::quantity::{Quantity, near};
 use crate::assembly::formula::set::{FormulaSet, Reference};
-use sensitol_numeric::unit::{SAME, Unit};
+use sensitol_numeric::unit::Unit;
 
-/// Greatest number of literal factors of a part that are followed.
-const FOLLOWED: usize = 8;
-/// Factors and divisors that hide no unit.
-const SIMPLE: [f64; 7] = [1.0, 2.0, 3.0, 4.0, 6.0, 8.0, std::f64::consts::PI];
+/// Advice on a unit that is unknown.
+const UNKNOWN_UNIT: &str = "units are such as mm, um/(m*K), 1/K, degC and N.m/rad";
 
 /// Role of a formula, which may determine its unit.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,67 +45,6 @@ pub struct UnitFinding {
     pub doubtful: bool,
 }
 
-/// Quantity that a part of a formula measures.
-#[derive(Debug, Clone, PartialEq)]
-struct Quantity {
-    unit: Unit,
-    /// Literal factors of the part.
-    factors: Vec<f64>,
-    /// True for a number without a unit.
-    literal: bool,
-}
-
-impl Quantity {
-    fn of(unit: Unit) -> Self {
-        Self { unit, factors: Vec::new(), literal: false }
-    }
-
-    fn number(value: f64) -> Self {
-        Self { unit: Unit::one(), factors: vec![value], literal: true }
-    }
-
-    /// Returns the scale of the unit, and the scales that follow if some of the factors are conversions by hand.
-    fn scales(&self) -> Vec<f64> {
-        let mut scales = vec![self.unit.scale];
-        for factor in self.factors.iter().filter(|factor| **factor != 0.0) {
-            scales.extend(scales.clone().iter().map(|scale| scale / factor));
-        }
-        scales
-    }
-
-    fn fits(&self, other: &Self) -> bool {
-        let others = other.scales();
-        self.unit.same_kind(&other.unit) && self.scales().iter().any(|a| others.iter().any(|b| near(*a, *b)))
-    }
-
-    /// Returns a factor that may hide a unit.
-    fn doubtful(&self) -> Option<f64> {
-        let simple = |x: f64| SIMPLE.iter().any(|simple| near(x.abs(), *simple) || near(1.0 / x.abs(), *simple));
-        self.factors.iter().copied().find(|&factor| factor != 0.0 && !simple(factor))
-    }
-
-    fn combined(&self, other: &Self, divides: bool) -> Self {
-        let unit = if divides { self.unit.over(&other.unit) } else { self.unit.times(&other.unit) };
-        let theirs = other.factors.iter().filter(|factor| **factor != 0.0);
-        let theirs = theirs.map(|factor| if divides { 1.0 / factor } else { *factor });
-        let factors = self.factors.iter().copied().chain(theirs).take(FOLLOWED).collect();
-        Self { unit, factors, literal: self.literal && other.literal }
-    }
-
-    fn power(&self, exponent: f64) -> Self {
-        if self.literal {
-            return self.clone();
-        }
-        let factors =
-            self.factors.iter().filter(|factor| **factor > 0.0).map(|factor| libm::pow(*factor, exponent)).collect();
-        Self { unit: self.unit.to_the(exponent), factors, literal: false }
-    }
-}
-
-fn near(a: f64, b: f64) -> bool {
-    (a - b).abs() <= SAME * a.abs().max(b.abs())
-}
-
 /// Check of one formula. Only the first finding counts, because further ones follow from it.
 struct Pass<'f> {
     formula: &'f Formula,
@@ -116,13 +54,14 @@ struct Pass<'f> {
 }
 
 impl FormulaSet {
-    /// Returns the first finding of incompatible units in every formula. `unit` gives the units of names from outside, and `role` the role
-    /// of a formula. With `convert` all names are in SI.
+    /// Returns the first finding of incompatible units in every formula. `unit` gives the units of names from outside, `unread` the text of a
+    /// unit that is unknown, and `role` the role of a formula. With `convert` all names are in SI.
     ///
     /// Cost: one pass over the formulas, and no evaluation.
     pub(crate) fn units(
         &self,
         unit: &dyn Fn(&str) -> Option<Unit>,
+        unread: &dyn Fn(&str) -> Option<String>,
         role: &dyn Fn(usize) -> Role,
         convert: bool,
     ) -> Vec<UnitFinding> {
@@ -136,7 +75,7 @@ impl FormulaSet {
                 Reference::Formula(formula) => known[formula].clone(),
             };
             let mut pass = Pass { formula: &entry.formula, index, convert, first: None };
-            let found = pass.run(&of_name);
+            let found = pass.run(&of_name, unread);
             known[index] = match role(index) {
                 Role::Free => found,
                 Role::Declared(declared) => {
@@ -190,7 +129,11 @@ impl Pass<'_> {
     }
 
     /// Returns the quantity that the formula measures, or None if a unit is unknown.
-    fn run(&mut self, of_name: &dyn Fn(usize, &str) -> Option<Quantity>) -> Option<Quantity> {
+    fn run(
+        &mut self,
+        of_name: &dyn Fn(usize, &str) -> Option<Quantity>,
+        unread: &dyn Fn(&str) -> Option<String>,
+    ) -> Option<Quantity> {
         let formula = self.formula;
         let mut all: Vec<Option<Quantity>> = Vec::with_capacity(formula.nodes.len());
         let mut unknown = None;
@@ -212,7 +155,10 @@ impl Pass<'_> {
                     }
                     found
                 }
-                Node::Unary(function, a) => self.unary(*function, all[*a].clone(), *a),
+                Node::Unary(function, a) => {
+                    self.one_temperature(&all[*a], *a);
+                    self.unary(*function, all[*a].clone(), *a)
+                }
                 Node::Binary(function, a, b) => self.binary(*function, [&all[*a], &all[*b]], [*a, *b], index),
                 Node::If(_, then, otherwise) => self.alike(
                     [all[*then].as_ref(), all[*otherwise].as_ref()],
@@ -223,17 +169,41 @@ impl Pass<'_> {
             };
             all.push(own);
         }
-        // Conversion needs the units of all names in a formula, or of none.
+        self.needs_all_units(unknown, &all, unread);
+        let found = all.pop().flatten();
+        self.one_temperature(&found, formula.nodes.len() - 1);
+        found
+    }
+
+    /// Checks that a formula with conversion has the units of all its names, or of none.
+    fn needs_all_units(
+        &mut self,
+        unknown: Option<usize>,
+        all: &[Option<Quantity>],
+        unread: &dyn Fn(&str) -> Option<String>,
+    ) {
+        let formula = self.formula;
         if let (true, Some(node)) = (self.convert, unknown) {
-            let some = (formula.nodes.iter().zip(&all))
+            let some = (formula.nodes.iter().zip(all))
                 .any(|((node, _), found)| matches!(node, Node::Name(_)) && found.is_some());
             if some || !formula.has_no_units() {
                 let name = self.text(node);
-                let remedy = "write its unit; that of a plain number is unit = \"1\"".to_owned();
-                self.fail(node, format!("`{name}` has no unit: convert needs all of a formula"), remedy, false);
+                let plain = match &formula.nodes[node].0 {
+                    Node::Name(name) => name.as_str(),
+                    _ => name.as_str(),
+                };
+                match unread(plain) {
+                    Some(unit) => {
+                        let what = format!("the unit `{unit}` of `{name}` is unknown: convert needs all of a formula");
+                        self.fail(node, what, UNKNOWN_UNIT.to_owned(), false);
+                    }
+                    None => {
+                        let remedy = "write its unit; that of a plain number is unit = \"1\"".to_owned();
+                        self.fail(node, format!("`{name}` has no unit: convert needs all of a formula"), remedy, false);
+                    }
+                }
             }
         }
-        all.pop().flatten()
     }
 
     fn unary(&mut self, function: Unary, a: Option<Quantity>, node: usize) -> Option<Quantity> {
@@ -317,6 +287,9 @@ impl Pass<'_> {
         {
             return self.temperatures(function, one, other, node);
         }
+        for (found, node) in [(a, nodes[0]), (b, nodes[1])] {
+            self.one_temperature(found, node);
+        }
         let joined = self.alike([a.as_ref(), b.as_ref()], node, Some(nodes), what);
         match function {
             Binary::Atan2 => Some(Quantity::of(Unit::radian())),
@@ -326,6 +299,7 @@ impl Pass<'_> {
         }
     }
 
+    /// Sum or difference with temperatures on a scale. A part that adds several up is a temperature again once it is their mean.
     fn temperatures(&mut self, function: Binary, a: &Quantity, b: &Quantity, node: usize) -> Option<Quantity> {
         let remedy = || "subtract their reference first".to_owned();
         let (point, other) = if a.unit.point { (a, b) } else { (b, a) };
@@ -333,18 +307,37 @@ impl Pass<'_> {
             self.fail(node, format!("a temperature and {}", other.unit), remedy(), false);
             return None;
         }
-        match (function, a.unit.point, b.unit.point) {
-            (Binary::Add, true, true) => {
-                self.fail(node, "a sum of two temperatures".to_owned(), remedy(), false);
-                None
-            }
-            (_, true, true) => Some(Quantity::of(a.unit.difference())),
-            (Binary::Subtract, false, _) => {
-                self.fail(node, "a temperature subtracted from a difference".to_owned(), remedy(), false);
-                None
-            }
-            _ => Some(point.clone()),
+        if other.unit.point && !near(other.unit.zero, point.unit.zero) {
+            let what = format!("temperatures in {} and {}, whose zeros differ", a.unit, b.unit);
+            self.fail(node, what, format!("write both in {}", a.unit), false);
+            return None;
         }
+        if !self.convert && !other.literal && !near(other.unit.scale, point.unit.scale) {
+            let what = format!("a temperature in {} and a difference in {}", point.unit, other.unit);
+            self.fail(node, what, "write both in one unit, or units = \"convert\" at the top".to_owned(), false);
+            return None;
+        }
+        if function == Binary::Subtract && !a.unit.point {
+            self.fail(node, "a temperature subtracted from a difference".to_owned(), remedy(), false);
+            return None;
+        }
+        let points = if function == Binary::Subtract { a.points - b.points } else { a.points + b.points };
+        match near(1.0 + points, 1.0) {
+            true => Some(Quantity::of(point.unit.difference())),
+            false => Some(Quantity { points, ..point.clone() }),
+        }
+    }
+
+    /// Checks that a part with temperatures on a scale is one temperature or their mean.
+    fn one_temperature(&mut self, found: &Option<Quantity>, node: usize) {
+        let Some(found) = found.as_ref().filter(|found| found.unit.point && !near(found.points, 1.0)) else { return };
+        let (what, remedy) = match self.formula.nodes[node].0 {
+            Node::Binary(Binary::Multiply | Binary::Divide, ..) => {
+                (format!("a temperature in {} as a factor", found.unit), "subtract its reference first")
+            }
+            _ => ("a sum of two temperatures".to_owned(), "subtract their reference first, or divide by their number"),
+        };
+        self.fail(node, what, remedy.to_owned(), false);
     }
 
     fn product(
@@ -377,7 +370,13 @@ impl Pass<'_> {
         }
         let (a, b) = (a.as_ref()?, b.as_ref()?);
         if a.unit.point || b.unit.point {
-            let what = "a temperature in degC as a factor".to_owned();
+            let (point, other) = if a.unit.point { (a, b) } else { (b, a) };
+            if other.literal && (a.unit.point || function == Binary::Multiply) {
+                let number: f64 = other.factors.iter().product();
+                let points = if function == Binary::Divide { point.points / number } else { point.points * number };
+                return Some(Quantity { points, ..point.clone() });
+            }
+            let what = format!("a temperature in {} as a factor", point.unit);
             self.fail(node, what, "subtract its reference first".to_owned(), false);
             return None;
         }
@@ -525,7 +524,7 @@ mod tests {
         let meanings = named.iter().enumerate().map(|(index, (name, _))| (*name, Meaning::Variable(index)));
         let set = FormulaSet::new(vec![("y".to_owned(), Formula::parse(text).unwrap())], meanings).unwrap();
         let unit = |name: &str| named.iter().find(|(known, _)| *known == name).and_then(|(_, unit)| Unit::parse(unit));
-        set.units(&unit, &|_| role.clone(), convert)
+        set.units(&unit, &|_| None, &|_| role.clone(), convert)
     }
 
     #[test]
@@ -595,6 +594,21 @@ mod tests {
             assert_eq!(found.first().map(|found| found.what.as_str()), what, "{text}");
         }
         assert_eq!(findings("a + b", Role::Result, true)[0].remedy, "write unit = \"mm\"");
+    }
+
+    /// A mean of temperatures is a temperature; another combination of them is one only if its weights add up to 1.
+    #[test]
+    fn means_of_temperatures_are_temperatures() {
+        let what = |text: &str, convert: bool| {
+            findings(text, Role::Free, convert).first().map(|found| found.what.clone()).unwrap_or_default()
+        };
+        for text in ["(T + T0)/2", "0.5*(T + T0)", "T/2 + T0/2", "2*T - T0", "(T + T0)/2 - 20[degC]", "max(T, T0)"] {
+            assert_eq!([what(text, false), what(text, true)], ["", ""], "{text}");
+        }
+        assert_eq!(what("al*((T + T0)/2 - T)*a", true), "");
+        assert_eq!(what("max(T + T0, T)", true), "a sum of two temperatures");
+        assert_eq!(what("2*T", true), "a temperature in degC as a factor");
+        assert_eq!(what("T - 68[degF]", true), "temperatures in degC and degF, whose zeros differ");
     }
 
     #[test]

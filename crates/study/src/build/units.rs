@@ -31,6 +31,8 @@ pub(crate) struct Units {
     /// Units of dimensions, constants, unknowns, outputs of the model, and formulas that declare one.
     named: HashMap<String, Unit>,
     unknown: Option<Warning>,
+    /// Names whose units are unknown, with the texts of these.
+    unread: Vec<(String, String)>,
     /// Roles of the formulas, first of the named ones, then of the conditions.
     roles: Vec<Role>,
     /// Keys, names and places of the formulas, in the same order.
@@ -88,11 +90,13 @@ impl Units {
                 None => unknown.push((name, text)),
             }
         }
+        let unread = unknown.iter().map(|(name, unit)| ((*name).to_owned(), (*unit).to_owned())).collect();
         let unknown = unknown_unit(mode, &unknown);
         let mut units = Self {
             mode,
             named,
             unknown,
+            unread,
             roles: roles(model, written),
             places: places(&written.formulas, written.implicit.as_ref()),
             factors: Default::default(),
@@ -111,7 +115,8 @@ impl Units {
         }
         let unit = |name: &str| self.named.get(name).cloned();
         let role = |index: usize| self.roles.get(index).cloned().unwrap_or(Role::Free);
-        let findings = composite.units(&unit, &role, self.mode == Mode::Convert);
+        let unread = |name: &str| self.unread.iter().find(|(known, _)| known == name).map(|(_, unit)| unit.clone());
+        let findings = composite.units(&unit, &unread, &role, self.mode == Mode::Convert);
         if self.mode == Mode::Warn {
             let sure = findings.into_iter().filter(|finding| !finding.doubtful);
             return Ok(self.warning(sure.collect()).into_iter().chain(self.unknown.clone()).collect());
