@@ -4,8 +4,9 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use sensitol_numeric::distribution::{
-    Beta, CurvilinearTrapezoid, Distribution, Drifting, Exponential, Gamma, Lognormal, Mixture, Normal, Part, Rayleigh,
-    Student, Tabulated, Trapezoidal, Triangular, TruncatedNormal, UShaped, Uniform, Weibull,
+    Beta, CurvilinearTrapezoid, Distribution, Drifting, Exponential, ExtremeEnd, Gamma, Gumbel, Lognormal, Mixture,
+    Normal, Part, Rayleigh, SplitNormal, Student, Tabulated, Trapezoidal, Triangular, TruncatedNormal, UShaped,
+    Uniform, Weibull,
 };
 
 /// A distribution with its density.
@@ -206,6 +207,39 @@ fn weibull(shape: f64, first: f64, second: f64) -> Case {
     Case::new(law, vec![Piece::new(0.0, f64::INFINITY, density)])
 }
 
+/// Gumbel distribution of largest or smallest values with mode 1 and scale 0.5. The tails beyond are below 1e-60.
+fn gumbel(end: ExtremeEnd) -> Case {
+    let density = |y: f64| (-y - (-y).exp()).exp() / 0.5;
+    let sigma = 0.5 * PI / 6f64.sqrt();
+    let mean = 0.5 * 0.577_215_664_901_532_9;
+    match end {
+        ExtremeEnd::Largest => {
+            let pieces = vec![
+                Piece::new(-2.0, 1.0, move |_, d| density(-d / 0.5)),
+                Piece::new(1.0, f64::INFINITY, move |d, _| density(d / 0.5)),
+            ];
+            Case::new(Gumbel::new(end, 1.0 + mean, sigma).unwrap(), pieces)
+        }
+        ExtremeEnd::Smallest => {
+            let pieces = vec![
+                Piece::new(-79.0, 1.0, move |_, d| density(d / 0.5)),
+                Piece::new(1.0, 4.0, move |d, _| density(-d / 0.5)),
+            ];
+            Case::new(Gumbel::new(end, 1.0 - mean, sigma).unwrap(), pieces)
+        }
+    }
+}
+
+/// Split normal distribution about 5: each half has its own sigma, and the densities meet at the mode.
+fn split_normal(below: f64, above: f64) -> Case {
+    let height = 2.0 / (below + above);
+    let pieces = vec![
+        Piece::new(5.0 - 14.0 * below, 5.0, move |_, d| height * gauss(d / below)),
+        Piece::new(5.0, 5.0 + 14.0 * above, move |d, _| height * gauss(d / above)),
+    ];
+    Case::new(SplitNormal::new(5.0, below, above).unwrap(), pieces)
+}
+
 fn part(weight: f64, distribution: impl Distribution + 'static) -> Part {
     Part { name: "part".into(), weight, distribution: Arc::new(distribution) }
 }
@@ -284,5 +318,9 @@ pub fn cases() -> Vec<Case> {
         student(),
         straight_table(0.999_999_426_696_856_2),
         parabola_table(0.997_300_203_936_739_8),
+        gumbel(ExtremeEnd::Largest),
+        gumbel(ExtremeEnd::Smallest),
+        split_normal(0.1, 0.2),
+        split_normal(1.0, 0.04),
     ]
 }

@@ -38,6 +38,8 @@ pub use crate::distribution::family::triangular::Triangular;
 pub use crate::distribution::family::truncated_normal::TruncatedNormal;
 pub use crate::distribution::family::two_values::TwoValues;
 pub use crate::distribution::family::u_shaped::UShaped;
+pub use crate::distribution::family::unequal::gumbel::{ExtremeEnd, Gumbel};
+pub use crate::distribution::family::unequal::split_normal::SplitNormal;
 pub use crate::distribution::family::uniform::Uniform;
 pub use crate::distribution::family::weibull::Weibull;
 pub use error::DistributionError;

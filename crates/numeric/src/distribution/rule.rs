@@ -64,6 +64,12 @@ impl Jacobi {
         self.alpha.len()
     }
 
+    /// Recurrence of the mirrored variable `-u`.
+    pub(super) fn mirrored(mut self) -> Self {
+        self.alpha.iter_mut().for_each(|alpha| *alpha = -*alpha);
+        self
+    }
+
     /// First `order` coefficients, or all if there are fewer.
     pub(crate) fn truncated(&self, order: usize) -> Self {
         let order = order.min(self.order());

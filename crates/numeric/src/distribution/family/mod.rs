@@ -1,4 +1,4 @@
-//! Families of distributions, one file each.
+//! Families of distributions, one file each; `unequal` holds those over the whole line whose sides are unlike.
 
 pub(in crate::distribution) mod beta;
 pub(in crate::distribution) mod central_moments;
@@ -21,5 +21,6 @@ pub(in crate::distribution) mod triangular;
 pub(in crate::distribution) mod truncated_normal;
 pub(in crate::distribution) mod two_values;
 pub(in crate::distribution) mod u_shaped;
+pub(in crate::distribution) mod unequal;
 pub(in crate::distribution) mod uniform;
 pub(in crate::distribution) mod weibull;
