@@ -258,9 +258,15 @@ impl<'s> Data<'s> {
         self.kept.insert(dimension.to_owned(), lines);
     }
 
-    /// Column of a dimension, without the rows in which another dimension of the same parts has no value.
+    /// Column of a dimension, without the rows in which another dimension of the same parts has no value. Without a name it is that of the
+    /// dimension's own name, if the file has one.
     pub(super) fn column_of(&mut self, dimension: &str, file: &str, name: Option<&str>) -> Result<Column, DataFault> {
-        let mut column = self.column(file, name)?;
+        let own = match name {
+            Some(name) => Some(name),
+            None => Some(dimension)
+                .filter(|own| self.table(file).is_ok_and(|table| table.names.iter().any(|name| name == own))),
+        };
+        let mut column = self.column(file, own)?;
         if let Some(lines) = self.kept.get(dimension) {
             let all: Vec<(f64, u64)> = column.values.iter().copied().zip(column.lines.iter().copied()).collect();
             // The warning of a missing value belongs to the dimension that lacks it, so these rows are left out silently.

@@ -131,6 +131,8 @@ pub enum StudyFault {
     /// The file name does not end in `.toml` or `.json`.
     #[error("a study is a .toml or a .json file")]
     UnknownFormat {
+        /// True if the ending is that of a table.
+        table: bool,
         /// Path of a study with the same name and a valid ending; None if there is none.
         beside: Option<String>,
     },
@@ -246,6 +248,14 @@ pub enum StudyFault {
     /// A formula is not valid.
     #[error("{0}")]
     Formula(FormulaFault),
+    /// A group of equal parts in a formula as if it were one dimension.
+    #[error("`{name}` is a group of {count} equal parts, which vary independently")]
+    GroupName {
+        /// Name of the group.
+        name: String,
+        /// Number of its parts.
+        count: i64,
+    },
     /// A name that formulas already use for something else.
     #[error("the name `{name}` is reserved in formulas")]
     ReservedName {

@@ -20,7 +20,9 @@
 //! | `lognormal`, `gamma`, `weibull` | nominal plus `shift`; `sigma`, or half the band by `sigmas` or `cp` | `origin`: where it begins, 0 by default |
 //! | `exponential`, `rayleigh` | nominal plus `shift`; sigma follows from mean and origin | `origin` |
 //! | `mixture` | follow from the parts | `parts`: tables by name |
-//! | `tabulated` | follow from the table | `scores`, `values`: quantiles over normal scores, both ascending |
+//! | `tabulated` | follow from the table | `scores`, `values`: quantiles over normal scores, both ascending; between them a monotone cubic of the score |
+//! | `split-normal` | follow from both sigmas about the nominal plus `shift` | `below`, `above`: the sigmas of both sides, or each deviation by `sigmas` (3) |
+//! | `gumbel-largest`, `gumbel-smallest` | as those of `normal` | |
 //!
 //! A part of a mixture has a `weight` (relative to the others') and `nominal`, `tolerance` or `limits`, `sigma`, `sigmas`, `cp`,
 //! `shift` and `distribution` as a dimension has; nominal and band are the dimension's where the part gives none:
@@ -100,6 +102,9 @@ use sensitol_numeric::requirement::Requirement;
 pub use sensitol_spatial::{Mobility, PartPose};
 use source::Source;
 use tree::Tree;
+
+/// Endings of files that hold tables.
+const TABLES: [&str; 7] = ["xlsx", "xlsm", "xls", "ods", "csv", "tsv", "txt"];
 
 /// A study: a problem, the options of its analysis, its costs and requirements, and its warnings.
 #[derive(Debug, Clone)]
@@ -217,7 +222,9 @@ impl Study {
                 let ending = |ending: &str| PathBuf::from(format!("{name}.{ending}"));
                 let beside = ["toml", "json"].map(ending).into_iter().find(|study| study.is_file());
                 let beside = beside.map(|study| study.display().to_string());
-                return Err(failed("", StudyFault::UnknownFormat { beside }));
+                let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_lowercase();
+                let table = TABLES.contains(&ending.as_str());
+                return Err(failed("", StudyFault::UnknownFormat { table, beside }));
             }
         };
         let bytes =

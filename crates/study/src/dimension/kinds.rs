@@ -14,8 +14,9 @@ use crate::entries::vocabulary::{KINDS, Kind, SIGMAS};
 use crate::error::{Fault, StudyFault, fault};
 use sensitol_numeric::dimension::DimensionFault;
 use sensitol_numeric::distribution::{
-    Beta, CentralMoments, CurvilinearTrapezoid, Distribution, DistributionError, Exponential, Gamma, Lognormal,
-    Rayleigh, Student, Tabulated, Trapezoidal, Triangular, TruncatedNormal, TwoValues, UShaped, Uniform, Weibull,
+    Beta, CentralMoments, CurvilinearTrapezoid, Distribution, DistributionError, Exponential, ExtremeEnd, Gamma,
+    Gumbel, Lognormal, Rayleigh, SplitNormal, Student, Tabulated, Trapezoidal, Triangular, TruncatedNormal, TwoValues,
+    UShaped, Uniform, Weibull,
 };
 use sensitol_numeric::names::nearest;
 
@@ -62,6 +63,9 @@ pub(super) fn distribution(
         }
         Kind::Rayleigh => of_mean(entry, nominal, "a rayleigh distribution", |o, mean| shared(Rayleigh::new(o, mean))),
         Kind::Tabulated => tabulated(entry),
+        Kind::SplitNormal => split_normal(entry, nominal, tolerance),
+        Kind::GumbelLargest => gumbel(ExtremeEnd::Largest, entry, nominal, tolerance),
+        Kind::GumbelSmallest => gumbel(ExtremeEnd::Smallest, entry, nominal, tolerance),
     }
 }
 
@@ -101,7 +105,7 @@ fn kind(entry: &DimensionEntry) -> Result<Kind, Fault> {
 }
 
 /// Every parameter of the table `distribution`, with its place if it is given.
-fn parameters(entry: &DistributionEntry) -> [(&'static str, Option<Range<usize>>); 11] {
+fn parameters(entry: &DistributionEntry) -> [(&'static str, Option<Range<usize>>); 13] {
     let span = |parameter: &Option<Spanned<f64>>| parameter.as_ref().map(Spanned::span);
     [
         ("mode", span(&entry.mode)),
@@ -112,6 +116,8 @@ fn parameters(entry: &DistributionEntry) -> [(&'static str, Option<Range<usize>>
         ("inexactness", span(&entry.inexactness)),
         ("degrees", span(&entry.degrees)),
         ("scale", span(&entry.scale)),
+        ("below", span(&entry.below)),
+        ("above", span(&entry.above)),
         ("parts", entry.parts.as_ref().map(Spanned::span)),
         ("scores", entry.scores.as_ref().map(Spanned::span)),
         ("values", entry.values.as_ref().map(Spanned::span)),
@@ -162,6 +168,49 @@ fn student(entry: &DimensionEntry, nominal: f64, tolerance: Option<[f64; 2]>) ->
     placed(entry, shared(Student::with_scale(mean, value, degrees)))
 }
 
+/// Gumbel distribution, with mean and sigma like the normal one.
+fn gumbel(end: ExtremeEnd, entry: &DimensionEntry, nominal: f64, tolerance: Option<[f64; 2]>) -> Result<Spread, Fault> {
+    let Some(sigma) = sigma(entry, tolerance)? else { return nothing_to_spread(entry) };
+    if sigma == 0.0 && is_flat(entry) {
+        return Ok(None);
+    }
+    let middle = tolerance.map_or(0.0, |[lower, upper]| 0.5 * (lower + upper));
+    placed(entry, shared(Gumbel::new(end, nominal + middle + shift(entry), sigma)))
+}
+
+/// Split normal distribution about the nominal plus `shift`. Its sigmas are given, or each deviation by `sigmas`.
+fn split_normal(entry: &DimensionEntry, nominal: f64, tolerance: Option<[f64; 2]>) -> Result<Spread, Fault> {
+    const INSTEAD: &str = "write { kind = \"split-normal\", below = 0.1, above = 0.2 }, or a tolerance such as [-0.3, 0.6]: three sigmas on either side";
+    let table = entry.distribution.as_ref().expect("its kind was told by it");
+    if let Some(given) = &entry.sigma {
+        let found =
+            StudyFault::DoesNotApply { key: "sigma", to: "a split normal distribution".to_owned(), instead: INSTEAD };
+        return Err(fault(given.span(), "sigma", found));
+    }
+    let per_band = sigmas(entry)?;
+    let [below, above] = [&table.get_ref().below, &table.get_ref().above];
+    let (below, above) = match (below, above, tolerance) {
+        (Some(below), Some(above), _) => {
+            if let Some((key, span, _)) = per_band {
+                let why = "are two ways of giving the sigmas: leave one out";
+                return Err(fault(span, key, conflict("distribution", key, why)));
+            }
+            (*below.get_ref(), *above.get_ref())
+        }
+        (None, None, Some([lower, upper])) if lower < 0.0 && upper > 0.0 => {
+            let sigmas = per_band.map_or(SIGMAS, |(_, _, sigmas)| sigmas);
+            (-lower / sigmas, upper / sigmas)
+        }
+        (None, None, None) if is_flat(entry) => return nothing_to_spread(entry),
+        (below, _, _) => {
+            let key = if below.is_none() { "below" } else { "above" };
+            let missing = StudyFault::MissingKey { key: key.to_owned(), instead: INSTEAD.to_owned() };
+            return Err(fault(table.span(), "distribution", missing));
+        }
+    };
+    placed(entry, shared(SplitNormal::new(nominal + shift(entry), below, above)))
+}
+
 /// Distribution whose support is the band. Mean and sigma follow from the shape. Only the curvilinear trapezoid reaches beyond the band.
 fn over_band(kind: Kind, entry: &DimensionEntry, nominal: f64, tolerance: Option<[f64; 2]>) -> Result<Spread, Fault> {
     let name = KINDS.iter().find(|known| known.1 == kind).map_or("", |known| known.0);
@@ -206,6 +255,12 @@ fn over_band(kind: Kind, entry: &DimensionEntry, nominal: f64, tolerance: Option
         _ => shared(Uniform::about(middle, half)),
     };
     let distribution = placed(entry, distribution)?;
+    if let (Kind::TruncatedNormal, Some(sigma), Some(own)) = (kind, &entry.sigma, &distribution)
+        && !agree(*sigma.get_ref(), own.sigma())
+    {
+        let instead = "its sigma follows from the cut: write sigmas, half the band by the sigma before the cut";
+        return Err(fault(sigma.span(), "sigma", StudyFault::DoesNotApply { key: "sigma", to: to(), instead }));
+    }
     agreeing(entry, &distribution, "tolerance", &format!("{name} over this band"))?;
     Ok(distribution)
 }

@@ -39,9 +39,15 @@ pub(crate) struct DistributionEntry {
     pub(crate) origin: Option<Spanned<f64>>,
     /// The parts of a mixture by name.
     pub(crate) parts: Option<Spanned<Entries<PartEntry>>>,
-    /// Normal scores of a table of quantiles, ascending: the value at the score z has the probability Phi(z) below it.
+    /// Sigma of a split normal distribution below the nominal; without it that of the lower deviation by sigmas.
+    pub(crate) below: Option<Spanned<f64>>,
+    /// Sigma of a split normal distribution above the nominal; without it that of the upper deviation by sigmas.
+    pub(crate) above: Option<Spanned<f64>>,
+    /// Normal scores of a table of quantiles, ascending: the value at the score z has the probability Phi(z) below it. Between two scores the
+    /// value is a monotone cubic of the score, not a straight line: two unlike halves are a split-normal distribution.
     pub(crate) scores: Option<Spanned<Vec<f64>>>,
-    /// Values of the dimension at the scores of a table of quantiles, ascending; the first and last are its ends.
+    /// Values of the dimension at the scores of a table of quantiles, ascending; the first and last are its ends. They hold for the nominal that
+    /// the dimension needs beside them, which the nominal point of the report has, and its mean follows from them.
     pub(crate) values: Option<Spanned<Vec<f64>>>,
 }
 

@@ -208,6 +208,10 @@ pub(crate) struct DimensionEntry {
     #[serde(default)]
     #[cfg_attr(feature = "schema", schemars(schema_with = "registry::side"))]
     pub(crate) side: Option<Spanned<String>>,
+    /// Number of equal parts, which vary independently: NAME.1, NAME.2 and so on. A formula adds them up by sum(NAME).
+    #[serde(default, rename = "count")]
+    #[cfg_attr(feature = "schema", schemars(schema_with = "registry::count"))]
+    pub(crate) _count: Option<IgnoredAny>,
     /// The unit of its numbers: a label, checked or converted as `units` says.
     pub(crate) unit: Option<String>,
     /// Distribution: the name of a kind, or a table with its parameters.
@@ -243,7 +247,7 @@ pub(crate) struct DimensionEntry {
     pub(crate) moments: Option<Spanned<[f64; 7]>>,
     /// A CSV file of measured values, relative to the study's folder; they stand for the distribution.
     pub(crate) measured: Option<Spanned<String>>,
-    /// The column of the measured file, by the name in its first line; its only one where it is left out.
+    /// The column of the measured file, by the name in its first line; where it is left out that of the dimension's name, or the only one.
     pub(crate) column: Option<Spanned<String>>,
     /// True if rows of the measured file are the same parts as those of other columns of it, which then vary together; false for values
     /// of other parts; true unless given.

@@ -86,6 +86,11 @@ pub(crate) fn truth(_: &mut SchemaGenerator) -> Schema {
     json_schema!({ "type": "boolean" })
 }
 
+/// Schema of the number of equal parts.
+pub(crate) fn count(_: &mut SchemaGenerator) -> Schema {
+    json_schema!({ "type": "integer", "minimum": 1, "maximum": 1000 })
+}
+
 /// Schema of the side of a form deviation or of the mean of a process.
 pub(crate) fn side(_: &mut SchemaGenerator) -> Schema {
     json_schema!({ "type": "string", "enum": ["out", "+", "-"] })

@@ -37,6 +37,9 @@ pub(crate) enum Kind {
     Rayleigh,
     Mixture,
     Tabulated,
+    SplitNormal,
+    GumbelLargest,
+    GumbelSmallest,
     /// Distribution by the key `moments`, which has no name.
     Moments,
 }
@@ -46,7 +49,7 @@ pub(crate) type KnownKind = (&'static str, Kind, &'static [&'static str], &'stat
 
 const NOTHING: &str = "it has no parameters of its own";
 const ORIGIN: &str = "it knows `origin`";
-pub(crate) const KINDS: [KnownKind; 18] = [
+pub(crate) const KINDS: [KnownKind; 21] = [
     ("normal", Kind::Normal, &[], NOTHING),
     ("truncated-normal", Kind::TruncatedNormal, &[], NOTHING),
     ("uniform", Kind::Uniform, &[], NOTHING),
@@ -65,6 +68,9 @@ pub(crate) const KINDS: [KnownKind; 18] = [
     ("rayleigh", Kind::Rayleigh, &["origin"], ORIGIN),
     ("mixture", Kind::Mixture, &["parts"], "it knows `parts`"),
     ("tabulated", Kind::Tabulated, &["scores", "values"], "it knows `scores` and `values`"),
+    ("split-normal", Kind::SplitNormal, &["below", "above"], "it knows `below` and `above`"),
+    ("gumbel-largest", Kind::GumbelLargest, &[], NOTHING),
+    ("gumbel-smallest", Kind::GumbelSmallest, &[], NOTHING),
 ];
 
 /// Names of all kinds, with their parameters.

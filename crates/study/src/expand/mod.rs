@@ -8,6 +8,7 @@ mod configurations;
 mod from;
 mod general;
 mod geometry;
+mod groups;
 mod joint_entry;
 mod processes;
 mod toml;
@@ -76,6 +77,7 @@ pub(super) fn expand(
     configurations::expand(&mut expanded, configuration, data)?;
     processes::expand(&mut expanded, data)?;
     general::expand(&mut expanded)?;
+    groups::expand(&mut expanded)?;
     geometry::fasteners(&mut expanded)?;
     crate::expand::joint_entry::expand(&mut expanded);
     from::expand(&mut expanded)?;
