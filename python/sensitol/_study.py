@@ -36,6 +36,8 @@ if TYPE_CHECKING:
 __all__ = ["Characteristic", "Dimension", "Study", "read"]
 
 R = TypeVar("R", bound=Result)
+# Options that count something, which may be written as 1e5.
+_COUNTS = frozenset({"samples", "budget", "seed", "verify"})
 #: A function, the name of a built-in model, or a program and its arguments.
 ModelLike = Union[Model, Callable[..., Any], str, Sequence[str], Mapping[str, Any], None]
 Entries = Mapping[str, Any]
@@ -419,7 +421,7 @@ class Study:
 
     def simulate(
         self,
-        samples: int | None = None,
+        samples: float | None = None,
         *,
         sampler: Sampler = "random",
         seed: int | None = None,
@@ -453,7 +455,7 @@ class Study:
 
     def rare(
         self,
-        samples: int | None = None,
+        samples: float | None = None,
         *,
         seed: int | None = None,
         until: float | None = None,
@@ -559,7 +561,8 @@ class Study:
 
     def _run(self, cls: type[R], asked: Mapping[str, Any], analysis: Mapping[str, Any], how: RunOptions) -> R:
         analysis = {key: value for key, value in analysis.items() if value is not None}
-        asked = {key: value for key, value in asked.items() if value is not None}
+        asked = {key: _whole(value) if key in _COUNTS else value for key, value in asked.items() if value is not None}
+        analysis = {key: _whole(value) if key in _COUNTS else value for key, value in analysis.items()}
         evaluators: list[Any] = []
 
         def make(told: str) -> Any:
@@ -610,6 +613,11 @@ class Study:
             stem = os.path.splitext(os.path.basename(name))[0]
             return None if made or name == "<text>" else os.path.join(folder, stem + ".journal.sqlite")
         return cache
+
+
+def _whole(value: Any) -> Any:
+    """A whole number written as 1e5 as an integer, and anything else as it is."""
+    return int(value) if isinstance(value, float) and value.is_integer() else value
 
 
 def _on_disk(data: Mapping[str, Any], folder: Path, files: dict[str, bytes]) -> None:

@@ -210,3 +210,8 @@ def test_nothing_is_imported_before_it_is_used():
     code = "import sensitol, sys; print('numpy' in sys.modules, 'sensitol._core' in sys.modules, 'json' in sys.modules)"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert run.stdout.split() == ["False", "False", "False"]
+
+
+def test_a_count_may_be_written_with_an_exponent():
+    study = shaft_and_bore()
+    assert study.simulate(1e3, seed=1)["clearance"].mean == study.simulate(1000, seed=1)["clearance"].mean
