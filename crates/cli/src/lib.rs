@@ -18,6 +18,7 @@ mod running;
 mod sampling;
 mod shared_args;
 mod study;
+mod table;
 mod values;
 
 use crate::commands::allocate;
@@ -73,7 +74,9 @@ fn told(error: clap::Error) -> Exit {
 
 /// Adds the nearest command to the error of `help analize`, as the parser does for `analize`.
 fn with_suggestion(mut error: clap::Error) -> clap::Error {
-    let Some(ContextValue::String(found)) = error.get(ContextKind::InvalidSubcommand) else { return error };
+    let Some(ContextValue::String(found)) = error.get(ContextKind::InvalidSubcommand) else {
+        return with_other_command(error);
+    };
     if error.get(ContextKind::SuggestedSubcommand).is_none() {
         let command = Arguments::command();
         let known: Vec<&str> = command.get_subcommands().map(clap::Command::get_name).collect();
@@ -83,6 +86,40 @@ fn with_suggestion(mut error: clap::Error) -> clap::Error {
         }
     }
     error
+}
+
+/// Names of Monte Carlo simulation where a method of analysis belongs.
+const SIMULATIONS: [&str; 6] = ["monte-carlo", "montecarlo", "monte_carlo", "mc", "simulation", "simulate"];
+
+/// Adds the command `simulate` to the error of `--method monte-carlo`.
+fn with_other_command(mut error: clap::Error) -> clap::Error {
+    let value = match error.get(ContextKind::InvalidValue) {
+        Some(ContextValue::String(value)) => value.to_lowercase(),
+        _ => return error,
+    };
+    let of_method =
+        matches!(error.get(ContextKind::InvalidArg), Some(ContextValue::String(arg)) if arg.contains("--method"));
+    if of_method && SIMULATIONS.contains(&value.as_str()) {
+        let advice = "points are drawn by `sensitol simulate STUDY`".into();
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![advice]));
+    }
+    error
+}
+
+/// Runs `sensitol analyze` on one study, on several, or on two that are compared.
+fn analyze_all(asked: &args::AnalyzeArgs, style: output::Look) -> Result<Exit, Failure> {
+    // The format of a budget behind a space is read as a study.
+    let format = |study: &std::path::Path| {
+        ["text", "csv", "markdown"].into_iter().find(|format| study == std::path::Path::new(format))
+    };
+    let misplaced = asked.studies.iter().find_map(|study| format(study).filter(|_| !study.exists()));
+    match (&asked.studies[..], misplaced) {
+        (_, Some(format)) if asked.gum.is_some() => Err(Failure::GumFormat { format }),
+        ([old, new], _) if asked.compare => difference::run([old, new], asked, style),
+        (studies, _) if asked.compare => Err(Failure::NotTwo { count: studies.len() }),
+        ([study], _) if asked.how.configuration.as_deref() != Some(study::ALL) => analyze::run(study, asked, style),
+        (studies, _) => several::analyze(studies, asked, style),
+    }
 }
 
 /// Runs the command with these arguments, the program's name first, and returns its exit code.
@@ -101,12 +138,7 @@ pub fn run_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let style =
         output::Look { color: arguments.color, quiet: arguments.quiet, verbose: arguments.verbose, study: None };
     let result = match &arguments.command {
-        Command::Analyze(asked) => match &asked.studies[..] {
-            [old, new] if asked.compare => difference::run([old, new], asked, style),
-            studies if asked.compare => Err(Failure::NotTwo { count: studies.len() }),
-            [study] if asked.how.configuration.as_deref() != Some(study::ALL) => analyze::run(study, asked, style),
-            studies => several::analyze(studies, asked, style),
-        },
+        Command::Analyze(asked) => analyze_all(asked, style),
         Command::Simulate(asked) => simulate::run(asked, style),
         Command::Compare(asked) => compare::run(asked, style),
         Command::Sweep(asked) => sweep::run(asked, style),
@@ -119,7 +151,7 @@ pub fn run_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Evaluate(asked) => evaluate::run(asked, style),
         Command::Journal(asked) => journal::run(asked, style),
         Command::Init(asked) => init::run(asked),
-        Command::Import(asked) => import::run(asked),
+        Command::Import(asked) => import::run(asked, style),
         Command::Workbench(asked) => workbench::run(asked, style),
         Command::Serve(asked) => serve::run(asked),
         Command::Schema(asked) => schema::run(asked),

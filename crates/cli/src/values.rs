@@ -1,5 +1,7 @@
 //! Parsers for values of options: numbers, ranges and words.
 
+use std::path::PathBuf;
+
 use clap::ValueEnum;
 
 /// Parameter of a sweep with its values.
@@ -27,6 +29,16 @@ pub(super) fn movable(text: &str) -> Result<Movable, String> {
     match [end("LOW", low)?, end("HIGH", high)?] {
         [low, high] if low < high => Ok(Movable { name: name.to_owned(), bounds: Some([low, high]) }),
         [low, high] => Err(format!("LOW {low} is not below HIGH {high}")),
+    }
+}
+
+/// Path of a workbook that is written, or of a folder for several.
+pub(super) fn workbook(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_lowercase();
+    match ["xls", "xlsm", "xlsb", "ods", "csv"].contains(&ending.as_str()) {
+        true => Err(format!("a workbook is written as .xlsx: write {}", path.with_extension("xlsx").display())),
+        false => Ok(path),
     }
 }
 

@@ -12,6 +12,47 @@ use sensitol_numeric::distribution::DistributionError;
 use sensitol_numeric::inspection::InspectionError;
 use sensitol_numeric::requirement::RequirementError;
 
+/// Keys of other programs, with the advice and the key that it needs.
+const KEYS: [(&[&str], &str, &str); 7] = [
+    (
+        &["lsl", "min", "minimum", "lower_limit", "lower_bound", "low", "utg", "usg"],
+        "lower",
+        "the lower limit is `lower`",
+    ),
+    (
+        &["usl", "max", "maximum", "upper_limit", "upper_bound", "high", "otg", "osg"],
+        "upper",
+        "the upper limit is `upper`",
+    ),
+    (&["lsl", "usl", "min", "max", "lower", "upper"], "limits", "write limits = [lower, upper]"),
+    (&["tol", "plus_minus", "plusminus", "half_band", "toleranz"], "tolerance", "the half band is `tolerance`"),
+    (&["std", "sd", "stddev", "std_dev", "standard_deviation"], "sigma", "the standard deviation is `sigma`"),
+    (&["dist", "law"], "distribution", "the kind of distribution is `distribution`"),
+    (&["value", "nom", "mean", "nennmass"], "nominal", "the value on the drawing is `nominal`"),
+];
+/// Names of distributions in other programs, by the name of the kind here.
+const DISTRIBUTIONS: [(&[&str], &str); 4] = [
+    (&["gauss", "gaussian", "norm", "normalverteilung"], "normal"),
+    (&["rectangular", "rect", "flat", "gleichverteilung"], "uniform"),
+    (&["triangle", "simpson"], "triangular"),
+    (&["log-normal", "lognorm"], "lognormal"),
+];
+
+/// Advice on a key of another program. Returns None if none of the valid keys is likely.
+fn key_of(key: &str, valid: &[String]) -> Option<&'static str> {
+    let key = key.to_lowercase();
+    let fits = |(keys, known, _): &&(&[&str], &str, &str)| {
+        keys.contains(&key.as_str()) && valid.iter().any(|valid| valid == known)
+    };
+    KEYS.iter().find(fits).map(|(_, _, advice)| *advice)
+}
+
+/// Kind of distribution that another program names so.
+fn distribution_of(found: &str) -> Option<&'static str> {
+    let found = found.to_lowercase();
+    DISTRIBUTIONS.iter().find(|(names, _)| names.contains(&found.as_str())).map(|(_, kind)| *kind)
+}
+
 impl StudyFault {
     /// Actions to take, besides changing the text of the study.
     pub fn advice(&self) -> Vec<Advice> {
@@ -34,13 +75,22 @@ impl StudyFault {
         let one_of = |known: &[String]| format!("it is one of {}", known.join(", "));
         match self {
             Self::IsFolder { within: Some(study) } => Some(format!("did you mean {study}?")),
-            Self::UnknownFormat { beside: Some(study) } => Some(format!("did you mean {study}?")),
+            Self::UnknownFormat { beside: Some(study), .. } => Some(format!("did you mean {study}?")),
             Self::WrongType { expected, .. } if expected == CORRELATIONS => {
                 Some("write three lines for each pair:\n[[correlation]]\nbetween = [\"a\", \"b\"]\nvalue = 0.9".into())
             }
             Self::Syntax { slip, .. } => slip.as_ref().map(ToString::to_string),
             Self::WrongType { expected, found } => TypingHabit::of_value(expected, found).map(|slip| slip.to_string()),
             Self::IsFolder { within: None } => Some("name the study file in it".into()),
+            Self::UnknownFormat { table: true, .. } => {
+                Some("a table becomes a study by `sensitol import`, and `sensitol analyze` reads it as it is".into())
+            }
+            Self::UnknownKey { key, valid, .. } if key_of(key, valid).is_some() => {
+                key_of(key, valid).map(str::to_owned)
+            }
+            Self::UnknownWord { what: "distribution", found, .. } if distribution_of(found).is_some() => {
+                distribution_of(found).map(|kind| format!("write \"{kind}\""))
+            }
             Self::UnknownKey { nearest: Some(name), .. } | Self::UnknownWord { nearest: Some(name), .. } => {
                 Some(meant(name))
             }
@@ -56,6 +106,9 @@ impl StudyFault {
             Self::DoesNotApply { instead, .. } => Some((*instead).to_owned()),
             Self::Data(fault) => fault.problem.help(),
             Self::ProcessFile { fault, .. } => fault.help(),
+            Self::GroupName { name, .. } => {
+                Some(format!("write sum({name}): the sum of its parts, not their number times one"))
+            }
             Self::ReservedName { .. } => Some("choose another name".into()),
             Self::UnknownConfigured { nearest: Some(name), .. } => Some(format!("nearest: `{name}`")),
             Self::UnknownConfigured { known, .. } => Some(one_of(known)),

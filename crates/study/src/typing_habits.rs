@@ -3,6 +3,9 @@
 use std::fmt;
 use std::ops::Range;
 
+/// Beginning of the text on what a tolerance is.
+const TOLERANCE: &str = "a half band";
+
 /// Probable mistake behind a fault.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
@@ -23,6 +26,16 @@ pub enum TypingHabit {
         /// The number without the quotes.
         number: String,
     },
+    /// Two deviations in quotes.
+    TwoDeviations {
+        /// The list of the deviations.
+        list: String,
+    },
+    /// A tolerance class of ISO 286 in place of a tolerance.
+    FitClass {
+        /// The class.
+        class: String,
+    },
     /// A command line in one text.
     CommandLine {
         /// Words of the command line.
@@ -40,6 +53,8 @@ impl fmt::Display for TypingHabit {
             Self::TypesetMinus => f.write_str("minus is the sign - of the keyboard"),
             Self::MissingComma => f.write_str("write a comma between the entries"),
             Self::QuotedNumber { number } => write!(f, "write {number}, without quotes"),
+            Self::TwoDeviations { list } => write!(f, "write {list}, without quotes"),
+            Self::FitClass { class } => write!(f, "write fit = \"{class}\" in place of the tolerance"),
             Self::CommandLine { words } => {
                 write!(f, "write its words as a list: {words:?}")
             }
@@ -71,6 +86,9 @@ impl TypingHabit {
             let words = text.split_whitespace().map(str::to_owned).collect();
             return Some(Self::CommandLine { words });
         }
+        if expected.starts_with(TOLERANCE) {
+            return Self::of_tolerance(text);
+        }
         if !expected.starts_with("a number") {
             return None;
         }
@@ -78,6 +96,32 @@ impl TypingHabit {
             Ok(_) => Some(Self::QuotedNumber { number: text.trim().to_owned() }),
             Err(_) => decimal_comma(text, 0).filter(|found| found == text).map(|found| Self::DecimalComma { found }),
         }
+    }
+}
+
+impl TypingHabit {
+    /// Probable mistake in a text in place of a tolerance: `±0.1`, `+0.1/-0.05`, `H7`. Returns None if none is likely.
+    fn of_tolerance(text: &str) -> Option<Self> {
+        let bare: String = text.chars().filter(|c| !c.is_whitespace()).collect();
+        let bare = bare.replace('\u{2212}', "-").replace(',', ".");
+        let number = |text: &str| text.parse::<f64>().is_ok_and(f64::is_finite);
+        let half = ["±", "+/-", "+-"].iter().find_map(|sign| bare.strip_prefix(sign)).unwrap_or(&bare);
+        if number(half) && !half.starts_with(['+', '-']) {
+            return Some(Self::QuotedNumber { number: half.to_owned() });
+        }
+        let plain = |text: &str| text.trim_start_matches('+').to_owned();
+        if number(half) {
+            let list = if half.starts_with('-') { format!("[{half}, 0]") } else { format!("[0, {}]", plain(half)) };
+            return Some(Self::TwoDeviations { list });
+        }
+        if let Some((upper, lower)) = half.split_once('/').filter(|(upper, lower)| number(upper) && number(lower)) {
+            let list = format!("[{}, {}]", plain(lower), plain(upper));
+            return lower.starts_with(['+', '-', '0']).then_some(Self::TwoDeviations { list });
+        }
+        let letters = half.chars().take_while(char::is_ascii_alphabetic).count();
+        let grade = &half[letters..];
+        let class = (1..=2).contains(&letters) && !grade.is_empty() && grade.bytes().all(|byte| byte.is_ascii_digit());
+        class.then(|| Self::FitClass { class: half.to_owned() })
     }
 }
 
@@ -104,6 +148,27 @@ pub(super) fn percent(value: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn tolerances_in_quotes_are_written_without() {
+        let of = |text: &str| {
+            let found = format!("the text \"{text}\"");
+            TypingHabit::of_value("a half band such as 0.3", &found).map(|habit| habit.to_string())
+        };
+        for (text, words) in [
+            ("±0.01", "write 0.01, without quotes"),
+            ("0.01", "write 0.01, without quotes"),
+            ("+/- 0,01", "write 0.01, without quotes"),
+            ("-0.02", "write [-0.02, 0], without quotes"),
+            ("+0.1/-0.05", "write [-0.05, 0.1], without quotes"),
+            ("H7", "write fit = \"H7\" in place of the tolerance"),
+        ] {
+            assert_eq!(of(text).as_deref(), Some(words), "{text}");
+        }
+        assert_eq!(of("tight"), None);
+        // Without signs the second deviation may lie on either side.
+        assert_eq!(of("0.1/0.2"), None);
+    }
 
     #[test]
     fn commas_in_numbers_only() {
