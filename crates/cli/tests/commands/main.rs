@@ -22,6 +22,7 @@ mod probabilities;
 mod probe;
 mod rare;
 mod rejects;
+mod reported_inputs;
 mod sampled_cli;
 mod serve;
 mod several;

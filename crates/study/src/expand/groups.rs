@@ -33,6 +33,7 @@ pub(super) fn expand(expanded: &mut Expanded) -> Result<(), Faults> {
     if groups.is_empty() {
         return Ok(());
     }
+    let mut faults = Faults::default();
     for section in FORMULAS {
         let Some(entries) = expanded.tree.get_mut(section).and_then(Tree::entries_mut) else { continue };
         for (name, entry) in entries {
