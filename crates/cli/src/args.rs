@@ -8,12 +8,13 @@ use crate::commands::import::ImportArgs;
 use crate::commands::journal::JournalArgs;
 use crate::shared_args::OUTPUT;
 pub(super) use crate::shared_args::{HowArgs, OutputArgs, StudyArgs, WorkArgs};
+use crate::table::TableArgs;
 pub(super) use crate::values::{
     CostArg, DerivativesArg, MaximiseArg, MethodArg, MinimiseArg, Over, SamplerArg, SensitivitiesArg, StackArg,
     StencilArg,
 };
 use crate::values::{
-    Movable, count, finite, movable, over, part, positive, probability, samples, samples_or_none, whole,
+    Movable, count, finite, movable, over, part, positive, probability, samples, samples_or_none, whole, workbook,
 };
 
 /// Statistical tolerance analysis for anything you can compute.
@@ -45,7 +46,7 @@ pub(super) enum Command {
     /// not keep the others from being done. The exit code is the worst of all: 130 interrupted, 2 an error, 3 a characteristic
     /// without result, 1 a target missed, 0 done. With --json they are one array, in the order given.
     #[command(
-        after_help = "Examples:\n  sensitol analyze examples/engine-balance/study.toml --method full\n  sensitol analyze examples/first-study/study.toml examples/first-study/tighter.toml --check --html pages"
+        after_help = "Examples:\n  sensitol analyze examples/engine-balance/study.toml --method full\n  sensitol analyze examples/first-study/study.toml examples/first-study/tighter.toml --check --html pages\n  sensitol analyze stack-up.xlsx --lower 0.2 --upper 0.8"
     )]
     Analyze(AnalyzeArgs),
     /// Monte Carlo: the model itself at random or quasi-random points, with standard errors
@@ -98,7 +99,7 @@ pub(super) enum Command {
     /// A row names the columns: name and nominal, and as far as there are direction or factor, tolerance or upper and lower deviation,
     /// unit, distribution, part, description. Numbers have decimal points or commas.
     #[command(
-        after_help = "Examples:\n  sensitol import stack.csv -o stack.toml\n  sensitol import stack.csv --column nominal=Wert --name play\n  sensitol import stack-up.xlsx --sheet Stack -o stack.toml"
+        after_help = "Examples:\n  sensitol import stack.csv -o stack.toml\n  sensitol import stack.csv --column nominal=Wert --name play\n  sensitol import stack-up.xlsx --sheet Stack --lower 0.2 --upper 0.8 -o stack.toml"
     )]
     Import(ImportArgs),
     /// Writes a page that edits and analyses studies in a browser, offline
@@ -151,7 +152,7 @@ pub(super) enum Command {
 /// A study and how it is to be analysed.
 #[derive(Debug, Args)]
 pub(super) struct AnalyzeArgs {
-    /// The study, a .toml or .json file; several are analysed one after another
+    /// The study, a .toml or .json file, or a stack-up table, .xlsx, .csv or .tsv; several are analysed one after another
     #[arg(value_name = "STUDY", required = true)]
     pub(super) studies: Vec<PathBuf>,
 
@@ -202,7 +203,7 @@ pub(super) struct AnalyzeArgs {
     pub(super) csv: Option<PathBuf>,
 
     /// Write the report as a workbook: the stack with live formulas, results, contributions and inputs; several studies: a folder, STUDY.xlsx
-    #[arg(long, value_name = "FILE.xlsx", conflicts_with = "compare", help_heading = OUTPUT)]
+    #[arg(long, value_name = "FILE.xlsx", value_parser = workbook, conflicts_with = "compare", help_heading = OUTPUT)]
     pub(super) xlsx: Option<PathBuf>,
 
     /// Exit with 1 when a requirement is missed or inconclusive
@@ -220,6 +221,9 @@ pub(super) struct AnalyzeArgs {
     /// Threads that evaluate formulas and built-in models [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), hide_short_help = true)]
     pub(super) threads: Option<u16>,
+
+    #[command(flatten)]
+    pub(super) table: TableArgs,
 
     #[command(flatten)]
     pub(super) output: OutputArgs,

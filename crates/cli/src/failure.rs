@@ -113,6 +113,10 @@ pub(super) enum Failure {
     Points { path: PathBuf, reason: String },
     #[error("{path}: {reason}", path = path.display())]
     Import { path: PathBuf, reason: String, help: Option<String> },
+    #[error("{flag} is for tables, and {path} is a study: write it there", path = path.display())]
+    NoTable { flag: &'static str, path: PathBuf },
+    #[error("the format of the budget stands behind `=`: write --gum={format}")]
+    GumFormat { format: &'static str },
     #[error("the table cannot be written: {reason}")]
     Table { reason: String },
     #[error("{reason}")]

@@ -102,6 +102,19 @@ impl<'s> Look<'s> {
     }
 }
 
+impl Look<'_> {
+    /// Prints what was read from a table, and notes on it.
+    pub(super) fn note(self, summary: &str, notes: &[String]) {
+        if self.quiet {
+            return;
+        }
+        let of = self.study.map(|study| format!("{study}: ")).unwrap_or_default();
+        let mut text = format!("\u{1b}[1mread\u{1b}[0m: {}{}\n", clean(&of), clean(summary));
+        notes.iter().for_each(|note| text += &format!("  {}\n", clean(&clipped(note))));
+        to_stderr(&text);
+    }
+}
+
 /// Prints an error.
 pub(super) fn error(message: &str) {
     to_stderr(&format!("{}\n", shown(message)));

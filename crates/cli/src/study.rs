@@ -7,12 +7,15 @@ use crate::failure::Failure;
 use crate::output::Look;
 use crate::pairs;
 use crate::running::externals;
+use crate::table::{TableArgs, study_of};
 use sensitol::method::{DerivativeSource, Method};
 use sensitol::plan::Stencil;
-use sensitol_study::{Externals, Study};
+use sensitol_study::{Externals, Study, StudyText};
 
 /// Name that stands for every configuration of a study.
 pub(super) const ALL: &str = "all";
+/// Name of the characteristic of a table that is analysed without a study.
+const GAP: &str = "gap";
 
 /// Reads a study for sampling.
 pub(super) fn read_sampled(asked: &SampledArgs, look: Look) -> Result<Study, Failure> {
@@ -61,6 +64,20 @@ pub(super) fn read_for_all(asked: &StudyArgs, externals: &dyn Fn() -> Externals)
 /// Reads a study from a path of its own.
 pub(super) fn read_file(path: &Path, asked: &HowArgs, externals: Externals) -> Result<Study, Failure> {
     changed(Study::read_with(path, externals)?, asked)
+}
+
+/// Reads a stack-up table as a study, and prints what was read. A name of its characteristic is not asked for.
+pub(super) fn read_table(
+    path: &Path,
+    table: &TableArgs,
+    asked: &HowArgs,
+    externals: Externals,
+    look: Look,
+) -> Result<Study, Failure> {
+    let table = study_of(path, table, GAP)?;
+    look.note(&table.summary, &table.notes);
+    let text = StudyText::toml(path.display().to_string(), table.text).with_externals(externals);
+    changed(Study::from_text(text)?, asked)
 }
 
 /// Reads a study for a sweep over a parameter.

@@ -14,6 +14,7 @@ use crate::points;
 use crate::progress::Bar;
 use crate::running::{Clock, checked, confirmed, externals, kept, on_threads};
 use crate::study;
+use crate::table::is_table;
 use sensitol::analysis::{Analysis, CharacteristicAnalysis, FigureBasis, analyze_with};
 use sensitol::assembly::{Progress, Run, Table};
 use sensitol::method::ReducedInputs;
@@ -52,7 +53,15 @@ pub(crate) fn read(
     look: Look,
 ) -> Result<Study, Failure> {
     let externals = study::configured(externals(asked.work.journal.as_deref(), look, given), configuration);
-    let mut study = study::read_file(path, &asked.how, externals)?;
+    let mut study = match is_table(path) {
+        true => study::read_table(path, &asked.table, &asked.how, externals, look)?,
+        false => {
+            if let Some(flag) = asked.table.first_given() {
+                return Err(Failure::NoTable { flag, path: path.to_owned() });
+            }
+            study::read_file(path, &asked.how, externals)?
+        }
+    };
     study.options.seed = asked.seed.or(study.options.seed);
     // A file of answers covers the planned points only, so check points are off.
     let answers = asked.points.as_ref().map(|_| 0);

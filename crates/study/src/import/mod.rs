@@ -3,15 +3,28 @@
 
 mod columns;
 mod fault;
+mod figures;
+mod header;
+mod json;
+mod limits;
+mod measured;
+mod row;
 mod sheet;
+mod spread;
 mod stack;
 mod step;
+mod study_text;
+mod title;
 mod tolerance;
+mod units;
+mod words;
 pub mod workbook;
 
 pub use columns::{ColumnRole, ROLES, named};
 pub use fault::{ImportFault, ImportProblem};
+pub use header::has_header;
+pub use measured::measured;
 pub use sheet::Sheet;
-pub use stack::{has_header, import};
+pub use stack::{ImportOptions, Imported, import};
 pub use step::{StepImportFault, StepRequest, StepStudy, is_step, step_into, step_study};
 pub use workbook::{WorkbookFault, is_workbook, workbook};

@@ -1,5 +1,6 @@
 //! Cells of a sheet by row and column, with their names in a spreadsheet.
 
+use crate::import::json::of_json;
 use crate::table::{DELIMITERS, delimiter, records};
 
 /// Content of a cell.
@@ -15,6 +16,8 @@ pub(crate) enum Content {
         value: f64,
         /// True if the cell shows 0.02 as 2 %.
         percent: bool,
+        /// True if the cell shows a positive number with a plus sign.
+        plus: bool,
     },
     /// A date or a time.
     Date,
@@ -43,9 +46,12 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// Sheet of a text with tabs, semicolons or commas between the columns.
+    /// Sheet of a text with tabs, semicolons or commas between the columns, or of a list of rows in JSON.
     pub fn of_text(text: &str) -> Self {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        if let Some(sheet) = of_json(text) {
+            return sheet;
+        }
         let delimiter = delimiter(text, DELIMITERS);
         let content = |cell: &str| match cell.trim_matches([' ', '\u{a0}']) {
             "" => Content::Empty,

@@ -120,12 +120,12 @@ pub fn workbook(
 /// Reads the cells one by one. A sheet with a single cell in its last corner then takes no more memory than others.
 fn read(book: &mut Xlsx<Cursor<Vec<u8>>>, name: &str) -> Result<Sheet, WorkbookFault> {
     let mut reader = book.worksheet_cells_reader(name).map_err(|error| damaged(&error))?;
-    let percent: Vec<bool> = (reader.styles().iter())
-        .map(|style| style.number_format.as_ref().is_some_and(|format| is_percent(&format.format_code)))
+    let shown: Vec<Shown> = (reader.styles().iter())
+        .map(|style| style.number_format.as_ref().map_or(Shown::default(), |format| Shown::of(&format.format_code)))
         .collect();
     let (mut rows, mut size): (Vec<(u64, Vec<Content>)>, usize) = (Vec::new(), 0);
     while let Some((cell, style)) = reader.next_cell_with_style_id().map_err(|error| damaged(&error))? {
-        let content = content(cell.get_value(), percent.get(style).copied().unwrap_or(false));
+        let content = content(cell.get_value(), shown.get(style).copied().unwrap_or_default());
         if content == Content::Empty {
             continue;
         }
@@ -149,15 +149,28 @@ fn read(book: &mut Xlsx<Cursor<Vec<u8>>>, name: &str) -> Result<Sheet, WorkbookF
     Ok(Sheet { rows, commas_separate: false })
 }
 
-fn content(cell: &DataRef<'_>, percent: bool) -> Content {
+/// Signs that a number format adds to a positive number.
+#[derive(Debug, Clone, Copy, Default)]
+struct Shown {
+    percent: bool,
+    plus: bool,
+}
+
+impl Shown {
+    fn of(format: &str) -> Self {
+        Self { percent: is_percent(format), plus: format.trim_start_matches(['"', '\\']).starts_with('+') }
+    }
+}
+
+fn content(cell: &DataRef<'_>, Shown { percent, plus }: Shown) -> Content {
     let text = |text: &str| match text.trim_matches([' ', '\u{a0}', '\t', '\r', '\n']) {
         "" => Content::Empty,
         text => Content::Text(text.to_owned()),
     };
     match cell {
         DataRef::Empty => Content::Empty,
-        DataRef::Int(value) => Content::Number { value: *value as f64, percent },
-        DataRef::Float(value) => Content::Number { value: *value, percent },
+        DataRef::Int(value) => Content::Number { value: *value as f64, percent, plus },
+        DataRef::Float(value) => Content::Number { value: *value, percent, plus },
         DataRef::String(found) => text(found),
         DataRef::SharedString(found) => text(found),
         DataRef::Bool(true) => Content::Text("TRUE".to_owned()),
@@ -190,6 +203,14 @@ fn damaged(error: &XlsxError) -> WorkbookFault {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn plus_signs_are_part_of_a_format() {
+        for format in ["+0.00;-0.00", "\\+0.00;\\-0.00;0", "\"+\"0.0"] {
+            assert!(Shown::of(format).plus, "{format}");
+        }
+        assert!(!Shown::of("0.00;-0.00").plus);
+    }
 
     #[test]
     fn percent_is_what_a_format_shows() {
