@@ -182,6 +182,10 @@ pub(super) struct AnalyzeArgs {
     #[arg(long, conflicts_with_all = ["json", "stack"], help_heading = OUTPUT)]
     pub(super) summary: bool,
 
+    /// Print one line for every characteristic: yield, verdict, rejects, strongest contributors
+    #[arg(long, conflicts_with_all = ["json", "stack", "gum", "summary", "compare"], help_heading = OUTPUT)]
+    pub(super) brief: bool,
+
     /// Show what changed from the first study to the second: inputs, results, contributions; --check is about the second
     #[arg(long, conflicts_with_all = ["points", "stack", "summary"], help_heading = OUTPUT)]
     pub(super) compare: bool,

@@ -104,6 +104,9 @@ pub(crate) fn printed(report: &Report, asked: &AnalyzeArgs, look: Look) -> Strin
         Some(StackArg::Markdown) => return markdown(&budgets()),
         None => {}
     }
+    if asked.brief {
+        return report.brief();
+    }
     match asked.stack {
         None if asked.output.json && look.verbose => json(report),
         None if asked.output.json => json(&report.clone().shortened()),

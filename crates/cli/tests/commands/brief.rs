@@ -100,3 +100,27 @@ fn an_allocation_begins_with_what_is_kept() {
         assert!(report.contains(words), "{words}\n{report}");
     }
 }
+
+/// `--brief` prints a line for every characteristic. Its figures are those of the report, without digits that the error does not carry.
+#[test]
+fn one_line_where_one_is_asked() {
+    let line = |study: &str| text(&["analyze", study, "--brief"]);
+    // Right by hand: sigma of clearance, and Phi(-5) on either side of the limits at 5 sigma, 0.287 ppm.
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("gap.toml");
+    std::fs::write(
+        &path,
+        "[dimensions]\na = { nominal = 10, tolerance = 0.3, unit = \"mm\" }\nb = { nominal = 4, tolerance = 0.4, unit = \"mm\" }\n\
+         [characteristics]\ngap = { formula = \"a - b\", unit = \"mm\", lower = 5.66, target_yield = 0.9999 }\n\
+         sum = { formula = \"a + b\", unit = \"mm\" }\n",
+    )
+    .unwrap();
+    // P(gap < 5.66) = Phi(-2.04) = 0.020675; shares 9/25 and 16/25; sigma = 0.5/3.
+    assert_eq!(
+        line(path.to_str().unwrap()),
+        "gap 97.93 % (target 99.99 %) MISSED: 20680 ppm below 5.66; b 64 %, a 36 %\n\
+         sum mean 14.00000, sigma 0.16667 mm, no limits; b 64 %, a 36 %\n"
+    );
+    let refused = sensitol(&["analyze", path.to_str().unwrap(), "--brief", "--json"]).output().unwrap();
+    assert_eq!(refused.status.code(), Some(2));
+}

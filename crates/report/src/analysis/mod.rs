@@ -1,6 +1,7 @@
 //! The report of an analysis: its document, tables and sections.
 
 pub(crate) mod analysis_document;
+mod brief;
 pub(crate) mod budget;
 pub(crate) mod interactions;
 pub(crate) mod range_bars;

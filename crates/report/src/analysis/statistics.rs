@@ -152,23 +152,8 @@ impl CharacteristicStatistics for CharacteristicAnalysis {
     }
 
     fn contributors(&self, dimensions: &[DimensionReport]) -> DataTable {
-        let mut all: Vec<Contributor<'_>> = Vec::new();
-        for row in self.sensitivities.iter().zip(dimensions).filter(|(row, of)| matters(row, of)) {
-            let name = element(&row.0.dimension);
-            match all.iter_mut().find(|known| known.name == name) {
-                Some(known) => known.parts.push(row),
-                None => all.push(Contributor { name, parts: vec![row] }),
-            }
-        }
-        // Parts of an element without effect here are dropped if another part has one.
-        for one in &mut all {
-            if one.parts.iter().any(does) {
-                one.parts.retain(does);
-            }
-        }
-        let mut view: Vec<usize> = (0..all.len()).filter(|&index| all[index].parts.iter().any(does)).collect();
-        let size = |index: usize| all[index].size();
-        view.sort_by(|&a, &b| size(b).total_cmp(&size(a)));
+        let all = elements(self, dimensions);
+        let view = ranked(&all);
         let rest = &view[view.len().min(CONTRIBUTORS)..];
         let together: f64 = rest.iter().filter_map(|&index| all[index].part()).sum();
         let rest = format!("and {} more with {} % together; -v shows all", rest.len(), percent(together));
@@ -226,6 +211,39 @@ impl<'r> Contributor<'r> {
     fn size(&self) -> f64 {
         self.alone().map_or_else(|| self.part().unwrap_or(-1.0), |row| size(row.0))
     }
+}
+
+/// Dimensions and geometric elements that matter, in the order of the study.
+fn elements<'r>(one: &'r CharacteristicAnalysis, dimensions: &'r [DimensionReport]) -> Vec<Contributor<'r>> {
+    let mut all: Vec<Contributor<'_>> = Vec::new();
+    for row in one.sensitivities.iter().zip(dimensions).filter(|(row, of)| matters(row, of)) {
+        let name = element(&row.0.dimension);
+        match all.iter_mut().find(|known| known.name == name) {
+            Some(known) => known.parts.push(row),
+            None => all.push(Contributor { name, parts: vec![row] }),
+        }
+    }
+    // Parts of an element without effect here are dropped if another part has one.
+    for one in &mut all {
+        if one.parts.iter().any(does) {
+            one.parts.retain(does);
+        }
+    }
+    all
+}
+
+/// Indices of the contributors with an effect, strongest first.
+fn ranked(all: &[Contributor<'_>]) -> Vec<usize> {
+    let mut view: Vec<usize> = (0..all.len()).filter(|&index| all[index].parts.iter().any(does)).collect();
+    view.sort_by(|&a, &b| all[b].size().total_cmp(&all[a].size()));
+    view
+}
+
+/// Names of the contributors with a known share of the variance, strongest first, and their shares in percent.
+pub(crate) fn strongest<'r>(one: &'r CharacteristicAnalysis, dimensions: &'r [DimensionReport]) -> Vec<(&'r str, f64)> {
+    let all = elements(one, dimensions);
+    let known = ranked(&all).into_iter().filter_map(|index| Some((all[index].name, 100.0 * all[index].part()?)));
+    known.filter(|(_, percent)| *percent >= 0.5).collect()
 }
 
 /// True if a dimension has an effect here. If the surface is not trusted, its effect may consist of interactions alone.
