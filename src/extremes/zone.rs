@@ -3,18 +3,20 @@
 //! ```text
 //! disc      sum of u_j^2 <= 1          u_j: deviation from the middle of the band, in half bands
 //! rim       sum of u_j^2  = 1
-//! diamond   sum of |u_j| <= 1
+//! diamond   sum of |u_j| <= 1              likewise the octahedron, and the ball is a disc of three coordinates
+//! bicone    |u_0| + hypot(u_1, u_2) <= 1
 //! rows      the rows of measured parts, where no member has a tolerance of its own
 //! ```
 //!
 //! The least value of a plane over a zone has a closed form: `-|g|` over a disc or rim, `-max |g_j|` over a diamond,
+//! `-max(|g_0|, hypot(g_1, g_2))` over a bicone,
 //! and the least of all rows. Branch and bound uses it to bound the tangent plane, so that a plane is proven in one
 //! box. Source: R. T. Rockafellar, Convex Analysis (1970), section 13: support functions.
 
 use crate::assembly::formula::Interval;
 use crate::extremes::model::Region;
 use crate::problem::Problem;
-use sensitol_numeric::correlation::JointLaw;
+use sensitol_numeric::correlation::{JointLaw, SolidShape, SolidZone};
 
 /// Tolerance of the distance from the middle of a zone, for tests of inside and outside: some roundings.
 pub(super) const EDGE: f64 = 1e-12;
@@ -37,6 +39,8 @@ enum ZoneShape {
     Disc,
     Rim,
     Diamond,
+    /// Double cone, with the position of the coordinate along its axis.
+    Bicone(usize),
     /// Values of all coordinates, row by row.
     Rows(Vec<Vec<f64>>),
 }
@@ -75,6 +79,14 @@ pub(super) fn zones(problem: &Problem, dimensions: &[usize], region: &mut Region
                 JointLaw::Disc => ZoneShape::Disc,
                 JointLaw::Rim => ZoneShape::Rim,
                 JointLaw::Diamond => ZoneShape::Diamond,
+                JointLaw::Solid(solid) => {
+                    let correlation = problem.correlation().expect("it has a block");
+                    let coordinate = |&place: &usize| correlation.block_of(dimensions[place]).map_or(0, |of| of.1);
+                    solid_shape(
+                        solid,
+                        &places.iter().map(|place| solid.coordinate(coordinate(place))).collect::<Vec<_>>(),
+                    )
+                }
                 JointLaw::Rows(_) => {
                     let Some(rows) = rows_of(problem, dimensions, &places, block) else { continue };
                     for (coordinate, &place) in places.iter().enumerate() {
@@ -93,6 +105,18 @@ pub(super) fn zones(problem: &Problem, dimensions: &[usize], region: &mut Region
         zones.push(Zone { places, shape, bands });
     }
     zones
+}
+
+/// Shape of these coordinates of a solid. Two of three make the projection of the solid.
+fn solid_shape(solid: &SolidZone, coordinates: &[usize]) -> ZoneShape {
+    match solid.shape() {
+        SolidShape::Octahedron => ZoneShape::Diamond,
+        SolidShape::Ball => ZoneShape::Disc,
+        SolidShape::Bicone => match coordinates.iter().position(|&coordinate| coordinate == 0) {
+            None => ZoneShape::Disc,
+            Some(axis) => ZoneShape::Bicone(axis),
+        },
+    }
 }
 
 /// Measured rows of some coordinates. Returns None if a drawing gives one of them a tolerance, because the tolerance
@@ -125,10 +149,14 @@ impl Zone {
         0.5 * upper - 0.5 * lower
     }
 
-    /// Euclidean norm, or for a diamond the sum of absolute values.
+    /// Euclidean norm, for a diamond the sum of absolute values, for a bicone that of the axis and the radius.
     fn norm(&self, parts: impl Iterator<Item = f64>) -> f64 {
         match self.shape {
             ZoneShape::Diamond => parts.map(f64::abs).sum(),
+            ZoneShape::Bicone(axis) => {
+                let [along, across] = along_and_across(axis, parts);
+                along + across
+            }
             _ => parts.fold(0.0, libm::hypot),
         }
     }
@@ -167,7 +195,7 @@ impl Zone {
                 let [near, far] = self.reach(region);
                 near > 1.0 + EDGE || far < 1.0 - EDGE
             }
-            ZoneShape::Disc | ZoneShape::Diamond => self.reach(region)[0] > 1.0 + EDGE,
+            ZoneShape::Disc | ZoneShape::Diamond | ZoneShape::Bicone(_) => self.reach(region)[0] > 1.0 + EDGE,
         }
     }
 
@@ -186,7 +214,7 @@ impl Zone {
     pub(super) fn frees(&self, place: usize, region: &[[f64; 2]]) -> bool {
         !self.places.contains(&place)
             || match self.shape {
-                ZoneShape::Disc | ZoneShape::Diamond => self.reach(region)[1] <= 1.0,
+                ZoneShape::Disc | ZoneShape::Diamond | ZoneShape::Bicone(_) => self.reach(region)[1] <= 1.0,
                 ZoneShape::Rim | ZoneShape::Rows(_) => false,
             }
     }
@@ -198,7 +226,7 @@ impl Zone {
                 rows.iter().any(|row| self.places.iter().zip(row).all(|(&place, value)| x[place] == *value))
             }
             ZoneShape::Rim => (self.radius(x) - 1.0).abs() <= EDGE,
-            ZoneShape::Disc | ZoneShape::Diamond => self.radius(x) <= 1.0 + EDGE,
+            ZoneShape::Disc | ZoneShape::Diamond | ZoneShape::Bicone(_) => self.radius(x) <= 1.0 + EDGE,
         }
     }
 
@@ -218,8 +246,10 @@ impl Zone {
             // At the middle every direction is equally near, so the first axis is taken.
             ZoneShape::Rim if radius == 0.0 => x[self.places[0]] = self.bands[0][1],
             ZoneShape::Rim => self.scale(x, radius),
-            ZoneShape::Disc | ZoneShape::Diamond if radius > 1.0 => self.scale(x, radius * (1.0 + margin)),
-            ZoneShape::Disc | ZoneShape::Diamond => {}
+            ZoneShape::Disc | ZoneShape::Diamond | ZoneShape::Bicone(_) if radius > 1.0 => {
+                self.scale(x, radius * (1.0 + margin))
+            }
+            ZoneShape::Disc | ZoneShape::Diamond | ZoneShape::Bicone(_) => {}
         }
     }
 
@@ -264,6 +294,11 @@ impl Zone {
                 let size = |c: usize| rise(c).upper().max(-rise(c).lower());
                 exactly(all().map(size).fold(0.0, f64::max))
             }
+            ZoneShape::Bicone(axis) => {
+                let along = rise(axis).upper().max(-rise(axis).lower());
+                let across = sum(&mut all().filter(|&c| c != axis).map(|c| rise(c).squared())).sqrt();
+                exactly(along.max(across.upper()))
+            }
             _ => sum(&mut all().map(|c| rise(c).squared())).sqrt(),
         };
         let bound = sum(&mut all().map(|c| term(c, middle(c)))).subtract(&greatest).lower();
@@ -291,6 +326,15 @@ impl Zone {
         // The normal at the point of the edge in the direction of `about`.
         let normal: Vec<f64> = match self.shape {
             ZoneShape::Diamond => parts.iter().map(|part| part.signum()).collect(),
+            ZoneShape::Bicone(axis) => {
+                let [_, across] = along_and_across(axis, parts.iter().copied());
+                let part = |(c, part): (usize, &f64)| match across > 0.0 {
+                    _ if c == axis => part.signum(),
+                    true => part / across,
+                    false => 0.0,
+                };
+                parts.iter().enumerate().map(part).collect()
+            }
             _ => parts.iter().map(|part| part / radius).collect(),
         };
         let square: f64 = normal.iter().map(|n| n * n).sum();
@@ -326,6 +370,10 @@ impl Zone {
         let rises: Vec<f64> = slopes.iter().enumerate().map(|(c, slope)| slope * self.half(c)).collect();
         let steepest = (0..rises.len()).max_by(|&a, &b| rises[a].abs().total_cmp(&rises[b].abs())).unwrap_or(0);
         let length = rises.iter().fold(0.0, |length, &rise| libm::hypot(length, rise));
+        let bicone = match self.shape {
+            ZoneShape::Bicone(axis) => Some((axis, along_and_across(axis, rises.iter().copied()))),
+            _ => None,
+        };
         let part = |c: usize| match self.shape {
             _ if length == 0.0 => {
                 if c == 0 {
@@ -336,8 +384,21 @@ impl Zone {
             }
             ZoneShape::Diamond if c != steepest => 0.0,
             ZoneShape::Diamond => -rises[c].signum(),
+            ZoneShape::Bicone(_) => bicone.map_or(0.0, |(axis, [along, across])| match along >= across {
+                true if c == axis => -rises[c].signum(),
+                false if c != axis => -rises[c] / across,
+                _ => 0.0,
+            }),
             _ => -rises[c] / length,
         };
         (0..rises.len()).map(|c| self.middle(c) + part(c) * self.half(c)).collect()
     }
+}
+
+/// Absolute value of the part along an axis, and Euclidean norm of the others.
+fn along_and_across(axis: usize, parts: impl Iterator<Item = f64>) -> [f64; 2] {
+    parts.enumerate().fold([0.0, 0.0], |[along, across], (place, part)| match place == axis {
+        true => [part.abs(), across],
+        false => [along, libm::hypot(across, part)],
+    })
 }

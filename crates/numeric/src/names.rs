@@ -34,15 +34,21 @@ pub fn shortened_to(text: &str, most: usize) -> String {
 }
 
 /// Suffixes that dimension names add to the name of the geometric element that they belong to.
-pub(crate) const ELEMENT_PARTS: [&str; 6] = [".unit", ".unit_x", ".unit_y", ".pin_x", ".pin_y", ".slot"];
+pub(crate) const ELEMENT_PARTS: [&str; 20] = [
+    ".unit", ".unit_x", ".unit_y", ".pin_x", ".pin_y", ".slot", // elements of a plane
+    ".at", ".at_x", ".at_y", ".at_z", ".end1", ".end2", ".end1_x", ".end1_y", ".end2_x",
+    ".end2_y", // features in space
+    ".tilt", ".tilt_x", ".tilt_y", ".form",
+];
 
 /// Name of the geometric element that a dimension belongs to, or else the dimension's own name. For an element that is measured from
 /// another it is the name in the study.
 pub fn element(dimension: &str) -> &str {
-    match ELEMENT_PARTS.iter().find_map(|part| dimension.strip_suffix(part)) {
-        Some(element) => element.strip_suffix(".own").unwrap_or(element),
-        None => dimension,
-    }
+    let outer = |name: &'_ str| ELEMENT_PARTS.iter().find_map(|part| name.strip_suffix(part).map(str::len));
+    let Some(length) = outer(dimension) else { return dimension };
+    let element = dimension[..length].strip_suffix(".own").unwrap_or(&dimension[..length]);
+    // An end of an axis with a bonus has parts of its own.
+    outer(element).map_or(element, |length| &element[..length])
 }
 
 /// Known name most similar to `typed`. Returns None if no name is similar enough.

@@ -151,6 +151,8 @@ pub struct PartJoint {
     pub value: Option<Quantity>,
     /// Offsets of a pin or ball across the axis of its hole, in the frame of the hole; None for 0.
     pub offset: Option<[Quantity; 2]>,
+    /// Slopes of the axis of a pin along x and y of its hole; None for 0.
+    pub tilt: Option<[Quantity; 2]>,
     /// True if round surfaces lie side by side, so that the sum of their radii counts and not the difference.
     pub side_by_side: bool,
 }

@@ -107,7 +107,7 @@ impl Assembly {
     ///     ],
     ///     joints: vec![PartJoint {
     ///         name: "seat".into(), kind: JointKind::Contact, between: [id(0, 0), id(1, 0)],
-    ///         takes: None, value: None, offset: None, side_by_side: false,
+    ///         takes: None, value: None, offset: None, tilt: None, side_by_side: false,
     ///     }],
     ///     length_unit: None,
     ///     measures: vec![Measure { name: "height".into(), kind: MeasureKind::Distance, between: [id(1, 1), id(0, 0)] }],
@@ -319,9 +319,14 @@ impl<'a> Writer<'a> {
             let kinds = joint.between.map(|id| self.assembly.feature(id).kind);
             let [a, b] = joint.between.map(|id| self.feature(id));
             let zero = || Expression::constant(0.0);
+            let two = |parts: &Option<[Quantity; 2]>| match parts {
+                Some(parts) => parts.each_ref().map(number),
+                None => [zero(), zero()],
+            };
             let numbers = JointNumbers {
                 value: joint.value.as_ref().map_or_else(zero, number),
-                offset: joint.offset.as_ref().map_or_else(|| [zero(), zero()], |parts| parts.each_ref().map(number)),
+                offset: two(&joint.offset),
+                tilt: two(&joint.tilt),
             };
             let all = equations(joint, kinds, [&a, &b], &numbers);
             for &place in &self.closure.used[index] {

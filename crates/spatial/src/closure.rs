@@ -90,8 +90,14 @@ impl<'a> Closure<'a> {
         let kinds = joint.between.map(|id| self.assembly.feature(id).kind);
         let [a, b] = joint.between.map(|id| self.placed(poses, id));
         let value = |quantity: &Option<Quantity>| quantity.as_ref().map_or(0.0, |quantity| quantity.value);
-        let offset = joint.offset.as_ref().map_or([0.0; 2], |offset| offset.each_ref().map(|part| part.value));
-        let numbers = JointNumbers { value: Dual::constant(value(&joint.value)), offset: offset.map(Dual::constant) };
+        let two = |parts: &Option<[Quantity; 2]>| {
+            parts.as_ref().map_or([0.0; 2], |parts| parts.each_ref().map(|part| part.value)).map(Dual::constant)
+        };
+        let numbers = JointNumbers {
+            value: Dual::constant(value(&joint.value)),
+            offset: two(&joint.offset),
+            tilt: two(&joint.tilt),
+        };
         equations(joint, kinds, [&a, &b], &numbers)
     }
 

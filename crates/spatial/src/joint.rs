@@ -79,6 +79,7 @@ pub(crate) struct JointNumbers<S> {
     /// Gap, length or angle.
     pub(crate) value: S,
     pub(crate) offset: [S; 2],
+    pub(crate) tilt: [S; 2],
 }
 
 /// All equations that a joint of these features has: directions first.
@@ -107,6 +108,11 @@ pub(crate) fn equations<S: Number>(
         JointKind::Pin => {
             let passes = passing([a, b]);
             let mut all = tilts();
+            // A tilt of 0 leaves no term, so that the equations stay short.
+            if joint.tilt.is_some() {
+                let slopes = all.iter_mut().zip(&numbers.tilt);
+                slopes.for_each(|(equation, slope)| equation.residual = equation.residual.minus(slope));
+            }
             all.push(distance("offset along x", passes.dot(x).minus(&numbers.offset[0])));
             all.push(distance("offset along y", passes.dot(y).minus(&numbers.offset[1])));
             all

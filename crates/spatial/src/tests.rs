@@ -39,6 +39,7 @@ fn pair(kind: JointKind, kinds: [FeatureKind; 2]) -> Assembly {
             takes: None,
             value: Some(Quantity::constant(0.7)),
             offset: Some([0.1, 0.2].map(Quantity::constant)),
+            tilt: Some([0.03, -0.02].map(Quantity::constant)),
             side_by_side: false,
         }],
         measures: Vec::new(),

@@ -5,7 +5,9 @@ use std::sync::Arc;
 
 use crate::data::DataFault;
 use crate::decimal::{SAID, decimal};
+use crate::entries::vocabulary::SOLIDS;
 use crate::typing_habits::TypingHabit;
+use crate::zone_fault::ZoneFault;
 use sensitol::allocation::CostError;
 use sensitol::assembly::NoColumn;
 use sensitol::assembly::formula::FormulaFault;
@@ -245,6 +247,9 @@ pub enum StudyFault {
     /// The assembly in space determines no state.
     #[error(transparent)]
     Spatial(#[from] SpatialError),
+    /// A zone or float of an assembly in space is not usable.
+    #[error(transparent)]
+    Zone(#[from] ZoneFault),
     /// A formula is not valid.
     #[error("{0}")]
     Formula(FormulaFault),
@@ -332,7 +337,7 @@ pub enum StudyFault {
         between: [String; 2],
     },
     /// A joint block with too few or too many dimensions.
-    #[error("{}, and `of` names {found}", match law { Some(law) => format!("a {law} is of two dimensions"), None => "rows are of two dimensions or more".to_owned() })]
+    #[error("{}, and `of` names {found}", match law { Some(law) => format!("a {law} is of {} dimensions", if SOLIDS.contains(&law.as_str()) { "three" } else { "two" }), None => "rows are of two dimensions or more".to_owned() })]
     JointCount {
         /// Distribution of the zone; None for measured rows.
         law: Option<String>,

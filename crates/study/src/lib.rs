@@ -14,7 +14,7 @@
 //! | `triangular` | follow from the band | `mode`: a value within the band, its middle by default |
 //! | `trapezoidal` | follow from the band | `top`: the share of the band over which it is flat |
 //! | `beta` | follow from the band | `alpha`, `beta`: the exponents at the lower and the upper end |
-//! | `arcsine`, `u-shaped` | follow from the band | |
+//! | `arcsine`, `u-shaped`, `octahedron`, `bicone` | follow from the band | |
 //! | `curvilinear-trapezoid` | follow from the band and its inexactness | `inexactness`: by how much the ends of the band may be off |
 //! | `student` | the band's middle plus `shift`; `sigma`, half the band by `sigmas` or `cp`, or `scale` | `degrees`: above 2; `scale`: sigma is `scale sqrt(degrees/(degrees - 2))` |
 //! | `lognormal`, `gamma`, `weibull` | nominal plus `shift`; `sigma`, or half the band by `sigmas` or `cp` | `origin`: where it begins, 0 by default |
@@ -69,6 +69,7 @@ pub mod table;
 mod tree;
 mod typing_habits;
 pub mod write;
+mod zone_fault;
 
 use crate::build::sweep;
 use crate::entries::spanned;
@@ -84,6 +85,7 @@ pub use files::{FileRole, NamedFile};
 pub use rewrite::{RewriteError, Rewritten};
 #[cfg(feature = "schema")]
 pub use schema::schema;
+pub use zone_fault::ZoneFault;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -1,6 +1,6 @@
 //! Remedies for the faults of a study: actions to take, and texts to write instead.
 
-use crate::entries::vocabulary::CORRELATIONS;
+use crate::entries::vocabulary::{CORRELATIONS, SOLIDS};
 use crate::error::StudyFault;
 use crate::typing_habits::{TypingHabit, percent};
 use sensitol::allocation::CostError;
@@ -162,6 +162,9 @@ impl StudyFault {
         match self {
             Self::CorrelationOfRows { .. } => Some("leave it out, or write joint = false at one of the two".into()),
             Self::CorrelationInZone { .. } => Some("leave it out, or leave [[joint]] out".into()),
+            Self::JointCount { law: Some(law), .. } if SOLIDS.contains(&law.as_str()) => {
+                Some("write of = [\"x\", \"y\", \"z\"]".into())
+            }
             Self::JointCount { .. } => Some("write of = [\"x\", \"y\"]".into()),
             Self::JointTwice { .. } => Some("a dimension is of one block".into()),
             Self::JointFile { .. } => Some(
@@ -205,6 +208,7 @@ impl StudyFault {
     fn formula_help(&self) -> Option<String> {
         match self {
             Self::Spatial(error) => Some(error.help()),
+            Self::Zone(found) => Some(found.help()),
             Self::Conditions(ConditionsError::Unbalanced { .. }) => Some(
                 "as many equations as unknowns are needed; a loop counts for two, one along x and one along y".into(),
             ),

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use sensitol_numeric::distribution::{
     Beta, CurvilinearTrapezoid, Distribution, Drifting, Exponential, ExtremeEnd, Gamma, Gumbel, Lognormal, Mixture,
-    Normal, Part, Rayleigh, SplitNormal, Student, Tabulated, Trapezoidal, Triangular, TruncatedNormal, UShaped,
-    Uniform, Weibull,
+    Normal, Part, Rayleigh, SolidAxis, SolidCoordinate, SplitNormal, Student, Tabulated, Trapezoidal, Triangular,
+    TruncatedNormal, UShaped, Uniform, Weibull,
 };
 
 /// A distribution with its density.
@@ -140,6 +140,27 @@ fn u_shaped() -> Case {
     // Distance d from the middle 1.5, whose half-width is 0.5.
     let pieces = vec![Piece::new(1.0, 1.5, |_, d| 12.0 * d * d), Piece::new(1.5, 2.0, |d, _| 12.0 * d * d)];
     Case::new(UShaped::new(1.0, 2.0).unwrap(), pieces)
+}
+
+/// Coordinate of an octahedron, by the area of its slices, which are squares.
+fn octahedron() -> Case {
+    let pieces = vec![Piece::new(1.0, 1.5, |d, _| 12.0 * d * d), Piece::new(1.5, 2.0, |_, d| 12.0 * d * d)];
+    Case::new(SolidCoordinate::about(SolidAxis::Octahedron, 1.5, 0.5).unwrap(), pieces)
+}
+
+/// Coordinate across a double cone of volume 2 pi/3, by the area of its slices, which are bounded by hyperbolas.
+fn bicone() -> Case {
+    let density = |from_middle: f64, from_end: f64| {
+        let half_chord = (from_end * (1.0 + from_middle)).sqrt();
+        // Near the end the closed form loses digits; there it is the sum of its series.
+        let area = match half_chord < 0.1 {
+            true => (1..12).map(|k| 2.0 * half_chord.powi(2 * k + 1) / f64::from(4 * k * k - 1)).sum(),
+            false => half_chord - from_middle * from_middle * (half_chord / from_middle).asinh(),
+        };
+        3.0 / PI * area
+    };
+    let pieces = vec![Piece::new(-1.0, 0.0, move |end, middle| density(middle, end)), Piece::new(0.0, 1.0, density)];
+    Case::new(SolidCoordinate::about(SolidAxis::Bicone, 0.0, 1.0).unwrap(), pieces)
 }
 
 /// Curvilinear trapezoid between -1 and 1, by the density of GUM Supplement 1, 6.4.3.2.
@@ -313,6 +334,8 @@ pub fn cases() -> Vec<Case> {
         mixture(),
         apart(),
         u_shaped(),
+        octahedron(),
+        bicone(),
         curvilinear(0.125),
         curvilinear(0.75),
         student(),

@@ -28,7 +28,7 @@
 //! exist if a mean is shifted by a whole half band.
 
 use crate::problem::Problem;
-use sensitol_numeric::correlation::JointLaw;
+use sensitol_numeric::correlation::{JointLaw, SolidShape};
 use sensitol_numeric::dimension::RssFactor;
 
 /// Factor of the inflated RSS without a choice of the study (Bender).
@@ -80,7 +80,8 @@ impl Linear {
 fn sums(problem: &Problem, slopes: &[(f64, usize)], weight: impl Fn(usize) -> f64) -> [f64; 3] {
     let (mut middle, mut worst_case, mut rss) = (0.0, 0.0, 0.0f64);
     let mut zones: Vec<(&str, f64)> = Vec::new();
-    let mut diamonds: Vec<(usize, f64)> = Vec::new();
+    // Greatest reach of a tip, and of the coordinates that share a circle, for every block that is a zone with tips.
+    let mut tipped: Vec<(usize, f64, f64)> = Vec::new();
     for &(slope, d) in slopes {
         let dimension = &problem.dimensions()[d];
         let [lower, upper] = dimension.reach();
@@ -88,12 +89,15 @@ fn sums(problem: &Problem, slopes: &[(f64, usize)], weight: impl Fn(usize) -> f6
         middle += slope * 0.5 * (lower + upper);
         rss = libm::hypot(rss, reach);
         match dimension.zone() {
-            None => match diamond(problem, d) {
+            None => match tip(problem, d) {
                 None => worst_case += reach,
-                Some(block) => match diamonds.iter_mut().find(|(own, _)| *own == block) {
-                    Some((_, most)) => *most = most.max(reach),
-                    None => diamonds.push((block, reach)),
-                },
+                Some((block, round)) => {
+                    let (most, radius) = if round { (0.0, reach) } else { (reach, 0.0) };
+                    match tipped.iter_mut().find(|(own, ..)| *own == block) {
+                        Some((_, tip, circle)) => (*tip, *circle) = (tip.max(most), libm::hypot(*circle, radius)),
+                        None => tipped.push((block, most, radius)),
+                    }
+                }
             },
             Some(zone) => match zones.iter_mut().find(|(name, _)| *name == zone) {
                 Some((_, radius)) => *radius = libm::hypot(*radius, reach),
@@ -103,7 +107,7 @@ fn sums(problem: &Problem, slopes: &[(f64, usize)], weight: impl Fn(usize) -> f6
     }
     let halves = |d: usize| weight(d) * problem.dimensions()[d].half_band();
     rss *= together(problem, slopes, rss, halves);
-    worst_case += diamonds.iter().map(|(_, most)| most).sum::<f64>();
+    worst_case += tipped.iter().map(|(_, tip, circle)| tip.max(*circle)).sum::<f64>();
     worst_case += zones.iter().map(|(_, radius)| radius).sum::<f64>();
     [middle, worst_case, rss]
 }
@@ -138,11 +142,20 @@ fn six_sigma(problem: &Problem, slopes: &[(f64, usize)]) -> Option<f64> {
     Some(alone * together(problem, &slopes, alone, effective))
 }
 
-/// Block of a dimension that shares a diamond with another one: at the tip of one coordinate the other is in its middle.
-fn diamond(problem: &Problem, dimension: usize) -> Option<usize> {
+/// Block of a dimension whose zone has tips: at the tip of one coordinate the others are in their middles. True for a coordinate that shares
+/// a circle of the zone.
+fn tip(problem: &Problem, dimension: usize) -> Option<(usize, bool)> {
     let correlation = problem.correlation()?;
-    let (block, _) = correlation.block_of(dimension)?;
-    (correlation.blocks()[block].law == JointLaw::Diamond).then_some(block)
+    let (block, coordinate) = correlation.block_of(dimension)?;
+    match &correlation.blocks()[block].law {
+        JointLaw::Diamond => Some((block, false)),
+        JointLaw::Solid(solid) => match solid.shape() {
+            SolidShape::Octahedron => Some((block, false)),
+            SolidShape::Bicone => Some((block, solid.coordinate(coordinate) > 0)),
+            SolidShape::Ball => Some((block, true)),
+        },
+        JointLaw::Rows(_) | JointLaw::Disc | JointLaw::Rim => None,
+    }
 }
 
 /// Factor of correlation on a root of a sum of squares of slopes by reaches: `sqrt(t'R t)/|t|`.

@@ -7,6 +7,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use crate::correlation::solid_zone::SolidZone;
 use crate::distribution::{Distribution, Rule, Uniform, standard_normal};
 
 /// Inputs with one joint distribution.
@@ -29,6 +30,8 @@ pub enum JointLaw {
     Rim,
     /// Uniform distribution over `|x| + |y| <= 1`.
     Diamond,
+    /// Uniform distribution over a zone of three coordinates.
+    Solid(SolidZone),
 }
 
 /// Rows of measured parts, one column for each member.
@@ -121,6 +124,7 @@ impl JointLaw {
                 let of = |columns: &[Vec<f64>]| coordinates.iter().map(|&c| columns[c].clone()).collect();
                 Some(Self::Rows(Arc::new(Rows { standardised: of(&rows.standardised), scores: of(&rows.scores) })))
             }
+            Self::Solid(solid) => Some(Self::Solid(solid.kept(coordinates))),
             zone => Some(zone.clone()),
         }
     }
@@ -132,7 +136,7 @@ impl JointLaw {
                 let products = rows.standardised[a].iter().zip(&rows.standardised[b]).map(|(u, v)| u * v);
                 (products.sum::<f64>() / rows.len() as f64).clamp(-1.0, 1.0)
             }
-            Self::Disc | Self::Rim | Self::Diamond => 0.0,
+            Self::Disc | Self::Rim | Self::Diamond | Self::Solid(_) => 0.0,
         }
     }
 
@@ -143,6 +147,7 @@ impl JointLaw {
                 let row = rows.row(z[0]);
                 z.iter_mut().zip(&rows.scores).for_each(|(z, scores)| *z = scores[row]);
             }
+            Self::Solid(solid) => solid.apply(z),
             zone => {
                 let at = zone.unit_place(z);
                 let tails = zone.tails(at);
@@ -160,6 +165,7 @@ impl JointLaw {
                 let row = rows.row(z[0]);
                 z.iter_mut().zip(&rows.standardised).for_each(|(z, column)| *z = column[row]);
             }
+            Self::Solid(solid) => solid.apply_standardised(z),
             zone => {
                 let at = zone.unit_place(z);
                 z.iter_mut().zip(at).for_each(|(z, place)| *z = place / zone.sigma());
@@ -167,17 +173,18 @@ impl JointLaw {
         }
     }
 
-    /// Sigma of a coordinate of the unit zone.
+    /// Sigma of a coordinate of a unit zone of two coordinates.
     fn sigma(&self) -> f64 {
         match self {
-            Self::Rows(_) => 1.0,
+            // Rows are standardised, and solids have a sigma for every coordinate.
+            Self::Rows(_) | Self::Solid(_) => 1.0,
             Self::Disc => SIGMA_OF_DISC,
             Self::Rim => SIGMA_OF_RIM,
             Self::Diamond => SIGMA_OF_DIAMOND,
         }
     }
 
-    /// Point of the unit zone for two normal variables. The maps preserve measure and are continuous (except at 0 for the rim), so that
+    /// Point of a unit zone of two coordinates for two normal variables. The maps preserve measure and are continuous (except at 0 for the rim), so that
     /// evenly distributed points stay so.
     fn unit_place(&self, z: &[f64]) -> [f64; 2] {
         let [x, y] = [z[0], z[1]];
@@ -201,7 +208,7 @@ impl JointLaw {
     fn tails(&self, at: [f64; 2]) -> [f64; 2] {
         match self {
             // (theta - sin theta cos theta)/pi with cos theta = |x|.
-            Self::Rows(_) | Self::Disc => at.map(|x| {
+            Self::Rows(_) | Self::Disc | Self::Solid(_) => at.map(|x| {
                 let twice = 2.0 * libm::acos(x.abs().min(1.0));
                 let segment = match twice < 0.1 {
                     true => twice.powi(3) / 6.0 * (1.0 - twice * twice / 20.0 * (1.0 - twice * twice / 42.0)),
@@ -238,6 +245,7 @@ impl JointLaw {
                 .flat_map(|(t, weight)| around((0.5 * (1.0 + t)).sqrt(), weight, SIGMA_OF_DISC))
                 .collect(),
             Self::Rim => around(1.0, 1.0, SIGMA_OF_RIM).collect(),
+            Self::Solid(solid) => solid.atoms(degree),
             Self::Diamond => {
                 let rule = uniform_rule(degree / 2 + 1);
                 let place = |(p, first): (f64, f64), (q, second): (f64, f64)| {

@@ -17,11 +17,13 @@ mod block;
 mod correlated_normals;
 mod error;
 mod matrix;
+mod solid_zone;
 pub mod transform;
 
 pub use crate::correlation::correlated_normals::Together;
 pub use block::{Atom, Block, JointLaw, Rows};
 pub use error::{CorrelationError, Refusal};
+pub use solid_zone::{SolidShape, SolidZone};
 pub use transform::Transform;
 
 use std::collections::{HashMap, HashSet};

@@ -31,6 +31,7 @@ pub use crate::distribution::family::mixture::{Mixture, Part};
 pub use crate::distribution::family::normal::Normal;
 pub use crate::distribution::family::pearson::PearsonLaw;
 pub use crate::distribution::family::rayleigh::Rayleigh;
+pub use crate::distribution::family::solid_coordinate::{SolidAxis, SolidCoordinate};
 pub use crate::distribution::family::student::Student;
 pub use crate::distribution::family::tabulated::Tabulated;
 pub use crate::distribution::family::trapezoidal::Trapezoidal;

@@ -37,7 +37,7 @@ pub(super) fn straightened(
     // A zone is straight if both its coordinates have linear parts and no products.
     let plane = |block: &Block| -> Option<Zone> {
         let &[j, k] = &block.members[..] else { return None };
-        if matches!(block.law, JointLaw::Rows(_))
+        if matches!(block.law, JointLaw::Rows(_) | JointLaw::Solid(_))
             || products.iter().any(|&(a, b, _)| [a, b].iter().any(|d| [j, k].contains(d)))
         {
             return None;

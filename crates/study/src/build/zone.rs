@@ -6,7 +6,7 @@ use crate::entries::file::{DimensionEntry, StudyFile};
 use crate::entries::spanned::Spanned;
 use crate::entries::vocabulary::ZONES;
 use crate::error::{Fault, StudyFault, fault};
-use sensitol_numeric::correlation::JointLaw;
+use sensitol_numeric::correlation::{JointLaw, SolidShape, SolidZone};
 use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::names::nearest;
 
@@ -14,10 +14,14 @@ use sensitol_numeric::names::nearest;
 pub(crate) const OF_DISC: f64 = 1.5;
 /// Both exponents of the beta distribution of one coordinate, for points spread evenly over the rim of a disc.
 pub(crate) const OF_RIM: f64 = 0.5;
+/// Both exponents of the beta distribution of one coordinate, for points spread evenly over a ball.
+pub(crate) const OF_BALL: f64 = 2.0;
 
 /// Joint distribution of the zone with this name. Returns None if there is no such zone.
 pub(crate) fn law(name: &str) -> Option<JointLaw> {
-    let laws = [JointLaw::Disc, JointLaw::Rim, JointLaw::Diamond];
+    let solid = |shape| JointLaw::Solid(SolidZone::new(shape));
+    let solids = [SolidShape::Octahedron, SolidShape::Bicone, SolidShape::Ball].map(solid);
+    let laws = [JointLaw::Disc, JointLaw::Rim, JointLaw::Diamond].into_iter().chain(solids);
     ZONES.iter().zip(laws).find(|(known, _)| **known == name).map(|(_, law)| law)
 }
 
@@ -107,16 +111,16 @@ fn checked(file: &StudyFile, entry: &Spanned<JointEntry>, key: &str) -> Result<O
                 let found = StudyFault::UnknownWord { what, found, nearest, known };
                 return Err(fault(word.span(), format!("{key}.law"), found));
             };
-            if of.len() != 2 {
+            if of.len() != if matches!(law, JointLaw::Solid(_)) { 3 } else { 2 } {
                 return Err(count(Some(word.get_ref())));
             }
-            for (name, line) in lines {
+            for (coordinate, (name, line)) in lines.into_iter().enumerate() {
                 let at = |found| fault(name.span(), format!("{key}.of"), found);
                 let (name, law_name) = (name.get_ref().clone(), word.get_ref().clone());
                 if line.tolerance.is_none() && line.limits.is_none() && line.fit.is_none() {
                     return Err(at(StudyFault::JointBand { name, law: law_name }));
                 }
-                if line.measured.is_some() || line.moments.is_some() || !follows(line, &law) {
+                if line.measured.is_some() || line.moments.is_some() || !follows(line, &law, coordinate) {
                     return Err(at(StudyFault::JointDistribution { name, law: law_name }));
                 }
             }
@@ -126,7 +130,7 @@ fn checked(file: &StudyFile, entry: &Spanned<JointEntry>, key: &str) -> Result<O
 }
 
 /// True if a line has the distribution of a coordinate of the zone, which the expansion adds.
-fn follows(line: &DimensionEntry, law: &JointLaw) -> bool {
+fn follows(line: &DimensionEntry, law: &JointLaw, coordinate: usize) -> bool {
     let Some(given) = &line.distribution else { return false };
     let given = given.get_ref();
     let is = |value: &Option<Spanned<f64>>, expected: f64| value.as_ref().is_some_and(|at| *at.get_ref() == expected);
@@ -135,6 +139,11 @@ fn follows(line: &DimensionEntry, law: &JointLaw) -> bool {
         JointLaw::Disc => beta(OF_DISC),
         JointLaw::Rim => beta(OF_RIM),
         JointLaw::Diamond => given.kind == "triangular" && given.mode.is_none(),
+        JointLaw::Solid(solid) => match solid.shape() {
+            SolidShape::Ball => beta(OF_BALL),
+            SolidShape::Bicone if coordinate > 0 => given.kind == "bicone",
+            SolidShape::Octahedron | SolidShape::Bicone => given.kind == "octahedron",
+        },
         JointLaw::Rows(_) => false,
     }
 }

@@ -15,8 +15,8 @@ use crate::error::{Fault, StudyFault, fault};
 use sensitol_numeric::dimension::DimensionFault;
 use sensitol_numeric::distribution::{
     Beta, CentralMoments, CurvilinearTrapezoid, Distribution, DistributionError, Exponential, ExtremeEnd, Gamma,
-    Gumbel, Lognormal, Rayleigh, SplitNormal, Student, Tabulated, Trapezoidal, Triangular, TruncatedNormal, TwoValues,
-    UShaped, Uniform, Weibull,
+    Gumbel, Lognormal, Rayleigh, SolidAxis, SolidCoordinate, SplitNormal, Student, Tabulated, Trapezoidal, Triangular,
+    TruncatedNormal, TwoValues, UShaped, Uniform, Weibull,
 };
 use sensitol_numeric::names::nearest;
 
@@ -51,6 +51,8 @@ pub(super) fn distribution(
         | Kind::Beta
         | Kind::Arcsine
         | Kind::UShaped
+        | Kind::Octahedron
+        | Kind::Bicone
         | Kind::CurvilinearTrapezoid) => over_band(over, entry, nominal, tolerance),
         Kind::Student => student(entry, nominal, tolerance),
         Kind::Lognormal => {
@@ -247,6 +249,8 @@ fn over_band(kind: Kind, entry: &DimensionEntry, nominal: f64, tolerance: Option
         }
         Kind::Arcsine => shared(Beta::about(middle, half, 0.5, 0.5)),
         Kind::UShaped => shared(UShaped::about(middle, half)),
+        Kind::Octahedron => shared(SolidCoordinate::about(SolidAxis::Octahedron, middle, half)),
+        Kind::Bicone => shared(SolidCoordinate::about(SolidAxis::Bicone, middle, half)),
         Kind::CurvilinearTrapezoid => {
             let inexactness = parameter(entry, "inexactness", |entry| &entry.inexactness)?;
             shared(CurvilinearTrapezoid::about(middle, half, inexactness))

@@ -30,9 +30,93 @@ fn direction(what: &str) -> Value {
     json!({ "description": what, "anyOf": [word, vector, turned] })
 }
 
+/// Schema of a zone: its width, or a table of this zone.
+fn zone(what: &str, more: &[(&str, Value)]) -> Value {
+    let mut properties = serde_json::Map::new();
+    properties
+        .insert("zone".into(), quantity("The number in the feature control frame: the diameter or width of the zone."));
+    properties.insert(
+        "distribution".into(),
+        json!({ "description": "The law of this zone, in place of that of the feature.", "type": "string", "enum": ["normal", "uniform"] }),
+    );
+    for (key, text) in [("sigmas", "Sigmas in half the zone."), ("cp", "Process capability.")] {
+        properties.insert(key.into(), json!({ "description": text, "type": "number" }));
+    }
+    properties.extend(more.iter().map(|(key, schema)| ((*key).to_owned(), schema.clone())));
+    let table =
+        json!({ "type": "object", "properties": properties, "required": ["zone"], "additionalProperties": false });
+    json!({ "description": what, "anyOf": [{ "type": "number", "minimum": 0 }, { "type": "string" }, table] })
+}
+
+/// Schemas of the zones of a feature, and of its datums and extent.
+fn zones() -> Vec<(&'static str, Value)> {
+    let name = |what: &str| json!({ "description": what, "type": "string" });
+    let position = [
+        ("at", json!({ "description": "The modifier.", "type": "string", "enum": ["RFS", "MMC", "LMC"] })),
+        ("hole", name("The diameter whose size gives the bonus of a hole.")),
+        ("pin", name("The diameter whose size gives the bonus of a pin.")),
+        ("most", json!({ "description": "Cap of the bonus.", "type": "number", "minimum": 0 })),
+        (
+            "outward",
+            json!({ "description": "Part of the zone out of the material, of a plane.", "type": "number", "minimum": 0 }),
+        ),
+    ];
+    let form = [(
+        "side",
+        json!({ "description": "All of the zone lies out of the material.", "type": "string", "enum": ["out"] }),
+    )];
+    let extent = json!({ "type": "array", "items": { "anyOf": [{ "type": "number" }, { "type": "string" }] }, "minItems": 2, "maxItems": 2 });
+    let mut size = extent;
+    size["description"] = json!("Extents of a face along its x and y, over which its zones hold.");
+    vec![
+        (
+            "position",
+            zone("Position: the diameter of the zone of an axis or point, its width for a plane or slot.", &position),
+        ),
+        ("profile", zone("Profile of a plane.", &position[4..])),
+        ("coaxiality", zone("Coaxiality of an axis or point, a diameter.", &[])),
+        ("concentricity", zone("The same as coaxiality.", &[])),
+        ("runout", zone("Runout of an axis, point or round face about the datum axis.", &[])),
+        ("total_runout", zone("The same as runout, of the whole surface.", &[])),
+        ("perpendicularity", zone("Perpendicularity: a diameter for an axis, a width for a plane.", &[])),
+        ("parallelism", zone("Parallelism.", &[])),
+        ("angularity", zone("Angularity.", &[])),
+        ("flatness", zone("Flatness: it moves the face at a contact, not its frame.", &form)),
+        ("straightness", zone("Straightness, likewise.", &form)),
+        ("roundness", zone("Roundness, likewise.", &form)),
+        ("cylindricity", zone("Cylindricity, likewise.", &form)),
+        ("datums", name("Features of this part from which the zones are measured, in their order: \"A B C\".")),
+        ("length", quantity("The length over which the zones hold: of an axis, or across the tilt of a face.")),
+        ("size", size),
+        (
+            "distribution",
+            json!({ "description": "The law of the zones: \"normal\" with 3 sigma at half the zone, or \"uniform\".", "type": "string", "enum": ["normal", "uniform"] }),
+        ),
+    ]
+}
+
+/// Schema of the patterns of a part.
+fn patterns() -> Value {
+    json!({
+        "description": "Patterns: features that move as one body within a wide zone, and each within a narrow one.",
+        "type": "object",
+        "additionalProperties": {
+            "type": "object",
+            "properties": {
+                "of": { "description": "The axes of the pattern.", "type": "array", "items": { "type": "string" }, "minItems": 2 },
+                "position": zone("The zone of the pattern as one body: the upper segment.", &[]),
+                "within": zone("The zone of each feature within the pattern: the lower segment.", &[]),
+                "datums": { "description": "Datums of the upper segment.", "type": "string" },
+            },
+            "required": ["of", "position"],
+            "additionalProperties": false,
+        },
+    })
+}
+
 /// Schema of `[parts]`.
 pub(crate) fn parts(_: &mut SchemaGenerator) -> Schema {
-    let feature = json!({
+    let mut feature = json!({
         "type": "object",
         "properties": {
             "plane": place("A plane through this point; its size has no meaning."),
@@ -43,12 +127,15 @@ pub(crate) fn parts(_: &mut SchemaGenerator) -> Schema {
             "frame": place("A frame: the way of a slide, a slot, or a datum frame."),
             "z": direction("The third direction of a frame, along its axis or out of its face."),
             "x": direction("The first direction of the feature. Without it, the part's axis that is farthest from the normal or axis."),
-            "diameter": quantity("The diameter of a hole, pin or ball."),
+            "diameter": quantity("The diameter of a hole, pin, ball or round face."),
             "shift": place("A displacement in the frame of the feature."),
             "tilt": place("A rotation vector in the frame of the feature, in radians."),
         },
         "additionalProperties": false,
     });
+    for (key, schema) in zones() {
+        feature["properties"][key] = schema;
+    }
     let numbers = |what: &str| json!({ "description": what, "type": "array", "items": { "type": "number" }, "minItems": 3, "maxItems": 3 });
     json_schema!({
         "type": "object",
@@ -58,6 +145,7 @@ pub(crate) fn parts(_: &mut SchemaGenerator) -> Schema {
                 "ground": { "description": "True for the part that stands still.", "type": "boolean" },
                 "at": numbers("Where the search for the part starts."),
                 "turned": numbers("How the part is turned at the start: a rotation vector in degrees."),
+                "patterns": patterns(),
             },
             "additionalProperties": feature,
         },
@@ -96,6 +184,10 @@ pub(crate) fn joints(_: &mut SchemaGenerator) -> Schema {
                 "takes": { "description": "How many freedoms it takes.", "type": "integer", "minimum": 1, "maximum": 6 },
                 "gap": quantity("A distance between the two."),
                 "offset": { "description": "Offsets across the axis of a hole, along x and y of the hole.", "type": "array", "items": { "anyOf": [{ "type": "number" }, { "type": "string" }] }, "minItems": 2, "maxItems": 2 },
+                "tilt": { "description": "Slopes of the axis of a pin along x and y of its hole.", "type": "array", "items": { "anyOf": [{ "type": "number" }, { "type": "string" }] }, "minItems": 2, "maxItems": 2 },
+                "float": { "description": "Where the pin lies in its hole: anywhere in it, on its wall, or along one direction.", "type": "string", "enum": ["disc", "rim", "uniform", "contact", "+", "-"] },
+                "toward": direction("The direction of a float in the frame of the hole's part; without `float` the pin lies on that side."),
+                "tilt_float": { "description": "True for a pin that tilts by the clearance over the length of its hole.", "type": "boolean" },
                 "length": quantity("The length of a rod."),
                 "value": quantity("The angle: a number in degrees, a dimension in its unit, or a formula in radians."),
             },

@@ -14,7 +14,10 @@ pub(crate) const CORRELATIONS: &str = "a list, each pair of dimensions below its
 /// Form of `[[joint]]`, for faults.
 pub(crate) const BLOCKS: &str = "a list, each block of dimensions below its own [[joint]],";
 /// Zones of `[[joint]]`.
-pub(crate) const ZONES: [&str; 3] = ["disc", "rim", "diamond"];
+pub(crate) const ZONES: [&str; 6] = ["disc", "rim", "diamond", "octahedron", "bicone", "ball"];
+
+/// Zones of three dimensions.
+pub(crate) const SOLIDS: [&str; 3] = ["octahedron", "bicone", "ball"];
 
 /// Kind of distribution in study files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,6 +31,8 @@ pub(crate) enum Kind {
     Beta,
     Arcsine,
     UShaped,
+    Octahedron,
+    Bicone,
     CurvilinearTrapezoid,
     Student,
     Lognormal,
@@ -49,7 +54,7 @@ pub(crate) type KnownKind = (&'static str, Kind, &'static [&'static str], &'stat
 
 const NOTHING: &str = "it has no parameters of its own";
 const ORIGIN: &str = "it knows `origin`";
-pub(crate) const KINDS: [KnownKind; 21] = [
+pub(crate) const KINDS: [KnownKind; 23] = [
     ("normal", Kind::Normal, &[], NOTHING),
     ("truncated-normal", Kind::TruncatedNormal, &[], NOTHING),
     ("uniform", Kind::Uniform, &[], NOTHING),
@@ -59,6 +64,8 @@ pub(crate) const KINDS: [KnownKind; 21] = [
     ("beta", Kind::Beta, &["alpha", "beta"], "it knows `alpha` and `beta`"),
     ("arcsine", Kind::Arcsine, &[], NOTHING),
     ("u-shaped", Kind::UShaped, &[], NOTHING),
+    ("octahedron", Kind::Octahedron, &[], NOTHING),
+    ("bicone", Kind::Bicone, &[], NOTHING),
     ("curvilinear-trapezoid", Kind::CurvilinearTrapezoid, &["inexactness"], "it knows `inexactness`"),
     ("student", Kind::Student, &["degrees", "scale"], "it knows `degrees` and `scale`"),
     ("lognormal", Kind::Lognormal, &["origin"], ORIGIN),

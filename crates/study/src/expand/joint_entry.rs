@@ -1,6 +1,6 @@
 //! Expands `[[joint]]`: copies the file of measured rows, or the distribution of a zone's coordinates, to the dimensions themselves.
 
-use crate::build::zone::{OF_DISC, OF_RIM};
+use crate::build::zone::{OF_BALL, OF_DISC, OF_RIM};
 use crate::expand::{Expanded, Tree, Value};
 use crate::tree::Key;
 
@@ -30,9 +30,9 @@ pub(super) fn expand(expanded: &mut Expanded) {
                 }
             }
             // Other faults are reported where the block is read. A fault of a distribution that the study does not contain would confuse.
-            (None, Some(law)) if names.len() == 2 => {
-                let Some(distribution) = distribution(law) else { continue };
-                for name in &names {
+            (None, Some(law)) if names.len() == 2 || names.len() == 3 => {
+                for (coordinate, name) in names.iter().enumerate() {
+                    let Some(distribution) = distribution(law, coordinate) else { continue };
                     let Some(line) = line(&mut expanded.tree, name) else { continue };
                     let spread = ["distribution", "measured", "moments", "position"];
                     let bands = ["tolerance", "limits", "fit"];
@@ -57,7 +57,7 @@ fn line<'t>(tree: &'t mut Tree, name: &str) -> Option<&'t mut Vec<(Key, Tree)>> 
 }
 
 /// Distribution of a coordinate of a zone. Returns None for an unknown zone.
-fn distribution(law: &Tree) -> Option<Tree> {
+fn distribution(law: &Tree, coordinate: usize) -> Option<Tree> {
     let Value::Text(name) = &law.value else { return None };
     let at = |value| Tree { span: law.span.clone(), value };
     let beta = |exponent: f64| {
@@ -69,6 +69,9 @@ fn distribution(law: &Tree) -> Option<Tree> {
         "disc" => Some(beta(OF_DISC)),
         "rim" => Some(beta(OF_RIM)),
         "diamond" => Some(at(Value::Text("triangular".into()))),
+        "ball" => Some(beta(OF_BALL)),
+        "bicone" if coordinate > 0 => Some(at(Value::Text("bicone".into()))),
+        "octahedron" | "bicone" => Some(at(Value::Text("octahedron".into()))),
         _ => None,
     }
 }

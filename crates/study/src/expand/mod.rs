@@ -78,10 +78,17 @@ pub(super) fn expand(
     processes::expand(&mut expanded, data)?;
     general::expand(&mut expanded)?;
     groups::expand(&mut expanded)?;
+    let owners = assembly::expand_zones(&mut expanded)?;
     geometry::fasteners(&mut expanded)?;
     crate::expand::joint_entry::expand(&mut expanded);
     from::expand(&mut expanded)?;
-    geometry::expand(&mut expanded)?;
+    match owners {
+        None => geometry::expand(&mut expanded)?,
+        Some(owners) => {
+            geometry::expand(&mut expanded).map_err(|faults| owners.renamed(faults))?;
+            owners.rename_origins(&mut expanded);
+        }
+    }
     // A second time, for the blocks that geometric elements have added.
     crate::expand::joint_entry::expand(&mut expanded);
     assembly::expand(&mut expanded, nominal)?;

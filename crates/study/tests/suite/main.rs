@@ -5,6 +5,7 @@ mod measured;
 mod scaling;
 mod schema;
 mod spatial;
+mod spatial_zones;
 mod studies;
 mod texts;
 mod tolerances;

@@ -14,6 +14,7 @@ pub(in crate::distribution) mod normal;
 pub(in crate::distribution) mod one_sided;
 pub(in crate::distribution) mod pearson;
 pub(in crate::distribution) mod rayleigh;
+pub(in crate::distribution) mod solid_coordinate;
 pub(in crate::distribution) mod student;
 pub(in crate::distribution) mod tabulated;
 pub(in crate::distribution) mod trapezoidal;

@@ -46,7 +46,8 @@ pub(super) fn joint(key: &Key, tree: &Tree, assembly: &Assembly, values: &mut Va
     let connection = connection(key, tree, &path, assembly)?;
     let own: &[&str] = match connection.kind {
         JointKind::Contact | JointKind::Round | JointKind::Crossed | JointKind::Slot => &["takes", "gap"],
-        JointKind::Pin | JointKind::BallInHole => &["takes", "offset"],
+        JointKind::Pin => &["takes", "offset", "tilt"],
+        JointKind::BallInHole => &["takes", "offset"],
         JointKind::Rod => &["length"],
         JointKind::Angle => &["value"],
         JointKind::Ball | JointKind::Revolute | JointKind::Slide | JointKind::Rigid => &["takes"],
@@ -74,10 +75,10 @@ pub(super) fn joint(key: &Key, tree: &Tree, assembly: &Assembly, values: &mut Va
         }
         None => None,
     };
-    let offset: Option<[Quantity; 2]> = match tree.get("offset") {
-        Some(given) => Some(values.list(given, &format!("{path}.offset"), Measures::Length)?),
-        None => None,
+    let mut two = |name: &str, measures: Measures| -> Result<Option<[Quantity; 2]>, Fault> {
+        tree.get(name).map(|given| values.list(given, &format!("{path}.{name}"), measures)).transpose()
     };
+    let (offset, tilt) = (two("offset", Measures::Length)?, two("tilt", Measures::Plain)?);
     Ok(PartJoint {
         name: key.name.clone(),
         kind: connection.kind,
@@ -85,6 +86,7 @@ pub(super) fn joint(key: &Key, tree: &Tree, assembly: &Assembly, values: &mut Va
         takes,
         value,
         offset,
+        tilt,
         side_by_side: connection.side_by_side,
     })
 }

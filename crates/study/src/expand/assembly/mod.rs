@@ -12,6 +12,7 @@ mod joints;
 mod measures;
 mod parts;
 mod values;
+mod zones;
 
 use std::ops::Range;
 
@@ -23,6 +24,7 @@ use sensitol_spatial::{Assembly, ClosedAssembly, FeatureId, Mobility, PartPose, 
 use values::{Nominal, Values};
 
 pub(crate) use values::NominalValues;
+pub(super) use zones::expand as expand_zones;
 
 /// Facts about an assembly in space that its plain lines do not hold.
 #[derive(Debug, Clone, PartialEq)]
@@ -142,7 +144,7 @@ impl Read {
         }
         for joint in &mut assembly.joints {
             joint.value.iter_mut().for_each(|one| found.set(one));
-            joint.offset.iter_mut().flatten().for_each(|one| found.set(one));
+            joint.offset.iter_mut().chain(&mut joint.tilt).flatten().for_each(|one| found.set(one));
         }
         for measure in &mut assembly.measures {
             if let sensitol_spatial::MeasureKind::Profile(points) = &mut measure.kind {

@@ -93,7 +93,9 @@ fn feature(key: &Key, tree: &Tree, path: &str, values: &mut Values<'_>) -> Resul
         FeatureKind::Point => &["point", "diameter", "shift"],
         FeatureKind::Frame => &["frame", "z", "x", "shift", "tilt"],
     };
-    unknown_key(tree, path, valid)?;
+    // Zones are replaced before the feature is read: their keys stand here for suggestions.
+    let valid: Vec<&str> = valid.iter().copied().chain(super::zones::keys(kind)).collect();
+    unknown_key(tree, path, &valid)?;
     let at = |name: &str| format!("{path}.{name}");
     let z = match tree.get(direction_key) {
         Some(given) => direction(given, &at(direction_key), values)?,
@@ -128,7 +130,7 @@ fn axis(index: usize) -> Direction {
 }
 
 /// Constant direction of a word such as "-z". Returns None for other words.
-fn word(text: &str) -> Option<[f64; 3]> {
+pub(super) fn word(text: &str) -> Option<[f64; 3]> {
     let (sign, letter) = match text.strip_prefix('-') {
         Some(letter) => (-1.0, letter),
         None => (1.0, text.strip_prefix('+').unwrap_or(text)),

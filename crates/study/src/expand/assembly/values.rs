@@ -255,7 +255,7 @@ fn is_degrees(unit: &str) -> bool {
 }
 
 /// The first unit of a length among dimensions, constants and characteristics.
-fn length_unit(study: &Tree) -> Option<String> {
+pub(super) fn length_unit(study: &Tree) -> Option<String> {
     let metre = Unit::parse("m")?;
     for section in ["dimensions", "constants", "characteristics"] {
         for (_, entry) in study.get(section).map_or(&[][..], Tree::entries) {

@@ -188,7 +188,7 @@ fn labelled(mut made: Tree, line: &Tree) -> Tree {
 }
 
 /// Adds blocks of elements behind those of the study.
-fn add_blocks(tree: &mut Tree, blocks: Vec<Tree>) {
+pub(super) fn add_blocks(tree: &mut Tree, blocks: Vec<Tree>) {
     if blocks.is_empty() {
         return;
     }

@@ -1,0 +1,147 @@
+//! Expands zones of features and floats of joints of an assembly in space into plain dimensions, formulas and blocks.
+//!
+//! A zone becomes a displacement (`shift`) and a rotation (`tilt`) of the frame of its feature, a float becomes the `offset` of a joint.
+
+mod datums;
+mod entry;
+mod float;
+mod frame;
+mod lines;
+mod pattern;
+mod torsor;
+
+pub(in crate::expand) use lines::LineOwners;
+
+use crate::error::{Fault, Faults, StudyFault};
+use crate::expand::{Expanded, Tree, Value};
+use crate::tree::Key;
+use crate::zone_fault::ZoneFault;
+use entry::{MORE, ZONES, ZoneKind, ZonedFeature};
+use lines::{Lines, at};
+use sensitol_spatial::FeatureKind;
+use torsor::{DatumFacts, Torsor};
+
+/// Keys of zones that fit a kind of feature, with those of its datums and extent.
+pub(super) fn keys(kind: FeatureKind) -> impl Iterator<Item = &'static str> {
+    ZONES.into_iter().filter(move |(_, _, fits, _)| fits.contains(&kind)).map(|(key, ..)| key).chain(MORE)
+}
+
+/// Replaces zones and floats of an assembly by plain lines. Returns None if the study has no parts.
+pub(in crate::expand) fn expand(expanded: &mut Expanded) -> Result<Option<LineOwners>, Faults> {
+    let study = expanded.tree.clone();
+    let Some(parts) = study.get("parts").filter(|parts| matches!(parts.value, Value::Table(_))) else {
+        return Ok(None);
+    };
+    let converts = matches!(study.get("units").map(|mode| &mode.value), Some(Value::Text(mode)) if mode == "convert");
+    let mut lines = Lines::new(super::values::length_unit(&study), converts);
+    let mut faults = Faults::default();
+    let mut features: Vec<ZonedFeature<'_>> = Vec::new();
+    for (key, tree) in parts.entries() {
+        for read in entry::features(&study, key, tree) {
+            features.extend(faults.take(read));
+        }
+    }
+    faults.none()?;
+    let mut faults = Faults::default();
+    let materials = float::materials(&study, &features);
+    for (key, tree) in parts.entries() {
+        let of_part: Vec<&ZonedFeature<'_>> = features.iter().filter(|feature| feature.part == key.name).collect();
+        let Some(found) = faults.take(part(&study, (key, tree), &of_part, &materials, &mut lines)) else { continue };
+        let entry = expanded.tree.get_mut("parts").and_then(|parts| parts.get_mut(&key.name));
+        if let Some(entries) = entry.and_then(Tree::entries_mut) {
+            entries.retain(|(key, _)| key.name != "patterns");
+        }
+        for (feature, torsor) in of_part.iter().zip(found) {
+            write(expanded, feature, &torsor, &lines);
+        }
+    }
+    float::expand(expanded, &study, &features, &mut lines, &mut faults);
+    faults.none()?;
+    Ok(Some(lines.write(expanded)))
+}
+
+/// Deviations of the features of a part, in their order.
+fn part(
+    study: &Tree,
+    (key, tree): (&Key, &Tree),
+    features: &[&ZonedFeature<'_>],
+    materials: &[(String, &'static str, String)],
+    lines: &mut Lines,
+) -> Result<Vec<Torsor>, Fault> {
+    let (mut own, mut indices) = (Vec::new(), Vec::new());
+    for feature in features {
+        let datums = datums::named(feature, features)?;
+        datums::check(feature, &datums)?;
+        check_axis(feature, &datums)?;
+        let axis = datums.iter().find(|datum| datum.kind == FeatureKind::Axis);
+        let facts = DatumFacts {
+            tilts: datums::tilts(feature, &datums),
+            axis: axis.and_then(|datum| Some((datum.name, datum.frame?))),
+            material: (materials.iter())
+                .find(|(name, ..)| *name == feature.full())
+                .map(|(_, kind, diameter)| (*kind, diameter.clone())),
+        };
+        own.push(torsor::torsor(feature, &facts, lines)?);
+        let index = |datum: &&ZonedFeature<'_>| features.iter().position(|other| other.name == datum.name);
+        indices.push(datums.iter().filter_map(index).collect());
+    }
+    pattern::patterns(study, key, tree, features, &mut own, lines)?;
+    datums::carried(features, &indices, own, lines)
+}
+
+/// Checks that a zone about an axis has an axis as its first datum, if it has datums.
+fn check_axis(feature: &ZonedFeature<'_>, datums: &[&ZonedFeature<'_>]) -> Result<(), Fault> {
+    let Some(zone) = feature.zone(&[ZoneKind::Eccentricity]) else { return Ok(()) };
+    match datums.first() {
+        Some(first)
+            if first.kind != FeatureKind::Axis && datums.iter().all(|datum| datum.kind != FeatureKind::Axis) =>
+        {
+            let (datum, kind) = (first.name.to_owned(), first.kind.name());
+            let found: StudyFault = ZoneFault::NoAxis { zone: zone.key, datum, kind }.into();
+            Err(at(&feature.owner, "datums", &feature.datum_span, found))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Writes a deviation in place of the zones of a feature.
+fn write(expanded: &mut Expanded, feature: &ZonedFeature<'_>, torsor: &Torsor, lines: &Lines) {
+    let Some(entry) = (expanded.tree.get_mut("parts"))
+        .and_then(|parts| parts.get_mut(feature.part)?.get_mut(feature.name)?.entries_mut())
+    else {
+        return;
+    };
+    let is_face = feature.kind == FeatureKind::Plane;
+    entry.retain(|(key, _)| {
+        let name = key.name.as_str();
+        !(ZONES.iter().any(|(zone, ..)| *zone == name) || MORE.contains(&name) || (is_face && name == "diameter"))
+    });
+    let owner = &feature.owner;
+    for (name, parts) in [("shift", &torsor.shift), ("tilt", &torsor.tilt)] {
+        if parts.iter().all(Option::is_none) {
+            continue;
+        }
+        let written = feature.tree.get(name).map(|tree| &tree.value);
+        let item = |i: usize| -> Tree {
+            let given = match written {
+                Some(Value::Array(items)) => items.get(i).and_then(|item| match (&item.value, frame::number(item)) {
+                    (_, Some(value)) if value == 0.0 => None,
+                    (_, Some(value)) if name == "shift" => Some(lines.length(&lines::Extent::Number(value))),
+                    (_, Some(value)) => Some(format!("({value:?})")),
+                    (Value::Text(text), None) if sensitol::assembly::formula::is_plain(text) => Some(text.clone()),
+                    (Value::Text(text), None) => Some(format!("({text})")),
+                    _ => None,
+                }),
+                _ => None,
+            };
+            let terms: Vec<String> = given.into_iter().chain(parts[i].clone()).collect();
+            match terms.is_empty() {
+                true => lines::number(owner, 0.0),
+                false => lines::text(owner, terms.join(" + ")),
+            }
+        };
+        let value = lines.list(owner, vec![item(0), item(1), item(2)]);
+        entry.retain(|(key, _)| key.name != name);
+        entry.push((Key { span: owner.span.clone(), name: name.to_owned() }, value));
+    }
+}
