@@ -86,6 +86,22 @@ def curvilinear_trapezoid(middle, half, inexactness):
     return raw, middle, mp.mpf(1), cdf, (middle - w - d, middle + w + d)
 
 
+def octahedron(middle, half):
+    raw = [mp.mpf(6) / ((n + 1) * (n + 2) * (n + 3)) if n % 2 == 0 else mp.mpf(0) for n in range(21)]
+    tail = lambda y: (1 - y) ** 3 / 2
+    cdf = lambda x: tail(-(x - middle) / half) if x < middle else 1 - tail((x - middle) / half)
+    return raw, middle, half, cdf, (middle - half, middle + half)
+
+
+def bicone(middle, half):
+    """A coordinate across a double cone: the radius of density 6 r (1 - r) times a cosine."""
+    cosine = lambda n: mp.fac2(n - 1) / mp.fac2(n) if n else mp.mpf(1)
+    raw = [cosine(n) * 6 / ((n + 2) * mp.mpf(n + 3)) if n % 2 == 0 else mp.mpf(0) for n in range(21)]
+    tail = lambda y: (mp.acos(y) - 2 * y * mp.sqrt(1 - y * y) + (y**3 * mp.acosh(1 / y) if y else 0)) / mp.pi
+    cdf = lambda x: tail(-(x - middle) / half) if x < middle else 1 - tail((x - middle) / half)
+    return raw, middle, half, cdf, (middle - half, middle + half)
+
+
 def beta(middle, half, a, b):
     raw = [mp.beta(a + n, b) / mp.beta(a, b) for n in range(21)]
     cdf = lambda x: mp.betainc(a, b, 0, (x - middle + half) / (2 * half), regularized=True)
@@ -209,6 +225,8 @@ CASES = [
         for a, b in [(1e6, 1e6), (0.5, 0.5), (0.5, 3.0), (2.0, 5.0), (1.0, 1.0), (3.0, 1e5), (0.01, 0.02), (150.0, 0.7)]
     ],
     ("u-shaped", [2.0, 0.5], u_shaped),
+    ("octahedron", [2.0, 0.5], octahedron),
+    ("bicone", [2.0, 0.5], bicone),
     *[("curvilinear-trapezoid", [2.0, 0.5, d], curvilinear_trapezoid) for d in [1e-6, 0.1, 0.3, 0.499]],
     *[("gamma", [0.0, 1.0, sigma], gamma) for sigma in [1e-4, 0.02, 0.3, 1.0, 3.0, 20.0]],
     *[("lognormal", [0.0, 1.0, sigma], lognormal) for sigma in [1e-4, 0.02, 0.3, 1.0, 90.0]],

@@ -8,3 +8,4 @@ mod law_random;
 mod moments;
 mod pearson;
 mod sampling;
+mod solid_zones;

@@ -40,7 +40,8 @@ pub(crate) struct JointEntry {
     /// A CSV file whose rows are one part each. A dimension without a `column` takes that of its own name.
     pub(crate) measured: Option<Spanned<String>>,
     /// Zone in which the point of two dimensions has the same probability everywhere: in a disc, on its rim, or in a diamond,
-    /// |x|/X + |y|/Y <= 1. Their tolerances are the zone's half widths.
+    /// |x|/X + |y|/Y <= 1. Of three dimensions: in an octahedron, a bicone about the first one, or a ball. Their tolerances are the zone's half
+    /// widths.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = registry::zones())))]
     pub(crate) law: Option<Spanned<String>>,
 }

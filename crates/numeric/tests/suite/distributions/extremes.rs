@@ -7,8 +7,8 @@ use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use sensitol_numeric::distribution::{
     Beta, CurvilinearTrapezoid, Distribution, DistributionError, Exponential, Gamma, Jacobi, Lognormal, Mixture,
-    Normal, Part, Rayleigh, StandardMoments, Student, Trapezoidal, Triangular, TruncatedNormal, UShaped, Uniform,
-    Weibull,
+    Normal, Part, Rayleigh, SolidAxis, SolidCoordinate, StandardMoments, Student, Trapezoidal, Triangular,
+    TruncatedNormal, UShaped, Uniform, Weibull,
 };
 use sensitol_testing::{close, data, fields, relative};
 
@@ -23,6 +23,8 @@ fn built(kind: &str, p: &[f64]) -> Result<Arc<dyn Distribution>, DistributionErr
         "truncated-normal" => Arc::new(TruncatedNormal::about(p[0], p[1], p[2], p[3])?),
         "beta" => Arc::new(Beta::about(p[0], p[1], p[2], p[3])?),
         "u-shaped" => Arc::new(UShaped::new(p[0] - p[1], p[0] + p[1])?),
+        "octahedron" => Arc::new(SolidCoordinate::about(SolidAxis::Octahedron, p[0], p[1])?),
+        "bicone" => Arc::new(SolidCoordinate::about(SolidAxis::Bicone, p[0], p[1])?),
         "curvilinear-trapezoid" => Arc::new(CurvilinearTrapezoid::new(p[0] - p[1], p[0] + p[1], p[2])?),
         "student" => Arc::new(Student::new(p[0], p[1], p[2])?),
         "gamma" => Arc::new(Gamma::new(p[0], p[1], p[2])?),
@@ -205,6 +207,7 @@ fn anything() -> impl Strategy<Value = (&'static str, Vec<f64>)> {
         (band.clone(), -2.0..2.0f64, logarithmic(0.1, 100.0))
             .prop_map(|((m, h), shift, sigma)| ("truncated-normal", vec![m, h, h * shift, h * sigma])),
         (band.clone(), 0.0..1.0f64).prop_map(|((m, h), _)| ("u-shaped", vec![m, h])),
+        (band.clone(), prop_oneof![Just("octahedron"), Just("bicone")]).prop_map(|((m, h), kind)| (kind, vec![m, h])),
         (band.clone(), logarithmic(1e-6, 0.999))
             .prop_map(|((m, h), part)| ("curvilinear-trapezoid", vec![m, h, part * h])),
         // A mixture needs eight moments.

@@ -90,15 +90,7 @@ fn float(
         return Ok(Vec::new());
     };
     let law = law(joint, owner)?;
-    let mut sizes = Vec::new();
-    for (kind, of) in [("hole", hole), ("pin", pin)] {
-        let Some(diameter) = of.tree.get("diameter") else {
-            let instead = format!("a float needs the diameter of `{}`: diameter = \"D\"", of.full());
-            let missing = StudyFault::MissingKey { key: "diameter".into(), instead };
-            return Err(at(owner, first, &first_tree.span, missing));
-        };
-        sizes.push((key(owner, kind), diameter.clone()));
-    }
+    let sizes = sizes(owner, (first, first_tree), [hole, pin])?;
     let toward = match joint.get("toward") {
         None => [1.0, 0.0],
         Some(tree) => direction(tree, hole.frame.as_ref(), owner)?,
@@ -149,6 +141,24 @@ fn float(
     // A plain 0 has no unit: a constant in its place.
     let items = offset.map(|one| if one == "0" { super::lines::number(owner, 0.0) } else { text(owner, one) });
     Ok(vec![(key(owner, "offset"), lines.list(owner, items.to_vec()))])
+}
+
+/// Keys `hole` and `pin` of a float: the diameters of the two features.
+fn sizes(
+    owner: &Owner,
+    (first, first_tree): (&str, &Tree),
+    [hole, pin]: [&ZonedFeature<'_>; 2],
+) -> Result<Vec<(Key, Tree)>, Fault> {
+    let mut sizes = Vec::new();
+    for (kind, of) in [("hole", hole), ("pin", pin)] {
+        let Some(diameter) = of.tree.get("diameter") else {
+            let instead = format!("a float needs the diameter of `{}`: diameter = \"D\"", of.full());
+            let missing = StudyFault::MissingKey { key: "diameter".into(), instead };
+            return Err(at(owner, first, &first_tree.span, missing));
+        };
+        sizes.push((key(owner, kind), diameter.clone()));
+    }
+    Ok(sizes)
 }
 
 /// Law of a float. A direction alone presses the pin to that side.

@@ -15,6 +15,7 @@ use super::frame::ConstantFrame;
 use super::lines::{Band, Extent, LineUnit, Lines, Owner, at, key, number, text};
 use crate::error::{Fault, StudyFault};
 use crate::expand::{Tree, Value, quoted};
+use crate::tree::Key;
 use crate::zone_fault::ZoneFault;
 use sensitol_spatial::FeatureKind;
 
@@ -331,17 +332,34 @@ fn plane(
     if law.is_empty() {
         return Ok(found);
     }
+    let (bands, terms) = face_tilts(feature, facts.tilts, zone, (&owner, spread), lines)?;
+    found.tilt = terms;
+    if shared {
+        let members: Vec<&Band> = std::iter::once(&offset).chain(&bands).collect();
+        lines.block(&owner, &members, law);
+    }
+    Ok(found)
+}
+
+/// Tilts of a face that share the zone of its place: their dimensions, and the terms of the rotation.
+fn face_tilts(
+    feature: &ZonedFeature<'_>,
+    tilts: Tilts,
+    zone: &ZoneEntry<'_>,
+    (owner, spread): (&Owner, &[(Key, Tree)]),
+    lines: &mut Lines,
+) -> Result<(Vec<Band>, [Option<String>; 3]), Fault> {
     let by = if zone.uniform { 1.0 } else { SHARED };
     let tilt_name = |axis: &str| format!("{}.tilt{axis}", feature.full());
     let tilt = |name: String, across: &Extent, by: f64, lines: &mut Lines| -> Result<Band, Fault> {
         below(feature, zone, across)?;
         let reach = lines.angle(&zone.width, across, by);
-        Ok(lines.band(&owner, &name, &reach, LineUnit::Angle, spread))
+        Ok(lines.band(owner, &name, &reach, LineUnit::Angle, spread))
     };
-    let (bands, terms) = match &feature.extent {
+    Ok(match &feature.extent {
         FeatureExtent::Length(length) => {
             let band = tilt(tilt_name(""), length, by, lines)?;
-            let about = if let Tilts::About(about) = facts.tilts { about } else { [1.0, 0.0] };
+            let about = if let Tilts::About(about) = tilts { about } else { [1.0, 0.0] };
             (vec![band.clone()], along(about, &band))
         }
         FeatureExtent::Rectangle([along_x, along_y]) => {
@@ -355,13 +373,7 @@ fn plane(
             (bands.to_vec(), terms)
         }
         FeatureExtent::Unknown => (Vec::new(), Default::default()),
-    };
-    found.tilt = terms;
-    if shared {
-        let members: Vec<&Band> = std::iter::once(&offset).chain(&bands).collect();
-        lines.block(&owner, &members, law);
-    }
-    Ok(found)
+    })
 }
 
 /// Band of a profile of which a part lies out of the material.
