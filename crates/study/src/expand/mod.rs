@@ -78,7 +78,7 @@ pub(super) fn expand(
     processes::expand(&mut expanded, data)?;
     general::expand(&mut expanded)?;
     groups::expand(&mut expanded)?;
-    let owners = assembly::expand_zones(&mut expanded)?;
+    let owners = assembly::zones::expand(&mut expanded)?;
     geometry::fasteners(&mut expanded)?;
     crate::expand::joint_entry::expand(&mut expanded);
     from::expand(&mut expanded)?;

@@ -12,7 +12,7 @@ mod joints;
 mod measures;
 mod parts;
 mod values;
-mod zones;
+pub(super) mod zones;
 
 use std::ops::Range;
 
@@ -24,7 +24,6 @@ use sensitol_spatial::{Assembly, ClosedAssembly, FeatureId, Mobility, PartPose, 
 use values::{Nominal, Values};
 
 pub(crate) use values::NominalValues;
-pub(super) use zones::expand as expand_zones;
 
 /// Facts about an assembly in space that its plain lines do not hold.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,6 +2,7 @@
 
 use super::unknown_key;
 use super::values::{Measures, Values};
+use super::zones::frame::word;
 use crate::error::{Fault, Faults, StudyFault, fault};
 use crate::expand::{Tree, Value, wrong_type};
 use crate::tree::Key;
@@ -127,16 +128,6 @@ fn feature(key: &Key, tree: &Tree, path: &str, values: &mut Values<'_>) -> Resul
 /// Direction along an axis of the part.
 fn axis(index: usize) -> Direction {
     Direction::Along([0, 1, 2].map(|i| Quantity::constant(f64::from(u8::from(i == index)))))
-}
-
-/// Constant direction of a word such as "-z". Returns None for other words.
-pub(super) fn word(text: &str) -> Option<[f64; 3]> {
-    let (sign, letter) = match text.strip_prefix('-') {
-        Some(letter) => (-1.0, letter),
-        None => (1.0, text.strip_prefix('+').unwrap_or(text)),
-    };
-    let index = ["x", "y", "z"].iter().position(|axis| *axis == letter)?;
-    Some([0, 1, 2].map(|i| if i == index { sign } else { 0.0 }))
 }
 
 /// Reads a direction: a word, a vector, or a direction that is turned.

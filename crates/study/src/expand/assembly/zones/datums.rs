@@ -3,10 +3,10 @@
 //! A plane fixes two tilts and the distance along its normal, an axis two tilts and two distances. Each datum fixes what those before it have
 //! left free. A feature that is measured from a datum with a zone of its own moves with that datum, by the freedoms that the datum fixes.
 
+use super::deviation::Torsor;
 use super::entry::ZonedFeature;
 use super::frame::{ConstantFrame, cross, dot, number, unit};
 use super::lines::{Extent, Lines, at};
-use super::torsor::Torsor;
 use crate::error::{Fault, StudyFault};
 use crate::expand::{Tree, Value, quoted};
 use crate::zone_fault::ZoneFault;

@@ -43,7 +43,7 @@ impl ConstantFrame {
 /// Direction of a word or of three numbers. Returns None for others.
 pub(super) fn constant(tree: &Tree) -> Option<[f64; 3]> {
     match &tree.value {
-        Value::Text(text) => crate::expand::assembly::parts::word(text),
+        Value::Text(text) => word(text),
         Value::Array(items) => {
             let parts: Vec<f64> = items.iter().map(number).collect::<Option<_>>()?;
             unit(parts.try_into().ok()?)
@@ -70,4 +70,14 @@ fn farthest_axis(z: [f64; 3]) -> [f64; 3] {
         }
     }
     [0, 1, 2].map(|axis| f64::from(u8::from(axis == best)))
+}
+
+/// Constant direction of a word such as "-z". Returns None for other words.
+pub(in crate::expand::assembly) fn word(text: &str) -> Option<[f64; 3]> {
+    let (sign, letter) = match text.strip_prefix('-') {
+        Some(letter) => (-1.0, letter),
+        None => (1.0, text.strip_prefix('+').unwrap_or(text)),
+    };
+    let index = ["x", "y", "z"].iter().position(|axis| *axis == letter)?;
+    Some([0, 1, 2].map(|i| if i == index { sign } else { 0.0 }))
 }

@@ -3,23 +3,23 @@
 //! A zone becomes a displacement (`shift`) and a rotation (`tilt`) of the frame of its feature, a float becomes the `offset` of a joint.
 
 mod datums;
+mod deviation;
 mod entry;
 mod float;
-mod frame;
+pub(super) mod frame;
 mod lines;
 mod pattern;
 mod torsor;
-
-pub(in crate::expand) use lines::LineOwners;
 
 use crate::error::{Fault, Faults, StudyFault};
 use crate::expand::{Expanded, Tree, Value};
 use crate::tree::Key;
 use crate::zone_fault::ZoneFault;
+use deviation::Torsor;
 use entry::{MORE, ZONES, ZoneKind, ZonedFeature};
-use lines::{Lines, at};
+use lines::{LineOwners, Lines, at};
 use sensitol_spatial::FeatureKind;
-use torsor::{DatumFacts, Torsor};
+use torsor::DatumFacts;
 
 /// Keys of zones that fit a kind of feature, with those of its datums and extent.
 pub(super) fn keys(kind: FeatureKind) -> impl Iterator<Item = &'static str> {

@@ -3,10 +3,11 @@
 //! The body is displaced across the axes and turned about their middle. Both share the zone: the farthest feature leaves it by neither alone.
 
 use super::datums::{PartTorsor, add, place, push};
+use super::deviation::Torsor;
 use super::entry::{ZoneEntry, ZoneKind, ZonedFeature, zone};
 use super::frame::{ConstantFrame, cross, dot};
 use super::lines::{Extent, LineUnit, Lines, Owner, at};
-use super::torsor::{SHARED, Torsor};
+use super::torsor::SHARED;
 use crate::error::{Fault, StudyFault, fault};
 use crate::expand::assembly::unknown_key;
 use crate::expand::{Tree, Value, wrong_type};

@@ -10,6 +10,7 @@
 //! | point | place | three coordinates in a ball, or two across a datum axis |
 
 use super::datums::Tilts;
+use super::deviation::Torsor;
 use super::entry::{FeatureExtent, ZoneEntry, ZoneKind, ZonedFeature};
 use super::frame::ConstantFrame;
 use super::lines::{Band, Extent, LineUnit, Lines, Owner, at, key, number, text};
@@ -19,20 +20,7 @@ use crate::tree::Key;
 use crate::zone_fault::ZoneFault;
 use sensitol_spatial::FeatureKind;
 
-/// Deviation of a feature in its own frame. A part without a term is 0.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct Torsor {
-    pub(super) shift: [Option<String>; 3],
-    pub(super) tilt: [Option<String>; 3],
-}
-
-impl Torsor {
-    pub(super) fn is_zero(&self) -> bool {
-        self.shift.iter().chain(&self.tilt).all(Option::is_none)
-    }
-}
-
-/// What the datums of a feature say about its deviation.
+/// Facts from the datums of a feature about its deviation.
 pub(super) struct DatumFacts<'a> {
     /// Tilts that the datums bound.
     pub(super) tilts: Tilts,
