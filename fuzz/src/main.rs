@@ -70,6 +70,23 @@ const WORDS: &[&str] = &[
     "H7",
     "g6",
     "js5",
+    "[parts.",
+    "[joints]",
+    "plane",
+    "axis",
+    "point",
+    "frame",
+    "normal",
+    "along",
+    "on",
+    "against",
+    "hole",
+    "pin",
+    "takes",
+    "gap",
+    "rod",
+    "\"-z\"",
+    "[0, 0, 0]",
 ];
 
 struct Asked {

@@ -26,6 +26,7 @@ pub struct Target {
 pub const TARGETS: [Target; 11] = [
     Target { name: "study_toml", run: study_toml },
     Target { name: "study_json", run: study_json },
+    Target { name: "assembly", run: assembly },
     Target { name: "formula", run: formula },
     Target { name: "measured_csv", run: measured_csv },
     Target { name: "protocol", run: protocol },
@@ -81,6 +82,29 @@ fn read(study: Result<Study, sensitol_study::StudyError>) {
         }
         Ok(_) => {}
     }
+}
+
+/// Checks the sections of an assembly in space, after some dimensions: a fault has a place, and what can be read is determined and expands to
+/// a study that can be read.
+fn assembly(bytes: &[u8]) {
+    let Some(text) = text(bytes) else { return };
+    let study = format!(
+        "[dimensions]\na = {{ nominal = 10, tolerance = 0.1, unit = \"mm\" }}\nb = {{ nominal = 25, tolerance = 0.1, unit = \"mm\" }}\n\
+         th = {{ nominal = 30, tolerance = 1, unit = \"deg\" }}\n{text}"
+    );
+    let found = Study::from_toml(&study, "fuzz.toml");
+    if let Ok(study) = &found
+        && let Some(mobility) = &study.mobility
+    {
+        assert_eq!(mobility.unknowns, mobility.equations + mobility.free.len(), "{mobility:?}");
+        for pose in &study.poses {
+            let parts = pose.rotation.iter().chain(&pose.translation);
+            assert!(parts.clone().all(|part| part.is_finite()), "{pose:?}");
+        }
+        let again = Study::from_toml(&study.expanded, "expanded.toml");
+        assert!(again.is_ok(), "the expanded study cannot be read: {again:?}\n{}", study.expanded);
+    }
+    read(found);
 }
 
 /// Checks that the value equals that of the derivative program, and lies within the bounds over a box around the point.

@@ -65,6 +65,8 @@ class Study:
     joint
         Blocks of dimensions that vary together as a whole: ``{"of": ["x", "y"], "law": "disc"}``, or measured parts, one a row:
         ``{"of": ["x", "y"], "measured": array}`` with an array of shape (parts, dimensions) or the name of a CSV file.
+    parts, joints
+        Rigid parts with features, and their joints in the order of assembly, as in the sections of a study file of these names.
     processes
         Capabilities of processes, by name: ``{"turning": {"cp": 1.33, "cpk": 1.0}}``, or the name of a file with such lines.
     loss, setup, about, units
@@ -95,6 +97,8 @@ class Study:
         analysis: Entries | None = None,
         configurations: Entries | None = None,
         joint: Iterable[Mapping[str, Any]] | None = None,
+        parts: Entries | None = None,
+        joints: Entries | None = None,
         processes: Entries | str | None = None,
         loss: Entries | None = None,
         setup: Entries | None = None,
@@ -109,6 +113,7 @@ class Study:
         data["constants"] = constants
         data["formulas"] = formulas
         data["unknowns"], data["equations"], data["loops"] = unknowns, equations, loops
+        data["parts"], data["joints"] = parts, joints
         data["characteristics"] = _entries(characteristics, "characteristics", Characteristic, files)
         data["correlation"] = _correlation(correlation)
         data["joint"] = _joint(joint, files)
@@ -317,7 +322,7 @@ class Study:
         model = self._model
         sections = (
             *("title", "constants", "formulas", "unknowns", "equations", "loops", "costs", "loss", "setup"),
-            *("about", "units", "analysis", "configurations", "processes"),
+            *("about", "units", "analysis", "configurations", "processes", "parts", "joints"),
         )
         for key, value in {**(entries or {}), **more}.items():
             if key in data.get("dimensions", {}):

@@ -7,7 +7,7 @@ import re
 from typing import Any, Mapping
 
 #: Sections whose entries stand in a line each.
-LINES = ("dimensions", "characteristics", "constants", "formulas", "unknowns", "equations", "loops", "costs")
+LINES = ("dimensions", "characteristics", "constants", "formulas", "unknowns", "equations", "loops", "parts", "joints", "costs")
 
 
 def text(study: Mapping[str, Any]) -> str:

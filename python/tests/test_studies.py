@@ -111,6 +111,33 @@ def test_sections_of_a_study_are_arguments():
         study.replace(loss={"z": {"k": 1.0}})
 
 
+def test_parts_and_joints_are_arguments():
+    # A plate on a table: the height of its corner is the thickness, and the place of a peg moves it along x.
+    study = st.Study(
+        dimensions={"t": st.Dimension(12, 0.1, unit="mm"), "p": st.Dimension(10, 0.05, unit="mm")},
+        parts={
+            "table": {"top": {"plane": [0, 0, 0], "normal": "z"}, "peg": {"axis": ["p", 10, 0], "along": "z"}, "zero": {"frame": [0, 0, 0], "z": "z", "x": "x"}},
+            "plate": {"bottom": {"plane": [0, 0, 0], "normal": "-z"}, "hole": {"axis": [10, 10, 0], "along": "z"}, "lid": {"plane": [0, 0, "t"], "normal": "z"}},
+        },
+        joints={
+            "seat": {"on": "table.top", "against": "plate.bottom"},
+            "peg": {"hole": "plate.hole", "pin": "table.peg", "takes": 2},
+        },
+        characteristics={
+            "height": {"of": "plate.lid", "from": "table.top", "unit": "mm", "lower": 11.9, "upper": 12.1},
+            "x": {"of": "plate.hole", "from": "table.zero", "along": "x", "unit": "mm"},
+        },
+    )
+    found = study.analyze("full")
+    assert found["height"].mean == pytest.approx(12, abs=1e-12)
+    assert found["height"].sigma == pytest.approx(0.1 / 3, rel=1e-9)
+    assert found["x"].sigma == pytest.approx(0.05 / 3, rel=1e-9)
+    again = st.Study.from_toml(study.to_toml())
+    assert again.to_dict() == study.to_dict()
+    with pytest.raises(st.StudyError, match="plate turns about"):
+        study.replace(joints={"peg": {"hole": "plate.hole", "pin": "table.peg", "takes": 2}, "seat": {"on": "table.top", "against": "plate.bottom"}}, x={"of": "plate.lid", "from": "table.zero", "along": "x", "unit": "mm"})
+
+
 def test_labels_are_texts_that_reports_show():
     labels = {"description": "bored", "part": "housing", "drawing": "4711", "revision": "B", "feature": "7"}
     study = st.Study(

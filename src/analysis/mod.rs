@@ -33,6 +33,7 @@ use crate::analysis::sampling::accuracy_target;
 use crate::analysis::sampling::jump;
 use crate::analysis::sampling::measured_interval;
 use crate::analysis::sampling::model_sample;
+use crate::analysis::sampling::nominal_kink;
 use crate::analysis::sampling::recorded_failures;
 use crate::analysis::sampling::sample_budget::SampleBudget;
 use crate::analysis::sampling::verification_stage;
@@ -217,14 +218,20 @@ fn check(problem: &Problem, outcome: &Outcome, options: &Options, run: &Run<'_>)
     let signature = problem.function().signature();
     let verified = options.verifies(signature);
     // A cheap model that is verified is sampled anyway, at points that need no surface: no fallback is needed.
+    let kinks = match signature.costly && verified {
+        true => nominal_kink::find(&evaluator, outcome, &characteristics),
+        false => Vec::new(),
+    };
     if signature.costly || !verified {
-        model_sample::fall_back(&evaluator, outcome, &mut characteristics);
+        let kinked: Vec<usize> = kinks.iter().map(|kink| kink.characteristic).collect();
+        model_sample::fall_back(&evaluator, outcome, &kinked, &mut characteristics);
     }
     characteristics.iter_mut().zip(searched).for_each(|(one, extremes)| one.extremes = extremes);
     let mut found = match signature.costly && verified {
         true => jump::find(&evaluator, outcome, &characteristics),
         false => Vec::new(),
     };
+    found.extend(kinks.into_iter().map(|kink| kink.warning));
     let mut left = SampleBudget::new(evaluator.remaining());
     verification_stage::verify(&evaluator, outcome, options, &mut left, &mut characteristics);
     found.extend(recorded_failures::add(problem, &mut characteristics));

@@ -89,7 +89,21 @@ pub(super) fn of(
     if outcome.order == Order::Second && outcome.climbed.is_none() && outcome.pairs.len() < possible && open {
         warnings.push(Warning::PairsNotExamined { examined: outcome.pairs.len(), possible });
     }
+    // A kink at the nominal point is the more precise finding.
+    let at_nominal: Vec<String> = warnings.iter().filter_map(kinked).collect();
+    warnings.retain(|warning| {
+        let general = matches!(warning, Warning::Kink { .. });
+        !general || !at_nominal.iter().any(|name| warning.characteristic() == Some(name))
+    });
     aggregated(warnings)
+}
+
+/// Name of a characteristic with a kink at the nominal point.
+fn kinked(warning: &Warning) -> Option<String> {
+    match warning {
+        Warning::KinkAtNominal { characteristic, .. } => Some(characteristic.clone()),
+        _ => None,
+    }
 }
 
 /// Warning of measured dimensions whose sample was not drawn anew.

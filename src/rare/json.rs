@@ -3,7 +3,7 @@
 use serde::{Serialize, Serializer};
 
 use crate::rare::{Beyond, RareCharacteristic, RareEvents};
-use crate::warning::warnings_last;
+use crate::warning::serialize::warnings_last;
 use sensitol_numeric::sampling::Estimate;
 use sensitol_numeric::verdict::{Judged, Verdict};
 

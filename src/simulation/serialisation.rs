@@ -4,7 +4,7 @@ use serde::{Serialize, Serializer};
 
 use crate::simulation::json::{ControlShape, Reduction};
 use crate::simulation::{SimulatedCharacteristic, Simulation, SurrogateControl};
-use crate::warning::warnings_last;
+use crate::warning::serialize::warnings_last;
 use sensitol_numeric::capability::Quantiles;
 use sensitol_numeric::json_form::Four;
 use sensitol_numeric::sampling::Estimate;

@@ -116,6 +116,8 @@ pub enum Advice {
     TightenSolver,
     /// Define a characteristic for each branch of the model.
     SplitBranches,
+    /// Let the model return the two components of a distance or an angle, and write their length as a formula.
+    ReturnComponents,
 
     /// Choose the nearest class of ISO 286, and write classes as processes.
     NearestFit,
@@ -193,6 +195,9 @@ impl fmt::Display for Advice {
             Self::LargerUnit => "Choose a larger unit, so that the values are smaller.",
             Self::OrdinaryUnit => "Choose units in which the values are of ordinary size.",
             Self::TightenSolver => "Solve the model with a tighter tolerance.",
+            Self::ReturnComponents => {
+                "Let the model return the two components, and write the characteristic as a formula: hypot(x, y)."
+            }
             Self::SplitBranches => "Give each branch a characteristic of its own.",
             Self::NearestFit => "Choose the nearest class, and write classes as processes where one is required.",
             Self::RequireMore => "Require more than is needed, and confirm again.",

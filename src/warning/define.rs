@@ -47,7 +47,7 @@ macro_rules! warnings {
 
             /// Fields by name. Numbers that are not finite become null.
             pub fn data(&self) -> impl serde::Serialize + '_ {
-                WarningData(self)
+                crate::warning::serialisation::WarningData(self)
             }
 
             /// Characteristic that the warning concerns. Returns None if it concerns none or all.
@@ -71,7 +71,7 @@ macro_rules! warnings {
             }
 
             /// Serialises every field with its name.
-            fn fields<M: SerializeMap>(&self, map: &mut M) -> Result<(), M::Error> {
+            fn fields<M: serde::ser::SerializeMap>(&self, map: &mut M) -> Result<(), M::Error> {
                 let _ = &map;
                 match self {
                     $( Self::$variant { $($($field),*)? } => {
@@ -81,7 +81,7 @@ macro_rules! warnings {
                 Ok(())
             }
 
-            fn text(&self) -> Text {
+            fn text(&self) -> crate::warning::text::Text {
                 match self {
                     $( Self::$variant { $($($field),*)? } => $theme::$text($($($field),*)?), )*
                 }

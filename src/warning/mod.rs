@@ -1,7 +1,6 @@
 //! Warnings: an assumption of the method fails, or a result differs from the request.
 //!
-//! A warning is data: its [`code`](Warning::code) and its fields, which serialise as `data`. The [`message`](Warning::message) describes
-//! the event and its meaning for the result. The [`advice`](Warning::advice) lists actions. Each front end shows them in its own words.
+//! A warning is data: a [`code`](Warning::code) with fields, a [`message`](Warning::message) on the result, and [`advice`](Warning::advice).
 
 mod serialisation;
 #[macro_use]
@@ -16,20 +15,16 @@ mod model;
 mod rescale;
 mod run;
 mod sample;
-mod serialize;
+pub(crate) mod serialize;
 mod study;
 mod surface;
 mod terms;
 mod text;
 
 use crate::summary::StopReason;
-use crate::warning::serialisation::WarningData;
 pub use advice::Advice;
 pub use aggregate::aggregated;
-use serde::ser::SerializeMap;
-pub(crate) use serialize::warnings_last;
 pub use terms::{Change, Counted, Ended, Figure, Loss, NameKind};
-use text::Text;
 
 warnings! {
     /// None of the analysed characteristics can depend on these dimensions.
@@ -462,6 +457,13 @@ warnings! {
         between: [f64; 2],
         /// Further dimensions with a kink.
         others: Vec<String>,
+    };
+    /// Slopes of a characteristic are equal and opposite on both sides of the nominal point.
+    KinkAtNominal = "kink-at-nominal" by surface::kink_at_nominal {
+        /// The characteristic.
+        characteristic: String,
+        /// The dimensions along which it is so.
+        dimensions: Vec<String>,
     };
     /// A characteristic jumps within the tolerances.
     Discontinuity = "discontinuity" by surface::discontinuity {

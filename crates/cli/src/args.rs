@@ -10,11 +10,12 @@ use crate::shared_args::OUTPUT;
 pub(super) use crate::shared_args::{HowArgs, OutputArgs, StudyArgs, WorkArgs};
 use crate::table::TableArgs;
 pub(super) use crate::values::{
-    CostArg, DerivativesArg, MaximiseArg, MethodArg, MinimiseArg, Over, SamplerArg, SensitivitiesArg, StackArg,
+    CostArg, DerivativesArg, MaximiseArg, MethodArg, MinimiseArg, Over, Place, SamplerArg, SensitivitiesArg, StackArg,
     StencilArg,
 };
 use crate::values::{
-    Movable, count, finite, movable, over, part, positive, probability, samples, samples_or_none, whole, workbook,
+    Movable, count, finite, movable, over, part, place, positive, probability, samples, samples_or_none, whole,
+    workbook,
 };
 
 /// Statistical tolerance analysis for anything you can compute.
@@ -141,8 +142,11 @@ pub(super) enum Command {
     /// Answers points of a study over the adapter protocol, as an external model does
     ///
     /// Reads requests from stdin and writes the values of the characteristics to stdout. The study then is the model of another
-    /// study, of a UM-Bridge client or of workers on a cluster.
-    #[command(after_help = "Examples:\n  sensitol evaluate examples/stacked-blocks/study.toml")]
+    /// study, of a UM-Bridge client or of workers on a cluster. With --at, --json or --output it reports the values at points instead, and the
+    /// poses of the parts of an assembly in space.
+    #[command(
+        after_help = "Examples:\n  sensitol evaluate examples/stacked-blocks/study.toml\n  sensitol evaluate examples/crank-slider-space/study.toml --at th=36,l=60.05 --at nominal"
+    )]
     Evaluate(EvaluateArgs),
     /// Show, export or forget the kept answers of external models
     #[command(after_help = "Examples:\n  sensitol journal show gap.journal.sqlite")]
@@ -578,6 +582,20 @@ pub(super) struct ProbeArgs {
 pub(super) struct EvaluateArgs {
     /// The study, a .toml or .json file
     pub(super) study: PathBuf,
+
+    /// Report the values and poses at this point, with all other dimensions nominal; `nominal` for the nominal point (repeatable)
+    #[arg(long, value_name = "DIM=VALUE,..", value_parser = place)]
+    pub(super) at: Vec<Place>,
+
+    #[command(flatten)]
+    pub(super) output: OutputArgs,
+}
+
+impl EvaluateArgs {
+    /// True if a report is asked for, and not the protocol.
+    pub(super) fn reports(&self) -> bool {
+        !self.at.is_empty() || self.output.json || self.output.output.is_some()
+    }
 }
 
 #[derive(Debug, Args)]

@@ -127,6 +127,8 @@ pub(super) enum Failure {
     Pairs { text: String, fault: &'static str },
     #[error(transparent)]
     UnknownName(#[from] UnknownName),
+    #[error("--at: there is no dimension `{name}`; known: {known}")]
+    UnknownDimension { name: String, nearest: Option<String>, known: String },
     #[error("{path} cannot be written: {error}", path = path.display())]
     Unwritable { path: PathBuf, error: std::io::Error },
     #[error("a page that works without this program holds the engine, and none was built: run web/build, name a page by --page, or open the studies by `sensitol serve`; there is no page at {sought}", sought = sought.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", "))]
@@ -212,6 +214,9 @@ impl Failure {
                 Some(all.join("\n\n"))
             }
             Self::Problem(ProblemError::UnknownCharacteristic { nearest: Some(nearest), .. }) => {
+                Some(title(&format!("{of}{self}"), Some(format!("did you mean `{nearest}`?"))))
+            }
+            Self::UnknownDimension { nearest: Some(nearest), .. } => {
                 Some(title(&format!("{of}{self}"), Some(format!("did you mean `{nearest}`?"))))
             }
             Self::Import { help, .. } => Some(title(&format!("{of}{self}"), help.clone())),

@@ -18,6 +18,52 @@ pub(super) struct Movable {
     pub(super) bounds: Option<[f64; 2]>,
 }
 
+/// Values of some dimensions at a point. All others are nominal.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Place {
+    pub(super) values: Vec<(String, f64)>,
+}
+
+impl Place {
+    /// Returns the values in words.
+    pub(super) fn words(&self) -> String {
+        if self.values.is_empty() {
+            return NOMINAL.to_owned();
+        }
+        self.values.iter().map(|(name, value)| format!("{name} = {value}")).collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// Word for the nominal point.
+const NOMINAL: &str = "nominal";
+
+/// Parses `nominal`, or `NAME=VALUE` pairs that commas separate.
+pub(super) fn place(text: &str) -> Result<Place, String> {
+    if text.trim() == NOMINAL {
+        return Ok(Place::default());
+    }
+    let mut values: Vec<(String, f64)> = Vec::new();
+    let mut name = String::new();
+    for piece in text.split(',') {
+        // A piece without `=` is the beginning of a name with a comma. Names may contain `=` too, numbers cannot.
+        name += piece;
+        let Some((given, value)) = name.rsplit_once('=').filter(|(given, _)| !given.is_empty()) else {
+            name.push(',');
+            continue;
+        };
+        let value = finite(value).map_err(|why| format!("VALUE `{value}` of `{given}`: {why}"))?;
+        if values.iter().any(|(known, _)| known == given) {
+            return Err(format!("`{given}` is given twice"));
+        }
+        values.push((given.to_owned(), value));
+        name.clear();
+    }
+    if !name.is_empty() {
+        return Err("it is nominal, or NAME=VALUE,.. such as th=36,l=60.05".to_owned());
+    }
+    Ok(Place { values })
+}
+
 pub(super) fn movable(text: &str) -> Result<Movable, String> {
     let form = || "it is NAME, or NAME=LOW:HIGH, such as shoulder=14.8:15.2".to_owned();
     // Split at the last `=`: names may contain `=`, numbers cannot.

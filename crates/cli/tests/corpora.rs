@@ -45,4 +45,17 @@ macro_rules! replayed {
     };
 }
 
-replayed!(study_toml, study_json, formula, measured_csv, protocol, journal, pearson, fits, command_line, import, step);
+replayed!(
+    study_toml,
+    study_json,
+    assembly,
+    formula,
+    measured_csv,
+    protocol,
+    journal,
+    pearson,
+    fits,
+    command_line,
+    import,
+    step
+);

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::assembly::{Assembly, FeatureId, FeatureKind, JointKind, Quantity};
+use crate::assembly::{Assembly, FeatureId, FeatureKind, JointKind, PartJoint, Quantity};
 use crate::closure::{Closure, constant_rotation};
 use crate::error::SpatialError;
 use crate::expression::Expression;
@@ -10,7 +10,8 @@ use crate::joint::{Holds, JointNumbers, equations};
 use crate::measure::measured;
 use crate::mobility::{FreeMotion, Mobility};
 use crate::number::Number;
-use crate::placement::{LocalFeature, Place, PlacedFeature, Pose, half_angle, product, rodrigues, rotation_vector};
+use crate::part_pose::PartPose;
+use crate::placement::{LocalFeature, PlacedFeature, Pose, Rotation, half_angle, product, rodrigues, rotation_vector};
 use crate::vector::Vector;
 
 /// An unknown of a pose.
@@ -35,17 +36,6 @@ pub struct NamedFormula {
     pub formula: String,
     /// True if its value is a length.
     pub is_length: bool,
-}
-
-/// Pose of a part at the nominal dimensions.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PartPose {
-    /// Name of the part.
-    pub part: String,
-    /// Rotation vector in radians.
-    pub rotation: [f64; 3],
-    /// Place of the part's origin.
-    pub translation: [f64; 3],
 }
 
 /// An assembly as closure equations with as many unknowns.
@@ -123,14 +113,45 @@ impl Assembly {
         if let Some(index) = closure.without_direction() {
             return Err(SpatialError::NoDirection { joint: self.joints[index].name.clone(), index });
         }
-        closure.check_redundancy()?;
+        if let Some(index) = closure.arbitrary_choice() {
+            return Err(self.wrong_order(index));
+        }
+        let doubtful = closure.check_redundancy()?;
         if !closed {
             return Err(self.open(&closure));
         }
         self.check_facing(&closure)?;
         let motions = closure.free_motions();
         closure.check_free(&motions)?;
-        Ok(Writer::new(self, &closure).written(&motions))
+        let mut closed = Writer::new(self, &closure).written(&motions);
+        closed.mobility.doubtful = doubtful;
+        Ok(closed)
+    }
+
+    /// Fault of a joint that leaves out a tilt before another one holds it.
+    fn wrong_order(&self, index: usize) -> SpatialError {
+        let joint = &self.joints[index];
+        let all = |joint: &PartJoint| {
+            let kinds = joint.between.map(|id| self.feature(id).kind);
+            joint.kind.freedoms(kinds).map_or(0, |known| known[0])
+        };
+        let parts = |joint: &PartJoint| {
+            let mut parts = joint.between.map(|id| id.part);
+            parts.sort_unstable();
+            parts
+        };
+        let is_primary = |other: &&PartJoint| {
+            other.kind == joint.kind
+                && parts(other) == parts(joint)
+                && other.takes.is_none_or(|takes| takes == all(other))
+        };
+        SpatialError::WrongOrder {
+            joint: joint.name.clone(),
+            index,
+            takes: joint.takes.unwrap_or(all(joint)),
+            all: all(joint),
+            primary: self.joints[index..].iter().find(is_primary).map(|other| other.name.clone()),
+        }
     }
 
     /// Checks the kinds of features and the numbers of freedoms.
@@ -178,9 +199,24 @@ impl Assembly {
         SpatialError::Open {
             joint: self.joints[index].name.clone(),
             index,
-            off: linear.residuals.get(worst).map_or(f64::NAN, |off| off.abs() * closure.size),
+            off: linear
+                .residuals
+                .get(worst)
+                .map_or_else(String::new, |off| self.off(closure, (index, worst), off.abs())),
             equation: linear.names.get(worst).copied().unwrap_or(""),
             same_way: same_way.map(|features| format!("wrong sign of a normal? {features} look the same way")),
+        }
+    }
+
+    /// Residual of an equation in words: a length, or an angle for a direction.
+    fn off(&self, closure: &Closure<'_>, (joint, row): (usize, usize), residual: f64) -> String {
+        let first: usize = closure.used[..joint].iter().map(Vec::len).sum();
+        match closure.holds(joint, closure.used[joint][row - first]) {
+            Holds::Direction => format!("{:.4} deg", libm::asin(residual.min(1.0)).to_degrees()),
+            Holds::Distance => {
+                let unit = self.length_unit.as_ref().map_or_else(String::new, |unit| format!(" {unit}"));
+                format!("{:.6}{unit}", residual * closure.size)
+            }
         }
     }
 
@@ -246,12 +282,8 @@ impl<'a> Writer<'a> {
             return Pose { translation, ..Pose::still(&place) };
         }
         let name = &self.assembly.parts[part].name;
-        // The start that the study gives has simple numbers. It serves unless the part has turned far from it.
-        let start = constant_rotation(self.assembly.parts[part].turned);
-        let back = [0, 1, 2].map(|i| [0, 1, 2].map(|j| start[j][i]));
-        let turn = rotation_vector(&product(&place.rotation, &back));
-        let far = turn.iter().map(|part| part * part).sum::<f64>().sqrt() > FAR;
-        let (start, turn) = if far { (place.rotation, [0.0; 3]) } else { (start, half_angle(turn)) };
+        let start = self.start(part);
+        let turn = half_angle(rotation_vector(&product(&place.rotation, &transposed(&start))));
         let mut vectors = [turn, place.translation].into_iter().enumerate();
         let mut unknown = || {
             let (kind, values) = vectors.next().expect("a rotation and a displacement");
@@ -277,6 +309,27 @@ impl<'a> Writer<'a> {
             })
         });
         Pose { rotation: Some(rows), start, translation }
+    }
+
+    /// Rotation from which the unknowns of a part start. The one that the study gives has simple numbers, and serves unless the part has
+    /// turned far from it.
+    fn start(&self, part: usize) -> Rotation {
+        let start = constant_rotation(self.assembly.parts[part].turned);
+        let reached = self.closure.places[part].rotation;
+        let turn = rotation_vector(&product(&reached, &transposed(&start)));
+        let far = turn.iter().map(|part| part * part).sum::<f64>().sqrt() > FAR;
+        if far { reached } else { start }
+    }
+
+    /// Pose of a part as rotation vector and displacement.
+    fn part_pose(&self, part: usize) -> PartPose {
+        let (place, given) = (&self.closure.places[part], &self.assembly.parts[part]);
+        PartPose {
+            part: given.name.clone(),
+            rotation: rotation_vector(&place.rotation),
+            translation: place.translation,
+            start: (!given.ground).then(|| rotation_vector(&self.start(part))),
+        }
     }
 
     /// Gives a long formula a name, so that it is evaluated once.
@@ -343,17 +396,20 @@ impl<'a> Writer<'a> {
             let formula = self.held(&motion.vector).text();
             lines.push((NamedFormula { name, formula, is_length: false }, None));
         }
+        let poses = (0..self.assembly.parts.len()).map(|part| self.part_pose(part)).collect();
         let mut measures = Vec::new();
         for measure in &self.assembly.measures {
             let kinds = measure.between.map(|id| self.assembly.feature(id).kind);
             let [of, from] = measure.between.map(|id| self.feature(id));
-            measures.push(measured(&measure.kind, kinds, [&of, &from], &number).value.text());
+            measures.push(
+                measured(&measure.kind, kinds, [&of, &from], (&number, &|value| self.assembly.length(value)))
+                    .value
+                    .text(),
+            );
         }
         let texts: Vec<&str> =
             lines.iter().map(|(line, _)| line.formula.as_str()).chain(measures.iter().map(String::as_str)).collect();
         let formulas = needed(self.formulas, &texts);
-        let poses =
-            (self.closure.places.iter().zip(&self.assembly.parts)).map(|(place, part)| part_pose(place, &part.name));
         ClosedAssembly {
             mobility: Mobility {
                 parts: self.assembly.parts.len(),
@@ -361,8 +417,9 @@ impl<'a> Writer<'a> {
                 unknowns: self.unknowns.len(),
                 equations,
                 free: motions.iter().map(|motion| motion.text.clone()).collect(),
+                doubtful: Vec::new(),
             },
-            poses: poses.collect(),
+            poses,
             unknowns: self.unknowns,
             equations: lines,
             formulas,
@@ -399,9 +456,9 @@ fn number(quantity: &Quantity) -> Expression {
     }
 }
 
-/// Pose of a part as rotation vector and displacement.
-fn part_pose(place: &Place, part: &str) -> PartPose {
-    PartPose { part: part.to_owned(), rotation: rotation_vector(&place.rotation), translation: place.translation }
+/// Rotation back.
+fn transposed(rotation: &Rotation) -> Rotation {
+    [0, 1, 2].map(|i| [0, 1, 2].map(|j| rotation[j][i]))
 }
 
 /// The formulas that some text uses, directly or through others. A formula stands behind those that it uses.

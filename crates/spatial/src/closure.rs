@@ -101,6 +101,11 @@ impl<'a> Closure<'a> {
         equations(joint, kinds, [&a, &b], &numbers)
     }
 
+    /// Quantity that an equation of a joint holds.
+    pub(crate) fn holds(&self, joint: usize, place: usize) -> Holds {
+        self.equations(&self.poses(), joint)[place].holds
+    }
+
     /// Row of an equation: residual and derivatives in units of the assembly's size. The columns are rotations in radians and displacements
     /// in units of the size.
     fn row(&self, equation: &Equation<Dual>) -> (f64, Vec<f64>) {
@@ -140,6 +145,33 @@ impl<'a> Closure<'a> {
         (0..linear.joints.len()).find(|&i| !is_finite(i)).map(|i| linear.joints[i])
     }
 
+    /// The first joint that leaves out a tilt although no joint before it holds one, so that the choice is arbitrary. Returns None if there is
+    /// none.
+    pub(crate) fn arbitrary_choice(&self) -> Option<usize> {
+        let poses = self.poses();
+        let mut before: Vec<Vec<f64>> = Vec::new();
+        for index in 0..self.assembly.joints.len() {
+            let all = self.equations(&poses, index);
+            let rows: Vec<Vec<f64>> = all.iter().map(|equation| self.row(equation).1).collect();
+            let used = &self.used[index];
+            let is_direction = |place: &usize| all[*place].holds == Holds::Direction;
+            let held = used.iter().filter(|place| is_direction(place)).count();
+            let mut own = before.clone();
+            for place in (0..all.len()).filter(|place| !is_direction(place)) {
+                add_orthogonal(&mut own, &rows[place]);
+            }
+            let open =
+                (0..all.len()).filter(is_direction).filter(|&place| add_orthogonal(&mut own, &rows[place])).count();
+            if held > 0 && open > held {
+                return Some(index);
+            }
+            for &place in used {
+                add_orthogonal(&mut before, &rows[place]);
+            }
+        }
+        None
+    }
+
     /// Derivatives of the smooth numbers of a measure.
     pub(crate) fn measure_gradients(&self, measure: usize) -> Vec<Vec<f64>> {
         let poses = self.poses();
@@ -147,7 +179,7 @@ impl<'a> Closure<'a> {
         let kinds = measure.between.map(|id| self.assembly.feature(id).kind);
         let [of, from] = measure.between.map(|id| self.placed(&poses, id));
         let number = |quantity: &Quantity| Dual::constant(quantity.value);
-        let measured = crate::measure::measured(&measure.kind, kinds, [&of, &from], &number);
+        let measured = crate::measure::measured(&measure.kind, kinds, [&of, &from], (&number, &Dual::constant));
         measured.smooth.iter().map(|number| self.gradient(number)).collect()
     }
 
@@ -295,11 +327,16 @@ pub(crate) fn rest(basis: &[Vec<f64>], row: &[f64]) -> Vec<f64> {
 
 /// Adds the new part of a row to orthonormal rows, if there is one. Returns true if there was.
 pub(crate) fn add_orthogonal(basis: &mut Vec<Vec<f64>>, row: &[f64]) -> bool {
+    new_part(basis, row) > RANK
+}
+
+/// Adds the new part of a row to orthonormal rows, if there is one. Returns its length as part of the row.
+pub(crate) fn new_part(basis: &mut Vec<Vec<f64>>, row: &[f64]) -> f64 {
     let rest = rest(basis, row);
     let length = norm(&rest);
-    let new = length > RANK * norm(row).max(RANK);
-    if new {
+    let part = length / norm(row).max(RANK);
+    if part > RANK {
         basis.push(rest.iter().map(|part| part / length).collect());
     }
-    new
+    part
 }

@@ -70,8 +70,9 @@ pub enum SpatialError {
     },
     /// Joints that repeat what others hold.
     #[error(
-        "joint `{joint}` takes {takes}, and only {left} of these {are} free after {before}: {equations} equations for {unknowns} unknowns, rank {rank}",
-        are = if *left == 1 { "is" } else { "are" }
+        "joint `{joint}` takes {takes}, and only {left} of these {are} free after {before}{named}: {equations} equations for {unknowns} unknowns, rank {rank}",
+        are = if *left == 1 { "is" } else { "are" },
+        named = if free.is_empty() { String::new() } else { format!(" ({})", free.join(", ")) }
     )]
     OverConstrained {
         /// Name of the joint.
@@ -82,6 +83,8 @@ pub enum SpatialError {
         takes: usize,
         /// Number of them that the joints before it leave.
         left: usize,
+        /// Names of these freedoms.
+        free: Vec<&'static str>,
         /// Names of the joints before it, in words.
         before: String,
         /// Number of equations of all joints.
@@ -92,6 +95,20 @@ pub enum SpatialError {
         rank: usize,
         /// Text to write instead.
         instead: String,
+    },
+    /// A joint that leaves out a tilt, and comes before every joint that could hold this tilt.
+    #[error("joint `{joint}` takes {takes} and so leaves out a tilt, and no joint before it holds one")]
+    WrongOrder {
+        /// Name of the joint.
+        joint: String,
+        /// Index of the joint.
+        index: usize,
+        /// Number of freedoms that the joint takes.
+        takes: usize,
+        /// Number of freedoms with both tilts.
+        all: usize,
+        /// Later joint of the same parts that takes all freedoms; None if there is none.
+        primary: Option<String>,
     },
     /// A motion that no joint stops and a measure depends on.
     #[error("{motion}, and `{measure}` depends on it")]
@@ -104,14 +121,14 @@ pub enum SpatialError {
         index: usize,
     },
     /// Joints that cannot be closed at the nominal sizes.
-    #[error("the joints do not close at the nominal sizes: `{joint}` is off by {off:.6} ({equation})")]
+    #[error("the joints do not close at the nominal sizes: `{joint}` is off by {off} ({equation})")]
     Open {
         /// Name of the joint that is off most.
         joint: String,
         /// Index of the joint.
         index: usize,
-        /// Residual of its worst equation.
-        off: f64,
+        /// Residual of its worst equation, with its unit.
+        off: String,
         /// Name of its worst equation.
         equation: &'static str,
         /// Advice on features that look the same way; None if there are none.
@@ -139,6 +156,7 @@ impl SpatialError {
             | Self::SamePart { index, .. }
             | Self::Takes { index, .. }
             | Self::NoDirection { index, .. }
+            | Self::WrongOrder { index, .. }
             | Self::OverConstrained { index, .. }
             | Self::Open { index, .. }
             | Self::SameWay { index, .. } => Some(Subject::Joint(*index)),
@@ -159,8 +177,16 @@ impl SpatialError {
                 "place the parts apart with `at`, or hold two offsets: hole = \"part.bore\", pin = \"part.pin\"".into()
             }
             Self::Takes { known, .. } => format!("write takes = {known}"),
+            Self::WrongOrder { joint, all, primary: Some(primary), .. } => {
+                format!("the primary datum takes {all}: put `{joint}` after `{primary}`, or say takes = {all}")
+            }
+            Self::WrongOrder { joint, all, primary: None, .. } => {
+                format!("say takes = {all}, or put `{joint}` after the joint that holds its tilt")
+            }
             Self::OverConstrained { instead, .. } => instead.clone(),
-            Self::Free { .. } => "add a joint that stops it, or measure something that does not depend on it".into(),
+            Self::Free { measure, .. } => {
+                format!("add a joint that stops it, or let `{measure}` measure something that does not depend on it")
+            }
             Self::Open { same_way: Some(advice), .. } => advice.clone(),
             Self::Open { .. } => {
                 "check the places of its features, or give the parts a better start with `at` and `turned`".into()

@@ -21,6 +21,7 @@ mod joint;
 mod measure;
 mod mobility;
 mod number;
+mod part_pose;
 mod placement;
 #[cfg(test)]
 mod tests;
@@ -30,6 +31,7 @@ pub use assembly::{
     Assembly, Direction, Feature, FeatureId, FeatureKind, FrameAxis, JointKind, Measure, MeasureKind, PartJoint,
     Quantity, RigidPart,
 };
-pub use closed_assembly::{ClosedAssembly, NamedFormula, PartPose, PoseUnknown};
+pub use closed_assembly::{ClosedAssembly, NamedFormula, PoseUnknown};
 pub use error::{SpatialError, Subject};
 pub use mobility::Mobility;
+pub use part_pose::PartPose;

@@ -17,12 +17,12 @@ impl<S: Number> Measured<S> {
     }
 }
 
-/// Measure of feature `of` from feature `from`.
+/// Measure of feature `of` from feature `from`. `number` makes a number of a quantity, and `length` one of a constant length.
 pub(crate) fn measured<S: Number>(
     kind: &MeasureKind,
     kinds: [FeatureKind; 2],
     [of, from]: [&PlacedFeature<S>; 2],
-    number: &impl Fn(&Quantity) -> S,
+    (number, length): (&impl Fn(&Quantity) -> S, &impl Fn(f64) -> S),
 ) -> Measured<S> {
     match kind {
         MeasureKind::Distance => distance(kinds, of, from),
@@ -40,7 +40,7 @@ pub(crate) fn measured<S: Number>(
             Measured::smooth(of.origin.minus(&from.origin).dot(&from.axes[axis]))
         }
         MeasureKind::Angle => angle(kinds, of, from),
-        MeasureKind::Profile(points) => profile(of, from, points, number),
+        MeasureKind::Profile(points) => profile(of, from, points, (number, length)),
     }
 }
 
@@ -84,14 +84,14 @@ fn profile<S: Number>(
     of: &PlacedFeature<S>,
     from: &PlacedFeature<S>,
     points: &[[Quantity; 2]],
-    number: &impl Fn(&Quantity) -> S,
+    (number, length): (&impl Fn(&Quantity) -> S, &impl Fn(f64) -> S),
 ) -> Measured<S> {
     let across = of.origin.minus(&from.origin);
     let mut smooth = Vec::new();
     for [x, y] in points {
         let point = across.plus(&of.axes[0].scaled(&number(x))).plus(&of.axes[1].scaled(&number(y)));
         let height = point.dot(&from.axes[2]);
-        smooth.push(height.minus(&S::constant(height.value())));
+        smooth.push(height.minus(&length(height.value())));
     }
     let mut value = S::constant(0.0);
     for (index, height) in smooth.iter().enumerate() {

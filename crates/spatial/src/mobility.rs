@@ -1,7 +1,7 @@
 //! Mobility: which motions the joints leave free, and which joints repeat others.
 
 use crate::assembly::{Assembly, FeatureKind, JointKind};
-use crate::closure::{Closure, RANK, add_orthogonal, norm, rest};
+use crate::closure::{Closure, RANK, add_orthogonal, new_part, norm, rest};
 use crate::error::SpatialError;
 use crate::placement::turned;
 
@@ -27,26 +27,43 @@ pub struct Mobility {
     pub equations: usize,
     /// Motions that no joint stops and no measure depends on, in words.
     pub free: Vec<String>,
+    /// Equations that hardly add to those before them, in words. Rounding decides whether they repeat these.
+    pub doubtful: Vec<String>,
 }
+
+/// New part of an equation below which its rank is doubtful.
+const DOUBTFUL: f64 = 1e-7;
 
 /// Greatest part of a motion's effect that counts as none.
 const UNFELT: f64 = 1e-9;
 
 impl Closure<'_> {
-    /// Checks that no joint repeats others.
-    pub(crate) fn check_redundancy(&self) -> Result<(), SpatialError> {
+    /// Checks that no joint repeats others. Returns the equations whose rank is doubtful, in words.
+    pub(crate) fn check_redundancy(&self) -> Result<Vec<String>, SpatialError> {
         let linear = self.linear();
         let row = |i: usize| (0..linear.jacobian.ncols()).map(|j| linear.jacobian[(i, j)]).collect::<Vec<f64>>();
         let mut basis: Vec<Vec<f64>> = Vec::new();
-        let mut first: Option<(usize, usize)> = None;
+        let mut first: Option<(usize, Vec<&'static str>)> = None;
+        let mut doubtful = Vec::new();
         for (index, _) in self.assembly.joints.iter().enumerate() {
             let rows: Vec<usize> = (0..linear.joints.len()).filter(|&i| linear.joints[i] == index).collect();
-            let new = rows.iter().filter(|&&i| add_orthogonal(&mut basis, &row(i))).count();
-            if new < rows.len() && first.is_none() {
+            let mut new = Vec::new();
+            for &i in &rows {
+                let part = new_part(&mut basis, &row(i));
+                if part > RANK {
+                    new.push(linear.names[i]);
+                }
+                if part > RANK && part < DOUBTFUL {
+                    let name = &self.assembly.joints[index].name;
+                    doubtful.push(format!("joint `{name}` ({}) adds only {part:.1e}", linear.names[i]));
+                }
+            }
+            if new.len() < rows.len() && first.is_none() {
                 first = Some((index, new));
             }
         }
-        let Some((index, left)) = first else { return Ok(()) };
+        let Some((index, free)) = first else { return Ok(doubtful) };
+        let left = free.len();
         let joint = &self.assembly.joints[index];
         let names: Vec<String> =
             self.assembly.joints[..index].iter().map(|joint| format!("`{}`", joint.name)).collect();
@@ -55,6 +72,7 @@ impl Closure<'_> {
             index,
             takes: self.used[index].len(),
             left,
+            free,
             before: if names.is_empty() { "the start".into() } else { names.join(", ") },
             equations: linear.joints.len(),
             unknowns: linear.jacobian.ncols(),

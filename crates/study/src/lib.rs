@@ -44,6 +44,7 @@
 
 mod analysis_change;
 mod any_error;
+mod assembly_poses;
 mod build;
 mod data;
 mod decimal;
@@ -79,6 +80,7 @@ pub use crate::folder::Format;
 pub use crate::folder::StudyText;
 pub use crate::typing_habits::TypingHabit;
 pub use any_error::AnyError;
+pub use assembly_poses::AssemblyPoses;
 pub use data::{DataFault, DataProblem};
 pub use error::{StudyError, StudyFault};
 pub use files::{FileRole, NamedFile};
@@ -149,8 +151,10 @@ pub struct Study {
     pub expanded: String,
     /// Unknowns, equations and free motions of an assembly in space; None if the study has none.
     pub mobility: Option<Mobility>,
-    /// Poses of the parts of an assembly in space at the nominal dimensions. With `units = "convert"` lengths are in metres.
+    /// Poses of the parts of an assembly in space at the nominal dimensions, with lengths in `length_unit`.
     pub poses: Vec<PartPose>,
+    /// Unit of lengths of an assembly in space: the first one that the study names. None if it names none.
+    pub length_unit: Option<String>,
     /// Text that the study was read from.
     text: Arc<str>,
     format: Format,
@@ -315,6 +319,7 @@ impl Study {
             lines: crate::dimension_text::of(&expanded.tree),
             expanded: expanded.toml(text),
             mobility: expanded.spatial.as_ref().map(|facts| facts.mobility.clone()),
+            length_unit: expanded.spatial.as_ref().and_then(|facts| facts.length_unit.clone()),
             poses: expanded.spatial.map_or_else(Vec::new, |facts| facts.poses),
             configurations: expanded.configurations,
             costs: built.costs,

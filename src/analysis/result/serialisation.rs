@@ -5,7 +5,7 @@ use serde::{Serialize, Serializer};
 use crate::analysis::{Analysis, CharacteristicAnalysis, FigureBases};
 use crate::extremes::{Coordinate, Extremes};
 use crate::verification::Verified;
-use crate::warning::warnings_last;
+use crate::warning::serialize::warnings_last;
 use sensitol_numeric::verdict::{Judged, Verdict};
 
 warnings_last!(Analysis);

@@ -8,6 +8,7 @@ pub(in crate::analysis) mod jump;
 pub(in crate::analysis) mod known_answers;
 pub(in crate::analysis) mod measured_interval;
 pub(in crate::analysis) mod model_sample;
+pub(in crate::analysis) mod nominal_kink;
 pub(in crate::analysis) mod recorded_failures;
 pub(in crate::analysis) mod recorded_points;
 pub(in crate::analysis) mod resample_interval;

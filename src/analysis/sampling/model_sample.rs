@@ -29,18 +29,20 @@ const STRIDES: usize = 512;
 /// Part of a costly model's budget that strides may use (one in four), because the points of its sample are others.
 const COSTLY_PART: usize = 4;
 
-/// Replaces moments that miss the requested accuracy by those of points of the model, if the budget allows it.
+/// Replaces moments that miss the requested accuracy by those of points of the model, if the budget allows it. Those of `kinked`
+/// characteristics, whose surfaces are wrong for certain, are replaced without a budget too: by as many points as the method has evaluated.
 pub(in crate::analysis) fn fall_back(
     evaluator: &Evaluator<'_>,
     outcome: &Outcome,
+    kinked: &[usize],
     characteristics: &mut [CharacteristicAnalysis],
 ) {
     let (problem, run, seed) = (evaluator.problem(), evaluator.run(), evaluator.seed());
     let begun = evaluator.summary().evaluations;
     let spent = || evaluator.summary().evaluations - begun;
     let Some(climbed) = outcome.climbed.as_ref().filter(|_| outcome.evaluated.stopped().is_none()) else { return };
-    let short: Vec<usize> =
-        (0..characteristics.len()).filter(|&c| shortfall(&characteristics[c], climbed, c).is_some()).collect();
+    let is_short = |&c: &usize| kinked.contains(&c) || shortfall(&characteristics[c], climbed, c).is_some();
+    let short: Vec<usize> = (0..characteristics.len()).filter(is_short).collect();
     if short.is_empty() {
         return;
     }
@@ -48,7 +50,8 @@ pub(in crate::analysis) fn fall_back(
     let costly = problem.function().signature().costly;
     // A costly model is sampled only within its budget.
     let most = match (costly, evaluator.remaining().map(|left| left as u64)) {
-        (true, None) => 0,
+        (true, None) if kinked.is_empty() => 0,
+        (true, None) => begun.max(FEWEST),
         (true, Some(left)) => left,
         (false, left) => left.unwrap_or(MOST).min(MOST),
     };
@@ -56,6 +59,8 @@ pub(in crate::analysis) fn fall_back(
         return;
     }
     let strided = if costly { most as usize / COSTLY_PART } else { most as usize }.min(STRIDES);
+    // No regression follows a kink.
+    let strided = if short.iter().all(|c| kinked.contains(c)) { 0 } else { strided };
     let problem = match stride(evaluator, outcome, climbed, strided, &short, characteristics) {
         Strided::Enough => return,
         Strided::Known(answers) => {

@@ -282,6 +282,17 @@ impl FormulaSet {
         program
     }
 
+    /// Returns both operands of the difference that a formula is, at one point. Returns None for other formulas.
+    pub(crate) fn difference(&self, formula: usize, variable: impl Fn(usize) -> f64) -> Option<[f64; 2]> {
+        let entry = &self.formulas[formula];
+        let (Node::Binary(Binary::Subtract, a, b), _) = entry.formula.nodes.last()? else { return None };
+        let mut values: Vec<Vec<f64>> = vec![Vec::new(); self.len()];
+        for &index in &self.order {
+            values[index] = self.formulas[index].values(&values, &variable);
+        }
+        Some([values[formula][*a], values[formula][*b]])
+    }
+
     /// Returns the reason why a formula has no finite value at one point, or None if it has one. The reason is the first part that causes
     /// the failure, in this formula or in one that it uses there.
     pub fn explain(&self, formula: usize, variable: impl Fn(usize) -> f64) -> Option<FormulaFailure> {

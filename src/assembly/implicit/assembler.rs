@@ -247,13 +247,17 @@ impl Assembler {
             return AssemblyFailure::Singular {
                 nominal,
                 unknown: system.unknowns[unknown].name().to_owned(),
-                worst: system.equations[worst].clone(),
+                worst: system.words(worst),
                 residual: stuck.values[worst],
                 at,
                 followed,
             };
         }
         let worst = search.worst(&stuck.values);
+        let state = (search.given, &stuck.u[..]);
+        if let Some(joint) = system.open_joint(set, state, worst, stuck.values[worst]) {
+            return AssemblyFailure::OpenJoint { nominal, joint, followed };
+        }
         AssemblyFailure::Open {
             nominal,
             worst: system.equations[worst].clone(),

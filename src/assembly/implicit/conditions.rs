@@ -1,6 +1,9 @@
 //! Unknowns and the conditions that determine them, as given by the study.
 
+use std::collections::BTreeMap;
+
 use crate::assembly::formula::{Formula, FormulaSet};
+use crate::assembly::implicit::subject::EquationSubject;
 
 /// Value that closure conditions determine.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,6 +48,8 @@ pub struct Conditions {
     pub(super) unknowns: Vec<Unknown>,
     pub(super) conditions: Vec<Condition>,
     pub(super) nominal: Vec<f64>,
+    /// Joints of rigid parts, by the names of their equations.
+    pub(super) subjects: BTreeMap<String, EquationSubject>,
 }
 
 /// Reason why conditions determine no state.
@@ -175,7 +180,22 @@ impl Conditions {
             let unknowns = unknowns.into_iter().map(|unknown| unknown.name).collect();
             return Err(ConditionsError::Unbalanced { equations, unknowns });
         }
-        Ok(Self { unknowns, conditions, nominal })
+        Ok(Self { unknowns, conditions, nominal, subjects: BTreeMap::new() })
+    }
+
+    /// Sets the joints of rigid parts that equations belong to, by the names of the equations. Failures name the joints then.
+    #[must_use]
+    pub fn with_subjects(self, subjects: impl IntoIterator<Item = (String, EquationSubject)>) -> Self {
+        Self { subjects: subjects.into_iter().collect(), ..self }
+    }
+
+    /// Returns for every equation the joint that it belongs to, two entries for a loop.
+    pub(super) fn subjects(&self) -> Vec<Option<EquationSubject>> {
+        let of = |condition: &Condition| match condition {
+            Condition::Equation { name, .. } => vec![self.subjects.get(name).cloned()],
+            Condition::Loop { .. } => vec![None, None],
+        };
+        self.conditions.iter().flat_map(of).collect()
     }
 
     /// Returns the unknowns.

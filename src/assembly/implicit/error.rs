@@ -1,6 +1,7 @@
 //! Errors of the assembled state at one point.
 
 use crate::assembly::formula::FormulaFailure;
+use crate::assembly::implicit::subject::{OpenJoint, short};
 
 /// Reason why the assembly does not close at a point, or closes on another branch than at the nominal dimensions.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -21,6 +22,16 @@ pub enum AssemblyFailure {
         at: Vec<(String, f64)>,
         /// Unknown that lies at its bound in this state, with the bound.
         bound: Option<(String, f64)>,
+        /// Part of the way from the nominal dimensions to the point along which the state could be followed.
+        followed: Option<f64>,
+    },
+    /// No position of rigid parts was found in which every joint closes.
+    #[error("the joints do not close{}: {joint}{}", if *.nominal { " at the nominal dimensions" } else { "" }, so_far(.followed))]
+    OpenJoint {
+        /// True for the nominal state, which is sought from the start values.
+        nominal: bool,
+        /// Joint with the greatest residual in the best position found, relative to the size of its terms.
+        joint: OpenJoint,
         /// Part of the way from the nominal dimensions to the point along which the state could be followed.
         followed: Option<f64>,
     },
@@ -72,10 +83,4 @@ fn bounded(bound: &Option<(String, f64)>) -> String {
 fn so_far(followed: &Option<f64>) -> String {
     followed
         .map_or(String::new(), |part| format!("; it was followed for {:.1} % of the way from nominal", 100.0 * part))
-}
-
-/// Formats a value with six digits, which are enough to identify a state.
-fn short(value: f64) -> String {
-    let text = format!("{value:.6e}");
-    text.parse::<f64>().map_or(text, |value| value.to_string())
 }

@@ -30,6 +30,7 @@ mod linear;
 mod newton;
 mod order;
 mod rows;
+mod subject;
 mod system;
 
 #[cfg(test)]
@@ -37,6 +38,7 @@ mod tests;
 
 pub use conditions::{Condition, Conditions, ConditionsError, Link, Unknown};
 pub use error::AssemblyFailure;
+pub use subject::{EquationSubject, OpenJoint};
 
 pub(super) use anchor::Anchor;
 pub(super) use assembler::Assembler;

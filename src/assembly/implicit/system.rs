@@ -4,11 +4,14 @@ use faer::Mat;
 
 use crate::assembly::formula::{Binary, FormulaFailure, FormulaSet, Jet, Routine, Scalar, Unary};
 use crate::assembly::implicit::conditions::{Condition, Conditions, Unknown};
+use crate::assembly::implicit::subject::{EquationSubject, OpenJoint};
 
 /// System of `m` conditions on `m` unknowns. The variables of the formulas are the given ones, followed by the unknowns.
 pub(super) struct System {
     pub(super) unknowns: Vec<Unknown>,
     pub(super) equations: Vec<String>,
+    /// Joint of rigid parts that each equation belongs to.
+    pub(super) subjects: Vec<Option<EquationSubject>>,
     pub(super) conditions: Vec<Kind>,
     routine: Routine,
     /// Indices in the set of the formulas of the routine.
@@ -53,6 +56,7 @@ impl System {
         Self {
             unknowns: conditions.unknowns.clone(),
             equations: conditions.conditions.iter().flat_map(Condition::equations).collect(),
+            subjects: conditions.subjects(),
             conditions: kinds.collect(),
             routine: set.routine(&formulas),
             formulas,
@@ -203,6 +207,41 @@ impl System {
     /// Returns the failure of the first equation that has no value at a state.
     pub(super) fn explain(&self, set: &FormulaSet, given: &[f64], u: &[f64]) -> Option<FormulaFailure> {
         self.formulas.iter().find_map(|&formula| set.explain(formula, |index| self.variable(given, u, index)))
+    }
+
+    /// Returns an equation in words: the joint that it belongs to, or its name.
+    pub(super) fn words(&self, equation: usize) -> String {
+        self.subjects[equation].as_ref().map_or_else(|| self.equations[equation].clone(), ToString::to_string)
+    }
+
+    /// Returns the joint that an equation belongs to, with the amount by which it is open at a state. Returns None for other equations.
+    pub(super) fn open_joint(
+        &self,
+        set: &FormulaSet,
+        (given, u): (&[f64], &[f64]),
+        equation: usize,
+        residual: f64,
+    ) -> Option<OpenJoint> {
+        let subject = self.subjects.get(equation)?.clone()?;
+        // A condition with a subject is an equation, which has one formula. A loop has two equations, and two formulas for every link.
+        let (mut first, mut formula) = (0, 0);
+        for kind in &self.conditions {
+            if first == equation {
+                break;
+            }
+            let [equations, formulas] = match kind {
+                Kind::Equation => [1, 1],
+                Kind::Loop { links } => [2, 2 * links],
+            };
+            (first, formula) = (first + equations, formula + formulas);
+        }
+        let lengths = match subject {
+            EquationSubject::Rod { .. } => {
+                set.difference(*self.formulas.get(formula)?, |index| self.variable(given, u, index))
+            }
+            EquationSubject::Joint { .. } => None,
+        };
+        Some(OpenJoint { subject, residual, lengths })
     }
 
     /// Returns a state with the names of the unknowns.

@@ -48,7 +48,7 @@ fn one(path: &Path, look: Look) -> Result<Exit, Failure> {
 
 /// Unknowns and equations of an assembly in space, with the motions that no joint stops.
 fn assembly(mobility: &Mobility) -> String {
-    let Mobility { parts, joints, unknowns, equations, free, .. } = mobility;
+    let Mobility { parts, joints, unknowns, equations, free, doubtful } = mobility;
     let plural = |count: usize| if count == 1 { "" } else { "s" };
     let mut text = format!(
         "  {parts} part{}, {joints} joint{}: {unknowns} unknowns, {equations} equation{}\n",
@@ -58,6 +58,9 @@ fn assembly(mobility: &Mobility) -> String {
     );
     for motion in free {
         text += &format!("  {motion}: no effect on the characteristics\n");
+    }
+    for equation in doubtful {
+        text += &format!("  {equation} to the joints before it: whether it repeats them is doubtful\n");
     }
     text
 }

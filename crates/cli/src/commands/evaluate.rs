@@ -1,4 +1,4 @@
-//! `sensitol evaluate`: a study as a program that speaks the protocol of external models.
+//! `sensitol evaluate`: a study as a program that speaks the protocol of external models, or a report on some points.
 
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Read, Write};
@@ -6,13 +6,14 @@ use std::io::{BufRead, BufReader, Read, Write};
 use serde::{Deserialize, Serialize};
 
 use crate::args::EvaluateArgs;
+use crate::commands::point_report::{self, PoseReport};
 use crate::failure::{Exit, Failure};
 use crate::interrupt;
 use crate::output::Look;
 use crate::running::listener;
 use sensitol::assembly::{Points, Request, Responses, Run};
 use sensitol::problem::Problem;
-use sensitol_study::{Externals, Study};
+use sensitol_study::{AssemblyPoses, Externals, PartPose, Study};
 
 /// Version of the protocol (`adapters/PROTOCOL.md`).
 const VERSION: u32 = 1;
@@ -35,6 +36,9 @@ struct Greeted {
     characteristics: Vec<String>,
     #[serde(default)]
     optional: Vec<String>,
+    /// True if every answer shall have the poses of the parts of an assembly in space.
+    #[serde(default)]
+    poses: bool,
 }
 
 #[derive(Deserialize)]
@@ -53,6 +57,9 @@ struct Ready<'a> {
     units: Vec<Option<&'a str>>,
     nominal: Vec<f64>,
     characteristics: Vec<&'a str>,
+    /// Unit of the translations, if poses are asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    length_unit: Option<&'a str>,
 }
 
 #[derive(Serialize)]
@@ -64,6 +71,8 @@ struct Answer {
     errors: BTreeMap<String, String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<String>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    poses: Vec<PoseReport>,
 }
 
 #[derive(Serialize)]
@@ -78,6 +87,10 @@ struct Session {
     start: Vec<f64>,
     /// Index of the dimension of every value in a request. None for an optional name that the study does not have.
     columns: Vec<Option<usize>>,
+    /// Poses of the parts, if they are asked for.
+    poses: Option<AssemblyPoses>,
+    /// Poses at the nominal dimensions.
+    parts: Vec<PartPose>,
 }
 
 pub(crate) fn run(asked: &EvaluateArgs, look: Look) -> Result<Exit, Failure> {
@@ -85,6 +98,9 @@ pub(crate) fn run(asked: &EvaluateArgs, look: Look) -> Result<Exit, Failure> {
     let externals = Externals { listener: listener(look), ..Externals::default() }.with_sentinels(false);
     let study = Study::read_with(&asked.study, externals)?;
     look.warn_all(&study.warnings);
+    if asked.reports() {
+        return point_report::run(&study, asked, look);
+    }
     interrupt::listen();
     let mut input = BufReader::new(std::io::stdin());
     let mut line = Vec::new();
@@ -93,6 +109,7 @@ pub(crate) fn run(asked: &EvaluateArgs, look: Look) -> Result<Exit, Failure> {
     }
     let stem = asked.study.file_stem().map(|stem| stem.to_string_lossy().into_owned());
     let name = study.title.clone().or(stem).unwrap_or_default();
+    let length_unit = study.length_unit.clone();
     let mut version = study.sha256.chars().take(DIGITS).collect::<String>();
     let session = match Session::open(study, &line, &mut version) {
         Ok(session) => session,
@@ -111,6 +128,7 @@ pub(crate) fn run(asked: &EvaluateArgs, look: Look) -> Result<Exit, Failure> {
         units: dimensions.iter().map(|dimension| dimension.unit()).collect(),
         nominal: session.start.clone(),
         characteristics: session.problem.characteristics().iter().map(|one| one.name()).collect(),
+        length_unit: length_unit.as_deref().filter(|_| session.poses.is_some()),
     }])?;
     while let Some(lines) = together(&mut input) {
         if interrupt::stopped() {
@@ -157,7 +175,11 @@ impl Session {
         if greeted.sensitol != VERSION {
             return Err(format!("this is version {VERSION} of the protocol, not {}", greeted.sensitol));
         }
-        let mut problem = study.problem;
+        let poses = match greeted.poses {
+            true => study.assembly_poses().map_err(|error| error.to_string())?,
+            false => None,
+        };
+        let (mut problem, parts) = (study.problem, study.poses);
         if !greeted.characteristics.is_empty() {
             problem = problem.only(&greeted.characteristics).map_err(|error| error.to_string())?;
         }
@@ -190,12 +212,12 @@ impl Session {
                 *version += &format!("; {part}");
             }
         }
-        Ok(Self { problem, start, columns })
+        Ok(Self { problem, start, columns, poses, parts })
     }
 
     /// Returns an answer to every line that is a request.
     fn answers(&self, lines: &[Vec<u8>]) -> Vec<Answer> {
-        let fault = |id, error| Answer { id, y: None, errors: BTreeMap::new(), error: Some(error) };
+        let fault = |id, error| Answer { id, y: None, errors: BTreeMap::new(), error: Some(error), poses: Vec::new() };
         let mut answers = Vec::new();
         let mut requests: Vec<(u64, Vec<f64>)> = Vec::new();
         for line in lines {
@@ -220,12 +242,16 @@ impl Session {
         let mut found = Responses::open(rows.len(), outputs.len());
         let within = Run::to_the_end().stopping_when(&interrupt::reason).abandoning_when(&interrupt::abandoned);
         self.problem.function().evaluate(&Request { points: &points, outputs }, &within, &mut found);
+        let placed = self.poses.as_ref().map_or_else(Vec::new, |poses| poses.at(&points, &within));
         let names: Vec<&str> = self.problem.characteristics().iter().map(|one| one.name()).collect();
         answers.extend(ids.into_iter().enumerate().map(|(row, id)| {
             let reason =
                 |(output, name): (usize, &&str)| Some(((*name).to_owned(), found.error(row, output)?.to_string()));
             let y = (0..names.len()).map(|output| found.value(row, output)).collect();
-            Answer { id, y: Some(y), errors: names.iter().enumerate().filter_map(reason).collect(), error: None }
+            let errors = names.iter().enumerate().filter_map(reason).collect();
+            let poses = placed.get(row).map(|found| found.as_ref().ok().map(Vec::as_slice));
+            let poses = poses.map_or_else(Vec::new, |poses| PoseReport::all(poses, &self.parts));
+            Answer { id, y: Some(y), errors, error: None, poses }
         }));
         answers
     }

@@ -14,6 +14,7 @@ pub(crate) mod journal;
 pub(crate) mod models;
 pub(crate) mod pearson;
 pub(crate) mod plan;
+pub(crate) mod point_report;
 pub(crate) mod probe;
 pub(crate) mod rare;
 pub(crate) mod reference;

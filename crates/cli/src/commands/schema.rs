@@ -5,7 +5,7 @@ use schemars::{JsonSchema, SchemaGenerator};
 use serde_json::{Map, Value, json as value};
 
 use crate::args::{OutputArgs, SchemaArgs};
-use crate::commands::{journal, models, pearson, plan, probe, several};
+use crate::commands::{journal, models, pearson, plan, point_report, probe, several};
 use crate::failure::{Exit, Failure};
 use crate::files::Files;
 use crate::output::json;
@@ -27,7 +27,7 @@ pub(crate) fn run(asked: &SchemaArgs) -> Result<Exit, Failure> {
 fn reports() -> Value {
     let settings = SchemaSettings::draft2020_12().with(|settings| settings.contract = Contract::Serialize);
     let mut generator = settings.into_generator();
-    let commands: [(&str, Value); 12] = [
+    let commands: [(&str, Value); 13] = [
         ("analyze", of::<Report>(&mut generator)),
         ("analyze-compare", of::<DifferenceReport>(&mut generator)),
         ("simulate", of::<SimulationReport>(&mut generator)),
@@ -36,6 +36,7 @@ fn reports() -> Value {
         ("sweep", of::<SweepReport>(&mut generator)),
         ("allocate", of::<AllocationReport>(&mut generator)),
         ("plan", of::<plan::PlanReport>(&mut generator)),
+        ("evaluate", of::<point_report::EvaluationReport>(&mut generator)),
         ("probe", of::<probe::ProbeReport>(&mut generator)),
         ("models", of::<Vec<models::ModelReport>>(&mut generator)),
         ("pearson", of::<pearson::Answers>(&mut generator)),

@@ -7,6 +7,7 @@ mod failures;
 mod history;
 mod journal;
 mod long_runs;
+mod spatial;
 #[cfg(unix)]
 mod stops;
 #[cfg(unix)]

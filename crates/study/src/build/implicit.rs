@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use crate::entries::file::StudyFile;
 use crate::error::{Fault, fault};
+use crate::expand::Elements;
 use crate::source::{Source, in_formula};
 use sensitol::assembly::formula::Formula;
 use sensitol::assembly::implicit::{Condition, Conditions, ConditionsError, Link, Unknown};
@@ -16,8 +17,13 @@ pub(crate) struct Implicit {
     pub(crate) places: Vec<(Range<usize>, String)>,
 }
 
-/// Conditions of a study. Returns None if it has no unknowns, equations and loops.
-pub(crate) fn implicit(file: &StudyFile, dimensions: &[Dimension], source: &Source) -> Result<Option<Implicit>, Fault> {
+/// Conditions of a study, with the joints that `elements` has for their equations. Returns None if it has no unknowns, equations and loops.
+pub(crate) fn implicit(
+    file: &StudyFile,
+    dimensions: &[Dimension],
+    source: &Source,
+    elements: &Elements,
+) -> Result<Option<Implicit>, Fault> {
     if file.unknowns.0.is_empty() && file.equations.0.is_empty() && file.loops.0.is_empty() {
         return Ok(None);
     }
@@ -54,6 +60,7 @@ pub(crate) fn implicit(file: &StudyFile, dimensions: &[Dimension], source: &Sour
     }
     let nominal = dimensions.iter().map(Dimension::nominal).collect();
     let conditions = Conditions::new(unknowns, conditions, nominal).map_err(|error| placed(file, error))?;
+    let conditions = conditions.with_subjects(elements.subjects.iter().cloned());
     Ok(Some(Implicit { conditions, places }))
 }
 

@@ -87,7 +87,7 @@ pub(crate) fn build(
     }
     faults.none()?;
     // From here on each step needs the results of the previous ones, so the first fault ends the build.
-    let implicit = implicit(file, &dimensions, source)?;
+    let implicit = implicit(file, &dimensions, source, elements)?;
     let written = Written { formulas, implicit };
     let used = |name: &str| written.names().any(|used| used == name);
     known_to_model(file, model, &used)?;

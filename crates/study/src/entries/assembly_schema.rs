@@ -178,7 +178,6 @@ pub(crate) fn joints(_: &mut SchemaGenerator) -> Schema {
                 "revolute": two("Two frames or axes that turn about z."),
                 "slide": two("Two frames that slide along z."),
                 "rigid": two("Two frames that are one."),
-                "fixed": two("The same as rigid."),
                 "rod": two("Two points at a distance of `length`."),
                 "angle": two("Two frames: x of the second one is turned about z of the first one by `value`."),
                 "takes": { "description": "How many freedoms it takes.", "type": "integer", "minimum": 1, "maximum": 6 },

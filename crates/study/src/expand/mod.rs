@@ -20,6 +20,7 @@ use crate::error::{Fault, Faults, StudyFault, fault};
 use crate::tree::{Key, Tree, Value};
 pub(super) use assembly::{NominalValues, SpatialFacts};
 use sensitol::assembly::formula::is_plain;
+use sensitol::assembly::implicit::EquationSubject;
 
 /// A study with plain keys only.
 pub(super) struct Expanded {
@@ -34,13 +35,15 @@ pub(super) struct Expanded {
     pub(super) spatial: Option<SpatialFacts>,
 }
 
-/// Facts about geometric elements that their plain lines do not hold.
+/// Facts about geometric elements and joints that their plain lines do not hold.
 #[derive(Default)]
 pub(super) struct Elements {
     /// Names of formulas that the study need not use.
     pub(super) made: Vec<String>,
     /// Pairs of sizes whose bands overlap, so that the clearance may be 0.
     pub(super) closing: Vec<Closing>,
+    /// Joints of rigid parts, by the names of their equations.
+    pub(super) subjects: Vec<(String, EquationSubject)>,
 }
 
 /// A hole with a pin that may be larger than it.

@@ -2,9 +2,14 @@
 
 mod general;
 mod measured;
+mod nominal_kink;
 mod scaling;
 mod schema;
 mod spatial;
+mod spatial_analyses;
+mod spatial_examples;
+mod spatial_faults;
+mod spatial_mobility;
 mod spatial_zones;
 mod studies;
 mod texts;

@@ -26,8 +26,11 @@ const LISTS: [(&str, JointKind); 8] = [
     ("rigid", JointKind::Rigid),
     ("rod", JointKind::Rod),
     ("angle", JointKind::Angle),
-    ("fixed", JointKind::Rigid),
+    // An earlier name of `rigid`, which is read and not offered.
+    (EARLIER, JointKind::Rigid),
 ];
+/// Earlier name of `rigid`.
+const EARLIER: &str = "fixed";
 
 /// Features of a joint and its kind.
 struct Connection {
@@ -114,6 +117,7 @@ fn connection(key: &Key, tree: &Tree, path: &str, assembly: &Assembly) -> Result
     }
     let known: Vec<&str> =
         PAIRS.iter().flat_map(|(a, b, _)| [*a, *b]).chain(LISTS.iter().map(|(list, _)| *list)).collect();
+    let known: Vec<&str> = known.into_iter().filter(|name| *name != EARLIER).collect();
     // One key of a pair needs the other.
     for (a, b, _) in PAIRS {
         for (have, lacks) in [(a, b), (b, a)] {

@@ -19,8 +19,11 @@ use std::ops::Range;
 use crate::error::{Fault, Faults, StudyFault, fault};
 use crate::expand::{Expanded, Origin, Tree, Value, wrong_type};
 use crate::tree::Key;
+use sensitol::assembly::implicit::EquationSubject;
 use sensitol_numeric::names::nearest;
-use sensitol_spatial::{Assembly, ClosedAssembly, FeatureId, Mobility, PartPose, SpatialError, Subject};
+use sensitol_spatial::{
+    Assembly, ClosedAssembly, FeatureId, JointKind, Mobility, PartJoint, PartPose, SpatialError, Subject,
+};
 use values::{Nominal, Values};
 
 pub(crate) use values::NominalValues;
@@ -30,6 +33,8 @@ pub(crate) use values::NominalValues;
 pub(crate) struct SpatialFacts {
     pub(crate) mobility: Mobility,
     pub(crate) poses: Vec<PartPose>,
+    /// Unit of the lengths of poses; None if the study names none.
+    pub(crate) length_unit: Option<String>,
 }
 
 /// An entry of the study: its full key and its place.
@@ -54,7 +59,13 @@ pub(super) fn expand(expanded: &mut Expanded, nominal: NominalValues<'_>) -> Res
     let found = values.evaluated(nominal)?;
     read.set(&found);
     let closed = read.assembly.close().map_err(|error| read.fault(&error))?;
-    expanded.spatial = Some(SpatialFacts { mobility: closed.mobility.clone(), poses: closed.poses.clone() });
+    let factor = values.length_factor();
+    let in_unit = |pose: &PartPose| PartPose { translation: pose.translation.map(|at| at / factor), ..pose.clone() };
+    expanded.spatial = Some(SpatialFacts {
+        mobility: closed.mobility.clone(),
+        poses: closed.poses.iter().map(in_unit).collect(),
+        length_unit: values.length_unit(),
+    });
     write(expanded, &read, closed, &values);
     Ok(())
 }
@@ -199,6 +210,18 @@ fn unknown_key(tree: &Tree, path: &str, valid: &[&str]) -> Result<(), Fault> {
     Err(fault(key.span.clone(), format!("{path}.{}", key.name), unknown))
 }
 
+/// Joint that an equation belongs to, for failures at a point.
+fn subject(joint: &PartJoint, equation: &str, values: &Values<'_>) -> EquationSubject {
+    let name = joint.name.clone();
+    match joint.kind {
+        JointKind::Rod => EquationSubject::Rod { name, unit: values.made_unit(true) },
+        _ => {
+            let freedom = equation.strip_prefix(&format!("{name}: ")).unwrap_or(equation).to_owned();
+            EquationSubject::Joint { name, freedom }
+        }
+    }
+}
+
 /// Writes the plain lines in place of the assembly.
 fn write(expanded: &mut Expanded, read: &Read, closed: ClosedAssembly, values: &Values<'_>) {
     let text = |span: &Range<usize>, text: String| Tree { span: span.clone(), value: Value::Text(text) };
@@ -242,6 +265,10 @@ fn write(expanded: &mut Expanded, read: &Read, closed: ClosedAssembly, values: &
         // A free motion belongs to the parts as a whole.
         let entry = joint.map_or(&read.parts[0], |joint| &read.joints[joint]);
         origin("equations", &equation.name, entry);
+        if let Some(joint) = joint {
+            let subject = subject(&read.assembly.joints[joint], &equation.name, values);
+            expanded.elements.subjects.push((equation.name.clone(), subject));
+        }
         equations.push((key(&entry.span, &equation.name), text(&entry.span, equation.formula)));
     }
     for (section, lines) in [("unknowns", unknowns), ("formulas", formulas), ("equations", equations)] {

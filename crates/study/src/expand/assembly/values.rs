@@ -109,6 +109,11 @@ impl<'t> Values<'t> {
         }
     }
 
+    /// Unit of lengths in the study; None if it names none.
+    pub(super) fn length_unit(&self) -> Option<String> {
+        self.unit.clone()
+    }
+
     /// Unit that a constant length needs in a formula.
     pub(super) fn literal_unit(&self) -> Option<String> {
         self.unknown_unit().filter(|_| self.converts)

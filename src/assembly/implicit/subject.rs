@@ -1,0 +1,67 @@
+//! Joints of rigid parts that equations belong to, for failures in the words of the study.
+
+use std::fmt;
+
+/// Joint of rigid parts that an equation belongs to.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum EquationSubject {
+    /// A freedom that a joint takes.
+    Joint {
+        /// Name of the joint.
+        name: String,
+        /// Freedom in words, such as `offset along x`.
+        freedom: String,
+    },
+    /// A rod between two points. Its equation is the distance of the points less the length of the rod.
+    Rod {
+        /// Name of the joint.
+        name: String,
+        /// Unit in which the equation has its value; None if it has none.
+        unit: Option<String>,
+    },
+}
+
+/// Joint that does not close at a point, with the amount.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OpenJoint {
+    /// The joint.
+    pub subject: EquationSubject,
+    /// Residual of its equation, which should be 0.
+    pub residual: f64,
+    /// Distance of the ends of a rod, and its length. None for other joints, or if the equation does not tell.
+    pub lengths: Option<[f64; 2]>,
+}
+
+impl fmt::Display for EquationSubject {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Joint { name, freedom } => write!(f, "joint `{name}` ({freedom})"),
+            Self::Rod { name, .. } => write!(f, "rod `{name}`"),
+        }
+    }
+}
+
+impl fmt::Display for OpenJoint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let EquationSubject::Rod { name, unit } = &self.subject else {
+            return write!(f, "{} is off by {}", self.subject, short(self.residual));
+        };
+        let unit = unit.as_ref().map_or_else(String::new, |unit| format!(" {unit}"));
+        let reach = if self.residual > 0.0 { "cannot reach" } else { "is too long" };
+        match self.lengths {
+            Some([apart, length]) => {
+                write!(f, "rod `{name}` ({}{unit}) {reach}: its ends are {}{unit} apart", short(length), short(apart))
+            }
+            None => {
+                let farther = if self.residual > 0.0 { "farther apart" } else { "nearer" };
+                write!(f, "rod `{name}` {reach}: its ends are {}{unit} {farther}", short(self.residual.abs()))
+            }
+        }
+    }
+}
+
+/// Formats a value with six decimals of its mantissa, which are enough to identify a state.
+pub(super) fn short(value: f64) -> String {
+    let text = format!("{value:.6e}");
+    text.parse::<f64>().map_or(text, |value| value.to_string())
+}
