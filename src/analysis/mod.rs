@@ -222,8 +222,8 @@ fn check(problem: &Problem, outcome: &Outcome, options: &Options, run: &Run<'_>)
         true => nominal_kink::find(&evaluator, outcome, &characteristics),
         false => Vec::new(),
     };
+    let kinked: Vec<usize> = kinks.iter().map(|kink| kink.characteristic).collect();
     if signature.costly || !verified {
-        let kinked: Vec<usize> = kinks.iter().map(|kink| kink.characteristic).collect();
         model_sample::fall_back(&evaluator, outcome, &kinked, &mut characteristics);
     }
     characteristics.iter_mut().zip(searched).for_each(|(one, extremes)| one.extremes = extremes);
@@ -233,7 +233,7 @@ fn check(problem: &Problem, outcome: &Outcome, options: &Options, run: &Run<'_>)
     };
     found.extend(kinks.into_iter().map(|kink| kink.warning));
     let mut left = SampleBudget::new(evaluator.remaining());
-    verification_stage::verify(&evaluator, outcome, options, &mut left, &mut characteristics);
+    verification_stage::verify(&evaluator, outcome, options, (&kinked, &mut left), &mut characteristics);
     found.extend(recorded_failures::add(problem, &mut characteristics));
     Checked { characteristics, shares, extremes, found, left, ledger: evaluator.into_ledger() }
 }

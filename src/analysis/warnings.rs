@@ -89,10 +89,10 @@ pub(super) fn of(
     if outcome.order == Order::Second && outcome.climbed.is_none() && outcome.pairs.len() < possible && open {
         warnings.push(Warning::PairsNotExamined { examined: outcome.pairs.len(), possible });
     }
-    // A kink at the nominal point is the more precise finding.
+    // A kink at the nominal point is the more precise finding, and answers next to it do not scatter.
     let at_nominal: Vec<String> = warnings.iter().filter_map(kinked).collect();
     warnings.retain(|warning| {
-        let general = matches!(warning, Warning::Kink { .. });
+        let general = matches!(warning, Warning::Kink { .. } | Warning::Scatter { .. });
         !general || !at_nominal.iter().any(|name| warning.characteristic() == Some(name))
     });
     aggregated(warnings)

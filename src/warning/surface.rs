@@ -69,9 +69,9 @@ pub(super) fn kink(
 
 pub(super) fn kink_at_nominal(characteristic: &str, dimensions: &[String]) -> Text {
     say(format!(
-        "`{characteristic}` has a kink at the nominal point: along {} its slopes on both sides are equal and opposite, as those of a distance \
-         or an angle that is 0 there. It is the length of two components that are smooth. No polynomial follows a kink, so moments of \
-         derivatives are wrong.",
+        "`{characteristic}` has a kink at the nominal point: along {} its slopes on both sides are equal and opposite. So are those of a \
+         distance or an angle that is 0 there, the length of two smooth components. No polynomial follows a kink, so moments of derivatives \
+         are wrong.",
         names(dimensions)
     ))
     .advise(Advice::ReturnComponents)

@@ -2,7 +2,7 @@
 
 use faer::Mat;
 
-use crate::assembly::{Assembly, FeatureId, Quantity};
+use crate::assembly::{Assembly, FeatureId, JointKind, Quantity};
 use crate::dual::Dual;
 use crate::joint::{Equation, Holds, JointNumbers, equations};
 use crate::number::Number;
@@ -145,8 +145,8 @@ impl<'a> Closure<'a> {
         (0..linear.joints.len()).find(|&i| !is_finite(i)).map(|i| linear.joints[i])
     }
 
-    /// The first joint that leaves out a tilt although no joint before it holds one, so that the choice is arbitrary. Returns None if there is
-    /// none.
+    /// The first contact of two planes that leaves out a tilt although no joint before it holds one, so that the choice is arbitrary. Returns
+    /// None if there is none.
     pub(crate) fn arbitrary_choice(&self) -> Option<usize> {
         let poses = self.poses();
         let mut before: Vec<Vec<f64>> = Vec::new();
@@ -162,7 +162,8 @@ impl<'a> Closure<'a> {
             }
             let open =
                 (0..all.len()).filter(is_direction).filter(|&place| add_orthogonal(&mut own, &rows[place])).count();
-            if held > 0 && open > held {
+            let is_contact = self.assembly.joints[index].kind == JointKind::Contact;
+            if is_contact && held > 0 && open > held {
                 return Some(index);
             }
             for &place in used {

@@ -17,9 +17,9 @@ use crate::analysis::CharacteristicAnalysis;
 /// Ratio of curvature to slope below which an axis is not searched.
 const CURVED: f64 = 0.5;
 /// Curvature, as a part of sigma, below which an axis is not searched.
-const MATTERS: f64 = 0.1;
+pub(super) const MATTERS: f64 = 0.1;
 /// Most axes that are searched, the most curved ones.
-const AXES: usize = 3;
+pub(super) const AXES: usize = 3;
 /// Halvings after which a side without a jump is dropped.
 const FIRST: usize = 3;
 /// Halvings in all, for the sides that remain.

@@ -7,6 +7,7 @@
 //! Evaluations: one for the steepest axis without such a node of each characteristic, three at most.
 
 use crate::analysis::CharacteristicAnalysis;
+use crate::analysis::sampling::jump::{AXES, MATTERS};
 use crate::assembly::Points;
 use crate::evaluation::Evaluator;
 use crate::method::Outcome;
@@ -14,12 +15,8 @@ use crate::warning::Warning;
 
 /// Greatest slope of a symmetric axis, as a part of its rise. Truncation of a smooth component leaves some per cent.
 const SYMMETRIC: f64 = 0.1;
-/// Rise, as a part of sigma, below which an axis does not matter.
-const MATTERS: f64 = 0.1;
 /// Parts of the rise at half the distance that belong to a kink. A parabola has 1/4, and components with curvature move 1/2 a little.
 const HALF: [f64; 2] = [0.42, 0.58];
-/// Most axes that are evaluated.
-const AXES: usize = 3;
 
 /// Axis along which a characteristic rises alike on both sides.
 struct SymmetricAxis {

@@ -255,7 +255,7 @@ impl Assembler {
         }
         let worst = search.worst(&stuck.values);
         let state = (search.given, &stuck.u[..]);
-        if let Some(joint) = system.open_joint(set, state, worst, stuck.values[worst]) {
+        if let Some(joint) = system.open_joint(set, state, &stuck.values, worst) {
             return AssemblyFailure::OpenJoint { nominal, joint, followed };
         }
         AssemblyFailure::Open {

@@ -11,6 +11,8 @@ pub enum EquationSubject {
         name: String,
         /// Freedom in words, such as `offset along x`.
         freedom: String,
+        /// True if the freedom is a rotation, whose residual has no unit.
+        rotation: bool,
     },
     /// A rod between two points. Its equation is the distance of the points less the length of the rod.
     Rod {
@@ -32,10 +34,17 @@ pub struct OpenJoint {
     pub lengths: Option<[f64; 2]>,
 }
 
+impl EquationSubject {
+    /// True if the residual of the equation is that of a direction, and not a length.
+    pub(super) fn is_direction(&self) -> bool {
+        matches!(self, Self::Joint { rotation: true, .. })
+    }
+}
+
 impl fmt::Display for EquationSubject {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Joint { name, freedom } => write!(f, "joint `{name}` ({freedom})"),
+            Self::Joint { name, freedom, .. } => write!(f, "joint `{name}` ({freedom})"),
             Self::Rod { name, .. } => write!(f, "rod `{name}`"),
         }
     }

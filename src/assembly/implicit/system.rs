@@ -214,16 +214,34 @@ impl System {
         self.subjects[equation].as_ref().map_or_else(|| self.equations[equation].clone(), ToString::to_string)
     }
 
-    /// Returns the joint that an equation belongs to, with the amount by which it is open at a state. Returns None for other equations.
+    /// Returns the joint of rigid parts that is open most at a state, with the amount, if `worst` belongs to a joint. Scales differ between
+    /// the equations of joints, so amounts are compared as lengths: a direction by the size of the state.
     pub(super) fn open_joint(
         &self,
         set: &FormulaSet,
         (given, u): (&[f64], &[f64]),
-        equation: usize,
-        residual: f64,
+        values: &[f64],
+        worst: usize,
     ) -> Option<OpenJoint> {
-        let subject = self.subjects.get(equation)?.clone()?;
-        // A condition with a subject is an equation, which has one formula. A loop has two equations, and two formulas for every link.
+        self.subjects[worst].as_ref()?;
+        let size = u.iter().fold(1.0, |size: f64, value| size.max(value.abs()));
+        let amount = |equation: usize| match &self.subjects[equation] {
+            None => 0.0,
+            Some(subject) => values[equation].abs() * if subject.is_direction() { size } else { 1.0 },
+        };
+        let equation = (0..values.len()).max_by(|&a, &b| amount(a).total_cmp(&amount(b)))?;
+        let subject = self.subjects[equation].clone()?;
+        let lengths = match subject {
+            EquationSubject::Rod { .. } => {
+                set.difference(self.formula_of(equation)?, |index| self.variable(given, u, index))
+            }
+            EquationSubject::Joint { .. } => None,
+        };
+        Some(OpenJoint { subject, residual: values[equation], lengths })
+    }
+
+    /// Returns the first formula of an equation. A loop has two equations, and two formulas for every link.
+    fn formula_of(&self, equation: usize) -> Option<usize> {
         let (mut first, mut formula) = (0, 0);
         for kind in &self.conditions {
             if first == equation {
@@ -235,13 +253,7 @@ impl System {
             };
             (first, formula) = (first + equations, formula + formulas);
         }
-        let lengths = match subject {
-            EquationSubject::Rod { .. } => {
-                set.difference(*self.formulas.get(formula)?, |index| self.variable(given, u, index))
-            }
-            EquationSubject::Joint { .. } => None,
-        };
-        Some(OpenJoint { subject, residual, lengths })
+        self.formulas.get(formula).copied()
     }
 
     /// Returns a state with the names of the unknowns.

@@ -22,7 +22,7 @@ use crate::tree::Key;
 use sensitol::assembly::implicit::EquationSubject;
 use sensitol_numeric::names::nearest;
 use sensitol_spatial::{
-    Assembly, ClosedAssembly, FeatureId, JointKind, Mobility, PartJoint, PartPose, SpatialError, Subject,
+    Assembly, ClosedAssembly, FeatureId, JointKind, Mobility, NamedFormula, PartJoint, PartPose, SpatialError, Subject,
 };
 use values::{Nominal, Values};
 
@@ -211,13 +211,13 @@ fn unknown_key(tree: &Tree, path: &str, valid: &[&str]) -> Result<(), Fault> {
 }
 
 /// Joint that an equation belongs to, for failures at a point.
-fn subject(joint: &PartJoint, equation: &str, values: &Values<'_>) -> EquationSubject {
+fn subject(joint: &PartJoint, equation: &NamedFormula, values: &Values<'_>) -> EquationSubject {
     let name = joint.name.clone();
     match joint.kind {
         JointKind::Rod => EquationSubject::Rod { name, unit: values.made_unit(true) },
         _ => {
-            let freedom = equation.strip_prefix(&format!("{name}: ")).unwrap_or(equation).to_owned();
-            EquationSubject::Joint { name, freedom }
+            let freedom = equation.name.strip_prefix(&format!("{name}: ")).unwrap_or(&equation.name).to_owned();
+            EquationSubject::Joint { name, freedom, rotation: !equation.is_length }
         }
     }
 }
@@ -266,7 +266,7 @@ fn write(expanded: &mut Expanded, read: &Read, closed: ClosedAssembly, values: &
         let entry = joint.map_or(&read.parts[0], |joint| &read.joints[joint]);
         origin("equations", &equation.name, entry);
         if let Some(joint) = joint {
-            let subject = subject(&read.assembly.joints[joint], &equation.name, values);
+            let subject = subject(&read.assembly.joints[joint], &equation, values);
             expanded.elements.subjects.push((equation.name.clone(), subject));
         }
         equations.push((key(&entry.span, &equation.name), text(&entry.span, equation.formula)));
