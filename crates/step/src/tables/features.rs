@@ -13,6 +13,8 @@ pub(super) struct TableFeature {
     pub(super) name: String,
     /// Shape in the unit of the part.
     pub(super) shape: FeatureShape,
+    /// True for a pin, false for a hole.
+    pub(super) convex: bool,
     /// Text of the diameter: the name of a dimension or a formula. None for the nominal number.
     pub(super) diameter: Option<String>,
     pub(super) zones: FeatureZones,
@@ -31,6 +33,7 @@ impl TableFeature {
             FeatureShape::Plane { point: at, normal, size } => {
                 found.push(("plane", point(at)));
                 found.push(("normal", direction(normal)));
+                let size = size.filter(|[a, b]| *a > 0.0 && *b > 0.0);
                 found.extend(size.map(|size| ("size", list(&size))));
             }
             FeatureShape::Axis { point: at, along, length, radius } => {
@@ -118,7 +121,7 @@ impl Features {
 
     fn push(&mut self, name: String, shape: FeatureShape) -> usize {
         let (diameter, zones, notes) = (None, FeatureZones::default(), Vec::new());
-        self.all.push(TableFeature { name, shape, diameter, zones, notes });
+        self.all.push(TableFeature { name, shape, convex: true, diameter, zones, notes });
         self.all.len() - 1
     }
 
@@ -165,6 +168,7 @@ impl Features {
         }
         let faces = self.faces(part, root);
         let shape = shape(&faces)?;
+        let convex = faces.first()?.convex;
         let other = match &faces.first()?.surface {
             FaceSurface::Other(kind) => Some(kind.to_ascii_lowercase()),
             FaceSurface::Cone { .. } => Some("cone: its axis".to_owned()),
@@ -175,6 +179,7 @@ impl Features {
             other.map(|kind| if kind.contains(':') { kind } else { format!("{kind}: the middle of its edges") });
         let name = self.names.take(name);
         let index = self.push(name, shape);
+        self.all[index].convex = convex;
         self.all[index].notes.extend(other);
         self.by_root.insert(root, index);
         Some(index)
@@ -235,13 +240,13 @@ impl Features {
         roots.iter().filter_map(|root| self.by_root.get(root).copied()).collect()
     }
 
-    /// Name of the feature of a datum.
+    /// Feature of a datum.
     ///
     /// # Errors
     /// Returns why it has no single one.
-    pub(super) fn datum_name(&self, letter: &str) -> Result<&str, String> {
+    pub(super) fn datum_feature(&self, letter: &str) -> Result<usize, String> {
         match self.by_letter.get(letter).map(Vec::as_slice) {
-            Some([only]) => Ok(&self.all[*only].name),
+            Some([only]) => Ok(*only),
             None | Some([]) => Err(format!("datum {letter} has no feature")),
             Some(_) => Err(format!("datum {letter} has several features")),
         }

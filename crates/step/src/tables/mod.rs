@@ -3,6 +3,7 @@
 //! The text follows the syntax of studies, and nothing here needs the engine.
 
 mod cluster;
+mod datum_frame;
 mod features;
 mod joints;
 mod part;

@@ -1,10 +1,11 @@
 //! Writes the table of one part.
 
 use super::cluster::FeatureShape;
+use super::datum_frame::datum_names;
 use super::features::Features;
 use super::sizes::{StudyUnit, line, suffix};
 use super::text::{UniqueNames, comment, number, point};
-use super::zone_keys::KeyText;
+use super::zone_keys::{KeyText, group};
 use super::{OpenItem, OpenReason, StudyTables, TableRequest};
 use crate::semantic::{
     DimensionKind, GeometricTolerance, Placement, StepDimension, StepPart, ToleranceKind, ZoneShape,
@@ -94,14 +95,19 @@ impl<'m> PartWriter<'m> {
             self.dimension(dimension, request, prefixed, unit, names, &mut found.dimensions);
         }
         let mut open = Vec::new();
-        for tolerance in &part.tolerances {
+        // Places first, so that a direction that refines one finds it.
+        let mut ordered: Vec<&GeometricTolerance> = part.tolerances.iter().collect();
+        ordered.sort_by_key(|tolerance| group(tolerance.kind));
+        for tolerance in ordered {
             match self.tolerance(tolerance, unit) {
                 Ok(()) if !self.is_first => {}
                 Ok(()) if request.keys.takes("position") => found.written += 1,
                 Ok(()) => found.waiting += 1,
-                Err(item) => open.push(item),
+                Err(item) => open.push((tolerance.entity, item)),
             }
         }
+        open.sort_by_key(|(entity, _)| *entity);
+        let open: Vec<OpenItem> = open.into_iter().map(|(_, item)| item).collect();
         found.parts += &self.table(request, &open);
         found.features += self.features.all.len();
         if self.is_first {
@@ -137,14 +143,9 @@ impl<'m> PartWriter<'m> {
         let mut refused = None;
         let mut written = 0;
         for index in targets {
-            let feature = &mut self.features.all[index];
-            let is_axis = matches!(feature.shape, FeatureShape::Axis { .. });
-            match feature.zones.add(tolerance, unit.value(value), datums.clone(), is_axis) {
-                Ok(()) => {
-                    written += 1;
-                    feature.notes.extend(notes(tolerance));
-                }
-                Err(reason) => refused = Some(format!("{}: {reason}", feature.name)),
+            match self.add(index, tolerance, unit.value(value), datums.as_deref()) {
+                Ok(()) => written += 1,
+                Err(reason) => refused = Some(format!("{}: {reason}", self.features.all[index].name)),
             }
         }
         match refused {
@@ -159,8 +160,35 @@ impl<'m> PartWriter<'m> {
         }
     }
 
-    /// Names of the features of the datums of a tolerance. Returns why there is none.
-    fn datums(&self, tolerance: &GeometricTolerance) -> Result<Option<String>, String> {
+    /// Adds a tolerance to a feature. Returns why the feature cannot have it as a key.
+    fn add(
+        &mut self,
+        index: usize,
+        tolerance: &GeometricTolerance,
+        value: f64,
+        datums: Option<&[usize]>,
+    ) -> Result<(), String> {
+        let (names, idle) = match datums {
+            Some(datums) => {
+                let (names, idle) = datum_names(&self.features.all, index, datums)?;
+                (Some(names), idle)
+            }
+            None => (None, Vec::new()),
+        };
+        let feature = &mut self.features.all[index];
+        let shape = feature.shape.scaled(self.scale);
+        // A formula of a radius is no size that gives a bonus.
+        let size = feature.diameter.clone().filter(|name| !name.contains('*'));
+        let size = size.map(|name| (if feature.convex { "pin" } else { "hole" }, name));
+        feature.zones.add(tolerance, value, names, &shape, size)?;
+        feature.notes.extend(notes(tolerance));
+        let fixes_nothing = |name: String| format!("#{}: datum {name} fixes nothing more", tolerance.entity);
+        feature.notes.extend(idle.into_iter().map(fixes_nothing));
+        Ok(())
+    }
+
+    /// Features of the datums of a tolerance. Returns why there is none.
+    fn datums(&self, tolerance: &GeometricTolerance) -> Result<Option<Vec<usize>>, String> {
         if !tolerance.has_datums {
             return Ok(None);
         }
@@ -172,9 +200,9 @@ impl<'m> PartWriter<'m> {
             let [letter] = &reference.letters[..] else {
                 return Err(format!("{} is a common datum", comment(&reference.letters.join("-"))));
             };
-            found.push(self.features.datum_name(letter).map_err(|reason| comment(&reason))?.to_owned());
+            found.push(self.features.datum_feature(letter).map_err(|reason| comment(&reason))?);
         }
-        Ok(Some(found.join(" ")))
+        Ok(Some(found))
     }
 
     /// Writes a dimension, and the diameter of its features.

@@ -1,5 +1,6 @@
 //! Keys of tolerances, and which of them the reader of studies takes.
 
+use super::cluster::FeatureShape;
 use super::text::number;
 use crate::semantic::{GeometricTolerance, MaterialCondition, ToleranceKind, ZoneShape};
 
@@ -27,39 +28,100 @@ impl ReaderKeys {
 /// A pair of key and text of a value.
 pub(super) type KeyText = (&'static str, String);
 
-/// Keys of a kind of tolerance. Returns None if a study has none.
-fn key(kind: ToleranceKind) -> Option<&'static str> {
+/// Group of tolerances, of which a feature has at most one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum ZoneGroup {
+    /// Place: position, profile, and places about a datum axis.
+    Place,
+    /// Direction.
+    Orientation,
+    /// Form, which needs no datum.
+    Form,
+}
+
+/// Key of a kind of tolerance, and its group. Returns None if a study has none.
+fn key(kind: ToleranceKind) -> Option<(&'static str, ZoneGroup)> {
+    use ZoneGroup::{Form, Orientation, Place};
     Some(match kind {
-        ToleranceKind::Flatness => "flatness",
-        ToleranceKind::SurfaceProfile => "profile",
-        ToleranceKind::Angularity => "angularity",
-        ToleranceKind::Perpendicularity => "perpendicularity",
-        ToleranceKind::Parallelism => "parallelism",
-        ToleranceKind::Position => "position",
-        ToleranceKind::Concentricity | ToleranceKind::Coaxiality => "coaxiality",
-        ToleranceKind::CircularRunout | ToleranceKind::TotalRunout => "runout",
-        ToleranceKind::Straightness
-        | ToleranceKind::Roundness
-        | ToleranceKind::Cylindricity
-        | ToleranceKind::LineProfile
-        | ToleranceKind::Symmetry
-        | ToleranceKind::Other => return None,
+        ToleranceKind::Position => ("position", Place),
+        ToleranceKind::SurfaceProfile => ("profile", Place),
+        ToleranceKind::Coaxiality => ("coaxiality", Place),
+        ToleranceKind::Concentricity => ("concentricity", Place),
+        ToleranceKind::CircularRunout => ("runout", Place),
+        ToleranceKind::TotalRunout => ("total_runout", Place),
+        ToleranceKind::Angularity => ("angularity", Orientation),
+        ToleranceKind::Perpendicularity => ("perpendicularity", Orientation),
+        ToleranceKind::Parallelism => ("parallelism", Orientation),
+        ToleranceKind::Flatness => ("flatness", Form),
+        ToleranceKind::Straightness => ("straightness", Form),
+        ToleranceKind::Roundness => ("roundness", Form),
+        ToleranceKind::Cylindricity => ("cylindricity", Form),
+        ToleranceKind::LineProfile | ToleranceKind::Symmetry | ToleranceKind::Other => return None,
     })
 }
 
-/// Tolerances that a feature has as keys: all of one datum frame and one material condition.
+/// Group of a kind of tolerance. Kinds without a key are last.
+pub(super) fn group(kind: ToleranceKind) -> Option<ZoneGroup> {
+    key(kind).map(|(_, group)| group)
+}
+
+/// True if a shape can have a key.
+fn fits(key: &str, shape: &FeatureShape) -> bool {
+    match shape {
+        FeatureShape::Plane { .. } => !matches!(key, "coaxiality" | "concentricity" | "roundness" | "cylindricity"),
+        FeatureShape::Axis { .. } => !matches!(key, "profile" | "flatness"),
+        FeatureShape::Point { .. } => {
+            matches!(key, "position" | "coaxiality" | "concentricity" | "runout" | "total_runout" | "roundness")
+        }
+    }
+}
+
+/// Words for a shape.
+fn words(shape: &FeatureShape) -> &'static str {
+    match shape {
+        FeatureShape::Plane { .. } => "a plane",
+        FeatureShape::Axis { .. } => "an axis",
+        FeatureShape::Point { .. } => "a point",
+    }
+}
+
+/// Datums of a tolerance that its feature can have.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct DatumNames {
+    /// Indices of the features.
+    pub(super) features: Vec<usize>,
+    /// Names, in their order.
+    pub(super) text: String,
+    /// True if one of them is an axis.
+    pub(super) has_axis: bool,
+}
+
+/// A tolerance as a key.
+#[derive(Debug, Clone)]
+struct ZoneKey {
+    key: &'static str,
+    group: ZoneGroup,
+    value: f64,
+    /// Key and name of the size that gives a bonus.
+    bonus: Option<(MaterialCondition, &'static str, String)>,
+}
+
+/// Tolerances that a feature has as keys: at most one of each group, and all of one datum frame.
 #[derive(Debug, Clone, Default)]
 pub(super) struct FeatureZones {
-    pub(super) values: Vec<KeyText>,
-    datums: Option<String>,
-    condition: Option<MaterialCondition>,
-    framed: bool,
+    zones: Vec<ZoneKey>,
+    datums: Option<DatumNames>,
     /// Numbers of the entities.
     pub(super) entities: Vec<u64>,
 }
 
 impl FeatureZones {
-    /// Adds a tolerance. `datums` are the features of its datums, `value` is in the unit of the study.
+    /// Features from which this one is measured.
+    pub(super) fn datum_features(&self) -> &[usize] {
+        self.datums.as_ref().map_or(&[], |datums| &datums.features)
+    }
+
+    /// Adds a tolerance. `value` and `shape` are in the unit of the study, `size` is the key and the name of the dimension of the diameter.
     ///
     /// # Errors
     /// Returns why the feature cannot have it as a key.
@@ -67,49 +129,112 @@ impl FeatureZones {
         &mut self,
         tolerance: &GeometricTolerance,
         value: f64,
-        datums: Option<String>,
-        is_axis: bool,
+        datums: Option<DatumNames>,
+        shape: &FeatureShape,
+        size: Option<(&'static str, String)>,
     ) -> Result<(), String> {
-        let Some(key) = key(tolerance.kind) else {
+        let Some((key, group)) = key(tolerance.kind) else {
             return Err(format!("a study has no key for {}", tolerance.kind.label()));
         };
-        if let ZoneShape::Other(name) = &tolerance.zone {
-            return Err(format!("a zone `{name}`"));
+        if !fits(key, shape) {
+            return Err(format!("a study has no {} of {}", tolerance.kind.label(), words(shape)));
         }
-        if is_axis && key == "position" && tolerance.zone == ZoneShape::Width {
+        if let ZoneShape::Other(name) = &tolerance.zone {
+            return Err(format!("a zone `{}`", super::text::comment(name)));
+        }
+        let is_axis = matches!(shape, FeatureShape::Axis { .. });
+        let is_round = !matches!(key, "runout" | "total_runout" | "concentricity") && group != ZoneGroup::Form;
+        if is_axis && is_round && tolerance.zone == ZoneShape::Width {
             return Err("a zone between two planes".to_owned());
         }
         if let Some((kind, _)) = tolerance.extra.first() {
             return Err(format!("with {}", kind.to_ascii_lowercase().replace('_', " ")));
         }
-        if self.values.iter().any(|(other, _)| *other == key) {
-            return Err(format!("the feature has another {key}"));
+        if let Some(other) = self.zones.iter().find(|other| other.group == group) {
+            return Err(match other.key == key {
+                true => format!("the feature has another {key}"),
+                false => format!("the feature has {} already", other.key),
+            });
         }
-        // A form has no datums, and joins every frame.
-        if tolerance.has_datums || key != "flatness" {
-            if self.framed && (self.datums != datums || self.condition != tolerance.condition) {
-                return Err("another datum frame than the other tolerances of the feature".to_owned());
+        let bonus = match (tolerance.condition, size) {
+            (None, _) => None,
+            (Some(condition), Some((size_key, size))) if is_axis && key == "position" => {
+                Some((condition, size_key, size))
             }
-            self.framed = true;
+            (Some(_), _) => return Err("at a material condition without a size that varies".to_owned()),
+        };
+        self.check_extent(group, value, shape)?;
+        self.check_datums(key, group, datums.as_ref(), shape)?;
+        // A form has no datums, and joins every frame.
+        if group != ZoneGroup::Form {
             self.datums = datums;
-            self.condition = tolerance.condition;
         }
-        self.values.push((key, number(value)));
+        self.zones.push(ZoneKey { key, group, value, bonus });
         self.entities.push(tolerance.entity);
         Ok(())
     }
 
-    /// Keys with their values, datums and condition last.
+    /// Checks that a zone is not wider than its feature, and that a direction refines a place.
+    fn check_extent(&self, group: ZoneGroup, value: f64, shape: &FeatureShape) -> Result<(), String> {
+        let extent = match shape {
+            FeatureShape::Plane { size, .. } => size.map(|[a, b]| a.min(b)),
+            FeatureShape::Axis { length, .. } => *length,
+            FeatureShape::Point { .. } => return Ok(()),
+        };
+        let extent = extent.filter(|extent| *extent > 0.0);
+        match (group, extent) {
+            (ZoneGroup::Orientation, None) => return Err("the feature has no extent".to_owned()),
+            (ZoneGroup::Orientation | ZoneGroup::Place, Some(extent)) if value > extent => {
+                return Err("the zone is wider than the feature".to_owned());
+            }
+            _ => {}
+        }
+        let place = self.zones.iter().find(|zone| zone.group == ZoneGroup::Place && zone.bonus.is_none());
+        match (group, place) {
+            (ZoneGroup::Orientation, Some(place)) if value >= place.value => {
+                Err(format!("{} {} bounds it already", place.key, number(place.value)))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Checks that all tolerances have one datum frame, and that a place about an axis has one.
+    fn check_datums(
+        &self,
+        key: &str,
+        group: ZoneGroup,
+        datums: Option<&DatumNames>,
+        shape: &FeatureShape,
+    ) -> Result<(), String> {
+        if group == ZoneGroup::Form {
+            return Ok(());
+        }
+        let is_framed = self.zones.iter().any(|zone| zone.group != ZoneGroup::Form);
+        if is_framed && self.datums.as_ref() != datums {
+            return Err("another datum frame than the other tolerances of the feature".to_owned());
+        }
+        let about_axis = matches!(key, "coaxiality" | "concentricity" | "runout" | "total_runout");
+        let needs_axis = datums.is_some() || !matches!(shape, FeatureShape::Axis { .. });
+        if about_axis && needs_axis && !datums.is_some_and(|datums| datums.has_axis) {
+            return Err("its datums have no axis".to_owned());
+        }
+        Ok(())
+    }
+
+    /// Keys with their values, datums last.
     pub(super) fn keys(&self) -> Vec<KeyText> {
-        let mut found = self.values.clone();
-        if let Some(datums) = &self.datums {
-            found.push(("datums", format!("\"{datums}\"")));
-        }
-        match self.condition {
-            Some(MaterialCondition::Maximum) => found.push(("at", "\"MMC\"".to_owned())),
-            Some(MaterialCondition::Least) => found.push(("at", "\"LMC\"".to_owned())),
-            None => {}
-        }
+        let text = |zone: &ZoneKey| match &zone.bonus {
+            None => number(zone.value),
+            Some((condition, key, size)) => {
+                let at = match condition {
+                    MaterialCondition::Maximum => "MMC",
+                    MaterialCondition::Least => "LMC",
+                };
+                format!("{{ zone = {}, at = \"{at}\", {key} = \"{size}\" }}", number(zone.value))
+            }
+        };
+        let mut found: Vec<KeyText> = self.zones.iter().map(|zone| (zone.key, text(zone))).collect();
+        found.extend(self.datums.iter().map(|datums| ("datums", format!("\"{}\"", datums.text))));
         found
     }
 }
