@@ -12,6 +12,8 @@ use crate::entries::assembly_schema as assembly;
 use crate::entries::correlation_entry::{Correlations, Joints};
 use crate::entries::cost_entry::{CostEntry, LossEntry, RequireEntry};
 pub(crate) use crate::entries::distribution_entry::{DistributionEntry, PartEntry, distribution};
+#[cfg(feature = "schema")]
+use crate::entries::general_schema::GeneralEntry;
 use crate::entries::guard::GuardEntry;
 pub(crate) use crate::entries::named_entries::Entries;
 pub(crate) use crate::entries::named_values::{ConstantEntry, UnknownEntry};
@@ -101,7 +103,7 @@ pub(crate) struct StudyFile {
     /// Tolerance of dimensions that state neither a tolerance nor a spread: { standard = "ISO 2768-m" }, or the values of a title block by
     /// ISO 22081. Theoretically exact dimensions are [constants].
     #[serde(default, rename = "general")]
-    #[cfg_attr(feature = "schema", schemars(schema_with = "registry::general"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<GeneralEntry>"))]
     pub(crate) _general: Option<IgnoredAny>,
     /// A built-in model or an external program, evaluated next to the formulas.
     pub(crate) model: Option<Spanned<ModelEntry>>,

@@ -8,6 +8,8 @@ pub(crate) mod correlation_entry;
 pub(crate) mod cost_entry;
 pub(crate) mod distribution_entry;
 pub(crate) mod file;
+#[cfg(feature = "schema")]
+pub(crate) mod general_schema;
 pub(crate) mod guard;
 pub(crate) mod named_entries;
 pub(crate) mod named_values;

@@ -210,20 +210,6 @@ pub(crate) fn processes<T: JsonSchema>(generator: &mut SchemaGenerator) -> Schem
     ] })
 }
 
-/// Schema of `[general]`.
-pub(crate) fn general(_: &mut SchemaGenerator) -> Schema {
-    let above = |what: &str| json!({ "description": what, "type": "number", "exclusiveMinimum": 0 });
-    json_schema!({
-        "type": "object",
-        "properties": {
-            "standard": { "description": "ISO 2768-1 for lengths: class f, m, c or v. An added H, K or L of part 2 has no effect.", "type": "string" },
-            "length": above("Half the tolerance of all lengths in mm, in place of a standard."),
-            "angle": above("Half the tolerance of all angles in degrees."),
-        },
-        "additionalProperties": false,
-    })
-}
-
 /// Schema of `distribution`: the name of a kind, or one table for each kind with its own parameters. `T` has the parameters of all kinds.
 pub(crate) fn distribution<T: JsonSchema>(generator: &mut SchemaGenerator) -> Schema {
     let all = T::json_schema(generator).to_value();
