@@ -157,7 +157,7 @@ fn a_shaft_in_two_bores_has_the_figures_of_its_formula() {
     let tilted =
         format!("{}tilt = {{ angle = [\"shaft.journal\", \"housing.line\"], unit = \"deg\" }}\n", shaft(BORES));
     let tilted = parse(&tilted).unwrap();
-    let sample = simulate(&tilted.problem, &SimulationOptions::default().with_samples(50_000)).unwrap();
+    let sample = simulate(&tilted.problem, &SimulationOptions::default().with_samples(20_000)).unwrap();
     let tilt = &sample.characteristics[2];
     for (found, name) in [(&tilt.mean, "mean"), (&tilt.sigma, "sigma")] {
         let (found, se) = (found.as_ref().unwrap(), number(&expected["tilt"][format!("{name}_se")]));
@@ -281,7 +281,13 @@ fn expanded_zones_and_samples_agree() {
         let expanded = parse(&study.expanded).unwrap_or_else(|error| panic!("{error}\n{}", study.expanded));
         let found = moments(&study);
         assert_eq!(moments(&expanded), found, "{}", study.expanded);
-        let sample = simulate(&study.problem, &SimulationOptions::default().with_samples(20_000)).unwrap();
+        let converted =
+            parse(&format!("units = \"convert\"\n{text}")).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        for (converted, found) in moments(&converted).iter().zip(&found) {
+            // The derivatives are differences of values in metres.
+            relative(converted[1], found[1], 1e-6);
+        }
+        let sample = simulate(&study.problem, &SimulationOptions::default().with_samples(4_000)).unwrap();
         for output in 0..2 {
             let one = &sample.characteristics[output];
             let (mean, sigma) = (one.mean.as_ref().unwrap(), one.sigma.as_ref().unwrap());
@@ -509,4 +515,95 @@ z = {{ of = "rod.ball", from = "housing.base", unit = "mm" }}
     // With a coaxiality of its own, of half the zone 0.02.
     let both = f64::hypot(own * f64::hypot(4.5, 3.5), 0.02 / 3.0);
     relative(found(&text("coaxiality = 0.04,", ""))[0][1], both, 1e-6);
+}
+
+/// Flatness acts at the contact: half the zone on either side, or all of it outside.
+#[test]
+fn form_acts_at_the_contact() {
+    let text = r#"
+[dimensions]
+t = { nominal = 30, unit = "mm" }
+[parts.table]
+top = { plane = [0, 0, 0], normal = "z", flatness = 0.06 }
+[parts.block]
+foot = { plane = [0, 0, 0], normal = "-z", flatness = { zone = 0.06, side = "out", distribution = "uniform" } }
+lid = { plane = [0, 0, "t"], normal = "z", flatness = 0.5 }
+[joints]
+seat = { on = "table.top", against = "block.foot", takes = 3, gap = 0.5 }
+[characteristics]
+height = { of = "block.lid", from = "table.top", unit = "mm" }
+"#;
+    let study = parse(text).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(study.problem.dimensions().len(), 3, "the lid touches nothing");
+    let [mean, sigma, _] = moments(&study)[0];
+    relative(mean, 30.53, 1e-9);
+    relative(sigma, f64::hypot(0.01, 0.06 / 12f64.sqrt()), 1e-7);
+}
+
+/// A pattern as one body: a displacement, and a turn about its middle with the lever of each hole.
+#[test]
+fn a_pattern_moves_and_turns_as_one_body() {
+    let text = |law: &str, within: &str| {
+        format!(
+            r#"
+[dimensions]
+t = {{ nominal = 30, tolerance = 0.1, unit = "mm" }}
+[parts.flange]
+frame = {{ frame = [0, 0, 0], z = "z", x = "x" }}
+h1 = {{ axis = [40, 0, 0], along = "z" }}
+h2 = {{ axis = [0, 40, 0], along = "-z" }}
+h3 = {{ axis = [-40, 0, 0], along = "z" }}
+h4 = {{ axis = [0, -40, 0], along = "z" }}
+[parts.flange.patterns]
+bolts = {{ of = ["h1", "h2", "h3", "h4"], position = {{ zone = 0.6{law} }}{within} }}
+[parts.rod]
+at = [40, 0, 0]
+ball = {{ point = [0, 0, 0] }}
+[parts.other]
+at = [0, 40, 0]
+ball = {{ point = [0, 0, 0] }}
+[joints]
+ball = {{ hole = "flange.h1", ball = "rod.ball" }}
+other = {{ hole = "flange.h2", ball = "other.ball" }}
+[characteristics]
+x = {{ of = "rod.ball", from = "flange.frame", along = "x", unit = "mm" }}
+y = {{ of = "rod.ball", from = "flange.frame", along = "y", unit = "mm" }}
+x2 = {{ of = "other.ball", from = "flange.frame", along = "x", unit = "mm" }}
+"#
+        )
+    };
+    let found = |law: &str, within: &str| {
+        let text = text(law, within);
+        moments(&parse(&text).unwrap_or_else(|error| panic!("{error}\n{text}")))
+    };
+    let variances = |of: &[[f64; 3]]| of.iter().map(|one| (one[1] / 0.3).powi(2)).collect::<Vec<_>>();
+    // Half the zone is 0.3. The turn moves h1 along y, and h2 along x.
+    for (found, expected) in variances(&found("", "")).iter().zip([1.0 / 9.0, 1.5 / 9.0, 1.5 / 9.0]) {
+        relative(*found, expected, 1e-7);
+    }
+    let even = ", distribution = \"uniform\"";
+    for (found, expected) in variances(&found(even, "")).iter().zip([0.15, 0.25, 0.25]) {
+        relative(*found, expected, 1e-7);
+    }
+    // Each hole within 0.3 of its own.
+    let own = 0.25 / 9.0;
+    for (found, expected) in variances(&found(even, ", within = 0.3")).iter().zip([0.15, 0.25, 0.25]) {
+        relative(*found, expected + own, 1e-7);
+    }
+}
+
+/// The examples of drawings keep their units, checked and as written, and have the mobility that their text says.
+#[test]
+fn examples_of_drawings_check_their_units() {
+    for (name, free) in [("shaft-two-bores", 1), ("bolted-flange", 0)] {
+        let text = read(&format!("examples/{name}/study.toml"));
+        let study = parse(&text).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(study.mobility.as_ref().unwrap().free.len(), free, "{name}");
+        let checked = parse(&format!("units = \"check\"\n{text}")).unwrap_or_else(|error| panic!("{error}"));
+        let warned = checked.warnings.iter().any(|warning| warning.code().contains("unit"));
+        assert!(!warned, "{name}: {:?}", checked.warnings);
+        let found = moments(&study);
+        assert_eq!(moments(&parse(&study.expanded).unwrap()), found, "{name}");
+        assert!(study.expanded.contains("3 sigma = half the zone"), "{}", study.expanded);
+    }
 }
