@@ -10,7 +10,7 @@ use crate::values::{finite, probability};
 use sensitol_numeric::names::nearest;
 use sensitol_study::import::{
     ColumnRole, ImportFault, ImportOptions, ImportProblem, Imported, ROLES, Sheet, WorkbookFault, has_header, import,
-    is_workbook, measured, named, workbook,
+    is_workbook, measured, named, sheet_of, workbook,
 };
 
 /// Help heading of the options on tables.
@@ -144,11 +144,30 @@ pub(super) fn measured_of(
 }
 
 fn refused(path: &Path, fault: &ImportFault) -> Failure {
-    let help = fault.problem.help().map(|help| match fault.problem {
-        ImportProblem::NoHeader => format!("{help}; or --column nominal=HEADER"),
-        _ => help,
-    });
-    failed(path, fault.to_string(), help)
+    let help = [fault.problem.help(), options_of(&fault.problem)].into_iter().flatten().collect::<Vec<_>>().join("; ");
+    failed(path, fault.to_string(), Some(help).filter(|help| !help.is_empty()))
+}
+
+/// Options that end a fault. Returns None if there are none.
+fn options_of(problem: &ImportProblem) -> Option<String> {
+    Some(match problem {
+        ImportProblem::NoHeader => "or --column nominal=HEADER".to_owned(),
+        ImportProblem::Twice { role, .. } => format!("or --column {role}=HEADER"),
+        ImportProblem::LimitsOrDeviations { upper, lower } => {
+            let pair = |one: &str, other: &str| format!("--column {one}=\"{upper}\" --column {other}=\"{lower}\"");
+            format!("{}, {} or {}", pair("max", "min"), pair("upper", "lower"), pair("upper", "minus"))
+        }
+        ImportProblem::NominalOutside { text, .. } => {
+            format!("--column upper=\"{text}\" for deviations, --column max=\"{text}\" if it is right")
+        }
+        ImportProblem::Numbers { headers } => {
+            let header = &headers[0];
+            format!("such as --column upper=\"{header}\" or --column ignore=\"{header}\"")
+        }
+        ImportProblem::WideSigma { .. } => "--column sigmas=HEADER".to_owned(),
+        ImportProblem::Fixed { .. } => "or pass --allow-fixed where they do not vary".to_owned(),
+        _ => return None,
+    })
 }
 
 /// Study with the origin and the notes of the import as comments.
@@ -206,5 +225,5 @@ fn sheet(path: &Path, bytes: Vec<u8>, asked: &TableArgs) -> Result<(Option<Strin
     if asked.sheet.is_some() {
         return Err(failed(path, "--sheet is for workbooks, and this is a table of text".to_owned(), None));
     }
-    Ok((None, Sheet::of_text(&text(path, bytes)?)))
+    Ok((None, sheet_of(&text(path, bytes)?)))
 }

@@ -265,10 +265,8 @@ impl ImportProblem {
                 "write a sign before each lower deviation: +0.02 lies above the nominal".to_owned()
             }
             Self::LimitsDiffer { .. } => "correct one of them, or leave one out".to_owned(),
-            Self::Fixed { .. } => "write their tolerances, or pass --allow-fixed where they do not vary".to_owned(),
-            Self::WideSigma { .. } => {
-                "a number of sigmas in half the band belongs to --column sigmas=HEADER".to_owned()
-            }
+            Self::Fixed { .. } => "write their tolerances".to_owned(),
+            Self::WideSigma { .. } => "a number of sigmas in half the band belongs into a column `sigmas`".to_owned(),
             Self::NoQuantity { .. } => "write a whole number from 1 to 1000".to_owned(),
             Self::NoSum { .. } => {
                 "leave the nominal value of a total empty, or give a dimension another name".to_owned()
@@ -298,21 +296,15 @@ impl ImportProblem {
     fn column_help(&self) -> Option<String> {
         Some(match self {
             Self::NoHeader => "name them in one row: name and nominal, in German Bezeichnung and Nennmaß".to_owned(),
-            Self::Twice { role, .. } => format!("give one of them another header, or pass --column {role}=HEADER"),
+            Self::Twice { .. } => "give one of them another header".to_owned(),
             Self::NoColumn { known, .. } => format!("its columns are {}", quoted(known)),
-            Self::LimitsOrDeviations { upper, lower } => format!(
-                "limits: --column max=\"{upper}\" --column min=\"{lower}\"; deviations with their signs: --column upper=\"{upper}\" \
-                 --column lower=\"{lower}\"; without signs: --column upper=\"{upper}\" --column minus=\"{lower}\""
-            ),
-            Self::NominalOutside { text, .. } => format!(
-                "deviations belong to --column upper=\"{text}\" and lower; if it is right, pass --column max=\"{text}\""
-            ),
+            Self::LimitsOrDeviations { .. } => "say which: limits, deviations with their signs, or without".to_owned(),
+            Self::NominalOutside { .. } => "correct it, or say that these are deviations".to_owned(),
             Self::TwoUnits { .. } => "write units of one kind, such as mm and µm, and one for each number".to_owned(),
             Self::UnitAlone { nominal, .. } => format!("write its unit in its header too: {nominal} [mm]"),
-            Self::Numbers { headers } => {
-                let header = &headers[0];
+            Self::Numbers { .. } => {
                 format!(
-                    "say what it is, such as --column upper=\"{header}\", or leave it out by --column ignore=\"{header}\"; roles are {}",
+                    "say what they hold, or leave them out; meanings are {}",
                     ROLES.map(|(_, name, _)| name).join(", ")
                 )
             }

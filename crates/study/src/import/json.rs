@@ -7,8 +7,13 @@ use crate::import::sheet::{Content, Sheet};
 /// Deepest nesting of objects in a row. The leaves of a deeper one are left out.
 const DEEPEST: usize = 4;
 
+/// Sheet of a text: a list of rows in JSON, or columns between tabs, semicolons or commas.
+pub fn sheet_of(text: &str) -> Sheet {
+    of_json(text.strip_prefix('\u{feff}').unwrap_or(text)).unwrap_or_else(|| Sheet::of_text(text))
+}
+
 /// Sheet of a list of objects, which may stand in an object. Returns None if the text is no JSON of this form.
-pub(super) fn of_json(text: &str) -> Option<Sheet> {
+fn of_json(text: &str) -> Option<Sheet> {
     if !text.trim_start().starts_with(['{', '[']) {
         return None;
     }

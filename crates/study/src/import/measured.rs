@@ -67,7 +67,7 @@ pub fn measured(
     let alike = units.len() == columns.len() && units.iter().all(|unit| *unit == units[0]);
     let unit = units.first().filter(|_| alike).map(|unit| unit.as_str());
     if formula.is_none() && columns.len() > 1 {
-        notes.push("no formula is given: all dimensions are added; pass --formula \"a - b\"".to_owned());
+        notes.push("no formula is given: all dimensions are added".to_owned());
     }
     let formula = formula.map_or_else(|| sum(&columns), str::to_owned);
     let target = Target {

@@ -23,6 +23,7 @@ pub mod workbook;
 pub use columns::{ColumnRole, ROLES, named};
 pub use fault::{ImportFault, ImportProblem};
 pub use header::has_header;
+pub use json::sheet_of;
 pub use measured::measured;
 pub use sheet::Sheet;
 pub use stack::{ImportOptions, Imported, import};

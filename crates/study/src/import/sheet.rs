@@ -1,6 +1,5 @@
 //! Cells of a sheet by row and column, with their names in a spreadsheet.
 
-use crate::import::json::of_json;
 use crate::table::{DELIMITERS, delimiter, records};
 
 /// Content of a cell.
@@ -46,12 +45,9 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// Sheet of a text with tabs, semicolons or commas between the columns, or of a list of rows in JSON.
+    /// Sheet of a text with tabs, semicolons or commas between the columns.
     pub fn of_text(text: &str) -> Self {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        if let Some(sheet) = of_json(text) {
-            return sheet;
-        }
         let delimiter = delimiter(text, DELIMITERS);
         let content = |cell: &str| match cell.trim_matches([' ', '\u{a0}']) {
             "" => Content::Empty,

@@ -232,12 +232,14 @@ fn parts(table: &mut Table, values: &[f64], spreads: &[Spread]) -> Result<Vec<Pa
                 return Err(ImportFault::of(table.figures.cell(place), ImportProblem::NoQuantity { value }));
             }
         };
+        // Those of other kinds follow from their bands.
+        let is_normal = row.distribution.is_none_or(|kind| kind == "normal");
         let numbers = [
             ("sigma", row.sigma),
-            ("sigmas", row.sigmas.filter(|place| values[*place] != 3.0 && row.sigma.is_none())),
+            ("sigmas", row.sigmas.filter(|place| is_normal && values[*place] != 3.0 && row.sigma.is_none())),
             ("cp", row.cp),
             ("cpk", row.cpk),
-            ("shift", row.shift.filter(|place| values[*place] != 0.0)),
+            ("shift", row.shift.filter(|place| is_normal && values[*place] != 0.0)),
         ];
         let numbers = numbers.into_iter().filter_map(|(key, place)| Some((key, values[place?]))).collect();
         let part = Part {
