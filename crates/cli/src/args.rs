@@ -156,7 +156,7 @@ pub(super) enum Command {
 /// A study and how it is to be analysed.
 #[derive(Debug, Args)]
 pub(super) struct AnalyzeArgs {
-    /// The study, a .toml or .json file, or a stack-up table, .xlsx, .csv or .tsv; several are analysed one after another
+    /// The study, .toml or .json, or a stack-up table, .xlsx, .csv or .tsv; several are analysed one after another
     #[arg(value_name = "STUDY", required = true)]
     pub(super) studies: Vec<PathBuf>,
 

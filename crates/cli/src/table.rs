@@ -22,31 +22,31 @@ pub(super) struct TableArgs {
     /// The header of a column in the table's own words, such as nominal=Wert, or ignore=HEADER for one that is left out (repeatable); roles are name, part,
     /// description, drawing, revision, feature, direction, factor, quantity, nominal, upper, lower, minus, tolerance, plus-minus, max, min, unit, distribution,
     /// cp, cpk, sigma, sigmas, shift, ignore
-    #[arg(long, value_name = "ROLE=HEADER", value_parser = column, help_heading = TABLE)]
+    #[arg(long, value_name = "ROLE=HEADER", value_parser = column, help_heading = TABLE, hide_short_help = true)]
     pub(super) column: Vec<(ColumnRole, String)>,
 
     /// The sheet of a workbook; without it the first one whose columns are known
-    #[arg(long, value_name = "NAME", help_heading = TABLE)]
+    #[arg(long, value_name = "NAME", help_heading = TABLE, hide_short_help = true)]
     pub(super) sheet: Option<String>,
 
     /// The lower limit of the characteristic, in place of that of the table
-    #[arg(long, value_name = "VALUE", value_parser = finite, allow_negative_numbers = true, help_heading = TABLE)]
+    #[arg(long, value_name = "VALUE", value_parser = finite, allow_negative_numbers = true, help_heading = TABLE, hide_short_help = true)]
     pub(super) lower: Option<f64>,
 
     /// The upper limit of the characteristic, in place of that of the table
-    #[arg(long, value_name = "VALUE", value_parser = finite, allow_negative_numbers = true, help_heading = TABLE)]
+    #[arg(long, value_name = "VALUE", value_parser = finite, allow_negative_numbers = true, help_heading = TABLE, hide_short_help = true)]
     pub(super) upper: Option<f64>,
 
     /// The yield that is required, such as 0.9973
-    #[arg(long, value_name = "YIELD", value_parser = probability, allow_negative_numbers = true, help_heading = TABLE)]
+    #[arg(long, value_name = "YIELD", value_parser = probability, allow_negative_numbers = true, help_heading = TABLE, hide_short_help = true)]
     pub(super) target_yield: Option<f64>,
 
     /// The title of the study, in place of that of the table
-    #[arg(long, value_name = "TEXT", help_heading = TABLE)]
+    #[arg(long, value_name = "TEXT", help_heading = TABLE, hide_short_help = true)]
     pub(super) title: Option<String>,
 
     /// Take dimensions without a tolerance as fixed
-    #[arg(long, help_heading = TABLE)]
+    #[arg(long, help_heading = TABLE, hide_short_help = true)]
     pub(super) allow_fixed: bool,
 }
 
