@@ -23,7 +23,7 @@ pub struct Target {
 }
 
 /// Every target.
-pub const TARGETS: [Target; 11] = [
+pub const TARGETS: [Target; 12] = [
     Target { name: "study_toml", run: study_toml },
     Target { name: "study_json", run: study_json },
     Target { name: "assembly", run: assembly },

@@ -8,9 +8,9 @@ use crate::semantic::{GeometricTolerance, MaterialCondition, ToleranceKind, Zone
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum ReaderKeys {
     /// Frames and diameters. Tolerances and extents are comments.
-    #[default]
     Frames,
     /// Tolerances and extents too.
+    #[default]
     Zones,
 }
 

@@ -10,7 +10,7 @@ use crate::error::{StudyError, StudyFault};
 use sensitol_numeric::unit::Unit;
 
 /// Keys of features that this reader of studies takes.
-const KEYS: ReaderKeys = ReaderKeys::Frames;
+const KEYS: ReaderKeys = ReaderKeys::Zones;
 /// Sections whose names formulas use, so that a new dimension cannot have them.
 const NAMED: [&str; 7] =
     ["dimensions", "constants", "formulas", "unknowns", "characteristics", "elements", "configurations"];
