@@ -145,7 +145,7 @@ pub(super) enum Command {
     /// study, of a UM-Bridge client or of workers on a cluster. With --at, --json or --output it reports the values at points instead, and the
     /// poses of the parts of an assembly in space.
     #[command(
-        after_help = "Examples:\n  sensitol evaluate examples/stacked-blocks/study.toml\n  sensitol evaluate examples/crank-slider-space/study.toml --at th=36,l=60.05 --at nominal"
+        after_help = "Examples:\n  sensitol evaluate examples/stacked-blocks/study.toml\n  sensitol evaluate examples/crank-slider-space/study.toml --at th=36,L=60.05 --at nominal"
     )]
     Evaluate(EvaluateArgs),
     /// Show, export or forget the kept answers of external models

@@ -59,7 +59,7 @@ pub(super) fn place(text: &str) -> Result<Place, String> {
         name.clear();
     }
     if !name.is_empty() {
-        return Err("it is nominal, or NAME=VALUE,.. such as th=36,l=60.05".to_owned());
+        return Err("it is nominal, or NAME=VALUE,.. such as th=36,L=60.05".to_owned());
     }
     Ok(Place { values })
 }
