@@ -47,7 +47,7 @@ pub(super) enum Command {
     /// not keep the others from being done. The exit code is the worst of all: 130 interrupted, 2 an error, 3 a characteristic
     /// without result, 1 a target missed, 0 done. With --json they are one array, in the order given.
     #[command(
-        after_help = "Examples:\n  sensitol analyze examples/engine-balance/study.toml --method full\n  sensitol analyze examples/first-study/study.toml examples/first-study/tighter.toml --check --html pages\n  sensitol analyze stack-up.xlsx --lower 0.2 --upper 0.8"
+        after_help = "Examples:\n  sensitol analyze examples/engine-balance/study.toml --method full\n  sensitol analyze examples/first-study/study.toml examples/first-study/tighter.toml --check\n  sensitol analyze stack-up.xlsx --lower 0.2 --upper 0.8 --html gap.html"
     )]
     Analyze(AnalyzeArgs),
     /// Monte Carlo: the model itself at random or quasi-random points, with standard errors
@@ -156,7 +156,7 @@ pub(super) enum Command {
 /// A study and how it is to be analysed.
 #[derive(Debug, Args)]
 pub(super) struct AnalyzeArgs {
-    /// The study, .toml or .json, or a stack-up table, .xlsx, .csv or .tsv; several are analysed one after another
+    /// Studies, .toml or .json, or stack-up tables, .xlsx, .csv or .tsv; each is analysed
     #[arg(value_name = "STUDY", required = true)]
     pub(super) studies: Vec<PathBuf>,
 

@@ -25,6 +25,7 @@ fn unlike_sides_are_a_split_normal_distribution() {
     for dimension in [
         "nominal = 5, tolerance = [-0.3, 0.6], distribution = \"split-normal\"",
         "nominal = 5, distribution = { kind = \"split-normal\", below = 0.1, above = 0.2 }",
+        "nominal = 5, sigma = [0.1, 0.2]",
     ] {
         let text = format!(
             "[dimensions]\nx = {{ {dimension} }}\n[characteristics]\ny = {{ formula = \"x\", lower = 4.9, upper = 5.2 }}\n"

@@ -182,7 +182,7 @@ fn gumbel(end: ExtremeEnd, entry: &DimensionEntry, nominal: f64, tolerance: Opti
 
 /// Split normal distribution about the nominal plus `shift`. Its sigmas are given, or each deviation by `sigmas`.
 fn split_normal(entry: &DimensionEntry, nominal: f64, tolerance: Option<[f64; 2]>) -> Result<Spread, Fault> {
-    const INSTEAD: &str = "write { kind = \"split-normal\", below = 0.1, above = 0.2 }, or a tolerance such as [-0.3, 0.6]: three sigmas on either side";
+    const INSTEAD: &str = "write sigma = [0.1, 0.2], { kind = \"split-normal\", below = 0.1, above = 0.2 }, or a tolerance such as [-0.3, 0.6]: three sigmas on either side";
     let table = entry.distribution.as_ref().expect("its kind was told by it");
     if let Some(given) = &entry.sigma {
         let found =

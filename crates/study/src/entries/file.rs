@@ -220,7 +220,10 @@ pub(crate) struct DimensionEntry {
     #[serde(default, deserialize_with = "distribution")]
     #[cfg_attr(feature = "schema", schemars(schema_with = "registry::distribution::<DistributionEntry>", extend("default" = "normal")))]
     pub(crate) distribution: Option<Spanned<DistributionEntry>>,
-    /// Standard deviation: half the band by sigmas unless given, and none of a kind whose sigma follows from its band.
+    /// Standard deviation: half the band by sigmas unless given, and none of a kind whose sigma follows from its band. Two numbers, [0.1, 0.2], are
+    /// those below and above the nominal: a split-normal distribution.
+    #[serde(default)]
+    #[cfg_attr(feature = "schema", schemars(schema_with = "registry::sigma"))]
     pub(crate) sigma: Option<Spanned<f64>>,
     /// Number of sigmas in half the tolerance band.
     #[cfg_attr(feature = "schema", schemars(extend("default" = vocabulary::SIGMAS)))]

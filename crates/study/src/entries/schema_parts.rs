@@ -91,6 +91,12 @@ pub(crate) fn count(_: &mut SchemaGenerator) -> Schema {
     json_schema!({ "type": "integer", "minimum": 1, "maximum": 1000 })
 }
 
+/// Schema of a standard deviation, or of two on either side of the nominal.
+pub(crate) fn sigma(_: &mut SchemaGenerator) -> Schema {
+    let pair = json!({ "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 2 });
+    json_schema!({ "anyOf": [{ "type": "number" }, pair] })
+}
+
 /// Schema of the side of a form deviation or of the mean of a process.
 pub(crate) fn side(_: &mut SchemaGenerator) -> Schema {
     json_schema!({ "type": "string", "enum": ["out", "+", "-"] })

@@ -11,6 +11,7 @@ mod geometry;
 mod groups;
 mod joint_entry;
 mod processes;
+mod sides;
 mod toml;
 
 use std::ops::Range;
@@ -79,6 +80,7 @@ pub(super) fn expand(
     };
     configurations::expand(&mut expanded, configuration, data)?;
     processes::expand(&mut expanded, data)?;
+    sides::expand(&mut expanded)?;
     general::expand(&mut expanded)?;
     groups::expand(&mut expanded)?;
     let owners = assembly::zones::expand(&mut expanded)?;
