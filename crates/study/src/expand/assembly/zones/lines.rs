@@ -77,10 +77,10 @@ impl Lines {
         Self { dimensions, formulas, blocks, owners, unit, converts }
     }
 
-    /// Text of a length in a formula, with its unit if units are converted.
+    /// Text of a length in a formula, with its unit: a lever times an angle is a length.
     pub(super) fn length(&self, extent: &Extent) -> String {
         match (extent, &self.unit) {
-            (Extent::Number(value), Some(unit)) if self.converts && *value != 0.0 => {
+            (Extent::Number(value), Some(unit)) if *value != 0.0 => {
                 let text = format!("{:?}[{unit}]", decimal(value.abs(), KEPT));
                 if *value < 0.0 { format!("(-{text})") } else { text }
             }
