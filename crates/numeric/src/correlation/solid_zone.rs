@@ -34,7 +34,7 @@ pub struct SolidZone {
 }
 
 /// Sigma of a coordinate that is uniform in the unit ball: `sqrt(1/5)`.
-const SIGMA_OF_BALL: f64 = 0.447_213_595_499_957_94;
+const SIGMA_OF_BALL: f64 = 0.447_213_595_499_957_9;
 
 impl SolidZone {
     /// All coordinates of a zone.

@@ -125,7 +125,7 @@ fn write(expanded: &mut Expanded, feature: &ZonedFeature<'_>, torsor: &Torsor, l
         let item = |i: usize| -> Tree {
             let given = match written {
                 Some(Value::Array(items)) => items.get(i).and_then(|item| match (&item.value, frame::number(item)) {
-                    (_, Some(value)) if value == 0.0 => None,
+                    (_, Some(0.0)) => None,
                     (_, Some(value)) if name == "shift" => Some(lines.length(&lines::Extent::Number(value))),
                     (_, Some(value)) => Some(format!("({value:?})")),
                     (Value::Text(text), None) if sensitol::assembly::formula::is_plain(text) => Some(text.clone()),
