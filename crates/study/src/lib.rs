@@ -108,7 +108,7 @@ use source::Source;
 use tree::Tree;
 
 /// Endings of files that hold tables.
-const TABLES: [&str; 7] = ["xlsx", "xlsm", "xls", "ods", "csv", "tsv", "txt"];
+const TABLES: [&str; 6] = ["xlsx", "xlsm", "xls", "ods", "csv", "tsv"];
 
 /// A study: a problem, the options of its analysis, its costs and requirements, and its warnings.
 #[derive(Debug, Clone)]

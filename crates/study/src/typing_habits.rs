@@ -116,7 +116,8 @@ impl TypingHabit {
         }
         if let Some((upper, lower)) = half.split_once('/').filter(|(upper, lower)| number(upper) && number(lower)) {
             let list = format!("[{}, {}]", plain(lower), plain(upper));
-            return lower.starts_with(['+', '-', '0']).then_some(Self::TwoDeviations { list });
+            let signed = lower.starts_with(['+', '-']) || lower.parse() == Ok(0.0);
+            return signed.then_some(Self::TwoDeviations { list });
         }
         let letters = half.chars().take_while(char::is_ascii_alphabetic).count();
         let grade = &half[letters..];

@@ -85,6 +85,11 @@ fn an_expansion_is_the_same_in_every_spelling() {
     let study = Study::from_toml(mean, "mean.toml").unwrap_or_else(|error| panic!("{error}"));
     let found = analyze(&study.problem, &Method::Full.into()).unwrap();
     close(found.characteristics[0].nominal.unwrap(), 25.0, 1e-14, 1.0);
+    // A result on another scale has another zero.
+    let scales =
+        mean.replace("formula = \"(T1 + T2)/2\", unit = \"degC\"", "formula = \"(T1 + T2)/2\", unit = \"degF\"");
+    let error = Study::from_toml(&scales, "mean.toml").unwrap_err().to_string();
+    assert!(error.contains("whose zeros differ"), "{error}");
     let unknown = mean.replace("unit = \"degC\" }\nT2", "unit = \"degX\" }\nT2");
     let error = Study::from_toml(&unknown, "mean.toml").unwrap_err().to_string();
     assert!(error.contains("the unit `degX` of `T1` is unknown"), "{error}");

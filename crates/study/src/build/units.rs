@@ -121,13 +121,29 @@ impl Units {
             let sure = findings.into_iter().filter(|finding| !finding.doubtful);
             return Ok(self.warning(sure.collect()).into_iter().chain(self.unknown.clone()).collect());
         }
-        let mut faults = Faults::default();
+        let mut faults = self.two_scales();
         for UnitFinding { formula, span, what, remedy, .. } in findings {
             let Place { key, span: text, .. } = &self.places[formula];
             let span = self.source.within_string(text.clone(), span);
             faults.0.push(fault(span, key.clone(), StudyFault::Units { what, remedy }));
         }
         faults.none().map(|()| self.unknown.iter().cloned().collect())
+    }
+
+    /// Faults of results on another temperature scale than a name of the study: no factor converts one to the other.
+    fn two_scales(&self) -> Faults {
+        let mut faults = Faults::default();
+        for (role, place) in self.roles.iter().zip(&self.places) {
+            let Role::Declared(unit) = role else { continue };
+            let differs =
+                |name: &str, named: &Unit| name != place.name && named.point && unit.point && named.zero != unit.zero;
+            let others = self.named.iter().filter(|(name, named)| differs(name, named));
+            let Some((name, named)) = others.min_by_key(|(name, _)| *name) else { continue };
+            let what = format!("this result is in {unit} and `{name}` in {named}, whose zeros differ");
+            let remedy = format!("write both in {named}");
+            faults.0.push(fault(place.span.clone(), place.key.clone(), StudyFault::Units { what, remedy }));
+        }
+        faults
     }
 
     /// Warning of the first finding, with the names of the other formulas. Returns None if there is no finding.

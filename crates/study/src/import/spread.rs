@@ -197,7 +197,7 @@ pub(super) fn spread(
     match band {
         Band::None => Ok(Spread::None),
         Band::Half(half) => match values[*half] {
-            half if half == 0.0 => Ok(Spread::None),
+            0.0 => Ok(Spread::None),
             value if value < 0.0 => Err(at(*half, ImportProblem::NegativeTolerance { value })),
             half => Ok(Spread::Deviations([-half, half])),
         },
@@ -221,7 +221,7 @@ pub(super) fn spread(
             }
         }
         Band::Percent(part) => match values[*part] {
-            part if part == 0.0 => Ok(Spread::None),
+            0.0 => Ok(Spread::None),
             value if value < 0.0 => Err(at(*part, ImportProblem::NegativeTolerance { value })),
             part => Ok(Spread::Percent(part)),
         },
