@@ -139,6 +139,10 @@ impl FeatureZones {
         if !fits(key, shape) {
             return Err(format!("a study has no {} of {}", tolerance.kind.label(), words(shape)));
         }
+        // The runout of a face tilts it by its diameter, which the extents of a face do not tell.
+        if matches!(key, "runout" | "total_runout") && matches!(shape, FeatureShape::Plane { .. }) {
+            return Err("the runout of a face needs its diameter".to_owned());
+        }
         if let ZoneShape::Other(name) = &tolerance.zone {
             return Err(format!("a zone `{}`", super::text::comment(name)));
         }
