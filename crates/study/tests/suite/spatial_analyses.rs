@@ -61,7 +61,7 @@ fn every_method_gives_the_moments_of_the_closed_form() {
     }
 }
 
-/// By exact derivatives the linear moments take one evaluation.
+/// Linear moments take one evaluation where derivatives are exact.
 #[test]
 fn rss_takes_one_evaluation() {
     let [space, formula] = studies("");
