@@ -235,7 +235,10 @@ fn a_rod_that_cannot_reach_is_named_with_its_lengths() {
     let study = parse(&format!("units = \"convert\"\n{ARM}")).unwrap();
     let said = failure(&study, &[("L", 59.0)]);
     assert!(said.starts_with("the joints do not close: "), "{said}");
-    assert!(said.contains("rod `link` (0.059 m) cannot reach") || said.contains("joint `pivot` (offset along"), "{said}");
+    assert!(
+        said.contains("rod `link` (0.059 m) cannot reach") || said.contains("joint `pivot` (offset along"),
+        "{said}"
+    );
 }
 
 /// A link of the crank slider that is too short opens a ball joint.
