@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use clap::{ArgGroup, Args, ColorChoice, Parser, Subcommand};
 
-use crate::commands::import::ImportArgs;
+use crate::commands::import_args::ImportArgs;
 use crate::commands::journal::JournalArgs;
+pub(super) use crate::page_args::{ServeArgs, WorkbenchArgs};
 use crate::shared_args::OUTPUT;
 pub(super) use crate::shared_args::{HowArgs, OutputArgs, StudyArgs, WorkArgs};
 use crate::table::TableArgs;
@@ -183,10 +184,10 @@ pub(super) struct AnalyzeArgs {
     pub(super) extremes: bool,
 
     /// Show the table of all characteristics only
-    #[arg(long, conflicts_with_all = ["json", "stack"], help_heading = OUTPUT)]
+    #[arg(long, conflicts_with_all = ["json", "stack"], help_heading = OUTPUT, hide_short_help = true)]
     pub(super) summary: bool,
 
-    /// Print one line for every characteristic: yield, verdict, rejects, strongest contributors
+    /// Print one line for every characteristic: yield, verdict, contributors
     #[arg(long, conflicts_with_all = ["json", "stack", "gum", "summary", "compare"], help_heading = OUTPUT)]
     pub(super) brief: bool,
 
@@ -470,43 +471,6 @@ pub(super) struct InitArgs {
     /// A study of two parts in space with their joints
     #[arg(long, conflicts_with_all = ["model", "process"])]
     pub(super) assembly: bool,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct WorkbenchArgs {
-    /// The study that the page opens, .toml or .json
-    pub(super) study: Option<PathBuf>,
-
-    /// The file to write
-    #[arg(short, long, value_name = "FILE.html", default_value = "workbench.html", help_heading = OUTPUT)]
-    pub(super) output: PathBuf,
-
-    /// Write over a file that sensitol did not write
-    #[arg(long, help_heading = OUTPUT)]
-    pub(super) force: bool,
-
-    /// The page without a study, as web/build writes it
-    #[arg(long, value_name = "FILE.html")]
-    pub(super) page: Option<PathBuf>,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct ServeArgs {
-    /// The folder of the studies
-    #[arg(default_value = ".")]
-    pub(super) folder: PathBuf,
-
-    /// The port; a free one unless given
-    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
-    pub(super) port: u16,
-
-    /// The address to listen at; another one than 127.0.0.1 lets other machines in that know the token
-    #[arg(long, value_name = "ADDRESS")]
-    pub(super) address: Option<std::net::IpAddr>,
-
-    /// The page without a study, as web/build writes it
-    #[arg(long, value_name = "FILE.html")]
-    pub(super) page: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

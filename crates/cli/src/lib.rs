@@ -11,6 +11,7 @@ mod files;
 mod interrupt;
 mod output;
 mod own_file;
+mod page_args;
 mod pairs;
 mod points;
 mod progress;

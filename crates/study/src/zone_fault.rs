@@ -15,7 +15,7 @@ pub enum ZoneFault {
     DatumCycle {
         /// The feature.
         feature: String,
-        /// Its datum, whose zone is measured from the feature.
+        /// Datum of the feature, whose zone is measured from the feature.
         datum: String,
     },
     /// A datum that takes no freedom.
@@ -55,11 +55,11 @@ pub enum ZoneFault {
     NoRefinement {
         /// Key of the orientation zone.
         orientation: &'static str,
-        /// Its width.
+        /// Width of the orientation zone.
         tight: f64,
         /// Key of the zone of the place.
         location: &'static str,
-        /// Its width.
+        /// Width of the zone of the place.
         wide: f64,
     },
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::commands::import::{DEFAULT_NAME, ImportArgs};
+use crate::commands::import_args::{DEFAULT_NAME, ImportArgs};
 use crate::failure::{Exit, Failure};
 use crate::output::Destination;
 use sensitol_study::import::{StepImportFault, StepRequest, is_step, step_into, step_study};

@@ -118,7 +118,7 @@ fn one_line_where_one_is_asked() {
     // P(gap < 5.66) = Phi(-2.04) = 0.020675; shares 9/25 and 16/25; sigma = 0.5/3.
     assert_eq!(
         line(path.to_str().unwrap()),
-        "gap 97.93 % (target 99.99 %) MISSED: 20680 ppm below 5.66; b 64 %, a 36 %\n\
+        "gap 97.93 % (target 99.99 %) MISSED: 20675 ppm below 5.66; b 64 %, a 36 %\n\
          sum mean 14.00000, sigma 0.16667 mm, no limits; b 64 %, a 36 %\n"
     );
     let refused = sensitol(&["analyze", path.to_str().unwrap(), "--brief", "--json"]).output().unwrap();

@@ -97,7 +97,7 @@ fn files_of_others_stay() {
     ];
     for (name, bytes) in others {
         std::fs::write(at(name), bytes).unwrap();
-        for line in [
+        let lines = [
             "analyze gap.toml -o FILE",
             "analyze gap.toml --json -o FILE",
             "analyze gap.toml --html FILE",
@@ -106,7 +106,9 @@ fn files_of_others_stay() {
             "plan gap.toml --write-points FILE",
             "allocate gap.toml --confirm 0 --write FILE",
             "schema -o FILE",
-        ] {
+        ];
+        // A workbook is not written under the name of another kind of file.
+        for line in lines.into_iter().filter(|line| !line.contains("--xlsx") || name.ends_with(".xlsx")) {
             let (code, error) = run(folder.path(), &line.replace("FILE", name));
             assert!(code == 2 && error.contains(&format!("`{name}`")) && error.contains("--force"), "{line}: {error}");
             assert_eq!(std::fs::read(at(name)).unwrap(), bytes, "{line} {name}");

@@ -3,7 +3,7 @@
 use crate::Report;
 use crate::analysis::analysis_document::CharacteristicSections;
 use crate::analysis::statistics::{CharacteristicStatistics, strongest};
-use crate::document::number::{plain, target_yield};
+use crate::document::number::plain;
 use crate::figures::{Figures, Named};
 use crate::overview::verdict;
 use sensitol::analysis::CharacteristicAnalysis;
@@ -26,7 +26,7 @@ impl Report {
         if one.limited() {
             line += &format!(" {}", one.rejects().yield_text().unwrap_or_else(|| "yield unknown".to_owned()));
             if let Some(target) = one.target() {
-                line += &format!(" (target {})", target_yield(target));
+                line += &format!(" (target {} %)", plain(100.0 * target));
             }
             let judged = verdict(&one.requirements());
             if !judged.text().is_empty() {

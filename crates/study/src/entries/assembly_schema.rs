@@ -106,7 +106,6 @@ fn patterns() -> Value {
                 "of": { "description": "The axes of the pattern.", "type": "array", "items": { "type": "string" }, "minItems": 2 },
                 "position": zone("The zone of the pattern as one body: the upper segment.", &[]),
                 "within": zone("The zone of each feature within the pattern: the lower segment.", &[]),
-                "datums": { "description": "Datums of the upper segment.", "type": "string" },
             },
             "required": ["of", "position"],
             "additionalProperties": false,

@@ -1,0 +1,44 @@
+//! Options of the commands that give a page to a browser.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::shared_args::OUTPUT;
+
+#[derive(Debug, Args)]
+pub(super) struct WorkbenchArgs {
+    /// The study that the page opens, .toml or .json
+    pub(super) study: Option<PathBuf>,
+
+    /// The file to write
+    #[arg(short, long, value_name = "FILE.html", default_value = "workbench.html", help_heading = OUTPUT)]
+    pub(super) output: PathBuf,
+
+    /// Write over a file that sensitol did not write
+    #[arg(long, help_heading = OUTPUT)]
+    pub(super) force: bool,
+
+    /// The page without a study, as web/build writes it
+    #[arg(long, value_name = "FILE.html")]
+    pub(super) page: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ServeArgs {
+    /// The folder of the studies
+    #[arg(default_value = ".")]
+    pub(super) folder: PathBuf,
+
+    /// The port; a free one unless given
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    pub(super) port: u16,
+
+    /// The address to listen at; another one than 127.0.0.1 lets other machines in that know the token
+    #[arg(long, value_name = "ADDRESS")]
+    pub(super) address: Option<std::net::IpAddr>,
+
+    /// The page without a study, as web/build writes it
+    #[arg(long, value_name = "FILE.html")]
+    pub(super) page: Option<PathBuf>,
+}
