@@ -15,6 +15,7 @@ mod batch;
 mod border;
 mod child;
 mod descendants;
+mod lane;
 mod pool;
 mod program;
 mod protocol;

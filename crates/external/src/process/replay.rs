@@ -6,16 +6,13 @@
 //! ones count as none. After any difference, every point of the batch is replayed.
 
 use super::pool::Pool;
-use super::sentinel::{FLIP, agree};
+use super::sentinel::{FLIP, Values, agree};
 use super::walk::{Route, Walked};
 use sensitol::assembly::{NonRepeatable, Points, Responses, Run};
 use sensitol::assembly::{ProcessError, ProcessFault, StderrTail};
 
 /// Factor on the noise of the model, up to which a difference counts as noise.
 const NOISY: f64 = 10.0;
-
-/// Values of one point; None for outputs without one.
-pub(super) type Values = Vec<Option<f64>>;
 
 /// Number of replays that differ on every route, after which no more are tried: the model gives another answer every time.
 const HOPELESS: usize = 3;

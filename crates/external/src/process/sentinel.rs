@@ -14,6 +14,9 @@ const NOISE: f64 = 1e-7;
 /// Greatest difference of two answers that agree, as a fraction of the answer itself. Both limits are added.
 const ROUNDING: f64 = 1e-12;
 
+/// Values of one point; None for outputs without one.
+pub(super) type Values = Vec<Option<f64>>;
+
 /// Reference answer of the nominal point, and the range of all answers.
 #[derive(Debug, Default)]
 pub(super) struct Reference {

@@ -3,10 +3,10 @@
 use std::collections::VecDeque;
 
 use super::batch::Batch;
+use super::lane::Lane;
 use super::pool::{Pool, State};
 use super::protocol::request;
-use super::replay::Values;
-use super::sentinel::FLIP;
+use super::sentinel::{FLIP, Values};
 use super::suspicion::moved;
 use sensitol::assembly::{EvaluationError, Points, Responses, Run};
 use sensitol::assembly::{ProcessError, ProcessFault};
@@ -73,15 +73,6 @@ impl Walked {
 
 /// Number of fresh children with another value of the nominal point than expected, after which the walk has no end.
 const ASTRAY: usize = 3;
-
-/// Place of a walk: a child, or one of the places at which a child evaluates.
-#[derive(Debug)]
-pub(super) struct Lane {
-    slot: usize,
-    place: Option<String>,
-    /// True if a walk has ended here since the child was started, so that the way back to the nominal point is a long step.
-    used: bool,
-}
 
 /// State of the walks to some points.
 struct Walks {

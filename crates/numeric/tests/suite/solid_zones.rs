@@ -41,7 +41,8 @@ fn middles(count: usize) -> Vec<f64> {
 
 #[test]
 fn points_of_a_solid_have_its_moments() {
-    // The midpoint rule of 60 places an axis has an error of the order of 1/60^2, times some ten where the maps are steep at the ends.
+    // The maps are roots at the ends, up to cube roots, so that the midpoint rule of 60 places has an error of the order of 60^(-4/3), 0.4 %,
+    // times some three.
     const PLACES: usize = 60;
     let normals = middles(PLACES);
     for shape in [SolidShape::Octahedron, SolidShape::Bicone, SolidShape::Ball] {
@@ -65,7 +66,7 @@ fn points_of_a_solid_have_its_moments() {
         }
         let count = PLACES.pow(3) as f64;
         for (found, exact) in found.into_iter().zip(exact).chain(together.into_iter().zip(products)) {
-            close(found / count, exact, 1e-2, exact);
+            close(found / count, exact, 1.5e-2, exact);
         }
     }
 }
@@ -95,9 +96,9 @@ fn two_coordinates_of_a_solid_keep_their_law() {
                 }
             }
             let count = PLACES.pow(2) as f64;
-            // The midpoint rule, as above.
-            close(found[0] / count, exact[i], 1e-3, exact[i]);
-            close(found[1] / count, exact[j], 1e-3, exact[j]);
+            // The midpoint rule as above: 300^(-4/3) is 0.05 %.
+            close(found[0] / count, exact[i], 2e-3, exact[i]);
+            close(found[1] / count, exact[j], 2e-3, exact[j]);
             close(together / count, products[pair], 3e-3, products[pair]);
         }
     }

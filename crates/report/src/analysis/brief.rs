@@ -8,6 +8,8 @@ use crate::figures::{Figures, Named};
 use crate::overview::verdict;
 use sensitol::analysis::CharacteristicAnalysis;
 
+/// Text of a yield whose error is as large as all assemblies.
+const UNKNOWN_YIELD: &str = "unknown";
 /// Number of contributors in a line. A line with two fits a terminal in most cases.
 const NAMED: usize = 2;
 
@@ -24,7 +26,8 @@ impl Report {
         }
         let mut line = one.name().to_owned();
         if one.limited() {
-            line += &format!(" {}", one.rejects().yield_text().unwrap_or_else(|| "yield unknown".to_owned()));
+            let known = one.rejects().yield_text().filter(|text| text != UNKNOWN_YIELD);
+            line += &format!(" {}", known.as_deref().unwrap_or("yield unknown"));
             if let Some(target) = one.target() {
                 line += &format!(" (target {} %)", plain(100.0 * target));
             }
@@ -32,7 +35,9 @@ impl Report {
             if !judged.text().is_empty() {
                 line += &format!(" {}", judged.text());
             }
-            line += &format!(": {}", rejects_by_limit(one));
+            if known.is_some() {
+                line += &format!(": {}", rejects_by_limit(one));
+            }
         } else {
             let [_, mean, _, sigma, ..] = one.first_figures();
             let unit = one.unit().map_or(String::new(), |unit| format!(" {unit}"));

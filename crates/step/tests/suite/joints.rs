@@ -140,10 +140,10 @@ fn faces_and_pins_that_coincide_are_joints() {
     // 120 degrees about (1, 1, 1) as a rotation vector: 120/sqrt(3) in each coordinate.
     let turned = "turned = [69.282032303, 69.282032303, 69.282032303]";
     let expected = format!(
-        "\n[parts.plate]\nat = [5, 6, 7]\n{turned}\nface_1 = {{ plane = [50, 30, 10], normal = \"z\" }}\n\
-         hole_1 = {{ axis = [20, 30, 5], along = \"z\", diameter = 8.02 }}\nhole_2 = {{ axis = [80, 30, 5], along = \"z\", diameter = 8.02 }}\n\
-         \n[parts.cover]\nat = [15, 6, 7]\n{turned}\nface_1 = {{ plane = [50, 30, 0], normal = \"-z\" }}\n\
-         pin_1  = {{ axis = [20, 30, -4], along = \"z\", diameter = 8 }}\npin_2  = {{ axis = [80, 30, -4], along = \"z\", diameter = 8 }}\n"
+        "\n[parts.plate]\nat = [5, 6, 7]\n{turned}\nface_1 = {{ plane = [50, 30, 10], normal = \"z\", size = [100, 60] }}\n\
+         hole_1 = {{ axis = [20, 30, 5], along = \"z\", diameter = 8.02, length = 10 }}\nhole_2 = {{ axis = [80, 30, 5], along = \"z\", diameter = 8.02, length = 10 }}\n\
+         \n[parts.cover]\nat = [15, 6, 7]\n{turned}\nface_1 = {{ plane = [50, 30, 0], normal = \"-z\", size = [100, 60] }}\n\
+         pin_1  = {{ axis = [20, 30, -4], along = \"z\", diameter = 8, length = 8 }}\npin_2  = {{ axis = [80, 30, -4], along = \"z\", diameter = 8, length = 8 }}\n"
     );
     assert_eq!(found.parts, expected);
 }
