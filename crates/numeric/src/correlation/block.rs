@@ -7,6 +7,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use crate::correlation::atom::Atom;
 use crate::correlation::solid_zone::SolidZone;
 use crate::distribution::{Distribution, Rule, Uniform, standard_normal};
 
@@ -41,13 +42,6 @@ pub struct Rows {
     standardised: Vec<Vec<f64>>,
     /// Values of the normal variable behind each member.
     scores: Vec<Vec<f64>>,
-}
-
-/// Place of a block with its probability.
-pub struct Atom {
-    pub(crate) weight: f64,
-    /// Coordinate of each member, in sigmas off its mean.
-    pub(crate) u: Vec<f64>,
 }
 
 /// Sigma of a coordinate that is uniform in the unit circle.

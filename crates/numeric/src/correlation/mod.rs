@@ -13,6 +13,7 @@
 //!
 //! Rows of measured parts and zones are blocks beside them: each block is independent of everything else.
 
+mod atom;
 mod block;
 mod correlated_normals;
 mod error;
@@ -21,7 +22,8 @@ mod solid_zone;
 pub mod transform;
 
 pub use crate::correlation::correlated_normals::Together;
-pub use block::{Atom, Block, JointLaw, Rows};
+pub use atom::Atom;
+pub use block::{Block, JointLaw, Rows};
 pub use error::{CorrelationError, Refusal};
 pub use solid_zone::{SolidShape, SolidZone};
 pub use transform::Transform;

@@ -11,7 +11,7 @@
 
 use std::f64::consts::PI;
 
-use crate::correlation::block::Atom;
+use crate::correlation::atom::Atom;
 use crate::distribution::{Beta, Distribution, Rule, SolidAxis, standard_normal};
 
 /// Shape of a zone of three coordinates.
