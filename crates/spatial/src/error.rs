@@ -84,9 +84,9 @@ pub enum SpatialError {
         /// Number of them that the joints before it leave.
         left: usize,
         /// Names of these freedoms.
-        free: Vec<&'static str>,
+        free: Box<[&'static str]>,
         /// Names of the joints before it, in words.
-        before: String,
+        before: Box<str>,
         /// Number of equations of all joints.
         equations: usize,
         /// Number of unknowns.
@@ -94,7 +94,7 @@ pub enum SpatialError {
         /// Number of independent equations.
         rank: usize,
         /// Text to write instead.
-        instead: String,
+        instead: Box<str>,
     },
     /// A joint that leaves out a tilt, and comes before every joint that could hold this tilt.
     #[error("joint `{joint}` takes {takes} and so leaves out a tilt, and no joint before it holds one")]
@@ -183,7 +183,7 @@ impl SpatialError {
             Self::WrongOrder { joint, all, primary: None, .. } => {
                 format!("say takes = {all}, or put `{joint}` after the joint that holds its tilt")
             }
-            Self::OverConstrained { instead, .. } => instead.clone(),
+            Self::OverConstrained { instead, .. } => instead.to_string(),
             Self::Free { measure, .. } => {
                 format!("add a joint that stops it, or let `{measure}` measure something that does not depend on it")
             }

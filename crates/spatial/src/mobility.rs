@@ -72,12 +72,12 @@ impl Closure<'_> {
             index,
             takes: self.used[index].len(),
             left,
-            free,
-            before: if names.is_empty() { "the start".into() } else { names.join(", ") },
+            free: free.into(),
+            before: if names.is_empty() { "the start".into() } else { names.join(", ").into() },
             equations: linear.joints.len(),
             unknowns: linear.jacobian.ncols(),
             rank: basis.len(),
-            instead: instead(self.assembly, index, left),
+            instead: instead(self.assembly, index, left).into(),
         })
     }
 

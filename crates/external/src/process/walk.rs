@@ -74,6 +74,9 @@ impl Walked {
 /// Number of fresh children with another value of the nominal point than expected, after which the walk has no end.
 const ASTRAY: usize = 3;
 
+/// Answers to the points of a way; None if its end was not reached.
+type WayAnswers = Option<Vec<Values>>;
+
 /// State of the walks to some points.
 struct Walks {
     /// Targets without a walk so far, in order.
@@ -160,7 +163,7 @@ impl Pool {
     }
 
     /// Takes the end of a walk into account. Returns false if its child must be replaced.
-    fn end_of_walk(&mut self, walks: &mut Walks, target: usize, answers: Option<Vec<Values>>, used: bool) -> bool {
+    fn end_of_walk(&mut self, walks: &mut Walks, target: usize, answers: WayAnswers, used: bool) -> bool {
         let Some(answers) = answers else {
             walks.ended[target] = Some(Walked::Lost);
             return false;
@@ -227,7 +230,7 @@ impl Pool {
         lanes: Vec<Lane>,
         out: &mut Responses,
         run: &Run<'_>,
-    ) -> Option<(Vec<Option<Vec<Values>>>, Vec<Lane>)> {
+    ) -> Option<(Vec<WayAnswers>, Vec<Lane>)> {
         let rows: Vec<&[f64]> = ways.iter().flatten().map(Vec::as_slice).collect();
         let mut answers = Responses::open(rows.len(), out.outputs());
         let (stopped, abandoned) = (|| run.stop_reason(), || run.abandoned());

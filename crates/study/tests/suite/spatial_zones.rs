@@ -288,12 +288,11 @@ fn expanded_zones_and_samples_agree() {
             relative(converted[1], found[1], 1e-6);
         }
         let sample = simulate(&study.problem, &SimulationOptions::default().with_samples(4_000)).unwrap();
-        for output in 0..2 {
-            let one = &sample.characteristics[output];
+        for (one, found) in sample.characteristics.iter().zip(&found) {
             let (mean, sigma) = (one.mean.as_ref().unwrap(), one.sigma.as_ref().unwrap());
             // Four standard errors: 44 comparisons. The method itself is exact to the third order of 1e-3.
-            close(mean.value, found[output][0], 4.0 * mean.standard_error.unwrap(), 1.0);
-            close(sigma.value, found[output][1], 4.0 * sigma.standard_error.unwrap() + 1e-3 * sigma.value, 1.0);
+            close(mean.value, found[0], 4.0 * mean.standard_error.unwrap(), 1.0);
+            close(sigma.value, found[1], 4.0 * sigma.standard_error.unwrap() + 1e-3 * sigma.value, 1.0);
         }
     }
 }
