@@ -170,7 +170,7 @@ test("a program that is typed, in whatever form, starts when it is asked for", a
 
 test("a new study is saved into the folder", async () => {
   const page = await opened("#f=gap.toml");
-  await page.evaluate("document.querySelector('#examples-list button').click()");
+  await page.evaluate("document.getElementById('take-model').click()");
   await settled(page);
   await page.evaluate("window.prompt = () => 'made'");
   await click(page, "#save");
