@@ -77,12 +77,21 @@ impl Geometry {
         if self.depends.iter().any(|row| self.varying.iter().all(|&d| row[d])) {
             return n * n.saturating_sub(1) / 2;
         }
-        self.coupled_pairs().len()
+        let mut pairs = 0;
+        self.visit_partners(|_, later| pairs += later.len());
+        pairs
     }
 
-    /// Pairs of varying dimensions that some characteristic can depend on, in ascending order. Cost: the square of the number of
-    /// dimensions of every characteristic.
+    /// Pairs of varying dimensions that some characteristic can depend on, in ascending order.
     pub(super) fn coupled_pairs(&self) -> Vec<(usize, usize)> {
+        let mut pairs = Vec::new();
+        self.visit_partners(|j, later| pairs.extend(later.iter().map(|&k| (j, k))));
+        pairs
+    }
+
+    /// Visits every position with the later ones that some characteristic can depend on together with it, in ascending order. Cost: the
+    /// square of the number of dimensions of every characteristic.
+    fn visit_partners(&self, mut visit: impl FnMut(usize, &[usize])) {
         let n = self.varying.len();
         let own = |row: &Vec<bool>| -> Vec<usize> { (0..n).filter(|&j| row[self.varying[j]]).collect() };
         let positions: Vec<Vec<usize>> = self.depends.iter().map(own).collect();
@@ -90,19 +99,19 @@ impl Geometry {
         for (c, positions) in positions.iter().enumerate() {
             positions.iter().for_each(|&j| asking[j].push(c));
         }
-        let mut pairs = Vec::new();
-        // The last first position for which a second one was counted.
+        // The last position for which each one was counted as a later one.
         let mut counted_for = vec![usize::MAX; n];
+        let mut later = Vec::new();
         for (j, asking) in asking.iter().enumerate() {
-            let begun = pairs.len();
+            later.clear();
             for &k in asking.iter().flat_map(|&c| &positions[c]).filter(|&&k| k > j) {
                 if std::mem::replace(&mut counted_for[k], j) != j {
-                    pairs.push((j, k));
+                    later.push(k);
                 }
             }
-            pairs[begun..].sort_unstable();
+            later.sort_unstable();
+            visit(j, &later);
         }
-        pairs
     }
 
     /// Point at which one dimension is at a node, and every other one at its mean.

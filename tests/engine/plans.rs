@@ -1,5 +1,8 @@
 //! Plans: exact counts, every point once, realised steps, and failed points.
 
+use proptest::prelude::*;
+use sensitol::assembly::formula::Formula;
+use sensitol::assembly::{Composite, Input, Parts};
 use sensitol::distribution::{CentralMoments, Normal, Uniform};
 
 use sensitol::method::registry::procedure;
@@ -57,6 +60,36 @@ fn counts_are_exact() {
     N = 30: 77 61 61 61 181 931 1801 121 7081 (205891132094649) 2109
     "
     );
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    /// Pairs are those of dimensions that some characteristic has together, counted one by one, and `full` evaluates two points for each.
+    #[test]
+    fn pairs_are_those_that_a_characteristic_has_together(
+        sets in prop::collection::vec(prop::collection::btree_set(0..9_usize, 1..6), 1..7)
+    ) {
+        let names: Vec<String> = (0..9).map(|d| format!("x{d}")).collect();
+        let product = |(c, set): (usize, &std::collections::BTreeSet<usize>)| {
+            let text = set.iter().map(|&d| names[d].as_str()).collect::<Vec<_>>().join("*");
+            (format!("y{c}"), Formula::parse(&text).unwrap())
+        };
+        let parts = Parts {
+            inputs: names.iter().map(|name| Input { name: name.clone(), unit: None }).collect(),
+            formulas: sets.iter().enumerate().map(product).collect(),
+            outputs: (0..sets.len()).map(|c| (format!("y{c}"), None)).collect(),
+            ..Parts::default()
+        };
+        let dimensions = names.iter().map(|name| Dimension::normal(name, 1.0, 0.1).unwrap());
+        let problem = Problem::new(dimensions, Composite::new(parts).unwrap()).unwrap();
+        let together = |j: usize, k: usize| sets.iter().any(|set| set.contains(&j) && set.contains(&k));
+        let pairs = (0..9).flat_map(|j| (j + 1..9).map(move |k| (j, k))).filter(|&(j, k)| together(j, k)).count();
+        let varying = (0..9).filter(|d| sets.iter().any(|set| set.contains(d))).count();
+        let plan = procedure(Method::Full).plan(&problem, &Method::Full.into()).unwrap();
+        prop_assert_eq!(plan.possible_pairs(), pairs);
+        prop_assert_eq!(plan.cost().0, 1 + 2 * varying + 2 * pairs);
+    }
 }
 
 #[test]
