@@ -133,7 +133,9 @@ impl Pool {
             lanes = returned;
             let mut renewed = Vec::new();
             for (lane, (target, answers)) in lanes.iter_mut().zip(round.into_iter().zip(answers)) {
-                if !self.end_of_walk(&mut walks, target, answers, lane.used) {
+                // All walks began again during this round, and this one is open once more.
+                let begun_again = walks.open.contains(&target);
+                if !begun_again && !self.end_of_walk(&mut walks, target, answers, lane.used) {
                     renewed.push(lane.slot);
                 }
                 lane.used = true;
@@ -273,7 +275,9 @@ impl Pool {
             let place = self.walking[lane].place.clone();
             let id = self.next_point;
             let State::Ready(worker) = &mut self.slots[slot].state else { continue };
-            if worker.under_way.iter().any(|sent| batch.lane_of(sent.row) == lane) {
+            // A fresh child may have a smaller window than the one that told its places.
+            let is_full = worker.under_way.len() >= worker.window;
+            if is_full || worker.under_way.iter().any(|sent| batch.lane_of(sent.row) == lane) {
                 continue;
             }
             let Some(row) = batch.take_from_lane(lane) else { continue };
