@@ -3,13 +3,13 @@
 use crate::Report;
 use crate::analysis::analysis_document::CharacteristicSections;
 use crate::analysis::statistics::{CharacteristicStatistics, strongest};
+use crate::analysis::yield_source::condition;
 use crate::document::number::plain;
+use crate::document::rejects::UNKNOWN_YIELD;
 use crate::figures::{Figures, Named};
 use crate::overview::verdict;
 use sensitol::analysis::CharacteristicAnalysis;
 
-/// Text of a yield whose error is as large as all assemblies.
-const UNKNOWN_YIELD: &str = "unknown";
 /// Number of contributors in a line. A line with two fits a terminal in most cases.
 const NAMED: usize = 2;
 
@@ -35,6 +35,7 @@ impl Report {
             if !judged.text().is_empty() {
                 line += &format!(" {}", judged.text());
             }
+            line += &condition(one);
             if known.is_some() {
                 line += &format!(": {}", rejects_by_limit(one));
             }

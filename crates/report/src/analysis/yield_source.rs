@@ -54,7 +54,7 @@ fn time(seconds: f64) -> String {
 }
 
 /// Condition under which a yield by the surface holds. Empty for any other basis.
-fn condition(one: &CharacteristicAnalysis) -> String {
+pub(crate) fn condition(one: &CharacteristicAnalysis) -> String {
     let checks = one.verification.as_ref().filter(|of| of.unseen.is_some());
     match (one.bases().yield_, checks) {
         (Some(FigureBasis::Surface), Some(checks)) if checks.lost_share.is_some_and(|lost| lost > 0.0) => {

@@ -4,6 +4,8 @@ use crate::document::number::{FEWEST, power_of_ten, share, significant};
 
 /// Most significant digits of parts per million.
 const DIGITS: i32 = 4;
+/// Text of a yield whose interval reaches 0.
+pub(crate) const UNKNOWN_YIELD: &str = "unknown";
 /// Half-width of a 95 % interval, in errors.
 const REACH: f64 = 2.0;
 
@@ -167,7 +169,7 @@ fn at_least(most: f64) -> String {
     let decimals = decimals(percent);
     let unit = 10_f64.powi(-(decimals as i32));
     let least = 100.0 - (percent / unit - 1e-9).ceil() * unit;
-    if least <= 0.0 { "unknown".to_owned() } else { format!("> {least:.decimals$} %") }
+    if least <= 0.0 { UNKNOWN_YIELD.to_owned() } else { format!("> {least:.decimals$} %") }
 }
 
 #[cfg(test)]
