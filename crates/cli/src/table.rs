@@ -172,10 +172,7 @@ fn options_of(problem: &ImportProblem) -> Option<String> {
 
 /// Study with the origin and the notes of the import as comments.
 fn commented(path: &Path, of_book: Option<&str>, imported: &Imported) -> String {
-    let from = match path.to_str() {
-        Some("-") | None => "a table".to_owned(),
-        Some(_) => path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
-    };
+    let from = file_name(path, "a table");
     let of_book = of_book.map(|name| format!(", sheet {}", one_line(name))).unwrap_or_default();
     let mut text = format!("# Imported from {from}{of_book}.");
     if !imported.has_limits {
@@ -184,6 +181,14 @@ fn commented(path: &Path, of_book: Option<&str>, imported: &Imported) -> String 
     text += &format!("\n# {}\n", one_line(&imported.summary));
     imported.notes.iter().for_each(|note| text += &format!("# {}\n", one_line(note)));
     text + "\n" + &imported.study
+}
+
+/// Name of a file without its folder, or these words for stdin.
+pub(super) fn file_name(path: &Path, stdin: &str) -> String {
+    match path.to_str() {
+        Some("-") | None => stdin.to_owned(),
+        Some(_) => path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+    }
 }
 
 fn one_line(text: &str) -> String {
@@ -209,7 +214,8 @@ pub(super) fn text(path: &Path, bytes: Vec<u8>) -> Result<String, Failure> {
     })
 }
 
-fn failed(path: &Path, reason: String, help: Option<String>) -> Failure {
+/// Error of a file that cannot be imported.
+pub(super) fn failed(path: &Path, reason: String, help: Option<String>) -> Failure {
     Failure::Import { path: PathBuf::from(path), reason, help }
 }
 

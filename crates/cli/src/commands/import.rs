@@ -6,7 +6,7 @@ use crate::commands::import_args::ImportArgs;
 use crate::commands::import_step;
 use crate::failure::{Exit, Failure};
 use crate::output::{Destination, Look};
-use crate::table::{bytes, measured_of, study_of_bytes};
+use crate::table::{bytes, failed, measured_of, study_of_bytes};
 use sensitol_study::{Study, StudyText};
 
 pub(crate) fn run(asked: &ImportArgs, look: Look) -> Result<Exit, Failure> {
@@ -17,13 +17,9 @@ pub(crate) fn run(asked: &ImportArgs, look: Look) -> Result<Exit, Failure> {
     let of_step = [(asked.part.is_some(), "--part"), (asked.into.is_some(), "--into"), (asked.joints, "--joints")];
     if let Some((_, option)) = of_step.into_iter().find(|(given, _)| *given) {
         let reason = format!("{option} is for STEP files, and this is a table");
-        return Err(Failure::Import { path: asked.table.clone(), reason, help: None });
+        return Err(failed(&asked.table, reason, None));
     }
-    let destination = match &asked.output {
-        Some(path) if path.exists() => return Err(Failure::Exists { path: path.clone() }),
-        Some(path) => Destination::file(path)?,
-        None => Destination::Stdout,
-    };
+    let destination = asked.destination()?;
     if asked.measured {
         return of_measured(asked, destination, look);
     }

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use crate::failure::Failure;
+use crate::output::Destination;
 use crate::shared_args::OUTPUT;
 use crate::table::TableArgs;
 
@@ -48,4 +50,15 @@ pub(crate) struct ImportArgs {
     /// Write to a file instead of stdout; an existing file is never overwritten
     #[arg(short, long, value_name = "FILE", help_heading = OUTPUT)]
     pub(crate) output: Option<PathBuf>,
+}
+
+impl ImportArgs {
+    /// Destination of a new study. An existing file is refused.
+    pub(crate) fn destination(&self) -> Result<Destination, Failure> {
+        match &self.output {
+            Some(path) if path.exists() => Err(Failure::Exists { path: path.clone() }),
+            Some(path) => Destination::file(path),
+            None => Ok(Destination::Stdout),
+        }
+    }
 }

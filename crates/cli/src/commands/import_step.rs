@@ -5,6 +5,7 @@ use std::path::Path;
 use crate::commands::import_args::{DEFAULT_NAME, ImportArgs};
 use crate::failure::{Exit, Failure};
 use crate::output::Destination;
+use crate::table::{failed, file_name};
 use sensitol_study::import::{StepImportFault, StepRequest, is_step, step_into, step_study};
 
 /// Ends of names of STEP files, also of packed ones, which are refused with a reason.
@@ -21,12 +22,9 @@ pub(crate) fn run(asked: &ImportArgs, bytes: &[u8]) -> Result<Exit, Failure> {
     let formula = asked.formula.as_ref().map(|_| "--formula");
     let name = (asked.name != DEFAULT_NAME).then_some("--name");
     if let Some(option) = asked.meaning.first_given().or(name).or(formula) {
-        return Err(failed(asked, format!("{option} is for tables, and this is a STEP file"), None));
+        return Err(failed(&asked.table, format!("{option} is for tables, and this is a STEP file"), None));
     }
-    let file = match asked.table.to_str() {
-        Some("-") | None => "a STEP file".to_owned(),
-        Some(_) => asked.table.file_name().unwrap_or_default().to_string_lossy().into_owned(),
-    };
+    let file = file_name(&asked.table, "a STEP file");
     let next = [
         "Next: add the other parts with `sensitol import PART.stp --into THIS.toml`, then write [joints] and [characteristics].",
         "Until a joint holds every part, `sensitol check` tells which part has none.",
@@ -39,7 +37,7 @@ pub(crate) fn run(asked: &ImportArgs, bytes: &[u8]) -> Result<Exit, Failure> {
             StepImportFault::Target(reason) => {
                 Failure::Import { path: asked.into.clone().unwrap_or_default(), reason, help }
             }
-            fault => failed(asked, fault.to_string(), help),
+            fault => failed(&asked.table, fault.to_string(), help),
         }
     };
     let (destination, imported) = match &asked.into {
@@ -52,14 +50,7 @@ pub(crate) fn run(asked: &ImportArgs, bytes: &[u8]) -> Result<Exit, Failure> {
             let study = std::fs::read_to_string(into).map_err(unread)?;
             (Destination::file(into)?, step_into(bytes, &request, &study).map_err(refused)?)
         }
-        None => {
-            let destination = match &asked.output {
-                Some(path) if path.exists() => return Err(Failure::Exists { path: path.clone() }),
-                Some(path) => Destination::file(path)?,
-                None => Destination::Stdout,
-            };
-            (destination, step_study(bytes, &request).map_err(refused)?)
-        }
+        None => (asked.destination()?, step_study(bytes, &request).map_err(refused)?),
     };
     let says = asked.output.is_some() || asked.into.is_some();
     destination.write(&imported.text)?;
@@ -68,8 +59,4 @@ pub(crate) fn run(asked: &ImportArgs, bytes: &[u8]) -> Result<Exit, Failure> {
         Destination::Stdout.write(&format!("{parts}\n{}\n", imported.summary))?;
     }
     Ok(Exit::Done)
-}
-
-fn failed(asked: &ImportArgs, reason: String, help: Option<String>) -> Failure {
-    Failure::Import { path: asked.table.clone(), reason, help }
 }
