@@ -5,7 +5,7 @@
 
 use sensitol_study::Study;
 
-/// A size in each range with its half tolerances of classes f, m, c and v in mm; None where the standard has none.
+/// Size in each range, and half tolerances of classes f, m, c and v in mm. None if the standard has none.
 const TABLE: [(f64, [Option<f64>; 4]); 8] = [
     (3.0, [Some(0.05), Some(0.1), Some(0.2), None]),
     (6.0, [Some(0.05), Some(0.1), Some(0.3), Some(0.5)]),
