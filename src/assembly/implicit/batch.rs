@@ -20,6 +20,16 @@ const CURVED: f64 = 4.0;
 /// Longest step, as a part of the one before, that counts as convergence. The safeguarded search has the same limit.
 const SHORTER: f64 = 0.5;
 
+/// Greatest distance of a root from its prediction, in scales, at which it is accepted although no slope predicts it. It is a tenth of a
+/// scale: floats and tolerances move assemblies by some hundredths, and other branches lie about a scale away.
+const NEIGHBOURHOOD: f64 = 0.1;
+/// Greatest contraction of the steps to such a root. Two roots at the distance d let a step that begins at the distance e from one of them
+/// leave e/d of the error, so that another root is at least ten times as far from the prediction as the one that is found.
+const CONTRACTING: f64 = 0.1;
+/// Greatest factor between a pivot at such a root and at the nominal state. A root of another branch near by has pivots that are smaller or of
+/// another sign, since the determinant is 0 where branches meet.
+const ALIKE: f64 = 2.0;
+
 /// State of a point that is left to the safeguarded search. States are numbers, so that they stand in columns.
 const FAILED: f64 = -1.0;
 /// State of a point whose unknowns of this block are found.
@@ -79,6 +89,10 @@ struct Progress<const W: usize> {
     fresh: [f64; W],
     /// 1 where the step is taken.
     taken: [f64; W],
+    /// Greatest length of a step as a part of the step before, over all steps of all blocks that are longer than `NEAR`.
+    contraction: [f64; W],
+    /// Greatest factor by which a pivot differs from that of the nominal state.
+    change: [f64; W],
 }
 
 impl BatchSolver {
@@ -162,6 +176,8 @@ impl BatchSolver {
                 residual: [0.0; W],
                 fresh: [0.0; W],
                 taken: [0.0; W],
+                contraction: [0.0; W],
+                change: [1.0; W],
             },
             signs: [0.0; W],
             pivots: [0.0; W],
@@ -184,6 +200,7 @@ impl BatchSolver {
     pub(super) fn solve<const W: usize>(&self, system: &System, anchor: &Anchor, workspace: &mut Workspace<W>) {
         on_this_processor(Predict { solver: self, system, anchor, workspace });
         workspace.progress.state = [OPEN; W];
+        (workspace.progress.contraction, workspace.progress.change) = ([0.0; W], [1.0; W]);
         workspace.signs = [1.0; W];
         self.stages.run_first(&mut workspace.lanes);
         for stage in 0..self.blocks.len() {
@@ -246,6 +263,7 @@ impl BatchSolver {
             progress.state[lane] = if progress.state[lane] == SOLVED { SOLVED } else { FAILED };
             workspace.signs[lane] *= workspace.pivots[lane];
         }
+        block.elimination.measure_changes(&workspace.factors, &mut workspace.progress.change);
         self.stages.run(stage, Part::Last, &mut workspace.lanes);
     }
 
@@ -372,7 +390,7 @@ impl<const W: usize> Work for Judge<'_, W> {
 
     #[inline(always)]
     fn work(self) {
-        let Progress { state, last, length, residual, fresh, taken } = self.progress;
+        let Progress { state, last, length, residual, fresh, taken, contraction, .. } = self.progress;
         for lane in 0..W {
             let (step, before) = (length[lane], last[lane]);
             let open = state[lane] == OPEN;
@@ -386,6 +404,9 @@ impl<const W: usize> Work for Judge<'_, W> {
             taken[lane] = if open & (next >= SOLVED) { 1.0 } else { 0.0 };
             // Derivatives that are as near as this serve all further steps.
             fresh[lane] = if open & (next == OPEN) & (step >= NEAR) & !self.linear { 1.0 } else { 0.0 };
+            // Between shorter steps rounding decides, and before the first one there is none.
+            let ratio = if (before >= NEAR) & (before < f64::INFINITY) { step / before } else { 0.0 };
+            contraction[lane] = if open & (ratio > contraction[lane]) { ratio } else { contraction[lane] };
             last[lane] = step;
         }
     }
@@ -419,6 +440,9 @@ impl<const W: usize> Work for Move<'_, W> {
 }
 
 /// Acceptance of the roots that are near their predictions, on the branch of the nominal state.
+///
+/// A clearance that is 0 at the nominal sizes has no slope, so that a float moves the assembly without a prediction. The root then counts as
+/// near if its steps and pivots show that no other one is close.
 struct Accept<'a, const W: usize> {
     solver: &'a BatchSolver,
     anchor: &'a Anchor,
@@ -441,9 +465,11 @@ impl<const W: usize> Work for Accept<'_, W> {
             }
         }
         for lane in 0..W {
+            let Progress { state, contraction, change, .. } = &mut workspace.progress;
             let near = off[lane] <= OFF * way[lane] + SLACK;
-            let state = &mut workspace.progress.state[lane];
-            *state = if near & (workspace.signs[lane] == solver.sign) { *state } else { FAILED };
+            let alone = (off[lane] <= NEIGHBOURHOOD) & (contraction[lane] <= CONTRACTING) & (change[lane] <= ALIKE);
+            let state = &mut state[lane];
+            *state = if (near | alone) & (workspace.signs[lane] == solver.sign) { *state } else { FAILED };
         }
     }
 }

@@ -103,6 +103,17 @@ impl Elimination {
         on_this_processor(Factorise { plan: self, factors, spare, signs });
     }
 
+    /// Raises `changes` to the greatest factor by which a pivot differs from the same one at the nominal state.
+    pub(super) fn measure_changes<const W: usize>(&self, factors: &[Column<W>], changes: &mut [f64; W]) {
+        for pivot in &self.pivots {
+            // The inverse stands in the place of the pivot.
+            for (change, inverse) in changes.iter_mut().zip(&*factors[pivot.place]) {
+                let ratio = (inverse * pivot.nominal).abs();
+                *change = change.max(ratio).max(1.0 / ratio);
+            }
+        }
+    }
+
     /// Solves the equations with these right sides, one for each row. The solution replaces them, with every unknown in the row of its
     /// pivot.
     pub(super) fn solve<const W: usize>(&self, factors: &[Column<W>], right: &mut [Column<W>], spare: &mut Column<W>) {

@@ -244,3 +244,58 @@ fn steps_wait_for_their_unknown() {
     let singular = Text::new(&[("x", 1.3)], &[("u", 1.3), ("v", 1.3)], &["u - x", "v - u^2"]).assembly();
     assert_eq!(singular.agrees(&singular.points(20, 0.2, 4), "two linear equations"), 1.0);
 }
+
+/// Pins in holes, each of which is carried by the one before. All clearances are 0 at the nominal sizes, so that no slope predicts the floats.
+#[test]
+fn floats_without_nominal_clearance_are_solved_at_once() {
+    let mut text = Text::default();
+    for pin in 0..4 {
+        let before = if pin == 0 { "0".to_owned() } else { format!("u{}", pin - 1) };
+        text.unknowns.push((format!("u{pin}"), 0.0));
+        text.dimensions.extend([(format!("D{pin}"), 20.0), (format!("d{pin}"), 20.0), (format!("f{pin}"), 0.0)]);
+        let float = format!("f{pin}*max(0, D{pin} - d{pin})/2");
+        text.equations.push((format!("e{pin}"), format!("sin(u{pin} - {before}) - 0.1*({float})")));
+    }
+    let assembly = text.assembly();
+    let points = assembly.points(200, 0.3, 11);
+    assert_eq!(assembly.agrees(&points, "floats"), 1.0);
+    // The angles add up in closed form.
+    let found = assembly.together(&points);
+    for (row, point) in points.iter().enumerate() {
+        let angle =
+            |pin: usize| (0.1 * point[3 * pin + 2] * (point[3 * pin] - point[3 * pin + 1]).max(0.0) / 2.0).asin();
+        let sum: f64 = (0..4).map(angle).sum();
+        assert!((found.columns[3][row] - sum).abs() < 1e-14, "{sum}");
+    }
+}
+
+/// Roots that move by kinks, two of them near each other: a root that is accepted is that of the nominal branch.
+#[test]
+fn a_near_root_without_a_prediction_is_on_the_nominal_branch() {
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(29);
+    let mut solved = 0;
+    for seed in 0..400 {
+        let mut apart = || {
+            let distance = 10f64.powf(random.random_range(-2.5..0.0));
+            if random.random_bool(0.5) { distance } else { -distance }
+        };
+        let (second, third) = (1.0 + apart(), if seed % 2 == 0 { 1.4 } else { 0.6 });
+        let first = "(u - 1 - max(0, x) + 0.5*abs(y))";
+        let text = format!("{first}*(u - {second} - 0.7*max(0, y) + abs(z))*(u - {third} + max(x, z))");
+        let assembly = Text::new(&[("x", 0.0), ("y", 0.0), ("z", 0.0)], &[("u", 1.0)], &[&text]).assembly();
+        let points = assembly.points(40, 0.1, seed);
+        let found = assembly.together(&points);
+        for (row, at_once) in assembly.solved_at_once(&points).into_iter().enumerate() {
+            let (x, y, z) = (points[row][0], points[row][1], points[row][2]);
+            let root = 1.0 + x.max(0.0) - 0.5 * y.abs();
+            // Roots that have passed each other leave the branch undefined.
+            let others = [second + 0.7 * y.max(0.0) - z.abs(), third - x.max(z)];
+            let passed = (others[0] > root) != (second > 1.0) || (others[1] > root) != (third > 1.0);
+            if at_once && !passed {
+                solved += 1;
+                assert!((found.columns[0][row] - root).abs() < 1e-7, "{text}: {} for {root}", found.columns[0][row]);
+            }
+        }
+    }
+    assert!(solved > 2000, "{solved}");
+}
