@@ -7,17 +7,11 @@
 use crate::assembly::Points;
 use crate::problem::Problem;
 use sensitol_numeric::correlation::{Together, Transform};
-use sensitol_numeric::distribution::{Distribution, Normal, PearsonLaw, Probability, behind_normal};
+use sensitol_numeric::distribution::{Distribution, Normal, PearsonLaw, Probability, ScoreTable, behind_normal};
 use sensitol_numeric::sampling::SamplingError;
 
 /// Points as columns, one for every variable.
 pub(crate) type Columns = Vec<Vec<f64>>;
-
-/// Distance in sigmas at which variables are clamped: beyond it are less than 1e-18 of all assemblies.
-const REACH: f64 = 9.0;
-/// Places of a table per sigma. A cubic between them is accurate to 1e-8 of a sigma if the density is smooth, and to 1e-6 near the mode of
-/// a triangle: a thousandth of the error of a sample of 40 000 points.
-const PER_UNIT: f64 = 64.0;
 
 /// Some of the varying dimensions of a problem, N of them.
 pub(crate) struct NormalSpace<'p> {
@@ -38,8 +32,7 @@ struct Input<'p> {
 /// Transformation `T` of a normal variable into a standardised input.
 enum Law<'p> {
     Normal,
-    /// Values at evenly spaced places, and the ends of the support.
-    Table(Vec<f64>, [f64; 2]),
+    Table(ScoreTable),
     /// Measured values, between which nothing may be interpolated.
     Atoms(&'p dyn Probability),
     /// Exact values for the model, without an end of the tails. Surfaces get values from a table that is continuous even between measured
@@ -122,11 +115,7 @@ impl Input<'_> {
     fn standardise(&self, column: &mut [f64]) {
         match &self.law {
             Law::Normal => {}
-            Law::Table(values, [low, high]) => {
-                for z in column {
-                    *z = interpolated(values, *z).clamp(*low, *high);
-                }
-            }
+            Law::Table(table) => column.iter_mut().for_each(|z| *z = table.value(*z)),
             Law::Atoms(law) => {
                 for z in column {
                     *z = (behind_normal(*law, *z) - self.mean) / self.sigma;
@@ -147,13 +136,13 @@ impl<'p> Law<'p> {
             let stand_in = PearsonLaw::new(0.0, 1.0, moments.skewness, moments.excess);
             let stand_in = stand_in.ok().filter(|law| law.probability().is_some());
             return stand_in.map_or(Self::Normal, |law| match law.probability() {
-                Some(probability) => Self::table(probability, [0.0, 1.0], law.support()),
+                Some(probability) => Self::Table(ScoreTable::new(probability, [0.0, 1.0], law.support())),
                 None => Self::Normal,
             });
         };
         let (mean, sigma) = (distribution.mean(), distribution.sigma());
         match law.density(mean) {
-            Some(_) => Self::table(law, [mean, sigma], distribution.support()),
+            Some(_) => Self::Table(ScoreTable::new(law, [mean, sigma], distribution.support())),
             None => Self::Atoms(law),
         }
     }
@@ -163,21 +152,4 @@ impl<'p> Law<'p> {
         let (law, transform) = (distribution.probability()?, Transform::of(distribution)?);
         Some(if transform.is_normal() { Self::Normal } else { Self::FarTails(law, transform) })
     }
-
-    fn table(law: &dyn Probability, [mean, sigma]: [f64; 2], support: [f64; 2]) -> Self {
-        let last = (2.0 * REACH * PER_UNIT) as usize;
-        let at = |place: usize| (behind_normal(law, place as f64 / PER_UNIT - REACH) - mean) / sigma;
-        let ends = support.map(|end| (end - mean) / sigma);
-        Self::Table((0..=last).map(at).collect(), ends)
-    }
-}
-
-/// Lagrange's cubic through the four places around `z`.
-fn interpolated(values: &[f64], z: f64) -> f64 {
-    let place = (z.clamp(-REACH, REACH) + REACH) * PER_UNIT;
-    let at = (place as usize).clamp(1, values.len() - 3);
-    let t = place - at as f64;
-    let [a, b, c, d] = [values[at - 1], values[at], values[at + 1], values[at + 2]];
-    let (p, q, r) = (t + 1.0, t - 1.0, t - 2.0);
-    -a * t * q * r / 6.0 + 0.5 * b * p * q * r - 0.5 * c * p * t * r + d * p * t * q / 6.0
 }

@@ -15,6 +15,7 @@ pub mod outliers;
 mod probability;
 pub mod rule;
 pub mod sample;
+mod score_table;
 mod standard_moments;
 pub mod standard_normal;
 pub(crate) mod ziggurat;
@@ -50,6 +51,7 @@ pub use probability::behind_normal;
 pub use rule::Jacobi;
 pub use rule::Rule;
 pub use sample::{Resample, Reweighted, Sample};
+pub use score_table::ScoreTable;
 pub use standard_moments::StandardMoments;
 
 use error::{between, interval};

@@ -158,7 +158,9 @@ impl<'a> CommonPoints<'a> {
         for (place, (position, input)) in self.laws.iter().enumerate() {
             let Some(own) = law.given.places.get(*position).copied().flatten() else { continue };
             let part = &law.given.parts[own];
-            let each = scores[place].iter().map(|&score| score * value(part, input.at_score(score)));
+            let mut inputs = scores[place].clone();
+            input.at_scores(&mut inputs);
+            let each = scores[place].iter().zip(&inputs).map(|(score, &z)| score * value(part, z));
             covariances[place] = each.sum::<f64>() / POINTS as f64;
         }
         let by_member: Vec<f64> = self.members.iter().map(|&place| covariances[place]).collect();
@@ -292,8 +294,8 @@ impl<'a> CommonPoints<'a> {
         if !self.members.is_empty() {
             self.correlate(columns);
         }
-        for (place, (_, input)) in self.laws.iter().enumerate().filter(|(_, (_, input))| !input.is_normal()) {
-            columns[place].iter_mut().for_each(|z| *z = input.at_score(*z));
+        for ((_, input), column) in self.laws.iter().zip(columns) {
+            input.at_scores(column);
         }
     }
 

@@ -90,7 +90,8 @@ impl Beta {
         [self.law.cdf(u), self.law.sf(u)]
     }
 
-    fn inverse(&self, [below, above]: [f64; 2], law: f64) -> f64 {
+    /// Value with these probabilities below and above it. `between` gives its deviation in sigmas where neither end has a series.
+    fn inverse(&self, [below, above]: [f64; 2], between: impl Fn() -> f64) -> f64 {
         let [lower, upper] = self.support();
         if let Some(share) = self.ends[0].and_then(|end| end.quantile(below)) {
             return lower + self.width() * share;
@@ -98,7 +99,7 @@ impl Beta {
         if let Some(share) = self.ends[1].and_then(|end| end.quantile(above)) {
             return upper - self.width() * share;
         }
-        (self.mean() + self.sigma() * law).clamp(lower, upper)
+        (self.mean() + self.sigma() * between()).clamp(lower, upper)
     }
 }
 
@@ -190,11 +191,11 @@ impl Probability for Beta {
     }
 
     fn quantile(&self, p: f64) -> f64 {
-        if checked(p).is_nan() { f64::NAN } else { self.inverse([p, 1.0 - p], self.law.quantile(p)) }
+        if checked(p).is_nan() { f64::NAN } else { self.inverse([p, 1.0 - p], || self.law.quantile(p)) }
     }
 
     fn upper_quantile(&self, p: f64) -> f64 {
-        if checked(p).is_nan() { f64::NAN } else { self.inverse([1.0 - p, p], self.law.upper_quantile(p)) }
+        if checked(p).is_nan() { f64::NAN } else { self.inverse([1.0 - p, p], || self.law.upper_quantile(p)) }
     }
 
     /// Random values by the rejection methods of Cheng (1978), from `rand_distr`.
