@@ -152,6 +152,18 @@ fn equal_parts_and_equal_names_are_dimensions_of_their_own() {
     assert!(text.contains("\"space 2\"") && read.contains("equal names were numbered: `space 2` of row 4"), "{read}");
 }
 
+/// Many rows with one name take one pass, and messages name a few of them.
+#[test]
+fn many_equal_names_are_numbered_in_one_pass() {
+    let rows: String = (0..100_000).map(|_| "plate,1,0.1\n").collect();
+    let [text, read] = imported(&format!("name,nominal,tolerance\n{rows}"), &[]);
+    assert!(text.contains("\"plate 100000\" = "), "{read}");
+    assert!(read.contains("`plate 13` of row 14 and 99987 more"), "{read}");
+    let bare = rows.replace(",0.1", ",");
+    let error = import(&format!("name,nominal,tolerance\n{bare}"), &[]).unwrap_err();
+    assert!(error.contains("`plate 12` and 99988 more") && error.len() < 1000, "{}", error.len());
+}
+
 #[test]
 fn totals_and_limits_stand_below_the_rows() {
     let table = "name,nominal,tol,dir\na,10,0.1,+\nb,4,0.05,-\nGap,6,,\nLimits: 5.9 .. 6.1,,,\n";

@@ -314,7 +314,19 @@ impl ImportProblem {
     }
 }
 
+/// Number of names that a message lists.
+const NAMED: usize = 12;
+
 /// Names in backquotes.
 fn quoted(names: &[String]) -> String {
-    names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+    first_of(&names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>())
+}
+
+/// The first names of a list, and the number of the others.
+pub(super) fn first_of(names: &[String]) -> String {
+    let named = names[..names.len().min(NAMED)].join(", ");
+    match names.len().saturating_sub(NAMED) {
+        0 => named,
+        more => format!("{named} and {more} more"),
+    }
 }

@@ -1,9 +1,9 @@
 //! Reads the rows of a stack-up table and writes a study from them.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use crate::import::columns::ColumnRole;
-use crate::import::fault::{ImportFault, ImportProblem};
+use crate::import::fault::{ImportFault, ImportProblem, first_of};
 use crate::import::figures::Figures;
 use crate::import::header::{Header, header};
 use crate::import::limits::LimitRows;
@@ -73,11 +73,9 @@ pub fn import(sheet: &Sheet, options: &ImportOptions) -> Result<Imported, Import
     let values = table.figures.read(sheet.commas_separate)?;
     let spreads = spreads(&table, &values)?;
     take_out_totals(&mut table, &values)?;
-    let spreads: Vec<Spread> = spreads
-        .into_iter()
-        .filter(|(line, _)| table.rows.iter().any(|row| row.line == *line))
-        .map(|(_, spread)| spread)
-        .collect();
+    let lines: HashSet<u64> = table.rows.iter().map(|row| row.line).collect();
+    let spreads: Vec<Spread> =
+        spreads.into_iter().filter(|(line, _)| lines.contains(line)).map(|(_, spread)| spread).collect();
     if table.rows.is_empty() {
         return Err(ImportFault { cell: None, problem: ImportProblem::NoDimension });
     }
@@ -222,7 +220,8 @@ fn take_out_totals(table: &mut Table, values: &[f64]) -> Result<(), ImportFault>
 
 /// Dimensions with names of their own: equal names are numbered, and n equal parts are n dimensions.
 fn parts(table: &mut Table, values: &[f64], spreads: &[Spread]) -> Result<Vec<Part>, ImportFault> {
-    let mut taken: HashSet<String> = HashSet::new();
+    // Every name with the number that is tried next, so that many equal names are numbered in one pass.
+    let mut taken: HashMap<String, usize> = HashMap::new();
     let (mut parts, mut numbered) = (Vec::new(), Vec::new());
     for (row, spread) in table.rows.iter().zip(spreads) {
         let count = match row.quantity.map(|place| (values[place], place)) {
@@ -254,24 +253,30 @@ fn parts(table: &mut Table, values: &[f64], spreads: &[Spread]) -> Result<Vec<Pa
         };
         for index in 1..=count {
             let wanted = if count == 1 { row.name.clone() } else { format!("{} {index}", row.name) };
-            let name = free(&wanted, &taken);
+            let name = free(&wanted, &mut taken);
             if name != wanted {
                 numbered.push(format!("`{name}` of row {}", row.line));
             }
-            taken.insert(name.clone());
             parts.push(Part { name, ..part.clone() });
         }
     }
     if !numbered.is_empty() {
-        table.notes.push(format!("equal names were numbered: {}", numbered.join(", ")));
+        table.notes.push(format!("equal names were numbered: {}", first_of(&numbered)));
     }
     Ok(parts)
 }
 
-/// Name with the first number that is free, or as it is.
-fn free(name: &str, taken: &HashSet<String>) -> String {
-    let numbered = (2..).map(|number| format!("{name} {number}"));
-    std::iter::once(name.to_owned()).chain(numbered).find(|name| !taken.contains(name)).unwrap_or_default()
+/// Takes a name with the first number that is free, or as it is.
+fn free(name: &str, taken: &mut HashMap<String, usize>) -> String {
+    let mut number = taken.get(name).copied().unwrap_or(1);
+    let mut found = name.to_owned();
+    while taken.contains_key(&found) {
+        number += 1;
+        found = format!("{name} {number}");
+    }
+    taken.insert(name.to_owned(), number);
+    taken.entry(found.clone()).or_insert(1);
+    found
 }
 
 /// Refuses dimensions without a tolerance, unless they are permitted.
@@ -282,7 +287,7 @@ fn refuse_fixed(parts: &[Part], options: &ImportOptions, notes: &mut Vec<String>
         return Err(ImportFault { cell: None, problem: ImportProblem::Fixed { names: fixed } });
     }
     if !fixed.is_empty() {
-        notes.push(format!("without tolerance: {}", fixed.join(", ")));
+        notes.push(format!("without tolerance: {}", first_of(&fixed)));
     }
     Ok(())
 }
