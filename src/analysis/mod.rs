@@ -3,6 +3,7 @@
 pub mod distribution;
 mod evaluation_summary;
 mod interaction_truncation;
+mod likely_mistakes;
 mod output_correlation;
 mod result;
 mod sampling;

@@ -4,6 +4,7 @@ use crate::analysis::sampling::verification_stage;
 use std::collections::HashSet;
 
 use crate::analysis::distribution::law_guard::LawRefutation;
+use crate::analysis::likely_mistakes::likely_mistakes;
 use crate::analysis::result::characteristic::curvature;
 use crate::analysis::result::interaction_listing::missing;
 use crate::analysis::sampling::surface_trust as trust;
@@ -53,6 +54,7 @@ pub(super) fn of(
 ) -> Vec<Warning> {
     let mut warnings = found;
     warnings.extend(unused(problem));
+    warnings.extend(likely_mistakes(problem, characteristics));
     for &d in outcome.plan.varying() {
         let moved = |moved: &crate::plan::MovedNode| Warning::SupportEdge {
             dimension: problem.dimensions()[d].name().to_owned(),

@@ -37,6 +37,22 @@ warnings! {
         /// The dimensions.
         dimensions: Vec<String>,
     };
+    /// Characteristics whose nominal value and mean lie on the wrong side of a limit.
+    MeanOutsideLimits = "mean-outside-limits" by study::mean_outside_limits {
+        /// The characteristics.
+        characteristics: Vec<String>,
+    };
+    /// One dimension has nearly all of the variance, with a tolerance far wider than the others.
+    DominantDimension = "dominant-dimension" by study::dominant_dimension {
+        /// The first such characteristic.
+        characteristic: String,
+        /// The dimension.
+        dimension: String,
+        /// Its share of the variance.
+        share: f64,
+        /// Its tolerance as a multiple of the widest other one in the same unit.
+        factor: f64,
+    };
     /// The units in a formula do not go together.
     UnitMismatch = "unit-mismatch" by study::unit_mismatch {
         /// The key of the first such formula.

@@ -34,6 +34,24 @@ pub(super) fn nominal_outside_limits(dimensions: &[String]) -> Text {
     .advise(Advice::CheckLimits)
 }
 
+pub(super) fn mean_outside_limits(characteristics: &[String]) -> Text {
+    say(format!(
+        "The nominal value and the mean of {} lie outside the limits, so that more than half of the assemblies are likely to be rejected. A \
+         sign in the formula or the limits may be reversed.",
+        names(characteristics)
+    ))
+    .advise(Advice::CheckLimits)
+}
+
+pub(super) fn dominant_dimension(characteristic: &str, dimension: &str, share: &f64, factor: &f64) -> Text {
+    say(format!(
+        "`{dimension}` has {:.1} % of the variance of `{characteristic}`. Its tolerance is {factor:.0} times the widest other one in the same \
+         unit. A decimal point or a unit may be wrong.",
+        100.0 * share
+    ))
+    .advise(Advice::CheckLimits)
+}
+
 pub(super) fn unit_mismatch(
     formula: &str,
     column: &usize,

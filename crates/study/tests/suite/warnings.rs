@@ -58,6 +58,14 @@ fn every() -> Vec<Warning> {
         Warning::UnusedDimension { dimensions: names(997) },
         Warning::NominalOutsideLimits { dimensions: names(1) },
         Warning::NominalOutsideLimits { dimensions: names(2) },
+        Warning::MeanOutsideLimits { characteristics: names(1) },
+        Warning::MeanOutsideLimits { characteristics: names(2) },
+        Warning::DominantDimension {
+            characteristic: characteristic(),
+            dimension: dimension(),
+            share: 0.9985,
+            factor: 250.0,
+        },
         Warning::Overflow { characteristic: characteristic(), value: 1.5e200, limit: 1e100 },
         Warning::Unrepresentable { characteristic: characteristic() },
         Warning::OutsideModel { output: text("H_req"), reason: text("below 2 t the flanges of the section overlap") },
@@ -495,4 +503,27 @@ fn a_thousand_dimensions_without_effect_are_one_warning() {
     assert_eq!(dimensions.len(), 998);
     assert!(unused[0].message().contains("`d2`, `d3`, `d4`, `d5`, `d6` and 993 more"), "{}", unused[0].message());
     assert_eq!(unused[0].dimension(), None);
+}
+
+/// A reversed sign and a misplaced decimal point are told, and neither is where the study is right.
+#[test]
+fn likely_mistakes_are_told() {
+    let codes = |b: &str, formula: &str, more: &str| -> Vec<String> {
+        let study = format!(
+            "[dimensions]\na = {{ nominal = 20.5, tolerance = 0.02, unit = \"mm\" }}\nb = {{ nominal = 20, {b}, unit = \"mm\" }}\n\
+             [characteristics]\ngap = {{ formula = \"{formula}\", unit = \"mm\", {more} }}\n"
+        );
+        let problem = Study::from_toml(&study, "stack.toml").unwrap().problem;
+        let warnings = analyze(&problem, &Method::SecondOrder.into()).unwrap().warnings;
+        warnings.iter().map(|warning| warning.code().to_owned()).collect()
+    };
+    let limits = "lower = 0.2, upper = 0.8";
+    assert_eq!(codes("tolerance = 0.03", "a - b", limits), [""; 0]);
+    assert_eq!(codes("tolerance = 0.03", "b - a", limits), ["mean-outside-limits"]);
+    assert_eq!(codes("tolerance = 3", "a - b", limits), ["dominant-dimension"]);
+    // 99 times as wide is not told, nor is a dimension that stands alone or one in another unit.
+    assert_eq!(codes("tolerance = 1.98", "a - b", limits), [""; 0]);
+    assert_eq!(codes("tolerance = 3", "b", "lower = 10"), ["unused-dimension"]);
+    // A mean that its tolerance alone moves out is no mistake of signs.
+    assert_eq!(codes("tolerance = [-1, 0]", "a - b", "upper = 0.8"), [""; 0]);
 }
