@@ -39,15 +39,18 @@ impl<'s> Look<'s> {
 
     /// Returns the style of a report. A file has the default width, and colours only if they are always on.
     pub(super) fn style(self, asked: &OutputArgs) -> Style {
+        let style = self.terminal_style();
+        match asked.output {
+            Some(_) => Style { color: self.color == ColorChoice::Always, width: Style::WIDTH, ..style },
+            None => style,
+        }
+    }
+
+    /// Returns the style of text on stdout.
+    pub(super) fn terminal_style(self) -> Style {
         let detail = if self.verbose { Detail::Full } else { Detail::Short };
-        let (color, width) = match asked.output {
-            Some(_) => (self.color == ColorChoice::Always, Style::WIDTH),
-            None => {
-                let color = anstream::AutoStream::choice(&std::io::stdout()) != anstream::ColorChoice::Never;
-                (color, terminal_width())
-            }
-        };
-        Style { detail, unicode: self.color != ColorChoice::Never && utf8_locale(), color, width }
+        let color = anstream::AutoStream::choice(&std::io::stdout()) != anstream::ColorChoice::Never;
+        Style { detail, unicode: self.color != ColorChoice::Never && utf8_locale(), color, width: terminal_width() }
     }
 
     /// Prints a warning and the advice on it.
@@ -60,13 +63,14 @@ impl<'s> Look<'s> {
         self.tell_all(&warnings.iter().map(WarningReport::of).collect::<Vec<_>>());
     }
 
-    /// Prints the warnings of a report. Of many with the same code it prints the first few, then the number and names of the others.
+    /// Prints the warnings of a report that ask for attention. Of many with the same code it prints the first few, then the number and names of the others.
     pub(super) fn tell_all(self, warnings: &[WarningReport]) {
+        let asking: Vec<&WarningReport> = warnings.iter().filter(|one| one.asks()).collect();
         let mut more: Vec<(&str, Vec<&str>)> = Vec::new();
-        for (index, warning) in warnings.iter().enumerate() {
-            let alike = |one: &&WarningReport| one.code == warning.code;
-            let before = warnings[..index].iter().filter(alike).count();
-            if self.verbose || before < EACH || warnings.iter().filter(alike).count() <= EACH + 1 {
+        for (index, warning) in asking.iter().enumerate() {
+            let alike = |one: &&&WarningReport| one.code == warning.code;
+            let before = asking[..index].iter().filter(alike).count();
+            if self.verbose || before < EACH || asking.iter().filter(alike).count() <= EACH + 1 {
                 self.tell(warning);
                 continue;
             }
@@ -118,6 +122,11 @@ impl Look<'_> {
 /// Prints an error.
 pub(super) fn error(message: &str) {
     to_stderr(&format!("{}\n", shown(message)));
+}
+
+/// Prints a line of information.
+pub(super) fn told(message: &str) {
+    to_stderr(&format!("{}\n", clean(message)));
 }
 
 /// Prints a question and leaves the cursor behind it.
@@ -173,10 +182,20 @@ pub(super) fn set_color(choice: ColorChoice) {
     .write_global();
 }
 
-/// Returns the width of the terminal, from 40 (for numbers) to 120 (for readability), or the default if stdout is not a terminal.
+/// Least width of a report, in columns: numbers need so many.
+const NARROWEST: usize = 40;
+/// Greatest width on a terminal, in columns, for readability.
+const WIDEST: usize = 120;
+/// Greatest width that COLUMNS sets for a pipe, in columns.
+const WIDEST_PIPE: usize = 1000;
+
+/// Returns the width of the terminal. Without one it is the variable COLUMNS, or the default.
 fn terminal_width() -> usize {
-    let size = terminal_size::terminal_size_of(std::io::stdout());
-    size.map_or(Style::WIDTH, |(width, _)| usize::from(width.0).clamp(40, 120))
+    if let Some((width, _)) = terminal_size::terminal_size_of(std::io::stdout()) {
+        return usize::from(width.0).clamp(NARROWEST, WIDEST);
+    }
+    let columns = std::env::var("COLUMNS").ok().and_then(|columns| columns.trim().parse::<usize>().ok());
+    columns.filter(|columns| *columns > 0).map_or(Style::WIDTH, |columns| columns.clamp(NARROWEST, WIDEST_PIPE))
 }
 
 /// True if the locale is UTF-8. Always true on systems other than Unix.

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::document::number::{known, significant, yielded};
+use crate::document::number::{beside, known, significant, yielded};
 use crate::document::{
     Blocks, Cell, Chart, Columns, DataTable, Document, Element, Layer, Plot, PlotAxis, PlotPoint, PlotScale, Section,
     Stroke, Tone, Value,
@@ -123,10 +123,10 @@ impl CompareReport {
     /// error over evaluations.
     pub fn document(&self) -> Document {
         let mut document = Document::titled(self.head.title.as_deref());
-        let (reference, samples, beside) = (self.reference_method, self.reference_samples, head::beside(&self.run));
+        let (reference, samples, more) = (self.reference_method, self.reference_samples, head::beside(&self.run));
         // Methods share their requests to an external model. The total of points and batches shows the size that a cluster needs.
         let all = self.run.evaluator.map_or(String::new(), |_| format!("; all: {}", head::evaluations(&self.run)));
-        document.line(format!("reference: {reference} with {samples} points{all}{beside}"));
+        document.line(format!("reference: {reference} with {samples} points{all}{more}"));
         document.gap();
         document.table(glance::table(self.characteristics.iter().map(|one| OverviewLine::sampled(&one.reference))));
         document.sections = self.characteristics.iter().map(ComparedReport::section).collect();
@@ -150,7 +150,7 @@ impl ComparedReport {
         let of = &self.reference;
         section.remark(format!(
             "Reference: mean {}, sigma {}, skewness {}, kurtosis {}, yield {}.",
-            known(of.mean(), |mean| significant(mean, 7)),
+            known(of.mean(), |mean| beside(mean, of.sigma().unwrap_or(0.0))),
             known(of.sigma(), |sigma| significant(sigma, 6)),
             known(of.skewness(), |skewness| significant(skewness, 4)),
             known(of.kurtosis(), |kurtosis| significant(kurtosis, 5)),
@@ -202,7 +202,7 @@ impl ComparedReport {
             .column("mean_off_sigmas", "mean/sigma", off!(mean, 1.0))
             .column("sigma_off_relative", "sigma %", off!(sigma, 100.0))
             .column("skewness_off", "skew", off!(skewness, 1.0))
-            .column("kurtosis_off", "kurtosis", off!(kurtosis, 1.0))
+            .column("kurtosis_off", "kurt", off!(kurtosis, 1.0))
             .column("yield_off", "yield %", off!(yield_, 100.0))
             .data("overall", |method| Cell::data(method.error_vs_reference.overall()))
             .data("resolved", |method| Cell::both(Value::Truth(Some(method.error_vs_reference.resolved())), ""))

@@ -2,14 +2,19 @@
 
 use serde::Serialize;
 
-use crate::document::number::{UNKNOWN, band, beside, estimated, index, limits, percent, plain, plural, yielded};
-use crate::document::{Blocks, Cell, Columns, DataTable, Document, Section, Tone, Value};
+use crate::document::number::{
+    UNKNOWN, band, beside, estimated, estimated_beside, index, limits, percent, plain, plural, short, yielded,
+};
+use crate::document::terminal::unbroken;
+use crate::document::{Blocks, Cell, Columns, DataTable, Document, Section, Style, Tone, Value};
 use crate::figures::{Figures, Named};
 use crate::{About, DimensionReport, Head, Report};
 use sensitol::analysis::CharacteristicAnalysis;
 use sensitol_numeric::capability::Capability;
 use sensitol_numeric::verdict::Verdict;
 
+/// Most changed inputs that a line names.
+const NAMED: usize = 4;
 /// Least change of a share of the variance that is worth a line.
 const SEEN: f64 = 0.005;
 
@@ -102,6 +107,28 @@ impl DifferenceReport {
         }
     }
 
+    /// Formats the differences as a few lines: the inputs, then the figures of every characteristic that changed.
+    pub fn brief(&self, style: Style) -> String {
+        let mut lines = Vec::new();
+        if !self.changes.is_empty() {
+            let there = |value: &Option<String>| value.clone().unwrap_or_else(|| "not there".to_owned());
+            let named = self
+                .changes
+                .iter()
+                .take(NAMED)
+                .map(|one| format!("{} {} {} -> {}", short(&one.name), one.key, there(&one.old), there(&one.new)));
+            let named: Vec<String> = named.collect();
+            let rest = self.changes.len() - named.len();
+            let more = if rest > 0 { format!(" and {rest} more") } else { String::new() };
+            lines.push(format!("  {}{more}", named.join(", ")));
+        }
+        lines.extend(self.characteristics.iter().filter_map(Compared::brief));
+        if lines.is_empty() {
+            lines.push("  nothing changed".to_owned());
+        }
+        lines.into_iter().map(|line| unbroken(&line.into(), style)).collect()
+    }
+
     /// Builds the document with the tables `changes`, `results` and `contributions`.
     pub(crate) fn document(&self) -> Document {
         let mut document = Document::titled(self.head.title.as_deref());
@@ -149,6 +176,28 @@ impl DifferenceReport {
             .data("old", |row| Cell::data(row.1.shares[0]))
             .data("new", |row| Cell::data(row.1.shares[1]))
             .table("contributions", rows)
+    }
+}
+
+impl Compared {
+    /// Line with the figures that changed and the verdicts. None if nothing did.
+    fn brief(&self) -> Option<String> {
+        let sigma = |place: usize| self.figures[1].values[place].unwrap_or(0.0);
+        let shown = |pair: &FigurePair, place: usize| {
+            pair.values[place]
+                .map_or(UNKNOWN.to_owned(), |value| figure(pair.figure, value, pair.errors[place], sigma(place)))
+        };
+        let moved = self.figures.iter().filter(|pair| pair.differs != Some(false) && pair.values[0] != pair.values[1]);
+        let moved = moved.map(|pair| [pair.figure.to_owned(), shown(pair, 0), shown(pair, 1)]);
+        let moved: Vec<String> =
+            moved.filter(|[_, was, is]| was != is).map(|[figure, was, is]| format!("{figure} {was} -> {is}")).collect();
+        let word = |verdict: Option<Verdict>| verdict.map_or("no target", Verdict::name);
+        let judged = match self.verdicts {
+            [was, is] if was != is => format!("; {}, was {}", word(is), word(was)),
+            _ => String::new(),
+        };
+        let changed = !moved.is_empty() || !judged.is_empty();
+        changed.then(|| format!("  {}: {}{judged}", short(&self.name), moved.join(", ")))
     }
 }
 
@@ -212,7 +261,7 @@ fn figure(name: &str, value: f64, error: Option<f64>, sigma: f64) -> String {
         "yield" => yielded(value),
         "Cpk" => index(value),
         _ => match error.filter(|error| *error > 1e-6 * sigma) {
-            Some(error) => estimated(value, Some(error)),
+            Some(error) => estimated_beside(value, Some(sigma), Some(error)),
             None => beside(value, sigma),
         },
     }

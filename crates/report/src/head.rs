@@ -64,11 +64,11 @@ pub(super) fn seed(run: &RunSummary) -> String {
     run.seed.map_or(String::new(), |seed| format!(", seed {seed}"))
 }
 
-/// Returns the warnings whose characteristic (None for the whole study) `about` accepts.
+/// Returns the warnings that ask for attention and whose characteristic (None for the whole study) `about` accepts.
 pub(super) fn findings(all: &[WarningReport], about: impl Fn(Option<&str>) -> bool) -> Vec<Element> {
     let found = |one: &WarningReport| {
         let actions = one.advice.iter().map(ToString::to_string).collect();
         Element::Finding(Notice { code: one.code, message: one.message.clone(), actions, tone: Tone::Doubtful })
     };
-    all.iter().filter(|one| about(one.characteristic.as_deref())).map(found).collect()
+    all.iter().filter(|one| one.asks() && about(one.characteristic.as_deref())).map(found).collect()
 }

@@ -206,7 +206,16 @@ impl DimensionReport {
     }
 }
 
+/// Code of a warning that needs no action: the printed yield is not that of the Pearson fit.
+const PEARSON_DIFFERS: &str = "pearson-differs";
+
 impl WarningReport {
+    /// True if the warning asks for attention. Documents state a Pearson fit that differs as a detail, because no printed figure rests
+    /// on the fit then.
+    pub fn asks(&self) -> bool {
+        self.code != PEARSON_DIFFERS
+    }
+
     /// Builds the report of a warning.
     pub fn of(warning: &Warning) -> Self {
         Self {

@@ -1,6 +1,6 @@
 //! Correlations and joint yield of characteristics, for readers.
 
-use crate::document::number::{short, unsigned_zero, yielded};
+use crate::document::number::{short, target_yield, unsigned_zero, yielded};
 use crate::document::rejects::Rejects;
 use crate::document::{Cell, Columns, DataTable};
 use sensitol::analysis::OutputCorrelation;
@@ -48,9 +48,7 @@ fn coefficient(value: f64, error: Option<f64>) -> String {
 pub(super) fn all_limits(yield_: &str, error: &str, requirement: Option<&Judged>) -> String {
     let target = requirement.map_or_else(String::new, |judged| {
         let Requirement::Yield(target) = judged.requirement else { return String::new() };
-        // Rounded, because the product by 100 adds digits.
-        let percent = (1e11 * target).round() / 1e9;
-        format!("; target {percent} %: {}", judged.verdict.name())
+        format!("; target {}: {}", target_yield(target), judged.verdict.name())
     });
     format!("all limits at once: yield {yield_}, {error}{target}")
 }

@@ -1,6 +1,6 @@
 //! Summary with one line for every characteristic: moments, Cpk, yield and verdict.
 
-use crate::document::number::{estimated, index, known, yielded};
+use crate::document::number::{estimated_beside, index, known, yielded};
 use crate::document::rejects::Rejects;
 use crate::document::{Cell, Columns, DataTable, Line, Value};
 use crate::figures::Named;
@@ -11,6 +11,11 @@ use sensitol::simulation::SimulatedCharacteristic;
 use sensitol_numeric::sampling::Estimate;
 use sensitol_numeric::verdict::{Judged, worst};
 
+/// Printed in place of a yield without limits.
+pub(crate) const NO_LIMITS: &str = "no limits";
+/// Printed in place of a verdict if there are limits but nothing is required.
+pub(crate) const NO_TARGET: &str = "no target";
+
 /// Line of a characteristic, as text.
 pub(super) struct OverviewLine<'r> {
     name: &'r str,
@@ -18,14 +23,17 @@ pub(super) struct OverviewLine<'r> {
     mean: String,
     sigma: String,
     cpk: Option<f64>,
-    yield_: String,
+    /// None without limits.
+    yield_: Option<String>,
     verdict: Line,
 }
 
 impl<'r> OverviewLine<'r> {
     /// Summary of a simulation, with the digits that its standard errors support.
     pub(super) fn sampled(one: &'r SimulatedCharacteristic) -> Self {
-        let text = |of: Option<Estimate>, error| known(of.map(|of| of.value), |value| estimated(value, error));
+        let sigma = one.sigma.map(|of| of.value);
+        let text =
+            |of: Option<Estimate>, error| known(of.map(|of| of.value), |value| estimated_beside(value, sigma, error));
         let [of_mean, of_sigma] = one.errors();
         Self {
             name: one.name(),
@@ -33,10 +41,11 @@ impl<'r> OverviewLine<'r> {
             mean: text(one.mean, of_mean),
             sigma: text(one.sigma, of_sigma),
             cpk: one.cpk,
-            yield_: one.yield_.map_or_else(String::new, |share| {
-                let rejects = Rejects::new(one.below, one.above, one.yield_error());
-                let text = rejects.within(one.reject_intervals).with_error();
-                text.unwrap_or_else(|| yielded(share.value))
+            yield_: one.limited().then(|| {
+                let rejects = Rejects::new(one.below, one.above, one.yield_error()).within(one.reject_intervals);
+                known(one.yield_.map(|share| share.value), |share| {
+                    rejects.with_error().unwrap_or_else(|| yielded(share))
+                })
             }),
             verdict: verdict(&one.requirements()),
         }
@@ -52,7 +61,7 @@ impl<'r> OverviewLine<'r> {
             mean: String::new(),
             sigma: String::new(),
             cpk: None,
-            yield_: one.yield_.map_or_else(String::new, |_| format!("{}{interval}", yield_text(one))),
+            yield_: one.limited().then(|| known(one.yield_, |_| format!("{}{interval}", yield_text(one)))),
             verdict: verdict(&one.requirements()),
         }
     }
@@ -63,12 +72,20 @@ pub(super) fn verdict(judged: &[Judged]) -> Line {
     worst(judged.iter().map(|one| one.verdict)).map_or_else(Line::default, loud)
 }
 
+/// Cell of a verdict, which states that a characteristic with limits has no target.
+pub(crate) fn verdict_cell(verdict: Line, limited: bool) -> Cell {
+    match verdict.text().is_empty() && limited {
+        true => Cell::both(Value::Empty, NO_TARGET),
+        false => Cell::both(Value::Empty, verdict),
+    }
+}
+
 /// Table for terminals. Pages show the verdict and its gauges instead.
 pub(super) fn table<'r>(all: impl IntoIterator<Item = OverviewLine<'r>>) -> DataTable {
     let all: Vec<OverviewLine<'_>> = all.into_iter().collect();
     let any = |of: fn(&OverviewLine<'_>) -> bool| all.iter().any(of);
     let (moments, cpk) = (any(|one| !one.mean.is_empty()), any(|one| one.cpk.is_some()));
-    let (limited, judged) = (any(|one| !one.yield_.is_empty()), any(|one| !one.verdict.text().is_empty()));
+    let (limited, judged) = (any(|one| one.yield_.is_some()), any(|one| !one.verdict.text().is_empty()));
     // Values without a number keep figures right-aligned.
     let figure = |text: &str| Cell::both(Value::Number(None), text);
     Columns::default()
@@ -77,7 +94,7 @@ pub(super) fn table<'r>(all: impl IntoIterator<Item = OverviewLine<'r>>) -> Data
         .terminal(moments, "sigma", move |one| figure(&one.sigma))
         .terminal(moments, "", |one| Cell::optional(one.unit))
         .terminal(cpk, "Cpk", |one| Cell::known(one.cpk, index))
-        .terminal(limited, "yield", |one| Cell::text(&one.yield_))
-        .terminal(judged, "verdict", |one| Cell { line: one.verdict.clone(), ..Cell::empty() })
+        .terminal(limited, "yield", |one| Cell::text(one.yield_.as_deref().unwrap_or(NO_LIMITS)))
+        .terminal(judged, "verdict", |one| verdict_cell(one.verdict.clone(), one.yield_.is_some()))
         .table("", &all)
 }

@@ -96,18 +96,10 @@ impl RareSection for RareCharacteristic {
         let mut section = Section::of(self.name(), self.unit());
         let sides = [("below", &self.below), ("above", &self.above)];
         let sides: Vec<Side<'_>> = sides.into_iter().filter_map(|(side, of)| Some((side, of.as_ref()?))).collect();
-        section.detail(vec![Element::Table(self.table(&sides))]);
-        section.brief(vec![Element::Table(self.table(&sides).without(&["plain sampling"]))]);
         if sides.is_empty() {
+            section.detail(vec![Element::Table(self.table(&sides))]);
             section.note(if self.limited() { "its surrogate does not vary" } else { "no limit" });
             return section;
-        }
-        for (side, of) in &sides {
-            if let Some([low, high]) = self.bounds(of) {
-                let ([low, high], failed) = ([low, high].map(ppm), self.failed);
-                let all = format!("{high} if all {failed} do");
-                section.note(format!("{side}: {low} ppm if no point without a value lies there, {all}"));
-            }
         }
         if let Some([low, high]) = self.yield_interval {
             let interval = format!("95 % interval {} to {}", yielded(low), yielded(high));
@@ -118,6 +110,16 @@ impl RareSection for RareCharacteristic {
             section.note(format!("the interval includes what {} leave open", samples(measured)));
         }
         lines(self.requirements()).for_each(|line| section.note(line));
+        section.gap();
+        section.detail(vec![Element::Table(self.table(&sides))]);
+        section.brief(vec![Element::Table(self.table(&sides).without(&["plain sampling"]))]);
+        for (side, of) in &sides {
+            if let Some([low, high]) = self.bounds(of) {
+                let ([low, high], failed) = ([low, high].map(ppm), self.failed);
+                let all = format!("{high} if all {failed} do");
+                section.note(format!("{side}: {low} ppm if no point without a value lies there, {all}"));
+            }
+        }
         for (side, of) in &sides {
             if let Some(Unmet { most, points, directions, .. }) = of.unmet {
                 let dimensions =

@@ -1,6 +1,6 @@
 //! Uncertainty from the size of measured samples, for readers.
 
-use crate::document::number::{beside, index, shape, share, short};
+use crate::document::number::{carried_ends, index, shape, share, short};
 use crate::document::{Blocks, Cell, DataTable, Section};
 use sensitol_numeric::sampling::SamplingInterval;
 
@@ -16,7 +16,7 @@ pub(super) fn samples(interval: &SamplingInterval) -> String {
     format!("{}{more}", named.join(", "))
 }
 
-/// Adds intervals side by side for a characteristic with sigma `scale`, those of yield and Cpk only if it is `limited`.
+/// Adds intervals, one a row, for a characteristic with sigma `scale`, those of yield and Cpk only if it is `limited`.
 pub(super) fn sampled(section: &mut Section, interval: &SamplingInterval, scale: f64, limited: bool) {
     let level = 100.0 * interval.level;
     let resampled = interval.resamples > 0;
@@ -27,22 +27,15 @@ pub(super) fn sampled(section: &mut Section, interval: &SamplingInterval, scale:
         Some([low, high]) => format!("{} .. {}", text(low), text(high)),
         None => "unknown".to_owned(),
     };
-    let value = |ends| range(ends, &|value| beside(value, scale));
-    let kept = interval.rejected.map(|[low, high]| [high, low]);
-    let when = |shown: bool, name: &str, text: String| if shown { vec![name.to_owned(), text] } else { Vec::new() };
-    let shapes = resampled || interval.skewness.is_some() || interval.kurtosis.is_some();
-    let row = |first: (&str, Option<[f64; 2]>), second: (&str, Option<[f64; 2]>), third: (&str, String)| {
-        let mut cells = when(true, first.0, value(first.1));
-        cells.extend(when(shapes, second.0, range(second.1, &shape)));
-        cells.extend(when(limited, third.0, third.1));
-        // Every row has the same number of cells; cells without a figure are empty.
-        cells.resize(6, String::new());
-        <[String; 6]>::try_from(cells).unwrap_or_default()
-    };
-    let rows = [
-        row(("mean", interval.mean), ("skewness", interval.skewness), ("yield", range(kept, &share))),
-        row(("sigma", interval.sigma), ("kurtosis", interval.kurtosis), ("Cpk", range(interval.cpk, &index))),
-    ];
-    let labels: &[usize] = if shapes { &[2, 4] } else { &[2] };
-    section.table(DataTable::untitled(rows.map(|row| row.map(Cell::text))).labelled_by(labels));
+    let value =
+        |ends: Option<[f64; 2]>| ends.map_or("unknown".to_owned(), |ends| carried_ends(ends, scale, None).join(" .. "));
+    let mut rows = vec![("mean", value(interval.mean)), ("sigma", value(interval.sigma))];
+    if resampled || interval.skewness.is_some() || interval.kurtosis.is_some() {
+        rows.extend([("skewness", range(interval.skewness, &shape)), ("kurtosis", range(interval.kurtosis, &shape))]);
+    }
+    if limited {
+        let kept = interval.rejected.map(|[low, high]| [high, low]);
+        rows.extend([("yield", range(kept, &share)), ("Cpk", range(interval.cpk, &index))]);
+    }
+    section.table(DataTable::untitled(rows.into_iter().map(|(name, ends)| [Cell::text(name), Cell::text(ends)])));
 }

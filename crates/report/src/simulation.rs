@@ -2,7 +2,9 @@
 
 use serde::Serialize;
 
-use crate::document::number::{estimated, index, known, limits, percent, plain, significant, uncertainty, yielded};
+use crate::document::number::{
+    estimated, estimated_beside, index, known, limits, percent, plain, significant, uncertainty, yielded,
+};
 use crate::document::rejects::Rejects;
 use crate::document::{Blocks, Cell, Chart, Columns, DataTable, Document, Element, Line, Section, SpreadChart};
 use crate::figures::{Figures, Named, QUANTILES};
@@ -89,7 +91,7 @@ pub(crate) trait SimulationSection {
 
     fn kept(&self, section: &mut Section, yield_: YieldEstimate);
 
-    /// Table with moments on the left and quantiles on the right.
+    /// Table of moments and quantiles, one a row.
     fn brief_estimates(&self) -> DataTable;
 
     fn estimates(&self) -> DataTable;
@@ -113,14 +115,23 @@ impl SimulationSection for SimulatedCharacteristic {
             section.words = format!(", limits {}", limits(self.lower(), self.upper()));
         }
         section.blocks = findings(warnings, |name| name == Some(self.name()));
-        section.detail(vec![Element::Table(self.estimates())]);
-        section.brief(vec![Element::Table(self.brief_estimates())]);
-        section.table(self.histogram_table());
-        self.sobol(&mut section);
         if self.samples == 0 {
+            section.detail(vec![Element::Table(self.estimates()), Element::Table(self.histogram_table())]);
             section.note("no point has a value");
             return section;
         }
+        if let Some(yield_) = self.yield_ {
+            self.kept(&mut section, yield_);
+        }
+        lines(self.requirements()).for_each(|line| section.note(line));
+        if let Some(of) = &self.inspection {
+            inspected(&mut section, of);
+        }
+        self.sobol(&mut section);
+        section.gap();
+        section.detail(vec![Element::Table(self.estimates())]);
+        section.brief(vec![Element::Table(self.brief_estimates())]);
+        section.table(self.histogram_table());
         if let Some(control) = &self.control {
             let times = |value: Option<f64>, name: &str| value.map(|value| format!("{name} {}", significant(value, 3)));
             let shrunk = [times(control.mean, "mean"), times(control.sigma, "sigma")];
@@ -131,13 +142,6 @@ impl SimulationSection for SimulatedCharacteristic {
             };
             let (method, evaluations) = (control.method, control.evaluations);
             section.note(format!("control: {method} surrogate, {evaluations} evaluations{shrunk}"));
-        }
-        if let Some(yield_) = self.yield_ {
-            self.kept(&mut section, yield_);
-        }
-        lines(self.requirements()).for_each(|line| section.note(line));
-        if let Some(of) = &self.inspection {
-            inspected(&mut section, of);
         }
         let sigma = self.sigma.map_or(0.0, |of| of.value);
         self.sampling.iter().for_each(|of| sampled(&mut section, of, sigma, self.limited()));
@@ -175,9 +179,6 @@ impl SimulationSection for SimulatedCharacteristic {
     }
 
     fn brief_estimates(&self) -> DataTable {
-        if self.samples == 0 {
-            return DataTable::untitled::<6>([]);
-        }
         let own = |of: Option<Estimate>| of.and_then(|of| of.standard_error);
         let [mean, sigma] = self.errors();
         let moments = [
@@ -188,18 +189,16 @@ impl SimulationSection for SimulatedCharacteristic {
         ];
         let names = ["0.135 %", "1 %", "5 %", "median", "95 %", "99 %", "99.865 %"];
         let quantiles = names.into_iter().zip(self.quantiles).map(|(name, of)| (name, of, own(of)));
-        let cells = |(name, of, digits): (&str, Option<Estimate>, Option<f64>)| {
+        let scale = self.sigma.map(|of| of.value);
+        let cells = |(name, of, digits): (&'static str, Option<Estimate>, Option<f64>)| {
             let error = own(of);
-            let value = Cell::number(of.map(|of| of.value), |value| estimated(value, digits));
+            // Skewness and kurtosis have no unit, so sigma does not set their digits.
+            let scale = scale.filter(|_| !["skewness", "kurtosis"].contains(&name));
+            let value = Cell::number(of.map(|of| of.value), |value| estimated_beside(value, scale, digits));
             let error = error.map_or(String::new(), |error| format!("± {}", uncertainty(error)));
             [Cell::text(name), value, Cell::text(error)]
         };
-        let mut left = moments.into_iter().map(cells);
-        let rows = quantiles.map(cells).map(|[name, value, error]| {
-            let [of, moment, moment_error] = left.next().unwrap_or_else(|| std::array::from_fn(|_| Cell::empty()));
-            [of, moment, moment_error, name, value, error]
-        });
-        DataTable::untitled(rows).labelled_by(&[3])
+        DataTable::untitled(moments.into_iter().chain(quantiles).map(cells))
     }
 
     fn estimates(&self) -> DataTable {
@@ -229,12 +228,17 @@ impl SimulationSection for SimulatedCharacteristic {
             ("ppm_above", plain(self.ppm_above()), millionths(self.reject_intervals[1])),
         ];
         let error = |row: &Row| row.1.and_then(|estimate| estimate.standard_error);
+        let sigma = self.sigma.map(|of| of.value);
+        let scale =
+            move |row: &Row| sigma.filter(|_| ["mean", "sigma"].contains(&row.0) || row.0.starts_with("quantile"));
         Columns::default()
             .data("characteristic", |_| Cell::text(self.name()))
             .data("unit", |_| Cell::optional(self.unit()))
             .named("estimate", "", |row: &Row| Cell::text(row.0))
             .named("value", "value", move |row| {
-                Cell::number(row.1.map(|estimate| estimate.value), |value| estimated(value, error(row)))
+                Cell::number(row.1.map(|estimate| estimate.value), |value| {
+                    estimated_beside(value, scale(row), error(row))
+                })
             })
             .column("standard_error", "standard error", move |row| Cell::number(error(row), uncertainty))
             .data("interval_low", |row| Cell::data(row.2.map(|[low, _]| low)))

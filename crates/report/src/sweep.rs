@@ -5,7 +5,9 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::document::number::{UNKNOWN, beside, carried, known, limits, plain, plural, shape, short, significant};
+use crate::document::number::{
+    UNKNOWN, beside, carried, carried_ends, known, limits, plain, plural, shape, short, significant,
+};
 use crate::document::rejects::Rejects;
 use crate::document::{
     Blocks, Cell, Chart, Columns, DataTable, Document, Element, Layer, Paragraph, Plot, PlotAxis, PlotScale, Section,
@@ -14,7 +16,7 @@ use crate::document::{
 use crate::figures::{Figures, QUANTILES};
 use crate::head;
 use crate::head::findings;
-use crate::overview::verdict;
+use crate::overview::{NO_LIMITS, verdict, verdict_cell};
 use crate::{About, Head, WarningReport};
 use sensitol::analysis::{CharacteristicAnalysis, YieldSource};
 use sensitol::method::ErrorEstimate;
@@ -186,7 +188,7 @@ impl SweepReport {
             let ends = one.points.iter().filter_map(|point| point.mean).map(|mean| [mean, mean]);
             let ends = ends.reduce(|[low, high], [mean, _]| [low.min(mean), high.max(mean)]);
             let sigma = greatest(one).unwrap_or(0.0);
-            Cell::text(ends.map_or(UNKNOWN.to_owned(), |ends| ends.map(|end| beside(end, sigma)).join(" .. ")))
+            Cell::text(ends.map_or(UNKNOWN.to_owned(), |ends| carried_ends(ends, sigma, None).join(" .. ")))
         };
         let worst = |one: &SweptReport| one.worst().map(|place| one.points[place].clone());
         Columns::default()
@@ -194,15 +196,16 @@ impl SweepReport {
             .terminal(true, "mean", means)
             .terminal(true, "sigma up to", move |one| Cell::number(greatest(one), |sigma| significant(sigma, 5)))
             .terminal(true, "", |one| Cell::optional(one.unit.as_deref()))
-            .terminal(limited, "least yield", move |one| {
-                Cell::text(worst(one).and_then(|point| point.rejects().yield_text()).unwrap_or_default())
+            .terminal(limited, "least yield", move |one| match one.lower.or(one.upper) {
+                Some(_) => Cell::text(worst(one).and_then(|point| point.rejects().yield_text()).unwrap_or_default()),
+                None => Cell::text(NO_LIMITS),
             })
             .terminal(limited, "at", move |one| {
                 worst(one).map_or_else(Cell::empty, |point| Cell::number(point.at, plain))
             })
             .terminal(judged, "verdict", |one| {
                 let judged: Vec<Judged> = one.points.iter().flat_map(|point| point.requirements.clone()).collect();
-                Cell { line: verdict(&judged), ..Cell::empty() }
+                verdict_cell(verdict(&judged), one.lower.or(one.upper).is_some())
             })
             .table("", all)
     }

@@ -105,7 +105,7 @@ pub(crate) fn printed(report: &Report, asked: &AnalyzeArgs, look: Look) -> Strin
         None => {}
     }
     if asked.brief {
-        return report.brief();
+        return report.brief(look.style(&asked.output));
     }
     match asked.stack {
         None if asked.output.json && look.verbose => json(report),
@@ -114,7 +114,8 @@ pub(crate) fn printed(report: &Report, asked: &AnalyzeArgs, look: Look) -> Strin
             let style = look.style(&asked.output);
             let detail = if asked.summary { Detail::Summary } else { style.detail };
             let document = if detail == Detail::Full { report.document() } else { report.brief_document() };
-            text(&document, Style { detail, ..style })
+            let report_text = text(&document, Style { detail, ..style });
+            if detail == Detail::Summary { report_text } else { report_text + &report.closing(style) }
         }
         Some(StackArg::Text) => text(&stack_document(&report.stacks()), look.style(&asked.output)),
         Some(StackArg::Csv) => stack_csv(&report.stacks()),
@@ -201,7 +202,7 @@ fn unmatched(given: &Table, written: Option<&Path>, look: Look) {
 }
 
 /// Runs the analysis with a progress bar for costly models.
-fn analyze(study: &Study, threads: Option<u16>, clock: &Clock, look: Look) -> Result<Analysis, Failure> {
+pub(crate) fn analyze(study: &Study, threads: Option<u16>, clock: &Clock, look: Look) -> Result<Analysis, Failure> {
     let stop = || clock.stop();
     let costly = study.problem.function().signature().costly;
     let narrow = ReducedInputs::of(&study.problem, &study.options);

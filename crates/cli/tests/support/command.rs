@@ -9,7 +9,12 @@ pub const ENGINE: &str = "examples/engine-balance/study.toml";
 /// Returns a command that runs the program at the repository's root in a UTF-8 locale.
 pub fn sensitol(arguments: &[&str]) -> Command {
     let mut command = Command::new(assert_cmd::cargo::cargo_bin!("sensitol"));
-    command.args(arguments).current_dir(repository("")).env("LC_ALL", "C.UTF-8").env_remove("NO_COLOR");
+    command
+        .args(arguments)
+        .current_dir(repository(""))
+        .env("LC_ALL", "C.UTF-8")
+        .env_remove("NO_COLOR")
+        .env_remove("COLUMNS");
     command
 }
 

@@ -6,10 +6,10 @@ use crate::analysis::range_bars as bars;
 use crate::analysis::stack::Stack;
 use crate::analysis::statistics::CharacteristicStatistics;
 use crate::analysis::statistics::{derivative, matters, part, size, total};
-use crate::analysis::yield_source::{decision, source};
+use crate::analysis::yield_source::{decision, pearson_fit, source};
 use crate::document::number::{
-    UNKNOWN, beside, carried, index, index_with, known, limits, percent, plain, plural, short, significant, within,
-    yielded,
+    UNKNOWN, beside, carried, carried_ends, index, index_with, known, limits, percent, plain, plural, short,
+    significant, within, yielded,
 };
 use crate::document::rejects::Rejects;
 use crate::document::{
@@ -95,41 +95,29 @@ impl Report {
         document
     }
 
+    /// Section in the order of a first-time reader's questions: verdict and yield, contributors, moments and intervals.
     fn section(&self, one: &CharacteristicAnalysis, stack: &Stack, pairs: usize) -> Section {
         let mut section = Section::of(one.name(), one.unit());
         section.blocks = findings(&self.warnings, |name| name == Some(one.name()));
         one.characteristic.labels().line().into_iter().for_each(|line| section.wrapped(2, line));
         if one.limited() {
             section.words = format!(", limits {}", limits(one.lower(), one.upper()));
+            one.kept(&mut section);
         }
-        one.statistics(&mut section);
-        one.errors(&mut section);
-        one.extremes(&mut section);
-        one.distribution(&mut section);
         decision(one, &self.analysis.run).into_iter().for_each(|line| section.wrapped(2, line));
-        one.sampling.iter().for_each(|of| sampled(&mut section, of, one.sigma().unwrap_or(0.0), one.limited()));
         let concerned = self.warnings.iter().filter(|warning| warning.characteristic.as_deref() == Some(one.name()));
-        let codes: Vec<&str> = concerned.map(|warning| warning.code).collect();
+        let codes: Vec<&str> = concerned.filter(|one| one.asks()).map(|warning| warning.code).collect();
         if !codes.is_empty() {
             section.brief(vec![Element::Paragraph(Paragraph::note(format!("warnings: {}", codes.join(", "))))]);
         }
         section.gap();
-        section.brief(vec![Element::Table(one.contributors(&self.dimensions))]);
-        let mut all = vec![Element::Table(one.contributions(&self.dimensions))];
-        all.remark("Slope and curvature at the means, per unit of the dimension; ≈ marks those that are differences.");
-        if let Some(source) = self.source(one) {
-            all.note(source);
-        }
-        section.detail(all);
-        self.correlations(one, &mut section);
-        if one.has_negative_contributions() {
-            section.note("a contribution below 0 lowers the variance: it varies against the others");
-        }
-        one.pairs(&mut section, pairs);
-        // Pages draw the contributions as bars.
-        let mut left = Vec::new();
-        bars::left_out(one).into_iter().for_each(|words| left.note(words));
-        section.aside(SHARES, left);
+        self.contributed(one, &mut section, pairs);
+        section.gap();
+        one.statistics(&mut section);
+        one.errors(&mut section);
+        one.extremes(&mut section);
+        one.distribution(&mut section);
+        one.sampling.iter().for_each(|of| sampled(&mut section, of, one.sigma().unwrap_or(0.0), one.limited()));
         if let Some(spans) = bars::spans(one) {
             section.aside("Worst case and RSS", vec![Element::Chart(Chart::Bars(spans))]);
         }
@@ -139,6 +127,26 @@ impl Report {
             section.aside("Stack", blocks);
         }
         section
+    }
+
+    /// Adds the contributors, the sensitivities, and the interactions.
+    fn contributed(&self, one: &CharacteristicAnalysis, section: &mut Section, pairs: usize) {
+        section.brief(vec![Element::Table(one.contributors(&self.dimensions))]);
+        let mut all = vec![Element::Table(one.contributions(&self.dimensions))];
+        all.remark("Slope and curvature at the means, per unit of the dimension; ≈ marks those that are differences.");
+        if let Some(source) = self.source(one) {
+            all.note(source);
+        }
+        section.detail(all);
+        self.correlations(one, section);
+        if one.has_negative_contributions() {
+            section.note("a contribution below 0 lowers the variance: it varies against the others");
+        }
+        one.pairs(section, pairs);
+        // Pages draw the contributions as bars.
+        let mut left = Vec::new();
+        bars::left_out(one).into_iter().for_each(|words| left.note(words));
+        section.aside(SHARES, left);
     }
 
     /// Returns a sentence on the source of slopes and curvatures, or None if all come from differences.
@@ -185,7 +193,7 @@ pub(crate) trait CharacteristicSections {
     /// Adds the extremes, their places, and whether they are proven.
     fn extremes(&self, section: &mut Section);
 
-    /// Adds the distribution, its quantiles, and the yield within the limits.
+    /// Adds the distribution and its quantiles.
     fn distribution(&self, section: &mut Section);
 
     fn covered(&self, section: &mut Section);
@@ -195,6 +203,7 @@ pub(crate) trait CharacteristicSections {
 
     fn quantile_data(&self) -> DataTable;
 
+    /// Adds yield, target and verdict, the indices, and the other requirements.
     fn kept(&self, section: &mut Section);
 
     /// Reject rates with their error.
@@ -261,7 +270,7 @@ impl CharacteristicSections for CharacteristicAnalysis {
     fn extremes(&self, section: &mut Section) {
         let Some(found) = &self.extremes else { return };
         let scale = self.scale();
-        let [least, greatest] = [&found.least, &found.greatest].map(|extreme| beside(extreme.value, scale));
+        let [least, greatest] = carried_ends([found.least.value, found.greatest.value], scale, None);
         let proven = if found.proven() { "proven" } else { "not proven" };
         let evaluations = plural(found.evaluations, "evaluation", "evaluations");
         section.note(format!("extremes  {least} .. {greatest}  {proven}, {evaluations}"));
@@ -298,9 +307,6 @@ impl CharacteristicSections for CharacteristicAnalysis {
         }
         section.table(self.quantile_data());
         self.covered(section);
-        if self.limited() {
-            self.kept(section);
-        }
     }
 
     fn covered(&self, section: &mut Section) {
@@ -310,10 +316,9 @@ impl CharacteristicSections for CharacteristicAnalysis {
         let share = plain(100.0 * of.probability);
         let width = |[from, to]: [f64; 2]| to - from;
         let scale = self.sigma().filter(|sigma| *sigma > 0.0);
-        let end =
-            |(end, error): (f64, Option<f64>)| scale.map_or_else(|| plain(end), |sigma| carried(end, sigma, error));
-        let interval = |[from, to]: [f64; 2], [of_from, of_to]: [Option<f64>; 2]| {
-            format!("{} .. {}", end((from, of_from)), end((to, of_to)))
+        let interval = |ends: [f64; 2], errors: [Option<f64>; 2]| {
+            let error = errors[0].zip(errors[1]).map(|(from, to)| from.min(to));
+            scale.map_or_else(|| ends.map(plain), |sigma| carried_ends(ends, sigma, error)).join(" .. ")
         };
         let equal_tails = interval(of.equal_tails, of.equal_tails_errors);
         section.note(format!("{share} % within {equal_tails} (equal tails), by {}", of.source.words()));
@@ -395,6 +400,7 @@ impl CharacteristicSections for CharacteristicAnalysis {
         if !quantiles.is_empty() {
             detail.note(format!("by quantiles (ISO 22514-2): {quantiles}"));
         }
+        pearson_fit(self).into_iter().for_each(|line| detail.wrapped(2, line));
         if let Some(normal) = self.normal.as_ref().filter(|normal| self.differs(normal)) {
             detail.note(format!("a normal fit would say: {}", shown(Rejects::new(normal.below, normal.above, None))));
         }
@@ -519,7 +525,7 @@ pub fn law_text(law: &Pearson, style: Style) -> String {
     })));
     document.gap();
     let exact = Quantiles::of(law).0.map(|value| Some(EstimatedQuantile { value, error: None }));
-    document.table(quantile_table(&named(kind), &Quantiles(exact), law.sigma()));
+    document.table(quantile_table("share below", &Quantiles(exact), law.sigma()));
     terminal::text(&document, style)
 }
 
@@ -527,31 +533,23 @@ fn named(kind: &str) -> String {
     if kind == "normal" { kind.to_owned() } else { format!("Pearson {kind}") }
 }
 
-/// Table of quantiles side by side, with their probabilities above and their errors below if one is known.
-fn quantile_table(title: &str, quantiles: &Quantiles<Option<EstimatedQuantile>>, sigma: f64) -> DataTable {
+/// Table of quantiles, one a row: its probability, its value, and its error if it is known.
+fn quantile_table(title: &'static str, quantiles: &Quantiles<Option<EstimatedQuantile>>, sigma: f64) -> DataTable {
     type Entry<'q> = (&'static str, &'q Option<EstimatedQuantile>);
-    let row = |name: &str, cell: &dyn Fn(Entry<'_>) -> Cell| -> [Cell; 8] {
-        let mut cells = std::iter::once(Cell::text(name)).chain(quantiles.iter().map(cell));
-        std::array::from_fn(|_| cells.next().unwrap_or_else(Cell::empty))
-    };
-    let probability = |(p, _): Entry<'_>| {
+    let probability = |(p, _): &Entry<'_>| {
         // Rounded, so that `0.00135` becomes `0.135 %`.
         Cell::number(p.parse::<f64>().ok(), |p| format!("{} %", plain((1e5 * p).round() / 1e3)))
     };
-    let value = |(_, found): Entry<'_>| match found {
+    let value = move |(_, found): &Entry<'_>| match found {
         Some(of) => Cell::number(of.value, |value| carried(value, sigma, of.error)),
         None => Cell::text(UNKNOWN),
     };
-    let error = |(_, found): Entry<'_>| match found.and_then(|of| of.error) {
-        Some(error) => Cell::number(error, |error| significant(error, 2)),
-        None => Cell::text(UNKNOWN),
-    };
-    let mut rows = vec![row(title, &probability), row("quantiles", &value)];
     // An error of 0 is that of a value that does not vary.
-    if quantiles.0.iter().flatten().any(|of| of.error.is_some_and(|error| error > 0.0)) {
-        rows.push(row("±", &error));
-    }
-    DataTable::untitled(rows)
+    let error = |(_, found): &Entry<'_>| match found.and_then(|of| of.error).filter(|error| *error > 0.0) {
+        Some(error) => Cell::text(format!("± {}", significant(error, 2))),
+        None => Cell::empty(),
+    };
+    Columns::default().shown(title, probability).shown("value", value).shown("", error).table("", quantiles.iter())
 }
 
 /// Formats a mean shift with the digits of sigma, or as `0` if all of them are zeros.

@@ -4,50 +4,89 @@ use crate::Report;
 use crate::analysis::analysis_document::CharacteristicSections;
 use crate::analysis::statistics::{CharacteristicStatistics, strongest};
 use crate::analysis::yield_source::condition;
-use crate::document::number::plain;
+use crate::document::number::{plain, target_yield, yielded};
 use crate::document::rejects::UNKNOWN_YIELD;
+use crate::document::terminal::unbroken;
+use crate::document::{Line, Style};
 use crate::figures::{Figures, Named};
 use crate::overview::verdict;
+use crate::requirement::loud;
 use sensitol::analysis::CharacteristicAnalysis;
+use sensitol_numeric::requirement::Requirement;
+use sensitol_numeric::verdict::Verdict;
 
+/// Most characteristics that all have a line at the end of a report, and most lines there. More would push the last section off the screen.
+const CLOSING: usize = 10;
 /// Number of contributors in a line. A line with two fits a terminal in most cases.
 const NAMED: usize = 2;
 
 impl Report {
-    /// Returns a line for every characteristic, such as
+    /// Formats a line for every characteristic, such as
     /// `gap 98.43 % (target 99.9 %) MISSED: 15661 ppm above 0.9; seal 41 %, left bearing 15 %`.
-    pub fn brief(&self) -> String {
-        self.analysis.characteristics.iter().map(|one| self.brief_line(one) + "\n").collect()
+    pub fn brief(&self, style: Style) -> String {
+        self.analysis.characteristics.iter().map(|one| unbroken(&self.brief_line(one), style)).collect()
     }
 
-    fn brief_line(&self, one: &CharacteristicAnalysis) -> String {
-        if one.mean().is_none() {
-            return format!("{}: no result", one.name());
+    /// Formats the end of a long report: an empty line, then the lines of [`brief`](Self::brief) and one of the joint yield. Of many
+    /// characteristics only those that miss or may miss a requirement have a line.
+    pub fn closing(&self, style: Style) -> String {
+        let all = &self.analysis.characteristics;
+        let concern = |one: &&CharacteristicAnalysis| {
+            one.mean().is_none() || one.requirements().iter().any(|judged| judged.verdict != Verdict::Met)
+        };
+        let shown: Vec<_> = match all.len() > CLOSING {
+            true => all.iter().filter(concern).take(CLOSING).collect(),
+            false => all.iter().collect(),
+        };
+        let mut text = "\n".to_owned();
+        shown.iter().for_each(|one| text += &unbroken(&self.brief_line(one), style));
+        let rest = all.len() - shown.len();
+        if rest > 0 {
+            let more = if shown.is_empty() { "" } else { " more" };
+            text += &unbroken(&format!("{rest}{more} characteristics: --brief has a line for each").into(), style);
         }
-        let mut line = one.name().to_owned();
+        if let Some(line) = self.joint_line() {
+            text += &unbroken(&line, style);
+        }
+        text
+    }
+
+    /// Line of the share that keeps all limits at once. None if it is not required.
+    fn joint_line(&self) -> Option<Line> {
+        let judged = self.analysis.joint_requirement?;
+        let Requirement::Yield(target) = judged.requirement else { return None };
+        let value = self.analysis.joint.map_or("unknown".to_owned(), |joint| yielded(joint.value));
+        Some(Line::from(format!("all limits {value} (target {}) ", target_yield(target))).and(loud(judged.verdict)))
+    }
+
+    fn brief_line(&self, one: &CharacteristicAnalysis) -> Line {
+        if one.mean().is_none() {
+            return format!("{}: no result", one.name()).into();
+        }
+        let mut line = Line::from(one.name());
         if one.limited() {
             let known = one.rejects().yield_text().filter(|text| text != UNKNOWN_YIELD);
-            line += &format!(" {}", known.as_deref().unwrap_or("yield unknown"));
+            line = line.and(format!(" {}", known.as_deref().unwrap_or("yield unknown")));
             if let Some(target) = one.target() {
-                line += &format!(" (target {} %)", plain(100.0 * target));
+                line = line.and(format!(" (target {})", target_yield(target)));
             }
             let judged = verdict(&one.requirements());
             if !judged.text().is_empty() {
-                line += &format!(" {}", judged.text());
+                line = line.and(" ").and(judged);
             }
-            line += &condition(one);
+            line = line.and(condition(one));
             if known.is_some() {
-                line += &format!(": {}", rejects_by_limit(one));
+                line = line.and(format!(": {}", rejects_by_limit(one)));
             }
         } else {
             let [_, mean, _, sigma, ..] = one.first_figures();
             let unit = one.unit().map_or(String::new(), |unit| format!(" {unit}"));
-            line += &format!(" mean {}, sigma {}{unit}, no limits", mean.text, sigma.text);
+            line = line.and(format!(" mean {}, sigma {}{unit}, no limits", mean.text, sigma.text));
         }
         let strongest = strongest(one, &self.dimensions);
         let named: Vec<String> =
             strongest.iter().take(NAMED).map(|(name, share)| format!("{name} {share:.0} %")).collect();
-        if named.is_empty() { line } else { format!("{line}; {}", named.join(", ")) }
+        if named.is_empty() { line } else { line.and(format!("; {}", named.join(", "))) }
     }
 }
 

@@ -65,8 +65,8 @@ impl InteractionSections for CharacteristicAnalysis {
         };
         let by_formula = self.verification.as_ref().is_some_and(|of| matches!(of.kind, VerificationKind::Exact { .. }));
         let known = match (examined, by_formula) {
+            _ if self.is_proven_linear() => "none (the formula is linear)".to_owned(),
             (0, _) => format!("none of {possible} examined"),
-            _ if self.is_proven_linear() => "none, by the formula".to_owned(),
             (_, true) => format!("all {possible} by the formula, {} of the variance together", sum(false)),
             (_, false) => format!("{examined} of {possible} examined, {} of the variance together", sum(false)),
         };

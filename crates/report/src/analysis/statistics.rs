@@ -2,7 +2,9 @@
 
 use crate::DimensionReport;
 use crate::analysis::worst_case::KnownWorstCaseFigures;
-use crate::document::number::{UNKNOWN, carried, known, outward, percent, plain, shape_with, significant, uncertainty};
+use crate::document::number::{
+    UNKNOWN, beside, carried, carried_ends, known, outward, percent, plain, shape_with, significant, uncertainty,
+};
 use crate::document::{Blocks, Cell, Columns, DataTable, Section, Value};
 use crate::figures::Figures;
 use crate::figures::FittedFigures;
@@ -12,8 +14,10 @@ use sensitol_numeric::names::element;
 
 /// Most contributors on a terminal.
 const CONTRIBUTORS: usize = 6;
-/// Most rows of statistics on a terminal. The linear worst case beside a proven one is in a further row.
-const ROWS: usize = 6;
+/// Name of the first figure.
+const FIRST_FIGURE: &str = "nominal";
+/// Name of the first interval.
+const FIRST_INTERVAL: &str = "± 3 sigma";
 /// Greatest difference, in sigmas, of bounds from the linear worst case that hides the bounds.
 const SAME: f64 = 1e-3;
 /// Sigmas on either side in place of the band of a dimension without a tolerance.
@@ -44,8 +48,11 @@ pub(crate) trait CharacteristicStatistics {
     /// Returns nominal value, mean, mean shift, sigma, skewness and kurtosis.
     fn first_figures(&self) -> [Shown; 6];
 
-    /// Adds the statistics on the left and the intervals on the right.
+    /// Adds the figures with their errors, then the intervals, each in a row of its own.
     fn statistics(&self, section: &mut Section);
+
+    /// Table of the intervals. A terminal leaves out a linear worst case beside a proven one unless everything is asked for.
+    fn intervals(&self) -> DataTable;
 
     /// True if the contributions come from points of the model, because the surface is not trusted.
     fn is_of_model(&self) -> bool;
@@ -78,7 +85,7 @@ impl CharacteristicStatistics for CharacteristicAnalysis {
         let [of_skewness, of_kurtosis] = [of(|of| of.skewness), of(|of| of.kurtosis)];
         let shift = self.mean().zip(self.nominal).map(|(mean, nominal)| mean - nominal);
         [
-            shown("nominal", self.nominal, &|value| carried(value, scale, None), String::new()),
+            shown(FIRST_FIGURE, self.nominal, &|value| carried(value, scale, None), String::new()),
             shown("mean", self.mean(), &|value| carried(value, scale, of_mean), error(of_mean)),
             shown("shift", shift, &|value| carried(value, scale, of_mean), String::new()),
             shown("sigma", self.sigma(), &|value| carried(value, scale, of_sigma), error(of_sigma)),
@@ -88,53 +95,49 @@ impl CharacteristicStatistics for CharacteristicAnalysis {
     }
 
     fn statistics(&self, section: &mut Section) {
+        let figures = self.first_figures().map(Shown::cells);
+        section.table(DataTable::untitled(figures));
+        section.table(self.intervals());
+    }
+
+    fn intervals(&self) -> DataTable {
         let scale = self.scale();
         let estimate = self.error_estimate.as_ref();
         let [mean_error, sigma_error] = [estimate.and_then(|of| of.mean), estimate.and_then(|of| of.sigma)];
         // Error of an end that is k sigmas from the mean.
         let end_error = |k: f64| mean_error.zip(sigma_error).map(|(mean, sigma)| libm::hypot(mean, k * sigma));
         let interval = |ends: Option<[f64; 2]>, error: Option<f64>| {
-            let ends = ends.map(|ends| ends.map(|end| carried(end, scale, error)));
-            Cell::text(ends.map_or(UNKNOWN.to_owned(), |[low, high]| format!("{low} .. {high}")))
+            ends.map_or(UNKNOWN.to_owned(), |ends| carried_ends(ends, scale, error).join(" .. "))
         };
         let around = |middle: Option<f64>, reach: Option<f64>, error| {
             interval(middle.zip(reach).map(|(middle, reach)| [middle - reach, middle + reach]), error)
         };
         let same =
             |[a, b]: [[f64; 2]; 2]| (0..2).all(|end| (a[end] - b[end]).abs() <= SAME * self.sigma().unwrap_or(0.0));
-        let text = |[low, high]: &[String; 2]| Cell::text(format!("{low} .. {high}"));
         let proven = self.proven_worst_case();
         let linear = ("linear worst case", interval(self.worst_case, None));
         // A linear worst case with the same printed ends needs no row of its own.
         let (worst, linear) = match &proven {
-            Some(proven) if self.is_shown_as_linear(proven) => (("worst case", text(&proven.texts)), None),
-            Some(proven) => (("proven worst case", text(&proven.texts)), Some(linear)),
+            Some(proven) if self.is_shown_as_linear(proven) => (("worst case", proven.texts.join(" .. ")), None),
+            Some(proven) => (("proven worst case", proven.texts.join(" .. ")), Some(linear)),
             None => (linear, None),
         };
         // Proven bounds that may not be reached, shown if they differ from the linear worst case.
         let within = (self.bounds.as_ref().filter(|_| self.extremes.is_none() && proven.is_none()))
             .map(|bounds| bounds.bounds)
             .filter(|within| !self.worst_case.is_some_and(|linear| same([*within, linear])));
-        let beside = [
-            ("± 3 sigma", around(self.mean(), self.sigma().map(|sigma| 3.0 * sigma), end_error(3.0))),
+        let mut rows = vec![
+            (FIRST_INTERVAL, around(self.mean(), self.sigma().map(|sigma| 3.0 * sigma), end_error(3.0))),
             ("RSS", around(self.middle, self.rss, None)),
             ("inflated RSS", around(self.middle, self.inflated_rss, None)),
             ("mean-shift RSS", around(self.middle, self.mean_shift_rss, None)),
             worst,
-            match within {
-                Some(within) => ("worst case within", text(&outward(within, scale, None))),
-                None => ("", Cell::empty()),
-            },
         ];
-        let row = |[name, value, error]: [Cell; 3], (of, ends): (&'static str, Cell)| {
-            let of = if of.is_empty() { Cell::empty() } else { Cell::text(of) };
-            [name, value, error, of, ends]
-        };
-        let rows = self.first_figures().map(Shown::cells).into_iter().zip(beside);
-        let rows: Vec<[Cell; 5]> = rows.map(|(cells, beside)| row(cells, beside)).collect();
-        let linear_row = linear.map(|linear| row([Cell::empty(), Cell::empty(), Cell::empty()], linear));
-        let table = DataTable::untitled(rows.into_iter().chain(linear_row)).labelled_by(&[3]);
-        section.table(table.at_most([ROWS, usize::MAX], String::new()));
+        rows.extend(within.map(|within| ("worst case within", outward(within, scale, None).join(" .. "))));
+        let most = rows.len();
+        rows.extend(linear);
+        let table = DataTable::untitled(rows.into_iter().map(|(name, ends)| [Cell::text(name), Cell::text(ends)]));
+        table.at_most([most, usize::MAX], String::new())
     }
 
     fn is_of_model(&self) -> bool {
@@ -161,7 +164,9 @@ impl CharacteristicStatistics for CharacteristicAnalysis {
         let unknown = || Cell::text(UNKNOWN.to_owned());
         Columns::default()
             .named("", "contributor", |one: &&Contributor<'_>| Cell::name(one.name))
-            .shown("mean", |one| one.alone().map_or_else(unknown, |row| Cell::number(row.1.mean, plain)))
+            .shown("mean", |one| {
+                one.alone().map_or_else(unknown, |row| Cell::number(row.1.mean, |mean| own_mean(row.1, mean)))
+            })
             .shown("tolerance", |one| {
                 let Some((_, dimension)) = one.alone() else { return Cell::text(UNKNOWN.to_owned()) };
                 let unit = dimension.unit.as_deref().map_or(String::new(), |unit| format!(" {unit}"));
@@ -181,6 +186,13 @@ impl CharacteristicStatistics for CharacteristicAnalysis {
             .seen(view)
             .at_most([CONTRIBUTORS, 0], rest)
     }
+}
+
+/// True for the tables of figures and intervals, which pages show in another form.
+pub(crate) fn is_of_statistics(table: &DataTable) -> bool {
+    let first = table.rows.first().and_then(|row| row.first()).map(|cell| cell.line.text());
+    let untitled = table.name.is_empty() && table.columns.iter().all(|column| column.heading.is_empty());
+    untitled && first.is_some_and(|name| name == FIRST_FIGURE || name == FIRST_INTERVAL)
 }
 
 type Row<'r> = (&'r Sensitivity, &'r DimensionReport);
@@ -284,6 +296,14 @@ pub(crate) fn total(row: &Sensitivity) -> Option<f64> {
 pub(crate) fn size(row: &Sensitivity) -> f64 {
     let of_model = total(row).filter(|_| row.linear_share.is_none());
     of_model.or(part(row)).unwrap_or(-1.0)
+}
+
+/// Formats the mean of a dimension: as the study has it, or beside its sigma if it was computed.
+fn own_mean(dimension: &DimensionReport, mean: f64) -> String {
+    let written = plain(mean);
+    let computed = mean != dimension.nominal && dimension.sigma > 0.0;
+    let rounded = if computed { beside(mean, dimension.sigma) } else { written.clone() };
+    if rounded.len() < written.len() { rounded } else { written }
 }
 
 /// Formats a derivative with `digits` digits, or as 0 if it lies within its rounding error.

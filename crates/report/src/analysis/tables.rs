@@ -5,7 +5,7 @@ use crate::document::number::{UNKNOWN, carried, index, limits};
 use crate::document::{Blocks, Cell, Column, Columns, DataTable, Document, Value};
 use crate::figures::FittedFigures;
 use crate::figures::{Figures, Named};
-use crate::overview::verdict;
+use crate::overview::{NO_LIMITS, verdict, verdict_cell};
 use crate::{DimensionReport, Report, WarningReport};
 use sensitol::analysis::{CharacteristicAnalysis, EstimatedShare, InspectionRisks};
 use sensitol::method::ErrorEstimate;
@@ -21,13 +21,19 @@ impl Report {
             Cell::both(Value::Number(value), text)
         };
         let error = |one: &Of<'_>, of: fn(&ErrorEstimate) -> Option<f64>| one.error_estimate.as_ref().and_then(of);
+        let all = &self.analysis.characteristics;
+        let limited = all.iter().any(Named::limited);
+        let judged = all.iter().any(|one| !one.requirements().is_empty());
         let yield_ = |one: &Of<'_>| {
-            if !one.limited() || one.mean().is_none() {
+            if !one.limited() {
+                return Cell::both(Value::Empty, NO_LIMITS);
+            }
+            if one.mean().is_none() {
                 return Cell::empty();
             }
             Cell::both(Value::Empty, one.rejects().with_error().unwrap_or_else(|| "unknown".to_owned()))
         };
-        let verdict = |one: &Of<'_>| Cell::both(Value::Empty, verdict(&one.requirements()));
+        let verdict = |one: &Of<'_>| verdict_cell(verdict(&one.requirements()), one.limited());
         let family = |one: &Of<'_>| match one.fitted() {
             None => [None, None],
             Some(Law::Point { .. }) => [Some("point"), None],
@@ -44,9 +50,9 @@ impl Report {
             .shown("sigma", move |one| scaled(one, one.sigma(), error(one, |of| of.sigma), UNKNOWN))
             .named("", "unit", |one| Cell::optional(one.unit()))
             .page("limits", |one| Cell::text(limits(one.lower(), one.upper())))
-            .shown("Cpk", move |one| Cell::known(index_of(one, |of| of.cpk), index))
-            .shown("yield", yield_)
-            .shown("verdict", verdict)
+            .shown_if(limited, "Cpk", move |one| Cell::known(index_of(one, |of| of.cpk), index))
+            .shown_if(limited, "yield", yield_)
+            .shown_if(judged, "verdict", verdict)
             .data("sigma", |one| Cell::data(one.sigma()))
             .data("skewness", |one| Cell::data(one.skewness()))
             .data("kurtosis", |one| Cell::data(one.kurtosis()))
@@ -78,7 +84,7 @@ impl Report {
             .data("false_accept", |one| Cell::data(risk(one, |of| of.false_accept)))
             .data("false_reject", |one| Cell::data(risk(one, |of| of.false_reject)))
             .labels(|one| one.characteristic.labels())
-            .table("characteristics", &self.analysis.characteristics)
+            .table("characteristics", all)
             .of_sections()
     }
 
@@ -94,6 +100,10 @@ impl Report {
                     .insert(0, Column { key: "of", title: "", heading: "", terminal: true, page: true, label: false });
                 DataTable { columns, rows: Vec::new(), view: Vec::new(), ..own.clone() }
             });
+            for (column, of_own) in table.columns.iter_mut().skip(1).zip(&own.columns) {
+                column.terminal |= of_own.terminal;
+                column.page |= of_own.page;
+            }
             for mut row in own.rows {
                 row.iter_mut().for_each(|cell| cell.leads_to = None);
                 row.insert(0, Cell::text(name));

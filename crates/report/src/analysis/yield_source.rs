@@ -15,23 +15,30 @@ const SLOW: f64 = 0.1;
 /// Greatest error of the yield that counts as rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// Sentence with the source of the yield, its error, and the Pearson fit if that differs.
+/// Sentence on the source of the yield and its error. A proof is exact in every printed digit, so its rounding is left out.
 pub(crate) fn source(one: &CharacteristicAnalysis) -> Option<String> {
     let source = one.yield_source?;
     let error = one.error_estimate.as_ref().and_then(|estimate| estimate.yield_);
     let error = match (source, error) {
-        // Rounding is negligible compared with the uncertainty of measured samples.
+        // Rounding is negligible compared with the uncertainty of measured samples, and beside a proof.
+        (YieldSource::Proof, Some(error)) if error < ROUNDING => String::new(),
         (_, Some(error)) if one.sampling.is_some() && error < ROUNDING => String::new(),
         (_, Some(error)) if error > 0.0 => format!(", ± {} %", significant(100.0 * error, 2)),
         (YieldSource::Proof, _) | (_, Some(_)) => String::new(),
         (_, None) => ", error unknown".to_owned(),
     };
+    Some(format!("by {}{error}{}", source.words(), condition(one)))
+}
+
+/// Sentence on the Pearson fit, or None if its yield is the printed one or nearly so.
+pub(crate) fn pearson_fit(one: &CharacteristicAnalysis) -> Option<String> {
+    one.yield_source.filter(|source| *source != YieldSource::Pearson)?;
     let rejected = |below: Option<f64>, above: Option<f64>| 1e-6 * (below.unwrap_or(0.0) + above.unwrap_or(0.0));
     let own = rejected(one.ppm_below(), one.ppm_above());
-    let fit = one.pearson.as_ref().map(|fit: &Capability| rejected(fit.ppm_below(), fit.ppm_above()));
-    let fit = fit.filter(|fit| source != YieldSource::Pearson && (fit - own).abs() > DIFFERENT * fit.max(own));
-    let fit = fit.map_or(String::new(), |fit| format!("; Pearson fit {}", unrejected(fit)));
-    Some(format!("by {}{error}{fit}{}", source.words(), condition(one)))
+    let fit = one.pearson.as_ref().map(|fit: &Capability| rejected(fit.ppm_below(), fit.ppm_above()))?;
+    let differs = (fit - own).abs() > DIFFERENT * fit.max(own);
+    let words = "its four moments do not determine the tails";
+    differs.then(|| format!("a Pearson fit would say: yield {} ({words})", unrejected(fit)))
 }
 
 /// Price of a verdict by points of the model, in place of one by the surface. The time is stated for a slow model.

@@ -69,9 +69,39 @@ pub fn plain(value: f64) -> String {
     if exponent.len() + 2 < text.len() { exponent } else { text }
 }
 
-/// Formats a mean beside its sigma, with the decimals that show five digits of sigma.
+/// Most significant digits of a computed value.
+const MOST_DIGITS: i32 = 6;
+/// Least and most digits of sigma that a value beside it resolves. Three digits tell a mean from a limit to a hundredth of sigma.
+const SIGMA_DIGITS: [i32; 2] = [3, 5];
+
+/// Returns the decimals of a value beside its sigma, or None if that needs an exponent: six significant digits, but at least three
+/// and at most five digits of sigma.
+fn decimals_beside(value: f64, sigma: f64) -> Option<usize> {
+    let [least, most] = SIGMA_DIGITS.map(|digits| decimals(sigma, digits));
+    let most = most?;
+    // A value of 0, or one far below sigma, has the decimals of sigma.
+    let own = decimals(value, MOST_DIGITS).filter(|_| value != 0.0).unwrap_or(most);
+    Some(own.clamp(least.unwrap_or(most), most))
+}
+
+/// Returns the decimals of an interval's ends, which are those of the greater one, or None if that needs an exponent.
+fn decimals_of_ends(ends: [f64; 2], sigma: f64, error: Option<f64>) -> Option<usize> {
+    let greatest = ends[0].abs().max(ends[1].abs());
+    let decimals = decimals_beside(greatest, sigma).filter(|_| greatest < 1e9)?;
+    Some(of_error(error).map_or(decimals, |of_error| of_error.min(decimals)))
+}
+
+/// Formats the ends of an interval as [`carried`] does, both with the same decimals.
+pub(crate) fn carried_ends(ends: [f64; 2], sigma: f64, error: Option<f64>) -> [String; 2] {
+    match decimals_of_ends(ends, sigma, error) {
+        Some(decimals) => ends.map(|end| unsigned_zero(format!("{end:.decimals$}"))),
+        None => ends.map(|end| carried(end, sigma, error)),
+    }
+}
+
+/// Formats a value beside its sigma, with six significant digits at most as long as they show three of sigma.
 pub(crate) fn beside(value: f64, sigma: f64) -> String {
-    match decimals(sigma, 5) {
+    match decimals_beside(value, sigma) {
         Some(decimals) if value.abs() < 1e9 => unsigned_zero(format!("{value:.decimals$}")),
         _ => significant(value, digits_beside(value, sigma)),
     }
@@ -80,7 +110,10 @@ pub(crate) fn beside(value: f64, sigma: f64) -> String {
 /// Returns the significant digits of a number beside its sigma, used if it needs an exponent.
 fn digits_beside(value: f64, sigma: f64) -> usize {
     let ratio = libm::log10((value / sigma).abs().max(1.0)).floor();
-    if ratio.is_finite() { (ratio as usize + 5).min(17) } else { 6 }
+    let [least, most] = SIGMA_DIGITS;
+    let digits =
+        if ratio.is_finite() { MOST_DIGITS.clamp(ratio as i32 + least, ratio as i32 + most) } else { MOST_DIGITS };
+    digits.min(17) as usize
 }
 
 /// Formats the ends of a proven interval as [`carried`] does, but rounded outward: no value lies beyond the printed numbers.
@@ -90,16 +123,19 @@ fn digits_beside(value: f64, sigma: f64) -> usize {
 pub(crate) fn outward(ends: [f64; 2], sigma: f64, error: Option<f64>) -> [String; 2] {
     /// Tolerance for rounding, as a part of the last digit.
     const ROUNDING: f64 = 1e-6;
+    let decimals = decimals_of_ends(ends, sigma, error);
     let shown = |value: f64, sign: f64| {
-        let last = match (decimals(sigma, 5), of_error(error)) {
-            (Some(of_sigma), of_error) if value.abs() < 1e9 => {
-                power_of_ten(-(of_error.map_or(of_sigma, |of_error| of_error.min(of_sigma)) as f64))
-            }
-            _ if value == 0.0 => 0.0,
-            _ => power_of_ten(libm::log10(value.abs()).floor() - digits_beside(value, sigma) as f64 + 1.0),
+        let last = match decimals {
+            Some(decimals) => power_of_ten(-(decimals as f64)),
+            None if value == 0.0 => 0.0,
+            None => power_of_ten(libm::log10(value.abs()).floor() - digits_beside(value, sigma) as f64 + 1.0),
         };
         // Adding half a digit before rounding to the nearest rounds outward.
-        carried(value + sign * (0.5 - ROUNDING) * last, sigma, error)
+        let moved = value + sign * (0.5 - ROUNDING) * last;
+        match decimals {
+            Some(decimals) => unsigned_zero(format!("{moved:.decimals$}")),
+            None => carried(moved, sigma, error),
+        }
     };
     [shown(ends[0], -1.0), shown(ends[1], 1.0)]
 }
@@ -203,9 +239,10 @@ pub(crate) fn unrejected(rejected: f64) -> String {
     if rejected > 0.0 && rejected < FEWEST { "> 99.9999999 %".to_owned() } else { share(rejected) }
 }
 
-/// Formats a required yield in percent.
+/// Formats a required yield in percent, with the digits that the study has.
 pub(crate) fn target_yield(yield_: f64) -> String {
-    share(1.0 - yield_)
+    // Rounded, because the product by 100 adds digits.
+    format!("{} %", (1e11 * yield_).round() / 1e9)
 }
 
 /// Formats limits in words.
@@ -220,11 +257,11 @@ pub(crate) fn limits(lower: Option<f64>, upper: Option<f64>) -> String {
 
 /// Formats a value beside its sigma with no more decimals than its error supports. The last decimal is the error's second digit.
 pub(crate) fn carried(value: f64, sigma: f64, error: Option<f64>) -> String {
-    match (decimals(sigma, 5), of_error(error)) {
-        (Some(of_sigma), Some(of_error)) if of_error < of_sigma && value.abs() < 1e9 => {
+    match (decimals_beside(value, sigma), of_error(error)) {
+        (Some(own), Some(of_error)) if of_error < own && value.abs() < 1e9 => {
             unsigned_zero(format!("{value:.of_error$}"))
         }
-        (of_sigma, _) if of_sigma.is_none() || value.abs() >= 1e9 => {
+        (own, _) if own.is_none() || value.abs() >= 1e9 => {
             // The exponent form has digits down to the second digit of the error.
             let known = error.filter(|error| *error > 0.0 && error.is_finite());
             let carried = known.map(|error| libm::log10(value.abs()).floor() - libm::log10(error).floor() + 2.0);
@@ -235,22 +272,36 @@ pub(crate) fn carried(value: f64, sigma: f64, error: Option<f64>) -> String {
     }
 }
 
-/// Formats a number with a standard error, down to the second digit of the error.
+/// Formats a number with a standard error, down to the second digit of the error, with six significant digits at most.
 pub(crate) fn estimated(value: f64, error: Option<f64>) -> String {
     match error {
         Some(error) if error > 0.0 && error.is_finite() => {
-            let decimals = 1.0 - libm::log10(error).floor();
+            let own = if value == 0.0 {
+                f64::INFINITY
+            } else {
+                f64::from(MOST_DIGITS - 1) - libm::log10(value.abs()).floor()
+            };
+            let decimals = (1.0 - libm::log10(error).floor()).min(own);
             let tiny = decimals > 15.0 && value.abs().max(error) < 1e-4;
             if tiny || value.abs() >= 1e15 {
                 // The exponent form has digits down to the second digit of the error.
                 let digits = 2.0 + libm::log10((value / error).abs().max(1.0)).floor();
-                return significant(value, digits.min(17.0) as usize);
+                return significant(value, digits.min(f64::from(MOST_DIGITS)) as usize);
             }
             let decimals = decimals.clamp(0.0, 15.0) as usize;
             unsigned_zero(format!("{value:.decimals$}"))
         }
         Some(_) => plain(value),
         None => significant(value, 4),
+    }
+}
+
+/// Formats a mean or a quantile with its standard error as [`estimated`] does, with as many digits as [`beside`] shows of it beside sigma.
+pub(crate) fn estimated_beside(value: f64, sigma: Option<f64>, error: Option<f64>) -> String {
+    let sigma = sigma.filter(|sigma| *sigma > 0.0);
+    match (sigma, error.filter(|error| *error > 0.0 && error.is_finite())) {
+        (Some(sigma), Some(error)) => carried(value, sigma, Some(error)),
+        _ => estimated(value, error),
     }
 }
 

@@ -37,6 +37,8 @@ impl Style {
 const GAP: usize = 2;
 /// Least length to which a name in the first column is shortened if a table is too wide.
 const SHORTEST: usize = 8;
+/// Greatest width that the column of labels keeps if a table is too wide. A longer label stands on a line of its own.
+const LABEL: usize = 20;
 /// Most lines of a list unless everything is shown.
 const LINES: usize = 3;
 /// Space for "and N more" in the last line of a list.
@@ -56,7 +58,7 @@ fn escape(tone: Tone) -> Option<&'static str> {
 
 /// Formats a document as text.
 pub fn text(document: &Document, style: Style) -> String {
-    let mut page = Page { text: String::new(), style };
+    let mut page = Page { text: String::new(), style, title: 0 };
     if let Some(title) = &document.title {
         page.folded(&title.as_str().into());
     }
@@ -64,19 +66,41 @@ pub fn text(document: &Document, style: Style) -> String {
     let sections = document.sections.iter().filter(|_| style.detail != Detail::Summary);
     for (index, section) in sections.enumerate() {
         if index > 0 || !page.text.is_empty() {
-            page.text.push('\n');
+            page.gap();
         }
         page.section(section);
     }
     page.text
 }
 
+/// Formats a line that is never broken, as the last one of a report.
+pub(crate) fn unbroken(line: &Line, style: Style) -> String {
+    let mut page = Page { text: String::new(), style, title: 0 };
+    let letters = page.letters(line);
+    page.put(&letters);
+    page.text
+}
+
 /// Letter with its tone.
 type Letter = (char, Tone);
+
+/// Shape of a table's columns.
+struct TableShape {
+    /// Width of the widest cell.
+    widths: Vec<usize>,
+    /// Least width as the first column.
+    least: Vec<usize>,
+    /// True for numbers, which are right-aligned.
+    right: Vec<bool>,
+    /// True for names of the study, which may be shortened.
+    named: Vec<bool>,
+}
 
 struct Page {
     text: String,
     style: Style,
+    /// Length of the text up to the title of the last section.
+    title: usize,
 }
 
 impl Page {
@@ -85,12 +109,13 @@ impl Page {
             let unit = section.unit.as_deref().map(|unit| format!(" [{unit}]")).unwrap_or_default();
             self.folded(&format!("{}{unit}{}", section.name, section.words).into());
         }
+        self.title = self.text.len();
         section.blocks.iter().for_each(|block| self.block(block));
     }
 
     fn block(&mut self, block: &Element) {
         match block {
-            Element::Gap => self.text.push('\n'),
+            Element::Gap => self.gap(),
             Element::Paragraph(paragraph) => self.paragraph(paragraph),
             Element::List(list) => self.list(list),
             Element::Table(table) => self.table(table),
@@ -107,6 +132,14 @@ impl Page {
             Element::Brief(inner) if self.style.detail == Detail::Short => inner.iter().for_each(|one| self.block(one)),
             Element::Detail(_) | Element::Brief(_) | Element::Markup(_) => {}
             Element::Chart(Chart::Plot(_) | Chart::Bars(_)) | Element::Aside(_) | Element::Finding(_) => {}
+        }
+    }
+
+    /// Appends an empty line, unless the last line is empty or a title.
+    fn gap(&mut self) {
+        let below_title = self.title > 0 && self.text.len() == self.title;
+        if !self.text.ends_with("\n\n") && !below_title {
+            self.text.push('\n');
         }
     }
 
@@ -210,8 +243,9 @@ impl Page {
         self.folded(&line.into());
     }
 
-    /// Appends a table, indented by two and no wider than the page. Names in the first column are shortened first. Columns without space
-    /// go into a table below, with the names again. Columns that have labels of their own go there beside these labels.
+    /// Appends a table, indented by two and no wider than the page. Names in the first column are shortened first. A label that is no
+    /// name is never shortened: if it is too long, it stands above its row. Columns without space go into a table below, with the labels
+    /// again. Columns that have labels of their own go there beside these labels.
     fn table(&mut self, table: &DataTable) {
         let most = if self.style.detail == Detail::Full { usize::MAX } else { table.most[0] };
         let places = table.places(|column| column.terminal);
@@ -227,8 +261,14 @@ impl Page {
         let widest = |column: usize| rows.iter().map(|row| width(&row[column])).max().unwrap_or(0).max(1);
         let widths: Vec<usize> = (0..places.len()).map(widest).collect();
         let labels: Vec<bool> = places.iter().map(|&place| table.columns[place].label).collect();
-        for (index, columns) in self.parts(&widths, &labels).iter().enumerate() {
-            self.part(&rows, columns, (&widths, &right), index > 0);
+        let named = |place: usize| table.view.iter().any(|&index| table.rows[index][place].full.is_some());
+        let named: Vec<bool> = places.iter().map(|&place| named(place)).collect();
+        let least: Vec<usize> = (named.iter().zip(&widths))
+            .map(|(named, width)| *width.min(if *named { &SHORTEST } else { &LABEL }))
+            .collect();
+        let shape = TableShape { widths, least, right, named };
+        for (index, columns) in self.parts(&shape, &labels).iter().enumerate() {
+            self.part(&rows, columns, &shape, index > 0);
         }
         if table.view.len() > most && !table.rest.is_empty() {
             self.folded(&format!("  {}", table.rest).into());
@@ -237,8 +277,8 @@ impl Page {
 
     /// Groups the columns into parts that fit side by side. Each part begins with the label of its columns: the first column, or the last
     /// label column before them.
-    fn parts(&self, widths: &[usize], labels: &[bool]) -> Vec<Vec<usize>> {
-        let least = |label: usize| widths[label].min(SHORTEST) + GAP;
+    fn parts(&self, TableShape { widths, least, .. }: &TableShape, labels: &[bool]) -> Vec<Vec<usize>> {
+        let least = |label: usize| least[label] + GAP;
         let mut parts: Vec<Vec<usize>> = Vec::new();
         let (mut columns, mut taken, mut label) = (vec![0], least(0), 0);
         for column in 1..widths.len() {
@@ -265,23 +305,22 @@ impl Page {
     }
 
     /// Appends some columns of a table. In parts below the first one, rows without content are left out.
-    fn part(
-        &mut self,
-        rows: &[Vec<Vec<Letter>>],
-        columns: &[usize],
-        (widths, right): (&[usize], &[bool]),
-        below: bool,
-    ) {
+    fn part(&mut self, rows: &[Vec<Vec<Letter>>], columns: &[usize], shape: &TableShape, below: bool) {
+        let TableShape { widths, least, right, named } = shape;
         let total: usize = columns.iter().map(|&column| widths[column] + GAP).sum();
         let label = columns[0];
-        let names = widths[label].saturating_sub(total.saturating_sub(self.style.width)).max(SHORTEST);
+        let most = widths[label].saturating_sub(total.saturating_sub(self.style.width)).max(least[label]);
         let said = |row: &&Vec<Vec<Letter>>| columns.iter().skip(1).any(|&column| trimmed(&row[column]) > 0);
         for row in rows.iter().filter(|row| !below || said(row)) {
+            let mut name = if named[label] { self.fitted(&row[label], most) } else { row[label].clone() };
+            if width(&name) > most && said(&row) {
+                self.put(&spaces(GAP).chain(std::mem::take(&mut name)).collect::<Vec<_>>());
+            }
             let mut line: Vec<Letter> = Vec::new();
             for &column in columns {
                 let first = column == label;
-                let cell = if first { self.fitted(&row[label], names) } else { row[column].clone() };
-                let wanted = if first { widths[label].min(names) } else { widths[column] };
+                let cell = if first { std::mem::take(&mut name) } else { row[column].clone() };
+                let wanted = if first { widths[label].min(most) } else { widths[column] };
                 let missing = wanted.saturating_sub(width(&cell));
                 let [before, after] = if right[column] { [missing, 0] } else { [0, missing] };
                 line.extend(spaces(GAP + before).chain(cell).chain(spaces(after)));
@@ -428,13 +467,14 @@ mod tests {
             let page = shown(|page| page.table(table), Style { color: false, width, ..STYLE });
             let mut header: &str = "";
             let mut seen = 0;
+            let mut above = "";
             for line in page.lines() {
                 if line.trim_start().starts_with('t') {
                     header = line;
                     continue;
                 }
-                // Shortened names keep their first letters.
-                let mut label = "";
+                // A long label stands alone on the line above its values, and nowhere else.
+                let mut label = std::mem::take(&mut above);
                 for (at, word) in line.split(' ').scan(0, |at, word| {
                     let begins = *at;
                     *at += word.chars().count() + 1;
@@ -453,7 +493,9 @@ mod tests {
                         _ => {}
                     }
                 }
+                above = if line.contains('v') { "" } else { label };
             }
+            prop_assert!(!page.contains('…'), "labels are never shortened: {}", page);
             let filled = lengths.iter().flatten().flat_map(|row| &row[1..]).filter(|&&length| length > 0).count();
             prop_assert_eq!(seen, filled, "{}", page);
         }

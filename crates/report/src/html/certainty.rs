@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::document::number::{beside, estimated, percent, plain, significant, uncertainty, yielded};
+use crate::document::number::{beside, estimated, estimated_beside, percent, plain, significant, uncertainty, yielded};
 use crate::document::svg::escaped;
 use crate::figures::{Figures, Named};
 use crate::reject_rate::rejects;
@@ -80,10 +80,11 @@ pub(super) fn analysed(one: &CharacteristicAnalysis, simulated: Option<&Simulate
     let row = |(of, model): (Figure, Option<(f64, f64)>)| {
         let (name, value, error) = of;
         let value = value?;
-        let scale = one.sigma().filter(|_| ["mean", "sigma"].contains(&name)).unwrap_or(1.0);
+        let sigma = one.sigma().filter(|_| ["mean", "sigma"].contains(&name));
+        let scale = sigma.unwrap_or(1.0);
         let shown = |value: f64, error: Option<f64>| match error {
             // An error of rounding alone needs no further digits.
-            Some(error) if error > 1e-6 * scale => estimated(value, Some(error)),
+            Some(error) if error > 1e-6 * scale => estimated_beside(value, sigma, Some(error)),
             _ => beside(value, scale),
         };
         Some(Row {

@@ -6,6 +6,7 @@ use crate::html::map;
 use std::fmt::Write;
 
 use crate::analysis::analysis_document::SHARES;
+use crate::analysis::statistics::is_of_statistics;
 use crate::document::number::{band, beside, estimated, plain, power_of_ten};
 use crate::document::svg::escaped;
 use crate::document::{Bar, Bars, Chart, Element, Extent, Fill, Line, Section, html};
@@ -38,9 +39,7 @@ const TO: f64 = 1e-5;
 pub(super) fn add(report: &Report, sections: &mut [Section]) {
     for (one, section) in report.analysis.characteristics.iter().zip(sections) {
         // The facts replace the table of statistics that a terminal shows. The ranges are drawn below the density.
-        if let Some(statistics) = section.blocks.iter().position(|block| matches!(block, Element::Table(_))) {
-            section.blocks.remove(statistics);
-        }
+        section.blocks.retain(|block| !matches!(block, Element::Table(table) if is_of_statistics(table)));
         let findings = section.blocks.iter().take_while(|block| matches!(block, Element::Finding(_))).count();
         section.blocks.insert(findings, Element::Markup(facts(one)));
         section.blocks.retain_mut(|block| match block {
