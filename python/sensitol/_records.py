@@ -249,8 +249,11 @@ class Result(Record):
                 columns[heading].append(_cell(cell))
         return columns
 
-    def to_frame(self, name: str) -> pandas.DataFrame:
-        """A table of the report as a DataFrame of pandas."""
+    def to_frame(self, name: str | None = None) -> pandas.DataFrame:
+        """A table of the report as a DataFrame of pandas. `tables()` names the tables."""
+        if name is None:
+            choices = ", ".join(repr(one) for one in self.tables())
+            raise TypeError(f"to_frame needs the name of a table: {choices}")
         try:
             import pandas
         except ImportError:
@@ -261,11 +264,16 @@ class Result(Record):
         """The charts of the report."""
         return str(self._outcome_().svg(title))
 
-    def plot(self, characteristic: str | None = None, *, ax: Any = None) -> Any:
-        """Draws the result with matplotlib, and returns the axes."""
+    def plot(self, characteristic: str | None = None, kind: str | None = None, *, ax: Any = None) -> Any:
+        """Draws the result with matplotlib, and returns the axes.
+
+        An analysis has the kinds `"density"` (limits, rejects, verdict), `"contributions"`, and `"both"`, which returns an array of two
+        axes and is drawn without `ax` unless another kind is named. A simulation shows its sample as a density, a sweep its band, an
+        allocation the tolerances before and after, a comparison the error of each method.
+        """
         from ._plot import plot
 
-        return plot(self, characteristic, ax)
+        return plot(self, characteristic, kind, ax)
 
     def _repr_html_(self) -> str:
         from ._notebook import frame

@@ -735,11 +735,15 @@ def _joint(blocks: Any, files: dict[str, bytes]) -> list[dict[str, Any]]:
     return found
 
 
+#: Codes of warnings that ask for nothing: they stay in `result.warnings`, and are not issued.
+_SILENT = frozenset({"pearson-differs"})
+
+
 def _warn(result: Result) -> None:
     told = set()
     for warning in result._data.get("warnings", ()):
         key = (warning["code"], warning.get("characteristic"), warning.get("dimension"))
-        if key not in told:
+        if key not in told and warning["code"] not in _SILENT:
             told.add(key)
             advice = "".join(f" {one}" for one in _advice(warning))
             _issue(warning["message"] + advice, warning["code"], warning.get("characteristic"))

@@ -178,12 +178,17 @@ def test_a_result_shows_itself(study, tmp_path):
     assert json.loads(found.to_json()) == found.to_dict()
 
 
-def test_plots_show_the_whole_contribution(study):
+def drawn_without_a_window():
     matplotlib = pytest.importorskip(
         "matplotlib", reason="skipped: matplotlib is not installed; install with: pip install matplotlib"
     )
     matplotlib.use("Agg")
-    ax = study.analyze("full").plot("clearance")
+    return matplotlib
+
+
+def test_plots_show_the_whole_contribution(study):
+    drawn_without_a_window()
+    ax = study.analyze("full").plot("clearance", "contributions")
     widths = {}
     for container in ax.containers:
         for label, bar in zip([text.get_text() for text in ax.get_yticklabels()], container):
@@ -191,11 +196,77 @@ def test_plots_show_the_whole_contribution(study):
     # The tilt contributes by curvature alone: the table of the example shaft-and-bore.
     assert widths["tilt"] == pytest.approx(29.18, abs=0.005)
     assert sum(widths.values()) == pytest.approx(100, abs=1e-6)
-    study.simulate(2000).plot()
     ax = study.sweep("tilt", np.linspace(-2, 2, 5)).plot()
     assert ax.get_xlabel() == "tilt [deg]"
     with pytest.raises(TypeError, match="an RareResult has no plot"):
         study.rare(1000).plot()
+
+
+def test_a_density_has_the_area_of_all_assemblies(study):
+    drawn_without_a_window()
+    found = study.analyze("full")
+    both = found.plot()
+    assert len(both) == 2 and both[1].get_title() == "Contributions to clearance"
+    ax = found.plot(kind="density")
+    curve = ax.get_lines()[0]
+    x, y = curve.get_data()
+    # All but 1e-4 at either end, by the trapezoidal rule on 400 points.
+    assert np.sum(np.diff(x) * (y[1:] + y[:-1]) / 2) == pytest.approx(1, abs=1e-3)
+    one = found["clearance"]
+    name, _, rest = ax.get_title().partition(": yield ")
+    assert name == "clearance" and rest.endswith(" %, target 99.9 %: met")
+    # Printed with three digits of the rejects.
+    assert 100 - float(rest.split()[0]) == pytest.approx(100 * (1 - one.yield_), rel=5e-3)
+    assert [line.get_xdata()[0] for line in ax.get_lines()[1:3]] == [one.lower, one.upper]
+    assert ax.get_xlabel() == "clearance [mm]"
+    with pytest.raises(ValueError, match="there is no plot 'pie'; there are 'density', 'contributions', 'both'"):
+        found.plot(kind="pie")
+    with pytest.raises(ValueError, match="two axes"):
+        found.plot(kind="both", ax=ax)
+
+
+def test_a_histogram_of_unequal_intervals_is_a_density(study):
+    drawn_without_a_window()
+    # A number of points may be a float, as 1e5 is one.
+    found = study.simulate(2e3)
+    steps = found["clearance"].histogram
+    assert len(set(np.round(np.diff(steps.edges), 9))) > 1 and sum(steps.counts) == 2000
+    drawn = found.plot().patches[0].get_data()
+    assert np.sum(drawn.values * np.diff(drawn.edges)) == pytest.approx(1, abs=1e-12)
+    # The height of the first interval by hand.
+    width = steps.edges[1] - steps.edges[0]
+    assert drawn.values[0] == pytest.approx(steps.counts[0] / 2000 / width, rel=1e-12)
+
+
+def test_allocations_and_comparisons_are_drawn(study):
+    matplotlib = drawn_without_a_window()
+    style = dict(matplotlib.rcParams)
+    found = study.compare(samples=4096)
+    ax = found.plot()
+    labels = [text.get_text() for text in ax.get_yticklabels()]
+    assert labels == [f"{one.method}: {one.evaluations}" for one in reversed(found["clearance"].methods)]
+    ax.figure.canvas.draw()
+    boxes = [text.get_window_extent() for text in ax.get_yticklabels()]
+    assert not any(one.overlaps(other) for one, other in zip(boxes, boxes[1:]))
+    allocated = study.allocate(confirm=0)
+    ax = allocated.plot()
+    before, after = ax.containers
+    assert {bar.get_width() for bar in before} == {100}
+    expected = [100 * one.after / one.before for one in reversed(allocated.tolerances)]
+    assert [bar.get_width() for bar in after] == pytest.approx(expected, rel=1e-12)
+    assert before[0].get_facecolor() != after[0].get_facecolor()
+    assert dict(matplotlib.rcParams) == style
+
+
+def test_names_are_those_of_the_users():
+    names = dir(st)
+    assert set(st.__all__) < set(names)
+    assert [name for name in names if name.startswith("_") or name not in st.__all__] == ["__version__"]
+
+
+def test_a_frame_names_the_choices(study):
+    with pytest.raises(TypeError, match="'dimensions', 'characteristics', 'sensitivities'"):
+        study.analyze("rss").to_frame()
 
 
 @pytest.mark.parametrize(

@@ -73,7 +73,12 @@ impl TaskReport {
     /// Formats the report as text of this width, with every detail if `full` is set.
     pub fn text(&self, width: usize, full: bool) -> String {
         let detail = if full { Detail::Full } else { Detail::Short };
-        text(&self.report().document(), Style { detail, unicode: true, color: false, width })
+        let style = Style { detail, unicode: true, color: false, width };
+        let report = text(&self.report().document(), style);
+        match &self.shown {
+            Shown::Analysis(analysis) => report + &analysis.0.closing(style),
+            _ => report,
+        }
     }
 
     /// Writes the report as a page.
